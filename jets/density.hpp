@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <concepts>
+#include <type_traits>
+
+#include "jets/dual.hpp"
+#include "jets/jet.hpp"
+
+namespace delf {
+
+/// How many real components the field has on which a density works: D::components, or 1.
+template <class D>
+constexpr int components_of() {
+  if constexpr (requires { D::components; }) return D::components;
+  else return 1;
+}
+
+/// Whether ℓ depends on t and x besides the field, which it says by `static constexpr bool placed = true;`.
+template <class D>
+constexpr bool is_placed() {
+  if constexpr (requires { D::placed; }) return D::placed;
+  else return false;
+}
+
+/// The jet of numbers T that a density D is called with.
+template <class T, class D>
+using JetFor = std::conditional_t<is_placed<D>(), PlacedJet<T, components_of<D>()>, Jet<T, components_of<D>()>>;
+
+/// A Lagrangian density ℓ(φ, φ_t, φ_x): a function object that works for any kind of number, like
+///
+///     struct PhiFour {
+///       auto operator()(const auto& j) const {
+///         const auto w = j.phi * j.phi - 1.0;
+///         return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) - 0.25 * w * w;
+///       }
+///     };
+///
+/// If this concept fails: the operator must be const, take `const auto& j`, use only j.phi, j.phi_t, j.phi_x (arrays
+/// if it declares `static constexpr int components = n`; also j.t, j.x if it declares `placed = true`), arithmetic and
+/// sin, cos, tan, exp, log, sqrt, sinh, cosh, tanh, pow(x, double), and return a number of the kind that it was given.
+template <class D>
+concept Density = requires(const D& density, const JetFor<double, D>& numbers, const JetFor<Dual<double, 3>, D>& duals,
+                           const JetFor<Dual<Pack, 1>, D>& packs) {
+  { density(numbers) } -> std::convertible_to<double>;             // a density returns ℓ for numbers …
+  { density(duals) } -> std::convertible_to<Dual<double, 3>>;      // … and with derivatives: write `const auto& j` …
+  { density(packs) } -> std::convertible_to<Dual<Pack, 1>>;        // … many sites at a time: no `if` on the field
+};
+
+}  // namespace delf

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "jets/density.hpp"
+
+namespace delf {
+
+/// An abstract number: instead of a value it carries what can be proved of an expression from its form alone — on
+/// which variables it depends, and which entries of its Hessian are not zero, or not constant. Running a density once
+/// on it proves what sampling could only suggest.
+struct Abstract {
+  static constexpr int most_variables = 32;
+
+  std::optional<double> constant = 0.0;                    ///< its value, when it depends on nothing
+  std::uint32_t depends = 0;                               ///< bit a: the first derivative by variable a may be ≠ 0
+  std::array<std::uint32_t, most_variables> nonzero{};     ///< bit b of [a]: ∂²/∂a∂b may be ≠ 0
+  std::array<std::uint32_t, most_variables> varying{};     ///< bit b of [a]: ∂²/∂a∂b may depend on the variables
+
+  Abstract() = default;
+  Abstract(double c) : constant(c) {}
+  static Abstract variable(int a) {
+    Abstract x;
+    x.constant.reset();
+    x.depends = 1u << a;
+    return x;
+  }
+
+  friend Abstract operator+(const Abstract& u, const Abstract& v) {
+    if (u.constant && v.constant) return *u.constant + *v.constant;
+    Abstract r = u;
+    r.constant.reset();
+    r.depends |= v.depends;
+    for (int a = 0; a < most_variables; ++a) r.nonzero[a] |= v.nonzero[a], r.varying[a] |= v.varying[a];
+    return r;
+  }
+  friend Abstract operator-(const Abstract& u) {
+    if (u.constant) return -*u.constant;
+    return u;
+  }
+  friend Abstract operator-(const Abstract& u, const Abstract& v) { return u + (-v); }
+
+  friend Abstract operator*(const Abstract& u, const Abstract& v) {
+    if (u.constant && v.constant) return *u.constant * *v.constant;
+    if (u.constant) return *u.constant == 0.0 ? Abstract(0.0) : v;
+    if (v.constant) return *v.constant == 0.0 ? Abstract(0.0) : u;
+    Abstract r;
+    r.constant.reset();
+    r.depends = u.depends | v.depends;
+    // (uv)_ab = u_ab v + u_a v_b + u_b v_a + u v_ab: the outer terms vary with the other factor, the products of
+    // first derivatives vary when one of those does, that is where its row of second derivatives is not zero.
+    for (int a = 0; a < most_variables; ++a) {
+      r.nonzero[a] |= u.nonzero[a] | v.nonzero[a];
+      r.varying[a] |= u.nonzero[a] | v.nonzero[a];
+      for (int b = 0; b < most_variables; ++b) {
+        const auto first = [](const Abstract& w, int c) { return (w.depends >> c & 1u) != 0; };
+        for (const auto& [p, q] : {std::pair{&u, &v}, std::pair{&v, &u}})
+          if (first(*p, a) && first(*q, b)) {
+            r.nonzero[a] |= 1u << b;
+            if (p->nonzero[a] || q->nonzero[b]) r.varying[a] |= 1u << b;
+          }
+      }
+    }
+    return r;
+  }
+
+  /// f(u) for a function f of which nothing is known.
+  friend Abstract unknown_function(const Abstract& u) {
+    Abstract r;
+    r.constant.reset();
+    r.depends = u.depends;
+    for (int a = 0; a < most_variables; ++a)
+      if (u.depends >> a & 1u) r.nonzero[a] = r.varying[a] = u.depends;
+    return r;
+  }
+  friend Abstract operator/(const Abstract& u, const Abstract& v) {
+    if (v.constant) return u * (1.0 / *v.constant);
+    return u * unknown_function(v);
+  }
+  Abstract& operator+=(const Abstract& v) { return *this = *this + v; }
+  Abstract& operator-=(const Abstract& v) { return *this = *this - v; }
+  Abstract& operator*=(const Abstract& v) { return *this = *this * v; }
+
+  friend Abstract sin(const Abstract& u) { return u.constant ? Abstract(std::sin(*u.constant)) : unknown_function(u); }
+  friend Abstract cos(const Abstract& u) { return u.constant ? Abstract(std::cos(*u.constant)) : unknown_function(u); }
+  friend Abstract tan(const Abstract& u) { return u.constant ? Abstract(std::tan(*u.constant)) : unknown_function(u); }
+  friend Abstract exp(const Abstract& u) { return u.constant ? Abstract(std::exp(*u.constant)) : unknown_function(u); }
+  friend Abstract log(const Abstract& u) { return u.constant ? Abstract(std::log(*u.constant)) : unknown_function(u); }
+  friend Abstract sqrt(const Abstract& u) { return u.constant ? Abstract(std::sqrt(*u.constant)) : unknown_function(u); }
+  friend Abstract sinh(const Abstract& u) { return u.constant ? Abstract(std::sinh(*u.constant)) : unknown_function(u); }
+  friend Abstract cosh(const Abstract& u) { return u.constant ? Abstract(std::cosh(*u.constant)) : unknown_function(u); }
+  friend Abstract tanh(const Abstract& u) { return u.constant ? Abstract(std::tanh(*u.constant)) : unknown_function(u); }
+  friend Abstract pow(const Abstract& u, double p) {
+    if (u.constant) return std::pow(*u.constant, p);
+    if (p == 0) return 1.0;
+    if (p == 1) return u;
+    if (p == 2) return u * u;
+    return unknown_function(u);
+  }
+};
+
+/// Which components of the jet a density is nonlinear in.
+enum class Nonlinearity {
+  none,    ///< the gradient is linear in the jet with constant coefficients: bands say everything
+  values,  ///< ∂ℓ/∂φ is anything, φ_t and φ_x enter linearly with constant coefficients
+  all      ///< anything
+};
+
+/// What is proved of a density. Variables in the order φ¹ … φᵈ, φ_t¹ …, φ_x¹ …, then t, x.
+struct DensityStructure {
+  Nonlinearity nonlinearity = Nonlinearity::all;
+  bool linear_equations = false;  ///< no second derivative depends on the field (though it may depend on t, x)
+  Abstract of_density;            ///< the density's own abstract value
+};
+
+template <Density D>
+DensityStructure structure_of(const D& density) {
+  constexpr int d = components_of<D>();
+  static_assert(3 * d + 2 <= Abstract::most_variables, "delf: raise Abstract::most_variables for this many components");
+  JetFor<Abstract, D> jet;
+  for (int a = 0; a < d; ++a) {
+    component(jet.phi, a) = Abstract::variable(a);
+    component(jet.phi_t, a) = Abstract::variable(d + a);
+    component(jet.phi_x, a) = Abstract::variable(2 * d + a);
+  }
+  if constexpr (is_placed<D>()) jet.t = Abstract::variable(3 * d), jet.x = Abstract::variable(3 * d + 1);
+  DensityStructure s;
+  s.of_density = density(jet);
+
+  const std::uint32_t values = (1u << d) - 1, place = 3u << (3 * d);
+  const std::uint32_t field = (1u << (3 * d)) - 1;
+  bool beyond_values = false, any = false;
+  for (int a = 0; a < 3 * d; ++a) {
+    // The gradient's entry a is not an affine function of the jet if a second derivative varies or meets t or x.
+    const std::uint32_t bad = (s.of_density.varying[a] & field) | (s.of_density.nonzero[a] & place);
+    any = any || bad;
+    beyond_values = beyond_values || (a >= d && bad) || (a < d && (bad & ~values & field));
+  }
+  s.nonlinearity = !any ? Nonlinearity::none : beyond_values ? Nonlinearity::all : Nonlinearity::values;
+  s.linear_equations = !any;
+  return s;
+}
+
+}  // namespace delf

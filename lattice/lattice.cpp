@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/lattice.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "lattice/error.hpp"
+
+namespace delf {
+
+Lattice::Lattice(Space space, int sites, double length, Wall left, Wall right)
+    : space_(space), sites_(sites), length_(length), left_(left), right_(right) {
+  if (sites < 2)
+    throw BadInput("lattice.sites", "lattice.sites = " + std::to_string(sites) +
+                                        ": a lattice needs at least 2 sites; raise lattice.sites");
+  if (!(length > 0) || !std::isfinite(length))
+    throw BadInput("lattice.length", "lattice.length must be a positive, finite number");
+}
+
+Lattice Lattice::circle(int sites, double length) { return {Space::circle, sites, length, Wall::natural, Wall::natural}; }
+
+Lattice Lattice::interval(int sites, double length, Wall left, Wall right) {
+  return {Space::interval, sites, length, left, right};
+}
+
+}  // namespace delf

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace delf {
+
+enum class Space { circle, interval };
+
+/// What a wall of an interval asks of the field: `fixed` keeps the value it starts with (no equation there, V = 0);
+/// `natural` varies it too, so that the equation is what the stencils inside the lattice give.
+enum class Wall { fixed, natural };
+
+/// A regular lattice: ℤ in time, and in space N sites on a circle (x_i = iL/N) or on an interval that holds both
+/// walls (x_i = iL/(N−1)). Time is ℤ: row 0 is data, not a wall.
+class Lattice {
+ public:
+  /// Throws BadInput (keys lattice.sites, lattice.length) unless sites ≥ 2 and length is positive and finite.
+  static Lattice circle(int sites, double length);
+  static Lattice interval(int sites, double length, Wall left = Wall::fixed, Wall right = Wall::fixed);
+
+  Space space() const noexcept { return space_; }
+  bool is_circle() const noexcept { return space_ == Space::circle; }
+  int sites() const noexcept { return sites_; }
+  double length() const noexcept { return length_; }
+  Wall left() const noexcept { return left_; }
+  Wall right() const noexcept { return right_; }
+  /// k
+  double space_step() const noexcept { return length_ / (is_circle() ? sites_ : sites_ - 1); }
+  /// x_i; exact at the walls.
+  double position(int i) const noexcept { return i * length_ / (is_circle() ? sites_ : sites_ - 1); }
+  /// The site i of the circle that an index outside 0 … N−1 stands for.
+  int wrapped(int i) const noexcept { return ((i % sites_) + sites_) % sites_; }
+  /// A wall that is kept at its value: it has no equation.
+  bool is_fixed(int i) const noexcept {
+    return !is_circle() && ((i == 0 && left_ == Wall::fixed) || (i == sites_ - 1 && right_ == Wall::fixed));
+  }
+
+ private:
+  Lattice(Space, int sites, double length, Wall, Wall);
+  Space space_;
+  int sites_;
+  double length_;
+  Wall left_, right_;
+};
+
+}  // namespace delf

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <vector>
+
+#include "lattice/lattice.hpp"
+#include "lattice/site.hpp"
+#include "lattice/site_set.hpp"
+#include "lattice/stencil.hpp"
+#include "lattice/stencil_shape.hpp"
+
+namespace delf {
+
+/// The integers first, first+1, …, last.
+struct Range {
+  int first = 0, last = 0;
+};
+
+/// A finite set U of sites, with its interior, closure and boundary as Marsden–Patrick–Shkoller, §5.1, define them, for
+/// any list of stencil families: all of them count together.
+///
+///     int U   the sites of U that some stencil touches, and of which U holds every stencil that touches them
+///     cl U    the union of all stencils that touch int U
+///     ∂U      (U ∩ cl U) \ int U
+///
+class Region {
+ public:
+  /// Sites in any order; on a circle they are reduced to 0 … N−1. Throws BadInput "lattice.sites" for a site outside an
+  /// interval, and what Stencils throws.
+  static Region from_sites(const Lattice&, std::vector<StencilPattern> families, std::vector<Site> sites);
+  /// All sites of the rows `time` and the columns `space`. On a circle the columns may run past N−1.
+  static Region rectangle(const Lattice&, std::vector<StencilPattern> families, Range time, Range space);
+
+  const Lattice& lattice() const { return all_.lattice(); }
+  const std::vector<StencilPattern>& families() const { return all_.families(); }
+
+  // Each sorted by time, then space.
+  const std::vector<Site>& sites() const { return u_.sites(); }
+  const std::vector<Site>& interior() const { return interior_.sites(); }
+  const std::vector<Site>& closure() const { return closure_.sites(); }
+  const std::vector<Site>& boundary() const { return boundary_.sites(); }
+
+  bool contains(Site site) const { return u_.contains(all_.reduced(site)); }
+  bool in_interior(Site site) const { return interior_.contains(all_.reduced(site)); }
+  bool in_closure(Site site) const { return closure_.contains(all_.reduced(site)); }
+  bool in_boundary(Site site) const { return boundary_.contains(all_.reduced(site)); }
+  /// U is exactly int U ∪ ∂U.
+  bool regular() const { return interior_.size() + boundary_.size() == u_.size(); }
+
+  bool contains(const Stencil&) const;
+  /// {Δ ⊂ U}: the stencils that the action (5.1) sums over.
+  std::vector<Stencil> stencils() const;
+  /// The Δ ⊂ U with a vertex in ∂U: the stencils that (5.3) to (5.7) sum over.
+  std::vector<Stencil> boundary_stencils() const;
+  /// Every stencil of the lattice that touches the site, in U or not.
+  std::vector<Stencil> touching(Site site) const { return all_.touching(all_.reduced(site)); }
+
+ private:
+  Region(Stencils all, SiteSet u);
+
+  Stencils all_;
+  SiteSet u_, interior_, closure_, boundary_;
+};
+
+/// U ∪ V and U \ V, on the lattice and with the families of U.
+Region united(const Region& U, const Region& V);
+Region without(const Region& U, const Region& V);
+
+}  // namespace delf

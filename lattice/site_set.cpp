@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/site_set.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace delf {
+
+SiteSet::SiteSet(std::vector<Site> sites) : sites_(std::move(sites)) {
+  std::ranges::sort(sites_);
+  const auto duplicates = std::ranges::unique(sites_);
+  sites_.erase(duplicates.begin(), duplicates.end());
+  for (std::size_t n = 0; n < sites_.size(); ++n)
+    if (rows_.empty() || rows_.back().time != sites_[n].time)
+      rows_.push_back({sites_[n].time, n, n + 1});
+    else
+      rows_.back().end = n + 1;
+}
+
+std::size_t SiteSet::index(Site site) const {
+  const auto row = std::ranges::lower_bound(rows_, site.time, {}, &Row::time);
+  if (row == rows_.end() || row->time != site.time) return size();
+
+  const long long first = sites_[row->begin].space, last = sites_[row->end - 1].space;
+  if (site.space < first || site.space > last) return size();
+  if (static_cast<std::size_t>(last - first) + 1 == row->end - row->begin)
+    return row->begin + static_cast<std::size_t>(site.space - first);
+
+  const auto begin = sites_.begin() + static_cast<std::ptrdiff_t>(row->begin);
+  const auto end = sites_.begin() + static_cast<std::ptrdiff_t>(row->end);
+  const auto found = std::lower_bound(begin, end, site);
+  return found != end && *found == site ? static_cast<std::size_t>(found - sites_.begin()) : size();
+}
+
+}  // namespace delf

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <initializer_list>
+#include <vector>
+
+#include "lattice/site.hpp"
+
+namespace delf {
+
+/// At which sites of the lattice a stencil is anchored.
+enum class Placement {
+  every_site,  ///< one stencil for each site
+  brick_wall   ///< only where time + space is even, so that rows of bricks are laid half a brick apart
+};
+
+/// A tuple of n sites, written as offsets from its anchor; the order is that of the paper's Δ¹, Δ², …, Δⁿ.
+///
+///     inline constexpr Offsets<3> triangle{{{{0, 0}, {1, 0}, {1, 1}}}};          // {time, space}
+///
+template <int n>
+struct Offsets {
+  std::array<Site, n> vertices;
+  Placement placement = Placement::every_site;
+
+  static constexpr int size() { return n; }
+  /// Δˡ relative to the anchor, l = 0 … n−1 (the paper counts from 1).
+  constexpr Site vertex(int l) const { return vertices[static_cast<std::size_t>(l)]; }
+};
+
+/// What a stencil shape must offer: `size()`, `vertex(l)` for l = 0 … size()−1, and a `placement`. A list of offsets,
+/// `delf::Offsets<n>{{{{time, space}, …}}}`, has them all.
+template <class S>
+concept StencilShape = requires(const S& shape) {
+  { S::size() } -> std::convertible_to<int>;            // how many vertices: static constexpr int size()
+  { shape.vertex(0) } -> std::convertible_to<Site>;     // the offset {time, space} of vertex l from the anchor
+  { shape.placement } -> std::convertible_to<Placement>;  // every_site, or brick_wall
+};
+
+/// A stencil shape whose number of vertices is known at run time only: what regions, plans and checks work with.
+struct StencilPattern {
+  std::vector<Site> vertices;
+  Placement placement = Placement::every_site;
+
+  StencilPattern() = default;
+  StencilPattern(std::vector<Site> v, Placement p = Placement::every_site) : vertices(std::move(v)), placement(p) {}
+  template <StencilShape S>
+  explicit StencilPattern(const S& shape) : placement(shape.placement) {
+    for (int l = 0; l < S::size(); ++l) vertices.push_back(shape.vertex(l));
+  }
+  int size() const { return static_cast<int>(vertices.size()); }
+  /// Whether a stencil of this pattern is anchored at `site`, walls apart.
+  bool placed_at(Site site) const {
+    return placement == Placement::every_site || (site.time + site.space) % 2 == 0;
+  }
+};
+
+}  // namespace delf

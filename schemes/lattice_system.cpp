@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/lattice_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include "lattice/error.hpp"
+
+namespace delf {
+namespace {
+
+Cell cell_at(const Lattice& lattice, std::int64_t row, int i, double time_step) {
+  const int home = lattice.is_circle() ? lattice.wrapped(i) : i;
+  return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, lattice.position(home)};
+}
+
+}  // namespace
+
+double Window::operator()(std::int64_t row, int i, int a) const {
+  const auto& values = rows[static_cast<std::size_t>(std::clamp(row, first_row, last_row()) - first_row)];
+  if (!lattice->is_circle()) return values[static_cast<std::size_t>(i * components + a)];
+  const int home = lattice->wrapped(i);
+  return values[static_cast<std::size_t>(home * components + a)] + (i - home) / lattice->sites() * turn;
+}
+
+LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families,
+                             double time_step)
+    : lattice_(lattice), families_(std::move(families)), time_step_(time_step) {
+  components_ = families_.front()->components();
+  for (const auto& family : families_) {
+    if (family->components() != components_)
+      throw BadInput("lattice.stencil", "stencil families on one lattice must have the same number of components");
+    if (family->pattern().placement == Placement::brick_wall) placement_ = Placement::brick_wall;
+    const auto [least, most] = std::ranges::minmax(family->pattern().vertices, {}, &Site::space);
+    width_ = std::max(width_, most.space - least.space);
+  }
+  if (placement_ == Placement::brick_wall && lattice_.is_circle() && lattice_.sites() % 2 != 0)
+    throw BadInput("lattice.sites", "lattice.sites = " + std::to_string(lattice_.sites()) +
+                                        ": a brick wall of hexagons closes on a circle only if the number of sites is "
+                                        "even; choose an even lattice.sites");
+}
+
+std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice, Site site) const {
+  std::vector<Touch> result;
+  for (const auto& family : families_)
+    for (int l = 0; l < family->pattern().size(); ++l) {
+      const auto& vertices = family->pattern().vertices;
+      const Site offset = Site{} - vertices[static_cast<std::size_t>(l)], anchor = site + offset;
+      const bool inside = lattice.is_circle() || std::ranges::all_of(vertices, [&](Site v) {
+        const int i = anchor.space + v.space;
+        return i >= 0 && i < lattice.sites();
+      });
+      if (inside && family->pattern().placed_at(anchor)) result.push_back({family.get(), offset, l});
+    }
+  return result;
+}
+
+std::vector<Coefficient> LatticeSystem::linearised(const Lattice& lattice, Site site, int component) const {
+  if (lattice.is_fixed(site.space)) return {};
+  struct Sample {
+    double constant = 0, scale = 0, at[3] = {0, 0, 0};
+  };
+  std::map<std::tuple<Site, int>, Sample> samples;
+  std::mt19937_64 engine(20250901);
+  const auto number = [&engine] { return 4.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 2.0; };
+  // One random value for each unknown near the site, the same for all stencils that contain it.
+  std::map<std::tuple<Site, int>, std::array<double, 3>> field;
+  for (const Touch& touch : touching(lattice, site)) {
+    const auto& vertices = touch.family->pattern().vertices;
+    const int d = components_, size = touch.family->size();
+    std::vector<double> y(static_cast<std::size_t>(size)), J(y.size() * y.size()), r0(y.size());
+    // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
+    const Cell cell = cell_at(lattice, site.time + touch.anchor.time, site.space + touch.anchor.space, time_step_);
+    const auto entry = [&](int m, int b) -> Sample& {
+      return samples[{touch.anchor + vertices[static_cast<std::size_t>(m)], b}];
+    };
+    const std::size_t from = static_cast<std::size_t>((touch.vertex * d + component) * size);
+    touch.family->linear_part(cell, J, r0);
+    for (int m = 0; m < size; ++m) entry(m / d, m % d).constant += J[from + static_cast<std::size_t>(m)];
+    for (int s = 0; s < 3; ++s) {
+      for (int m = 0; m < size; ++m) {
+        auto [where, fresh] = field.try_emplace({touch.anchor + vertices[static_cast<std::size_t>(m / d)], m % d});
+        if (fresh) where->second = {number(), number(), number()};
+        y[static_cast<std::size_t>(m)] = where->second[static_cast<std::size_t>(s)];
+      }
+      touch.family->jacobian(cell, y, J);
+      for (int m = 0; m < size; ++m) {
+        Sample& sample = entry(m / d, m % d);
+        sample.at[s] += J[from + static_cast<std::size_t>(m)];
+        sample.scale += std::abs(J[from + static_cast<std::size_t>(m)]);
+      }
+    }
+  }
+  std::vector<Coefficient> result;
+  for (const auto& [where, sample] : samples) {
+    const double least = *std::min_element(sample.at, sample.at + 3), most = *std::max_element(sample.at, sample.at + 3);
+    const double round_off = 1e-13 * sample.scale;
+    if (std::max(std::abs(least), std::abs(most)) <= round_off) continue;
+    const bool constant = most - least <= round_off;
+    const double value = std::abs(sample.constant) <= round_off ? 0.0 : sample.constant;
+    result.push_back({std::get<0>(where), std::get<1>(where), value,
+                      constant ? Dependence::linear : Dependence::nonlinear});
+  }
+  return result;
+}
+
+SystemPattern LatticeSystem::pattern() const {
+  SystemPattern pattern;
+  pattern.components = components_;
+  pattern.width = std::max(width_, 1);
+  pattern.placement = placement_;
+  pattern.equations = [this](const Lattice& lattice, Site site, int component) {
+    std::vector<Coupling> couplings;
+    for (const Coefficient& c : linearised(lattice, site, component))
+      couplings.push_back({c.offset, c.component, c.dependence});
+    return couplings;
+  };
+  return pattern;
+}
+
+LatticeSystem::Value LatticeSystem::equation(const Window& window, std::int64_t row, int site, int component,
+                                             double time_step) const {
+  Value value;
+  const int d = components_;
+  std::vector<double> y, r;
+  for (const Touch& touch : touching({static_cast<int>(row & 1), site})) {
+    const auto& vertices = touch.family->pattern().vertices;
+    y.resize(static_cast<std::size_t>(touch.family->size()));
+    r.resize(y.size());
+    const std::int64_t anchor_row = row + touch.anchor.time;
+    const int anchor = site + touch.anchor.space;
+    for (std::size_t l = 0; l < vertices.size(); ++l)
+      for (int a = 0; a < d; ++a)
+        y[l * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)] =
+            window(anchor_row + vertices[l].time, anchor + vertices[l].space, a);
+    touch.family->residual(cell_at(lattice_, anchor_row, anchor, time_step), y, r);
+    const double term = r[static_cast<std::size_t>(touch.vertex * d + component)];
+    value.sum += term;
+    value.absolute += std::abs(term);
+  }
+  return value;
+}
+
+void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, std::int64_t unknown_row,
+                             double time_step, std::vector<Entry>& entries) const {
+  const int d = components_;
+  std::vector<double> y, J;
+  for (const Touch& touch : touching({static_cast<int>(row & 1), site})) {
+    const auto& vertices = touch.family->pattern().vertices;
+    const int size = touch.family->size();
+    y.resize(static_cast<std::size_t>(size));
+    J.resize(y.size() * y.size());
+    const std::int64_t anchor_row = row + touch.anchor.time;
+    const int anchor = site + touch.anchor.space;
+    for (std::size_t l = 0; l < vertices.size(); ++l)
+      for (int a = 0; a < d; ++a)
+        y[l * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)] =
+            window(anchor_row + vertices[l].time, anchor + vertices[l].space, a);
+    touch.family->jacobian(cell_at(lattice_, anchor_row, anchor, time_step), y, J);
+    for (std::size_t m = 0; m < vertices.size(); ++m) {
+      if (anchor_row + vertices[m].time != unknown_row) continue;
+      const int i = anchor + vertices[m].space, home = lattice_.is_circle() ? lattice_.wrapped(i) : i;
+      for (int a = 0; a < d; ++a)
+        for (int b = 0; b < d; ++b) {
+          const double value = J[static_cast<std::size_t>((touch.vertex * d + a) * size + static_cast<int>(m) * d + b)];
+          if (value != 0) entries.push_back({site * d + a, home * d + b, value});
+        }
+    }
+  }
+}
+
+}  // namespace delf

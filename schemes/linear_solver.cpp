@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/linear_solver.hpp"
+
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+
+#include "lattice/error.hpp"
+#include "schemes/circulant_solver.hpp"
+#include "schemes/cyclic_band_lu.hpp"
+
+namespace delf {
+namespace {
+
+/// Division by the diagonal.
+class DiagonalSolver final : public LinearSolver {
+ public:
+  DiagonalSolver(const RowLayout& layout, int d, const std::vector<double>& diagonal)
+      : layout_(&layout), inverse_(layout, d), d_(d) {
+    std::vector<double> sites(static_cast<std::size_t>(layout.sites()));
+    for (int a = 0; a < d; ++a) {
+      for (std::size_t i = 0; i < sites.size(); ++i)
+        sites[i] = 1 / diagonal[i * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)];
+      layout.scatter(sites, inverse_.row(a));
+    }
+  }
+  void solve(const double* const* rhs, double* const* w) const override {
+    for (int a = 0; a < d_; ++a)
+      for (int v = 0; v < layout_->packs(); ++v) {
+        const auto at = layout_->at(v);
+        (Pack::load(rhs[a] + at) * Pack::load(inverse_.row(a) + at)).store(w[a] + at);
+      }
+  }
+  std::size_t bytes() const override { return inverse_.bytes(); }
+  std::string name() const override { return "division by a diagonal"; }
+
+ private:
+  const RowLayout* layout_;
+  RowBuffer inverse_;
+  int d_;
+};
+
+/// Division by one number.
+class ScalarSolver final : public LinearSolver {
+ public:
+  ScalarSolver(const RowLayout& layout, double diagonal) : layout_(&layout), inverse_(1 / diagonal) {}
+  void solve(const double* const* rhs, double* const* w) const override {
+    for (int v = 0; v < layout_->packs(); ++v) {
+      const auto at = layout_->at(v);
+      (inverse_ * Pack::load(rhs[0] + at)).store(w[0] + at);
+    }
+  }
+  std::size_t bytes() const override { return 0; }
+  std::string name() const override { return "division by one number"; }
+
+ private:
+  const RowLayout* layout_;
+  double inverse_;
+};
+
+/// Solvers that work on the sites in their order go through a scratch vector.
+template <class Factored>
+class OrderedSolver final : public LinearSolver {
+ public:
+  OrderedSolver(const RowLayout& layout, int d, Factored factored, std::string name)
+      : layout_(&layout), d_(d), factored_(std::move(factored)), name_(std::move(name)),
+        site_(static_cast<std::size_t>(layout.sites())), all_(site_.size() * static_cast<std::size_t>(d)) {}
+  void solve(const double* const* rhs, double* const* w) const override {
+    const auto d = static_cast<std::size_t>(d_);
+    for (std::size_t a = 0; a < d; ++a) {
+      layout_->gather(rhs[a], d == 1 ? all_ : site_);
+      if (d > 1)
+        for (std::size_t i = 0; i < site_.size(); ++i) all_[i * d + a] = site_[i];
+    }
+    factored_.solve(all_);
+    for (std::size_t a = 0; a < d; ++a) {
+      if (d > 1)
+        for (std::size_t i = 0; i < site_.size(); ++i) site_[i] = all_[i * d + a];
+      const std::vector<double>& values = d == 1 ? all_ : site_;
+      for (int l = 0; l < lanes; ++l)
+        for (int v = 0; v < layout_->packs(); ++v)
+          w[a][layout_->at(v) + l] = values[static_cast<std::size_t>(layout_->start(l) + v)];
+    }
+  }
+  std::size_t bytes() const override {
+    return factored_.bytes() + (site_.size() + all_.size()) * sizeof(double);
+  }
+  std::string name() const override { return name_; }
+
+ private:
+  const RowLayout* layout_;
+  int d_;
+  Factored factored_;
+  std::string name_;
+  mutable std::vector<double> site_, all_;
+};
+
+struct SparseFactors {
+  std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> lu;
+  void solve(std::vector<double>& x) const {
+    Eigen::Map<Eigen::VectorXd> vector(x.data(), static_cast<Eigen::Index>(x.size()));
+    vector = lu->solve(Eigen::VectorXd(vector));
+  }
+  std::size_t bytes() const {
+    return static_cast<std::size_t>(lu->nnzL() + lu->nnzU()) * (sizeof(double) + sizeof(int));
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& layout, int d,
+                                     const std::vector<LatticeSystem::Entry>& entries) {
+  const int size = lattice.sites() * d;
+  int lower = 0, upper = 0;
+  std::vector<double> diagonal(static_cast<std::size_t>(size), 0.0);
+  for (const auto& e : entries) {
+    int offset = e.column - e.row;
+    if (lattice.is_circle() && offset > size / 2) offset -= size;
+    if (lattice.is_circle() && offset < -(size / 2)) offset += size;
+    lower = std::max(lower, -offset);
+    upper = std::max(upper, offset);
+    if (offset == 0) diagonal[static_cast<std::size_t>(e.row)] += e.value;
+  }
+  if (lower == 0 && upper == 0) {
+    if (std::ranges::any_of(diagonal, [](double x) { return x == 0 || !std::isfinite(x); }))
+      throw NoConvergence("the constant part of the equations is singular");
+    return std::make_unique<DiagonalSolver>(layout, d, diagonal);
+  }
+  if (size > 2 * (lower + upper) + 2) {
+    auto band = CyclicBandLU::factor(size, lower, upper, lattice.is_circle(), entries);
+    if (band)
+      return std::make_unique<OrderedSolver<CyclicBandLU>>(
+          layout, d, std::move(*band),
+          "LU of a " + std::string(lattice.is_circle() ? "cyclic " : "") + "band of width " + std::to_string(lower) +
+              "+" + std::to_string(upper));
+  }
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (const auto& e : entries) triplets.emplace_back(e.row, e.column, e.value);
+  Eigen::SparseMatrix<double> matrix(size, size);
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  auto lu = std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
+  lu->compute(matrix);
+  if (lu->info() != Eigen::Success) throw NoConvergence("the constant part of the equations is singular");
+  return std::make_unique<OrderedSolver<SparseFactors>>(layout, d, SparseFactors{std::move(lu)}, "sparse LU");
+}
+
+std::unique_ptr<LinearSolver> factor_uniform(const Lattice& lattice, const RowLayout& layout,
+                                             std::span<const BandEntry> stencil) {
+  double centre = 0, left = 0, right = 0;
+  int reach = 0;
+  for (const BandEntry& e : stencil) {
+    reach = std::max(reach, std::abs(e.offset));
+    (e.offset == 0 ? centre : e.offset < 0 ? left : right) += e.value;
+  }
+  if (reach == 0 && centre != 0) return std::make_unique<ScalarSolver>(layout, centre);
+  const bool symmetric = std::abs(left - right) <= 1e-14 * std::abs(centre);
+  // Two arcs must not start at the same site, and each recurrence must decay.
+  if (reach == 1 && symmetric && lattice.sites() >= 2 * lanes && std::abs(centre) > 2 * std::abs(left) * (1 + 1e-12))
+    return std::make_unique<CirculantSolver>(layout, centre, left);
+  std::vector<LatticeSystem::Entry> entries;
+  for (int i = 0; i < lattice.sites(); ++i)
+    for (const BandEntry& e : stencil) entries.push_back({i, lattice.wrapped(i + e.offset), e.value});
+  return factor(lattice, layout, 1, entries);
+}
+
+}  // namespace delf

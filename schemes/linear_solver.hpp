@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "schemes/lattice_system.hpp"
+#include "schemes/row_layout.hpp"
+
+namespace delf {
+
+/// A factored matrix over the unknowns of a slab: solves A w = rhs for whole rows, d rows each. In words: `name()`.
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  /// w may be rhs. Halos of w are not filled.
+  virtual void solve(const double* const* rhs, double* const* w) const = 0;
+  virtual std::size_t bytes() const = 0;
+  virtual std::string name() const = 0;
+};
+
+/// A row of the matrix: entries at offsets (in unknowns, site-major) from the diagonal.
+struct BandEntry {
+  int offset;
+  double value;
+};
+
+/// Factors the matrix whose row i·d + a has the given entries, choosing what its structure allows: a division for a
+/// diagonal, two recurrences along the lanes for a symmetric circulant of width 1, an LU of the (cyclic) band, or a
+/// sparse LU when the band would wrap onto itself or its pivots are not safe. Throws NoConvergence if it is singular.
+std::unique_ptr<LinearSolver> factor(const Lattice&, const RowLayout&, int components,
+                                     const std::vector<LatticeSystem::Entry>& entries);
+
+/// The same for a matrix that is alike at every site of a circle, from its stencil alone, for d = 1.
+std::unique_ptr<LinearSolver> factor_uniform(const Lattice&, const RowLayout&, std::span<const BandEntry> stencil);
+
+}  // namespace delf

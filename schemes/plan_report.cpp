@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/plan_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace delf {
+namespace {
+
+/// Rows of the table are times, the latest on top; columns are sites. Nonlinear coefficients are marked: the number is
+/// that of the constant part.
+void append_table(std::string& out, const LatticeSystem& system, Site site, const char* title) {
+  const auto coefficients = system.linearised(site, 0);
+  if (coefficients.empty()) return;
+  const auto [first_t, last_t] = std::ranges::minmax(coefficients, {}, [](auto& c) { return c.offset.time; });
+  const auto [first_x, last_x] = std::ranges::minmax(coefficients, {}, [](auto& c) { return c.offset.space; });
+  const double scale = system.time_step() * system.lattice().space_step();
+  out += fmt::format("linearised field equation{}, divided by hk (n: a nonlinear part adds to it)\n", title);
+  out += fmt::format("  {:>8}", "");
+  for (int x = first_x.offset.space; x <= last_x.offset.space; ++x) out += fmt::format("{:>15}", fmt::format("i{:+d}", x));
+  out += '\n';
+  for (int t = last_t.offset.time; t >= first_t.offset.time; --t) {
+    out += fmt::format("  {:>8}", fmt::format("j{:+d}", t));
+    for (int x = first_x.offset.space; x <= last_x.offset.space; ++x) {
+      const auto it = std::ranges::find_if(coefficients, [&](const Coefficient& c) {
+        return c.offset == Site{t, x} && c.component == 0;
+      });
+      if (it == coefficients.end()) out += fmt::format("{:>15}", ".");
+      else
+        out += fmt::format("{:>13.6g}{:<2}", it->value / scale, it->dependence == Dependence::nonlinear ? " n" : "");
+    }
+    out += '\n';
+  }
+}
+
+}  // namespace
+
+std::string solve_in_words(const SolvePlan& plan, const Stepper& stepper) {
+  std::string words = plan.describe();
+  if (plan.kind == SolveKind::explicit_ && !plan.nonlinear_in_slab) return words + "; solved at once, no iteration";
+  words += plan.nonlinear_in_slab ? "; iterated with the constant part: " : "; solved at once, no iteration: ";
+  return words + stepper.solver_name();
+}
+
+std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, const Stepper& stepper) {
+  std::string out;
+  const Lattice& lattice = system.lattice();
+  out += fmt::format("lattice      {} sites on {}, k = {:.10g}, h = {:.10g}, h/k = {:.6g}\n", lattice.sites(),
+                     lattice.is_circle() ? "a circle" : "an interval with both walls", lattice.space_step(),
+                     system.time_step(), system.time_step() / lattice.space_step());
+  for (const auto& family : system.families()) {
+    out += "stencil      ";
+    for (const Site& v : family->pattern().vertices) out += fmt::format("({:+d},{:+d}) ", v.time, v.space);
+    out += family->pattern().placement == Placement::brick_wall ? " in a brick wall" : "";
+    out += family->is_variational() ? "\nresidual     dL/dy of a discrete Lagrangian\n"
+                                    : "\nresidual     given directly: no Lagrangian, not multisymplectic\n";
+  }
+  out += fmt::format("solve        {} ({})\n", to_string(plan.kind), plan.describe());
+  out += plan.report();
+  if (!out.ends_with('\n')) out += '\n';
+  if (plan.nonlinear_in_slab) {
+    out += "step         extrapolated seed; simplified Newton with the constant part while it contracts; else full\n"
+           "             Newton; else continuation in h; else exit 3\n";
+    out += fmt::format("matrix       {}\n", stepper.solver_name());
+  } else {
+    out += fmt::format("step         one solve, no iteration\nmatrix       {}\n", stepper.solver_name());
+  }
+  const Site bulk{0, lattice.sites() / 2 / 2 * 2};
+  if (system.placement() == Placement::brick_wall) {
+    append_table(out, system, bulk, " where i + j is even");
+    append_table(out, system, {bulk.time, bulk.space + 1}, " where i + j is odd");
+  } else {
+    append_table(out, system, bulk, "");
+  }
+  if (!lattice.is_circle())
+    for (int i : {0, lattice.sites() - 1})
+      append_table(out, system, {0, i}, i == 0 ? " at the left wall" : " at the right wall");
+  out += fmt::format("memory       {} bytes: {}\n", stepper.bytes(), stepper.memory_report());
+  out += "left out     ";
+  std::vector<std::string> absent;
+  if (!plan.nonlinear_in_slab) absent.push_back("iterations and seeds");
+  if (plan.kind == SolveKind::explicit_) absent.push_back("any matrix");
+  if (plan.linear) absent.push_back("the density (its constant Hessian is enough)");
+  if (std::ranges::none_of(system.families(), [](const auto& f) { return f->is_placed(); }))
+    absent.push_back("positions of sites");
+  absent.push_back("Jacobians of the full Newton method, until a step needs one");
+  absent.push_back("constraints and multipliers");
+  absent.push_back("monitors between recorded rows");
+  for (std::size_t i = 0; i < absent.size(); ++i) out += (i ? ", " : "") + absent[i];
+  return out + '\n';
+}
+
+}  // namespace delf

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+
+#include "lattice/solve_plan.hpp"
+#include "schemes/lattice_system.hpp"
+#include "schemes/stepper.hpp"
+
+namespace delf {
+
+/// How a step is solved, in one line.
+std::string solve_in_words(const SolvePlan&, const Stepper&);
+
+/// What `delf plan` prints: stencils, who determines what, the linearised field equation as a table of coefficients over
+/// its sites, the solver, memory, and what is left out.
+std::string plan_report(const LatticeSystem&, const SolvePlan&, const Stepper&);
+
+}  // namespace delf

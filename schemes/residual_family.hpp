@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "schemes/stencil_family.hpp"
+
+namespace delf {
+
+/// What a direct residual stencil must offer: it comes from no Lagrangian, and gives one residual, at one vertex.
+///
+///     static constexpr Offsets<n> shape;          vertices; `centre` is the one whose equation this is
+///     static constexpr int centre;
+///     static constexpr std::array<double, n> by_tt, by_xx;     E = −φ_tt + φ_xx + nonlinear(y), with h = k = 1
+///     static constexpr std::array<bool, n> nonlinear_in;       vertices that nonlinear() looks at
+///     T nonlinear(const std::array<T, n>& y) const;
+template <class R>
+concept ResidualStencil = requires(const R& r) {
+  requires StencilShape<decltype(R::shape)>;
+  { R::centre } -> std::convertible_to<int>;
+  { r.nonlinear(std::array<double, decltype(R::shape)::size()>{}) } -> std::convertible_to<double>;
+};
+
+/// A residual stencil at every site. Multiplied by hk, so that its size is that of a discrete Lagrangian's gradient.
+template <ResidualStencil R>
+class ResidualFamily final : public StencilFamily {
+  static constexpr int n = decltype(R::shape)::size();
+  static constexpr int first_time = [] {
+    int t = R::shape.vertex(0).time;
+    for (int l = 1; l < n; ++l) t = std::min(t, R::shape.vertex(l).time);
+    return t;
+  }();
+
+ public:
+  ResidualFamily(R stencil, double time_step, double space_step)
+      : StencilFamily(StencilPattern(R::shape), 1, false), stencil_(std::move(stencil)) {
+    nonlinearity_ = Nonlinearity::values;
+    outputs_ = 1;
+    weights_.assign(n, 0.0);
+    weights_[R::centre] = time_step * space_step;
+  }
+
+  void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override {
+    std::ranges::fill(r, 0.0);
+    const double h = cell.time_step, k = cell.space_step;
+    double sum = h * k * stencil_.nonlinear(array<double>(y));
+    for (int l = 0; l < n; ++l) sum += (R::by_xx[l] * h / k - R::by_tt[l] * k / h) * y[l];
+    r[R::centre] = sum;
+  }
+  void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override {
+    linear(cell, J);
+    std::array<Dual<double, n>, n> variables;
+    for (int l = 0; l < n; ++l) variables[l] = Dual<double, n>::variable(y[l], l);
+    const auto slope = stencil_.nonlinear(variables);
+    for (int l = 0; l < n; ++l) J[R::centre * n + l] += cell.time_step * cell.space_step * slope.derivative(l);
+  }
+  void linear_part(const Cell& cell, std::span<double> J, std::span<double> r0) const override {
+    linear(cell, J);
+    std::ranges::fill(r0, 0.0);
+  }
+
+  [[gnu::flatten]] void evaluate(const SlabRows& rows, double* const* out) const override {
+    for (int v = 0; v < rows.layout->packs(); ++v) {
+      const std::ptrdiff_t at = rows.layout->at(v);
+      std::array<Pack, n> y{};
+      for (int l = 0; l < n; ++l)
+        if (R::nonlinear_in[l])
+          y[l] = Pack::load(rows.values[R::shape.vertex(l).time - first_time] + at + R::shape.vertex(l).space * lanes);
+      stencil_.nonlinear(y).store(out[0] + at);
+    }
+  }
+
+ private:
+  template <class T>
+  static std::array<T, n> array(std::span<const double> y) {
+    std::array<T, n> values;
+    std::copy_n(y.begin(), n, values.begin());
+    return values;
+  }
+  static void linear(const Cell& cell, std::span<double> J) {
+    std::ranges::fill(J, 0.0);
+    const double h = cell.time_step, k = cell.space_step;
+    for (int l = 0; l < n; ++l) J[R::centre * n + l] = R::by_xx[l] * h / k - R::by_tt[l] * k / h;
+  }
+
+  R stencil_;
+};
+
+}  // namespace delf

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "jets/pack.hpp"
+#include "lattice/lattice.hpp"
+
+namespace delf {
+
+/// How a row of N sites lies in memory: lane l of every pack owns the contiguous arc of sites start(l) … start(l)+M−1,
+/// so that the neighbours of a pack of sites are the packs before and after it, aligned, without shuffles. Arcs may
+/// overlap by one site or more when N is no multiple of the lanes; such slots hold the same value. `halo` packs on
+/// either side repeat the sites across the ends of the arcs.
+///
+///     pack −halo … −1 | 0 … M−1 | M … M+halo−1        slot(v, l) = (v + halo)·lanes + l
+///
+class RowLayout {
+ public:
+  RowLayout(const Lattice&, int halo);
+
+  int packs() const { return packs_; }        ///< M
+  int halo() const { return halo_; }
+  int sites() const { return sites_; }
+  std::size_t doubles() const { return static_cast<std::size_t>(packs_ + 2 * halo_) * lanes; }
+  int start(int lane) const { return start_[static_cast<std::size_t>(lane)]; }
+  /// The slot in which site i is read and written from outside.
+  int slot(int i) const {
+    int lane = static_cast<int>(static_cast<long long>(i) * lanes / sites_);
+    while (lane + 1 < lanes && start(lane + 1) <= i) ++lane;
+    while (start(lane) > i) --lane;
+    return (i - start(lane) + halo_) * lanes + lane;
+  }
+  /// Offset of pack v in a row.
+  std::ptrdiff_t at(int v) const { return static_cast<std::ptrdiff_t>(v + halo_) * lanes; }
+
+  /// Fills halo slots from the sites they repeat, adding `turn` for every time round the circle; on an interval the
+  /// slots beyond a wall repeat the wall, so that they stay finite.
+  void fill_halo(double* row, double turn = 0) const {
+    for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * turn;
+  }
+  /// Makes overlapping slots equal to the slot that slot(i) names.
+  void copy_overlaps(double* row) const {
+    for (const Copy& c : overlap_copies_) row[c.to] = row[c.from];
+  }
+  /// Every slot (overlaps too, halo not) that holds site i.
+  std::vector<int> slots_of(int i) const;
+
+  void scatter(std::span<const double> sites, double* row, double turn = 0) const;
+  void gather(const double* row, std::span<double> sites) const;
+
+  std::size_t bytes() const { return (halo_copies_.size() + overlap_copies_.size()) * sizeof(Copy); }
+
+ private:
+  struct Copy {
+    int to, from, turns;
+  };
+  int sites_, packs_, halo_;
+  std::vector<int> start_;
+  std::vector<Copy> halo_copies_, overlap_copies_;
+};
+
+/// Zeroed memory for rows, aligned to whole packs.
+class RowBuffer {
+ public:
+  RowBuffer() = default;
+  RowBuffer(const RowLayout& layout, int rows);
+  double* row(int r) { return data_.get() + static_cast<std::size_t>(r) * stride_; }
+  const double* row(int r) const { return data_.get() + static_cast<std::size_t>(r) * stride_; }
+  int rows() const { return rows_; }
+  std::size_t bytes() const { return stride_ * static_cast<std::size_t>(rows_) * sizeof(double); }
+
+ private:
+  struct Free {
+    void operator()(double* p) const { std::free(p); }
+  };
+  std::unique_ptr<double[], Free> data_;
+  std::size_t stride_ = 0;
+  int rows_ = 0;
+};
+
+}  // namespace delf

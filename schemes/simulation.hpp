@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lattice/lattice.hpp"
+
+namespace delf {
+
+/// What a scene states, in the engine's words.
+struct Problem {
+  std::string theory = "sine-gordon";
+  double mass = 1, lambda = 1;                   ///< theory.mass, theory.lambda
+  double impurity_strength = 1, impurity_width = 1, impurity_position = 0;
+  bool circle_valued = false;                    ///< theory.fibre = S1
+  Lattice lattice = Lattice::circle(255, 40);
+  int winding = 0;                               ///< φ(x + L) = φ(x) + 2π·winding
+  std::string stencil = "rectangle-symmetric";
+  std::string method = "multisymplectic";        ///< or vu-quoc-li, guo
+  double time_step = 0;
+  double tolerance = 1e-14;                      ///< scheme.tolerance
+  int seed_order = 8;                            ///< scheme.seed_order
+  int max_iterations = 50;                       ///< scheme.max_iterations
+};
+
+/// A scheme on a lattice, stepping. Rows are in the order of sites, values as they are (not reduced modulo 2π).
+class Simulation {
+ public:
+  /// Throws BadInput for what cannot be built or planned. Allocates everything that steps need.
+  explicit Simulation(const Problem&);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  /// How many rows a start needs: 2 for every scheme of Marsden–Patrick–Shkoller.
+  int starting_rows() const;
+  /// Rows 0, 1, …, starting_rows() − 1.
+  void start(const std::vector<std::vector<double>>& rows);
+  /// Row 0 and φ_t there: row 1 solves the field equation at row 0 with y₋₁ = y₁ − 2hφ_t.
+  void start_centred(std::span<const double> row0, std::span<const double> velocity);
+
+  /// One step. Throws NoConvergence or NotFinite; the rows held are then still the last good ones.
+  void step();
+
+  /// Index of the newest row.
+  std::int64_t newest() const;
+  /// The row `back` rows before the newest, back < starting_rows().
+  void copy_row(int back, std::span<double> out) const;
+
+  /// k Σ (φ_t ∂ℓ/∂φ_t − ℓ) and −k Σ φ_x ∂ℓ/∂φ_t over the symmetric rectangle's jets of the last two rows.
+  struct Monitors {
+    double energy, momentum, charge;
+  };
+  Monitors monitors() const;
+
+  int iterations() const;        ///< of the last step; 0 when it was explicit
+  double residual() const;       ///< of the last step's equations, relative to the sum of absolute values
+  const char* solve_kind() const;      ///< explicit, chain, cyclic-band or sparse
+  std::string solve_summary() const;   ///< the plan in words, one line
+  std::string plan_report() const;     ///< what `delf plan` prints
+  std::size_t bytes() const;           ///< allocated for rows, matrices, and work space
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+struct TheoryInfo {
+  std::string name, formula;
+  std::vector<std::string> parameters;   ///< scene keys that it reads, such as "theory.mass"
+};
+const std::vector<TheoryInfo>& theories();
+
+struct NamedFormula {
+  std::string name, formula;
+};
+/// Stencils with their jets, for `delf list stencils`; and methods, for `delf list schemes`.
+const std::vector<NamedFormula>& stencils();
+const std::vector<NamedFormula>& methods();
+
+}  // namespace delf

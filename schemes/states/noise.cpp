@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "lattice/error.hpp"
+#include "schemes/states/builders.hpp"
+#include "schemes/states/modes.hpp"
+#include "schemes/states/parameters.hpp"
+
+namespace delf::initial {
+namespace {
+
+// The top 53 bits of the generator as a number in [0, 1): the same with every library, unlike std's distributions.
+double uniform(std::mt19937_64& generator) { return std::ldexp(static_cast<double>(generator() >> 11), -53); }
+
+struct Mode {
+  int n;
+  double amplitude, phase;
+};
+
+/// Smooth noise around φ = 0 (it depends on the seed and the modes only, not on the number of sites):
+///
+///     φ(0) = S Σ_{n=1}^{M} (r_n/n) X_n,    φ_t(0) = S Σ_{n=1}^{M} (r′_n/n) q_n X′_n,    r, r′ uniform in [−1, 1),
+///
+/// X_n = cos(q_n x + phase) around a circle, the standing mode between walls, and S such that max |φ(0)| = A.
+class Noise final : public State {
+ public:
+  Noise(const Lattice& lattice, double amplitude, int most, std::uint64_t seed)
+      : modes_(lattice), circle_(lattice.is_circle()), A(amplitude), seed_(seed) {
+    std::mt19937_64 generator(seed);
+    const auto draw = [&](int n, double decay) {
+      const double r = 2 * uniform(generator) - 1;
+      return Mode{n, r * decay, 2 * std::numbers::pi * uniform(generator)};
+    };
+    for (int n = 1; n <= most; ++n) {
+      value_.push_back(draw(n, 1.0 / n));
+      velocity_.push_back(draw(n, modes_.wavenumber(n) / n));
+    }
+    // max |φ| over a grid of 64 points to the shortest wave
+    double highest = 0;
+    const int points = 64 * most;
+    for (int i = 0; i <= points; ++i) highest = std::max(highest, std::abs(sum(value_, lattice.length() * i / points)));
+    scale_ = highest > 0 ? A / highest : 0;
+  }
+
+  void values(double, const Lattice& lattice, std::span<double> out) const override { fill(value_, lattice, out); }
+  void velocities(double, const Lattice& lattice, std::span<double> out) const override {
+    fill(velocity_, lattice, out);
+  }
+  bool exact() const override { return false; }
+  std::string description() const override {
+    return "noise: " + std::to_string(value_.size()) +
+           " modes of random amplitude (falling as 1/n) and phase, max |phi| = " + text(A) +
+           ", seed = " + std::to_string(seed_);
+  }
+
+ private:
+  double sum(const std::vector<Mode>& modes, double x) const {
+    double total = 0;
+    for (const Mode& mode : modes)
+      total += mode.amplitude *
+               (circle_ ? std::cos(modes_.wavenumber(mode.n) * x + mode.phase) : modes_.standing(mode.n, x));
+    return total;
+  }
+  void fill(const std::vector<Mode>& modes, const Lattice& lattice, std::span<double> out) const {
+    for (int i = 0; i < lattice.sites(); ++i)
+      out[static_cast<std::size_t>(i)] = scale_ * sum(modes, lattice.position(i));
+  }
+
+  Modes modes_;
+  bool circle_;
+  double A;
+  std::uint64_t seed_;
+  double scale_ = 0;
+  std::vector<Mode> value_, velocity_;
+};
+
+}  // namespace
+
+std::unique_ptr<State> noise(const StateRequest& request, const Lattice& lattice) {
+  const std::string key = "initial.wavenumber";
+  const double M = finite(key, request.wavenumber, 8);
+  if (M != std::round(M) || M < 1)
+    throw BadInput(key, key + " = " + text(M) + ": the number of modes in the noise; choose an integer from 1 up");
+  // M < N/2
+  const int most = std::max(1, static_cast<int>(std::min(M, static_cast<double>((lattice.sites() - 1) / 2))));
+  return std::make_unique<Noise>(lattice, finite("initial.amplitude", request.amplitude, 0.1), most, request.seed);
+}
+
+}  // namespace delf::initial

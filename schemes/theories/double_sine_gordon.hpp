@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "jets/sinc.hpp"
+
+namespace delf {
+
+/// ℓ = ½φ_t² − ½φ_x² + m²(cos φ − 1) + ½λ(cos 2φ − 1)      φ_tt − φ_xx + m² sin φ + λ sin 2φ = 0
+struct DoubleSineGordon {
+  double mass = 1, lambda = 1;
+
+  auto operator()(const auto& j) const {
+    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + (mass * mass) * (cos(j.phi) - 1.0) +
+           (0.5 * lambda) * (cos(2.0 * j.phi) - 1.0);
+  }
+
+  /// (cos a − cos b)/(a − b) = −sin((a+b)/2) sinc((a−b)/2), and the same with 2a, 2b
+  template <class T>
+  T difference_quotient(const T& a, const T& b) const {
+    return (-mass * mass) * (sin(0.5 * (a + b)) * sinc(0.5 * (a - b))) - lambda * (sin(a + b) * sinc(a - b));
+  }
+};
+
+}  // namespace delf

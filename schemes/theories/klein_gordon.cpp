@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/theories/klein_gordon.hpp"
+
+#include "schemes/field_theory.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/theory_registry.hpp"
+
+namespace delf {
+
+extern const TheoryEntry klein_gordon_theory;
+const TheoryEntry klein_gordon_theory{
+    "klein-gordon", "φ_tt − φ_xx + m²φ = 0", {"theory.mass"},
+    [](const Problem& p) -> std::unique_ptr<FieldTheory> {
+      return std::make_unique<TheoryOf<KleinGordon>>(KleinGordon{p.mass});
+    }};
+
+}  // namespace delf

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/theories/sine_gordon.hpp"
+
+#include "schemes/field_theory.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/theory_registry.hpp"
+
+namespace delf {
+
+extern const TheoryEntry sine_gordon_theory;
+const TheoryEntry sine_gordon_theory{
+    "sine-gordon", "φ_tt − φ_xx + m² sin φ = 0", {"theory.mass"},
+    [](const Problem& p) -> std::unique_ptr<FieldTheory> {
+      return std::make_unique<TheoryOf<SineGordon>>(SineGordon{p.mass});
+    }};
+
+}  // namespace delf

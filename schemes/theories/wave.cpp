@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/theories/wave.hpp"
+
+#include "schemes/field_theory.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/theory_registry.hpp"
+
+namespace delf {
+
+extern const TheoryEntry wave_theory;
+const TheoryEntry wave_theory{
+    "wave", "φ_tt − φ_xx = 0", {},
+    [](const Problem&) -> std::unique_ptr<FieldTheory> {
+      return std::make_unique<TheoryOf<Wave>>(Wave{});
+    }};
+
+}  // namespace delf

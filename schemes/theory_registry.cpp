@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/theory_registry.hpp"
+
+namespace delf {
+
+extern const TheoryEntry wave_theory, klein_gordon_theory, sine_gordon_theory, phi4_theory, double_sine_gordon_theory, sine_gordon_impurity_theory;
+
+const std::vector<const TheoryEntry*>& theory_entries() {
+  static const std::vector<const TheoryEntry*> entries{
+      &wave_theory,
+      &klein_gordon_theory,
+      &sine_gordon_theory,
+      &phi4_theory,
+      &double_sine_gordon_theory,
+      &sine_gordon_impurity_theory};
+  return entries;
+}
+
+}  // namespace delf

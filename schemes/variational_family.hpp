@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "schemes/stencil_family.hpp"
+
+namespace delf {
+
+/// The quadrature points of a jet map with different φ, and which of them each point shares its φ with: a density that
+/// is nonlinear in φ alone is evaluated once for each.
+template <int Q>
+struct DistinctValues {
+  int count = 0;
+  std::array<int, Q> representative{};  ///< quadrature point that stands for group c
+  std::array<int, Q> group{};
+};
+template <int n, int Q>
+constexpr DistinctValues<Q> distinct_values(const JetTable<n, Q>& map) {
+  DistinctValues<Q> result;
+  for (int q = 0; q < Q; ++q) {
+    int c = 0;
+    while (c < result.count && map.point(result.representative[c]).phi != map.point(q).phi) ++c;
+    if (c == result.count) result.representative[result.count++] = q;
+    result.group[q] = c;
+  }
+  return result;
+}
+
+/// A discrete Lagrangian on every stencil of the lattice. The jet map is known at compile time, so that a row of
+/// stencils is a loop over packs with all weights constants.
+template <JetMap Map, Density D>
+class VariationalFamily final : public StencilFamily {
+  static constexpr const auto& map = Map::table;
+  using Lagrangian = DiscreteLagrangian<Map, D>;
+  static constexpr int n = map.vertices, d = components_of<D>();
+  static constexpr int vertices_size = n * d;
+  static constexpr auto distinct = distinct_values(map);
+  static constexpr int first_time = [] {
+    int t = map.shape.vertex(0).time;
+    for (int l = 1; l < n; ++l) t = std::min(t, map.shape.vertex(l).time);
+    return t;
+  }();
+
+ public:
+  explicit VariationalFamily(D density, double time_step, double space_step)
+      : StencilFamily(StencilPattern(map.shape), d, true), lagrangian_{std::move(density)} {
+    placed_ = delf::is_placed<D>();
+    nonlinearity_ = structure_of(lagrangian_.density).nonlinearity;
+    const double area = map.measure * time_step * space_step;
+    if (nonlinearity_ == Nonlinearity::values) {
+      // ∂L/∂y_l = Σ_q |Δ| w_q (∂ℓ/∂φ)(φ_q) ∂φ_q/∂y_l
+      outputs_ = distinct.count * d;
+      weights_.assign(static_cast<std::size_t>(outputs_ * size()), 0.0);
+      for (int q = 0; q < map.points; ++q)
+        for (int l = 0; l < n; ++l)
+          for (int a = 0; a < d; ++a)
+            weights_[static_cast<std::size_t>((distinct.group[q] * d + a) * size() + l * d + a)] +=
+                area * map.point(q).weight * map.point(q).phi[l];
+    } else if (nonlinearity_ == Nonlinearity::all) {
+      outputs_ = size();
+      weights_.assign(static_cast<std::size_t>(outputs_ * size()), 0.0);
+      for (int i = 0; i < size(); ++i) weights_[static_cast<std::size_t>(i * size() + i)] = 1;
+    }
+  }
+
+  void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override {
+    std::ranges::copy(lagrangian_.gradient(array(y), cell), r.begin());
+  }
+  void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override {
+    std::ranges::copy(lagrangian_.hessian(array(y), cell), J.begin());
+  }
+  double lagrangian(const Cell& cell, std::span<const double> y) const { return lagrangian_(array(y), cell); }
+
+  void linear_part(const Cell& cell, std::span<double> J, std::span<double> r0) const override {
+    std::ranges::fill(J, 0.0);
+    std::ranges::fill(r0, 0.0);
+    if (nonlinearity_ == Nonlinearity::all) return;
+    const typename Lagrangian::Values zero{};
+    std::ranges::copy(lagrangian_.hessian(zero, cell), J.begin());
+    std::ranges::copy(lagrangian_.gradient(zero, cell), r0.begin());
+    if (nonlinearity_ == Nonlinearity::none) return;
+    // Take away what `evaluate` adds: the part of ℓ that is seen with φ_t = φ_x = 0.
+    const DiscreteLagrangian<Map, ValuesOnly> seen{{lagrangian_.density}};
+    const auto h = seen.hessian(zero, cell);
+    const auto g = seen.gradient(zero, cell);
+    for (std::size_t i = 0; i < J.size(); ++i) J[i] -= h[i];
+    for (std::size_t i = 0; i < r0.size(); ++i) r0[i] -= g[i];
+  }
+
+  void evaluate(const SlabRows& rows, double* const* out) const override {
+    if (nonlinearity_ == Nonlinearity::values) evaluate_values(rows, out);
+    if (nonlinearity_ == Nonlinearity::all) evaluate_all(rows, out);
+  }
+
+ private:
+  /// ℓ(φ, 0, 0)
+  struct ValuesOnly {
+    static constexpr int components = d;
+    static constexpr bool placed = delf::is_placed<D>();
+    D density;
+    auto operator()(const auto& j) const {
+      auto still = j;
+      for (int a = 0; a < d; ++a) {
+        component(still.phi_t, a) = 0.0;
+        component(still.phi_x, a) = 0.0;
+      }
+      return density(still);
+    }
+  };
+
+  static typename Lagrangian::Values array(std::span<const double> y) {
+    typename Lagrangian::Values values;
+    std::copy_n(y.begin(), values.size(), values.begin());
+    return values;
+  }
+
+  /// Σ_l weights[l] y_l for the pack v of stencils and component a.
+  template <std::size_t... l>
+  [[gnu::always_inline]] static Pack weighted(const std::array<double, n>& weights, const SlabRows& rows, int a,
+                                              std::ptrdiff_t at, std::index_sequence<l...>) {
+    Pack sum(0.0);
+    ((weights[l] != 0
+          ? (void)(sum += weights[l] * Pack::load(rows.values[(map.shape.vertex(l).time - first_time) * d + a] + at +
+                                                  map.shape.vertex(l).space * lanes))
+          : (void)0),
+     ...);
+    return sum;
+  }
+
+  template <class Number>
+  [[gnu::always_inline]] static void place(JetFor<Number, D>& jet, const SlabRows& rows, int q, std::ptrdiff_t at) {
+    if constexpr (delf::is_placed<D>()) {
+      jet.t = Number(rows.t + time_offset(map.shape, map.point(q)) * rows.time_step);
+      jet.x = Number(Pack::load(rows.positions + at) + space_offset(map.shape, map.point(q)) * rows.space_step);
+    }
+  }
+
+  /// out_c = ∂ℓ/∂φ at the distinct values of φ
+  [[gnu::flatten]] void evaluate_values(const SlabRows& rows, double* const* out) const {
+    using Number = Dual<Pack, d>;
+    const int packs = rows.layout->packs();
+    for (int v = 0; v < packs; ++v) {
+      const std::ptrdiff_t at = rows.layout->at(v);
+      for_each_index<distinct.count>([&]<int c>() {
+        constexpr int q = distinct.representative[c];
+        JetFor<Number, D> jet;
+        for (int a = 0; a < d; ++a) {
+          const Pack phi = weighted(map.quadrature[q].phi, rows, a, at, std::make_index_sequence<n>{});
+          component(jet.phi, a) = Number::variable(phi, a);
+          component(jet.phi_t, a) = Number(0.0);
+          component(jet.phi_x, a) = Number(0.0);
+        }
+        place<Number>(jet, rows, q, at);
+        const Number l = lagrangian_.density(jet);
+        for (int a = 0; a < d; ++a) l.derivative(a).store(out[c * d + a] + at);
+      });
+    }
+  }
+
+  /// out_i = rⁱ = ∂L/∂yⁱ
+  [[gnu::flatten]] void evaluate_all(const SlabRows& rows, double* const* out) const {
+    using Number = Dual<Pack, 3 * d>;
+    const int packs = rows.layout->packs();
+    const double per_h = 1 / rows.time_step, per_k = 1 / rows.space_step;
+    const double area = map.measure * rows.time_step * rows.space_step;
+    for (int v = 0; v < packs; ++v) {
+      const std::ptrdiff_t at = rows.layout->at(v);
+      std::array<Pack, static_cast<std::size_t>(vertices_size)> r;
+      r.fill(Pack(0.0));
+      for_each_index<map.points>([&]<int q>() {
+        constexpr auto& p = map.quadrature[q];
+        JetFor<Number, D> jet;
+        for (int a = 0; a < d; ++a) {
+          constexpr auto all = std::make_index_sequence<n>{};
+          component(jet.phi, a) = Number::variable(weighted(p.phi, rows, a, at, all), a);
+          component(jet.phi_t, a) = Number::variable(per_h * weighted(p.phi_t, rows, a, at, all), d + a);
+          component(jet.phi_x, a) = Number::variable(per_k * weighted(p.phi_x, rows, a, at, all), 2 * d + a);
+        }
+        place<Number>(jet, rows, q, at);
+        const Number l = lagrangian_.density(jet);
+        for (int a = 0; a < d; ++a)
+          for (int i = 0; i < n; ++i)
+            r[i * d + a] += (area * p.weight) * (p.phi[i] * l.derivative(a) + (per_h * p.phi_t[i]) * l.derivative(d + a) +
+                                                 (per_k * p.phi_x[i]) * l.derivative(2 * d + a));
+      });
+      for (int i = 0; i < vertices_size; ++i) r[i].store(out[i] + at);
+    }
+  }
+
+  template <int count, class Body>
+  [[gnu::always_inline]] static void for_each_index(const Body& body) {
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+      (body.template operator()<i>(), ...);
+    }(std::make_integer_sequence<int, count>{});
+  }
+
+  Lagrangian lagrangian_;
+};
+
+}  // namespace delf

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+
+#include "lattice/nine_tuple.hpp"
+
+namespace delf {
+
+/// The energy-conserving scheme of Vu-Quoc and Li, Marsden–Patrick–Shkoller (5.14), over the nine-tuple: no Lagrangian.
+///
+///   (¼∂²_k y_{j+1} + ½∂²_k y_j + ¼∂²_k y_{j−1})/k² − ∂²_h y/h² + ½(Q(y_{j+1}, y_j) + Q(y_j, y_{j−1})) = 0,
+///   Q(a, b) = (N(a) − N(b))/(a − b)
+template <class Theory>
+struct VuQuocLi {
+  static constexpr auto shape = shapes::nine_tuple;
+  static constexpr int centre = 4;
+  static constexpr std::array<double, 9> by_tt{0, 1, 0, 0, -2, 0, 0, 1, 0};
+  static constexpr std::array<double, 9> by_xx{.25, -.5, .25, .5, -1, .5, .25, -.5, .25};
+  static constexpr std::array<bool, 9> nonlinear_in{false, true, false, false, true, false, false, true, false};
+
+  Theory theory;
+
+  template <class T>
+  T nonlinear(const std::array<T, 9>& y) const {
+    return 0.5 * (theory.difference_quotient(y[7], y[4]) + theory.difference_quotient(y[4], y[1]));
+  }
+};
+
+}  // namespace delf

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+# Configures, builds and runs the consumer beside this file, HOW = installed | subdirectory.
+file(REMOVE_RECURSE ${WORK})
+
+if(HOW STREQUAL "installed")
+  execute_process(COMMAND ${CMAKE_COMMAND} --install ${DELF_BUILD} --config ${BUILD_TYPE} --prefix ${WORK}/prefix
+    OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  set(find -D CMAKE_PREFIX_PATH=${WORK}/prefix)
+else()
+  set(find -D DELF_SOURCE=${DELF_SOURCE})
+endif()
+
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G ${GENERATOR}
+  -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_CXX_COMPILER=${COMPILER} ${find} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build --config ${BUILD_TYPE} COMMAND_ERROR_IS_FATAL ANY)
+
+foreach(consumer consumer consumer_of_lattice)
+  find_program(${consumer}_program ${consumer} PATHS ${WORK}/build PATH_SUFFIXES ${BUILD_TYPE}
+    NO_DEFAULT_PATH REQUIRED)
+  execute_process(COMMAND ${${consumer}_program} OUTPUT_VARIABLE space_step COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT space_step MATCHES "^0\\.1568627450980392")  # 40/255
+    message(FATAL_ERROR "${consumer} printed ${space_step}")
+  endif()
+endforeach()

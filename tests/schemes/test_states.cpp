@@ -1,0 +1,509 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lattice/error.hpp"
+#include "schemes/nearest_name.hpp"
+#include "schemes/state.hpp"
+#include "tests/catch.hpp"
+
+using namespace delf;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+StateRequest request(const std::string& name, const std::string& theory = "sine-gordon") {
+  StateRequest r;
+  r.name = name;
+  r.theory = theory;
+  return r;
+}
+
+std::vector<double> values(const State& state, double t, const Lattice& lattice) {
+  std::vector<double> y(static_cast<std::size_t>(lattice.sites()));
+  state.values(t, lattice, y);
+  return y;
+}
+std::vector<double> velocities(const State& state, double t, const Lattice& lattice) {
+  std::vector<double> y(static_cast<std::size_t>(lattice.sites()));
+  state.velocities(t, lattice, y);
+  return y;
+}
+
+// −N′(φ)
+double force(const StateRequest& r, double phi) {
+  const double m2 = r.mass * r.mass;
+  if (r.theory == "wave") return 0;
+  if (r.theory == "klein-gordon") return m2 * phi;
+  if (r.theory == "phi4") return r.lambda * phi * (phi * phi - 1);
+  if (r.theory == "double-sine-gordon") return m2 * std::sin(phi) + r.lambda * std::sin(2 * phi);
+  return m2 * std::sin(phi);
+}
+
+// Central differences of order 8 at the distances 0 … 4.
+constexpr double second[]{-205.0 / 72, 8.0 / 5, -1.0 / 5, 8.0 / 315, -1.0 / 560};
+constexpr double first[]{0, 4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+
+// The larger magnitude; NaN if either is.
+double larger(double worst, double error) {
+  return std::abs(error) > worst || std::isnan(error) ? std::abs(error) : worst;
+}
+
+// max |φ_tt − φ_xx − N′(φ)| over the lattice at time t, by differences of values() with one step in t and x.
+double defect(const State& state, const StateRequest& r, const Lattice& lattice, double t) {
+  const double k = lattice.space_step();
+  std::vector<std::vector<double>> rows;
+  for (int j = -4; j <= 4; ++j) rows.push_back(values(state, t + j * k, lattice));
+  const auto& now = rows[4];
+  const auto at = [&](int i) {
+    const int around = i < 0 ? -1 : i >= lattice.sites() ? 1 : 0;
+    return now[static_cast<std::size_t>(i - around * lattice.sites())] + 2 * pi * state.winding() * around;
+  };
+  double worst = 0;
+  const int margin = lattice.is_circle() ? 0 : 4;
+  for (int i = margin; i < lattice.sites() - margin; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    double tt = second[0] * now[s], xx = second[0] * now[s];
+    for (int m = 1; m <= 4; ++m) {
+      const auto d = static_cast<std::size_t>(m);
+      tt += second[d] * (rows[4 + d][s] + rows[4 - d][s]);
+      xx += second[d] * (at(i + m) + at(i - m));
+    }
+    worst = larger(worst, (tt - xx) / (k * k) + force(r, now[s]));
+  }
+  return worst;
+}
+
+// max |velocities() − φ_t by differences of values()| over the lattice; sign = −1 plants an error.
+double velocity_defect(const State& state, const Lattice& lattice, double t, double dt, double sign = 1) {
+  std::vector<double> difference(static_cast<std::size_t>(lattice.sites()));
+  for (int m = 1; m <= 4; ++m) {
+    const auto later = values(state, t + m * dt, lattice), earlier = values(state, t - m * dt, lattice);
+    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] += first[m] * (later[i] - earlier[i]) / dt;
+  }
+  const auto v = velocities(state, t, lattice);
+  double worst = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) worst = larger(worst, sign * v[i] - difference[i]);
+  return worst;
+}
+
+struct Case {
+  std::string title;
+  StateRequest request;
+  Lattice lattice;
+};
+
+StateRequest with(StateRequest r, const std::function<void(StateRequest&)>& change) {
+  change(r);
+  return r;
+}
+
+// Every exact state, in every theory that has it, at rest and moving, on circles and between walls.
+std::vector<Case> exact_cases() {
+  const Lattice circle = Lattice::circle(2000, 60), ring = Lattice::circle(400, 12);
+  const Lattice interval = Lattice::interval(1501, 45), free = Lattice::interval(401, 12, Wall::natural, Wall::natural);
+  const Lattice mixed = Lattice::interval(401, 12, Wall::fixed, Wall::natural);
+  const auto set = [](double speed, double mass, double lambda = 1) {
+    return [=](StateRequest& r) { r.speed = speed, r.mass = mass, r.lambda = lambda; };
+  };
+  std::vector<Case> cases;
+  for (const std::string name : {"kink", "antikink"}) {
+    cases.push_back({name, with(request(name), set(0.5, 1)), circle});
+    cases.push_back({name + " to the left", with(request(name), set(-0.7, 1.3)), circle});
+    cases.push_back({name + " between walls", with(request(name), set(0.3, 0.9)), interval});
+    cases.push_back({name + " of phi4", with(request(name, "phi4"), set(0.4, 7, 1.5)), interval});
+    cases.push_back(
+        {name + " of double sine-Gordon", with(request(name, "double-sine-gordon"), set(0.4, 1, 0.7)), circle});
+    cases.push_back({name + " of double sine-Gordon, lambda < 0",
+                     with(request(name, "double-sine-gordon"), set(-0.4, 1.5, -0.5)), circle});
+  }
+  for (const std::string name : {"kink-antikink", "kink-kink"}) {
+    cases.push_back({name, with(request(name), set(0.6, 1.2)), circle});
+    cases.push_back({name + " between walls", with(request(name), set(0.3, 1)), interval});
+  }
+  cases.push_back({"breather", with(request("breather"), [](StateRequest& r) { r.mass = 1.4; }), circle});
+  cases.push_back({"boosted breather", with(request("breather"), set(0.5, 1.4)), circle});
+  cases.push_back({"kink train of epsilon", request("kink-train"), ring});
+  cases.push_back({"kink train of speed", with(request("kink-train"), set(-0.4, 0.8)), ring});
+  cases.push_back(
+      {"three antikinks", with(request("kink-train"), [](StateRequest& r) { r.winding = -3, r.speed = 0.2; }), ring});
+  for (const std::string theory : {"wave", "klein-gordon"}) {
+    const auto waves = [](int n) { return [=](StateRequest& r) { r.mass = 1.7, r.wavenumber = n, r.position = 1; }; };
+    for (const Lattice& lattice : {ring, Lattice::interval(401, 12), free, mixed})
+      cases.push_back({"plane wave of " + theory, with(request("plane-wave", theory), waves(3)), lattice});
+    cases.push_back({"plane wave to the left of " + theory, with(request("plane-wave", theory), waves(-2)), ring});
+    cases.push_back({"wave packet of " + theory, with(request("wave-packet", theory), waves(5)), ring});
+    cases.push_back({"wave packet to the left of " + theory, with(request("wave-packet", theory), waves(-5)), ring});
+  }
+  return cases;
+}
+
+std::string key_of(const StateRequest& r, const Lattice& lattice = Lattice::circle(255, 40)) {
+  try {
+    make_state(r, lattice);
+  } catch (const BadInput& error) {
+    const std::string what = error.what();
+    CHECK(what.find('\n') == std::string::npos);
+    CHECK(what.find("; ") != std::string::npos);  // a remedy
+    return error.key();
+  }
+  return "none";
+}
+
+}  // namespace
+
+TEST_CASE("every exact state solves its field equation, and its velocities are the time derivatives", "[states]") {
+  for (const Case& c : exact_cases()) {
+    const auto state = make_state(c.request, c.lattice);
+    CAPTURE(c.title, state->description());
+    CHECK(state->exact());
+    CHECK(state->knows_second_row());
+    for (const double t : {0.0, 1.37, 6.1}) {
+      REQUIRE(t < state->exact_until());
+      CHECK(defect(*state, c.request, c.lattice, t) < 2e-6);
+      CHECK(velocity_defect(*state, c.lattice, t, 0.01) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("the check can fail: another theory, another mass, a velocity of the other sign", "[states]") {
+  for (const Case& c : exact_cases()) {
+    const auto state = make_state(c.request, c.lattice);
+    CAPTURE(c.title);
+    CHECK(defect(*state, with(c.request, [](StateRequest& r) { r.theory = "klein-gordon", r.mass = 2.1; }), c.lattice,
+                 1.37) > 1e-2);
+    CHECK(velocity_defect(*state, c.lattice, 1.37, 0.01, -1) > 1e-2);
+  }
+  const Lattice circle = Lattice::circle(2000, 60);
+  const auto small = make_state(with(request("plane-wave"), [](StateRequest& r) { r.amplitude = 0.1; }), circle);
+  CHECK_FALSE(small->exact());
+  CHECK(defect(*small, request("plane-wave"), circle, 0) > 1e-5);
+}
+
+TEST_CASE("a kink goes round the circle and keeps counting", "[states]") {
+  const double v = 0.5, L = 40;
+  const Lattice lattice = Lattice::circle(250, L);
+  const std::pair<const char*, double> turns[]{{"kink", -2 * pi}, {"antikink", 2 * pi}};
+  for (const auto& [name, turn] : turns) {
+    const auto state = make_state(with(request(name), [&](StateRequest& r) { r.speed = v; }), lattice);
+    const auto start = values(*state, 0, lattice), once = values(*state, L / v, lattice);
+    const auto twice = values(*state, 2 * L / v, lattice);
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      CHECK(std::abs(once[i] - (start[i] + turn)) < 1e-12);
+      CHECK(std::abs(twice[i] - (start[i] + 2 * turn)) < 1e-12);
+    }
+  }
+  // and so does a train: n = 3 kinks pass each site in the time L/v
+  const auto train =
+      make_state(with(request("kink-train"), [&](StateRequest& r) { r.speed = v, r.winding = 3; }), lattice);
+  const auto start = values(*train, 0, lattice), once = values(*train, L / v, lattice);
+  for (std::size_t i = 0; i < start.size(); ++i) CHECK(std::abs(once[i] - (start[i] - 6 * pi)) < 1e-12);
+}
+
+TEST_CASE("around a circle a state gains 2 pi times its winding", "[states]") {
+  const double L = 60;
+  const Lattice lattice = Lattice::circle(300, L);
+  const std::pair<const char*, int> windings[]{{"kink", 1},       {"antikink", -1},   {"kink-antikink", 0},
+                                               {"kink-kink", 2},  {"breather", 0},    {"noise", 0},
+                                               {"plane-wave", 0}, {"wave-packet", 0}, {"kink-train", 1}};
+  for (const auto& [name, n] : windings) {
+    auto r = request(name);
+    if (r.name == "kink-train") r.speed = 0.3;
+    r.winding = n;
+    const auto state = make_state(r, lattice);
+    CAPTURE(name);
+    CHECK(state->winding() == n);
+    // the last step, across the seam, closes what the others leave open
+    for (const double t : {0.0, 3.0}) {
+      const auto y = values(*state, t, lattice);
+      double steepest = 0;
+      for (std::size_t i = 1; i < y.size(); ++i) steepest = std::max(steepest, std::abs(y[i] - y[i - 1]));
+      CHECK(std::abs(y.front() + 2 * pi * n - y.back()) <= 1.01 * steepest);
+    }
+  }
+}
+
+TEST_CASE("a kink that goes round is at its position at t = 0, in the middle unless told otherwise", "[states]") {
+  const Lattice lattice = Lattice::circle(200, 40);
+  for (const char* name : {"kink", "antikink", "kink-train"}) {
+    auto r = request(name);
+    r.speed = 0.2;
+    CHECK(std::abs(values(*make_state(r, lattice), 0, lattice)[100] - pi) < 5e-14);
+    r.position = 7;
+    CHECK(std::abs(values(*make_state(r, lattice), 0, lattice)[35] - pi) < 5e-14);
+    CHECK(std::abs(values(*make_state(r, lattice), 5, lattice)[40] - pi) < 5e-14);
+  }
+}
+
+TEST_CASE("two pulses come together from about the separation asked for", "[states]") {
+  const Lattice lattice = Lattice::circle(4000, 60);
+  auto r = request("kink-kink");
+  r.speed = 0.9, r.separation = 9.0;  // v(t − 5), as in Tyranowski–Desbrun's two solitons
+  const auto y = values(*make_state(r, lattice), 0, lattice);
+  const double gamma = 1 / std::sqrt(1 - 0.81);
+  for (const int i : {0, 1700, 2000, 2100, 2290, 3999}) {
+    const double x = i * 60.0 / 4000 - 30;
+    CHECK(std::abs(y[static_cast<std::size_t>(i)] -
+                   4 * std::atan(0.9 * std::sinh(gamma * x) / std::cosh(gamma * 0.9 * -5))) < 1e-13);
+  }
+  // φ = ±π near x = ±4.5: two rising pulses
+  CHECK(std::abs(y[1700] - (-pi)) < 0.5);
+  CHECK(std::abs(y[2300] - pi) < 0.5);
+  r.name = "kink-antikink";
+  const auto before = values(*make_state(r, lattice), 0, lattice), after = values(*make_state(r, lattice), 10, lattice);
+  CHECK(std::abs(before[2000] - (-2 * pi)) < 1e-3);
+  CHECK(std::abs(after[2000] - 2 * pi) < 1e-3);
+  CHECK(std::abs(values(*make_state(r, lattice), 5, lattice)[2000]) < 1e-14);
+}
+
+TEST_CASE("far away and long after, pulses are finite", "[states]") {
+  const std::pair<const char*, const char*> pulses[]{
+      {"kink", "sine-gordon"},      {"kink", "double-sine-gordon"}, {"kink", "phi4"},
+      {"antikink", "sine-gordon"},  {"antikink", "phi4"},           {"kink-antikink", "sine-gordon"},
+      {"kink-kink", "sine-gordon"}, {"breather", "sine-gordon"}};
+  const Lattice lattice = Lattice::interval(801, 2e4);
+  for (const auto& [name, theory] : pulses)
+    for (const double v : {1e-300, 0.5, 1 - 1e-15}) {
+      auto r = request(name, theory);
+      r.speed = v;
+      const auto state = make_state(r, lattice);
+      for (const double t : {0.0, 1e4, -1e4}) {
+        const auto y = values(*state, t, lattice), dy = velocities(*state, t, lattice);
+        CAPTURE(state->description(), t);
+        CHECK(std::all_of(y.begin(), y.end(), [](double a) { return std::abs(a) <= 2 * pi; }));
+        CHECK(std::all_of(dy.begin(), dy.end(), [](double a) { return std::isfinite(a); }));
+      }
+    }
+}
+
+TEST_CASE("the paper's collision: K, c and the profile to all digits", "[states]") {
+  // independent solution in quadruple precision: K = 7.94747977356234476503, c = 0.777299380496225785738
+  const double h = 40.0 / 255 / 8, c = 0.777299380496225785738;
+  const auto at = [](int sites) { return Lattice::circle(sites, 40); };
+  const auto state = make_state(request("mps-collision"), at(255));
+  CHECK_FALSE(state->exact());
+  CHECK(state->knows_second_row());
+  CHECK(state->winding() == 0);
+  CHECK(state->description().find("c = 0.7772993805") != std::string::npos);
+  CHECK(state->description().find("P = 15.89495955") != std::string::npos);
+
+  const auto y0 = values(*state, 0, at(255));
+  CHECK(std::abs(y0[1] - 0.0007125487924485414963025274) < 1e-15);
+  const std::pair<double, double> profile[]{{1, 0.006642903643027975120436766}, {2.5, 0.07517662722198357809248349},
+                                            {4, 0.8050623861232871719372417},   {4.9, 2.825023685633072934146822},
+                                            {5.5, 4.586135019064001477060776},  {9, 6.27654240353655850180485}};
+  const auto y = values(*state, 0, at(400));
+  for (const auto& [x, phi] : profile) {
+    const auto i = static_cast<std::size_t>(std::lround(10 * x));
+    CHECK(std::abs(y[i] - phi) < 2e-14);
+    CHECK(std::abs(y[400 - i] - phi) < 2e-14);  // its mirror image
+  }
+
+  // branches by integers: 4i < N, 4i < 3N
+  CHECK(y0[63] < 2 * pi);
+  CHECK(y0[64] == 2 * pi);
+  CHECK(y0[191] == 2 * pi);
+  CHECK(y0[192] < 2 * pi);
+  CHECK(values(*state, 0, at(256))[64] == 2 * pi);
+  CHECK(values(*state, h, at(256))[192] < 2 * pi);
+
+  // the second row: each soliton translated exactly; φ̃ at x − hc is at the site of a lattice that is moved by hc
+  const auto y1 = values(*state, h, at(255));
+  for (std::size_t i = 1; i < y1.size(); ++i) CHECK(y1[i] == y1[y1.size() - i]);
+  const auto later = values(*state, 1 / c, at(400));
+  CHECK(std::abs(later[35] - y[25]) < 2e-14);
+  CHECK(std::abs(later[365] - y[375]) < 2e-14);
+  CHECK(velocity_defect(*state, at(255), 0.3, 0.02) < 1e-9);
+  const auto v = velocities(*state, 0, at(400));
+  CHECK(std::abs(v[50] + c * 3.178991909424937906013731) < 2e-14);   // φ̃′(5)
+  CHECK(std::abs(v[0] + c * 0.00449577234903958021055118) < 1e-14);  // φ̃′(0)
+  CHECK(v[200] == 0);
+
+  // both rows at once: the energy of footnote 4 between them, in quadruple precision 161.9006790572685849
+  const double k = 40.0 / 255;
+  double energy = 0;
+  for (std::size_t i = 0; i < 255; ++i) {
+    const std::size_t e = (i + 1) % 255;
+    const double phi_t = (y1[i] - y0[i] + y1[e] - y0[e]) / (2 * h), phi_x = (y0[e] - y0[i] + y1[e] - y1[i]) / (2 * k);
+    const double mean = (y0[i] + y0[e] + y1[i] + y1[e]) / 4;
+    energy += (phi_t * phi_t + phi_x * phi_x) / 2 + 1 - std::cos(mean);
+  }
+  CHECK(std::abs(energy - 161.9006790572685849) < 1e-11);
+
+  // lengths and masses scale together
+  auto heavy = request("mps-collision");
+  heavy.mass = 2;
+  const auto scaled = values(*make_state(heavy, Lattice::circle(255, 20)), 0, Lattice::circle(255, 20));
+  for (std::size_t i = 0; i < scaled.size(); ++i) CHECK(std::abs(scaled[i] - y0[i]) < 2e-14);
+}
+
+TEST_CASE("a kink train of a given speed or a given epsilon is the same train", "[states]") {
+  const Lattice ring = Lattice::circle(100, 10);
+  auto r = request("kink-train");
+  const auto of_epsilon = make_state(r, ring);
+  r.speed = 0.777299380496225785738;
+  const auto of_speed = make_state(r, ring);
+  const auto a = values(*of_epsilon, 2, ring), b = values(*of_speed, 2, ring);
+  for (std::size_t i = 0; i < a.size(); ++i) CHECK(std::abs(a[i] - b[i]) < 1e-13);
+  // long periods, far beyond the ε that 1 − κ can hold: a train is then a row of kinks
+  const Lattice longer = Lattice::circle(500, 200);
+  r.speed = 0.5;
+  const auto train = values(*make_state(r, longer), 3, longer);
+  r.name = "kink";
+  const auto kink = values(*make_state(r, longer), 3, longer);
+  for (std::size_t i = 0; i < kink.size(); ++i) CHECK(std::abs(train[i] - kink[i]) < 1e-12);
+}
+
+TEST_CASE("noise is smooth, of the given height, and the same for the same seed", "[states]") {
+  const Lattice coarse = Lattice::circle(100, 20), fine = Lattice::circle(1000, 20);
+  auto r = request("noise");
+  r.seed = 7;
+  const auto state = make_state(r, coarse);
+  const auto y = values(*state, 0, coarse), z = values(*make_state(r, fine), 0, fine);
+  for (std::size_t i = 0; i < y.size(); ++i) CHECK(std::abs(y[i] - z[10 * i]) < 1e-14);
+  double highest = 0;
+  for (const double a : z) highest = std::max(highest, std::abs(a));
+  CHECK(std::abs(highest - 0.1) < 1e-4);
+  CHECK_FALSE(state->exact());
+  CHECK_FALSE(state->knows_second_row());
+  // the 64-bit Mersenne twister with our own map to [0, 1): these are the numbers of any library
+  CHECK(std::abs(y[0] - 0.030005797222279262) < 1e-14);
+  CHECK(std::abs(velocities(*state, 0, coarse)[0] + 0.047635439523753147) < 1e-14);
+  r.seed = 8;
+  CHECK(std::abs(values(*make_state(r, coarse), 0, coarse)[0] - y[0]) > 1e-3 * std::abs(y[0]));
+  // between walls that are fixed nothing moves at the walls
+  const Lattice walls = Lattice::interval(101, 20);
+  const auto fixed = make_state(r, walls);
+  CHECK(values(*fixed, 0, walls).front() == 0);
+  CHECK(values(*fixed, 0, walls).back() == 0);
+  CHECK(velocities(*fixed, 0, walls).back() == 0);
+}
+
+TEST_CASE("a state says until when it can be compared with", "[states]") {
+  const double forever = std::numeric_limits<double>::infinity();
+  const auto until = [](const StateRequest& r, const Lattice& lattice) {
+    return make_state(r, lattice)->exact_until();
+  };
+  auto moving = request("kink");
+  moving.speed = 0.5;
+  CHECK(until(moving, Lattice::circle(100, 40)) == forever);
+  CHECK(until(request("kink"), Lattice::interval(100, 4)) == forever);  // at rest between fixed walls
+  const double end = until(moving, Lattice::interval(100, 40));
+  CHECK(end > 25);
+  CHECK(end < 40);
+  auto pair = request("kink-antikink");
+  pair.speed = 0.5, pair.separation = 10.0;
+  CHECK(until(pair, Lattice::circle(100, 60)) > 40);
+  CHECK(until(pair, Lattice::circle(100, 60)) < 70);
+  CHECK(until(request("kink"), Lattice::circle(100, 4)) == 0);  // as wide as the circle
+  CHECK_FALSE(make_state(request("kink"), Lattice::circle(100, 4))->exact());
+  CHECK_FALSE(make_state(request("kink", "sine-gordon-impurity"), Lattice::circle(100, 40))->exact());
+}
+
+TEST_CASE("a report is told what does not quite fit", "[states]") {
+  const auto says = [](const StateRequest& r, const Lattice& lattice, const std::string& what) {
+    return make_state(r, lattice)->description().find(what) != std::string::npos;
+  };
+  CHECK(says(request("kink"), Lattice::circle(100, 30), "at the seam"));
+  CHECK_FALSE(says(request("kink"), Lattice::circle(100, 50), "at the seam"));
+  CHECK(says(request("kink", "sine-gordon-impurity"), Lattice::circle(100, 40), "not an exact solution"));
+}
+
+TEST_CASE("bad input names its key", "[states]") {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const Lattice circle = Lattice::circle(255, 40), interval = Lattice::interval(255, 40);
+  const auto change = [](const char* name, const std::function<void(StateRequest&)>& f) {
+    return with(request(name), f);
+  };
+
+  CHECK(key_of(request("kikn")) == "initial.state");
+  CHECK(key_of(request("kink", "wave")) == "initial.state");
+  CHECK(key_of(request("breather", "phi4")) == "initial.state");
+  CHECK(key_of(request("plane-wave", "phi4")) == "initial.state");
+  CHECK(key_of(request("kink", "phi4"), circle) == "initial.state");
+  for (const char* name : {"mps-collision", "kink-train", "wave-packet"})
+    CHECK(key_of(request(name), interval) == "initial.state");
+
+  for (const char* name : {"kink", "antikink", "kink-antikink", "kink-kink", "breather", "kink-train"})
+    for (const double v : {1.0, -1.0, 1.2, nan, inf})
+      CHECK(key_of(change(name, [&](StateRequest& r) { r.speed = v; })) == "initial.speed");
+  for (const char* name : {"kink-antikink", "kink-kink"})
+    for (const double v : {0.0, -0.5})
+      CHECK(key_of(change(name, [&](StateRequest& r) { r.speed = v; })) == "initial.speed");
+  for (const double omega : {0.0, -0.1, 1.0, 2.0, nan})
+    CHECK(key_of(change("breather", [&](StateRequest& r) { r.frequency = omega; })) == "initial.frequency");
+  for (const double d : {-1.0, 40.0, nan})
+    CHECK(key_of(change("kink-kink", [&](StateRequest& r) { r.separation = d; })) == "initial.separation");
+  for (const double epsilon : {0.0, 1.0, -1e-6, nan, 0.9})
+    CHECK(key_of(change("mps-collision", [&](StateRequest& r) { r.epsilon = epsilon; })) == "initial.epsilon");
+  CHECK(key_of(request("kink-train")) == "initial.epsilon");  // 1e-6 is too wide for one kink around 40
+  for (const double n : {1.5, 128.0, nan, 1e300})
+    CHECK(key_of(change("plane-wave", [&](StateRequest& r) { r.wavenumber = n; })) == "initial.wavenumber");
+  CHECK(key_of(change("plane-wave", [](StateRequest& r) { r.wavenumber = 0; }), interval) == "initial.wavenumber");
+  for (const double n : {0.0, -3.0, 2.5})
+    CHECK(key_of(change("noise", [&](StateRequest& r) { r.wavenumber = n; })) == "initial.wavenumber");
+  for (const double w : {0.0, -1.0, 1e-3, nan})
+    CHECK(key_of(change("wave-packet", [&](StateRequest& r) { r.width = w; })) == "initial.width");
+  CHECK(key_of(change("noise", [&](StateRequest& r) { r.amplitude = inf; })) == "initial.amplitude");
+  CHECK(key_of(change("kink", [&](StateRequest& r) { r.position = nan; })) == "initial.position");
+  CHECK(key_of(change("kink", [](StateRequest& r) { r.mass = 0; })) == "theory.mass");
+  CHECK(key_of(with(request("kink", "phi4"), [](StateRequest& r) { r.lambda = -1; }), interval) == "theory.lambda");
+  CHECK(key_of(with(request("kink", "double-sine-gordon"), [](StateRequest& r) { r.lambda = -0.5; })) ==
+        "theory.lambda");
+  CHECK(key_of(with(request("plane-wave", "double-sine-gordon"), [](StateRequest& r) { r.lambda = -1; })) ==
+        "theory.lambda");
+  for (const char* name : {"mps-collision", "kink", "antikink", "kink-antikink", "kink-kink", "breather", "noise"})
+    CHECK(key_of(change(name, [](StateRequest& r) { r.winding = 5; })) == "boundary.winding");
+  CHECK(key_of(change("kink-train", [](StateRequest& r) { r.winding = 0; })) == "boundary.winding");
+  CHECK(key_of(change("kink-train", [](StateRequest& r) { r.winding = 128; })) == "boundary.winding");
+
+  CHECK_THROWS_AS(make_state(request("file"), circle), std::logic_error);
+}
+
+TEST_CASE("errors read as one line with a remedy", "[states]") {
+  const auto message = [](const StateRequest& r) -> std::string {
+    try {
+      make_state(r, Lattice::circle(255, 40));
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(message(with(request("kink"), [](StateRequest& r) { r.speed = 1.2; })) ==
+        "initial.speed = 1.2: a kink must be slower than light; choose |speed| < 1");
+  CHECK(message(request("kinc")) == "initial.state = kinc: no such state; did you mean kink?");
+  CHECK(message(with(request("kink"), [](StateRequest& r) { r.winding = 0; })) ==
+        "boundary.winding = 0: the state kink winds 1 times; set boundary.winding=1");
+}
+
+TEST_CASE("the list of states has every state that can be made", "[states]") {
+  const Lattice circle = Lattice::circle(64, 10);
+  int made = 0;
+  for (const StateInfo& info : states()) {
+    CHECK_FALSE(info.formula.empty());
+    CHECK_FALSE(info.theories.empty());
+    if (info.name == "file") continue;
+    auto r = request(info.name, info.name == "plane-wave" || info.name == "wave-packet" ? "wave" : "sine-gordon");
+    CHECK_FALSE(make_state(r, circle)->description().empty());
+    ++made;
+  }
+  CHECK(made == 10);
+}
+
+TEST_CASE("the nearest name is the one a typing error away", "[states]") {
+  const std::vector<std::string> known{"kink", "antikink", "breather", "noise"};
+  CHECK(nearest("kikn", known) == "kink");
+  CHECK(nearest("antikinc", known) == "antikink");
+  CHECK(nearest("Breather", known) == "breather");
+  CHECK_FALSE(nearest("qwertyuiop", known));
+  CHECK_FALSE(nearest("xyz", {}));
+}

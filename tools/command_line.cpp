@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "tools/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/program_options.hpp>
+#include <cstdio>
+
+#include "tools/commands.hpp"
+#include "tools/help.hpp"
+#include "tools/keys.hpp"
+#include "tools/scene_text.hpp"
+
+namespace delf {
+
+namespace {
+
+namespace po = boost::program_options;
+
+po::parsed_options parsed(const std::vector<std::string>& words) {
+  po::options_description known;
+  known.add_options()("help", "")("version", "")("out", po::value<std::string>());
+  for (const Key& key : keys()) known.add_options()(std::string(key.name).c_str(), po::value<std::string>());
+  using namespace po::command_line_style;
+  constexpr int exact_names = allow_long | long_allow_adjacent | long_allow_next;  // no guessing
+  try {
+    return po::command_line_parser(words).options(known).style(exact_names).allow_unregistered().run();
+  } catch (const po::error& error) {
+    throw BadScene(fmt::format("command line: {}; write --KEY=VALUE", error.what()));
+  }
+}
+
+Arguments taken_apart(const std::vector<std::string>& words) {
+  Arguments arguments;
+  for (const auto& option : parsed(words).options) {
+    const std::string value = option.value.empty() ? "" : trimmed(option.value.front());
+    if (option.string_key == "help" || value == "-h") {
+      arguments.help = true;
+    } else if (option.string_key == "version" && !option.unregistered) {
+      arguments.version = true;
+    } else if (option.string_key == "out") {
+      if (arguments.out || value.empty())
+        throw BadScene("command line: --out: give one directory, as --out DIR");
+      arguments.out = value;
+    } else if (!option.string_key.empty()) {
+      arguments.keys.push_back({option.string_key, value, 0});
+    } else if (value.size() > 1 && value.front() == '-') {
+      throw BadScene(fmt::format("command line: {}: unknown option; keys are given as --KEY=VALUE", value));
+    } else {
+      arguments.words.push_back(value);
+    }
+  }
+  return arguments;
+}
+
+ExitCode carry_out(const std::vector<std::string>& words) {
+  Arguments arguments = taken_apart(words);
+  if (arguments.version) {
+    fmt::print("delf {}\n", DELF_VERSION);
+    return ExitCode::done;
+  }
+  if (arguments.help) return help(arguments.words.empty() ? "" : arguments.words.front());
+  if (arguments.words.empty()) {
+    check_command_line(arguments.keys);
+    fmt::print("{}", usage());
+    return ExitCode::bad_input;
+  }
+  return find_command(arguments.words.front()).carry_out(arguments);
+}
+
+}  // namespace
+
+ExitCode run_program(const std::vector<std::string>& words) {
+  ExitCode code = ExitCode::done;
+  try {
+    code = carry_out(words);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw SystemFailure("standard output cannot be written to");
+  } catch (const std::exception& error) {
+    std::fflush(stdout);
+    fmt::print(stderr, "{}\n", error_line(error));
+    code = exit_code(error);
+  }
+  return code;
+}
+
+}  // namespace delf

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "tools/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "tools/help.hpp"
+#include "tools/list.hpp"
+#include "tools/nearest.hpp"
+#include "tools/plan.hpp"
+#include "tools/run.hpp"
+#include "tools/scene.hpp"
+#include "tools/shipped_scenes.hpp"
+
+namespace delf {
+
+namespace {
+
+std::string only_word(const Arguments& arguments, const char* otherwise) {
+  if (arguments.words.size() > 2)
+    throw BadScene(fmt::format("command line: {}: one word too many; give one thing at a time", arguments.words[2]));
+  if (arguments.words.size() < 2 && otherwise == nullptr)
+    throw BadScene(fmt::format("command line: {} what? Name a scene file or a shipped scene, such as `delf {} "
+                               "collision`", arguments.words[0], arguments.words[0]));
+  return arguments.words.size() < 2 ? otherwise : arguments.words[1];
+}
+
+Scene scene_of(const Arguments& arguments) {
+  const std::string word = only_word(arguments, nullptr);
+  check_command_line(arguments.keys);
+  Scene scene = read_scene(find_scene(word), arguments.keys);
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "{}\n", warning);
+  return scene;
+}
+
+void refuse(const Arguments& arguments, bool keys) {
+  if (keys && !arguments.keys.empty())
+    throw BadScene(fmt::format("command line: --{}: `{}` reads no scene; leave it out", arguments.keys[0].key,
+                               arguments.words[0]));
+  if (arguments.out)
+    throw BadScene(fmt::format("command line: --out: `{}` writes no files; leave it out", arguments.words[0]));
+}
+
+ExitCode carry_out_run(const Arguments& arguments) {
+  const Scene scene = scene_of(arguments);
+  return run(scene, arguments.out.value_or("results/" + scene.name));
+}
+
+ExitCode carry_out_plan(const Arguments& arguments) {
+  refuse(arguments, false);
+  return plan(scene_of(arguments));
+}
+
+ExitCode carry_out_list(const Arguments& arguments) {
+  refuse(arguments, true);
+  return list(only_word(arguments, ""));
+}
+
+ExitCode carry_out_help(const Arguments& arguments) {
+  refuse(arguments, true);
+  return help(only_word(arguments, ""));
+}
+
+const std::vector<Command>& table() {
+  static const std::vector<Command> all{
+      {"run", "delf run SCENE [--out DIR] [--KEY=VALUE ...]", "step a scene, and record it",
+       "Steps a scene. Into DIR (results/NAME of the scene, if not given) go scene.ini, which runs again to the same\n"
+       "bits; series.csv, one line for each recorded row; summary.json; fields.h5, the recorded rows; and figures.\n"
+       "Ctrl-C ends a run early, with all so far written.\n\n"
+       "Keys, with what holds if they are not given (a key on the command line wins over the file):",
+       true, carry_out_run},
+      {"plan", "delf plan SCENE [--KEY=VALUE ...]", "what a run would solve, how, and at what cost",
+       "Prints what would be solved and how, what it costs, what would be written and what is left out. The keys are\n"
+       "those of `delf run`:",
+       true, carry_out_plan},
+      {"list", "delf list [theories|stencils|schemes|states|scenes]", "what there is",
+       "Lists what a scene can name, with formulas; everything if no kind is given.", false, carry_out_list},
+      {"help", "delf help [COMMAND]", "this, or the details of a command", "Explains a command.", false,
+       carry_out_help}};
+  return all;
+}
+
+}  // namespace
+
+std::span<const Command> commands() { return table(); }
+
+const Command& find_command(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Command& c : table()) {
+    if (c.name == name) return c;
+    names.push_back(c.name);
+  }
+  for (const char* later : {"verify", "workprecision", "stability"})
+    if (name == later)
+      throw BadScene(fmt::format("command line: {}: comes in a later version; this one has {}", name,
+                                 fmt::join(names, ", ")));
+  throw BadScene(fmt::format("command line: {}: no such command{}", name, suggestion(name, names)));
+}
+
+}  // namespace delf

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <functional>
+
+#include "schemes/simulation.hpp"
+#include "tools/failure.hpp"
+#include "tools/scene.hpp"
+
+namespace delf {
+
+/// The simulation of a scene. Throws BadScene, with the line of the key that it cannot be built for.
+Simulation build(const Scene&, int winding);
+
+/// Runs `work`; a lattice that does not fit into memory becomes a SystemFailure that says what it asked for.
+ExitCode with_memory_for(const Scene&, const std::function<ExitCode()>& work);
+
+}  // namespace delf

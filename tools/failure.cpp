@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#include "tools/failure.hpp"
+
+#include <new>
+
+namespace delf {
+
+ExitCode exit_code(const std::exception& error) {
+  if (dynamic_cast<const BadInput*>(&error)) return ExitCode::bad_input;
+  if (dynamic_cast<const NumericalFailure*>(&error)) return ExitCode::numerics_failed;
+  return ExitCode::system_failed;  // SystemFailure, std::bad_alloc, std::filesystem::filesystem_error, …
+}
+
+std::string error_line(const std::exception& error) {
+  std::string line = error.what();
+  if (dynamic_cast<const std::bad_alloc*>(&error)) line = "out of memory; ask for fewer sites or records";
+  for (char& c : line)
+    if (c == '\n' || c == '\r') c = ' ';
+  return dynamic_cast<const BadScene*>(&error) ? line : "delf: " + line;
+}
+
+}  // namespace delf

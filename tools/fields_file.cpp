@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "tools/fields_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "tools/failure.hpp"
+
+namespace delf {
+
+namespace {
+
+bool write_text(hid_t object, const char* name, const std::string& text) {
+  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+  H5Tset_size(type, std::max<std::size_t>(1, text.size()));
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  const Hdf5Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  return attribute && H5Awrite(attribute, type, text.c_str()) >= 0;
+}
+
+bool write_integer(hid_t object, const char* name, int value) {
+  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle attribute(H5Acreate2(object, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  return attribute && H5Awrite(attribute, H5T_NATIVE_INT, &value) >= 0;
+}
+
+// No times of creation, so that a rerun gives the same bytes.
+Hdf5Handle timeless() {
+  Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
+  return properties;
+}
+
+// A dataset that grows along its first axis, one chunk at a time.
+template <std::size_t rank>
+Hdf5Handle growing(hid_t file, const char* name, std::array<hsize_t, rank> chunk) {
+  std::array<hsize_t, rank> now = chunk, most = chunk;
+  now[0] = 0;
+  most[0] = H5S_UNLIMITED;
+  if constexpr (rank == 3) chunk[1] = std::min<hsize_t>(chunk[1], 1 << 20);
+  const Hdf5Handle space(H5Screate_simple(rank, now.data(), most.data()), H5Sclose);
+  const Hdf5Handle properties = timeless();
+  H5Pset_chunk(properties, rank, chunk.data());
+  return {H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose};
+}
+
+template <std::size_t rank>
+bool append_block(hid_t dataset, std::array<hsize_t, rank> old, std::array<hsize_t, rank> block, const double* data) {
+  std::array<hsize_t, rank> now = block, offset{};
+  now[0] = old[0] + block[0];
+  offset[0] = old[0];
+  if (H5Dset_extent(dataset, now.data()) < 0) return false;
+  const Hdf5Handle target(H5Dget_space(dataset), H5Sclose), source(H5Screate_simple(rank, block.data(), nullptr), H5Sclose);
+  return H5Sselect_hyperslab(target, H5S_SELECT_SET, offset.data(), nullptr, block.data(), nullptr) >= 0 &&
+         H5Dwrite(dataset, H5T_NATIVE_DOUBLE, source, target, H5P_DEFAULT, data) >= 0;
+}
+
+}  // namespace
+
+FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double> space, std::int64_t expected_frames,
+                       const std::string& scene, int winding)
+    : path_(path), sites_(space.size()) {
+  constexpr std::size_t block = 1 << 17;  // doubles: 1 MiB
+  frames_per_block_ = std::clamp<std::size_t>(block / sites_, 1, 1024);
+  frames_per_block_ = std::min(frames_per_block_, static_cast<std::size_t>(std::max<std::int64_t>(1, expected_frames)));
+  quiet_hdf5();
+  file_ = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
+  require(static_cast<bool>(file_), "cannot be created");
+
+  const hsize_t sites = sites_;
+  const Hdf5Handle extent(H5Screate_simple(1, &sites, nullptr), H5Sclose), properties = timeless();
+  const Hdf5Handle positions(H5Dcreate2(file_, "space", H5T_IEEE_F64LE, extent, H5P_DEFAULT, properties, H5P_DEFAULT),
+                             H5Dclose);
+  time_ = growing<1>(file_, "time", {frames_per_block_});
+  field_ = growing<3>(file_, "field", {frames_per_block_, sites, 1});
+  require(positions && time_ && field_ &&
+              H5Dwrite(positions, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, space.data()) >= 0 &&
+              write_text(positions, "units", "dimensionless") && write_text(time_, "units", "dimensionless") &&
+              write_text(field_, "units", "dimensionless") && write_text(file_, "scene", scene) &&
+              write_text(file_, "version", DELF_VERSION) && write_integer(file_, "winding", winding),
+          "cannot be written");
+  times_.reserve(frames_per_block_);
+  rows_.reserve(frames_per_block_ * sites_);
+}
+
+FieldsFile::~FieldsFile() = default;
+
+void FieldsFile::append(double time, std::span<const double> row) {
+  times_.push_back(time);
+  rows_.insert(rows_.end(), row.begin(), row.end());
+  if (times_.size() == frames_per_block_) write_block();
+}
+
+void FieldsFile::write_block() {
+  if (times_.empty()) return;
+  const hsize_t frames = times_.size(), sites = sites_;
+  require(append_block<1>(time_, {frames_written_}, {frames}, times_.data()) &&
+              append_block<3>(field_, {frames_written_, sites, 1}, {frames, sites, 1}, rows_.data()) &&
+              H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0,
+          "cannot be written");
+  frames_written_ += frames;
+  times_.clear();
+  rows_.clear();
+}
+
+void FieldsFile::close() {
+  if (!file_) return;
+  write_block();
+  const bool datasets = time_.close() && field_.close();
+  require(file_.close() && datasets, "cannot be closed");
+}
+
+void FieldsFile::require(bool went_well, const char* what) const {
+  if (!went_well)
+    throw SystemFailure(fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), what));
+}
+
+}  // namespace delf

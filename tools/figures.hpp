@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lattice/lattice.hpp"
+#include "tools/film.hpp"
+#include "tools/trace.hpp"
+
+namespace delf {
+
+/// What the figures of a run are drawn from.
+struct FigureSource {
+  std::string scene, theory;
+  std::string scheme;         ///< one line: stencil, method, sites, steps
+  bool angle;                 ///< the field is an angle, and is shown as φ/2π
+  const Lattice& lattice;
+  int winding;
+  const Film& film;
+  const Trace& energy_errors;
+  std::vector<double> times;  ///< of the waveforms; empty: evenly spread
+};
+
+/// Draws the space–time map, the waveforms and the energy error into `folder`/figures, each as PNG and as SVG.
+/// Returns what is missing, in one line, or an empty string.
+std::string draw_figures(const FigureSource&, const std::filesystem::path& folder);
+
+/// The positions that are drawn: those of the film, and on a circle the first site once more, at x = L.
+std::vector<double> drawn_space(const FigureSource&);
+/// A frame at those positions, in units of 2π if it is an angle.
+std::vector<double> drawn_frame(const FigureSource&, int frame);
+
+/// The names of the figures, without ending.
+std::vector<std::string> figure_names();
+
+}  // namespace delf

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace delf {
+
+/// A scratch folder inside a folder of results; gone, with all that is in it, when it is no longer needed.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(const std::filesystem::path& parent);
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Runs gnuplot in `folder` on a script that is there. Returns an empty string if it went well, or else one line that
+/// says what is missing or what gnuplot complained of.
+std::string run_gnuplot(const std::filesystem::path& folder, const std::string& script);
+
+/// Text as a gnuplot string.
+std::string gnuplot_quoted(const std::string& text);
+
+}  // namespace delf

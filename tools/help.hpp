@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+
+#include "tools/failure.hpp"
+
+namespace delf {
+
+/// The commands, in a few lines.
+std::string usage();
+/// `delf help`: of one command, or of all if it is empty.
+ExitCode help(const std::string& command);
+
+}  // namespace delf

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "tools/keys.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "schemes/simulation.hpp"
+#include "schemes/state.hpp"
+#include "tools/nearest.hpp"
+
+namespace delf {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+template <class Infos>
+Names names_of(const Infos& infos) {
+  Names names;
+  for (const auto& info : infos) names.push_back(info.name);
+  return names;
+}
+
+Names theory_names() { return names_of(theories()); }
+Names stencil_names() { return names_of(stencils()); }
+Names method_names() { return names_of(methods()); }
+Names state_names() {
+  Names names = names_of(states());
+  if (std::find(names.begin(), names.end(), "file") == names.end()) names.push_back("file");
+  return names;
+}
+Names fibres() { return {"R", "S1"}; }
+Names spaces() { return {"circle", "interval", "point"}; }
+Names walls() { return {"fixed", "natural"}; }
+Names starts() { return {"exact", "centred", "legendre"}; }
+
+constexpr double largest_int = std::numeric_limits<int>::max();
+constexpr double largest_count = 9007199254740992;  // 2⁵³: every integer below it is a double
+constexpr Range any{};
+constexpr Range positive{0, any.high, true};
+constexpr Range not_negative{0, any.high};
+constexpr Range count{0, largest_count};
+constexpr Range whole{-largest_int, largest_int};
+constexpr auto own = "the state's own";
+constexpr auto real = KeyType::real;
+constexpr auto integer = KeyType::integer;
+constexpr auto choice = KeyType::choice;
+constexpr auto toggle = KeyType::toggle;
+
+const std::array table{
+    Key{"theory.name", choice, "sine-gordon", "", "the field theory; see `delf list theories`", "", any, theory_names},
+    Key{"theory.fibre", choice, "R", "", "where the field has its values: the line, or the circle of angles", "", any,
+        fibres},
+    Key{"theory.mass", real, "1", "", "m, where a theory has one", "1/length", not_negative},
+    Key{"theory.lambda", real, "1", "", "the second coupling, where a theory has one"},
+    Key{"theory.strength", real, "1", "", "strength of the impurity"},
+    Key{"theory.width", real, "1", "", "width of the impurity", "length", positive},
+    Key{"theory.position", real, "0", "", "position of the impurity", "length"},
+
+    Key{"lattice.stencil", choice, "rectangle-symmetric", "", "stencil and jet; see `delf list stencils`", "", any,
+        stencil_names},
+    Key{"lattice.space", choice, "circle", "", "the shape of space", "", any, spaces},
+    Key{"lattice.length", real, "", "must be given", "L", "length", positive},
+    Key{"lattice.sites", integer, "", "must be given", "N; on an interval both walls are counted", "",
+        {2, largest_int}},
+    Key{"lattice.courant", real, "", "this or lattice.time_step", "h/k", "", positive},
+    Key{"lattice.time_step", real, "", "this or lattice.courant", "h", "time", positive},
+
+    Key{"scheme.method", choice, "multisymplectic", "", "the scheme; see `delf list schemes`", "", any, method_names},
+    Key{"scheme.tolerance", real, "1e-14", "",
+        "an implicit step ends when its last change is below this times the largest |y|", "", positive},
+    Key{"scheme.seed_order", integer, "8", "", "rows that the first guess of an implicit step is extrapolated from", "",
+        {0, 8}},
+    Key{"scheme.max_iterations", integer, "50", "", "iterations of an implicit step before it has failed", "",
+        {1, largest_int}},
+
+    Key{"initial.state", choice, "", "must be given", "the state to start from; see `delf list states`", "", any,
+        state_names},
+    Key{"initial.position", real, "", own, "centre of the pulse, or of the pair", "length"},
+    Key{"initial.speed", real, "", own, "v, |v| < 1", "length/time"},
+    Key{"initial.separation", real, "", own, "distance between the two pulses of a pair", "length"},
+    Key{"initial.frequency", real, "", own, "frequency of a breather", "1/time"},
+    Key{"initial.wavenumber", real, "", own, "how many waves go into L"},
+    Key{"initial.amplitude", real, "", own, "size of a wave, or of the noise"},
+    Key{"initial.epsilon", real, "", own, "1 - the modulus of the elliptic functions"},
+    Key{"initial.width", real, "", own, "width of a pulse", "length", positive},
+    Key{"initial.file", KeyType::text, "", "none", "state = file: a fields.h5; looked for beside the scene first"},
+    Key{"initial.frame", integer, "0", "", "state = file: the frame that row 0 is; the next frames are the next rows",
+        "", {0, largest_int}},
+    Key{"initial.start", choice, "", "exact where the second row is known, else centred", "what gives row 1", "", any,
+        starts},
+
+    Key{"boundary.left", choice, "fixed", "", "the left wall of an interval", "", any, walls},
+    Key{"boundary.right", choice, "fixed", "", "the right wall of an interval", "", any, walls},
+    Key{"boundary.winding", integer, "", own, "what the field gains around a circle, in units of 2 pi", "", whole},
+
+    Key{"run.until", real, "", "this or run.steps", "time of the last row, rounded to whole steps", "time",
+        not_negative},
+    Key{"run.steps", integer, "", "this or run.until", "steps after row 0", "", count},
+    Key{"run.seed", integer, "1", "", "seed of whatever is random", "", count},
+    Key{"run.threads", integer, "1", "", "threads; the results do not depend on it", "", {1, largest_int}},
+
+    Key{"output.every", integer, "", "about 400 records", "record rows 0, every, 2 every, ... and the last; 0: the last",
+        "", count},
+    Key{"output.figures", toggle, "on", "", "draw figures (by gnuplot)"},
+    Key{"output.fields", toggle, "on", "", "write the recorded rows to fields.h5"},
+    Key{"output.times", KeyType::times, "", "six, evenly spread", "times of the waveforms figure: 0, 10, 20", "time",
+        not_negative},
+
+    Key{"verify.regions", KeyType::text, "", "none", "for a later version; `run` ignores it"},
+    Key{"verify.variations", integer, "", "none", "for a later version; `run` ignores it", "", count},
+    Key{"verify.tolerance", real, "", "none", "for a later version; `run` ignores it", "", positive},
+    Key{"verify.checks", KeyType::text, "", "none", "for a later version; `run` ignores it"},
+};
+
+}  // namespace
+
+std::span<const Key> keys() { return table; }
+
+const Key* find_key(std::string_view name) {
+  const auto key = std::find_if(table.begin(), table.end(), [&](const Key& k) { return k.name == name; });
+  return key == table.end() ? nullptr : &*key;
+}
+
+std::string nearest_key(std::string_view unknown) {
+  // without its section, or with a wrong one, a key is known by its last part: --sites, lattice.position
+  const auto last = [](std::string_view name) { return name.substr(name.rfind('.') + 1); };
+  Names full, same_last;
+  for (const Key& key : table) {
+    full.emplace_back(key.name);
+    if (last(key.name) == last(unknown)) same_last.emplace_back(key.name);
+  }
+  if (const std::string close = nearest(unknown, full); !close.empty()) return close;
+  if (!same_last.empty()) return same_last.front();
+  Names lasts;
+  for (const Key& key : table) lasts.emplace_back(last(key.name));
+  const std::string close = nearest(last(unknown), lasts);
+  const auto at = std::find(lasts.begin(), lasts.end(), close);
+  return at == lasts.end() ? std::string() : full[static_cast<std::size_t>(at - lasts.begin())];
+}
+
+}  // namespace delf

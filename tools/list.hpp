@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+
+#include "tools/failure.hpp"
+
+namespace delf {
+
+/// `delf list`: what there is of one kind (theories, stencils, schemes, states, scenes), or of all.
+ExitCode list(const std::string& kind);
+
+}  // namespace delf

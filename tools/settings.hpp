@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/failure.hpp"
+
+namespace delf {
+
+/// A key and the text of its value, as given: by a line of the scene, or on the command line (line 0).
+struct Setting {
+  std::string key, value;
+  int line = 0;
+};
+
+/// What a scene and a command line give, before anything is made of it. The command line wins over the file.
+class Settings {
+ public:
+  Settings(std::filesystem::path file, std::vector<Setting> in_file, std::vector<Setting> on_command_line);
+
+  const std::filesystem::path& file() const noexcept { return file_; }
+  const Setting* find(std::string_view key) const;
+  /// Of two keys that say the same thing, exactly one may be given in a place; the one on the command line wins, and
+  /// the other is forgotten.
+  void keep_one_of(std::string_view key, std::string_view other, std::string_view remedy);
+
+  /// "FILE:LINE", "FILE" for a key that is not given, or "command line".
+  std::string place(std::string_view key) const;
+  /// "FILE:LINE: key = value: what is wrong; remedy"
+  BadScene error(std::string_view key, std::string_view wrong) const;
+  /// The same for what a library found wrong with a value; its key is looked up.
+  BadScene located(const BadInput&) const;
+
+ private:
+  std::filesystem::path file_;
+  std::vector<Setting> all_;
+};
+
+/// Reads the scene `file` by Boost.Program_options. Throws BadScene for whatever is no scene, for unknown keys and for
+/// keys given twice; values are not looked at.
+Settings read_settings(const std::filesystem::path& file, const std::vector<Setting>& on_command_line);
+
+/// Throws BadScene for an unknown key on the command line, one given twice, or a value that no scene could hold.
+void check_command_line(const std::vector<Setting>& on_command_line);
+
+}  // namespace delf

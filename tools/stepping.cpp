@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "tools/stepping.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "tools/interrupt.hpp"
+#include "tools/progress.hpp"
+
+namespace delf {
+
+namespace {
+
+// Adds the seconds of its life to a total, also when an exception ends it.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& total) : total_(total) {}
+  ~Stopwatch() { total_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& total_;
+  Clock::time_point begin_ = Clock::now();
+};
+
+}  // namespace
+
+Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, Outcome& outcome)
+    : scene_(scene),
+      initial_(initial),
+      simulation_(simulation),
+      outcome_(outcome),
+      row_(static_cast<std::size_t>(scene.problem.lattice.sites())) {}
+
+void Stepping::start() {
+  try {
+    initial_.start(simulation_);
+  } catch (const NumericalFailure& error) {
+    return fail(error);
+  }
+  started_ = true;
+  newest_ = simulation_.newest();
+  const auto monitors = simulation_.monitors();
+  outcome_.energy_initial = monitors.energy;
+  outcome_.momentum_initial = monitors.momentum;
+}
+
+void Stepping::run(Recorder& recorder) {
+  recorder_ = &recorder;
+  try {
+    record_and_step();
+  } catch (const SystemFailure&) {
+    close_outcome();
+    throw;
+  }
+  close_outcome();
+  if (!outcome_.failure.empty()) throw NumericalFailure(outcome_.failure);
+}
+
+void Stepping::record_and_step() {
+  for (std::int64_t row = 0; started_ && row <= std::min(newest_, scene_.steps); ++row)
+    if (to_be_recorded(row)) record(row);
+  try {
+    Progress progress(scene_.steps);
+    while (started_ && newest_ < scene_.steps && !Interrupt::asked()) {
+      step_until(next_record(), progress);
+      if (to_be_recorded(newest_)) record(newest_);
+    }
+    if (started_ && newest_ < scene_.steps) outcome_.status = "interrupted";
+  } catch (const NumericalFailure& error) {
+    fail(error);
+  }
+  if (const std::int64_t last = std::min(newest_, scene_.steps); recorded_ != last) record(last);
+}
+
+// The rows held are still the last good ones.
+void Stepping::fail(const NumericalFailure& error) {
+  outcome_.status = dynamic_cast<const NotFinite*>(&error) ? "not-finite" : "no-convergence";
+  outcome_.failure = fmt::format("step {} (t = {:.6g}): {} (row {} is the last good one; it is saved)", newest_ + 1,
+                                 static_cast<double>(newest_ + 1) * scene_.problem.time_step, error.what(), newest_);
+}
+
+void Stepping::step_until(std::int64_t row, Progress& progress) {
+  const Stopwatch watch(outcome_.seconds);
+  while (newest_ < row && !Interrupt::asked()) {
+    simulation_.step();
+    ++newest_;
+    count_step();
+    progress.at(newest_);
+  }
+}
+
+void Stepping::count_step() {
+  ++outcome_.steps_taken;
+  last_iterations_ = simulation_.iterations();
+  residual_ = simulation_.residual();
+  iterations_ += last_iterations_;
+  outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);
+  if (!(residual_ <= outcome_.residual_max)) outcome_.residual_max = residual_;
+}
+
+bool Stepping::to_be_recorded(std::int64_t row) const {
+  return row == scene_.steps || (scene_.every > 0 && row % scene_.every == 0);
+}
+
+std::int64_t Stepping::next_record() const {
+  return scene_.every == 0 ? scene_.steps : std::min(scene_.steps, (newest_ / scene_.every + 1) * scene_.every);
+}
+
+void Stepping::record(std::int64_t row) {
+  Record record;
+  record.row = row;
+  record.time = static_cast<double>(row) * scene_.problem.time_step;
+  if (!started_) {
+    row_ = initial_.row0();
+    record.energy = record.energy_error = record.momentum = record.charge = Outcome::unknown;
+  } else {
+    simulation_.copy_row(static_cast<int>(newest_ - row), row_);
+    const auto monitors = simulation_.monitors();
+    record.energy = monitors.energy;
+    record.energy_error = (monitors.energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);
+    record.momentum = monitors.momentum;
+    record.charge = monitors.charge;
+    record.iterations = last_iterations_;
+    record.residual = residual_;
+  }
+  recorded_ = row;
+  outcome_.energy_final = record.energy;
+  outcome_.momentum_final = record.momentum;
+  outcome_.charge_final = record.charge;
+  recorder_->append(record, row_);
+  ++outcome_.records;
+}
+
+void Stepping::close_outcome() {
+  outcome_.steps = std::max<std::int64_t>(0, recorded_);
+  outcome_.time = static_cast<double>(outcome_.steps) * scene_.problem.time_step;
+  if (outcome_.steps_taken > 0) outcome_.iterations_mean = iterations_ / static_cast<double>(outcome_.steps_taken);
+  outcome_.energy_error_max = recorder_->largest_energy_error();
+  measure_error();
+}
+
+// of the last row, which is still in row_
+void Stepping::measure_error() {
+  const State* exact = initial_.exact();
+  if (!exact || recorded_ < 0) return;
+  std::vector<double> solution(row_.size());
+  exact->values(outcome_.time, scene_.problem.lattice, solution);
+  double largest = 0, squares = 0;
+  for (std::size_t i = 0; i < row_.size(); ++i) {
+    const double e = std::abs(row_[i] - solution[i]);
+    if (!(e <= largest)) largest = e;
+    squares += e * e;
+  }
+  outcome_.error_linf = largest;
+  outcome_.error_l2 = std::sqrt(scene_.problem.lattice.space_step() * squares);
+}
+
+}  // namespace delf

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "tools/initial_rows.hpp"
+#include "tools/outcome.hpp"
+#include "tools/progress.hpp"
+#include "tools/recorder.hpp"
+
+namespace delf {
+
+/// Steps a simulation through its scene, and records: rows 0, every, 2·every, … and the last one, whichever becomes the
+/// last. What the steps cost and gave is told to the outcome, also when they fail.
+class Stepping {
+ public:
+  Stepping(const Scene&, const InitialRows&, Simulation&, Outcome&);
+
+  /// Gives the simulation its first rows. Throws BadScene; if the numerics fail, run() tells it.
+  void start();
+  /// Until the end, or an interruption. Throws NumericalFailure, with the step, after recording the last good row.
+  void run(Recorder&);
+
+ private:
+  void record_and_step();
+  void step_until(std::int64_t row, Progress&);
+  void count_step();
+  void record(std::int64_t row);
+  void fail(const NumericalFailure&);
+  bool to_be_recorded(std::int64_t row) const;
+  std::int64_t next_record() const;
+  void close_outcome();
+  void measure_error();
+
+  const Scene& scene_;
+  const InitialRows& initial_;
+  Simulation& simulation_;
+  Outcome& outcome_;
+  Recorder* recorder_ = nullptr;
+  std::vector<double> row_;
+  bool started_ = false;
+  std::int64_t newest_ = 0, recorded_ = -1;
+  double iterations_ = 0, residual_ = 0;
+  int last_iterations_ = 0;
+};
+
+}  // namespace delf
