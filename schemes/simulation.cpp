@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "lattice/error.hpp"
+#include "schemes/evolution.hpp"
 #include "schemes/field_theory.hpp"
 #include "schemes/nearest_name.hpp"
 #include "schemes/plan_report.hpp"
-#include "schemes/stepper.hpp"
 #include "schemes/theory_registry.hpp"
 
 namespace delf {
@@ -61,19 +61,16 @@ std::shared_ptr<const StencilFamily> make_family(const FieldTheory& theory, cons
 struct Simulation::Impl {
   Problem problem;
   std::unique_ptr<FieldTheory> theory;
-  LatticeSystem system;
-  SolvePlan plan;
-  Stepper stepper;
+  Evolution evolution;
+  Stepper& stepper;
   RowBuffer cell_weights, positions;
   int winding;
 
   explicit Impl(const Problem& p)
-      : problem(p), theory(make_theory(p)), system(p.lattice, {make_family(*theory, p)}, p.time_step),
-        plan(make_plan(p.lattice, system.pattern())),
-        stepper(system, plan,
-                {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
-                 2 * std::numbers::pi * p.winding}),
-        winding(p.winding) {}
+      : problem(p), theory(make_theory(p)), evolution(p.lattice, {make_family(*theory, p)}, p.time_step,
+                  {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
+                   2 * std::numbers::pi * p.winding}),
+        stepper(evolution.stepper()), winding(p.winding) {}
 
   void prepare_monitors() {
     if (cell_weights.rows()) return;
@@ -153,10 +150,10 @@ Simulation::Monitors Simulation::monitors() const {
 
 int Simulation::iterations() const { return impl_->stepper.iterations(); }
 double Simulation::residual() const { return impl_->stepper.residual(); }
-const char* Simulation::solve_kind() const { return to_string(impl_->plan.kind); }
-std::string Simulation::solve_summary() const { return solve_in_words(impl_->plan, impl_->stepper); }
+const char* Simulation::solve_kind() const { return to_string(impl_->evolution.plan().kind); }
+std::string Simulation::solve_summary() const { return solve_in_words(impl_->evolution.plan(), impl_->stepper); }
 std::string Simulation::plan_report() const {
-  return delf::plan_report(impl_->system, impl_->plan, impl_->stepper);
+  return delf::plan_report(impl_->evolution.system(), impl_->evolution.plan(), impl_->stepper);
 }
 std::size_t Simulation::bytes() const { return impl_->stepper.bytes(); }
 

@@ -497,16 +497,15 @@ struct Stepper::Impl {
     }
     evaluate_outputs(base, true);
     clear(total);
-    std::fill_n(absolute.row(0), layout.doubles() * static_cast<std::size_t>(d), 0.0);
+    for (int a = 0; a < d; ++a) std::fill_n(absolute.row(a), layout.doubles(), 0.0);
     add_parts(base, known_part | fresh_part | unknown_part, total, &absolute);
-    double worst = 0;
+    double worst = 0, size = 0;
     for (int a = 0; a < d; ++a)
       for (int i = 0; i < N; ++i) {
-        const int slot = layout.slot(i);
-        const double size = absolute.row(a)[slot];
-        if (size > 0) worst = std::max(worst, std::abs(total.row(a)[slot]) / size);
+        worst = std::max(worst, std::abs(total.row(a)[layout.slot(i)]));
+        size = std::max(size, absolute.row(a)[layout.slot(i)]);
       }
-    return worst;
+    return size > 0 ? worst / size : 0;
   }
 };
 

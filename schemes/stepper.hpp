@@ -44,7 +44,8 @@ class Stepper {
 
   std::int64_t newest() const;
   std::vector<double> row(int back) const;
-  /// The field equations' residual where the newest row was the unknown: max |Σr| / Σ|r|. Costs about a step.
+  /// The residual of the field equations that were solved for the newest row: max |Σ terms| / max Σ |terms| over the
+  /// sites (a vacuum has no scale of its own). Costs about a step.
   double residual() const;
   int iterations() const;   ///< of the last step: evaluations of the nonlinear part; 0 if it was solved at once
   int newton_steps() const; ///< full Newton steps among them

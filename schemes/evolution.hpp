@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "lattice/solve_plan.hpp"
+#include "schemes/lattice_system.hpp"
+#include "schemes/stepper.hpp"
+
+namespace delf {
+
+/// Field equations on a lattice with the plan that was made for them, ready to step.
+class Evolution {
+ public:
+  /// Throws BadInput for equations that no plan can solve.
+  Evolution(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families, double time_step,
+            const StepOptions& options = {})
+      : parts_(std::make_unique<Parts>(lattice, std::move(families), time_step, options)) {}
+
+  const LatticeSystem& system() const { return parts_->system; }
+  const SolvePlan& plan() const { return parts_->plan; }
+  Stepper& stepper() { return parts_->stepper; }
+  const Stepper& stepper() const { return parts_->stepper; }
+
+ private:
+  struct Parts {
+    LatticeSystem system;
+    SolvePlan plan;
+    Stepper stepper;
+    Parts(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families, double h,
+          const StepOptions& options)
+        : system(lattice, std::move(families), h), plan(make_plan(lattice, system.pattern())),
+          stepper(system, plan, options) {}
+  };
+  std::unique_ptr<Parts> parts_;  ///< the stepper refers to the other two, which must stay where they are
+};
+
+}  // namespace delf
