@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -39,15 +40,37 @@ std::vector<std::string> names_of(const std::vector<NamedFormula>& list) {
   return names;
 }
 
+/// What a wall does to a scheme that its stencils cannot see.
+void check_walls(const Problem& p, const StencilFamily& family) {
+  if (p.lattice.is_circle()) return;
+  const auto [least, most] = std::ranges::minmax(family.pattern().vertices, {}, &Site::space);
+  if (family.is_variational() && most.space - least.space > 1)
+    throw BadInput("lattice.stencil",
+                   fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
+                               "at the walls out of the action, and the error there does not vanish with k; use "
+                               "triangle, rectangle or rectangle-symmetric, or lattice.space = circle",
+                               p.stencil));
+  if (!family.is_variational() && (p.lattice.left() == Wall::natural || p.lattice.right() == Wall::natural))
+    throw BadInput(p.lattice.left() == Wall::natural ? "boundary.left" : "boundary.right",
+                   fmt::format("a natural wall varies the action, and scheme.method = {} has none; use fixed walls",
+                               p.method));
+}
+
 std::shared_ptr<const StencilFamily> make_family(const FieldTheory& theory, const Problem& p) {
   const double h = p.time_step, k = p.lattice.space_step();
   if (!(h > 0) || !std::isfinite(h))
     throw BadInput("lattice.time_step", "lattice.time_step must be a positive, finite number");
   if (p.method == "multisymplectic") {
-    if (auto family = theory.variational(p.stencil, h, k)) return family;
+    if (auto family = theory.variational(p.stencil, h, k)) {
+      check_walls(p, *family);
+      return family;
+    }
     throw unknown("lattice.stencil", p.stencil, names_of(stencils()));
   }
-  if (auto family = theory.comparator(p.method, h, k)) return family;
+  if (auto family = theory.comparator(p.method, h, k)) {
+    check_walls(p, *family);
+    return family;
+  }
   for (const std::string& name : names_of(methods()))
     if (name == p.method)
       throw BadInput("scheme.method", fmt::format("scheme.method = {}: not written for theory.name = {}, whose potential "

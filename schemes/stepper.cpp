@@ -49,11 +49,14 @@ struct Stepper::Impl {
         history(std::max(p.forward + p.backward, 2)), seed_rows(std::clamp(o.seed_order, 1, 12)),
         bricks(s.placement() == Placement::brick_wall), iterative(p.nonlinear_in_slab),
         equations(assemble(s, p)), layout(s.lattice(), std::max(1, s.width())) {
+    bool one_row = plan.table.regular;
     for (int i : {0, N / 2, N - 1})
       for (int a = 0; a < d; ++a)
-        if (plan.offset(i, a, 0) != 0 || plan.offset(i, a, 1) != 0 || plan.shift(i, a, 0) != plan.shift(i, a, 1))
-          throw BadInput("boundary.right", "a natural wall of a brick wall determines its sites in other rows than the "
-                                           "rest, which this version does not step; use fixed walls or a circle");
+        one_row = one_row && plan.offset(i, a, 0) == 0 && plan.offset(i, a, 1) == 0 &&
+                  plan.shift(i, a, 0) == plan.shift(i, a, 1);
+    if (!one_row)
+      throw BadInput("lattice.stencil", "the unknowns that this stencil matches in one step do not lie in one row, which "
+                                        "this version does not step; use fixed walls or a circle");
     y = RowBuffer(layout, (history + 1) * d);
     v = RowBuffer(layout, (std::max(history - 1, iterative ? seed_rows - 1 : 1) + 1) * d);
     w = RowBuffer(layout, d);
@@ -375,9 +378,11 @@ struct Stepper::Impl {
         if (!done && iterations >= 3 && change.change > 0.5 * last) break;
         last = change.change;
       }
+      // A field that overflowed has no root to look for.
+      if (!done && overflowed(change.value)) report_not_finite();
       if (!done) change.value = full_newton();
     }
-    if (!std::isfinite(change.value)) report_not_finite();
+    if (overflowed(change.value)) report_not_finite();
     if (options.fibre == Fibre::circle) check_wrapped_differences();
     largest[1] = largest[0];
     largest[0] = change.value;
@@ -446,9 +451,16 @@ struct Stepper::Impl {
     return value;
   }
 
+  /// Beyond this squares overflow, and with them every energy: nothing that could be reported is a number any more.
+  static bool overflowed(double largest_value) { return !(largest_value <= 1e150); }
+
   [[noreturn]] void report_not_finite() {
-    const std::vector<double> row = site_row(n + 1);
-    const auto bad = std::ranges::find_if(row, [](double x) { return !std::isfinite(x); }) - row.begin();
+    // Implicit steps spread an overflow over the whole row: it is where the field was largest.
+    const std::vector<double> row = site_row(n + 1), before = site_row(n);
+    const auto fine = [](double x) { return !overflowed(std::abs(x)); };
+    const bool everywhere = std::ranges::none_of(row, fine);
+    const auto bad = everywhere ? std::ranges::max_element(before, {}, [](double x) { return std::abs(x); }) - before.begin()
+                                : std::ranges::find_if_not(row, fine) - row.begin();
     throw NotFinite(fmt::format(
         "step {}, t = {:.6g}, site {}: the field is no longer finite: the scheme is unstable here; reduce "
         "lattice.courant or lattice.time_step, or choose an implicit stencil",

@@ -143,7 +143,7 @@ class VariationalFamily final : public StencilFamily {
     const int packs = rows.layout->packs();
     for (int v = 0; v < packs; ++v) {
       const std::ptrdiff_t at = rows.layout->at(v);
-      for_each_index<distinct.count>([&]<int c>() {
+      for_each_index<distinct.count>([&]<int c>() __attribute__((always_inline, flatten)) {
         constexpr int q = distinct.representative[c];
         JetFor<Number, D> jet;
         for (int a = 0; a < d; ++a) {
@@ -169,7 +169,7 @@ class VariationalFamily final : public StencilFamily {
       const std::ptrdiff_t at = rows.layout->at(v);
       std::array<Pack, static_cast<std::size_t>(vertices_size)> r;
       r.fill(Pack(0.0));
-      for_each_index<map.points>([&]<int q>() {
+      for_each_index<map.points>([&]<int q>() __attribute__((always_inline, flatten)) {
         constexpr auto& p = map.quadrature[q];
         JetFor<Number, D> jet;
         for (int a = 0; a < d; ++a) {
@@ -191,7 +191,7 @@ class VariationalFamily final : public StencilFamily {
 
   template <int count, class Body>
   [[gnu::always_inline]] static void for_each_index(const Body& body) {
-    [&]<int... i>(std::integer_sequence<int, i...>) {
+    [&]<int... i>(std::integer_sequence<int, i...>) __attribute__((always_inline)) {
       (body.template operator()<i>(), ...);
     }(std::make_integer_sequence<int, count>{});
   }

@@ -34,7 +34,9 @@ std::string energy_figure(const FigureSource& source, const std::filesystem::pat
          fmt::format("set lmargin at screen 0.105\nset rmargin at screen 0.965\n"
                      "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
                      "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xzeroaxis lc rgb '#999999' lt 1 lw 1\n"
-                     "set xlabel 'time t'\nset ylabel '(E − E_0) / |E_0|   in units of 10^{{{}}}'\n"
+                     "set xlabel 'time t'\n"
+                     "set label 103 '(E − E_0) / |E_0|   in units of 10^{{{}}}' at screen 0.025,0.4875 center rotate "
+                     "textcolor rgb '#333333'\n"
                      "set xrange [{}:{}]\n{}plot 'energy' using 1:2 with lines lw 1.3 lc rgb '{}'\n",
                      power, intervals.front().begin, intervals.back().end,
                      largest > 0 ? "" : "set yrange [-1:1]\n", line_colour);

@@ -24,6 +24,9 @@ set border 3 lc rgb '#444444' lw 1
 set tics nomirror out scale 0.5 textcolor rgb '#333333'
 set xlabel textcolor rgb '#333333'
 set ylabel textcolor rgb '#333333'
+set format x '%h'
+set format y '%h'
+set format cb '%h'
 unset key
 )";
 
