@@ -18,6 +18,7 @@ namespace delf {
 namespace {
 
 int positive_mod(int a, int n) { return ((a % n) + n) % n; }
+int parities_of(const SystemPattern& system) { return system.placement == Placement::brick_wall ? 2 : 1; }
 
 /// Asks for the equation and checks that the lattice has what it contains.
 std::vector<Coupling> checked(const SystemPattern& system, const Lattice& lattice, bool circle, Site site, int component) {
@@ -49,7 +50,7 @@ long long farness(const Quotient& quotient, const Quotient::Edge& edge) {
 /// Shifts c and d together so that in each connected part the innermost unknown of the lowest component has d = 0.
 void centre_offsets(const Quotient& quotient, const std::vector<int>& part, StructuralAnalysis& analysis) {
   const auto inner = [&](int node) {
-    return std::pair{quotient.component(node), std::abs(2 * quotient.site(node) - (quotient.sites - 1))};
+    return std::pair{quotient.component(node), std::abs(quotient.site(node) - quotient.centre())};
   };
   std::vector<int> centre(part.size(), -1);
   for (int node = 0; node < quotient.nodes(); ++node) {
@@ -78,14 +79,14 @@ void extend_from_middle(const Quotient& quotient, const std::vector<Occurrence>&
   for (int n = 0; n < quotient.nodes(); ++n) {
     const int same = cell.node(quotient.site(n) % cell.sites, quotient.component(n), quotient.parity(n));
     profile.push_back(bulk.d[same]);
-    least.push_back(quotient.site(n) == quotient.sites / 2 ? profile[n] : profile[n] - far);
+    least.push_back(quotient.site(n) == quotient.centre() ? profile[n] : profile[n] - far);
   }
 
   // The lowest offsets that the middle allows at the walls, then the highest below the profile, or below those.
   StructuralAnalysis extended = analysis;
   raise_offsets(extended, occurrences, least);
   for (int n = 0; n < quotient.nodes(); ++n)
-    if (quotient.site(n) == quotient.sites / 2 && extended.d[n] != profile[n]) return;
+    if (quotient.site(n) == quotient.centre() && extended.d[n] != profile[n]) return;
   std::vector<int> most(quotient.nodes());
   for (int n = 0; n < quotient.nodes(); ++n) most[n] = std::max(extended.d[n], profile[n]);
   lower_offsets(extended, occurrences, most);
@@ -95,7 +96,7 @@ void extend_from_middle(const Quotient& quotient, const std::vector<Occurrence>&
 }  // namespace
 
 Quotient Quotient::of_circle(const Lattice& lattice, const SystemPattern& system) {
-  return {true, system.placement == Placement::brick_wall ? 2 : 1, system, lattice};
+  return {true, parities_of(system), system, lattice};
 }
 
 Quotient Quotient::of_interval(const Lattice& lattice, const SystemPattern& system, int sites) {
@@ -104,20 +105,21 @@ Quotient Quotient::of_interval(const Lattice& lattice, const SystemPattern& syst
 }
 
 Quotient::Quotient(bool circle_, int sites_, const SystemPattern& system, const Lattice& lattice)
-    : Quotient(circle_, sites_, system.components, system.placement == Placement::brick_wall ? 2 : 1, [&] {
+    : Quotient(circle_, sites_, system.components, parities_of(system), 2 * std::max(system.width, 1), [&] {
         Couplings couplings;
         for (int i = 0; i < sites_; ++i)
           for (int component = 0; component < system.components; ++component)
-            for (int j = 0; j < (system.placement == Placement::brick_wall ? 2 : 1); ++j)
+            for (int j = 0; j < parities_of(system); ++j)
               couplings.push_back(checked(system, lattice, circle_, {j, i}, component));
         return couplings;
       }()) {}
 
-Quotient::Quotient(bool circle_, int sites_, int components_, int parities_, Couplings couplings)
+Quotient::Quotient(bool circle_, int sites_, int components_, int parities_, int period_, Couplings couplings)
     : circle(circle_),
       sites(sites_),
       components(components_),
       parities(parities_),
+      period(period_),
       reach(nodes()),
       couplings_(std::move(couplings)) {
   for (const auto& equation : couplings_) solved.push_back(!equation.empty());
@@ -132,9 +134,9 @@ Quotient::Quotient(bool circle_, int sites_, int components_, int parities_, Cou
 
 Quotient Quotient::middle() const {
   // A brick wall's cell must begin at an even site, as those of a circle do.
-  const int first = parities == 1 ? sites / 2 : (sites - 1) / 2 / 2 * 2, cell_sites = std::min(parities, sites - first);
-  return {true, cell_sites, components, parities,
-          Couplings(couplings_.begin() + node(first, 0, 0), couplings_.begin() + node(first + cell_sites, 0, 0))};
+  const int first = centre() / parities * parities;
+  return {true, parities, components, parities, 1,
+          Couplings(couplings_.begin() + node(first, 0, 0), couplings_.begin() + node(first + parities, 0, 0))};
 }
 
 StructuralAnalysis Quotient::analysis() const {

@@ -36,9 +36,12 @@ class Quotient {
   /// In whole cells of a circle: how far a site is from the cell's own.
   int cell(int shifted_site) const { return circle ? (shifted_site - wrapped(shifted_site)) / sites : 0; }
   int wrapped(int shifted_site) const { return ((shifted_site % sites) + sites) % sites; }
+  /// A site as far from both walls as can be that is also the same one of its period in longer intervals.
+  int centre() const { return sites / 2 < period ? sites / 2 : sites / 2 / period * period; }
 
   bool circle = true;
   int sites = 1, components = 1, parities = 1;
+  int period = 1;            ///< whatever repeats between the walls does so after this many sites
   std::vector<char> solved;  ///< of each node: it has an equation; what has none is data
   std::vector<Edge> edges;   ///< between solved nodes
   std::vector<int> reach;    ///< of each node: the time of the oldest value in its equation, data too
@@ -51,7 +54,7 @@ class Quotient {
  private:
   using Couplings = std::vector<std::vector<Coupling>>;  // of each node
   Quotient(bool circle_, int sites_, const SystemPattern&, const Lattice&);
-  Quotient(bool circle_, int sites_, int components_, int parities_, Couplings);
+  Quotient(bool circle_, int sites_, int components_, int parities_, int period_, Couplings);
 
   Couplings couplings_;
 };

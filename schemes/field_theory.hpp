@@ -29,16 +29,16 @@ class FieldTheory {
   virtual EnergyMomentum energy_momentum(const SlabRows&, const double* weights) const = 0;
 };
 
-/// Calls f(name, jet map) for every stencil that a scene can name: the one list of them.
+/// Calls f(name, description, jet map) for every stencil that a scene can name: a new one adds one line here.
 template <class Function>
 void for_each_stencil(Function&& f) {
-  f("triangle", triangle);
-  f("triangle-vertex", triangle_vertex);
-  f("rectangle", rectangle);
-  f("rectangle-symmetric", rectangle_symmetric);
-  f("hexagon", hexagon);
-  f("six-tuple", six_tuple);
-  f("nine-tuple", nine_tuple);
+  f("triangle", "3 sites, φ at the centroid: (5.8)", triangle);
+  f("triangle-vertex", "3 sites, φ at the first vertex (footnote 3): explicit", triangle_vertex);
+  f("rectangle", "4 sites, (5.9) with φ_t on both vertical edges: (5.10)", rectangle);
+  f("rectangle-symmetric", "4 sites, space and time alike: (5.12)", rectangle_symmetric);
+  f("hexagon", "6 sites of a brick wall (Fig. 5.4); circle, N even", hexagon);
+  f("six-tuple", "6 sites, φ on the middle edge, φ_x left and right of it; circle", six_tuple);
+  f("nine-tuple", "9 sites, the symmetric rectangle in each of four cells; circle", nine_tuple);
 }
 
 template <Density D>
@@ -51,7 +51,7 @@ class TheoryOf final : public FieldTheory {
 
   std::shared_ptr<const StencilFamily> variational(const std::string& stencil, double h, double k) const override {
     std::shared_ptr<const StencilFamily> family;
-    for_each_stencil([&]<class Map>(const char* name, Map) {
+    for_each_stencil([&]<class Map>(const char* name, const char*, Map) {
       if (stencil == name) family = std::make_shared<VariationalFamily<Map, D>>(density_, h, k);
     });
     return family;

@@ -37,6 +37,9 @@ class ResidualFamily final : public StencilFamily {
       : StencilFamily(StencilPattern(R::shape), 1, false), stencil_(std::move(stencil)) {
     nonlinearity_ = Nonlinearity::values;
     outputs_ = 1;
+    outputs_read_until_ = first_time;
+    for (int l = 0; l < n; ++l)
+      if (R::nonlinear_in[l]) outputs_read_until_ = std::max(outputs_read_until_, R::shape.vertex(l).time);
     weights_.assign(n, 0.0);
     weights_[R::centre] = time_step * space_step;
   }

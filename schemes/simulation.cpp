@@ -190,14 +190,11 @@ const std::vector<TheoryInfo>& theories() {
 }
 
 const std::vector<NamedFormula>& stencils() {
-  static const std::vector<NamedFormula> list{
-      {"triangle", "3 sites, φ at the centroid: (5.8)"},
-      {"triangle-vertex", "3 sites, φ at the first vertex (footnote 3): explicit"},
-      {"rectangle", "4 sites, (5.9) with φ_t on both vertical edges: (5.10)"},
-      {"rectangle-symmetric", "4 sites, space and time alike: (5.12)"},
-      {"hexagon", "6 sites of a brick wall (Fig. 5.4); N even on a circle"},
-      {"six-tuple", "6 sites, φ on the middle edge, φ_x left and right of it"},
-      {"nine-tuple", "9 sites, the symmetric rectangle in each of four cells"}};
+  static const std::vector<NamedFormula> list = [] {
+    std::vector<NamedFormula> result;
+    for_each_stencil([&](const char* name, const char* description, auto) { result.push_back({name, description}); });
+    return result;
+  }();
   return list;
 }
 

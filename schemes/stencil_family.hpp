@@ -37,6 +37,8 @@ class StencilFamily {
   bool is_variational() const { return variational_; }
   bool is_placed() const { return placed_; }
   int outputs() const { return outputs_; }
+  /// The latest vertex time that outputs depend on: below the pattern's latest, they are known before a step.
+  int outputs_read_until() const { return outputs_read_until_; }
   /// What one unit of out_c adds to the residual r[i] of vertex and component i = l·d + a.
   double weight(int output, int i) const { return weights_[static_cast<std::size_t>(output * size() + i)]; }
 
@@ -58,7 +60,7 @@ class StencilFamily {
   int components_;
   bool variational_, placed_ = false;
   Nonlinearity nonlinearity_ = Nonlinearity::all;
-  int outputs_ = 0;
+  int outputs_ = 0, outputs_read_until_ = 0;
   std::vector<double> weights_;
 };
 

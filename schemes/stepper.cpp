@@ -188,7 +188,7 @@ struct Stepper::Impl {
     }
   }
 
-  bool is_new(std::size_t f, int age) const { return age + outputs[f].last_time >= 1; }
+  bool is_new(std::size_t f, int age) const { return age + system.families()[f]->outputs_read_until() >= 1; }
 
   /// Outputs that depend on row base+1 (`fresh`), or those that do not.
   void evaluate_outputs(std::int64_t base, bool fresh) {
@@ -359,6 +359,8 @@ struct Stepper::Impl {
       add_parts(n, fresh_part, total, nullptr);
       solve_increment();
       change = take_increment(equations.correction_form);
+      // What was computed from the candidate and not only from known rows is part of the next step's known part.
+      evaluate_outputs(n, true);
     } else {
       seed();
       double last = std::numeric_limits<double>::infinity();

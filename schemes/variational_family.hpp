@@ -49,6 +49,11 @@ class VariationalFamily final : public StencilFamily {
     placed_ = delf::is_placed<D>();
     nonlinearity_ = structure_of(lagrangian_.density).nonlinearity;
     const double area = map.measure * time_step * space_step;
+    outputs_read_until_ = first_time;
+    for (int l = 0; l < n; ++l)
+      for (int q = 0; q < map.points; ++q)
+        if (nonlinearity_ == Nonlinearity::all || map.point(q).phi[l] != 0)
+          outputs_read_until_ = std::max(outputs_read_until_, map.shape.vertex(l).time);
     if (nonlinearity_ == Nonlinearity::values) {
       // ∂L/∂y_l = Σ_q |Δ| w_q (∂ℓ/∂φ)(φ_q) ∂φ_q/∂y_l
       outputs_ = distinct.count * d;

@@ -28,8 +28,8 @@ std::string only_word(const Arguments& arguments, const char* otherwise) {
 }
 
 Scene scene_of(const Arguments& arguments) {
-  const std::string word = only_word(arguments, nullptr);
   check_command_line(arguments.keys);
+  const std::string word = only_word(arguments, nullptr);
   Scene scene = read_scene(find_scene(word), arguments.keys);
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "{}\n", warning);
   return scene;
@@ -96,6 +96,9 @@ const Command& find_command(const std::string& name) {
     if (name == later)
       throw BadScene(fmt::format("command line: {}: comes in a later version; this one has {}", name,
                                  fmt::join(names, ", ")));
+  for (const ShippedScene& scene : shipped_scenes())
+    if (name == scene.name)
+      throw BadScene(fmt::format("command line: {}: is a scene, not a command; did you mean `delf run {}`?", name, name));
   throw BadScene(fmt::format("command line: {}: no such command{}", name, suggestion(name, names)));
 }
 

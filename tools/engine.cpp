@@ -22,9 +22,9 @@ Simulation build(const Scene& scene, int winding) {
 }
 
 ExitCode with_memory_for(const Scene& scene, const std::function<ExitCode()>& work) {
-  constexpr double rows = 4;  // no scheme holds fewer, counting the one being made
+  constexpr double least_of_a_site = 64;  // rows, increments, work space: no scheme holds less
   const int sites = scene.problem.lattice.sites();
-  const double least = 8.0 * rows * sites;
+  const double least = least_of_a_site * sites;
   const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   const auto failure = [&] {
     return SystemFailure(fmt::format("out of memory: {} sites need {} at least, and this machine has {}; lower "

@@ -34,7 +34,8 @@ Hdf5Handle timeless() {
   return properties;
 }
 
-// A dataset that grows along its first axis, one chunk at a time.
+// A dataset that grows along its first axis, one chunk at a time, each written at once: a disk that is full is noticed
+// before anything on it refers to what did not fit.
 template <std::size_t rank>
 Hdf5Handle growing(hid_t file, const char* name, std::array<hsize_t, rank> chunk) {
   std::array<hsize_t, rank> now = chunk, most = chunk;
@@ -44,7 +45,9 @@ Hdf5Handle growing(hid_t file, const char* name, std::array<hsize_t, rank> chunk
   const Hdf5Handle space(H5Screate_simple(rank, now.data(), most.data()), H5Sclose);
   const Hdf5Handle properties = timeless();
   H5Pset_chunk(properties, rank, chunk.data());
-  return {H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose};
+  const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  H5Pset_chunk_cache(access, 1, 0, H5D_CHUNK_CACHE_W0_DEFAULT);
+  return {H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, access), H5Dclose};
 }
 
 template <std::size_t rank>
@@ -80,7 +83,7 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
               H5Dwrite(positions, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, space.data()) >= 0 &&
               write_text(positions, "units", "dimensionless") && write_text(time_, "units", "dimensionless") &&
               write_text(field_, "units", "dimensionless") && write_text(file_, "scene", scene) &&
-              write_text(file_, "version", DELF_VERSION) && write_integer(file_, "winding", winding),
+              write_text(file_, "version", DELF_VERSION) && write_integer(file_, "winding", winding) && H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0,
           "cannot be written");
   times_.reserve(frames_per_block_);
   rows_.reserve(frames_per_block_ * sites_);
@@ -113,9 +116,11 @@ void FieldsFile::close() {
   require(file_.close() && datasets, "cannot be closed");
 }
 
-void FieldsFile::require(bool went_well, const char* what) const {
-  if (!went_well)
-    throw SystemFailure(fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), what));
+void FieldsFile::require(bool went_well, const char* what) {
+  if (went_well) return;
+  // closing would write a header that promises more than there is; without it the last flush stays readable
+  for (Hdf5Handle* handle : {&time_, &field_, &file_}) handle->abandon();
+  throw SystemFailure(fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), what));
 }
 
 }  // namespace delf

@@ -31,7 +31,7 @@ class FieldsFile {
 
  private:
   void write_block();
-  void require(bool went_well, const char* what) const;
+  void require(bool went_well, const char* what);
 
   std::filesystem::path path_;
   std::size_t sites_, frames_per_block_;

@@ -70,7 +70,7 @@ std::string figure_script(const std::string& name, const std::string& body) {
   script += fmt::format("reset\nset terminal pngcairo size 1800,1200 font 'DejaVu Sans,12' fontscale 2.1 linewidth 2.2\n"
                         "set output '{}.png'\n", name);
   script += style + body + "unset output\n";
-  script += fmt::format("reset\nset terminal svg size 900,600 font 'sans-serif,14' linewidth 1.1 background '#ffffff'\n"
+  script += fmt::format("reset\nset terminal svg size 900,600 font 'sans-serif,12' fontscale 1.2 linewidth 1.1 background '#ffffff'\n"
                         "set output '{}.svg'\n", name);
   script += style + body + "unset output\n";
   return script;

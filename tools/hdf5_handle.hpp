@@ -24,6 +24,8 @@ class Hdf5Handle {
   operator hid_t() const noexcept { return id_; }
   /// Whether closing went well: for a file, whether its last bytes reached the disk.
   bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
+  /// Leaves it open for good.
+  void abandon() noexcept { id_ = -1; }
 
  private:
   hid_t id_ = -1;

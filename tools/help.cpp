@@ -18,7 +18,7 @@ void print_keys() {
       fmt::print("\n[{}]\n", section);
     }
     const auto value = key.fallback.empty() ? key.otherwise : key.fallback;
-    fmt::print("  {:<22} {}{} ({})\n", key.name, key.meaning, key.unit.empty() ? "" : fmt::format(", a {}", key.unit),
+    fmt::print("  {:<22} {}{} ({})\n", key.name, key.meaning, key.unit.empty() ? "" : fmt::format(" [{}]", key.unit),
                value);
   }
 }

@@ -34,7 +34,7 @@ std::string read_scene_text(const std::filesystem::path& file) {
   const std::string name = file.string();
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
-    throw BadScene(fmt::format("{}: is a directory; name a scene file in it, such as {}/scene.ini", name, name));
+    throw BadScene(fmt::format("{}: is a directory, not a scene; name the file in it", name));
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(name.c_str(), "rb"), std::fclose);
   if (!in) throw BadScene(fmt::format("{}: {}; check the name and the rights", name, std::strerror(errno)));
   std::string text(most_bytes + 1, '\0');

@@ -26,11 +26,10 @@ std::errc read(std::string_view text, Number& value) {
   return error == std::errc() && end != text.data() + text.size() ? std::errc::invalid_argument : error;
 }
 
-std::string range_in_words(const Range& range) {
-  constexpr double none = std::numeric_limits<double>::infinity();
-  if (range.high == none) return fmt::format("must be {} {}", range.open ? "above" : "at least", range.low);
-  return fmt::format("must be {} {} and at most {}", range.open ? "above" : "at least", range.low, range.high);
+std::string below(std::string_view key, const Range& range, auto low) {
+  return fmt::format("must be {} {}; raise {}", range.open ? "above" : "at least", low, key);
 }
+std::string above(std::string_view key, auto high) { return fmt::format("must be at most {}; lower {}", high, key); }
 
 }  // namespace
 
@@ -55,8 +54,9 @@ double Values::number(const Key& key, std::string_view text) const {
     throw settings_.error(key.name, "is outside the range of double precision; use a number that is in it");
   if (error != std::errc()) throw settings_.error(key.name, "is not a number; write one like 0.125 or 1e-6");
   if (!std::isfinite(value)) throw settings_.error(key.name, "is not a finite number; give one");
-  if (value < key.range.low || value > key.range.high || (key.range.open && value == key.range.low))
-    throw settings_.error(key.name, fmt::format("{}; {}", range_in_words(key.range), key.meaning));
+  if (value < key.range.low || (key.range.open && value == key.range.low))
+    throw settings_.error(key.name, below(key.name, key.range, key.range.low));
+  if (value > key.range.high) throw settings_.error(key.name, above(key.name, key.range.high));
   return value;
 }
 
@@ -75,8 +75,8 @@ std::int64_t Values::integer(std::string_view key) const {
   const Range& range = find_key(key)->range;
   const auto low = static_cast<std::int64_t>(std::max(range.low, -9e15));
   const auto high = static_cast<std::int64_t>(std::min(range.high, 9.1e15));
-  if (number < low) throw settings_.error(key, fmt::format("must be at least {}; {}", low, find_key(key)->meaning));
-  if (number > high) throw settings_.error(key, fmt::format("must be at most {}; {}", high, find_key(key)->meaning));
+  if (number < low) throw settings_.error(key, below(key, range, low));
+  if (number > high) throw settings_.error(key, above(key, high));
   return number;
 }
 

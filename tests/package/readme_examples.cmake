@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+# Every ```cpp block of the README is a program; the ```text block after it is what it prints. Builds each against the
+# installed library and compares.
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK}/source)
+file(READ ${DELF_SOURCE}/README.md rest)
+set(count 0)
+set(project "cmake_minimum_required(VERSION 3.25)\nproject(readme LANGUAGES CXX)\nfind_package(delf 0.1 REQUIRED)\n")
+while(TRUE)
+  string(FIND "${rest}" "```cpp\n" start)
+  if(start EQUAL -1)
+    break()
+  endif()
+  math(EXPR start "${start} + 7")
+  string(SUBSTRING "${rest}" ${start} -1 rest)
+  string(FIND "${rest}" "```" end)
+  string(SUBSTRING "${rest}" 0 ${end} program)
+  string(FIND "${rest}" "```text\n" start)
+  math(EXPR start "${start} + 8")
+  string(SUBSTRING "${rest}" ${start} -1 rest)
+  string(FIND "${rest}" "```" end)
+  string(SUBSTRING "${rest}" 0 ${end} expected_${count})
+  file(WRITE ${WORK}/source/example_${count}.cpp "${program}")
+  string(APPEND project
+    "add_executable(example_${count} example_${count}.cpp)\ntarget_link_libraries(example_${count} PRIVATE delf::delf)\n")
+  math(EXPR count "${count} + 1")
+endwhile()
+if(count LESS 2)
+  message(FATAL_ERROR "README.md has ${count} examples, not the two that it promises")
+endif()
+file(WRITE ${WORK}/source/CMakeLists.txt "${project}")
+
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${DELF_BUILD} --config ${BUILD_TYPE} --prefix ${WORK}/prefix
+  OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK}/source -B ${WORK}/build -G ${GENERATOR}
+  -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_PREFIX_PATH=${WORK}/prefix
+  COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build --config ${BUILD_TYPE} COMMAND_ERROR_IS_FATAL ANY)
+math(EXPR last "${count} - 1")
+foreach(i RANGE ${last})
+  unset(program CACHE)
+  find_program(program example_${i} PATHS ${WORK}/build PATH_SUFFIXES ${BUILD_TYPE} NO_DEFAULT_PATH REQUIRED)
+  execute_process(COMMAND ${program} OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT printed STREQUAL expected_${i})
+    message(FATAL_ERROR "example ${i} of README.md printed\n${printed}and the README says\n${expected_${i}}")
+  endif()
+endforeach()
