@@ -90,16 +90,31 @@ void require_solvable(const SolvePlan::Table& table, const Quotient& quotient, c
                        " determines nothing that others do not; add a stencil that couples them, or fix the value");
 }
 
+int count_unknowns(const Quotient& quotient, const StructuralAnalysis& analysis, int slab_parity) {
+  int count = 0;
+  for (int n = 0; n < quotient.nodes(); ++n)
+    count += quotient.solved[n] && (slab_parity + analysis.d[n] - quotient.parity(n)) % quotient.parities == 0;
+  return count;
+}
+
 /// An analysed quotient, and how far it can be trusted to stand for the lattice.
 struct Analysed {
   Quotient quotient;
   StructuralAnalysis analysis;
   SolvePlan::Table table;
+  SlabGraph slab;
+  long long unknowns[2] = {0, 0}, blocks[2] = {0, 0};  // of even and odd slabs
 
   Analysed(const Lattice& lattice, Quotient q)
       : quotient(std::move(q)), analysis(quotient.analysis()), table(frame(lattice, quotient)) {
     require_solvable(table, quotient, analysis);
     table.entries = entries(quotient, analysis);
+    const int cells = quotient.circle ? lattice.sites() / quotient.sites : 1;
+    slab = slab_graph(quotient, analysis, cells);
+    for (int parity = 0; parity < quotient.parities; ++parity) {
+      unknowns[parity] = 1LL * cells * count_unknowns(quotient, analysis, parity);
+      blocks[parity] = count_blocks(quotient, analysis, slab, cells, parity);
+    }
   }
 };
 
@@ -119,14 +134,6 @@ Agreement compare(const Analysed& shorter, const Analysed& longer) {
     if (a != b) agreement = Agreement::rows;
   }
   return agreement;
-}
-
-/// Unknowns of a slab in the quotient.
-long long count_unknowns(const Analysed& a, int slab_parity) {
-  long long count = 0;
-  for (int n = 0; n < a.quotient.nodes(); ++n)
-    count += a.quotient.solved[n] && (slab_parity + a.analysis.d[n] - a.quotient.parity(n)) % a.quotient.parities == 0;
-  return count;
 }
 
 /// Whether each (site, component) that is not data has one unknown and one equation in every slab.
@@ -184,12 +191,10 @@ SolveKind classify(const SolvePlan& plan, const SlabGraph& slab, long long place
   return !plan.cyclic && one_way ? SolveKind::chain : SolveKind::cyclic_band;
 }
 
-struct Count {
-  long long unknowns = 0, blocks = 0;
-};
-
-Count count(const Analysed& a, const SlabGraph& slab, int cells, int slab_parity) {
-  return {count_unknowns(a, slab_parity) * cells, count_blocks(a.quotient, a.analysis, slab, cells, slab_parity)};
+/// Whether each of the two periods adds the same number of blocks.
+bool grow_evenly(const Analysed& a, const Analysed& longer, const Analysed& longest) {
+  return longer.blocks[0] - a.blocks[0] == longest.blocks[0] - longer.blocks[0] &&
+         longer.blocks[1] - a.blocks[1] == longest.blocks[1] - longer.blocks[1];
 }
 
 /// The plan of a quotient. If it is shorter than the lattice, `longer` and `longest` are by one and two periods longer:
@@ -208,24 +213,18 @@ SolvePlan planned(const Lattice& lattice, const Analysed& a, const Analysed* lon
   list_exceptions(quotient, plan);
 
   const Analysed& whole = longest ? *longest : a;
-  const int cells = plan.cyclic ? lattice.sites() / quotient.sites : 1;
-  const SlabGraph slab = slab_graph(whole.quotient, whole.analysis, cells);
-  plan.lower = slab.lower;
-  plan.upper = slab.upper;
-  plan.nonlinear_in_slab = slab.nonlinear;
-
+  plan.lower = whole.slab.lower;
+  plan.upper = whole.slab.upper;
+  plan.nonlinear_in_slab = whole.slab.nonlinear;
+  const long long periods = longest ? (lattice.sites() - longest->quotient.sites) / quotient.period : 0;
   for (int parity = 0; parity < quotient.parities; ++parity) {
-    Count total = count(whole, slab, cells, parity);
-    if (longest) {
-      const Count less = count(*longer, slab_graph(longer->quotient, longer->analysis, cells), cells, parity);
-      const long long periods = (lattice.sites() - longest->quotient.sites) / quotient.period;
-      total.unknowns += periods * (total.unknowns - less.unknowns);
-      total.blocks += periods * (total.blocks - less.blocks);
-    }
-    plan.unknowns = std::max(plan.unknowns, total.unknowns);
-    plan.blocks = std::max(plan.blocks, total.blocks);
+    const auto extrapolated = [&](auto count) {
+      return periods == 0 ? count(whole) : count(whole) + periods * (count(whole) - count(*longer));
+    };
+    plan.unknowns = std::max(plan.unknowns, extrapolated([&](const Analysed& b) { return b.unknowns[parity]; }));
+    plan.blocks = std::max(plan.blocks, extrapolated([&](const Analysed& b) { return b.blocks[parity]; }));
   }
-  plan.kind = classify(plan, slab, 1LL * lattice.sites() * quotient.components);
+  plan.kind = classify(plan, whole.slab, 1LL * lattice.sites() * quotient.components);
   return plan;
 }
 
@@ -240,6 +239,7 @@ SolvePlan make_plan(const Lattice& lattice, const SystemPattern& system) {
 
   // Between the walls equations repeat, and whatever repeats within 2·width sites fits into each period.
   const int period = 2 * std::max(system.width, 1);
+  // Walls are felt within one period as a rule; if not, look further.
   for (const int zones : {1, 2, 4}) {
     const int least = 2 * zones * period + 1;
     const int sites = least + positive_mod(lattice.sites() - least, period);
@@ -247,12 +247,12 @@ SolvePlan make_plan(const Lattice& lattice, const SystemPattern& system) {
     if (sites + 2 * period >= lattice.sites()) return planned(lattice, of(lattice.sites()));
 
     const Analysed a = of(sites), longer = of(sites + period), longest = of(sites + 2 * period);
-    if (compare(a, longer) != Agreement::none && compare(a, longest) != Agreement::none)
-      return planned(lattice, a, &longer, &longest);
+    if (compare(a, longer) == Agreement::none || compare(a, longest) == Agreement::none) continue;
+    if (zones == 4 || grow_evenly(a, longer, longest)) return planned(lattice, a, &longer, &longest);
   }
   throw BadInput("lattice.stencil",
-                 "lattice.stencil: the row at which a site is solved drifts from wall to wall, so that no slab of a few "
-                 "rows determines the next; fix a wall, or add a stencil that couples neighbours in time");
+                 "lattice.stencil: the row at which a site is solved drifts from wall to wall, so that no slab of a "
+                 "few rows determines the next; fix a wall, or add a stencil that couples neighbours in time");
 }
 
 }  // namespace delf

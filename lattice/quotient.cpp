@@ -21,7 +21,8 @@ int positive_mod(int a, int n) { return ((a % n) + n) % n; }
 int parities_of(const SystemPattern& system) { return system.placement == Placement::brick_wall ? 2 : 1; }
 
 /// Asks for the equation and checks that the lattice has what it contains.
-std::vector<Coupling> checked(const SystemPattern& system, const Lattice& lattice, bool circle, Site site, int component) {
+std::vector<Coupling> checked(const SystemPattern& system, const Lattice& lattice, bool circle, Site site,
+                              int component) {
   std::vector<Coupling> equation = system.equations(lattice, site, component);
   for (const Coupling& c : equation) {
     const int shifted = site.space + c.offset.space;
@@ -127,7 +128,8 @@ Quotient::Quotient(bool circle_, int sites_, int components_, int parities_, int
     for (const Coupling& c : couplings_[n]) {
       linear = linear && c.dependence == Dependence::linear;
       reach[n] = std::min(reach[n], c.offset.time);
-      const int u = node(wrapped(site(n) + c.offset.space), c.component, positive_mod(parity(n) + c.offset.time, parities));
+      const int row_parity = positive_mod(parity(n) + c.offset.time, parities);
+      const int u = node(wrapped(site(n) + c.offset.space), c.component, row_parity);
       if (solved[u]) edges.push_back({n, u, c.offset.time, c.offset.space, c.dependence});
     }
 }

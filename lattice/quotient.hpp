@@ -47,8 +47,8 @@ class Quotient {
   std::vector<int> reach;    ///< of each node: the time of the oldest value in its equation, data too
   bool linear = true;        ///< all of it
 
-  /// The structural analysis of its solved nodes, in terms of nodes; match holds edges. Between walls d is what it is on
-  /// a circle, where that is possible; at the walls then as near to that as it can be.
+  /// The structural analysis of its solved nodes, in terms of nodes; match holds edges. Between the walls d is what it
+  /// is on a circle, where that is possible; at the walls then as near to that as it can be.
   StructuralAnalysis analysis() const;
 
  private:

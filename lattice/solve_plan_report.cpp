@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
+#include <cstdlib>
 #include <string>
 
 #include "lattice/solve_plan.hpp"
@@ -38,7 +38,8 @@ std::string SolvePlan::describe() const {
   switch (kind) {
     case SolveKind::explicit_: return "explicit" + size;
     case SolveKind::chain: return "chain" + width + size + (lower > 0 ? ", rightwards" : ", leftwards");
-    case SolveKind::cyclic_band: return (cyclic ? "cyclic band" : "band") + width + size + ", " + blocks_in_words(*this);
+    case SolveKind::cyclic_band:
+      return (cyclic ? "cyclic band" : "band") + width + size + ", " + blocks_in_words(*this);
     case SolveKind::sparse: return "sparse" + size + ", " + blocks_in_words(*this);
   }
   return "";
@@ -61,12 +62,14 @@ std::string SolvePlan::report() const {
             row("j", e.offset) + ", the equation at " + row("j", -e.shift) + "\n";
   for (const int site : {0, table.lattice_sites - 1})
     for (int component = 0; component < components; ++component)
-      if (!solved(site, component)) text += field(*this, component) + "site " + std::to_string(site) + ": data, no equation\n";
+      if (!solved(site, component))
+        text += field(*this, component) + "site " + std::to_string(site) + ": data, no equation\n";
   text += "rows: an equation reaches " + std::to_string(forward) + " ahead and " + std::to_string(backward) +
           " back; a slab reads the " + std::to_string(history) + " rows before it\n";
-  text += std::string("coefficients: ") +
-          (linear ? "all constant" : nonlinear_in_slab ? "not constant in the slab" : "constant in the slab, not before it") +
-          "\n";
+  text += "coefficients: ";
+  text += linear              ? "all constant\n"
+          : nonlinear_in_slab ? "not constant in the slab\n"
+                              : "constant in the slab, not before it\n";
   return text;
 }
 

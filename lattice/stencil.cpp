@@ -21,7 +21,7 @@ Stencils::Stencils(const Lattice& lattice, std::vector<StencilPattern> families)
   if (families_.empty()) throw BadInput("lattice.stencil", "lattice.stencil: no stencil family is given; name one");
   for (const StencilPattern& pattern : families_) {
     if (pattern.size() == 0)
-      throw BadInput("lattice.stencil", "lattice.stencil: a stencil without vertices touches nothing; list its offsets");
+      throw BadInput("lattice.stencil", "lattice.stencil: a stencil has no vertices and touches nothing; list them");
     require_closing(lattice_, pattern.placement);
   }
 }

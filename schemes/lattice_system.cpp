@@ -60,12 +60,21 @@ std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice
 
 std::vector<Coefficient> LatticeSystem::linearised(const Lattice& lattice, Site site, int component) const {
   if (lattice.is_fixed(site.space)) return {};
+  // Fields of order one suit most densities; where one is not defined there (a root, a logarithm), smaller ones do.
+  for (double amplitude = 2; amplitude > 1e-8; amplitude /= 10)
+    if (auto coefficients = linearised(lattice, site, component, amplitude)) return *coefficients;
+  throw BadInput("theory.name", "the density has no finite second derivatives near the zero field; shift the field so that "
+                                "zero is a state of the theory");
+}
+
+std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice& lattice, Site site, int component,
+                                                                  double amplitude) const {
   struct Sample {
     double constant = 0, scale = 0, at[3] = {0, 0, 0};
   };
   std::map<std::tuple<Site, int>, Sample> samples;
   std::mt19937_64 engine(20250901);
-  const auto number = [&engine] { return 4.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 2.0; };
+  const auto number = [&] { return amplitude * (2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0); };
   // One random value for each unknown near the site, the same for all stencils that contain it.
   std::map<std::tuple<Site, int>, std::array<double, 3>> field;
   for (const Touch& touch : touching(lattice, site)) {
@@ -97,6 +106,7 @@ std::vector<Coefficient> LatticeSystem::linearised(const Lattice& lattice, Site 
   std::vector<Coefficient> result;
   for (const auto& [where, sample] : samples) {
     const double least = *std::min_element(sample.at, sample.at + 3), most = *std::max_element(sample.at, sample.at + 3);
+    if (!std::isfinite(sample.scale)) return std::nullopt;
     const double round_off = 1e-13 * sample.scale;
     if (std::max(std::abs(least), std::abs(most)) <= round_off) continue;
     const bool constant = most - least <= round_off;

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -83,6 +84,9 @@ class LatticeSystem {
                 std::vector<Entry>& entries) const;
 
  private:
+  /// Nothing if the second derivatives are not finite at random fields of this amplitude.
+  std::optional<std::vector<Coefficient>> linearised(const Lattice&, Site, int component, double amplitude) const;
+
   Lattice lattice_;
   std::vector<std::shared_ptr<const StencilFamily>> families_;
   double time_step_;

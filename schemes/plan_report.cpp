@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <sstream>
 
 namespace delf {
 namespace {
@@ -18,7 +18,9 @@ void append_table(std::string& out, const LatticeSystem& system, Site site, cons
   const auto [first_t, last_t] = std::ranges::minmax(coefficients, {}, [](auto& c) { return c.offset.time; });
   const auto [first_x, last_x] = std::ranges::minmax(coefficients, {}, [](auto& c) { return c.offset.space; });
   const double scale = system.time_step() * system.lattice().space_step();
-  out += fmt::format("linearised field equation{}, divided by hk (n: a nonlinear part adds to it)\n", title);
+  const bool linear = std::ranges::all_of(coefficients, [](auto& c) { return c.dependence == Dependence::linear; });
+  out += fmt::format("\nlinearised field equation{}, divided by hk{}\n", title,
+                     linear ? "" : "; n: plus what the nonlinear part adds");
   out += fmt::format("  {:>8}", "");
   for (int x = first_x.offset.space; x <= last_x.offset.space; ++x) out += fmt::format("{:>15}", fmt::format("i{:+d}", x));
   out += '\n';
@@ -58,16 +60,14 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
     out += family->is_variational() ? "\nresidual     dL/dy of a discrete Lagrangian\n"
                                     : "\nresidual     given directly: no Lagrangian, not multisymplectic\n";
   }
-  out += fmt::format("solve        {} ({})\n", to_string(plan.kind), plan.describe());
-  out += plan.report();
-  if (!out.ends_with('\n')) out += '\n';
-  if (plan.nonlinear_in_slab) {
-    out += "step         extrapolated seed; simplified Newton with the constant part while it contracts; else full\n"
-           "             Newton; else continuation in h; else exit 3\n";
-    out += fmt::format("matrix       {}\n", stepper.solver_name());
-  } else {
-    out += fmt::format("step         one solve, no iteration\nmatrix       {}\n", stepper.solver_name());
-  }
+  out += fmt::format("solve        {}\n", to_string(plan.kind));
+  std::istringstream lines(plan.report());
+  for (std::string line; std::getline(lines, line);) out += "             " + line + '\n';
+  out += plan.nonlinear_in_slab
+             ? "step         extrapolated seed; simplified Newton with the constant part while it contracts; else full\n"
+               "             Newton; else continuation in h; else exit 3\n"
+             : "step         one solve, no iteration\n";
+  out += fmt::format("matrix       {}{}\n", stepper.matrix_free() ? "none: " : "", stepper.solver_name());
   const Site bulk{0, lattice.sites() / 2 / 2 * 2};
   if (system.placement() == Placement::brick_wall) {
     append_table(out, system, bulk, " where i + j is even");
@@ -78,11 +78,11 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   if (!lattice.is_circle())
     for (int i : {0, lattice.sites() - 1})
       append_table(out, system, {0, i}, i == 0 ? " at the left wall" : " at the right wall");
-  out += fmt::format("memory       {} bytes: {}\n", stepper.bytes(), stepper.memory_report());
+  out += fmt::format("\nmemory       {} bytes: {}\n", stepper.bytes(), stepper.memory_report());
   out += "left out     ";
   std::vector<std::string> absent;
   if (!plan.nonlinear_in_slab) absent.push_back("iterations and seeds");
-  if (plan.kind == SolveKind::explicit_) absent.push_back("any matrix");
+  if (stepper.matrix_free()) absent.push_back("any matrix");
   if (plan.linear) absent.push_back("the density (its constant Hessian is enough)");
   if (std::ranges::none_of(system.families(), [](const auto& f) { return f->is_placed(); }))
     absent.push_back("positions of sites");

@@ -570,6 +570,8 @@ const double* Stepper::row_data(int back, int a) const { return impl_->y_row(imp
 const double* Stepper::newest_increment(int a) const { return impl_->v_row(impl_->n, a); }
 std::string Stepper::solver_name() const { return impl_->solver[0]->name(); }
 
+bool Stepper::matrix_free() const { return !impl_->solver[1] && impl_->solver[0]->bytes() == 0; }
+
 std::size_t Stepper::bytes() const {
   const Impl& s = *impl_;
   std::size_t total = s.layout.bytes();

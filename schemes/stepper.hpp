@@ -57,6 +57,7 @@ class Stepper {
   const double* newest_increment(int component) const;
 
   std::string solver_name() const;
+  bool matrix_free() const;  ///< the constant part is one number for all sites: no matrix is allocated
   std::size_t bytes() const;
   std::string memory_report() const;
 

@@ -41,6 +41,18 @@ std::vector<double> drawn_frame(const FigureSource& source, int frame) {
   return values;
 }
 
+int tame_frames(const FigureSource& source) {
+  constexpr double much = 100;
+  const auto span_of = [&](int frame) {
+    const auto [least, most] = std::ranges::minmax(drawn_frame(source, frame));
+    return most - least;
+  };
+  const double first = span_of(0);
+  int tame = 1;
+  while (tame < source.film.frames() && (first == 0 || span_of(tame) <= much * first)) ++tame;
+  return tame;
+}
+
 std::vector<std::string> figure_names() {
   std::vector<std::string> names;
   for (const Figure& figure : all) names.emplace_back(figure.name);

@@ -31,6 +31,9 @@ std::vector<double> drawn_space(const FigureSource&);
 /// A frame at those positions, in units of 2π if it is an angle.
 std::vector<double> drawn_frame(const FigureSource&, int frame);
 
+/// How many frames, from the first one, have not blown up: a scale made for the others would hide these.
+int tame_frames(const FigureSource&);
+
 /// The names of the figures, without ending.
 std::vector<std::string> figure_names();
 

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
 #include <vector>
 
 #include "tools/figure_style.hpp"
@@ -24,9 +28,15 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
     const auto frame = drawn_frame(source, f);
     map.insert(map.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(space.size()));
   }
+  // an angle that has drifted through many turns is shown by where it is away from its vacua
+  const auto tame = std::span(map).first(space.size() * static_cast<std::size_t>(std::min(frames, tame_frames(source))));
+  const auto [least, most] = std::ranges::minmax(tame);
+  const bool drifts = source.angle && most - least > 8;
+  if (drifts) std::ranges::transform(map, map.begin(), [](double turns) {
+    return std::pow(std::sin(std::numbers::pi * turns), 2); });
   write_text_file(scratch / "map", {reinterpret_cast<const char*>(map.data()), map.size() * sizeof(double)});
 
-  const ColourScale scale = colour_scale(map);
+  const ColourScale scale = colour_scale(tame);
   const double t0 = film.time(0), t1 = film.time(frames - 1), dt = (t1 - t0) / (frames - 1);
   return gnuplot_colours(scale) +
          figure_title(fmt::format("{}: the field over space and time", source.scene),
@@ -38,7 +48,7 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
                      "set border 15\nset colorbox user origin screen 0.875,0.12 size screen 0.022,0.735 noborder\n"
                      "set cbtics {} scale 0.3\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
                      "plot 'map' binary array=({},{}) dx={} dy={} origin=({},{}) format='%double' using 1 with image\n",
-                     source.angle ? "φ / 2π" : "φ", nice_step(scale.most - scale.least, 8), space.front() - dx / 2,
+                     drifts ? "sin²(φ/2)" : source.angle ? "φ / 2π" : "φ", nice_step(scale.most - scale.least, 8), space.front() - dx / 2,
                      space.back() + dx / 2, t0 - dt / 2, t1 + dt / 2, space.size(), frames, dx, dt, space.front(), t0);
 }
 

@@ -81,8 +81,10 @@ void Stepping::record_and_step() {
 // The rows held are still the last good ones.
 void Stepping::fail(const NumericalFailure& error) {
   outcome_.status = dynamic_cast<const NotFinite*>(&error) ? "not-finite" : "no-convergence";
-  outcome_.failure = fmt::format("step {} (t = {:.6g}): {} (row {} is the last good one; it is saved)", newest_ + 1,
-                                 static_cast<double>(newest_ + 1) * scene_.problem.time_step, error.what(), newest_);
+  const std::string what = error.what();
+  const std::string where = what.starts_with("step ") ? "" : fmt::format("step {}, t = {:.6g}: ", newest_ + 1,
+      static_cast<double>(newest_ + 1) * scene_.problem.time_step);
+  outcome_.failure = fmt::format("{}{} (row {} is the last good one, and is saved)", where, what, newest_);
 }
 
 void Stepping::step_until(std::int64_t row, Progress& progress) {

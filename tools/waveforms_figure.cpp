@@ -19,10 +19,10 @@ constexpr int most_panels = 6, columns = 3;
 std::vector<int> chosen_frames(const FigureSource& source) {
   const Film& film = source.film;
   std::vector<double> times = source.times;
-  const int panels = std::min(film.frames(), most_panels);
+  const int tame = tame_frames(source), panels = std::min(tame, most_panels);
   if (times.empty())
     for (int p = 0; p < panels; ++p)
-      times.push_back(film.time(0) + (film.time(film.frames() - 1) - film.time(0)) * p / std::max(1, panels - 1));
+      times.push_back(film.time(0) + (film.time(tame - 1) - film.time(0)) * p / std::max(1, panels - 1));
   std::vector<int> frames;
   for (const double t : times) {
     int nearest = 0;

@@ -42,6 +42,7 @@ TEST_CASE("an equation holds only the pairs, components and dependences that it 
                                 {{0, 1, 0, 1, Dependence::nonlinear}, {2, 2, 1, 0, Dependence::linear}}};
   const SystemPattern system = system_of(2, {family});
   CHECK(system.width == 0);
-  CHECK(system.equations(Lattice::circle(9, 1), {0, 3}, 0) == std::vector<Coupling>{{{1, 0}, 1, Dependence::nonlinear}});
-  CHECK(system.equations(Lattice::circle(9, 1), {0, 3}, 1) == std::vector<Coupling>{{{0, 0}, 0, Dependence::linear}});
+  const Lattice circle = Lattice::circle(9, 1);
+  CHECK(system.equations(circle, {0, 3}, 0) == std::vector<Coupling>{{{1, 0}, 1, Dependence::nonlinear}});
+  CHECK(system.equations(circle, {0, 3}, 1) == std::vector<Coupling>{{{0, 0}, 0, Dependence::linear}});
 }

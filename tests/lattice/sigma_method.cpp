@@ -12,7 +12,8 @@ using testing::pick;
 TEST_CASE("the simple pendulum has the offsets c = (0, 0, 2), d = (2, 2, 0) of Pryce, example 1") {
   // f₁ = ẍ + xλ, f₂ = ÿ + yλ − g, f₃ = x² + y² − L²
   enum { x, y, lambda };
-  const auto pendulum = analyse(3, {{0, x, 2}, {0, x, 0}, {0, lambda, 0}, {1, y, 2}, {1, lambda, 0}, {2, x, 0}, {2, y, 0}});
+  const auto pendulum =
+      analyse(3, {{0, x, 2}, {0, x, 0}, {0, lambda, 0}, {1, y, 2}, {1, lambda, 0}, {2, x, 0}, {2, y, 0}});
   REQUIRE(pendulum.solvable());
   CHECK(pendulum.c == std::vector<int>{0, 0, 2});
   CHECK(pendulum.d == std::vector<int>{2, 2, 0});

@@ -253,7 +253,7 @@ TEST_CASE("couplings that leave the lattice, the components or the width are ref
 }
 
 TEST_CASE("equations that only follow a characteristic drift from wall to wall, and are refused") {
-  const SystemPattern advection = system_of(1, {{StencilPattern(std::vector<Site>{{0, 0}, {1, 1}}), {{0, 0}, {0, 1}, {1, 0}, {1, 1}}}});
+  const SystemPattern advection = dense(Offsets<2>{{{{0, 0}, {1, 1}}}});
   CHECK(refused(circle, advection).key == "accepted");
   const Refusal drift = refused(natural_walls, advection);
   CHECK(drift.key == "lattice.stencil");

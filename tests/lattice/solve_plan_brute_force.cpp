@@ -32,11 +32,12 @@ Example random_example(std::mt19937& random) {
       for (int m = 0; m < family.pattern.size(); ++m)
         for (int a = 0; a < components; ++a)
           for (int b = 0; b < components; ++b)
-            if (l == m ? a == b : pick(random, 0, 2) == 0) family.couplings.push_back({l, m, a, b});
+            if (l == m && a == b ? pick(random, 0, 3) > 0 : pick(random, 0, 2) == 0)
+              family.couplings.push_back({l, m, a, b});
     families.push_back(family);
   }
   Example example{Lattice::circle(2, 1), system_of(components, families)};
-  const int N = 2 * pick(random, 1, 9);
+  const int N = 2 * pick(random, 1, 12);
   const auto wall = [&] { return pick(random, 0, 1) == 0 ? Wall::fixed : Wall::natural; };
   if (pick(random, 0, 1) == 0)
     example.lattice = Lattice::circle(N, 1);
@@ -65,7 +66,8 @@ bool solvable_in_full(const Example& e) {
     for (int i = 0; i < N; ++i)
       for (int a = 0; a < components; ++a) {
         const Node equation{{j, i}, a};
-        if (e.system.equations(e.lattice, equation.site, a).empty()) occurrences.push_back({node(equation), node(equation), 0});
+        if (e.system.equations(e.lattice, equation.site, a).empty())
+          occurrences.push_back({node(equation), node(equation), 0});
         for (const Node& u : contained(e, equation)) occurrences.push_back({node(equation), node(u), u.site.time - j});
       }
   return analyse(2 * N * components, occurrences).solvable();
