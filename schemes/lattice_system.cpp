@@ -131,23 +131,27 @@ SystemPattern LatticeSystem::pattern() const {
   return pattern;
 }
 
+/// The cell of a stencil that touches (row, site), and the values of the window on its vertices.
+Cell LatticeSystem::gather(const Touch& touch, const Window& window, std::int64_t row, int site, double time_step,
+                           std::vector<double>& y) const {
+  const auto& vertices = touch.family->pattern().vertices;
+  const std::int64_t anchor_row = row + touch.anchor.time;
+  const int anchor = site + touch.anchor.space;
+  y.clear();
+  for (const Site& vertex : vertices)
+    for (int a = 0; a < components_; ++a) y.push_back(window(anchor_row + vertex.time, anchor + vertex.space, a));
+  return cell_at(lattice_, anchor_row, anchor, time_step);
+}
+
 LatticeSystem::Value LatticeSystem::equation(const Window& window, std::int64_t row, int site, int component,
                                              double time_step) const {
   Value value;
-  const int d = components_;
   std::vector<double> y, r;
   for (const Touch& touch : touching({static_cast<int>(row & 1), site})) {
-    const auto& vertices = touch.family->pattern().vertices;
-    y.resize(static_cast<std::size_t>(touch.family->size()));
+    const Cell cell = gather(touch, window, row, site, time_step, y);
     r.resize(y.size());
-    const std::int64_t anchor_row = row + touch.anchor.time;
-    const int anchor = site + touch.anchor.space;
-    for (std::size_t l = 0; l < vertices.size(); ++l)
-      for (int a = 0; a < d; ++a)
-        y[l * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)] =
-            window(anchor_row + vertices[l].time, anchor + vertices[l].space, a);
-    touch.family->residual(cell_at(lattice_, anchor_row, anchor, time_step), y, r);
-    const double term = r[static_cast<std::size_t>(touch.vertex * d + component)];
+    touch.family->residual(cell, y, r);
+    const double term = r[static_cast<std::size_t>(touch.vertex * components_ + component)];
     value.sum += term;
     value.absolute += std::abs(term);
   }
@@ -159,20 +163,14 @@ void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, s
   const int d = components_;
   std::vector<double> y, J;
   for (const Touch& touch : touching({static_cast<int>(row & 1), site})) {
+    const Cell cell = gather(touch, window, row, site, time_step, y);
     const auto& vertices = touch.family->pattern().vertices;
     const int size = touch.family->size();
-    y.resize(static_cast<std::size_t>(size));
     J.resize(y.size() * y.size());
-    const std::int64_t anchor_row = row + touch.anchor.time;
-    const int anchor = site + touch.anchor.space;
-    for (std::size_t l = 0; l < vertices.size(); ++l)
-      for (int a = 0; a < d; ++a)
-        y[l * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)] =
-            window(anchor_row + vertices[l].time, anchor + vertices[l].space, a);
-    touch.family->jacobian(cell_at(lattice_, anchor_row, anchor, time_step), y, J);
+    touch.family->jacobian(cell, y, J);
     for (std::size_t m = 0; m < vertices.size(); ++m) {
-      if (anchor_row + vertices[m].time != unknown_row) continue;
-      const int i = anchor + vertices[m].space, home = lattice_.is_circle() ? lattice_.wrapped(i) : i;
+      if (row + touch.anchor.time + vertices[m].time != unknown_row) continue;
+      const int i = site + touch.anchor.space + vertices[m].space, home = lattice_.is_circle() ? lattice_.wrapped(i) : i;
       for (int a = 0; a < d; ++a)
         for (int b = 0; b < d; ++b) {
           const double value = J[static_cast<std::size_t>((touch.vertex * d + a) * size + static_cast<int>(m) * d + b)];

@@ -87,6 +87,8 @@ class LatticeSystem {
   /// Nothing if the second derivatives are not finite at random fields of this amplitude.
   std::optional<std::vector<Coefficient>> linearised(const Lattice&, Site, int component, double amplitude) const;
 
+  Cell gather(const Touch&, const Window&, std::int64_t row, int site, double time_step, std::vector<double>& y) const;
+
   Lattice lattice_;
   std::vector<std::shared_ptr<const StencilFamily>> families_;
   double time_step_;

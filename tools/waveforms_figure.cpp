@@ -78,7 +78,7 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
     const bool left = p % columns == 0, bottom = p + columns >= panels;
     body += fmt::format("set format y '{}'\nset format x '{}'\nset ylabel '{}'\nset xlabel '{}'\n", left ? "%h" : "",
                         bottom ? "%h" : "", left ? (source.angle ? "φ / 2π" : "φ") : "", bottom ? "space x" : "");
-    body += fmt::format("set label 1 't = {:.4g}' at graph 0,1.07 left textcolor rgb '#333333'\n",
+    body += fmt::format("set label 1 't = {:.4g}' at graph 0,1 left offset 0,0.7 textcolor rgb '#333333'\n",
                         source.film.time(frames[static_cast<std::size_t>(p)]));
     if (p == 0 && turned)
       body += "set label 103 'whole turns of the field are taken off' at screen 0.97,0.905 right font ',11' "

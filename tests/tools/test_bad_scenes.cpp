@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+
+using namespace delf::testing;
+
+namespace {
+
+// Exit code 2, nothing on stdout, and one line on stderr that holds all the parts.
+void check_refused(const Ran& ran, const std::vector<std::string>& parts) {
+  INFO(ran.err);
+  CHECK(ran.code == 2);
+  CHECK(ran.out.empty());
+  CHECK(lines(ran.err).size() == 1);
+  for (const std::string& part : parts) {
+    INFO(part);
+    CHECK(contains(ran.err, part));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("what is wrong in a scene is told by file, line, key, value, reason and remedy") {
+  struct Bad {
+    const char *line, *key, *reason;
+  };
+  const Bad bad = GENERATE(values<Bad>({
+      {"[lattice]\nsitez = 3", "lattice.sitez", "did you mean lattice.sites?"},
+      {"[latice]\nsites = 3", "latice.sites", "did you mean lattice.sites?"},
+      {"[qwertyuiop]\nasdf = 3", "qwertyuiop.asdf", "unknown key"},
+      {"[lattice]\nsites = 32", "lattice.sites = 32", "line 5 gives it already"},
+      {"[lattice]\ntime_step = 1", "lattice.time_step = 1", "lattice.courant is given too"},
+      {"[run]\nuntil = 1", "run.until = 1", "run.steps is given too"},
+      {"[theory]\nmass = abc", "theory.mass = abc", "not a number"},
+      {"[theory]\nmass = 1e", "theory.mass = 1e", "not a number"},
+      {"[theory]\nmass = 1 2", "theory.mass = 1 2", "not a number"},
+      {"[theory]\nmass = 0x10", "theory.mass = 0x10", "not a number"},
+      {"[theory]\nmass = nan", "theory.mass = nan", "not a finite number"},
+      {"[theory]\nmass = -inf", "theory.mass = -inf", "not a finite number"},
+      {"[theory]\nmass = 1e999", "theory.mass = 1e999", "outside the range"},
+      {"[theory]\nmass =", "theory.mass =", "no value"},
+      {"[theory]\nfibre = S2", "theory.fibre = S2", "not known"},
+      {"[scheme]\nmethod = gou", "scheme.method = gou", "did you mean guo?"},
+      {"[scheme]\nseed_order = 9", "scheme.seed_order = 9", "at most 8"},
+      {"[scheme]\nseed_order = 2.5", "scheme.seed_order = 2.5", "not an integer"},
+      {"[scheme]\ntolerance = 0", "scheme.tolerance = 0", "above 0"},
+      {"[initial]\nspeed = 1", "initial.speed = 1", "slower than light"},
+      {"[initial]\nstart = legendre", "initial.start = legendre", "not in this version"},
+      {"[lattice]\nspace = point", "lattice.space = point", "not in this version"},
+      {"[output]\nfields = maybe", "output.fields = maybe", "on or off"},
+      {"[output]\ntimes = 1, x", "output.times = 1, x", "not a number"},
+      {"[output]\nevery = -1", "output.every = -1", "at least 0"},
+      {"[run]\nthreads = 0", "run.threads = 0", "at least 1"},
+      {"[run]\nwhat is this", "what is this", "neither a [section] nor key = value"},
+  }));
+  const Folder folder;
+  const std::string file = folder.write("bad.ini", small_scene(bad.line));
+  check_refused(delf_program(folder, "run bad.ini"), {"bad.ini:13: ", bad.key, bad.reason});
+  CHECK_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST_CASE("what is wrong on the command line is told by key, value, reason and remedy") {
+  struct Bad {
+    const char *argument, *reason;
+  };
+  const Bad bad = GENERATE(values<Bad>({
+      {"--lattice.si=5", "--lattice.si: unknown key; did you mean lattice.sites?"},
+      {"--lattice.si 5", "--lattice.si: unknown key; did you mean lattice.sites?"},
+      {"--sites=5", "did you mean lattice.sites?"},
+      {"--lattice.sites=0", "--lattice.sites = 0: must be at least 2; raise lattice.sites"},
+      {"--lattice.sites=1", "--lattice.sites = 1: must be at least 2"},
+      {"--lattice.sites 1", "--lattice.sites = 1: must be at least 2"},
+      {"--lattice.sites=99999999999", "--lattice.sites = 99999999999: must be at most"},
+      {"--lattice.sites=1e999999", "not an integer"},
+      {"--lattice.sites=99999999999999999999", "too large"},
+      {"--lattice.length=-1", "--lattice.length = -1: must be above 0"},
+      {"--lattice.length=0", "must be above 0"},
+      {"--lattice.length=1e-320", "double precision"},
+      {"--lattice.courant=0", "--lattice.courant = 0: must be above 0"},
+      {"--lattice.courant=-0.5", "must be above 0"},
+      {"--lattice.courant=nan", "--lattice.courant = nan: is not a finite number"},
+      {"--lattice.courant 0.5 --lattice.time_step 0.1", "lattice.courant is given too"},
+      {"--lattice.stencil=triangel", "did you mean triangle?"},
+      {"--lattice.stencil=hexagon --lattice.sites=63", "--lattice.sites = 63"},
+      {"--theory.name=sin-gordon", "--theory.name = sin-gordon: is not known; did you mean sine-gordon?"},
+      {"--initial.state=breathr", "did you mean breather?"},
+      {"--initial.speed -1.5", "--initial.speed = -1.5"},
+      {"--initial.speed=nan", "not a finite number"},
+      {"--run.until=-1", "--run.until = -1: must be at least 0"},
+      {"--run.until=1e300", "more than can be counted"},
+      {"--run.steps=3 --run.steps=4", "--run.steps = 4: given twice"},
+      {"--run.steps=", "run.steps"},
+      {"--run.steps", "run.steps"},
+      {"--out", "--out"},
+      {"-v", "-v: unknown option"},
+      {"another", "another: one word too many"},
+      {"--initial.file='a#b' --initial.state=file", "--initial.file: a value holds neither #"},
+  }));
+  const Folder folder;
+  folder.write("good.ini", small_scene());
+  INFO(bad.argument);
+  check_refused(delf_program(folder, std::string("run good.ini ") + bad.argument), {"command line: ", bad.reason});
+}
+
+TEST_CASE("what a scene must give is asked for") {
+  const Folder folder;
+  const auto refused = [&](const std::string& text, const std::string& reason) {
+    folder.write("bad.ini", text);
+    check_refused(delf_program(folder, "run bad.ini"), {"bad.ini: ", reason});
+  };
+  refused("[run]\nsteps = 1\n[lattice]\nsites = 9\nlength = 1\n[initial]\nstate = kink\n", "neither lattice.courant nor lattice.time_step");
+  refused("[lattice]\nsites = 9\nlength = 1\ncourant = 1\n[initial]\nstate = kink\n", "neither run.until nor run.steps");
+  refused("[run]\nsteps = 1\n[lattice]\nlength = 1\ncourant = 1\n[initial]\nstate = kink\n", "lattice.sites: must be given");
+  refused("[run]\nsteps = 1\n[lattice]\nsites = 9\nlength = 1\ncourant = 1\n", "initial.state: must be given");
+  refused("", "the scene is empty");
+  refused("# only this\n\n", "the scene is empty");
+}
+
+TEST_CASE("what is no scene at all is refused in one line") {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "directory");
+  folder.write("zeros", std::string(100, '\0'));
+  folder.write("latin", "name = caf\xe9\n");
+  folder.write("huge", std::string(2 << 20, '#'));
+  check_refused(delf_program(folder, "run directory"), {"directory: is a directory"});
+  check_refused(delf_program(folder, "run zeros"), {"zeros: is a binary file"});
+  check_refused(delf_program(folder, "run latin"), {"latin: is a binary file"});
+  check_refused(delf_program(folder, "run huge"), {"huge: is too large"});
+  check_refused(delf_program(folder, "run missing/scene.ini"), {"missing/scene.ini: no such file"});
+  check_refused(delf_program(folder, "run colision"), {"colision: no such file or shipped scene; did you mean collision?"});
+  check_refused(delf_program(folder, "run collision.ini"), {"did you mean collision?"});
+  check_refused(delf_program(folder, "run qwertyuiop"), {"known: breather, collision"});
+  check_refused(delf_program(folder, "run ''"), {"no such file"});
+}
+
+TEST_CASE("a bad choice of the library is told with the line of the scene that made it") {
+  const Folder folder;
+  folder.write("odd.ini", small_scene("[lattice]\nstencil = hexagon\n") + "");
+  folder.write("fast.ini", small_scene("[initial]\nfrequency = 1.5\n"));
+  check_refused(delf_program(folder, "run odd.ini --lattice.sites=65"), {"command line: --lattice.sites = 65: "});
+  check_refused(delf_program(folder, "run fast.ini"), {"fast.ini:14: initial.frequency = 1.5: "});
+  check_refused(delf_program(folder, "plan fast.ini"), {"fast.ini:14: initial.frequency = 1.5: "});
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+#include "tools/failure.hpp"
+#include "tools/keys.hpp"
+#include "tools/nearest.hpp"
+
+using namespace delf::testing;
+
+TEST_CASE("help, version and lists go to stdout and succeed") {
+  const Folder folder;
+  for (const char* arguments : {"help", "--help", "-h", "help run", "run --help", "help plan", "list", "list theories",
+                                "list stencils", "list schemes", "list states", "list scenes", "--version"}) {
+    const Ran ran = delf_program(folder, arguments);
+    INFO(arguments);
+    CHECK(ran.code == 0);
+    CHECK(ran.err.empty());
+    CHECK_FALSE(ran.out.empty());
+  }
+  CHECK(delf_program(folder, "--version").out == "delf " DELF_VERSION "\n");
+  CHECK(contains(delf_program(folder, "list stencils").out, "rectangle-symmetric"));
+  CHECK(contains(delf_program(folder, "list scenes").out, "collision"));
+}
+
+TEST_CASE("delf help run tells every key") {
+  const Folder folder;
+  const std::string help = delf_program(folder, "help run").out;
+  for (const auto& key : delf::keys()) CHECK(contains(help, std::string(key.name)));
+}
+
+TEST_CASE("without a command the usage is shown, and that is not success") {
+  const Folder folder;
+  const Ran ran = delf_program(folder, "");
+  CHECK(ran.code == 2);
+  CHECK(contains(ran.out, "delf run SCENE"));
+  CHECK_FALSE(contains(ran.out, "delf verify"));
+}
+
+TEST_CASE("a command that is not there is refused in one line") {
+  const Folder folder;
+  const auto refused = [&](const char* arguments, const char* reason) {
+    const Ran ran = delf_program(folder, arguments);
+    INFO(ran.err);
+    CHECK(ran.code == 2);
+    CHECK(ran.out.empty());
+    CHECK(lines(ran.err).size() == 1);
+    CHECK(contains(ran.err, reason));
+  };
+  refused("rnu collision", "did you mean run?");
+  refused("collision", "did you mean `delf run collision`?");
+  refused("verify collision", "comes in a later version");
+  refused("workprecision collision", "comes in a later version");
+  refused("stability collision", "comes in a later version");
+  refused("run", "Name a scene file");
+  refused("list stencil", "did you mean stencils?");
+  refused("list --lattice.sites=3", "reads no scene");
+  refused("plan collision --out here", "writes no files");
+}
+
+TEST_CASE("the plan says how the collision is solved, and what is left out") {
+  const Folder folder;
+  const Ran ran = delf_program(folder, "plan collision --output.fields=off");
+  CHECK(ran.code == 0);
+  CHECK(contains(ran.out, "cyclic band"));
+  CHECK(contains(ran.out, "HDF5 is not touched"));
+  CHECK(contains(delf_program(folder, "plan collision --lattice.stencil=triangle-vertex").out, "explicit"));
+  CHECK_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST_CASE("the nearest name is found within a few typing errors, and none far away") {
+  const std::vector<std::string> names{"triangle", "triangle-vertex", "rectangle", "rectangle-symmetric", "hexagon"};
+  CHECK(delf::nearest("hexagn", names) == "hexagon");
+  CHECK(delf::nearest("Hexagon", names) == "hexagon");
+  CHECK(delf::nearest("recatngle", names) == "rectangle");
+  CHECK(delf::nearest("rectangle_symetric", names) == "rectangle-symmetric");
+  CHECK(delf::nearest("hex", names) == "hexagon");
+  CHECK(delf::nearest("banana", names).empty());
+  CHECK(delf::nearest("", names).empty());
+}
+
+TEST_CASE("every kind of failure has its exit code") {
+  using namespace delf;
+  CHECK(exit_code(BadScene("")) == ExitCode::bad_input);
+  CHECK(exit_code(BadInput("", "")) == ExitCode::bad_input);
+  CHECK(exit_code(NoConvergence("")) == ExitCode::numerics_failed);
+  CHECK(exit_code(NotFinite("")) == ExitCode::numerics_failed);
+  CHECK(exit_code(SystemFailure("")) == ExitCode::system_failed);
+  CHECK(exit_code(std::bad_alloc()) == ExitCode::system_failed);
+  CHECK(lines(error_line(SystemFailure("two\nlines"))).size() == 1);
+}
