@@ -244,7 +244,24 @@ void RowEquations::solve(std::int64_t n) {
   for (int a = 0; a < d_; ++a) layout_.copy_overlaps(w_.row(a));
 }
 
-double RowEquations::relative_size() const {
+double RowEquations::residual(std::int64_t n) {
+  for (int a = 0; a < d_; ++a)
+    for (std::size_t s = 0; s < layout_.doubles(); ++s) w_.row(a)[s] = rows_.v(n + 1, a)[s] - rows_.v(n, a)[s];
+  // A step goes on from the outputs of its last iterate: what is taken here from the accepted row must not stay, or a
+  // run would depend on when it was looked at.
+  std::vector<std::vector<double>> before;
+  const auto each_fresh_output = [&](const auto& f) {
+    for (Outputs& o : outputs_)
+      for (int age = o.oldest; age <= o.newest; ++age)
+        for (int c = 0; c < o.family->outputs() && o.reads_unknown_row(age); ++c) f(o.row(n + age, c));
+  };
+  each_fresh_output([&](const double* row) { before.emplace_back(row, row + layout_.doubles()); });
+  evaluate_outputs(n, true);
+  clear();
+  add(n, known | fresh | unknown, true);
+  std::size_t next = 0;
+  each_fresh_output([&](double* row) { std::ranges::copy(before[next++], row); });
+
   double worst = 0, size = 0;
   for (int a = 0; a < d_; ++a)
     for (int i = 0; i < layout_.sites(); ++i) {

@@ -25,8 +25,8 @@ class RowEquations {
   void evaluate_outputs(std::int64_t n, bool reading_unknown_row);
 
   void clear();
-  /// E += the given parts; with `measure` also Σ |terms|.
-  void add(std::int64_t n, int parts, bool measure = false);
+  /// E += the given parts.
+  void add(std::int64_t n, int parts) { add(n, parts, false); }
   /// Remembers E, and starts from it again.
   void keep();
   void restore();
@@ -34,8 +34,9 @@ class RowEquations {
   void solve(std::int64_t n);
 
   double* w(int a) { return w_.row(a); }
-  /// max |E| / max Σ |terms| over the sites, after add(…, true).
-  double relative_size() const;
+  /// max |E| / max Σ |terms| over the sites, for the rows as they are (row n+1 included). Leaves nothing changed that a
+  /// step reads.
+  double residual(std::int64_t n);
   /// Outputs are the whole residual: w must be corrected by −A₊⁻¹E instead of set to it.
   bool correction_form() const { return equations_.correction_form; }
 
@@ -56,6 +57,7 @@ class RowEquations {
     double* row(std::int64_t anchor_row, int c);
   };
 
+  void add(std::int64_t n, int parts, bool measure);
   void build_outputs();
   void build_solvers();
   void build_marks();

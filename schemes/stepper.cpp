@@ -218,12 +218,7 @@ struct Stepper::Impl {
   double residual() {
     const std::int64_t base = n - 1;
     if (base < history - 1) return 0;
-    for (int a = 0; a < d; ++a)
-      for (std::size_t s = 0; s < layout().doubles(); ++s) equations.w(a)[s] = rows.v(n, a)[s] - rows.v(n - 1, a)[s];
-    equations.evaluate_outputs(base, true);
-    equations.clear();
-    equations.add(base, RowEquations::known | RowEquations::fresh | RowEquations::unknown, true);
-    return equations.relative_size();
+    return equations.residual(base);
   }
 };
 

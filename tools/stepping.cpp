@@ -100,10 +100,8 @@ void Stepping::step_until(std::int64_t row, Progress& progress) {
 void Stepping::count_step() {
   ++outcome_.steps_taken;
   last_iterations_ = simulation_.iterations();
-  residual_ = simulation_.residual();
   iterations_ += last_iterations_;
   outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);
-  if (!(residual_ <= outcome_.residual_max)) outcome_.residual_max = residual_;
 }
 
 bool Stepping::to_be_recorded(std::int64_t row) const {
@@ -129,7 +127,8 @@ void Stepping::record(std::int64_t row) {
     record.momentum = monitors.momentum;
     record.charge = monitors.charge;
     record.iterations = last_iterations_;
-    record.residual = residual_;
+    record.residual = row == newest_ ? simulation_.residual() : 0;  // the starting rows solve no equation
+    if (!(record.residual <= outcome_.residual_max)) outcome_.residual_max = record.residual;
   }
   recorded_ = row;
   outcome_.energy_final = record.energy;
@@ -150,7 +149,7 @@ void Stepping::close_outcome() {
 // of the last row, which is still in row_
 void Stepping::measure_error() {
   const State* exact = initial_.exact();
-  if (!exact || recorded_ < 0) return;
+  if (!exact || recorded_ < 0 || outcome_.time > exact->exact_until()) return;
   std::vector<double> solution(row_.size());
   exact->values(outcome_.time, scene_.problem.lattice, solution);
   double largest = 0, squares = 0;

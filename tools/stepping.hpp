@@ -37,7 +37,7 @@ class Stepping {
   std::vector<double> row_;
   bool started_ = false;
   std::int64_t newest_ = 0, recorded_ = -1;
-  double iterations_ = 0, residual_ = 0;
+  double iterations_ = 0;
   int last_iterations_ = 0;
 };
 

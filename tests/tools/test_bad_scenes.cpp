@@ -55,7 +55,7 @@ TEST_CASE("what is wrong in a scene is told by file, line, key, value, reason an
   }));
   const Folder folder;
   const std::string file = folder.write("bad.ini", small_scene(bad.line));
-  check_refused(delf_program(folder, "run bad.ini"), {"bad.ini:13: ", bad.key, bad.reason});
+  check_refused(delf_program(folder, "run bad.ini"), {"bad.ini:14: ", bad.key, bad.reason});
   CHECK_FALSE(std::filesystem::exists(folder / "results"));
 }
 

@@ -87,7 +87,7 @@ TEST_CASE("keys that have no effect are warned of, with their line, and stop not
     return warnings.size() == 1 ? warnings.front() : "warnings: " + std::to_string(warnings.size());
   };
   const std::string file = (folder / "test.ini").string();
-  CHECK(contains(warning("[theory]\nlambda = 2\n"), file + ":13: theory.lambda = 2: warning: the theory sine-gordon"));
+  CHECK(contains(warning("[theory]\nlambda = 2\n"), file + ":14: theory.lambda = 2: warning: the theory sine-gordon"));
   CHECK(contains(warning("[initial]\nseparation = 2\n"), "the state breather does not read it"));
   CHECK(contains(warning("[boundary]\nleft = natural\n"), "a circle has no walls"));
   CHECK(contains(warning("[run]\nthreads = 2\n"), "one thread"));

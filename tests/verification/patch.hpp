@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// GCC 12 takes the undefined lanes of AVX-512 intrinsics in Eigen for uninitialised variables (its bug 105593).
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
 #include <Eigen/Dense>
 #include <cmath>
 #include <map>
