@@ -18,7 +18,7 @@ struct LinearEquation {
   double constant = 0;
 };
 
-LinearEquation linear_equation(const LatticeSystem& system, Site site, int a) {
+LinearEquation linear_equation(const LatticeSystem& system, bool whole_jacobian, Site site, int a) {
   LinearEquation result;
   std::map<std::tuple<int, int, int>, double> scale;
   const int d = system.components();
@@ -29,8 +29,10 @@ LinearEquation linear_equation(const LatticeSystem& system, Site site, int a) {
     const Cell cell{system.time_step(), system.lattice().space_step(), 0, 0};
     touch.family->linear_part(cell, J, r0);
     result.constant += r0[static_cast<std::size_t>(touch.vertex * d + a)];
+    // The matrix is that of the linear part; but where the unknown row enters linearly one solve must do, so that it
+    // has to be the whole Jacobian, outputs included, and where there is no linear part it is all there is.
     std::vector<double> reference = J;
-    if (touch.family->nonlinearity() == Nonlinearity::all)
+    if (touch.family->nonlinearity() == Nonlinearity::all || whole_jacobian)
       touch.family->jacobian(cell, std::vector<double>(static_cast<std::size_t>(size), 0.0), reference);
     for (int m = 0; m < size; ++m) {
       const Site offset = touch.anchor + vertices[static_cast<std::size_t>(m / d)];
@@ -124,11 +126,19 @@ void add_output_terms(const LatticeSystem& system, int site, bool everywhere, in
 
 }  // namespace
 
+bool solved_at_once(const LatticeSystem& system, const SolvePlan& plan) {
+  return !plan.nonlinear_in_slab && std::ranges::none_of(system.families(), [](const auto& family) {
+    const int top = std::ranges::max(family->pattern().vertices, {}, &Site::time).time;
+    return family->is_placed() && family->nonlinearity() != Nonlinearity::none && family->outputs_read_until() == top;
+  });
+}
+
 AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) {
   const Lattice& lattice = system.lattice();
   const int d = system.components(), N = lattice.sites();
   const bool bricks = system.placement() == Placement::brick_wall;
   AssembledEquations result;
+  const bool at_once = solved_at_once(system, plan);
   for (const auto& family : system.families())
     if (family->nonlinearity() == Nonlinearity::all) result.correction_form = true;
   if (result.correction_form && system.families().size() > 1)
@@ -137,8 +147,8 @@ AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) 
   const auto equation_at = [&](int site, int a, bool everywhere, std::vector<UnknownEntry>& unknowns) {
     EquationTerms equation;
     equation.shift = plan.shift(site, a);
-    const LinearEquation even = linear_equation(system, {site % 2, site}, a);
-    const LinearEquation odd = bricks ? linear_equation(system, {(site + 1) % 2, site}, a) : even;
+    const LinearEquation even = linear_equation(system, at_once, {site % 2, site}, a);
+    const LinearEquation odd = bricks ? linear_equation(system, at_once, {(site + 1) % 2, site}, a) : even;
     add_linear_terms(mean_and_alternating(even.A, odd.A), a, equation);
     equation.constant = (even.constant + odd.constant) / 2;
     equation.constant_alternating = (even.constant - odd.constant) / 2;

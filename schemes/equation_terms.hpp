@@ -55,6 +55,10 @@ struct AssembledEquations {
   bool correction_form = false;  ///< no linear part: `output` is the whole residual, and w is corrected by A⁻¹E
 };
 
+/// The unknown row enters linearly, with coefficients that the matrix holds: one solve is a step. Coefficients that depend
+/// on x and t are not held, and are iterated on.
+bool solved_at_once(const LatticeSystem&, const SolvePlan&);
+
 AssembledEquations assemble(const LatticeSystem&, const SolvePlan&);
 
 }  // namespace delf

@@ -42,8 +42,8 @@ void append_table(std::string& out, const LatticeSystem& system, Site site, cons
 
 std::string solve_in_words(const SolvePlan& plan, const Stepper& stepper) {
   std::string words = plan.describe();
-  if (plan.kind == SolveKind::explicit_ && !plan.nonlinear_in_slab) return words + "; solved at once, no iteration";
-  words += plan.nonlinear_in_slab ? "; iterated with the constant part: " : "; solved at once, no iteration: ";
+  if (plan.kind == SolveKind::explicit_ && !stepper.iterates()) return words + "; solved at once, no iteration";
+  words += stepper.iterates() ? "; iterated with the constant part: " : "; solved at once, no iteration: ";
   return words + stepper.solver_name();
 }
 
@@ -63,7 +63,7 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   out += fmt::format("solve        {}\n", to_string(plan.kind));
   std::istringstream lines(plan.report());
   for (std::string line; std::getline(lines, line);) out += "             " + line + '\n';
-  out += plan.nonlinear_in_slab
+  out += stepper.iterates()
              ? "step         extrapolated seed; simplified Newton with the constant part while it contracts; else full\n"
                "             Newton; else continuation in h; else exit 3\n"
              : "step         one solve, no iteration\n";
@@ -81,7 +81,7 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   out += fmt::format("\nmemory       {} bytes: {}\n", stepper.bytes(), stepper.memory_report());
   out += "left out     ";
   std::vector<std::string> absent;
-  if (!plan.nonlinear_in_slab) absent.push_back("iterations and seeds");
+  if (!stepper.iterates()) absent.push_back("iterations and seeds");
   if (stepper.matrix_free()) absent.push_back("any matrix");
   if (plan.linear) absent.push_back("the density (its constant Hessian is enough)");
   if (std::ranges::none_of(system.families(), [](const auto& f) { return f->is_placed(); }))

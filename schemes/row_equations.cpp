@@ -141,6 +141,11 @@ void RowEquations::evaluate_outputs(std::int64_t n, bool reading_unknown_row) {
         evaluate(o, n + age, n + 1 - history_, reading_unknown_row ? n + 1 : n);
 }
 
+void RowEquations::evaluate_known_outputs(std::int64_t n) {
+  for (Outputs& o : outputs_)
+    if (o.oldest <= o.newest && !o.reads_unknown_row(o.newest)) evaluate(o, n + o.newest, n + 1 - history_, n);
+}
+
 // ---- the equations, row by row
 
 bool RowEquations::belongs(const Term& t, int parts) const {

@@ -24,6 +24,9 @@ class RowEquations {
   /// Evaluates the nonlinear outputs that read row n+1, or those that do not.
   void evaluate_outputs(std::int64_t n, bool reading_unknown_row);
 
+  /// Evaluates the outputs that read rows up to n only and that no earlier step had to evaluate.
+  void evaluate_known_outputs(std::int64_t n);
+
   void clear();
   /// E += the given parts.
   void add(std::int64_t n, int parts) { add(n, parts, false); }

@@ -31,7 +31,7 @@ struct Stepper::Impl {
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
       : system(s), plan(checked(p, s)), options(o), d(s.components()), history(std::max(p.forward + p.backward, 2)),
-        seed_rows(std::clamp(o.seed_order, 1, 12)), iterative(p.nonlinear_in_slab),
+        seed_rows(std::clamp(o.seed_order, 1, 12)), iterative(!solved_at_once(s, p)),
         rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, iterative ? seed_rows - 1 : 1) + 1, o.turn),
         equations(s, p, rows, history) {}
 
@@ -109,6 +109,7 @@ struct Stepper::Impl {
     const FlushDenormals guard;
     iterations = newton_steps = 0;
     continued = false;
+    equations.evaluate_known_outputs(n);
     equations.clear();
     equations.add(n, RowEquations::known);
     equations.keep();
@@ -269,6 +270,7 @@ const RowLayout& Stepper::layout() const { return impl_->layout(); }
 const double* Stepper::row_data(int back, int a) const { return impl_->rows.y(impl_->n - back, a); }
 const double* Stepper::newest_increment(int a) const { return impl_->rows.v(impl_->n, a); }
 std::string Stepper::solver_name() const { return impl_->equations.solver().name(); }
+bool Stepper::iterates() const { return impl_->iterative; }
 bool Stepper::matrix_free() const { return impl_->equations.matrix_free(); }
 
 std::size_t Stepper::bytes() const {

@@ -56,6 +56,7 @@ class Stepper {
   const double* row_data(int back, int component) const;
   const double* newest_increment(int component) const;
 
+  bool iterates() const;  ///< a step is not one solve
   std::string solver_name() const;
   bool matrix_free() const;  ///< the constant part is one number for all sites: no matrix is allocated
   std::size_t bytes() const;

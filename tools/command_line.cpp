@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <boost/program_options.hpp>
+#include <csignal>
 #include <cstdio>
 
 #include "tools/commands.hpp"
@@ -39,8 +40,7 @@ Arguments taken_apart(const std::vector<std::string>& words) {
     } else if (option.string_key == "version" && !option.unregistered) {
       arguments.version = true;
     } else if (option.string_key == "out") {
-      if (arguments.out || value.empty())
-        throw BadScene("command line: --out: give one directory, as --out DIR");
+      if (arguments.out || value.empty()) throw BadScene("command line: --out: give one directory, as --out DIR");
       arguments.out = value;
     } else if (!option.string_key.empty()) {
       arguments.keys.push_back({option.string_key, value, 0});
@@ -72,6 +72,7 @@ ExitCode carry_out(const std::vector<std::string>& words) {
 
 ExitCode run_program(const std::vector<std::string>& words) {
   ExitCode code = ExitCode::done;
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, not the end of the program
   try {
     code = carry_out(words);
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw SystemFailure("standard output cannot be written to");

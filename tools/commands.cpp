@@ -22,8 +22,10 @@ std::string only_word(const Arguments& arguments, const char* otherwise) {
   if (arguments.words.size() > 2)
     throw BadScene(fmt::format("command line: {}: one word too many; give one thing at a time", arguments.words[2]));
   if (arguments.words.size() < 2 && otherwise == nullptr)
-    throw BadScene(fmt::format("command line: {} what? Name a scene file or a shipped scene, such as `delf {} "
-                               "collision`", arguments.words[0], arguments.words[0]));
+    throw BadScene(
+        fmt::format("command line: {} what? Name a scene file or a shipped scene, such as `delf {} "
+                    "collision`",
+                    arguments.words[0], arguments.words[0]));
   return arguments.words.size() < 2 ? otherwise : arguments.words[1];
 }
 
@@ -94,11 +96,12 @@ const Command& find_command(const std::string& name) {
   }
   for (const char* later : {"verify", "workprecision", "stability"})
     if (name == later)
-      throw BadScene(fmt::format("command line: {}: comes in a later version; this one has {}", name,
-                                 fmt::join(names, ", ")));
+      throw BadScene(
+          fmt::format("command line: {}: comes in a later version; this one has {}", name, fmt::join(names, ", ")));
   for (const ShippedScene& scene : shipped_scenes())
     if (name == scene.name)
-      throw BadScene(fmt::format("command line: {}: is a scene, not a command; did you mean `delf run {}`?", name, name));
+      throw BadScene(
+          fmt::format("command line: {}: is a scene, not a command; did you mean `delf run {}`?", name, name));
   throw BadScene(fmt::format("command line: {}: no such command{}", name, suggestion(name, names)));
 }
 

@@ -12,9 +12,9 @@ namespace delf {
 
 /// A command line, taken apart.
 struct Arguments {
-  std::vector<std::string> words;      ///< the command, and what it is applied to
-  std::vector<Setting> keys;           ///< --KEY=VALUE
-  std::optional<std::string> out;      ///< --out
+  std::vector<std::string> words;  ///< the command, and what it is applied to
+  std::vector<Setting> keys;       ///< --KEY=VALUE
+  std::optional<std::string> out;  ///< --out
   bool help = false, version = false;
 };
 

@@ -21,7 +21,9 @@ std::string energy_figure(const FigureSource& source, const std::filesystem::pat
   // sign, and a linear axis in units of the power of ten that they have.
   const bool grown = largest > 10, round_off = largest < 1e-12;
   const double power = grown ? 0 : largest > 0 ? std::floor(std::log10(largest)) : -16;
-  const auto shown = [&](double error) { return grown ? std::max(std::abs(error), 1e-17) : error / std::pow(10, power); };
+  const auto shown = [&](double error) {
+    return grown ? std::max(std::abs(error), 1e-17) : error / std::pow(10, power);
+  };
   std::string table;
   for (const auto& i : intervals) {
     table += fmt::format("{} {}\n", i.begin, shown(i.least));
@@ -29,18 +31,21 @@ std::string energy_figure(const FigureSource& source, const std::filesystem::pat
   }
   write_text_file(scratch / "energy", table);
 
-  const std::string axis = grown ? "set logscale y\nset format y '10^{%T}'\n"
-                                 : largest > 0 ? "set xzeroaxis lc rgb '#999999' lt 1 lw 1\n" : "set yrange [-1:1]\n";
-  const std::string label = grown ? "|E − E_0| / |E_0|" : fmt::format("(E − E_0) / |E_0|   in units of 10^{{{}}}", power);
+  const std::string axis = grown         ? "set logscale y\nset format y '10^{%T}'\n"
+                           : largest > 0 ? "set xzeroaxis lc rgb '#999999' lt 1 lw 1\n"
+                                         : "set yrange [-1:1]\n";
+  const std::string label =
+      grown ? "|E − E_0| / |E_0|" : fmt::format("(E − E_0) / |E_0|   in units of 10^{{{}}}", power);
   return figure_title(fmt::format("{}: the energy error{}", source.scene, round_off ? " is round-off" : ""),
                       fmt::format("{}, {}", source.theory, source.scheme)) +
-         fmt::format("set lmargin at screen {}\nset rmargin at screen 0.965\n"
-                     "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
-                     "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\n{}"
-                     "set xlabel 'time t'\n"
-                     "set label 103 '{}' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
-                     "set xrange [{}:{}]\nplot 'energy' using 1:2 with lines lw 1.3 lc rgb '{}'\n",
-                     grown ? 0.13 : 0.105, axis, label, intervals.front().begin, intervals.back().end, line_colour);
+         fmt::format(
+             "set lmargin at screen {}\nset rmargin at screen 0.965\n"
+             "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
+             "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\n{}"
+             "set xlabel 'time t'\n"
+             "set label 103 '{}' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
+             "set xrange [{}:{}]\nplot 'energy' using 1:2 with lines lw 1.3 lc rgb '{}'\n",
+             grown ? 0.13 : 0.105, axis, label, intervals.front().begin, intervals.back().end, line_colour);
 }
 
 }  // namespace delf

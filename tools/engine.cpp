@@ -27,8 +27,10 @@ ExitCode with_memory_for(const Scene& scene, const std::function<ExitCode()>& wo
   const double least = least_of_a_site * sites;
   const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   const auto failure = [&] {
-    return SystemFailure(fmt::format("out of memory: {} sites need {} at least, and this machine has {}; lower "
-                                     "lattice.sites", sites, bytes_in_words(least), bytes_in_words(there)));
+    return SystemFailure(
+        fmt::format("out of memory: {} sites need {} at least, and this machine has {}; lower "
+                    "lattice.sites",
+                    sites, bytes_in_words(least), bytes_in_words(there)));
   };
   if (there > 0 && least > there) throw failure();
   try {

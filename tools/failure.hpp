@@ -18,7 +18,14 @@ struct SystemFailure : Error {
 };
 
 /// What the program returns. Nothing else in the program chooses a number.
-enum class ExitCode { done = 0, check_failed = 1, bad_input = 2, numerics_failed = 3, system_failed = 4, interrupted = 130 };
+enum class ExitCode {
+  done = 0,
+  check_failed = 1,
+  bad_input = 2,
+  numerics_failed = 3,
+  system_failed = 4,
+  interrupted = 130
+};
 
 /// The exit code of whatever was thrown.
 ExitCode exit_code(const std::exception&);

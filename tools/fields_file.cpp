@@ -56,7 +56,8 @@ bool append_block(hid_t dataset, std::array<hsize_t, rank> old, std::array<hsize
   now[0] = old[0] + block[0];
   offset[0] = old[0];
   if (H5Dset_extent(dataset, now.data()) < 0) return false;
-  const Hdf5Handle target(H5Dget_space(dataset), H5Sclose), source(H5Screate_simple(rank, block.data(), nullptr), H5Sclose);
+  const Hdf5Handle target(H5Dget_space(dataset), H5Sclose),
+      source(H5Screate_simple(rank, block.data(), nullptr), H5Sclose);
   return H5Sselect_hyperslab(target, H5S_SELECT_SET, offset.data(), nullptr, block.data(), nullptr) >= 0 &&
          H5Dwrite(dataset, H5T_NATIVE_DOUBLE, source, target, H5P_DEFAULT, data) >= 0;
 }
@@ -83,7 +84,8 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
               H5Dwrite(positions, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, space.data()) >= 0 &&
               write_text(positions, "units", "dimensionless") && write_text(time_, "units", "dimensionless") &&
               write_text(field_, "units", "dimensionless") && write_text(file_, "scene", scene) &&
-              write_text(file_, "version", DELF_VERSION) && write_integer(file_, "winding", winding) && H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0,
+              write_text(file_, "version", DELF_VERSION) && write_integer(file_, "winding", winding) &&
+              H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0,
           "cannot be written");
   times_.reserve(frames_per_block_);
   rows_.reserve(frames_per_block_ * sites_);

@@ -52,7 +52,8 @@ std::optional<double> FieldsReader::time(int frame) const {
 std::vector<double> FieldsReader::row(int frame) const {
   if (frame >= frames_)
     throw BadInput("initial.frame", fmt::format("frame {} is needed, and the file has {} of them; record more rows, "
-                                                "with output.every = 1", frame, frames_));
+                                                "with output.every = 1",
+                                                frame, frames_));
   std::vector<double> values(static_cast<std::size_t>(sites_));
   const std::array<hsize_t, 3> offset{static_cast<hsize_t>(frame), 0, 0}, count{1, static_cast<hsize_t>(sites_), 1};
   if (!read_slice(field_, 3, offset.data(), count.data(), values.data()))

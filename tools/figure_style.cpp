@@ -38,7 +38,9 @@ ColourScale colour_scale(std::span<const double> values) {
     if (std::isfinite(v)) sorted.push_back(v);
   if (sorted.empty()) return {-1, 1, true};
   std::sort(sorted.begin(), sorted.end());
-  const auto quantile = [&](double q) { return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1))]; };
+  const auto quantile = [&](double q) {
+    return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1))];
+  };
   double least = sorted.front(), most = sorted.back();
   const double low = quantile(0.005), high = quantile(0.995);
   if (most - least > 3 * (high - low) && high > low) least = low, most = high;
@@ -67,11 +69,15 @@ double nice_step(double range, int most) {
 
 std::string figure_script(const std::string& name, const std::string& body) {
   std::string script;
-  script += fmt::format("reset\nset terminal pngcairo size 1800,1200 font 'DejaVu Sans,12' fontscale 2.1 linewidth 2.2\n"
-                        "set output '{}.png'\n", name);
+  script += fmt::format(
+      "reset\nset terminal pngcairo size 1800,1200 font 'DejaVu Sans,12' fontscale 2.1 linewidth 2.2\n"
+      "set output '{}.png'\n",
+      name);
   script += style + body + "unset output\n";
-  script += fmt::format("reset\nset terminal svg size 900,600 font 'sans-serif,12' fontscale 1.2 linewidth 1.1 background '#ffffff'\n"
-                        "set output '{}.svg'\n", name);
+  script += fmt::format(
+      "reset\nset terminal svg size 900,600 font 'sans-serif,12' fontscale 1.2 linewidth 1.1 background '#ffffff'\n"
+      "set output '{}.svg'\n",
+      name);
   script += style + body + "unset output\n";
   return script;
 }

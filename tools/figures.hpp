@@ -13,8 +13,8 @@ namespace delf {
 /// What the figures of a run are drawn from.
 struct FigureSource {
   std::string scene, theory;
-  std::string scheme;         ///< one line: stencil, method, sites, steps
-  bool angle;                 ///< the field is an angle, and is shown as φ/2π
+  std::string scheme;  ///< one line: stencil, method, sites, steps
+  bool angle;          ///< the field is an angle, and is shown as φ/2π
   const Lattice& lattice;
   int winding;
   const Film& film;

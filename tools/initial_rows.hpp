@@ -29,7 +29,7 @@ class InitialRows {
   std::vector<double> values(int row) const;
 
   const Scene& scene_;
-  std::unique_ptr<State> state_;      ///< one of these two
+  std::unique_ptr<State> state_;  ///< one of these two
   std::optional<FieldsReader> file_;
 };
 

@@ -5,7 +5,7 @@
 namespace delf {
 
 /// While it lives, SIGINT and SIGTERM only raise a flag, so that a run can write what it has; the second one ends the
-/// program at once. A file that may not grow gives an error instead of a signal.
+/// program at once.
 class Interrupt {
  public:
   Interrupt();
@@ -18,7 +18,7 @@ class Interrupt {
  private:
   static void ask(int signal);
   static volatile std::sig_atomic_t asked_;
-  struct sigaction interrupt_, terminate_, file_size_;
+  struct sigaction interrupt_, terminate_;
 };
 
 }  // namespace delf

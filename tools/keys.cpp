@@ -41,6 +41,10 @@ constexpr Range positive{0, any.high, true};
 constexpr Range not_negative{0, any.high};
 constexpr Range count{0, largest_count};
 constexpr Range whole{-largest_int, largest_int};
+constexpr Range from_zero{0, largest_int};
+constexpr Range one_or_more{1, largest_int};
+constexpr Range two_or_more{2, largest_int};
+constexpr Range up_to_eight{0, 8};
 constexpr auto own = "the state's own";
 constexpr auto real = KeyType::real;
 constexpr auto integer = KeyType::integer;
@@ -61,8 +65,7 @@ const std::array table{
         stencil_names},
     Key{"lattice.space", choice, "circle", "", "the shape of space", "", any, spaces},
     Key{"lattice.length", real, "", "must be given", "L", "length", positive},
-    Key{"lattice.sites", integer, "", "must be given", "N; on an interval both walls are counted", "",
-        {2, largest_int}},
+    Key{"lattice.sites", integer, "", "must be given", "N; on an interval both walls are counted", "", two_or_more},
     Key{"lattice.courant", real, "", "this or lattice.time_step", "h/k", "", positive},
     Key{"lattice.time_step", real, "", "this or lattice.courant", "h", "time", positive},
 
@@ -70,9 +73,9 @@ const std::array table{
     Key{"scheme.tolerance", real, "1e-14", "",
         "an implicit step ends when its last change is below this times the largest |y|", "", positive},
     Key{"scheme.seed_order", integer, "8", "", "rows that the first guess of an implicit step is extrapolated from", "",
-        {0, 8}},
+        up_to_eight},
     Key{"scheme.max_iterations", integer, "50", "", "iterations of an implicit step before it has failed", "",
-        {1, largest_int}},
+        one_or_more},
 
     Key{"initial.state", choice, "", "must be given", "the state to start from; see `delf list states`", "", any,
         state_names},
@@ -86,7 +89,7 @@ const std::array table{
     Key{"initial.width", real, "", own, "width of a pulse", "length", positive},
     Key{"initial.file", KeyType::text, "", "none", "state = file: a fields.h5; looked for beside the scene first"},
     Key{"initial.frame", integer, "0", "", "state = file: the frame that row 0 is; the next frames are the next rows",
-        "", {0, largest_int}},
+        "", from_zero},
     Key{"initial.start", choice, "", "exact where the second row is known, else centred", "what gives row 1", "", any,
         starts},
 
@@ -98,10 +101,10 @@ const std::array table{
         not_negative},
     Key{"run.steps", integer, "", "this or run.until", "steps after row 0", "", count},
     Key{"run.seed", integer, "1", "", "seed of whatever is random", "", count},
-    Key{"run.threads", integer, "1", "", "threads; the results do not depend on it", "", {1, largest_int}},
+    Key{"run.threads", integer, "1", "", "threads; the results do not depend on it", "", one_or_more},
 
-    Key{"output.every", integer, "", "about 400 records", "record rows 0, every, 2 every, ... and the last; 0: the last",
-        "", count},
+    Key{"output.every", integer, "", "about 400 records",
+        "record rows 0, every, 2 every, ... and the last; 0: the last", "", count},
     Key{"output.figures", toggle, "on", "", "draw figures (by gnuplot)"},
     Key{"output.fields", toggle, "on", "", "write the recorded rows to fields.h5"},
     Key{"output.times", KeyType::times, "", "six, evenly spread", "times of the waveforms figure: 0, 10, 20", "time",

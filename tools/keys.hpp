@@ -19,7 +19,7 @@ struct Range {
 
 /// A key of a scene: how its value is read, what it means, and what holds when it is not given.
 struct Key {
-  std::string_view name;       ///< "lattice.sites"
+  std::string_view name;  ///< "lattice.sites"
   KeyType type;
   std::string_view fallback;   ///< the value in force when the key is not given, if there is one
   std::string_view otherwise;  ///< if there is none: what holds then, in words

@@ -30,7 +30,8 @@ void print_states() {
     fmt::print("  {:<22}   reads {}; for {}\n", "", s.parameters.empty() ? "nothing" : s.parameters, s.theories);
   }
   if (std::none_of(states().begin(), states().end(), [](const StateInfo& s) { return s.name == "file"; }))
-    fmt::print("  {:<22} rows of a fields.h5\n  {:<22}   reads initial.file, initial.frame; for all theories\n", "file", "");
+    fmt::print("  {:<22} rows of a fields.h5\n  {:<22}   reads initial.file, initial.frame; for all theories\n", "file",
+               "");
 }
 void print_scenes() {
   for (const ShippedScene& s : shipped_scenes()) fmt::print("  {:<22} {}\n", s.name, s.title);
@@ -57,7 +58,8 @@ ExitCode list(const std::string& kind) {
     k.print();
     if (kind == k.name) return ExitCode::done;
   }
-  if (!kind.empty()) throw BadScene(fmt::format("command line: list {}: is not known{}", kind, suggestion(kind, names)));
+  if (!kind.empty())
+    throw BadScene(fmt::format("command line: list {}: is not known{}", kind, suggestion(kind, names)));
   return ExitCode::done;
 }
 

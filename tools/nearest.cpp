@@ -26,7 +26,8 @@ std::size_t distance(const std::string& a, const std::string& b) {
         continue;
       }
       d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
   return d[a.size()][b.size()];
 }
@@ -49,7 +50,8 @@ std::string nearest(std::string_view unknown, const std::vector<std::string>& na
 }
 
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& names) {
-  if (const std::string close = nearest(unknown, names); !close.empty()) return fmt::format("; did you mean {}?", close);
+  if (const std::string close = nearest(unknown, names); !close.empty())
+    return fmt::format("; did you mean {}?", close);
   return fmt::format("; known: {}", fmt::join(names, ", "));
 }
 

@@ -19,11 +19,11 @@ struct Outcome {
   int winding = 0;
   std::size_t bytes = 0;
 
-  std::int64_t steps = 0;       ///< the last row
-  std::int64_t steps_taken = 0; ///< without the starting rows
+  std::int64_t steps = 0;        ///< the last row
+  std::int64_t steps_taken = 0;  ///< without the starting rows
   std::int64_t records = 0;
   double time = 0;
-  double seconds = 0;           ///< of the steps alone
+  double seconds = 0;  ///< of the steps alone
   double iterations_mean = 0, residual_max = 0;
   int iterations_max = 0;
   double energy_initial = unknown, energy_final = unknown, energy_error_max = unknown;

@@ -10,7 +10,7 @@ struct Record {
   double time = 0;
   double energy = 0, energy_error = 0;  ///< of this row and the one before it (rows 0 and 1: both); relative to row 0
   double momentum = 0, charge = 0;
-  int iterations = 0;                   ///< of the step that gave this row; the starting rows have none
+  int iterations = 0;  ///< of the step that gave this row; the starting rows have none
   double residual = 0;
 };
 

@@ -18,7 +18,9 @@ std::string report(const Scene& scene, const Outcome& o) {
   std::string text = fmt::format("{}: {} on {} of length {:g}{}\n", scene.name, p.theory,
                                  p.lattice.is_circle() ? "a circle" : "an interval", p.lattice.length(),
                                  p.circle_valued ? ", values in S1" : "");
-  const auto line = [&](const char* name, const std::string& what) { text += fmt::format("  {:<10} {}\n", name, what); };
+  const auto line = [&](const char* name, const std::string& what) {
+    text += fmt::format("  {:<10} {}\n", name, what);
+  };
   line("state", o.state);
   line("scheme", scheme_in_words(p) + fmt::format(", h = {:.6g}", p.time_step));
   line("solve", o.solve);
@@ -26,14 +28,17 @@ std::string report(const Scene& scene, const Outcome& o) {
   if (o.steps_taken > 0)
     line("speed", fmt::format("{} for the steps, {:.3g} ns per site and step", duration_in_words(o.seconds),
                               o.ns_per_site_step(p.lattice.sites())));
-  line("iterations", o.iterations_max == 0 ? "none"
-                                           : fmt::format("{:.3g} a step, {} at most; residual {:.2g} at most",
-                                                         o.iterations_mean, o.iterations_max, o.residual_max));
+  const std::string iterations =
+      o.iterations_max == 0 ? "none" : fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max);
+  line("iterations", iterations + fmt::format("; residual {:.2g} at most", o.residual_max));
   if (std::isfinite(o.energy_final))
-    line("energy", fmt::format("{:.10g}; relative error {:.3g} at most", o.energy_final, o.energy_error_max));
+    line("energy", fmt::format("{:.10g}{}", o.energy_final,
+                               std::isfinite(o.energy_error_max)  // there is none relative to an energy of zero
+                                   ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
+                                   : ""));
   if (std::isfinite(o.error_linf))
-    line("error", fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf,
-                              o.error_l2));
+    line("error",
+         fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));
   line("status", o.status);
   return text;
 }

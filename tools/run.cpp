@@ -43,7 +43,8 @@ std::string drawn(const Scene& scene, int winding, const Recorder& recorder, con
   const bool angle = scene.problem.circle_valued || theory.find("sine-gordon") != std::string::npos;
   try {
     return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding,
-                         *recorder.film(), recorder.energy_errors(), scene.times}, folder);
+                         *recorder.film(), recorder.energy_errors(), scene.times},
+                        folder);
   } catch (const std::exception& error) {
     return error.what();
   }

@@ -27,9 +27,9 @@ Lattice read_lattice(const Settings& settings, const Values& values) {
     throw settings.error("lattice.space", "mechanics on a point is not in this version; use circle or interval");
   const auto sites = static_cast<int>(values.integer("lattice.sites"));
   const double length = values.real("lattice.length");
-  const Lattice lattice = space == "circle"
-      ? Lattice::circle(sites, length)
-      : Lattice::interval(sites, length, wall(values, "boundary.left"), wall(values, "boundary.right"));
+  const Lattice lattice = space == "circle" ? Lattice::circle(sites, length)
+                                            : Lattice::interval(sites, length, wall(values, "boundary.left"),
+                                                                wall(values, "boundary.right"));
   if (!std::isnormal(lattice.space_step()))
     throw settings.error("lattice.length", "L/N is too small for double precision; use a longer one");
   return lattice;
@@ -96,8 +96,9 @@ std::optional<StartRule> read_start(const Settings& settings, const Values& valu
   if (!values.given("initial.start")) return std::nullopt;
   const std::string rule = values.choice("initial.start");
   if (rule == "legendre")
-    throw settings.error("initial.start", "needs a composition or an element scheme, and those are not in this "
-                                          "version; use exact or centred");
+    throw settings.error("initial.start",
+                         "needs a composition or an element scheme, and those are not in this "
+                         "version; use exact or centred");
   return rule == "exact" ? StartRule::exact : StartRule::centred;
 }
 
@@ -105,8 +106,8 @@ std::int64_t read_steps(const Settings& settings, const Values& values, double t
   if (values.given("run.steps")) return values.integer("run.steps");
   const double steps = std::round(values.real("run.until") / time_step);
   if (!(steps <= find_key("run.steps")->range.high))
-    throw settings.error("run.until", fmt::format("is {:.3g} steps of {:.3g}, more than can be counted; use less", steps,
-                                                  time_step));
+    throw settings.error(
+        "run.until", fmt::format("is {:.3g} steps of {:.3g}, more than can be counted; use less", steps, time_step));
   return static_cast<std::int64_t>(steps);
 }
 
@@ -159,7 +160,8 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
     return "only initial.state = file reads it";
   if (key.starts_with("initial.") && find_key(key)->type == KeyType::real) {
     const auto& all = states();
-    const auto state = std::find_if(all.begin(), all.end(), [&](const StateInfo& s) { return s.name == scene.initial.name; });
+    const auto state =
+        std::find_if(all.begin(), all.end(), [&](const StateInfo& s) { return s.name == scene.initial.name; });
     const bool read = state != all.end() && state->parameters.find(key.substr(8)) != std::string::npos;
     return read ? "" : "the state " + scene.initial.name + " does not read it";
   }

@@ -20,19 +20,19 @@ struct Scene {
   explicit Scene(Settings given) : settings(std::move(given)) {}
 
   Settings settings;
-  std::string name;                     ///< of its file, without the ending
-  std::vector<std::string> warnings;    ///< lines for stderr: keys that have no effect
+  std::string name;                   ///< of its file, without the ending
+  std::vector<std::string> warnings;  ///< lines for stderr: keys that have no effect
 
-  Problem problem;                      ///< [theory] [lattice] [scheme]; the winding is still to come from the state
-  StateRequest initial;                 ///< [initial]; its name is "file" if the rows come from `initial_file`
-  std::filesystem::path initial_file;   ///< absolute
+  Problem problem;                     ///< [theory] [lattice] [scheme]; the winding is still to come from the state
+  StateRequest initial;                ///< [initial]; its name is "file" if the rows come from `initial_file`
+  std::filesystem::path initial_file;  ///< absolute
   int initial_frame = 0;
-  std::optional<StartRule> start;       ///< if the scene gives it
-  std::int64_t steps = 0;               ///< after row 0
+  std::optional<StartRule> start;  ///< if the scene gives it
+  std::int64_t steps = 0;          ///< after row 0
   int threads = 1;
-  std::int64_t every = 1;               ///< 0: the last row only
+  std::int64_t every = 1;  ///< 0: the last row only
   bool figures = true, fields = true;
-  std::vector<double> times;            ///< of the waveforms; empty: evenly spread
+  std::vector<double> times;  ///< of the waveforms; empty: evenly spread
 };
 
 /// Reads, checks and resolves the scene `file`; throws BadScene.

@@ -40,7 +40,8 @@ std::string read_scene_text(const std::filesystem::path& file) {
   std::string text(most_bytes + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), in.get()));
   if (std::ferror(in.get())) throw BadScene(fmt::format("{}: cannot be read; check the file", name));
-  if (text.size() > most_bytes) throw BadScene(fmt::format("{}: is too large for a scene; is it the right file?", name));
+  if (text.size() > most_bytes)
+    throw BadScene(fmt::format("{}: is too large for a scene; is it the right file?", name));
   if (text.find('\0') != std::string::npos || !is_utf8(text))
     throw BadScene(fmt::format("{}: is a binary file, not a scene; is it the right file?", name));
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);

@@ -115,7 +115,8 @@ Settings read_settings(const std::filesystem::path& file, const std::vector<Sett
   if (in_file.empty())
     throw BadScene(fmt::format("{}: the scene is empty; `delf list scenes` names some to copy", file.string()));
   for (const Setting& s : in_file)
-    if (!find_key(s.key)) throw BadScene(fmt::format("{}:{}: {}: {}", file.string(), s.line, s.key, unknown_key(s.key)));
+    if (!find_key(s.key))
+      throw BadScene(fmt::format("{}:{}: {}: {}", file.string(), s.line, s.key, unknown_key(s.key)));
   const Setting* first = nullptr;
   if (const Setting* again = given_twice(in_file, first))
     throw BadScene(fmt::format("{}:{}: {} = {}: line {} gives it already; keep one of them", file.string(), again->line,
@@ -127,8 +128,10 @@ void check_command_line(const std::vector<Setting>& on_command_line) {
   for (const Setting& s : on_command_line) {
     if (!find_key(s.key)) throw BadScene(fmt::format("command line: --{}: {}", s.key, unknown_key(s.key)));
     if (s.value.find_first_of("#\n\r") != std::string::npos)
-      throw BadScene(fmt::format("command line: --{}: a value holds neither # nor line breaks, for no scene could "
-                                 "repeat it; rename", s.key));
+      throw BadScene(
+          fmt::format("command line: --{}: a value holds neither # nor line breaks, for no scene could "
+                      "repeat it; rename",
+                      s.key));
   }
   const Setting* first = nullptr;
   if (const Setting* again = given_twice(on_command_line, first))

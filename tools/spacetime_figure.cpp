@@ -29,11 +29,14 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
     map.insert(map.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(space.size()));
   }
   // an angle that has drifted through many turns is shown by where it is away from its vacua
-  const auto tame = std::span(map).first(space.size() * static_cast<std::size_t>(std::min(frames, tame_frames(source))));
+  const auto tame =
+      std::span(map).first(space.size() * static_cast<std::size_t>(std::min(frames, tame_frames(source))));
   const auto [least, most] = std::ranges::minmax(tame);
   const bool drifts = source.angle && most - least > 8;
-  if (drifts) std::ranges::transform(map, map.begin(), [](double turns) {
-    return std::pow(std::sin(std::numbers::pi * turns), 2); });
+  const char* quantity = drifts ? "sin²(φ/2)" : source.angle ? "φ / 2π" : "φ";
+  if (drifts)
+    std::ranges::transform(map, map.begin(),
+                           [](double turns) { return std::pow(std::sin(std::numbers::pi * turns), 2); });
   write_text_file(scratch / "map", {reinterpret_cast<const char*>(map.data()), map.size() * sizeof(double)});
 
   const ColourScale scale = colour_scale(tame);
@@ -41,15 +44,17 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
   return gnuplot_colours(scale) +
          figure_title(fmt::format("{}: the field over space and time", source.scene),
                       fmt::format("{}, {}", source.theory, source.scheme)) +
-         fmt::format("set lmargin at screen 0.105\nset rmargin at screen 0.855\n"
-                     "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
-                     "set xlabel 'space x'\nset label 103 'time t' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
-                     "set label 104 '{}' at screen 0.886,0.885 center textcolor rgb '#333333'\n"
-                     "set border 15\nset colorbox user origin screen 0.875,0.12 size screen 0.022,0.735 noborder\n"
-                     "set cbtics {} scale 0.3\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
-                     "plot 'map' binary array=({},{}) dx={} dy={} origin=({},{}) format='%double' using 1 with image\n",
-                     drifts ? "sin²(φ/2)" : source.angle ? "φ / 2π" : "φ", nice_step(scale.most - scale.least, 8), space.front() - dx / 2,
-                     space.back() + dx / 2, t0 - dt / 2, t1 + dt / 2, space.size(), frames, dx, dt, space.front(), t0);
+         fmt::format(
+             "set lmargin at screen 0.105\nset rmargin at screen 0.855\n"
+             "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
+             "set xlabel 'space x'\nset label 103 'time t' at screen 0.025,0.4875 center rotate textcolor rgb "
+             "'#333333'\n"
+             "set label 104 '{}' at screen 0.886,0.885 center textcolor rgb '#333333'\n"
+             "set border 15\nset colorbox user origin screen 0.875,0.12 size screen 0.022,0.735 noborder\n"
+             "set cbtics {} scale 0.3\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
+             "plot 'map' binary array=({},{}) dx={} dy={} origin=({},{}) format='%double' using 1 with image\n",
+             quantity, nice_step(scale.most - scale.least, 8), space.front() - dx / 2, space.back() + dx / 2,
+             t0 - dt / 2, t1 + dt / 2, space.size(), frames, dx, dt, space.front(), t0);
 }
 
 }  // namespace delf

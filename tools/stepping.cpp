@@ -82,8 +82,10 @@ void Stepping::record_and_step() {
 void Stepping::fail(const NumericalFailure& error) {
   outcome_.status = dynamic_cast<const NotFinite*>(&error) ? "not-finite" : "no-convergence";
   const std::string what = error.what();
-  const std::string where = what.starts_with("step ") ? "" : fmt::format("step {}, t = {:.6g}: ", newest_ + 1,
-      static_cast<double>(newest_ + 1) * scene_.problem.time_step);
+  const std::string where = what.starts_with("step ")
+                                ? ""
+                                : fmt::format("step {}, t = {:.6g}: ", newest_ + 1,
+                                              static_cast<double>(newest_ + 1) * scene_.problem.time_step);
   outcome_.failure = fmt::format("{}{} (row {} is the last good one, and is saved)", where, what, newest_);
 }
 

@@ -10,7 +10,8 @@
 
 namespace delf {
 
-TextFile::TextFile(const std::filesystem::path& path) : path_(path), file_(std::fopen(path.c_str(), "wb"), std::fclose) {
+TextFile::TextFile(const std::filesystem::path& path)
+    : path_(path), file_(std::fopen(path.c_str(), "wb"), std::fclose) {
   if (!file_) fail();
 }
 
@@ -23,8 +24,8 @@ void TextFile::close() {
 }
 
 void TextFile::fail() const {
-  throw SystemFailure(fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(),
-                                  std::strerror(errno)));
+  throw SystemFailure(
+      fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), std::strerror(errno)));
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text) {

@@ -115,12 +115,24 @@ std::vector<double> Values::times(std::string_view key) const {
 void Values::check(const Key& key) const {
   if (!given(key.name)) return;
   switch (key.type) {
-    case KeyType::real: real(key.name); break;
-    case KeyType::integer: integer(key.name); break;
-    case KeyType::toggle: toggle(key.name); break;
-    case KeyType::choice: choice(key.name); break;
-    case KeyType::times: times(key.name); break;
-    case KeyType::text: text(key.name); break;
+    case KeyType::real:
+      real(key.name);
+      break;
+    case KeyType::integer:
+      integer(key.name);
+      break;
+    case KeyType::toggle:
+      toggle(key.name);
+      break;
+    case KeyType::choice:
+      choice(key.name);
+      break;
+    case KeyType::times:
+      times(key.name);
+      break;
+    case KeyType::text:
+      text(key.name);
+      break;
   }
 }
 

@@ -70,10 +70,11 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   const int rows = (panels + columns - 1) / columns;
   std::string body =
       figure_title(fmt::format("{}: waveforms", source.scene), fmt::format("{}, {}", source.theory, source.scheme)) +
-      fmt::format("set multiplot layout {},{} margins screen 0.105,0.97,0.125,0.82 spacing screen 0.03,0.085\n"
-                  "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xtics {}\n",
-                  rows, std::min(columns, panels), space.front(), space.back(), scale.least - room, scale.most + room,
-                  nice_step(space.back() - space.front(), panels > 1 ? 5 : 10));
+      fmt::format(
+          "set multiplot layout {},{} margins screen 0.105,0.97,0.125,0.82 spacing screen 0.03,0.085\n"
+          "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xtics {}\n",
+          rows, std::min(columns, panels), space.front(), space.back(), scale.least - room, scale.most + room,
+          nice_step(space.back() - space.front(), panels > 1 ? 5 : 10));
   for (int p = 0; p < panels; ++p) {
     const bool left = p % columns == 0, bottom = p + columns >= panels;
     body += fmt::format("set format y '{}'\nset format x '{}'\nset ylabel '{}'\nset xlabel '{}'\n", left ? "%h" : "",
@@ -81,10 +82,11 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
     body += fmt::format("set label 1 't = {:.4g}' at graph 0,1 left offset 0,0.7 textcolor rgb '#333333'\n",
                         source.film.time(frames[static_cast<std::size_t>(p)]));
     if (p == 0 && turned)
-      body += "set label 103 'whole turns of the field are taken off' at screen 0.97,0.905 right font ',11' "
-              "textcolor rgb '#666666'\n";
-    body += fmt::format("plot 'waveforms' index {} using 1:2 with lines lw 1.6 lc rgb '{}'\nunset label\n", p,
-                        line_colour);
+      body +=
+          "set label 103 'whole turns of the field are taken off' at screen 0.97,0.905 right font ',11' "
+          "textcolor rgb '#666666'\n";
+    body +=
+        fmt::format("plot 'waveforms' index {} using 1:2 with lines lw 1.6 lc rgb '{}'\nunset label\n", p, line_colour);
   }
   return body + "unset multiplot\n";
 }

@@ -47,6 +47,16 @@ double of_comparator(Residual stencil) {
   return worst;
 }
 
+/// ½|φ_t|² − ½|φ_x|² − ¼|φ|⁴ in ℝ²
+struct Rotor {
+  static constexpr int components = 2;
+  auto operator()(const auto& j) const {
+    const auto r = j.phi[0] * j.phi[0] + j.phi[1] * j.phi[1];
+    return 0.5 * (j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1]) - 0.5 * (j.phi_x[0] * j.phi_x[0] + j.phi_x[1] * j.phi_x[1]) -
+           0.25 * r * r;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("the sum of the Cartan forms is dL, on every stencil for every theory") {
@@ -143,14 +153,6 @@ TEST_CASE("the momentum of translations φ → φ + ε sums to zero on every ste
 }
 
 TEST_CASE("with two components the forms sum over those of their vertex alone, and rotations have a momentum") {
-  struct Rotor {  // ½|φ_t|² − ½|φ_x|² − ¼|φ|⁴ in ℝ²
-    static constexpr int components = 2;
-    auto operator()(const auto& j) const {
-      const auto r = j.phi[0] * j.phi[0] + j.phi[1] * j.phi[1];
-      return 0.5 * (j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1]) - 0.5 * (j.phi_x[0] * j.phi_x[0] + j.phi_x[1] * j.phi_x[1]) -
-             0.25 * r * r;
-    }
-  };
   Random random(18);
   const auto lagrangian = discrete_lagrangian(rectangle, Rotor{});
   const auto y = random.array<8>(-1, 1), V = random.array<8>(-1, 1), W = random.array<8>(-1, 1);

@@ -58,7 +58,8 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 
 std::string small_scene(const std::string& more) {
   return "[theory]\nname = sine-gordon\n[lattice]\nlength = 20\nsites = 64\ncourant = 0.5\n"
-         "[initial]\nstate = breather\n[run]\nsteps = 100\n[output]\nfigures = off\n" + more;
+         "[initial]\nstate = breather\n[run]\nsteps = 100\n[output]\nfigures = off\n" +
+         more;
 }
 
 }  // namespace delf::testing

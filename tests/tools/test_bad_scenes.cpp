@@ -108,9 +108,12 @@ TEST_CASE("what a scene must give is asked for") {
     folder.write("bad.ini", text);
     check_refused(delf_program(folder, "run bad.ini"), {"bad.ini: ", reason});
   };
-  refused("[run]\nsteps = 1\n[lattice]\nsites = 9\nlength = 1\n[initial]\nstate = kink\n", "neither lattice.courant nor lattice.time_step");
-  refused("[lattice]\nsites = 9\nlength = 1\ncourant = 1\n[initial]\nstate = kink\n", "neither run.until nor run.steps");
-  refused("[run]\nsteps = 1\n[lattice]\nlength = 1\ncourant = 1\n[initial]\nstate = kink\n", "lattice.sites: must be given");
+  refused("[run]\nsteps = 1\n[lattice]\nsites = 9\nlength = 1\n[initial]\nstate = kink\n",
+          "neither lattice.courant nor lattice.time_step");
+  refused("[lattice]\nsites = 9\nlength = 1\ncourant = 1\n[initial]\nstate = kink\n",
+          "neither run.until nor run.steps");
+  refused("[run]\nsteps = 1\n[lattice]\nlength = 1\ncourant = 1\n[initial]\nstate = kink\n",
+          "lattice.sites: must be given");
   refused("[run]\nsteps = 1\n[lattice]\nsites = 9\nlength = 1\ncourant = 1\n", "initial.state: must be given");
   refused("", "the scene is empty");
   refused("# only this\n\n", "the scene is empty");
@@ -127,7 +130,8 @@ TEST_CASE("what is no scene at all is refused in one line") {
   check_refused(delf_program(folder, "run latin"), {"latin: is a binary file"});
   check_refused(delf_program(folder, "run huge"), {"huge: is too large"});
   check_refused(delf_program(folder, "run missing/scene.ini"), {"missing/scene.ini: no such file"});
-  check_refused(delf_program(folder, "run colision"), {"colision: no such file or shipped scene; did you mean collision?"});
+  check_refused(delf_program(folder, "run colision"),
+                {"colision: no such file or shipped scene; did you mean collision?"});
   check_refused(delf_program(folder, "run collision.ini"), {"did you mean collision?"});
   check_refused(delf_program(folder, "run qwertyuiop"), {"known: breather, collision"});
   check_refused(delf_program(folder, "run ''"), {"no such file"});

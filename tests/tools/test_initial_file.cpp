@@ -8,14 +8,15 @@
 using namespace delf::testing;
 using delf::FieldsReader;
 
-TEST_CASE("a run goes on from the rows of another: an explicit one to the same bits") {
+TEST_CASE("a run goes on from the rows of another") {
   const Folder folder;
   folder.write("small.ini", small_scene("every = 1\n"));
   const auto scene = GENERATE(as<std::string>(), "small.ini --lattice.stencil=triangle-vertex", "small.ini",
                               "kink-train --output.every=1 --output.figures=off");
   REQUIRE(delf_program(folder, "run " + scene + " --run.steps=60 --out whole").code == 0);
-  const Ran part = delf_program(folder, "run " + scene + " --run.steps=35 --initial.state=file "
-                                        "--initial.file=whole/fields.h5 --initial.frame=25 --out part");
+  const Ran part = delf_program(folder, "run " + scene +
+                                            " --run.steps=35 --initial.state=file "
+                                            "--initial.file=whole/fields.h5 --initial.frame=25 --out part");
   INFO(part.err);
   REQUIRE(part.code == 0);
   const FieldsReader whole(folder / "whole/fields.h5"), rest(folder / "part/fields.h5");

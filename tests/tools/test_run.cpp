@@ -46,10 +46,12 @@ TEST_CASE("a run leaves its scene, series, summary and fields, and a report on s
   CHECK(*fields.winding() == 0);
 
   const auto json = summary(folder, "results/small");
-  for (const char* key : {"version", "scene", "theory", "stencil", "method", "sites", "space_step", "time_step", "steps",
-                          "time", "seconds", "ns_per_site_step", "solve", "solve_kind", "iterations_mean",
-                          "iterations_max", "residual_max", "energy_initial", "energy_final", "energy_error_max",
-                          "error_linf", "error_l2", "status"}) {
+  for (const char* key : {"version",      "scene",          "theory",          "stencil",
+                          "method",       "sites",          "space_step",      "time_step",
+                          "steps",        "time",           "seconds",         "ns_per_site_step",
+                          "solve",        "solve_kind",     "iterations_mean", "iterations_max",
+                          "residual_max", "energy_initial", "energy_final",    "energy_error_max",
+                          "error_linf",   "error_l2",       "status"}) {
     INFO(key);
     REQUIRE(json.contains(key));
     CHECK_FALSE(json[key].is_null());
@@ -64,9 +66,10 @@ TEST_CASE("a run leaves its scene, series, summary and fields, and a report on s
 }
 
 TEST_CASE("the resolved scene runs again to the same bits") {
-  const auto scene = GENERATE(as<std::string>(), "small.ini", "small.ini --initial.start=centred", "kink-train",
-                              "collision --lattice.stencil=hexagon --lattice.sites=254", "interval --run.until=3",
-                              "phi4-kink --lattice.stencil=triangle-vertex", "small.ini --initial.state=noise --run.seed=7");
+  const auto scene =
+      GENERATE(as<std::string>(), "small.ini", "small.ini --initial.start=centred", "kink-train",
+               "collision --lattice.stencil=hexagon --lattice.sites=254", "interval --run.until=3",
+               "phi4-kink --lattice.stencil=triangle-vertex", "small.ini --initial.state=noise --run.seed=7");
   const Folder folder;
   folder.write("small.ini", small_scene());
   const std::string steps = contains(scene, "until") ? "" : " --run.steps=60";

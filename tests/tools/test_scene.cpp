@@ -43,8 +43,8 @@ TEST_CASE("a scene gives its keys, and the table of keys what it leaves out") {
 
 TEST_CASE("the command line wins over the file, and over the other way to say the same") {
   const Folder folder;
-  const Scene scene = scene_of(folder, small_scene(),
-                               {{"lattice.sites", "128"}, {"lattice.time_step", "0.03"}, {"run.until", "1"}});
+  const Scene scene =
+      scene_of(folder, small_scene(), {{"lattice.sites", "128"}, {"lattice.time_step", "0.03"}, {"run.until", "1"}});
   CHECK(scene.problem.lattice.sites() == 128);
   CHECK(scene.problem.time_step == 0.03);
   CHECK(scene.steps == 33);
@@ -76,7 +76,7 @@ TEST_CASE("about 400 rows are recorded if the scene does not say how many") {
 TEST_CASE("line ends of DOS, a byte-order mark, comments and white space mean nothing") {
   const Folder folder;
   std::string text = "\xef\xbb\xbf# comment\n\n" + small_scene("  every   =  3   # thrice\n");
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, "\r");
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, 1, '\r');
   CHECK(scene_of(folder, text).every == 3);
 }
 
@@ -96,15 +96,17 @@ TEST_CASE("keys that have no effect are warned of, with their line, and stop not
 
 TEST_CASE("keys of a later command are read, and ignored") {
   const Folder folder;
-  const Scene scene = scene_of(folder, small_scene("[verify]\nregions = 9\nvariations = 3\ntolerance = 1e-13\nchecks = all\n"));
+  const Scene scene =
+      scene_of(folder, small_scene("[verify]\nregions = 9\nvariations = 3\ntolerance = 1e-13\nchecks = all\n"));
   CHECK(scene.warnings.empty());
   CHECK_THROWS_AS(scene_of(folder, small_scene("[verify]\ntolerance = x\n")), BadScene);
 }
 
 TEST_CASE("the resolved scene reads back as the same scene, and resolves to the same text") {
   const Folder folder;
-  const Scene scene = scene_of(folder, small_scene("[lattice]\nstencil = triangle\n[theory]\nmass = 1.25\nlambda = 3\n"),
-                               {{"run.until", "4.7"}, {"lattice.courant", "0.3"}});
+  const Scene scene =
+      scene_of(folder, small_scene("[lattice]\nstencil = triangle\n[theory]\nmass = 1.25\nlambda = 3\n"),
+               {{"run.until", "4.7"}, {"lattice.courant", "0.3"}});
   const std::string text = resolved_text(scene, StartRule::centred, "words");
   const Scene again = read_scene(folder.write("again.ini", text), {});
   CHECK(again.problem.time_step == scene.problem.time_step);

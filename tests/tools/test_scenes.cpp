@@ -41,7 +41,8 @@ TEST_CASE("the scenes of the issue are shipped, each with its equation and the c
     REQUIRE_FALSE(commands.empty());
     CHECK(commands.front() == "run " + scene.name);
   }
-  CHECK(names == std::vector<std::string>{"breather", "collision", "interval", "kink", "kink-train", "phi4-kink", "wave-packet"});
+  CHECK(names == std::vector<std::string>{"breather", "collision", "interval", "kink", "kink-train", "phi4-kink",
+                                          "wave-packet"});
 }
 
 TEST_CASE("every command that a scene names runs, and warns of nothing") {

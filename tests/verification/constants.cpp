@@ -59,7 +59,8 @@ TEST_CASE("the constants tell schemes and Courant numbers apart") {
     for (std::size_t other = 0; other < 5; ++other) {
       if (other == s) continue;
       bool alike = true;
-      for (const Constants& row : reference) alike = alike && agree(measured(paper_schemes[s], row.courant), row.of_scheme[other]);
+      for (const Constants& row : reference)
+        alike = alike && agree(measured(paper_schemes[s], row.courant), row.of_scheme[other]);
       CHECK_FALSE(alike);
     }
   }

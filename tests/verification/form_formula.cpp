@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "tests/catch.hpp"
 #include "tests/verification/patch.hpp"
@@ -10,10 +12,7 @@ using namespace delf::testing;
 
 namespace {
 
-const std::vector<SchemeName> variational_schemes(all_schemes.begin(), all_schemes.end() - 2);
-const std::vector<SchemeName> comparators(all_schemes.end() - 2, all_schemes.end());
-const std::vector<Lattice> lattices{Lattice::circle(64, 40),
-                                    Lattice::interval(64, 40, Wall::natural, Wall::natural)};
+const std::vector<Lattice> lattices{Lattice::circle(64, 40), Lattice::interval(64, 40, Wall::natural, Wall::natural)};
 constexpr double round_off = 1e-13;
 
 /// A scheme with a random field on a random region.

@@ -53,7 +53,7 @@ inline Region random_region(std::mt19937& random, const Lattice& lattice, const 
   const Region around = Region::from_sites(lattice, {pattern}, centres);
   std::vector<Site> sites;
   for (const Site centre : around.sites())
-    for (const Stencil& stencil : around.touching(centre)) sites.insert(sites.end(), stencil.sites.begin(), stencil.sites.end());
+    for (const Stencil& s : around.touching(centre)) sites.insert(sites.end(), s.sites.begin(), s.sites.end());
   return Region::from_sites(lattice, {pattern}, sites);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "tests/catch.hpp"
@@ -11,7 +13,7 @@ using namespace delf::testing;
 
 namespace {
 
-// Marsden-Patrick-Shkoller, section 5.2: space a circle of length 40, N = 255, h = k/8, 1 - kappa = 1e-6. Computed in
+// Marsden–Patrick–Shkoller, §5.2: space a circle of length 40, N = 255, h = k/8, 1 − κ = 1e-6. Computed in
 // quadruple precision by another program; the energy is the sum of footnote 4, without the factor k.
 constexpr std::array<std::size_t, 6> sites{0, 20, 32, 64, 128, 200};
 struct Snapshot {
@@ -77,8 +79,8 @@ const std::vector<ReferenceRun> reference_runs{
 };
 
 struct Deviation {
-  double y = 0;       // largest |y - y_reference|
-  double energy = 0;  // largest |H / k Sum - 1|
+  double y = 0;       // largest |y − y_reference|
+  double energy = 0;  // largest |H/(kΣ) − 1|
 };
 
 Deviation deviation(const ReferenceRun& reference, const SchemeName& scheme, double epsilon) {

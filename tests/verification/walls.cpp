@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+
+#include "tests/catch.hpp"
+#include "tests/verification/experiment.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+/// A solution that the walls allow.
+struct Solution {
+  const char* name;
+  const char* theory;
+  Wall left, right;
+  double length, until;
+};
+constexpr Wall fixed = Wall::fixed, natural = Wall::natural;
+
+// φ = X(x) cos ωt, X the second standing mode: sin or cos of a multiple of x, with a node or a crest at each wall.
+constexpr Solution nodes{"plane-wave", "klein-gordon", fixed, fixed, 10, 4};
+constexpr Solution crests{"plane-wave", "klein-gordon", natural, natural, 10, 4};
+constexpr Solution crest_node{"plane-wave", "klein-gordon", natural, fixed, 10, 4};
+constexpr Solution node_crest{"plane-wave", "klein-gordon", fixed, natural, 10, 4};
+// A breather centred at a wall is even there, φ_x = 0; a pair of kinks is odd, φ = 0. The other wall is far away.
+constexpr Solution half_breather{"breather", "sine-gordon", natural, fixed, 20, 6};
+constexpr Solution breathers_other_half{"breather", "sine-gordon", fixed, natural, 20, 6};
+constexpr Solution half_pair{"kink-kink", "sine-gordon", fixed, fixed, 30, 6};
+
+double error_at(const SchemeName& scheme, const Solution& solution, int cells, Start how) {
+  const Lattice lattice = Lattice::interval(cells + 1, solution.length, solution.left, solution.right);
+  const Problem p = problem_for(scheme, solution.theory, lattice, 0.5);
+  StateRequest request;
+  request.name = solution.name, request.theory = solution.theory;
+  if (request.name == "plane-wave")
+    request.wavenumber = 2;
+  else
+    request.position = solution.right == natural ? solution.length : 0;
+  if (request.name == "breather") request.frequency = 0.6;
+  if (request.name == "kink-kink") request.speed = 0.5, request.separation = 6;
+  const int steps = static_cast<int>(std::lround(solution.until / p.time_step));
+  return final_error(p, *make_state(request, lattice), steps, how);
+}
+
+double measured_order(const SchemeName& scheme, const Solution& solution, Start how) {
+  return order(error_at(scheme, solution, 640, how), error_at(scheme, solution, 1280, how), 2);
+}
+
+bool first(double p) { return 0.9 <= p && p <= 1.1; }
+bool second(double p) { return 1.9 <= p && p <= 2.1; }
+
+/// The distance after 400 steps between an interval and the circle twice as long of which it is one half, with data
+/// that are even (natural walls) or odd (fixed walls) about both its ends.
+double from_mirror_image(const SchemeName& scheme, Wall wall) {
+  const int M = 40;
+  const double sign = wall == natural ? 1 : -1, q = std::numbers::pi / 10;
+  const Lattice half = Lattice::interval(M + 1, 10, wall, wall), whole = Lattice::circle(2 * M, 20);
+  Row y0(M + 1), y1(M + 1), z0(2 * M), z1(2 * M);
+  for (std::size_t i = 0; i <= M; ++i) {
+    const double x = half.position(static_cast<int>(i));
+    y0[i] = wall == natural ? 2 * std::cos(2 * q * x) + std::cos(q * x) : 3 * std::sin(2 * q * x);
+    if (wall == fixed && (i == 0 || i == M)) y0[i] = 0;
+    y1[i] = 0.99 * y0[i];
+    z0[i] = y0[i], z1[i] = y1[i];
+    if (i > 0 && i < M) z0[2 * M - i] = sign * y0[i], z1[2 * M - i] = sign * y1[i];
+  }
+  Simulation a(problem_for(scheme, "sine-gordon", half, 0.5)), b(problem_for(scheme, "sine-gordon", whole, 0.5));
+  a.start({y0, y1});
+  b.start({z0, z1});
+  for (int n = 2; n <= 400; ++n) a.step(), b.step();
+  Row image = newest(b, whole);
+  image.resize(M + 1);
+  return distance(newest(a, half), image);
+}
+
+}  // namespace
+
+TEST_CASE("fixed walls are of second order for every scheme on an interval") {
+  for (const Solution& solution : {nodes, half_pair})
+    for (const char* scheme : {"triangle", "triangle-vertex", "rectangle", "rectangle-symmetric", "vu-quoc-li", "guo"})
+      for (const Start how : {Start::exact, Start::centred}) {
+        const bool comparator = std::string(scheme) == "vu-quoc-li" || std::string(scheme) == "guo";
+        const SchemeName name = comparator ? SchemeName{"", scheme} : SchemeName{scheme};
+        const double p = measured_order(name, solution, how);
+        CAPTURE(solution.name, scheme, how == Start::exact, p);
+        CHECK(second(p));
+      }
+}
+
+TEST_CASE("natural walls are of second order for rectangles") {
+  for (const Solution& solution : {crests, crest_node, node_crest, half_breather, breathers_other_half})
+    for (const SchemeName& scheme : {SchemeName{"rectangle"}, SchemeName{"rectangle-symmetric"}})
+      for (const Start how : {Start::exact, Start::centred}) {
+        const double p = measured_order(scheme, solution, how);
+        CAPTURE(solution.name, scheme.text(), how == Start::exact, p);
+        CHECK(second(p));
+      }
+}
+
+TEST_CASE("natural walls are of first order for triangles, which lack the kinetic term at one of them") {
+  for (const Solution& solution : {crests, crest_node, node_crest, half_breather, breathers_other_half})
+    for (const SchemeName& scheme : {SchemeName{"triangle"}, SchemeName{"triangle-vertex"}})
+      for (const Start how : {Start::exact, Start::centred}) {
+        const double p = measured_order(scheme, solution, how);
+        CAPTURE(solution.name, scheme.text(), how == Start::exact, p);
+        CHECK(first(p));
+      }
+}
+
+TEST_CASE("to rectangles a natural wall is a mirror, and a fixed wall one that changes the sign") {
+  for (const SchemeName& scheme : {SchemeName{"rectangle"}, SchemeName{"rectangle-symmetric"}})
+    for (const Wall wall : {natural, fixed}) {
+      CAPTURE(scheme.text(), wall == natural);
+      CHECK(from_mirror_image(scheme, wall) < 1e-11);
+    }
+}
+
+TEST_CASE("the mirror can fail: triangles are not symmetric under reflection") {
+  CHECK(from_mirror_image({"triangle"}, natural) > 1e-3);
+}
