@@ -2,38 +2,48 @@
 #include "schemes/nearest_name.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
-#include <numeric>
 
 namespace delf {
 namespace {
 
-// d(i, j) = min( d(i−1, j) + 1, d(i, j−1) + 1, d(i−1, j−1) + [aᵢ ≠ bⱼ] )              Wagner–Fischer
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0u : 1u)});
-      diagonal = above;
+std::string folded(std::string_view text) {
+  std::string out(text.substr(0, 100));
+  for (char& c : out) c = c == '_' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+// d(i, j) = min(d(i−1, j) + 1, d(i, j−1) + 1, d(i−1, j−1) + [a_i ≠ b_j], d(i−2, j−2) + 1 if the two are swapped)
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
-  }
-  return row.back();
+  return d[a.size()][b.size()];
 }
 
 }  // namespace
 
 std::optional<std::string> nearest(std::string_view name, const std::vector<std::string>& known) {
+  const std::string wanted = folded(name);
   std::optional<std::string> best;
-  std::size_t least = 2 + name.size() / 3;
-  for (const std::string& candidate : known)
-    if (const std::size_t d = edit_distance(name, candidate); d < least) {
+  std::size_t least = 2 + wanted.size() / 3;
+  for (const std::string& candidate : known) {
+    const std::string other = folded(candidate);
+    const bool begun = wanted.size() > 2 && other.starts_with(wanted);
+    if (const std::size_t d = begun ? 0 : edit_distance(wanted, other); d < least && d < std::max(wanted.size(), other.size())) {
       least = d;
       best = candidate;
     }
+  }
   return best;
 }
 

@@ -8,7 +8,7 @@
 
 #include "tools/help.hpp"
 #include "tools/list.hpp"
-#include "tools/nearest.hpp"
+#include "tools/suggestion.hpp"
 #include "tools/plan.hpp"
 #include "tools/run.hpp"
 #include "tools/scene.hpp"

@@ -6,7 +6,7 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
-#include "tools/nearest.hpp"
+#include "schemes/nearest_name.hpp"
 
 namespace delf {
 
@@ -133,12 +133,12 @@ std::string nearest_key(std::string_view unknown) {
     full.emplace_back(key.name);
     if (last(key.name) == last(unknown)) same_last.emplace_back(key.name);
   }
-  if (const std::string close = nearest(unknown, full); !close.empty()) return close;
+  if (const auto close = nearest(unknown, full)) return *close;
   if (!same_last.empty()) return same_last.front();
   Names lasts;
   for (const Key& key : table) lasts.emplace_back(last(key.name));
-  const std::string close = nearest(last(unknown), lasts);
-  const auto at = std::find(lasts.begin(), lasts.end(), close);
+  const auto close = nearest(last(unknown), lasts);
+  const auto at = close ? std::find(lasts.begin(), lasts.end(), *close) : lasts.end();
   return at == lasts.end() ? std::string() : full[static_cast<std::size_t>(at - lasts.begin())];
 }
 

@@ -7,7 +7,7 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
-#include "tools/nearest.hpp"
+#include "tools/suggestion.hpp"
 #include "tools/shipped_scenes.hpp"
 
 namespace delf {

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "tools/failure.hpp"
-#include "tools/nearest.hpp"
+#include "tools/suggestion.hpp"
 #include "tools/scene_text.hpp"
 
 namespace delf {

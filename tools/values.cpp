@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "tools/nearest.hpp"
+#include "tools/suggestion.hpp"
 #include "tools/scene_text.hpp"
 
 namespace delf {

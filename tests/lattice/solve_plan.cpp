@@ -79,7 +79,7 @@ TEST_CASE("with fixed walls the same bands have no corners, and the triangle is 
   CHECK(chain.describe() == "chain, width 0+1, 254 unknowns a slab, leftwards");
 }
 
-TEST_CASE("the wave equation on triangles is explicit; one more coupling and it is not") {
+TEST_CASE("the wave equation on triangles is explicit, and one more coupling makes it implicit") {
   CHECK(make_plan(circle, wave_on_triangles).describe() == "explicit, 256 unknowns a slab");
   CHECK(make_plan(fixed_walls, wave_on_triangles).kind == SolveKind::explicit_);
   CHECK(make_plan(circle, coupled(shapes::triangle, {{0, 1}, {1, 2}, {0, 2}})).kind == SolveKind::cyclic_band);

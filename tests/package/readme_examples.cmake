@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Every ```cpp block of the README is a program; the ```text block after it is what it prints. Builds each against the
 # installed library and compares.
+cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK}/source)
 file(READ ${DELF_SOURCE}/README.md rest)
@@ -38,9 +39,9 @@ execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK}/source -B ${WORK}/build -G $
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build --config ${BUILD_TYPE} COMMAND_ERROR_IS_FATAL ANY)
 math(EXPR last "${count} - 1")
 foreach(i RANGE ${last})
-  unset(program CACHE)
-  find_program(program example_${i} PATHS ${WORK}/build PATH_SUFFIXES ${BUILD_TYPE} NO_DEFAULT_PATH REQUIRED)
-  execute_process(COMMAND ${program} OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
+  unset(executable CACHE)
+  find_program(executable example_${i} PATHS ${WORK}/build PATH_SUFFIXES ${BUILD_TYPE} NO_DEFAULT_PATH REQUIRED)
+  execute_process(COMMAND ${executable} OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
   if(NOT printed STREQUAL expected_${i})
     message(FATAL_ERROR "example ${i} of README.md printed\n${printed}and the README says\n${expected_${i}}")
   endif()

@@ -3,7 +3,7 @@
 #include "tests/tools/program.hpp"
 #include "tools/failure.hpp"
 #include "tools/keys.hpp"
-#include "tools/nearest.hpp"
+#include "schemes/nearest_name.hpp"
 
 using namespace delf::testing;
 
@@ -74,8 +74,8 @@ TEST_CASE("the nearest name is found within a few typing errors, and none far aw
   CHECK(delf::nearest("recatngle", names) == "rectangle");
   CHECK(delf::nearest("rectangle_symetric", names) == "rectangle-symmetric");
   CHECK(delf::nearest("hex", names) == "hexagon");
-  CHECK(delf::nearest("banana", names).empty());
-  CHECK(delf::nearest("", names).empty());
+  CHECK_FALSE(delf::nearest("banana", names));
+  CHECK_FALSE(delf::nearest("", names));
 }
 
 TEST_CASE("every kind of failure has its exit code") {

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/energy.hpp"
+
+#include "tests/catch.hpp"
+#include "tests/schemes/support.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+/// k times the sum of footnote 4 over the cells, and −k Σ φ_x φ_t on the same jets.
+EnergyMomentum footnote_4(const Problem& p, const Row& y0, const Row& y1) {
+  const int N = p.lattice.sites(), cells = p.lattice.is_circle() ? N : N - 1;
+  const double h = p.time_step, k = p.lattice.space_step();
+  const auto potential = [&](double y, double x) {
+    const double m2 = p.mass * p.mass, q = (x - p.impurity_position) / p.impurity_width;
+    if (p.theory == "klein-gordon") return m2 * y * y / 2;
+    if (p.theory == "sine-gordon") return m2 * (1 - std::cos(y));
+    if (p.theory == "phi4") return p.lambda * (y * y - 1) * (y * y - 1) / 4;
+    if (p.theory == "double-sine-gordon") return m2 * (1 - std::cos(y)) + p.lambda * (1 - std::cos(2 * y)) / 2;
+    if (p.theory == "sine-gordon-impurity") return m2 * (1 + p.impurity_strength * std::exp(-q * q)) * (1 - std::cos(y));
+    return 0.0;
+  };
+  EnergyMomentum sums;
+  for (int i = 0; i < cells; ++i) {
+    const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>((i + 1) % N);
+    const double phi_t = (y1[a] - y0[a] + y1[b] - y0[b]) / (2 * h), phi_x = (y0[b] - y0[a] + y1[b] - y1[a]) / (2 * k);
+    const double mean = (y0[a] + y0[b] + y1[a] + y1[b]) / 4;
+    sums.energy += k * ((phi_t * phi_t + phi_x * phi_x) / 2 + potential(mean, p.lattice.position(i) + k / 2));
+    sums.momentum -= k * phi_x * phi_t;
+  }
+  return sums;
+}
+
+}  // namespace
+
+TEST_CASE("energy and momentum of every theory are the sums of footnote 4 over every cell") {
+  Random random(81);
+  for (const std::string& theory : theory_names())
+    for (const Lattice& lattice : {Lattice::circle(3, 1), Lattice::circle(37, 10), Lattice::interval(37, 10), Lattice::interval(64, 10)}) {
+      CAPTURE(theory, lattice.sites(), lattice.is_circle());
+      Problem p = problem_of(theory);
+      p.lattice = lattice, p.time_step = 0.1, p.stencil = "triangle";
+      Simulation simulation(p);
+      const std::vector<Row> rows = random_rows(random, 2, lattice.sites(), 1);
+      simulation.start(rows);
+      const auto found = simulation.monitors();
+      const EnergyMomentum expected = footnote_4(p, rows[0], rows[1]);
+      CHECK(std::abs(found.energy - expected.energy) < 1e-13 * expected.energy);
+      CHECK(std::abs(found.momentum - expected.momentum) < 1e-13 * expected.energy);
+    }
+}
+
+TEST_CASE("the sums can be seen to differ: another potential, one cell too few") {
+  Random random(82);
+  Problem p = problem_of("phi4");
+  p.lattice = Lattice::circle(37, 10), p.time_step = 0.1, p.stencil = "triangle";
+  Simulation simulation(p);
+  const std::vector<Row> rows = random_rows(random, 2, 37, 1);
+  simulation.start(rows);
+  const double energy = simulation.monitors().energy;
+  Problem other = p;
+  other.theory = "sine-gordon";
+  CHECK(std::abs(energy - footnote_4(other, rows[0], rows[1]).energy) > 1e-3 * energy);
+  other = p;
+  other.lattice = Lattice::interval(37, 10 * 36. / 37);
+  CHECK(std::abs(energy - footnote_4(other, rows[0], rows[1]).energy) > 1e-3 * energy);
+}

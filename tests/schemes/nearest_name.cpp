@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/nearest_name.hpp"
+
+#include "tests/catch.hpp"
+
+using namespace delf;
+
+TEST_CASE("the nearest stencil, theory, or method is the one a typing error away") {
+  const std::vector<std::string> stencils{"triangle", "triangle-vertex", "rectangle", "rectangle-symmetric", "hexagon"};
+  CHECK(nearest("rectange", stencils) == "rectangle");
+  CHECK(nearest("rectangle-symetric", stencils) == "rectangle-symmetric");
+  CHECK(nearest("hexagone", stencils) == "hexagon");
+  CHECK(nearest("triangle", stencils) == "triangle");
+}
+
+TEST_CASE("of equally near names the first is taken") {
+  CHECK(nearest("cat", {"bat", "hat"}) == "bat");
+  CHECK(nearest("cat", {"hat", "bat"}) == "hat");
+}
+
+TEST_CASE("a name that would need more than 1 + a third of its letters changed is not suggested") {
+  // |name| = 6: three edits at most
+  CHECK(nearest("abcdef", {"abcxyz"}) == "abcxyz");
+  CHECK_FALSE(nearest("abcdef", {"abwxyz"}));
+  CHECK_FALSE(nearest("", {"ab"}));
+  CHECK_FALSE(nearest("abc", {}));
+  // insertions and deletions count one each
+  CHECK(nearest("aabbcc", {"abc"}) == "abc");
+}

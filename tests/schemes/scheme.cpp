@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/scheme.hpp"
+
+#include <numbers>
+
+#include "jets/hexagon_jet.hpp"
+#include "lattice/rectangle.hpp"
+#include "schemes/theories/phi4.hpp"
+#include "schemes/theories/sine_gordon.hpp"
+#include "tests/catch.hpp"
+#include "tests/schemes/support.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+/// A user's theory: ℓ = ½φ_t² − ½φ_x² − ¼(φ² − 1)²
+struct MyPhiFour {
+  auto operator()(const auto& j) const {
+    const auto w = j.phi * j.phi - 1.0;
+    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) - 0.25 * w * w;
+  }
+};
+
+/// A user's stencil: the rectangle with one quadrature point at each corner, whose jet looks along the two edges there.
+/// Its equation has the five coefficients of (5.8) and N′ at the site alone: leapfrog.
+struct Corners {
+  static constexpr JetTable<4, 4> table{shapes::rectangle,
+                                        1,
+                                        {{{.25, {1, 0, 0, 0}, {-1, 1, 0, 0}, {-1, 0, 0, 1}},
+                                          {.25, {0, 1, 0, 0}, {-1, 1, 0, 0}, {0, -1, 1, 0}},
+                                          {.25, {0, 0, 1, 0}, {0, 0, 1, -1}, {0, -1, 1, 0}},
+                                          {.25, {0, 0, 0, 1}, {0, 0, 1, -1}, {-1, 0, 0, 1}}}}};
+};
+
+/// A user's stencil with a shape of its own: fourth order in space, L = (4/3) L_1 − (1/3) L_2 with D_m = (y_{i+m} − y_i)/mk
+/// on the pairs {i, i+1} and {i, i+2} of errata's wide stencils, as points with weights.
+struct Wide {
+  static constexpr JetTable<6, 4> table{Offsets<6>{{{{0, 0}, {0, 1}, {0, 2}, {1, 0}, {1, 1}, {1, 2}}}},
+                                        1,
+                                        {{{2. / 3, {1, 0, 0, 0, 0, 0}, {-1, 0, 0, 1, 0, 0}, {-1, 1, 0, 0, 0, 0}},
+                                          {2. / 3, {0, 1, 0, 0, 0, 0}, {0, -1, 0, 0, 1, 0}, {-1, 1, 0, 0, 0, 0}},
+                                          {-1. / 6, {1, 0, 0, 0, 0, 0}, {-1, 0, 0, 1, 0, 0}, {-.5, 0, .5, 0, 0, 0}},
+                                          {-1. / 6, {0, 0, 1, 0, 0, 0}, {0, 0, -1, 0, 0, 1}, {-.5, 0, .5, 0, 0, 0}}}}};
+};
+
+double breather(double t, double x) {
+  const double w = 0.6, a = std::sqrt(1 - w * w);
+  return 4 * std::atan(a / w * std::cos(w * t) / std::cosh(a * x));
+}
+
+/// max |y − φ| at t = 2 from exact rows.
+template <class Map>
+double error(Map map, int sites, double h) {
+  const auto lattice = Lattice::circle(sites, 40);
+  auto evolution = Scheme{map, SineGordon{}}.on(lattice, h);
+  const auto exact = [&](double t) {
+    Row row;
+    for (int i = 0; i < sites; ++i) row.push_back(breather(t, lattice.position(i) - 20));
+    return row;
+  };
+  Stepper& stepper = evolution.stepper();
+  stepper.start({exact(0), exact(h)});
+  while (static_cast<double>(stepper.newest()) * h < 2 - h / 2) stepper.step();
+  return distance(stepper.row(0), exact(static_cast<double>(stepper.newest()) * h));
+}
+
+}  // namespace
+
+TEST_CASE("a user's theory on a shipped stencil is that of the registry, to the bit") {
+  const Lattice lattice = Lattice::circle(64, 20);
+  const double h = 0.1;
+  auto mine = Scheme{hexagon, MyPhiFour{}}.on(lattice, h);
+  Problem p;
+  p.theory = "phi4", p.lambda = 1, p.lattice = lattice, p.stencil = "hexagon", p.time_step = h;
+  Simulation theirs(p);
+  Row y0;
+  for (int i = 0; i < 64; ++i) y0.push_back(std::tanh(std::sin(2 * std::numbers::pi * i / 64)));
+  mine.stepper().start({y0, y0});
+  theirs.start({y0, y0});
+  for (int n = 0; n < 50; ++n) mine.stepper().step(), theirs.step();
+  Row row(64);
+  theirs.copy_row(0, row);
+  CHECK(distance(mine.stepper().row(0), row) < 1e-13);
+  CHECK(mine.stepper().residual() < 1e-15);
+}
+
+TEST_CASE("a user's stencil is found to be explicit, and is of second order") {
+  auto evolution = Scheme{Corners{}, SineGordon{}}.on(Lattice::circle(100, 40), 0.1);
+  CHECK(evolution.plan().kind == SolveKind::explicit_);
+  CHECK(evolution.stepper().solver_name() == "division by one number");
+  CHECK(std::abs(std::log2(error(Corners{}, 200, 0.1) / error(Corners{}, 400, 0.05)) - 2) < 0.1);
+}
+
+TEST_CASE("a user's stencil with a shape of its own is of fourth order in space") {
+  CHECK(is_consistent(Wide::table));
+  auto evolution = Scheme{Wide{}, SineGordon{}}.on(Lattice::circle(100, 40), 0.1);
+  CHECK(evolution.plan().kind == SolveKind::explicit_);
+  // h ∝ k²
+  CHECK(std::abs(std::log2(error(Wide{}, 100, 0.05) / error(Wide{}, 200, 0.0125)) - 4) < 0.2);
+  CHECK(std::abs(std::log2(error(Corners{}, 100, 0.05) / error(Corners{}, 200, 0.0125)) - 2) < 0.2);
+}
+
+TEST_CASE("a scheme hands out its Lagrangian and its family") {
+  const Scheme scheme{rectangle, PhiFour{0.5}};
+  CHECK(scheme.density().lambda == 0.5);
+  const auto family = scheme.family(0.1, 0.2);
+  const std::array<double, 4> y{0.1, 0.3, -0.4, 0.2};
+  const Cell cell{0.1, 0.2, 0, 0};
+  CHECK(family->lagrangian(cell, y) == scheme.lagrangian()(y, cell));
+  std::array<double, 4> r;
+  family->residual(cell, y, r);
+  CHECK(r == scheme.lagrangian().gradient(y, cell));
+}
+
+TEST_CASE("an evolution may be moved while its stepper is in use") {
+  auto first = Scheme{rectangle, SineGordon{}}.on(Lattice::circle(32, 8), 0.1);
+  Random random(91);
+  first.stepper().start(random_rows(random, 2, 32, 1));
+  Evolution second = std::move(first);
+  second.stepper().step();
+  CHECK(equation_defect(second, window_of(second)) < 2e-15);
+}

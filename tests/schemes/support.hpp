@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lattice/error.hpp"
+#include "schemes/evolution.hpp"
+#include "schemes/field_theory.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/theory_registry.hpp"
+#include "tests/jets/random.hpp"
+
+/// What the tests of this folder share.
+namespace delf::testing {
+
+using Row = std::vector<double>;
+using Families = std::vector<std::shared_ptr<const StencilFamily>>;
+
+inline Row random_row(Random& random, int sites, double amplitude) {
+  Row row(static_cast<std::size_t>(sites));
+  for (double& y : row) y = random(-amplitude, amplitude);
+  return row;
+}
+/// `count` rows that move on by random increments of a tenth of the amplitude.
+inline std::vector<Row> random_rows(Random& random, int count, int sites, double amplitude) {
+  std::vector<Row> rows{random_row(random, sites, amplitude)};
+  const Row step = random_row(random, sites, amplitude / 10);
+  while (static_cast<int>(rows.size()) < count) {
+    rows.push_back(rows.back());
+    for (std::size_t i = 0; i < step.size(); ++i) rows.back()[i] += step[i];
+  }
+  return rows;
+}
+
+inline double distance(const Row& a, const Row& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+/// Parameters away from special values, so that no term of a theory is missing.
+inline Problem problem_of(const std::string& theory) {
+  Problem p;
+  p.theory = theory, p.mass = 1.2, p.lambda = 0.4;
+  p.impurity_strength = 0.6, p.impurity_width = 0.8, p.impurity_position = 0.3;
+  return p;
+}
+inline std::unique_ptr<FieldTheory> theory_named(const Problem& p) {
+  for (const TheoryEntry* entry : theory_entries())
+    if (p.theory == entry->name) return entry->make(p);
+  throw std::logic_error("no theory " + p.theory);
+}
+inline std::vector<std::string> theory_names() {
+  std::vector<std::string> names;
+  for (const TheoryEntry* entry : theory_entries()) names.emplace_back(entry->name);
+  return names;
+}
+inline std::vector<std::string> stencil_names() {
+  std::vector<std::string> names;
+  for (const NamedFormula& stencil : stencils()) names.push_back(stencil.name);
+  return names;
+}
+/// The scheme of a stencil, or of a comparator ("guo", "vu-quoc-li"); null if the theory has none.
+inline std::shared_ptr<const StencilFamily> family_of(const Problem& p, const std::string& scheme, double h, double k) {
+  const auto theory = theory_named(p);
+  if (scheme == "guo" || scheme == "vu-quoc-li") return theory->comparator(scheme, h, k);
+  return theory->variational(scheme, h, k);
+}
+inline Evolution evolution_of(const Problem& p, const std::string& scheme, const Lattice& lattice, double h,
+                              const StepOptions& options = {}) {
+  return {lattice, {family_of(p, scheme, h, lattice.space_step())}, h, options};
+}
+
+/// The rows that a stepper holds, its newest last.
+inline Window window_of(const Evolution& evolution, double turn = 0) {
+  const Stepper& stepper = evolution.stepper();
+  const int held = std::min<int>(stepper.starting_rows() + 1, static_cast<int>(stepper.newest()) + 1);
+  Window window{&evolution.system().lattice(), evolution.system().components(), turn, stepper.newest() - held + 1, {}};
+  for (int back = held - 1; back >= 0; --back) window.rows.push_back(stepper.row(back));
+  return window;
+}
+
+/// max |E| over the sites, of the equations that determine the last row of the window, one stencil at a time; relative
+/// to the largest Σ |∂E/∂y| times the largest |y|, of which E is a difference.
+inline double equation_defect(const Evolution& evolution, const Window& window) {
+  const LatticeSystem& system = evolution.system();
+  const SolvePlan& plan = evolution.plan();
+  double defect = 0, slopes = 0, values = 0;
+  for (const Row& row : window.rows)
+    for (double y : row) values = std::max(values, std::abs(y));
+  std::vector<LatticeSystem::Entry> entries;
+  for (int i = 0; i < system.lattice().sites(); ++i)
+    for (int a = 0; a < system.components(); ++a) {
+      if (!plan.solved(i, a)) continue;
+      const std::int64_t row = window.last_row() - plan.shift(i, a, static_cast<int>(window.last_row() & 1));
+      const double E = std::abs(system.equation(window, row, i, a, system.time_step()).sum);
+      if (!(E <= defect)) defect = E;  // a NaN too
+      if (i != 0 && i != system.lattice().sites() / 2 && i != system.lattice().sites() - 1) continue;
+      entries.clear();
+      for (std::int64_t r = window.first_row; r <= window.last_row(); ++r)
+        system.jacobian(window, row, i, r, system.time_step(), entries);
+      double sum = 0;
+      for (const auto& e : entries) sum += e.row == i * system.components() + a ? std::abs(e.value) : 0;
+      slopes = std::max(slopes, sum);
+    }
+  return defect / (slopes * values);
+}
+
+/// The key that a refusal names; "accepted" if there is none.
+inline std::string refused_key(const std::function<void()>& request) {
+  try {
+    request();
+  } catch (const BadInput& error) {
+    return error.key();
+  }
+  return "accepted";
+}
+inline std::string message_of(const std::function<void()>& request) {
+  try {
+    request();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace delf::testing
