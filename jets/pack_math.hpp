@@ -37,9 +37,10 @@ inline bool any_above(Pack x, double bound) {
   return any != 0;
 }
 
-/// x − nπ for the integers n (given as doubles), π in three parts of 33 bits and a rest, so that each product is exact.
+/// x − nπ for the integers n (given as doubles), π in two parts of 32 bits and a rest, so that the first two
+/// products are exact for |n| < 2²¹, with or without fused multiply–adds.
 inline Pack minus_multiple_of_pi(Pack x, Pack n) {
-  constexpr double pi_1 = 0x1.921fb5444p+1, pi_2 = 0x1.68c234c4c0000p-38, pi_3 = 0x1.98a2e03707345p-76;
+  constexpr double pi_1 = 0x1.921fb544p+1, pi_2 = 0x1.0b4611a6p-33, pi_3 = 0x1.3198a2e037073p-68;
   return ((x - n * pi_1) - n * pi_2) - n * pi_3;
 }
 

@@ -13,7 +13,8 @@ T sinc_series(T s) {  // s = x²:  1 − s/3! + s²/5! − …
 }
 template <class T>
 T sinc_slope_series(T x, T s) {  // −x/3 + x³/30 − x⁵/840 + …
-  return x * (-1. / 3 + s * (1. / 30 + s * (-1. / 840 + s * (1. / 45360 + s * (-1. / 3991680 + s * (1. / 518918400))))));
+  return x *
+         (-1. / 3 + s * (1. / 30 + s * (-1. / 840 + s * (1. / 45360 + s * (-1. / 3991680 + s * (1. / 518918400))))));
 }
 }  // namespace detail
 

@@ -14,10 +14,10 @@ namespace delf {
 struct Abstract {
   static constexpr int most_variables = 32;
 
-  std::optional<double> constant = 0.0;                    ///< its value, when it depends on nothing
-  std::uint32_t depends = 0;                               ///< bit a: the first derivative by variable a may be ≠ 0
-  std::array<std::uint32_t, most_variables> nonzero{};     ///< bit b of [a]: ∂²/∂a∂b may be ≠ 0
-  std::array<std::uint32_t, most_variables> varying{};     ///< bit b of [a]: ∂²/∂a∂b may depend on the variables
+  std::optional<double> constant = 0.0;                 ///< its value, when it depends on nothing
+  std::uint32_t depends = 0;                            ///< bit a: the first derivative by variable a may be ≠ 0
+  std::array<std::uint32_t, most_variables> nonzero{};  ///< bit b of [a]: ∂²/∂a∂b may be ≠ 0
+  std::array<std::uint32_t, most_variables> varying{};  ///< bit b of [a]: ∂²/∂a∂b may depend on the variables
 
   Abstract() = default;
   Abstract(double c) : constant(c) {}
@@ -88,10 +88,18 @@ struct Abstract {
   friend Abstract tan(const Abstract& u) { return u.constant ? Abstract(std::tan(*u.constant)) : unknown_function(u); }
   friend Abstract exp(const Abstract& u) { return u.constant ? Abstract(std::exp(*u.constant)) : unknown_function(u); }
   friend Abstract log(const Abstract& u) { return u.constant ? Abstract(std::log(*u.constant)) : unknown_function(u); }
-  friend Abstract sqrt(const Abstract& u) { return u.constant ? Abstract(std::sqrt(*u.constant)) : unknown_function(u); }
-  friend Abstract sinh(const Abstract& u) { return u.constant ? Abstract(std::sinh(*u.constant)) : unknown_function(u); }
-  friend Abstract cosh(const Abstract& u) { return u.constant ? Abstract(std::cosh(*u.constant)) : unknown_function(u); }
-  friend Abstract tanh(const Abstract& u) { return u.constant ? Abstract(std::tanh(*u.constant)) : unknown_function(u); }
+  friend Abstract sqrt(const Abstract& u) {
+    return u.constant ? Abstract(std::sqrt(*u.constant)) : unknown_function(u);
+  }
+  friend Abstract sinh(const Abstract& u) {
+    return u.constant ? Abstract(std::sinh(*u.constant)) : unknown_function(u);
+  }
+  friend Abstract cosh(const Abstract& u) {
+    return u.constant ? Abstract(std::cosh(*u.constant)) : unknown_function(u);
+  }
+  friend Abstract tanh(const Abstract& u) {
+    return u.constant ? Abstract(std::tanh(*u.constant)) : unknown_function(u);
+  }
   friend Abstract pow(const Abstract& u, double p) {
     if (u.constant) return std::pow(*u.constant, p);
     if (p == 0) return 1.0;

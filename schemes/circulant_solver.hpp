@@ -17,10 +17,10 @@ class CirculantSolver final : public LinearSolver {
  private:
   const RowLayout* layout_;
   double q_, scale_;
-  std::vector<double> powers_;       ///< q¹, q², … as far as they matter
-  int gap_[lanes];                   ///< the site before arc l has this index in arc l−1
-  double entering_[lanes];           ///< q^(gap+1): how much of what enters arc l−1 leaves it
-  double closing_;                   ///< 1/(1 − Π entering)
+  std::vector<double> powers_;  ///< q¹, q², … as far as they matter
+  int gap_[lanes];              ///< the site before arc l has this index in arc l−1
+  double entering_[lanes];      ///< q^(gap+1): how much of what enters arc l−1 leaves it
+  double closing_;              ///< 1/(1 − Π entering)
 };
 
 }  // namespace delf

@@ -21,9 +21,9 @@ struct Term {
   int age = 0;        ///< increment: v_{n−age}; output: anchors' row n + age
   int component = 0;  ///< of y, v, w
   int family = 0, output = 0;
-  int shift = 0;             ///< space offset from the equation's site
+  int shift = 0;  ///< space offset from the equation's site
   double coefficient = 0;
-  double alternating = 0;    ///< brick walls: added where row + site is even, subtracted where it is odd
+  double alternating = 0;  ///< brick walls: added where row + site is even, subtracted where it is odd
 };
 
 /// The equation of one component, as a sum over rows: E = constant + Σ coefficient · source.

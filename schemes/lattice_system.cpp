@@ -50,9 +50,9 @@ std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice
       const auto& vertices = family->pattern().vertices;
       const Site offset = Site{} - vertices[static_cast<std::size_t>(l)], anchor = site + offset;
       const bool inside = lattice.is_circle() || std::ranges::all_of(vertices, [&](Site v) {
-        const int i = anchor.space + v.space;
-        return i >= 0 && i < lattice.sites();
-      });
+                            const int i = anchor.space + v.space;
+                            return i >= 0 && i < lattice.sites();
+                          });
       if (inside && family->pattern().placed_at(anchor)) result.push_back({family.get(), offset, l});
     }
   return result;
@@ -63,8 +63,9 @@ std::vector<Coefficient> LatticeSystem::linearised(const Lattice& lattice, Site 
   // Fields of order one suit most densities; where one is not defined there (a root, a logarithm), smaller ones do.
   for (double amplitude = 2; amplitude > 1e-8; amplitude /= 10)
     if (auto coefficients = linearised(lattice, site, component, amplitude)) return *coefficients;
-  throw BadInput("theory.name", "the density has no finite second derivatives near the zero field; shift the field so that "
-                                "zero is a state of the theory");
+  throw BadInput("theory.name",
+                 "the density has no finite second derivatives near the zero field; shift the field so that "
+                 "zero is a state of the theory");
 }
 
 std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice& lattice, Site site, int component,
@@ -105,14 +106,16 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
   }
   std::vector<Coefficient> result;
   for (const auto& [where, sample] : samples) {
-    const double least = *std::min_element(sample.at, sample.at + 3), most = *std::max_element(sample.at, sample.at + 3);
+    const double least = *std::min_element(sample.at, sample.at + 3),
+                 most = *std::max_element(sample.at, sample.at + 3);
     if (!std::isfinite(sample.scale)) return std::nullopt;
     const double round_off = 1e-13 * sample.scale;
     if (std::max(std::abs(least), std::abs(most)) <= round_off) continue;
     const bool constant = most - least <= round_off;
     const double value = std::abs(sample.constant) <= round_off ? 0.0 : sample.constant;
-    result.push_back({std::get<0>(where), std::get<1>(where), value,
-                      constant ? Dependence::linear : Dependence::nonlinear});
+    result.push_back(
+        {std::get<0>(where), std::get<1>(where), value, constant ? Dependence::linear : Dependence::nonlinear,
+         (least + most) / 2, constant ? 0 : (most - least) / 2});
   }
   return result;
 }
@@ -170,7 +173,8 @@ void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, s
     touch.family->jacobian(cell, y, J);
     for (std::size_t m = 0; m < vertices.size(); ++m) {
       if (row + touch.anchor.time + vertices[m].time != unknown_row) continue;
-      const int i = site + touch.anchor.space + vertices[m].space, home = lattice_.is_circle() ? lattice_.wrapped(i) : i;
+      const int i = site + touch.anchor.space + vertices[m].space,
+                home = lattice_.is_circle() ? lattice_.wrapped(i) : i;
       for (int a = 0; a < d; ++a)
         for (int b = 0; b < d; ++b) {
           const double value = J[static_cast<std::size_t>((touch.vertex * d + a) * size + static_cast<int>(m) * d + b)];

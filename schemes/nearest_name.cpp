@@ -39,7 +39,8 @@ std::optional<std::string> nearest(std::string_view name, const std::vector<std:
   for (const std::string& candidate : known) {
     const std::string other = folded(candidate);
     const bool begun = wanted.size() > 2 && other.starts_with(wanted);
-    if (const std::size_t d = begun ? 0 : edit_distance(wanted, other); d < least && d < std::max(wanted.size(), other.size())) {
+    if (const std::size_t d = begun ? 0 : edit_distance(wanted, other);
+        d < least && d < std::max(wanted.size(), other.size())) {
       least = d;
       best = candidate;
     }

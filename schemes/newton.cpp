@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/newton.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
@@ -119,20 +118,11 @@ Newton newton(const SlabEquations& equations, Vector y, double absolute_toleranc
   return result;
 }
 
-/// Whether the symmetric part of J is definite: then the equations are monotone there, and have one root.
-bool definite(const Matrix& J) {
-  const Matrix symmetric = 0.5 * (J + Matrix(J.transpose()));
-  Eigen::SimplicialLDLT<Matrix> ldlt(symmetric);
-  if (ldlt.info() != Eigen::Success) return false;
-  const Vector D = ldlt.vectorD();
-  return D.allFinite() && ((D.array() > 0).all() || (D.array() < 0).all());
-}
-
 /// Follows the root of equations_at(s) from s near 0 to s = 1. Halves the stride where Newton is not tame; stops where
 /// the determinant changes sign, because there two roots meet.
 Newton follow(const std::function<SlabEquations(double)>& equations_at, const std::function<Vector(double)>& predict,
               double absolute_tolerance, int max_iterations) {
-  constexpr double first = 1. / 64, least_stride = 1. / 65536;
+  constexpr double first = 1. / 16, largest_stride = 1. / 4, least_stride = 1. / 65536;
   double s = 0, stride = first;
   Newton at, before;
   Vector offset;
@@ -158,7 +148,7 @@ Newton follow(const std::function<SlabEquations(double)>& equations_at, const st
     s = next;
     offset = trial.y - predict(s);
     at = std::move(trial);
-    stride = std::min(2 * stride, 1. / 4);
+    stride = std::min(2 * stride, largest_stride);
   }
   at.iterations = iterations;
   return at;
@@ -169,31 +159,16 @@ Vector as_vector(const std::vector<double>& row) {
 }
 std::vector<double> as_row(const Vector& v) { return {v.data(), v.data() + v.size()}; }
 
-NewtonResult solve(const std::function<SlabEquations(double)>& equations_at,
-                   const std::function<Vector(double)>& predict, const Vector& seed, double scale, double tolerance,
-                   int max_iterations) {
-  NewtonResult result;
-  const double absolute = tolerance * std::max(scale, largest(seed));
-  const SlabEquations equations = equations_at(1);
-  Newton direct = newton(equations, seed, absolute, max_iterations);
-  result.iterations = direct.iterations;
-  bool certain = direct.converged && direct.tame;
-  for (double share : {0.0, 0.5, 1.0})
-    certain = certain && definite(equations.jacobian(seed + share * (direct.y - seed)));
-  if (!certain) {
-    result.continued = true;
-    direct = follow(equations_at, predict, absolute, max_iterations);
-    result.iterations += direct.iterations;
-  }
-  result.converged = direct.converged;
-  if (result.converged) result.row = as_row(direct.y);
+NewtonResult as_result(const Newton& found, int iterations, bool continued) {
+  NewtonResult result{found.converged, iterations, continued, {}};
+  if (found.converged) result.row = as_row(found.y);
   return result;
 }
 
 }  // namespace
 
 NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, const Window& past,
-                        const std::vector<double>& seed, double tolerance, int max_iterations) {
+                        double tolerance, int max_iterations) {
   const std::int64_t unknown = past.last_row() + 1;
   const Vector newest = as_vector(past.rows.back());
   const Vector increment = newest - as_vector(past.rows[past.rows.size() - 2]);
@@ -212,11 +187,14 @@ NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, cons
         {{unknown, 1.0}});
   };
   const auto predict = [&](double s) { return Vector(newest + s * increment); };
-  return solve(equations_at, predict, as_vector(seed), largest(newest), tolerance, max_iterations);
+  const double absolute = tolerance * std::max(largest(newest), largest(predict(1)));
+  const Newton followed = follow(equations_at, predict, absolute, max_iterations);
+  return as_result(followed, followed.iterations, true);
 }
 
 NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& plan, const Window& row0,
-                                 const std::vector<double>& velocity, double tolerance, int max_iterations) {
+                                 const std::vector<double>& velocity, bool stiff, double tolerance,
+                                 int max_iterations) {
   const Vector y0 = as_vector(row0.rows.back()), phi_t = as_vector(velocity);
   const double h = system.time_step();
   const auto equations_at = [&](double s) {
@@ -231,7 +209,33 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
         {{1, 1.0}, {-1, 1.0}});
   };
   const auto predict = [&](double s) { return Vector(y0 + s * h * phi_t); };
-  return solve(equations_at, predict, predict(1), largest(y0), tolerance, max_iterations);
+  const double absolute = tolerance * std::max(largest(y0), largest(predict(1)));
+  int iterations = 0;
+  if (!stiff) {
+    const Newton direct = newton(equations_at(1), predict(1), absolute, max_iterations);
+    iterations = direct.iterations;
+    if (direct.converged && direct.tame) return as_result(direct, iterations, false);
+  }
+  const Newton followed = follow(equations_at, predict, absolute, max_iterations);
+  return as_result(followed, iterations + followed.iterations, true);
+}
+
+bool is_stiff(const LatticeSystem& system, const SolvePlan& plan) {
+  for (const auto& family : system.families())
+    if (family->nonlinearity() == Nonlinearity::all) return false;
+  const int site = system.lattice().sites() / 2;
+  for (int row = 0; row < (system.placement() == Placement::brick_wall ? 2 : 1); ++row)
+    for (int a = 0; a < system.components(); ++a) {
+      double own = 0, others = 0, variation = 0;
+      for (const Coefficient& c : system.linearised({row, site}, a)) {
+        if (c.offset.time != plan.shift(site, a)) continue;
+        (c.offset.space == 0 && c.component == a ? own : others) += std::abs(c.typical);
+        variation += c.variation;
+      }
+      // A fixed point contracts everywhere if the variation is below own − others; the samples are few.
+      if (variation > 0 && !(variation < 0.125 * (own - others))) return true;
+    }
+  return false;
 }
 
 }  // namespace delf

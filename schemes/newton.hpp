@@ -16,15 +16,22 @@ struct NewtonResult {
   std::vector<double> row;      ///< the unknown row, row[i·d + a]
 };
 
-/// Solves the slab whose unknown row follows `past` (its last row is the newest known) by full Newton steps from
-/// `seed`. Where the equations may have several roots, the one is wanted that h → 0 leads to: Newton's root is taken
-/// only if the Jacobian is definite all the way from the seed to it, otherwise the root is followed from a small h,
-/// and given up if the path turns back. Never another root in silence.
-NewtonResult solve_slab(const LatticeSystem&, const SolvePlan&, const Window& past, const std::vector<double>& seed,
-                        double tolerance, int max_iterations);
+/// Solves the slab whose unknown row follows `past` (its last row is the newest known) where the equations may have
+/// several roots. The one is wanted that h → 0 leads to: it is followed from a small h by full Newton steps, each stride
+/// short enough that every correction at least halves, and given up where the Jacobian's determinant changes sign,
+/// because there the path turns back. Never another root in silence.
+NewtonResult solve_slab(const LatticeSystem&, const SolvePlan&, const Window& past, double tolerance,
+                        int max_iterations);
 
-/// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t.
+/// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t. By Newton from y₀ + hφ_t, or, where the
+/// equations are `stiff` or that does not converge, followed from a small h as above.
 NewtonResult solve_centred_start(const LatticeSystem&, const SolvePlan&, const Window& row0,
-                                 const std::vector<double>& velocity, double tolerance, int max_iterations);
+                                 const std::vector<double>& velocity, bool stiff, double tolerance,
+                                 int max_iterations);
+
+/// Whether a step may have more than one root: over fields of order one the nonlinear part of the Jacobian varies by
+/// more than a small share of the rest. (A density that is nonlinear in its derivatives has no scale of its own to
+/// sample: it is judged by how its steps contract.)
+bool is_stiff(const LatticeSystem&, const SolvePlan&);
 
 }  // namespace delf

@@ -22,7 +22,8 @@ void append_table(std::string& out, const LatticeSystem& system, Site site, cons
   out += fmt::format("\nlinearised field equation{}, divided by hk{}\n", title,
                      linear ? "" : "; n: plus what the nonlinear part adds");
   out += fmt::format("  {:>8}", "");
-  for (int x = first_x.offset.space; x <= last_x.offset.space; ++x) out += fmt::format("{:>15}", fmt::format("i{:+d}", x));
+  for (int x = first_x.offset.space; x <= last_x.offset.space; ++x)
+    out += fmt::format("{:>15}", fmt::format("i{:+d}", x));
   out += '\n';
   for (int t = last_t.offset.time; t >= first_t.offset.time; --t) {
     out += fmt::format("  {:>8}", fmt::format("j{:+d}", t));
@@ -31,8 +32,7 @@ void append_table(std::string& out, const LatticeSystem& system, Site site, cons
         return c.offset == Site{t, x} && c.component == 0;
       });
       if (it == coefficients.end()) out += fmt::format("{:>15}", ".");
-      else
-        out += fmt::format("{:>13.6g}{:<2}", it->value / scale, it->dependence == Dependence::nonlinear ? " n" : "");
+      else out += fmt::format("{:>13.6g}{:<2}", it->value / scale, it->dependence == Dependence::nonlinear ? " n" : "");
     }
     out += '\n';
   }
@@ -63,10 +63,11 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   out += fmt::format("solve        {}\n", to_string(plan.kind));
   std::istringstream lines(plan.report());
   for (std::string line; std::getline(lines, line);) out += "             " + line + '\n';
-  out += stepper.iterates()
-             ? "step         extrapolated seed; simplified Newton with the constant part while it contracts; else full\n"
-               "             Newton; else continuation in h; else exit 3\n"
-             : "step         one solve, no iteration\n";
+  out +=
+      stepper.iterates()
+          ? "step         extrapolated seed; simplified Newton with the constant part while it contracts; else full\n"
+            "             Newton; else continuation in h; else exit 3\n"
+          : "step         one solve, no iteration\n";
   out += fmt::format("matrix       {}{}\n", stepper.matrix_free() ? "none: " : "", stepper.solver_name());
   const Site bulk{0, lattice.sites() / 2 / 2 * 2};
   if (system.placement() == Placement::brick_wall) {

@@ -212,9 +212,13 @@ void RowEquations::add_at_exceptional_sites(std::int64_t n, int parts, bool meas
     const int own = layout_.slot(special.site), a = special.component;
     double value = 0, size = 0;
     if (special.fixed) {
-      // v_{n+1} = v_n + w = 0
-      if (parts & known) value += rows_.v(n, a)[own];
-      if (parts & unknown) value += w_.row(a)[own];
+      // v_{n+1} = v_n + w = 0; where w corrects the candidate, v_{n+1} is the candidate's
+      if (equations_.correction_form) {
+        if (parts & fresh) value += rows_.v(n + 1, a)[own];
+      } else {
+        if (parts & known) value += rows_.v(n, a)[own];
+        if (parts & unknown) value += w_.row(a)[own];
+      }
     } else {
       const EquationTerms& equation = special.equation;
       const double sign = (n + 1 - equation.shift + special.site) % 2 == 0 ? 1 : -1;

@@ -4,8 +4,12 @@
 namespace delf {
 
 SectionRows::SectionRows(const LatticeSystem& system, int halo, int rows, int increments, double turn)
-    : lattice_(&system.lattice()), d_(system.components()), turn_(turn), layout_(system.lattice(), halo),
-      y_(layout_, rows * d_), v_(layout_, increments * d_) {}
+    : lattice_(&system.lattice()),
+      d_(system.components()),
+      turn_(turn),
+      layout_(system.lattice(), halo),
+      y_(layout_, rows * d_),
+      v_(layout_, increments * d_) {}
 
 void SectionRows::add_increment(std::int64_t row) {
   for (int a = 0; a < d_; ++a) {
@@ -30,7 +34,8 @@ void SectionRows::find_increment(std::int64_t row) {
 void SectionRows::set_row(std::int64_t row, const std::vector<double>& values) {
   std::vector<double> one(static_cast<std::size_t>(sites()));
   for (int a = 0; a < d_; ++a) {
-    for (std::size_t i = 0; i < one.size(); ++i) one[i] = values[i * static_cast<std::size_t>(d_) + static_cast<std::size_t>(a)];
+    for (std::size_t i = 0; i < one.size(); ++i)
+      one[i] = values[i * static_cast<std::size_t>(d_) + static_cast<std::size_t>(a)];
     layout_.scatter(one, y(row, a), turn_);
   }
 }
@@ -39,7 +44,8 @@ std::vector<double> SectionRows::row(std::int64_t row) {
   std::vector<double> values(static_cast<std::size_t>(sites() * d_)), one(static_cast<std::size_t>(sites()));
   for (int a = 0; a < d_; ++a) {
     layout_.gather(y(row, a), one);
-    for (std::size_t i = 0; i < one.size(); ++i) values[i * static_cast<std::size_t>(d_) + static_cast<std::size_t>(a)] = one[i];
+    for (std::size_t i = 0; i < one.size(); ++i)
+      values[i * static_cast<std::size_t>(d_) + static_cast<std::size_t>(a)] = one[i];
   }
   return values;
 }

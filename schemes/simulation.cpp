@@ -21,8 +21,9 @@ BadInput unknown(const std::string& key, const std::string& value, const std::ve
   const auto near = nearest(value, names);
   std::string known;
   for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-  return {key, fmt::format("{} = {}: there is no such {}{}; choose one of {}", key, value, key.substr(key.find('.') + 1),
-                           near ? fmt::format(" (did you mean {}?)", *near) : "", known)};
+  return {key,
+          fmt::format("{} = {}: there is no such {}{}; choose one of {}", key, value, key.substr(key.find('.') + 1),
+                      near ? fmt::format(" (did you mean {}?)", *near) : "", known)};
 }
 
 std::unique_ptr<FieldTheory> make_theory(const Problem& problem) {
@@ -45,15 +46,16 @@ void check_walls(const Problem& p, const StencilFamily& family) {
   if (p.lattice.is_circle()) return;
   const auto [least, most] = std::ranges::minmax(family.pattern().vertices, {}, &Site::space);
   if (family.is_variational() && most.space - least.space > 1)
-    throw BadInput("lattice.stencil",
-                   fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
-                               "at the walls out of the action, and the error there does not vanish with k; use "
-                               "triangle, rectangle or rectangle-symmetric, or lattice.space = circle",
-                               p.stencil));
+    throw BadInput(
+        "lattice.stencil",
+        fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
+                    "at the walls out of the action, and the error there does not vanish with k; use "
+                    "triangle, rectangle or rectangle-symmetric, or lattice.space = circle",
+                    p.stencil));
   if (!family.is_variational() && (p.lattice.left() == Wall::natural || p.lattice.right() == Wall::natural))
-    throw BadInput(p.lattice.left() == Wall::natural ? "boundary.left" : "boundary.right",
-                   fmt::format("a natural wall varies the action, and scheme.method = {} has none; use fixed walls",
-                               p.method));
+    throw BadInput(
+        p.lattice.left() == Wall::natural ? "boundary.left" : "boundary.right",
+        fmt::format("a natural wall varies the action, and scheme.method = {} has none; use fixed walls", p.method));
 }
 
 std::shared_ptr<const StencilFamily> make_family(const FieldTheory& theory, const Problem& p) {
@@ -73,9 +75,10 @@ std::shared_ptr<const StencilFamily> make_family(const FieldTheory& theory, cons
   }
   for (const std::string& name : names_of(methods()))
     if (name == p.method)
-      throw BadInput("scheme.method", fmt::format("scheme.method = {}: not written for theory.name = {}, whose potential "
-                                                  "depends on more than the field; use scheme.method = multisymplectic",
-                                                  p.method, p.theory));
+      throw BadInput("scheme.method",
+                     fmt::format("scheme.method = {}: not written for theory.name = {}, whose potential "
+                                 "depends on more than the field; use scheme.method = multisymplectic",
+                                 p.method, p.theory));
   throw unknown("scheme.method", p.method, names_of(methods()));
 }
 
@@ -90,10 +93,38 @@ struct Simulation::Impl {
   int winding;
 
   explicit Impl(const Problem& p)
-      : problem(p), theory(make_theory(p)), evolution(p.lattice, {make_family(*theory, p)}, p.time_step,
+      : problem(p),
+        theory(make_theory(p)),
+        evolution(p.lattice, {make_family(*theory, p)}, p.time_step,
                   {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
                    2 * std::numbers::pi * p.winding}),
-        stepper(evolution.stepper()), winding(p.winding) {}
+        stepper(evolution.stepper()),
+        winding(p.winding) {}
+
+  /// S¹: chooses for every value the representative next to its neighbour, so that the section is continuous; from there
+  /// on differences are those of real numbers, and Stepper watches that they stay small enough to be told apart.
+  std::vector<std::vector<double>> lifted(std::vector<std::vector<double>> rows) const {
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (std::size_t i = 0; i < rows[r].size(); ++i) {
+        if (r == 0 && i == 0) continue;
+        const double near = r == 0 ? rows[0][i - 1] : rows[r - 1][i];
+        const double difference = wrap(rows[r][i] - near);
+        if (!(std::abs(difference) <= largest_wrapped_difference))
+          throw NotFinite(
+              fmt::format("row {}, site {}: on the fibre S1 the starting values jump by {:.3g}, above 0.9 pi; "
+                          "refine the lattice or use theory.fibre = R",
+                          r, i, difference));
+        rows[r][i] = near + difference;
+      }
+    if (!problem.lattice.is_circle()) return rows;
+    const double gained = rows[0].back() + wrap(rows[0].front() - rows[0].back()) - rows[0].front();
+    if (const int turns = static_cast<int>(std::lround(gained / (2 * std::numbers::pi))); turns != winding)
+      throw BadInput("boundary.winding",
+                     fmt::format("boundary.winding = {}: the starting rows wind {} times around the circle; set "
+                                 "boundary.winding = {}",
+                                 winding, turns, turns));
+    return rows;
+  }
 
   void prepare_monitors() {
     if (cell_weights.rows()) return;
@@ -116,34 +147,13 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 int Simulation::starting_rows() const { return impl_->stepper.starting_rows(); }
 
 void Simulation::start(const std::vector<std::vector<double>>& rows) {
-  if (!impl_->problem.circle_valued) return impl_->stepper.start(rows);
-  // S¹: choose for every value the representative next to its neighbour, so that the section is continuous; from here on
-  // differences are those of real numbers, and Stepper watches that they stay small enough to be told apart.
-  auto lifted = rows;
-  for (std::size_t r = 0; r < lifted.size(); ++r)
-    for (std::size_t i = 0; i < lifted[r].size(); ++i) {
-      if (r == 0 && i == 0) continue;
-      const double near = r == 0 ? lifted[0][i - 1] : lifted[r - 1][i];
-      const double difference = wrap(lifted[r][i] - near);
-      if (!(std::abs(difference) <= largest_wrapped_difference))
-        throw NotFinite(fmt::format("row {}, site {}: on the fibre S1 the starting values jump by {:.3g}, above 0.9 pi; "
-                                    "refine the lattice or use theory.fibre = R",
-                                    r, i, difference));
-      lifted[r][i] = near + difference;
-    }
-  if (impl_->problem.lattice.is_circle()) {
-    const double gained = lifted[0].back() + wrap(lifted[0].front() - lifted[0].back()) - lifted[0].front();
-    const int winding = static_cast<int>(std::lround(gained / (2 * std::numbers::pi)));
-    if (winding != impl_->winding)
-      throw BadInput("boundary.winding", fmt::format("boundary.winding = {}: the starting rows wind {} times around the "
-                                                     "circle; set boundary.winding = {}",
-                                                     impl_->winding, winding, winding));
-  }
-  impl_->stepper.start(lifted);
+  impl_->stepper.start(impl_->problem.circle_valued ? impl_->lifted(rows) : rows);
 }
 
 void Simulation::start_centred(std::span<const double> row0, std::span<const double> velocity) {
-  impl_->stepper.start_centred({row0.begin(), row0.end()}, {velocity.begin(), velocity.end()});
+  std::vector<std::vector<double>> rows{{row0.begin(), row0.end()}};
+  if (impl_->problem.circle_valued) rows = impl_->lifted(rows);
+  impl_->stepper.start_centred(rows[0], {velocity.begin(), velocity.end()});
 }
 
 void Simulation::step() { impl_->stepper.step(); }
@@ -159,10 +169,10 @@ Simulation::Monitors Simulation::monitors() const {
   const RowLayout& layout = s.stepper.layout();
   const double* rows[2] = {s.stepper.row_data(1, 0), s.stepper.newest_increment(0)};
   const double h = s.problem.time_step;
-  const EnergyMomentum sums = s.theory->energy_momentum(
-      {&layout, rows, s.positions.rows() ? s.positions.row(0) : nullptr, static_cast<double>(newest() - 1) * h, h,
-       s.problem.lattice.space_step()},
-      s.cell_weights.row(0));
+  const EnergyMomentum sums =
+      s.theory->energy_momentum({&layout, rows, s.positions.rows() ? s.positions.row(0) : nullptr,
+                                 static_cast<double>(newest() - 1) * h, h, s.problem.lattice.space_step()},
+                                s.cell_weights.row(0));
   double charge = s.winding;
   if (!s.problem.lattice.is_circle()) {
     const double* y = s.stepper.row_data(0, 0);
@@ -183,7 +193,8 @@ std::size_t Simulation::bytes() const { return impl_->stepper.bytes(); }
 const std::vector<TheoryInfo>& theories() {
   static const std::vector<TheoryInfo> list = [] {
     std::vector<TheoryInfo> result;
-    for (const TheoryEntry* entry : theory_entries()) result.push_back({entry->name, entry->formula, entry->parameters});
+    for (const TheoryEntry* entry : theory_entries())
+      result.push_back({entry->name, entry->formula, entry->parameters});
     return result;
   }();
   return list;

@@ -19,7 +19,7 @@ struct Stepper::Impl {
   const SolvePlan& plan;
   const StepOptions options;
   const int d, history, seed_rows;
-  const bool iterative;
+  const bool iterative, stiff;
   SectionRows rows;
   RowEquations equations;
   RowSum sum;
@@ -30,8 +30,14 @@ struct Stepper::Impl {
   bool continued = false;
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
-      : system(s), plan(checked(p, s)), options(o), d(s.components()), history(std::max(p.forward + p.backward, 2)),
-        seed_rows(std::clamp(o.seed_order, 1, 12)), iterative(!solved_at_once(s, p)),
+      : system(s),
+        plan(checked(p, s)),
+        options(o),
+        d(s.components()),
+        history(std::max(p.forward + p.backward, 2)),
+        seed_rows(std::clamp(o.seed_order, 1, 12)),
+        iterative(!solved_at_once(s, p)),
+        stiff(iterative && is_stiff(s, p)),
         rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, iterative ? seed_rows - 1 : 1) + 1, o.turn),
         equations(s, p, rows, history) {}
 
@@ -43,8 +49,9 @@ struct Stepper::Impl {
         one_row = one_row && plan.offset(i, a, 0) == 0 && plan.offset(i, a, 1) == 0 &&
                   plan.shift(i, a, 0) == plan.shift(i, a, 1);
     if (!one_row)
-      throw BadInput("lattice.stencil", "the unknowns that this stencil matches in one step do not lie in one row, which "
-                                        "this version does not step; use fixed walls or a circle");
+      throw BadInput("lattice.stencil",
+                     "the unknowns that this stencil matches in one step do not lie in one row, which "
+                     "this version does not step; use fixed walls or a circle");
     return plan;
   }
 
@@ -121,8 +128,7 @@ struct Stepper::Impl {
       last = improve();
       equations.evaluate_outputs(n, true);
     } else {
-      seed(seed_rows - 1);
-      if (!iterate(last)) last.value = full_newton();
+      if (stiff || !iterate(last)) last.value = follow_root();
     }
     if (overflowed(last.value)) report_not_finite();
     if (options.fibre == Fibre::circle) check_wrapped_differences();
@@ -133,6 +139,7 @@ struct Stepper::Impl {
 
   /// Simplified Newton with the constant part. False when it does not contract, or not fast enough.
   bool iterate(Change& last) {
+    seed(seed_rows - 1);
     double before = std::numeric_limits<double>::infinity();
     while (iterations < options.max_iterations) {
       ++iterations;
@@ -141,25 +148,23 @@ struct Stepper::Impl {
       if (overflowed(last.value)) report_not_finite();
       const double scale = std::max({last.value, largest[0], largest[1]});
       if (last.change <= std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()) * scale) return true;
-      if (iterations >= 3 && last.change > 0.5 * before) return false;
+      if (iterations >= 3 && last.change > 0.25 * before) return false;
       before = last.change;
     }
     return false;
   }
 
   /// Returns the largest |y| of the row found.
-  double full_newton() {
+  double follow_root() {
     const Window past = rows.window(n + 1 - history, n);
-    seed(seed_rows - 1);
-    const NewtonResult result =
-        solve_slab(system, plan, past, rows.row(n + 1), options.tolerance, options.max_iterations);
+    const NewtonResult result = solve_slab(system, plan, past, options.tolerance, options.max_iterations);
     iterations += result.iterations;
     newton_steps = result.iterations;
     continued = result.continued;
     if (!result.converged)
       throw NoConvergence(fmt::format(
-          "step {}, t = {:.6g}: the implicit equations were not solved: neither the simplified nor the full Newton method "
-          "found a root that is surely the right one, and following it from a small time step failed; reduce "
+          "step {}, t = {:.6g}: the implicit equations were not solved: the simplified Newton method does not "
+          "contract, and the root could not be followed from a small time step by full Newton steps; reduce "
           "lattice.courant or lattice.time_step",
           n + 1, static_cast<double>(n + 1) * system.time_step()));
     rows.set_row(n + 1, result.row);
@@ -181,9 +186,10 @@ struct Stepper::Impl {
     const auto bad = everywhere
                          ? std::ranges::max_element(before, {}, [](double x) { return std::abs(x); }) - before.begin()
                          : std::ranges::find_if_not(row, fine) - row.begin();
-    throw NotFinite(fmt::format("step {}, t = {:.6g}, site {}: the field is no longer finite: the scheme is unstable here; "
-                                "reduce lattice.courant or lattice.time_step, or choose an implicit stencil",
-                                n + 1, static_cast<double>(n + 1) * system.time_step(), bad / d));
+    throw NotFinite(
+        fmt::format("step {}, t = {:.6g}, site {}: the field is no longer finite: the scheme is unstable here; "
+                    "reduce lattice.courant or lattice.time_step, or choose an implicit stencil",
+                    n + 1, static_cast<double>(n + 1) * system.time_step(), bad / d));
   }
 
   /// S¹: wrapping says which way round only while differences on a stencil stay well below π. Looks at the stencils
@@ -252,10 +258,11 @@ void Stepper::start_centred(const std::vector<double>& row0, const std::vector<d
                                         std::to_string(s.history) + " starting rows; choose initial.start = exact");
   const Window first{&s.system.lattice(), s.d, s.options.turn, 0, {row0}};
   const NewtonResult result =
-      solve_centred_start(s.system, s.plan, first, velocity, s.options.tolerance, s.options.max_iterations);
+      solve_centred_start(s.system, s.plan, first, velocity, s.stiff, s.options.tolerance, s.options.max_iterations);
   if (!result.converged)
-    throw NoConvergence("the starting row of initial.start = centred was not found: Newton's method did not converge; "
-                        "reduce lattice.courant or lattice.time_step");
+    throw NoConvergence(
+        "the starting row of initial.start = centred was not found: Newton's method did not converge; "
+        "reduce lattice.courant or lattice.time_step");
   start({row0, result.row});
 }
 

@@ -3,16 +3,13 @@
 
 namespace delf {
 
-extern const TheoryEntry wave_theory, klein_gordon_theory, sine_gordon_theory, phi4_theory, double_sine_gordon_theory, sine_gordon_impurity_theory;
+extern const TheoryEntry wave_theory, klein_gordon_theory, sine_gordon_theory, phi4_theory, double_sine_gordon_theory,
+    sine_gordon_impurity_theory;
 
 const std::vector<const TheoryEntry*>& theory_entries() {
   static const std::vector<const TheoryEntry*> entries{
-      &wave_theory,
-      &klein_gordon_theory,
-      &sine_gordon_theory,
-      &phi4_theory,
-      &double_sine_gordon_theory,
-      &sine_gordon_impurity_theory};
+      &wave_theory, &klein_gordon_theory,       &sine_gordon_theory,
+      &phi4_theory, &double_sine_gordon_theory, &sine_gordon_impurity_theory};
   return entries;
 }
 

@@ -187,8 +187,9 @@ class VariationalFamily final : public StencilFamily {
         const Number l = lagrangian_.density(jet);
         for (int a = 0; a < d; ++a)
           for (int i = 0; i < n; ++i)
-            r[i * d + a] += (area * p.weight) * (p.phi[i] * l.derivative(a) + (per_h * p.phi_t[i]) * l.derivative(d + a) +
-                                                 (per_k * p.phi_x[i]) * l.derivative(2 * d + a));
+            r[i * d + a] +=
+                (area * p.weight) * (p.phi[i] * l.derivative(a) + (per_h * p.phi_t[i]) * l.derivative(d + a) +
+                                     (per_k * p.phi_x[i]) * l.derivative(2 * d + a));
       });
       for (int i = 0; i < vertices_size; ++i) r[i].store(out[i] + at);
     }
@@ -198,7 +199,8 @@ class VariationalFamily final : public StencilFamily {
   [[gnu::always_inline]] static void for_each_index(const Body& body) {
     [&]<int... i>(std::integer_sequence<int, i...>) __attribute__((always_inline)) {
       (body.template operator()<i>(), ...);
-    }(std::make_integer_sequence<int, count>{});
+    }
+    (std::make_integer_sequence<int, count>{});
   }
 
   Lagrangian lagrangian_;

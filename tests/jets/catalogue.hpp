@@ -16,14 +16,10 @@
 /// Every theory and every jet map, for the tests of this folder.
 namespace delf::testing {
 
-inline const std::tuple all_theories{Wave{},
-                                     KleinGordon{1.3},
-                                     SineGordon{1.2},
-                                     PhiFour{0.7},
-                                     DoubleSineGordon{1.1, 0.4},
-                                     SineGordonImpurity{1.1, 0.6, 0.8, 0.3}};
-inline constexpr std::tuple all_maps{triangle,  triangle_vertex, rectangle, rectangle_symmetric, hexagon,
-                                     six_tuple, nine_tuple};
+inline const std::tuple all_theories{Wave{},       KleinGordon{1.3},           SineGordon{1.2},
+                                     PhiFour{0.7}, DoubleSineGordon{1.1, 0.4}, SineGordonImpurity{1.1, 0.6, 0.8, 0.3}};
+inline constexpr std::tuple all_maps{triangle, triangle_vertex, rectangle, rectangle_symmetric,
+                                     hexagon,  six_tuple,       nine_tuple};
 
 template <class Function>
 void for_each_theory(Function&& f) {

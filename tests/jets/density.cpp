@@ -31,11 +31,7 @@ struct NoPacks {
   Dual<double, 3> operator()(const Jet<Dual<double, 3>>& j) const { return j.phi; }
 };
 struct TakesReference {
-  auto operator()(auto& j) const
-    requires(!std::is_const_v<std::remove_reference_t<decltype(j)>>)
-  {
-    return j.phi;
-  }
+  auto operator()(auto& j) const requires(!std::is_const_v<std::remove_reference_t<decltype(j)>>) { return j.phi; }
 };
 struct Two {
   static constexpr int components = 2;
@@ -74,11 +70,12 @@ TEST_CASE("every theory has the density of its field equation at a jet") {
   // ℓ = ½φ_t² − ½φ_x² + N(φ) at φ = 0.8, φ_t = 0.5, φ_x = −0.3
   const double y = 0.8, kinetic = 0.5 * (0.25 - 0.09);
   Jet<double> j{y, 0.5, -0.3};
-  CHECK(std::abs(Wave{}(j) - kinetic) < 1e-15);
+  CHECK(std::abs(Wave{}(j)-kinetic) < 1e-15);
   CHECK(std::abs(KleinGordon{1.3}(j) - (kinetic - 0.5 * 1.69 * y * y)) < 1e-15);
   CHECK(std::abs(SineGordon{1.2}(j) - (kinetic + 1.44 * (std::cos(y) - 1))) < 1e-15);
   CHECK(std::abs(PhiFour{0.7}(j) - (kinetic - 0.175 * (y * y - 1) * (y * y - 1))) < 1e-15);
-  CHECK(std::abs(DoubleSineGordon{1.1, 0.4}(j) - (kinetic + 1.21 * (std::cos(y) - 1) + 0.2 * (std::cos(2 * y) - 1))) < 1e-15);
+  CHECK(std::abs(DoubleSineGordon{1.1, 0.4}(j) - (kinetic + 1.21 * (std::cos(y) - 1) + 0.2 * (std::cos(2 * y) - 1))) <
+        1e-15);
   PlacedJet<double> p;
   p.phi = y, p.phi_t = 0.5, p.phi_x = -0.3, p.t = 2, p.x = 1.1;
   const double depth = 1.21 * (1 + 0.6 * std::exp(-1.0));  // (x − x₀)/w = 1

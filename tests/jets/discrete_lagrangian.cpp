@@ -18,8 +18,8 @@ namespace {
 const Cell cell{0.1, 0.25, 0.4, 0.6};
 constexpr double h = 0.1, k = 0.25;
 
-/// The largest differences of the gradient to central differences (of fourth order) of L, and of the Hessian to those of
-/// the gradient, relative to the largest entry.
+/// The largest differences of the gradient to central differences (of fourth order) of L, and of the Hessian to those
+/// of the gradient, relative to the largest entry.
 struct Defects {
   double gradient = 0, hessian = 0, asymmetry = 0;
 };
@@ -47,7 +47,8 @@ Defects against_differences(const L& lagrangian, double range) {
       for (std::size_t j = 0; j < y.size(); ++j) {
         const double by_gradient = slope([&](double s) { return lagrangian.gradient(shifted(s), cell)[j]; });
         worst.hessian = std::max(worst.hessian, std::abs(hessian[j * y.size() + i] - by_gradient) / H);
-        worst.asymmetry = std::max(worst.asymmetry, std::abs(hessian[j * y.size() + i] - hessian[i * y.size() + j]) / H);
+        worst.asymmetry =
+            std::max(worst.asymmetry, std::abs(hessian[j * y.size() + i] - hessian[i * y.size() + j]) / H);
       }
     }
   }
@@ -164,5 +165,6 @@ TEST_CASE("a placed density is asked at the quadrature points") {
   const auto hexagons = discrete_lagrangian(hexagon, Where{});
   CHECK(std::abs(hexagons(std::array<double, 6>{}, cell) - 2 * h * k * (cell.t + h / 2 + 10 * (cell.x + k))) < 1e-15);
   const auto triangles = discrete_lagrangian(triangle, Where{});
-  CHECK(std::abs(triangles(std::array<double, 3>{}, cell) - h * k * (cell.t + 2 * h / 3 + 10 * (cell.x + k / 3))) < 1e-15);
+  CHECK(std::abs(triangles(std::array<double, 3>{}, cell) - h * k * (cell.t + 2 * h / 3 + 10 * (cell.x + k / 3))) <
+        1e-15);
 }

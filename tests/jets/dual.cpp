@@ -24,8 +24,7 @@ struct Derivatives {
 template <class F>
 Derivatives differentiated(const F& f, double u, double v) {
   const Number once = f(Number::variable(u, 0), Number::variable(v, 1));
-  const Second twice =
-      f(Second::variable(Number::variable(u, 0), 0), Second::variable(Number::variable(v, 1), 1));
+  const Second twice = f(Second::variable(Number::variable(u, 0), 0), Second::variable(Number::variable(v, 1), 1));
   CHECK(std::abs(twice.value.value - once.value) <= 1e-15 * std::abs(once.value));
   Derivatives result{once.value, {once.d[0], once.d[1]}, {}};
   for (std::size_t i = 0; i < 2; ++i)
@@ -75,9 +74,15 @@ TEST_CASE("gradient and Hessian of every operation agree with finite differences
   CHECK(against_differences([](auto u, auto v) { return u * v; }) < 1e-9);
   CHECK(against_differences([](auto u, auto v) { return u / v; }) < 1e-9);
   CHECK(against_differences([](auto u, auto v) { return -u * u * v; }) < 1e-9);
-  CHECK(against_differences([](auto u, auto v) { return 2.0 * u + (v - 3.0) - (1.5 - u) * 0.5 + (0.2 + v) / 4.0; }) < 1e-9);
+  CHECK(against_differences([](auto u, auto v) { return 2.0 * u + (v - 3.0) - (1.5 - u) * 0.5 + (0.2 + v) / 4.0; }) <
+        1e-9);
   CHECK(against_differences([](auto u, auto v) { return 1.0 / (u + v * v); }) < 1e-9);
-  CHECK(against_differences([](auto u, auto v) { u += v; v *= u; u -= v; return u * v; }) < 1e-9);
+  CHECK(against_differences([](auto u, auto v) {
+          u += v;
+          v *= u;
+          u -= v;
+          return u * v;
+        }) < 1e-9);
 }
 
 TEST_CASE("gradient and Hessian of every function agree with finite differences") {
@@ -103,22 +108,33 @@ TEST_CASE("the comparison can fail: a sine whose slope has the wrong sign is fou
 
 TEST_CASE("first and second derivatives are those of the closed forms") {
   using std::cos, std::cosh, std::exp, std::sin, std::sinh, std::tan, std::tanh;
-  check_closed_form("sin", [](auto u) { return sin(u); }, [](double u) { return cos(u); }, [](double u) { return -sin(u); });
-  check_closed_form("cos", [](auto u) { return cos(u); }, [](double u) { return -sin(u); }, [](double u) { return -cos(u); });
-  check_closed_form("tan", [](auto u) { return tan(u); }, [](double u) { return 1 / (cos(u) * cos(u)); },
-                    [](double u) { return 2 * tan(u) / (cos(u) * cos(u)); });
-  check_closed_form("exp", [](auto u) { return exp(u); }, [](double u) { return exp(u); }, [](double u) { return exp(u); });
-  check_closed_form("log", [](auto u) { return log(u); }, [](double u) { return 1 / u; }, [](double u) { return -1 / (u * u); });
-  check_closed_form("sqrt", [](auto u) { return sqrt(u); }, [](double u) { return 0.5 / std::sqrt(u); },
-                    [](double u) { return -0.25 / (u * std::sqrt(u)); });
-  check_closed_form("sinh", [](auto u) { return sinh(u); }, [](double u) { return cosh(u); }, [](double u) { return sinh(u); });
-  check_closed_form("cosh", [](auto u) { return cosh(u); }, [](double u) { return sinh(u); }, [](double u) { return cosh(u); });
-  check_closed_form("tanh", [](auto u) { return tanh(u); }, [](double u) { return 1 / (cosh(u) * cosh(u)); },
-                    [](double u) { return -2 * tanh(u) / (cosh(u) * cosh(u)); });
-  check_closed_form("pow", [](auto u) { return pow(u, -1.5); }, [](double u) { return -1.5 * std::pow(u, -2.5); },
-                    [](double u) { return 3.75 * std::pow(u, -3.5); });
-  check_closed_form("1/u", [](auto u) { return 1.0 / u; }, [](double u) { return -1 / (u * u); },
-                    [](double u) { return 2 / (u * u * u); });
+  check_closed_form(
+      "sin", [](auto u) { return sin(u); }, [](double u) { return cos(u); }, [](double u) { return -sin(u); });
+  check_closed_form(
+      "cos", [](auto u) { return cos(u); }, [](double u) { return -sin(u); }, [](double u) { return -cos(u); });
+  check_closed_form(
+      "tan", [](auto u) { return tan(u); }, [](double u) { return 1 / (cos(u) * cos(u)); },
+      [](double u) { return 2 * tan(u) / (cos(u) * cos(u)); });
+  check_closed_form(
+      "exp", [](auto u) { return exp(u); }, [](double u) { return exp(u); }, [](double u) { return exp(u); });
+  check_closed_form(
+      "log", [](auto u) { return log(u); }, [](double u) { return 1 / u; }, [](double u) { return -1 / (u * u); });
+  check_closed_form(
+      "sqrt", [](auto u) { return sqrt(u); }, [](double u) { return 0.5 / std::sqrt(u); },
+      [](double u) { return -0.25 / (u * std::sqrt(u)); });
+  check_closed_form(
+      "sinh", [](auto u) { return sinh(u); }, [](double u) { return cosh(u); }, [](double u) { return sinh(u); });
+  check_closed_form(
+      "cosh", [](auto u) { return cosh(u); }, [](double u) { return sinh(u); }, [](double u) { return cosh(u); });
+  check_closed_form(
+      "tanh", [](auto u) { return tanh(u); }, [](double u) { return 1 / (cosh(u) * cosh(u)); },
+      [](double u) { return -2 * tanh(u) / (cosh(u) * cosh(u)); });
+  check_closed_form(
+      "pow", [](auto u) { return pow(u, -1.5); }, [](double u) { return -1.5 * std::pow(u, -2.5); },
+      [](double u) { return 3.75 * std::pow(u, -3.5); });
+  check_closed_form(
+      "1/u", [](auto u) { return 1.0 / u; }, [](double u) { return -1 / (u * u); },
+      [](double u) { return 2 / (u * u * u); });
 }
 
 TEST_CASE("whole powers are differentiated at 0 as polynomials are") {

@@ -56,7 +56,8 @@ TEST_CASE("a wrapped difference above 0.9π is refused, one below is not") {
     std::array<double, 2> other_way{1, 1 + sign * 1.101 * pi};  // 0.899π the other way round
     CHECK_NOTHROW(lift_to_first_vertex(other_way));
   }
-  std::array<double, 2> nan{1, std::numeric_limits<double>::quiet_NaN()}, inf{1, std::numeric_limits<double>::infinity()};
+  std::array<double, 2> nan{1, std::numeric_limits<double>::quiet_NaN()},
+      inf{1, std::numeric_limits<double>::infinity()};
   CHECK_THROWS_AS(lift_to_first_vertex(nan), NotFinite);
   CHECK_THROWS_AS(lift_to_first_vertex(inf), NotFinite);
 }

@@ -23,7 +23,8 @@ namespace {
 const Cell cell{0.1, 0.25, 0.4, 0.6};
 
 /// |Σ_l Ωˡ(V, W)| relative to Σ_l |Ωˡ(V, W)|.
-double sum_of_forms(int vertices, std::span<const double> jacobian, std::span<const double> V, std::span<const double> W) {
+double sum_of_forms(int vertices, std::span<const double> jacobian, std::span<const double> V,
+                    std::span<const double> W) {
   double sum = 0, size = 0;
   for (int l = 0; l < vertices; ++l) {
     const double form = multisymplectic_form(l, static_cast<int>(V.size()) / vertices, jacobian, V, W);
@@ -52,8 +53,8 @@ struct Rotor {
   static constexpr int components = 2;
   auto operator()(const auto& j) const {
     const auto r = j.phi[0] * j.phi[0] + j.phi[1] * j.phi[1];
-    return 0.5 * (j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1]) - 0.5 * (j.phi_x[0] * j.phi_x[0] + j.phi_x[1] * j.phi_x[1]) -
-           0.25 * r * r;
+    return 0.5 * (j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1]) -
+           0.5 * (j.phi_x[0] * j.phi_x[0] + j.phi_x[1] * j.phi_x[1]) - 0.25 * r * r;
   }
 };
 
@@ -91,7 +92,8 @@ TEST_CASE("the multisymplectic forms of a discrete Lagrangian sum to zero on eve
       const auto lagrangian = discrete_lagrangian(map, theory);
       constexpr auto size = static_cast<std::size_t>(decltype(lagrangian)::size);
       const auto hessian = lagrangian.hessian(random.template array<size>(-2, 2), cell);
-      CHECK(sum_of_forms(lagrangian.n, hessian, random.template array<size>(-1, 1), random.template array<size>(-1, 1)) < 1e-14);
+      CHECK(sum_of_forms(lagrangian.n, hessian, random.template array<size>(-1, 1),
+                         random.template array<size>(-1, 1)) < 1e-14);
     });
   });
 }
@@ -109,7 +111,8 @@ TEST_CASE("the sum can fail: it is not zero for the residuals of Vu-Quoc and Li,
 TEST_CASE("Ωˡ is antisymmetric, bilinear, and −dΘˡ") {
   Random random(16);
   const auto lagrangian = discrete_lagrangian(hexagon, PhiFour{});
-  const auto y = random.array<6>(-1, 1), V = random.array<6>(-1, 1), W = random.array<6>(-1, 1), U = random.array<6>(-1, 1);
+  const auto y = random.array<6>(-1, 1), V = random.array<6>(-1, 1), W = random.array<6>(-1, 1),
+             U = random.array<6>(-1, 1);
   const auto hessian = lagrangian.hessian(y, cell);
   std::array<double, 6> combined;
   for (std::size_t i = 0; i < 6; ++i) combined[i] = 2 * V[i] - 3 * U[i];
@@ -123,13 +126,16 @@ TEST_CASE("Ωˡ is antisymmetric, bilinear, and −dΘˡ") {
       constexpr double e = 1e-4;
       auto above = y, below = y;
       for (std::size_t i = 0; i < 6; ++i) above[i] += e * along[i], below[i] -= e * along[i];
-      return (cartan_form(l, 1, lagrangian.gradient(above, cell), of) - cartan_form(l, 1, lagrangian.gradient(below, cell), of)) / (2 * e);
+      return (cartan_form(l, 1, lagrangian.gradient(above, cell), of) -
+              cartan_form(l, 1, lagrangian.gradient(below, cell), of)) /
+             (2 * e);
     };
     CHECK(std::abs(omega(V, W) + derivative(V, W) - derivative(W, V)) < 1e-8);
   }
 }
 
-TEST_CASE("the momentum of translations φ → φ + ε sums to zero on every stencil of the wave equation, not of sine-Gordon") {
+TEST_CASE(
+    "the momentum of translations φ → φ + ε sums to zero on every stencil of the wave equation, not of sine-Gordon") {
   Random random(17);
   for_each_map([&](auto map) {
     const auto wave = discrete_lagrangian(map, Wave{});

@@ -16,9 +16,8 @@ namespace {
 
 // (5.9) with one thing wrong in each.
 constexpr auto with = [](double w, double phi, double phi_t, double phi_x) {
-  return JetTable<4, 1>{shapes::rectangle,
-                        1,
-                        {{{w, {phi, .25, .25, .25}, {-.5, phi_t, .5, -.5}, {-.5, -.5, phi_x, .5}}}}};
+  return JetTable<4, 1>{
+      shapes::rectangle, 1, {{{w, {phi, .25, .25, .25}, {-.5, phi_t, .5, -.5}, {-.5, -.5, phi_x, .5}}}}};
 };
 struct Right {
   static constexpr auto table = with(1, .25, .5, .5);
@@ -37,7 +36,8 @@ struct WrongSlope {
 };
 /// φ_t sees the slope in space: (y₃ − y₁)/h
 struct Skew {
-  static constexpr JetTable<4, 1> table{shapes::rectangle, 1, {{{1, {.25, .25, .25, .25}, {-1, 0, 1, 0}, {-.5, -.5, .5, .5}}}}};
+  static constexpr JetTable<4, 1> table{
+      shapes::rectangle, 1, {{{1, {.25, .25, .25, .25}, {-1, 0, 1, 0}, {-.5, -.5, .5, .5}}}}};
 };
 struct NoTable {};
 

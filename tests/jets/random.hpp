@@ -22,7 +22,9 @@ class Random {
     return values;
   }
   /// An integer first … last.
-  int pick(int first, int last) { return first + static_cast<int>(engine_() % static_cast<unsigned>(last - first + 1)); }
+  int pick(int first, int last) {
+    return first + static_cast<int>(engine_() % static_cast<unsigned>(last - first + 1));
+  }
 
  private:
   std::mt19937_64 engine_;

@@ -34,8 +34,8 @@ TEST_CASE("sinc and its slope are within round-off from 0 through the switch of 
     const double x = random(0, 1) < 0.5 ? random(-0.6, 0.6) : random(-50, 50);
     worst = std::max(worst, static_cast<double>(std::abs(sinc(x) - exact(x))));
     worst_slope = std::max(worst_slope, static_cast<double>(std::abs(sinc_slope(x) - exact_slope(x))));
-    worst_pack = std::max({worst_pack, std::abs(sinc(Pack(x))[0] - sinc(x)),
-                           std::abs(sinc_slope(Pack(x))[lanes - 1] - sinc_slope(x))});
+    worst_pack = std::max(
+        {worst_pack, std::abs(sinc(Pack(x))[0] - sinc(x)), std::abs(sinc_slope(Pack(x))[lanes - 1] - sinc_slope(x))});
   }
   CHECK(worst < 3e-16);
   CHECK(worst_slope < 2e-15);

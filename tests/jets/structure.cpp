@@ -33,8 +33,8 @@ From<F, d, located> from(F f) {
   return {f};
 }
 
-/// A random polynomial of (φ, φ_t, φ_x), written with all the operations that a density may use for one: a program for a
-/// stack, so that it runs on any kind of number.
+/// A random polynomial of (φ, φ_t, φ_x), written with all the operations that a density may use for one: a program for
+/// a stack, so that it runs on any kind of number.
 struct Program {
   struct Operation {
     char what;  // a variable v, a constant c, + − * n(egation) p(ower)
@@ -150,13 +150,15 @@ TEST_CASE("a density that is nonlinear in a derivative is nonlinear in all") {
 TEST_CASE("products of two jet components and shifts of them are still linear") {
   CHECK(nonlinearity(from([](const auto& j) { return kinetic(j) + 3.0 * j.phi * j.phi_t + j.phi - 2.0; })) ==
         Nonlinearity::none);
-  CHECK(nonlinearity(from([](const auto& j) { return (j.phi_t + j.phi) * (j.phi_x - 1.0) / 2.0; })) == Nonlinearity::none);
+  CHECK(nonlinearity(from([](const auto& j) { return (j.phi_t + j.phi) * (j.phi_x - 1.0) / 2.0; })) ==
+        Nonlinearity::none);
   CHECK(nonlinearity(from([](const auto& j) { return pow(j.phi_t, 2.0) + pow(j.phi, 1.0) + pow(j.phi, 0.0); })) ==
         Nonlinearity::none);
 }
 
 TEST_CASE("coefficients that depend on the place are not constant") {
-  const auto medium = from<1, true>([](const auto& j) { return 0.5 * (2.0 + sin(j.x)) * j.phi_t * j.phi_t - j.phi_x * j.phi_x; });
+  const auto medium =
+      from<1, true>([](const auto& j) { return 0.5 * (2.0 + sin(j.x)) * j.phi_t * j.phi_t - j.phi_x * j.phi_x; });
   const auto pumped = from<1, true>([](const auto& j) { return kinetic(j) - cos(j.t) * j.phi * j.phi; });
   const auto driven = from<1, true>([](const auto& j) { return kinetic(j) + sin(j.t) * j.phi; });
   const auto apart = from<1, true>([](const auto& j) { return kinetic(j) + sin(j.t); });
@@ -167,9 +169,11 @@ TEST_CASE("coefficients that depend on the place are not constant") {
 }
 
 TEST_CASE("fields of two components: coupled values are values, coupled velocities are not") {
-  CHECK(nonlinearity(from<2>([](const auto& j) { return j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1] - cos(j.phi[0] - j.phi[1]); })) ==
-        Nonlinearity::values);
-  CHECK(nonlinearity(from<2>([](const auto& j) { return j.phi_t[0] * j.phi[1] - j.phi_x[0] * j.phi_x[1]; })) == Nonlinearity::none);
+  CHECK(nonlinearity(from<2>([](const auto& j) {
+          return j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1] - cos(j.phi[0] - j.phi[1]);
+        })) == Nonlinearity::values);
+  CHECK(nonlinearity(from<2>([](const auto& j) { return j.phi_t[0] * j.phi[1] - j.phi_x[0] * j.phi_x[1]; })) ==
+        Nonlinearity::none);
   CHECK(nonlinearity(from<2>([](const auto& j) { return j.phi_t[0] * j.phi[1] * j.phi[0]; })) == Nonlinearity::all);
   const auto structure = structure_of(from<2>([](const auto& j) { return j.phi_t[0] * j.phi[1]; }));
   // variables φ¹ φ² φ_t¹ φ_t² φ_x¹ φ_x²: ∂²/∂φ²∂φ_t¹ alone
@@ -187,7 +191,8 @@ TEST_CASE("of random polynomials nothing is claimed constant or absent that is n
     CHECK(contradiction(program, structure.of_density, random) < 1e-10);
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) {
-        const bool nonzero = structure.of_density.nonzero[a] >> b & 1u, varying = structure.of_density.varying[a] >> b & 1u;
+        const bool nonzero = structure.of_density.nonzero[a] >> b & 1u,
+                   varying = structure.of_density.varying[a] >> b & 1u;
         CHECK((nonzero || !varying));
         constant_entries += nonzero && !varying;
         absent_entries += !nonzero;

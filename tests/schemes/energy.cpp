@@ -19,7 +19,8 @@ EnergyMomentum footnote_4(const Problem& p, const Row& y0, const Row& y1) {
     if (p.theory == "sine-gordon") return m2 * (1 - std::cos(y));
     if (p.theory == "phi4") return p.lambda * (y * y - 1) * (y * y - 1) / 4;
     if (p.theory == "double-sine-gordon") return m2 * (1 - std::cos(y)) + p.lambda * (1 - std::cos(2 * y)) / 2;
-    if (p.theory == "sine-gordon-impurity") return m2 * (1 + p.impurity_strength * std::exp(-q * q)) * (1 - std::cos(y));
+    if (p.theory == "sine-gordon-impurity")
+      return m2 * (1 + p.impurity_strength * std::exp(-q * q)) * (1 - std::cos(y));
     return 0.0;
   };
   EnergyMomentum sums;
@@ -38,7 +39,8 @@ EnergyMomentum footnote_4(const Problem& p, const Row& y0, const Row& y1) {
 TEST_CASE("energy and momentum of every theory are the sums of footnote 4 over every cell") {
   Random random(81);
   for (const std::string& theory : theory_names())
-    for (const Lattice& lattice : {Lattice::circle(3, 1), Lattice::circle(37, 10), Lattice::interval(37, 10), Lattice::interval(64, 10)}) {
+    for (const Lattice& lattice :
+         {Lattice::circle(3, 1), Lattice::circle(37, 10), Lattice::interval(37, 10), Lattice::interval(64, 10)}) {
       CAPTURE(theory, lattice.sites(), lattice.is_circle());
       Problem p = problem_of(theory);
       p.lattice = lattice, p.time_step = 0.1, p.stencil = "triangle";

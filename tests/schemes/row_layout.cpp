@@ -30,8 +30,8 @@ void check_slots(const Lattice& lattice, int halo) {
   for (int l = 0; l < lanes; ++l)
     for (int v = -halo; v < layout.packs() + halo; ++v) {
       const int i = layout.start(l) + v;
-      const double expected = lattice.is_circle() ? lattice.wrapped(i) + 1000 * ((i - lattice.wrapped(i)) / N)
-                                                  : std::clamp(i, 0, N - 1);
+      const double expected =
+          lattice.is_circle() ? lattice.wrapped(i) + 1000 * ((i - lattice.wrapped(i)) / N) : std::clamp(i, 0, N - 1);
       right = right && row.row(0)[layout.at(v) + l] == expected;
     }
   CHECK(right);

@@ -34,8 +34,8 @@ struct Corners {
                                           {.25, {0, 0, 0, 1}, {0, 0, 1, -1}, {-1, 0, 0, 1}}}}};
 };
 
-/// A user's stencil with a shape of its own: fourth order in space, L = (4/3) L_1 − (1/3) L_2 with D_m = (y_{i+m} − y_i)/mk
-/// on the pairs {i, i+1} and {i, i+2} of errata's wide stencils, as points with weights.
+/// A user's stencil with a shape of its own, of fourth order in space: Σ_m m²β_m ½[ℓ(y_i, D_m) + ℓ(y_{i+m}, D_m)] over
+/// m = 1, 2 with D_m = (y_{i+m} − y_i)/mk and m²β_m = 4/3, −1/3.
 struct Wide {
   static constexpr JetTable<6, 4> table{Offsets<6>{{{{0, 0}, {0, 1}, {0, 2}, {1, 0}, {1, 1}, {1, 2}}}},
                                         1,

@@ -42,7 +42,7 @@ Worst worst_of(Evolution& evolution, double amplitude = 1, int steps = 3) {
 
 Lattice walls(int N, Wall left, Wall right) { return Lattice::interval(N, (N - 1) * k, left, right); }
 
-// ---- densities and residuals whose second derivatives are constant in the field, though not written as a quadratic form
+// ---- densities and residuals whose second derivatives do not depend on the field, though the form does not show it
 
 struct Spring {  // a mass that depends on the place
   static constexpr bool placed = true;
@@ -88,7 +88,8 @@ struct Chain {
 struct Pair {
   static constexpr int components = 2;
   auto operator()(const auto& j) const {
-    return 0.5 * (j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1] - j.phi_x[0] * j.phi_x[0] - j.phi_x[1] * j.phi_x[1]) +
+    return 0.5 *
+               (j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1] - j.phi_x[0] * j.phi_x[0] - j.phi_x[1] * j.phi_x[1]) +
            cos(j.phi[0] - j.phi[1]);
   }
 };
@@ -100,7 +101,8 @@ double there_and_back(Evolution& evolution, int steps) {
   std::vector<Row> start;
   for (int j : {0, 1}) {
     start.emplace_back();
-    for (int i = 0; i < N; ++i) start.back().push_back(std::sin(2 * std::numbers::pi * i / N) + 0.1 * j * std::cos(6 * std::numbers::pi * i / N));
+    for (int i = 0; i < N; ++i)
+      start.back().push_back(std::sin(2 * std::numbers::pi * i / N) + 0.1 * j * std::cos(6 * std::numbers::pi * i / N));
   }
   stepper.start(start);
   for (int n = 0; n < steps; ++n) stepper.step();
@@ -129,15 +131,16 @@ TEST_CASE("a step solves the field equations at every site between walls, fixed 
   const Wall either[]{Wall::fixed, Wall::natural};
   for (const std::string& theory : theory_names())
     for (const std::string& scheme : all_schemes())
-      for (int N : {2, 3, 5, 16, 63})
+      for (int N : {2, 3, 5, 17})
         for (Wall left : either)
           for (Wall right : either) {
             const Problem p = problem_of(theory);
-            const bool wide = scheme == "hexagon" || scheme == "six-tuple" || scheme == "nine-tuple" || scheme == "guo" || scheme == "vu-quoc-li";
+            const bool wide = scheme == "hexagon" || scheme == "six-tuple" || scheme == "nine-tuple" ||
+                              scheme == "guo" || scheme == "vu-quoc-li";
             const bool natural = left == Wall::natural || right == Wall::natural;
             if (!family_of(p, scheme, h, k)) continue;
-            if (N == 2 && (wide || !natural)) continue;                    // no equation at all
-            if (scheme == "hexagon" && (N == 3 || natural)) continue;      // sites solved in other rows than the rest
+            if (N == 2 && (wide || !natural)) continue;                // no equation at all
+            if (scheme == "hexagon" && (N == 3 || natural)) continue;  // sites solved in other rows than the rest
             CAPTURE(theory, scheme, N, left == Wall::natural, right == Wall::natural);
             Evolution evolution = evolution_of(p, scheme, walls(N, left, right), h);
             const Worst worst = worst_of(evolution);
@@ -169,6 +172,27 @@ TEST_CASE("a density that is nonlinear in its derivatives is stepped, explicit o
   check(Scheme{rectangle, Chain{}}.on(ring, h), true);
   check(Scheme{hexagon, Chain{}}.on(ring, h), true);
   check(Scheme{rectangle, Chain{}}.on(walls(32, Wall::natural, Wall::fixed), h), true);
+}
+
+TEST_CASE("a fixed wall keeps its value, however the rows before moved there and whatever the density") {
+  const auto kept = [](Evolution evolution) {
+    worst_of(evolution, 0.3, 1);  // random rows, whose walls move
+    Stepper& stepper = evolution.stepper();
+    bool same = true;
+    for (int n = 0; n < 4; ++n) {
+      const Row before = stepper.row(0);
+      stepper.step();
+      same = same && std::abs(stepper.row(0).front() - before.front()) < 1e-15 &&
+             std::abs(stepper.row(0).back() - before.back()) < 1e-15;
+    }
+    return same;
+  };
+  const Lattice fixed = walls(32, Wall::fixed, Wall::fixed);
+  CHECK(kept(Scheme{rectangle, SineGordon{}}.on(fixed, h)));
+  CHECK(kept(Scheme{triangle, SineGordon{}}.on(fixed, h)));
+  CHECK(kept(Scheme{triangle, Chain{}}.on(fixed, h)));
+  CHECK(kept(Scheme{rectangle, Chain{}}.on(fixed, h)));
+  CHECK_FALSE(kept(Scheme{rectangle, SineGordon{}}.on(walls(32, Wall::natural, Wall::fixed), h)));
 }
 
 TEST_CASE("fields of two components are stepped") {
@@ -264,11 +288,14 @@ TEST_CASE("the plan is found, not stated: explicit, one number, recurrences, a b
   CHECK(contains(plan("sine-gordon", "rectangle", k), "cyclic-band: two recurrences"));
   const Evolution none = evolution_of(problem_of("sine-gordon"), "triangle-vertex", Lattice::circle(64, 64 * k), h);
   CHECK(none.stepper().matrix_free());
-  CHECK_FALSE(evolution_of(problem_of("sine-gordon"), "rectangle", walls(64, Wall::fixed, Wall::fixed), h).stepper().matrix_free());
+  CHECK_FALSE(evolution_of(problem_of("sine-gordon"), "rectangle", walls(64, Wall::fixed, Wall::fixed), h)
+                  .stepper()
+                  .matrix_free());
 }
 
 TEST_CASE("sine-Gordon runs back to where it began") {
-  for (const std::string& scheme : {std::string("rectangle"), std::string("rectangle-symmetric"), std::string("hexagon"), std::string("guo")}) {
+  for (const std::string& scheme :
+       {std::string("rectangle"), std::string("rectangle-symmetric"), std::string("hexagon"), std::string("guo")}) {
     CAPTURE(scheme);
     Evolution evolution = evolution_of(problem_of("sine-gordon"), scheme, Lattice::circle(64, 64 * k), h);
     CHECK(there_and_back(evolution, 50) < 1e-10);
@@ -276,7 +303,8 @@ TEST_CASE("sine-Gordon runs back to where it began") {
 }
 
 TEST_CASE("running back can fail: with a damping it does not reach where it began") {
-  Evolution evolution(Lattice::circle(64, 64 * k), {std::make_shared<ResidualFamily<Damped>>(Damped{0.1, false}, h, k)}, h);
+  Evolution evolution(Lattice::circle(64, 64 * k), {std::make_shared<ResidualFamily<Damped>>(Damped{0.1, false}, h, k)},
+                      h);
   CHECK(there_and_back(evolution, 50) > 1e-3);
 }
 
@@ -300,7 +328,8 @@ TEST_CASE("a turn around the circle is kept: a field that winds is the one that 
   const int N = 37;
   StepOptions winding;
   winding.turn = 2 * std::numbers::pi;
-  for (const std::string& scheme : {std::string("triangle"), std::string("rectangle-symmetric"), std::string("vu-quoc-li")}) {
+  for (const std::string& scheme :
+       {std::string("triangle"), std::string("rectangle-symmetric"), std::string("vu-quoc-li")}) {
     Evolution flat = evolution_of(problem_of("wave"), scheme, Lattice::circle(N, N * k), h);
     Evolution turned = evolution_of(problem_of("wave"), scheme, Lattice::circle(N, N * k), h, winding);
     Random random(45);
@@ -326,7 +355,8 @@ TEST_CASE("the order of the seed changes the number of iterations, not the solut
     Stepper& stepper = evolution.stepper();
     std::vector<Row> start(2);
     for (int i = 0; i < 64; ++i)
-      for (int j : {0, 1}) start[static_cast<std::size_t>(j)].push_back(std::sin(2 * std::numbers::pi * i / 64 - 0.04 * j));
+      for (int j : {0, 1})
+        start[static_cast<std::size_t>(j)].push_back(std::sin(2 * std::numbers::pi * i / 64 - 0.04 * j));
     stepper.start(start);
     int iterations = 0;
     for (int n = 0; n < 100; ++n) stepper.step(), iterations += stepper.iterations();

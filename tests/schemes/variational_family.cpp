@@ -40,19 +40,22 @@ double split_defect(const StencilFamily& family, int N) {
   family.evaluate({&layout, in.data(), positions.row(0), t, h, k}, outputs.data());
 
   double worst = 0, largest = 0;
-  std::vector<double> stencil(static_cast<std::size_t>(size)), r(stencil.size()), J(stencil.size() * stencil.size()), r0(stencil.size());
+  std::vector<double> stencil(static_cast<std::size_t>(size)), r(stencil.size()), J(stencil.size() * stencil.size()),
+      r0(stencil.size());
   for (int i = 0; i < N; ++i) {
     const Cell cell{h, k, t, ring.position(i)};
     for (std::size_t l = 0; l < vertices.size(); ++l)
       for (int a = 0; a < d; ++a)
         stencil[l * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)] =
-            y[static_cast<std::size_t>((vertices[l].time - first.time) * d + a)][static_cast<std::size_t>(ring.wrapped(i + vertices[l].space))];
+            y[static_cast<std::size_t>((vertices[l].time - first.time) * d + a)]
+             [static_cast<std::size_t>(ring.wrapped(i + vertices[l].space))];
     family.residual(cell, stencil, r);
     family.linear_part({h, k, 0, 0}, J, r0);
     for (int n = 0; n < size; ++n) {
       const auto at = static_cast<std::size_t>(n);
       double sum = r0[at];
-      for (int b = 0; b < size; ++b) sum += J[static_cast<std::size_t>(n * size + b)] * stencil[static_cast<std::size_t>(b)];
+      for (int b = 0; b < size; ++b)
+        sum += J[static_cast<std::size_t>(n * size + b)] * stencil[static_cast<std::size_t>(b)];
       for (int c = 0; c < family.outputs(); ++c) sum += family.weight(c, n) * out.row(c)[layout.slot(i)];
       worst = std::max(worst, std::abs(sum - r[at]));
       largest = std::max(largest, std::abs(r[at]));
@@ -63,7 +66,9 @@ double split_defect(const StencilFamily& family, int N) {
 
 /// −√(1 − φ_t² + φ_x²), here with jets below 1
 struct BornInfeld {
-  auto operator()(const auto& j) const { return -sqrt(1.0 - 0.01 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x)) - cos(j.phi); }
+  auto operator()(const auto& j) const {
+    return -sqrt(1.0 - 0.01 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x)) - cos(j.phi);
+  }
 };
 /// Terms of the first degree in the derivatives, and a force: r(0) ≠ 0.
 struct Pushed {
@@ -104,11 +109,19 @@ TEST_CASE("the comparison can fail: outputs of another step") {
   // weights belong to h; evaluated with the family of 1.1 h the sums differ
   class Other : public StencilFamily {
    public:
-    Other(const StencilFamily& right, const StencilFamily& wrong) : StencilFamily(right), right_(right), wrong_(wrong) {}
-    void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override { right_.residual(cell, y, r); }
-    void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override { right_.jacobian(cell, y, J); }
-    void linear_part(const Cell& cell, std::span<double> J, std::span<double> r0) const override { wrong_.linear_part(cell, J, r0); }
+    Other(const StencilFamily& right, const StencilFamily& wrong)
+        : StencilFamily(right), right_(right), wrong_(wrong) {}
+    void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override {
+      right_.residual(cell, y, r);
+    }
+    void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override {
+      right_.jacobian(cell, y, J);
+    }
+    void linear_part(const Cell& cell, std::span<double> J, std::span<double> r0) const override {
+      wrong_.linear_part(cell, J, r0);
+    }
     void evaluate(const SlabRows& rows, double* const* out) const override { right_.evaluate(rows, out); }
+
    private:
     const StencilFamily &right_, &wrong_;
   };
@@ -119,10 +132,12 @@ TEST_CASE("the comparison can fail: outputs of another step") {
 }
 
 TEST_CASE("outputs are as few as the density allows") {
-  const auto outputs = [](const std::string& theory, const std::string& stencil) { return family_of(problem_of(theory), stencil, h, k)->outputs(); };
+  const auto outputs = [](const std::string& theory, const std::string& stencil) {
+    return family_of(problem_of(theory), stencil, h, k)->outputs();
+  };
   CHECK(outputs("wave", "hexagon") == 0);
   CHECK(outputs("klein-gordon", "hexagon") == 0);
-  CHECK(outputs("sine-gordon", "hexagon") == 1);      // four points with one φ
+  CHECK(outputs("sine-gordon", "hexagon") == 1);  // four points with one φ
   CHECK(outputs("sine-gordon", "rectangle") == 1);
   CHECK(outputs("sine-gordon", "nine-tuple") == 4);
   CHECK(VariationalFamily<Hexagon, BornInfeld>(BornInfeld{}, h, k).outputs() == 6);
