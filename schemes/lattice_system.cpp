@@ -114,8 +114,7 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
     const bool constant = most - least <= round_off;
     const double value = std::abs(sample.constant) <= round_off ? 0.0 : sample.constant;
     result.push_back(
-        {std::get<0>(where), std::get<1>(where), value, constant ? Dependence::linear : Dependence::nonlinear,
-         (least + most) / 2, constant ? 0 : (most - least) / 2});
+        {std::get<0>(where), std::get<1>(where), value, constant ? Dependence::linear : Dependence::nonlinear});
   }
   return result;
 }

@@ -32,7 +32,6 @@ struct Coefficient {
   int component = 0;
   double value = 0;
   Dependence dependence = Dependence::linear;
-  double typical = 0, variation = 0;  ///< of the whole entry over random fields of order one: mean, and distance from it
 };
 
 /// The discrete Euler–Lagrange field equations of some stencil families on a lattice, one stencil at a time: what

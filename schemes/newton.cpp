@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numbers>
 
 namespace delf {
 namespace {
@@ -80,13 +82,15 @@ class SlabEquations {
 };
 
 struct Newton {
-  bool converged = false, tame = true;  ///< tame: every correction at most half of the one before
+  bool converged = false;
+  bool tame = true;  ///< every correction is at most a share `tame_ratio` of the one before, the determinant keeps its sign
   int iterations = 0;
   Vector y;
   int sign = 0;  ///< of the determinant at the root
 };
 
-Newton newton(const SlabEquations& equations, Vector y, double absolute_tolerance, int max_iterations) {
+Newton newton(const SlabEquations& equations, Vector y, double absolute_tolerance, int max_iterations,
+              double tame_ratio = 0.5) {
   Newton result;
   double last = std::numeric_limits<double>::infinity();
   for (int it = 1; it <= max_iterations; ++it) {
@@ -97,57 +101,66 @@ Newton newton(const SlabEquations& equations, Vector y, double absolute_toleranc
     const Vector change = lu.solve(equations.residual(y));
     if (lu.info() != Eigen::Success || !change.allFinite()) break;
     y -= change;
-    result.sign = static_cast<int>(lu.signDeterminant());
+    const int sign = static_cast<int>(lu.signDeterminant());
+    if (it > 1 && sign != result.sign) result.tame = false;
+    result.sign = sign;
     const double size = largest(change);
     const double round_off = 8 * std::numeric_limits<double>::epsilon() * largest(y);
     if (size <= absolute_tolerance || size <= round_off) {
       result.converged = true;
       break;
     }
-    if (size > 0.5 * last) result.tame = false;
     // Corrections that stopped shrinking below a few hundred units of round-off have arrived: the matrix is
     // ill-conditioned, not the iteration lost.
     if (size > 0.5 * last && size <= 64 * round_off) {
       result.converged = true;
-      result.tame = true;
       break;
     }
+    if (size > tame_ratio * last && size > 64 * round_off) result.tame = false;
     last = size;
   }
   result.y = std::move(y);
   return result;
 }
 
-/// Follows the root of equations_at(s) from s near 0 to s = 1. Halves the stride where Newton is not tame; stops where
-/// the determinant changes sign, because there two roots meet.
+/// Follows the root of equations_at(s) from s near 0 to s = 1. A stride is taken once and in two halves: both ways must
+/// be tame and end at the same root, because Newton's method may by accident arrive quickly at a root that is far
+/// away. Stops where the determinant changes sign, because there two roots meet.
 Newton follow(const std::function<SlabEquations(double)>& equations_at, const std::function<Vector(double)>& predict,
               double absolute_tolerance, int max_iterations) {
-  constexpr double first = 1. / 16, largest_stride = 1. / 4, least_stride = 1. / 65536;
+  constexpr double first = 1. / 16, largest_stride = 1. / 8, least_stride = 1. / 65536, tame_ratio = 1. / 8;
   double s = 0, stride = first;
-  Newton at, before;
-  Vector offset;
+  Newton at;
+  Vector offset = 0 * predict(0);  // of the root from its prediction
   int iterations = 0, sign = 0;
+  const auto root_at = [&](double where, const Vector& off) {
+    Newton found = newton(equations_at(where), predict(where) + off, absolute_tolerance, std::min(max_iterations, 12),
+                          tame_ratio);
+    iterations += found.iterations;
+    found.converged = found.converged && found.tame && (sign == 0 || found.sign == sign);
+    return found;
+  };
   while (s < 1) {
-    const double next = std::min(1.0, s + stride);
-    const SlabEquations equations = equations_at(next);
-    Vector seed = predict(next);
-    if (offset.size()) seed += offset;
-    Newton trial = newton(equations, seed, absolute_tolerance, std::min(max_iterations, 12));
-    iterations += trial.iterations;
-    const bool turned = sign != 0 && trial.sign != sign;
-    if (!trial.converged || !trial.tame || turned) {
+    const double next = std::min(1.0, s + stride), middle = (s + next) / 2;
+    Newton once = root_at(next, offset);
+    bool same = false;
+    if (once.converged)
+      if (const Newton half = root_at(middle, offset); half.converged)
+        if (const Newton twice = root_at(next, half.y - predict(middle)); twice.converged)
+          same = largest(twice.y - once.y) <= 1e-6 * (1e-300 + largest(once.y)) + 4 * absolute_tolerance &&
+                 half.sign == once.sign;
+    if (!same) {
       stride /= 2;
       if (stride < least_stride) {
         at.converged = false;
-        at.iterations = iterations;
-        return at;
+        break;
       }
       continue;
     }
-    sign = trial.sign;
+    sign = once.sign;
     s = next;
-    offset = trial.y - predict(s);
-    at = std::move(trial);
+    offset = once.y - predict(s);
+    at = std::move(once);
     stride = std::min(2 * stride, largest_stride);
   }
   at.iterations = iterations;
@@ -223,17 +236,36 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
 bool is_stiff(const LatticeSystem& system, const SolvePlan& plan) {
   for (const auto& family : system.families())
     if (family->nonlinearity() == Nonlinearity::all) return false;
-  const int site = system.lattice().sites() / 2;
+  const int d = system.components(), site = system.lattice().sites() / 2;
+  Window uniform{&system.lattice(), d, 0, 0, {}};
+  uniform.rows.resize(1, std::vector<double>(static_cast<std::size_t>(system.lattice().sites() * d)));
   for (int row = 0; row < (system.placement() == Placement::brick_wall ? 2 : 1); ++row)
-    for (int a = 0; a < system.components(); ++a) {
-      double own = 0, others = 0, variation = 0;
+    for (int a = 0; a < d; ++a) {
+      const int unknown_row = row + plan.shift(site, a);
+      std::map<int, double> constant;  // A₊ by column
+      double dominance = 0;            // |A_ii| − Σ |A_ij|
       for (const Coefficient& c : system.linearised({row, site}, a)) {
-        if (c.offset.time != plan.shift(site, a)) continue;
-        (c.offset.space == 0 && c.component == a ? own : others) += std::abs(c.typical);
-        variation += c.variation;
+        if (row + c.offset.time != unknown_row) continue;
+        const bool own = c.offset.space == 0 && c.component == a;
+        dominance += own ? std::abs(c.value) : -std::abs(c.value);
+        const int i = site + c.offset.space;
+        constant[(system.lattice().is_circle() ? system.lattice().wrapped(i) : i) * d + c.component] += c.value;
       }
-      // A fixed point contracts everywhere if the variation is below own − others; the samples are few.
-      if (variation > 0 && !(variation < 0.125 * (own - others))) return true;
+      // The fixed point contracts by at most Σ |J_ij − A_ij| / dominance; J at uniform fields through [−π, π].
+      constexpr int fields = 16;
+      for (int f = 0; f <= fields; ++f) {
+        const double value = std::numbers::pi * (2.0 * f / fields - 1);
+        std::ranges::fill(uniform.rows[0], value);
+        std::vector<LatticeSystem::Entry> entries;
+        system.jacobian(uniform, row, site, unknown_row, system.time_step(), entries);
+        std::map<int, double> rest = constant;
+        for (auto& [column, entry] : rest) entry = -entry;
+        for (const auto& e : entries)
+          if (e.row == site * d + a) rest[e.column] += e.value;
+        double sum = 0;
+        for (const auto& [column, entry] : rest) sum += std::abs(entry);
+        if (std::isfinite(sum) && sum > 0.9 * dominance) return true;
+      }
     }
   return false;
 }

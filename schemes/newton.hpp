@@ -29,8 +29,8 @@ NewtonResult solve_centred_start(const LatticeSystem&, const SolvePlan&, const W
                                  const std::vector<double>& velocity, bool stiff, double tolerance,
                                  int max_iterations);
 
-/// Whether a step may have more than one root: over fields of order one the nonlinear part of the Jacobian varies by
-/// more than a small share of the rest. (A density that is nonlinear in its derivatives has no scale of its own to
+/// Whether a step may have more than one root: at some uniform field in [−π, π] the nonlinear part of the Jacobian is
+/// not dominated by the constant part, so that the fixed point need not contract. (A density that is nonlinear in its derivatives has no scale of its own to
 /// sample: it is judged by how its steps contract.)
 bool is_stiff(const LatticeSystem&, const SolvePlan&);
 
