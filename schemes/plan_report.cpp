@@ -65,8 +65,8 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   for (std::string line; std::getline(lines, line);) out += "             " + line + '\n';
   out +=
       stepper.iterates()
-          ? "step         extrapolated seed; simplified Newton with the constant part while it contracts; else full\n"
-            "             Newton; else continuation in h; else exit 3\n"
+          ? "step         extrapolated seed; simplified Newton with the constant part while it contracts; else the root is\n"
+            "             followed from a small h by full Newton steps; else exit 3\n"
           : "step         one solve, no iteration\n";
   out += fmt::format("matrix       {}{}\n", stepper.matrix_free() ? "none: " : "", stepper.solver_name());
   const Site bulk{0, lattice.sites() / 2 / 2 * 2};

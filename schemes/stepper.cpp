@@ -148,7 +148,9 @@ struct Stepper::Impl {
       if (overflowed(last.value)) report_not_finite();
       const double scale = std::max({last.value, largest[0], largest[1]});
       if (last.change <= std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()) * scale) return true;
-      if (iterations >= 3 && last.change > 0.25 * before) return false;
+      // Changes that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
+      if (iterations >= 3 && last.change > 0.25 * before)
+        return last.change <= 64 * std::numeric_limits<double>::epsilon() * scale;
       before = last.change;
     }
     return false;
