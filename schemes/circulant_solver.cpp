@@ -7,7 +7,7 @@
 namespace delf {
 
 CirculantSolver::CirculantSolver(const RowLayout& layout, double centre, double side) : layout_(&layout) {
-  // b = c(1 + q²), a = −cq: the root inside the unit circle, in the form that does not cancel (errata: the other root
+  // b = c(1 + q²), a = −cq: the root inside the unit circle, in the form that does not cancel (the other root
   // formula costs two digits).
   const double ratio = -side / centre;
   q_ = 2 * ratio / (1 + std::sqrt(1 - 4 * ratio * ratio));

@@ -18,7 +18,7 @@ constexpr int N = 12;
 constexpr double h = 0.3, k = 0.5, m = 1.2;
 const Lattice ring = Lattice::circle(N, N* k);
 
-// ---- the equations as the paper prints them (errata.md), of y(j, i) relative to a site; N = m²(cos φ − 1), or 0
+// ---- the paper's equations, (5.15) with the divisions it lacks, of y(j, i) relative to a site; N = m²(cos φ − 1), or 0
 
 using Field = std::function<double(int j, int i)>;
 using Equation = std::function<double(const Field&)>;
@@ -157,12 +157,12 @@ struct Two {
 }  // namespace
 
 TEST_CASE("for N = 0 the generated equations are (5.8), (5.10), (5.12), (5.14), (5.15), coefficient by coefficient") {
-  Equation of_quotient_free = [](const Field& y) { return d2k(y, 0) - d2h(y, 0); };
+  Equation without_potential = [](const Field& y) { return d2k(y, 0) - d2h(y, 0); };
   for (const auto& [scheme, equation] : printed(0)) {
     CAPTURE(scheme);
     const LatticeSystem system(ring, {family_of(wave(), scheme, h, k)}, h);
     // the quotients are 0/0 at a field of zeros: without N the comparators are (5.10) and (5.8)
-    const Equation linear = scheme == "guo"          ? of_quotient_free
+    const Equation linear = scheme == "guo"          ? without_potential
                             : scheme == "vu-quoc-li" ? printed(0)["rectangle"]
                                                      : equation;
     CHECK(has_coefficients(system, {0, 5}, coefficients(linear)));
@@ -210,7 +210,7 @@ TEST_CASE("the comparison can fail: a sign planted in one term of the Lagrangian
     }
 }
 
-TEST_CASE("a difference quotient of equal values is N′: errata, where the quotient itself loses everything") {
+TEST_CASE("a difference quotient of equal values is N′, where the quotient itself loses everything") {
   // rows j−1, j and j+1 alike: (5.14) and (5.15) have N′(y) exactly
   Window window{&ring, 1, 0, -1, {}};
   Random random(32);

@@ -110,8 +110,8 @@ TEST_CASE("where the step is not stiff every uniform start of sine-Gordon is sol
   for (const char* stencil : {"rectangle", "rectangle-symmetric"})
     for (const double mh : {0.5, 1.0, 1.9}) {
       CAPTURE(stencil, mh);
-      const Count all = count(stencil, mh, 1, 60);
-      CHECK(all.solved == 60);
+      const Count all = count(stencil, mh, 1, 30);
+      CHECK(all.solved == 30);
     }
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("a stiff uniform step of sine-Gordon is solved for the root that a sma
   for (const auto& [stencil, mh] : std::vector<std::pair<const char*, double>>{
            {"rectangle", 2.5}, {"rectangle", 4}, {"rectangle", 10}, {"rectangle-symmetric", 10}}) {
     CAPTURE(stencil, mh);
-    const Count all = count(stencil, mh, 0.3, 50);
+    const Count all = count(stencil, mh, 0.3, 40);
     CHECK(all.other_root == 0);
     CHECK(all.solved > 0);
   }
@@ -128,7 +128,7 @@ TEST_CASE("a stiff uniform step of sine-Gordon is solved for the root that a sma
 TEST_CASE("so is one whose rows are far apart") {
   for (const double mh : {4.0, 10.0}) {
     CAPTURE(mh);
-    CHECK(count("rectangle", mh, 1.5, 50).other_root == 0);
+    CHECK(count("rectangle", mh, 1.5, 30).other_root == 0);
   }
 }
 
