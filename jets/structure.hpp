@@ -119,8 +119,7 @@ enum class Nonlinearity {
 /// What is proved of a density. Variables in the order φ¹ … φᵈ, φ_t¹ …, φ_x¹ …, then t, x.
 struct DensityStructure {
   Nonlinearity nonlinearity = Nonlinearity::all;
-  bool linear_equations = false;  ///< no second derivative depends on the field (though it may depend on t, x)
-  Abstract of_density;            ///< the density's own abstract value
+  Abstract of_density;  ///< the density's own abstract value
 };
 
 template <Density D>
@@ -147,7 +146,6 @@ DensityStructure structure_of(const D& density) {
     beyond_values = beyond_values || (a >= d && bad) || (a < d && (bad & ~values & field));
   }
   s.nonlinearity = !any ? Nonlinearity::none : beyond_values ? Nonlinearity::all : Nonlinearity::values;
-  s.linear_equations = !any;
   return s;
 }
 
