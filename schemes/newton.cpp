@@ -172,8 +172,8 @@ Vector as_vector(const std::vector<double>& row) {
 }
 std::vector<double> as_row(const Vector& v) { return {v.data(), v.data() + v.size()}; }
 
-NewtonResult as_result(const Newton& found, int iterations, bool continued) {
-  NewtonResult result{found.converged, iterations, continued, {}};
+NewtonResult as_result(const Newton& found, int iterations) {
+  NewtonResult result{found.converged, iterations, {}};
   if (found.converged) result.row = as_row(found.y);
   return result;
 }
@@ -202,7 +202,7 @@ NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, cons
   const auto predict = [&](double s) { return Vector(newest + s * increment); };
   const double absolute = tolerance * std::max(largest(newest), largest(predict(1)));
   const Newton followed = follow(equations_at, predict, absolute, max_iterations);
-  return as_result(followed, followed.iterations, true);
+  return as_result(followed, followed.iterations);
 }
 
 NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& plan, const Window& row0,
@@ -227,10 +227,10 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
   if (!stiff) {
     const Newton direct = newton(equations_at(1), predict(1), absolute, max_iterations);
     iterations = direct.iterations;
-    if (direct.converged && direct.tame) return as_result(direct, iterations, false);
+    if (direct.converged && direct.tame) return as_result(direct, iterations);
   }
   const Newton followed = follow(equations_at, predict, absolute, max_iterations);
-  return as_result(followed, iterations + followed.iterations, true);
+  return as_result(followed, iterations + followed.iterations);
 }
 
 bool is_stiff(const LatticeSystem& system, const SolvePlan& plan) {

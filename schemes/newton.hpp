@@ -12,14 +12,13 @@ namespace delf {
 struct NewtonResult {
   bool converged = false;
   int iterations = 0;
-  bool continued = false;       ///< continuation in h was needed
-  std::vector<double> row;      ///< the unknown row, row[i·d + a]
+  std::vector<double> row;  ///< the unknown row, row[i·d + a]
 };
 
 /// Solves the slab whose unknown row follows `past` (its last row is the newest known) where the equations may have
 /// several roots. The one is wanted that h → 0 leads to: it is followed from a small h by full Newton steps, each stride
-/// short enough that every correction at least halves, and given up where the Jacobian's determinant changes sign,
-/// because there the path turns back. Never another root in silence.
+/// taken once and in two halves that must agree, and given up where the Jacobian's determinant changes sign, because
+/// there the path turns back. Never another root in silence.
 NewtonResult solve_slab(const LatticeSystem&, const SolvePlan&, const Window& past, double tolerance,
                         int max_iterations);
 
@@ -30,8 +29,8 @@ NewtonResult solve_centred_start(const LatticeSystem&, const SolvePlan&, const W
                                  int max_iterations);
 
 /// Whether a step may have more than one root: at some uniform field in [−π, π] the nonlinear part of the Jacobian is
-/// not dominated by the constant part, so that the fixed point need not contract. (A density that is nonlinear in its derivatives has no scale of its own to
-/// sample: it is judged by how its steps contract.)
+/// not dominated by the constant part, so that the fixed point need not contract. (A density that is nonlinear in its
+/// derivatives has no scale of its own to sample: it is judged by how its steps contract.)
 bool is_stiff(const LatticeSystem&, const SolvePlan&);
 
 }  // namespace delf

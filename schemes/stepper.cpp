@@ -26,8 +26,7 @@ struct Stepper::Impl {
 
   std::int64_t n = -1;         ///< newest row
   double largest[2] = {0, 0};  ///< |y| of the newest two rows
-  int iterations = 0, newton_steps = 0;
-  bool continued = false;
+  int iterations = 0;
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
       : system(s),
@@ -114,8 +113,7 @@ struct Stepper::Impl {
 
   void step() {
     const FlushDenormals guard;
-    iterations = newton_steps = 0;
-    continued = false;
+    iterations = 0;
     equations.evaluate_known_outputs(n);
     equations.clear();
     equations.add(n, RowEquations::known);
@@ -161,8 +159,6 @@ struct Stepper::Impl {
     const Window past = rows.window(n + 1 - history, n);
     const NewtonResult result = solve_slab(system, plan, past, options.tolerance, options.max_iterations);
     iterations += result.iterations;
-    newton_steps = result.iterations;
-    continued = result.continued;
     if (!result.converged)
       throw NoConvergence(fmt::format(
           "step {}, t = {:.6g}: the implicit equations were not solved: the simplified Newton method does not "
@@ -273,8 +269,6 @@ std::int64_t Stepper::newest() const { return impl_->n; }
 std::vector<double> Stepper::row(int back) const { return impl_->rows.row(impl_->n - back); }
 double Stepper::residual() const { return impl_->residual(); }
 int Stepper::iterations() const { return impl_->iterations; }
-int Stepper::newton_steps() const { return impl_->newton_steps; }
-bool Stepper::continued() const { return impl_->continued; }
 const RowLayout& Stepper::layout() const { return impl_->layout(); }
 const double* Stepper::row_data(int back, int a) const { return impl_->rows.y(impl_->n - back, a); }
 const double* Stepper::newest_increment(int a) const { return impl_->rows.v(impl_->n, a); }

@@ -48,8 +48,6 @@ class Stepper {
   /// sites (a vacuum has no scale of its own). Costs about a step.
   double residual() const;
   int iterations() const;   ///< of the last step: evaluations of the nonlinear part; 0 if it was solved at once
-  int newton_steps() const; ///< full Newton steps among them
-  bool continued() const;   ///< the last step needed continuation in h
 
   const RowLayout& layout() const;
   /// The row `back` before the newest, and v of the newest, in the layout's order with halos.
