@@ -37,6 +37,21 @@ inline Pack sinc_slope(Pack x) {
   return {abs(x).v < detail::sinc_series_below ? series.v : quotient.v};
 }
 
+/// d² sinc/dx² = −sinc x − 2 (d sinc/dx)/x
+inline double sinc_curvature(double x) {
+  const double s = x * x;
+  if (std::abs(x) >= detail::sinc_series_below) return -sinc(x) - 2 * sinc_slope(x) / x;
+  return -1. / 3 + s * (1. / 10 + s * (-1. / 168 + s * (1. / 6480 + s * (-1. / 443520 + s * (1. / 47174400)))));
+}
+inline Pack sinc_curvature(Pack x) {
+  return detail::by_lane(x, [](double y) { return sinc_curvature(y); });
+}
+/// What a Hessian by Dual of Dual needs.
+template <class T, int n>
+Dual<T, n> sinc_slope(const Dual<T, n>& u) {
+  return chain(u, sinc_slope(u.value), sinc_curvature(u.value));
+}
+
 template <class T, int n>
 Dual<T, n> sinc(const Dual<T, n>& u) {
   return chain(u, sinc(u.value), sinc_slope(u.value));

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "jets/density.hpp"
+#include "jets/sinc.hpp"
 
 namespace delf {
 
@@ -99,6 +100,9 @@ struct Abstract {
   }
   friend Abstract tanh(const Abstract& u) {
     return u.constant ? Abstract(std::tanh(*u.constant)) : unknown_function(u);
+  }
+  friend Abstract sinc(const Abstract& u) {
+    return u.constant ? Abstract(delf::sinc(*u.constant)) : unknown_function(u);
   }
   friend Abstract pow(const Abstract& u, double p) {
     if (u.constant) return std::pow(*u.constant, p);

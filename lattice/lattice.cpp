@@ -10,7 +10,7 @@ namespace delf {
 
 Lattice::Lattice(Space space, int sites, double length, Wall left, Wall right)
     : space_(space), sites_(sites), length_(length), left_(left), right_(right) {
-  if (sites < 2)
+  if (sites < (space == Space::point ? 1 : 2))
     throw BadInput("lattice.sites", "lattice.sites = " + std::to_string(sites) +
                                         ": a lattice needs at least 2 sites; raise lattice.sites");
   if (!(length > 0) || !std::isfinite(length))
@@ -18,6 +18,8 @@ Lattice::Lattice(Space space, int sites, double length, Wall left, Wall right)
 }
 
 Lattice Lattice::circle(int sites, double length) { return {Space::circle, sites, length, Wall::natural, Wall::natural}; }
+
+Lattice Lattice::point() { return {Space::point, 1, 1, Wall::natural, Wall::natural}; }
 
 Lattice Lattice::interval(int sites, double length, Wall left, Wall right) {
   return {Space::interval, sites, length, left, right};

@@ -3,19 +3,28 @@
 
 namespace delf {
 
-enum class Space { circle, interval };
+enum class Space { circle, interval, point };
 
 /// What a wall of an interval asks of the field: `fixed` keeps the value it starts with (no equation there, V = 0);
 /// `natural` varies it too, so that the equation is what the stencils inside the lattice give.
 enum class Wall { fixed, natural };
 
-/// A regular lattice: ℤ in time, and in space N sites on a circle (x_i = iL/N) or on an interval that holds both
-/// walls (x_i = iL/(N−1)). Time is ℤ: row 0 is data, not a wall.
+/// A regular lattice: ℤ in time, and in space N sites on a circle (x_i = iL/N), on an interval that holds both walls
+/// (x_i = iL/(N−1)), or one point, for mechanics. Time is ℤ: row 0 is data, not a wall.
 class Lattice {
  public:
   /// Throws BadInput (keys lattice.sites, lattice.length) unless sites ≥ 2 and length is positive and finite.
   static Lattice circle(int sites, double length);
   static Lattice interval(int sites, double length, Wall left = Wall::fixed, Wall right = Wall::fixed);
+
+  /// One site, x = 0, L = k = 1: a stencil that has sites side by side finds no place on it.
+  static Lattice point();
+  /// The same lattice with site 0 at x₀: where the nodes inside the cells lie.
+  Lattice shifted(double x_0) const {
+    Lattice other = *this;
+    other.origin_ = x_0;
+    return other;
+  }
 
   Space space() const noexcept { return space_; }
   bool is_circle() const noexcept { return space_ == Space::circle; }
@@ -24,9 +33,11 @@ class Lattice {
   Wall left() const noexcept { return left_; }
   Wall right() const noexcept { return right_; }
   /// k
-  double space_step() const noexcept { return length_ / (is_circle() ? sites_ : sites_ - 1); }
+  double space_step() const noexcept { return length_ / cells(); }
   /// x_i; exact at the walls.
-  double position(int i) const noexcept { return i * length_ / (is_circle() ? sites_ : sites_ - 1); }
+  double position(int i) const noexcept { return origin_ + i * length_ / cells(); }
+  /// Cells between neighbouring sites: N on a circle, N − 1 on an interval.
+  int cells() const noexcept { return space_ == Space::interval ? sites_ - 1 : sites_; }
   /// The site i of the circle that an index outside 0 … N−1 stands for.
   int wrapped(int i) const noexcept { return ((i % sites_) + sites_) % sites_; }
   /// A wall that is kept at its value: it has no equation.
@@ -38,7 +49,7 @@ class Lattice {
   Lattice(Space, int sites, double length, Wall, Wall);
   Space space_;
   int sites_;
-  double length_;
+  double length_, origin_ = 0;
   Wall left_, right_;
 };
 

@@ -101,6 +101,7 @@ Quotient Quotient::of_circle(const Lattice& lattice, const SystemPattern& system
 }
 
 Quotient Quotient::of_interval(const Lattice& lattice, const SystemPattern& system, int sites) {
+  if (lattice.space() == Space::point) return {false, sites, system, lattice};
   const double length = lattice.space_step() * (sites - 1);
   return {false, sites, system, Lattice::interval(sites, length, lattice.left(), lattice.right())};
 }

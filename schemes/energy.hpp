@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include "jets/density.hpp"
-#include "schemes/stencil_family.hpp"
+#include "schemes/row_kernel.hpp"
 
 namespace delf {
 

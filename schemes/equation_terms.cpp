@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "lattice/error.hpp"
+#include "schemes/row_kernel.hpp"
 
 namespace delf {
 namespace {
@@ -18,26 +18,36 @@ struct LinearEquation {
   double constant = 0;
 };
 
+/// ∂r/∂y at y = 0, or where the density has a value if it has none there.
+std::vector<double> jacobian_at_rest(const StencilFamily& family, const Cell& cell) {
+  const auto size = static_cast<std::size_t>(family.size());
+  std::vector<double> y(size, 0.0), J(size * size);
+  family.jacobian(cell, y, J);
+  if (std::ranges::all_of(J, [](double x) { return std::isfinite(x); })) return J;
+  for (std::size_t i = 0; i < size; ++i) y[i] = 1 + 0.25 * family.values()[i].component;
+  family.jacobian(cell, y, J);
+  return J;
+}
+
 LinearEquation linear_equation(const LatticeSystem& system, bool whole_jacobian, Site site, int a) {
   LinearEquation result;
   std::map<std::tuple<int, int, int>, double> scale;
-  const int d = system.components();
-  for (const auto& touch : system.touching(site)) {
-    const auto& vertices = touch.family->pattern().vertices;
+  for (const auto& touch : system.touching(site, a)) {
+    const RowKernel& kernel = *touch.family->row_kernel();
     const int size = touch.family->size();
     std::vector<double> J(static_cast<std::size_t>(size * size)), r0(static_cast<std::size_t>(size));
     const Cell cell{system.time_step(), system.lattice().space_step(), 0, 0};
-    touch.family->linear_part(cell, J, r0);
-    result.constant += r0[static_cast<std::size_t>(touch.vertex * d + a)];
+    kernel.linear_part(cell, J, r0);
+    result.constant += r0[static_cast<std::size_t>(touch.index)];
     // The matrix is that of the linear part; but where the unknown row enters linearly one solve must do, so that it
     // has to be the whole Jacobian, outputs included, and where there is no linear part it is all there is.
     std::vector<double> reference = J;
-    if (touch.family->nonlinearity() == Nonlinearity::all || whole_jacobian)
-      touch.family->jacobian(cell, std::vector<double>(static_cast<std::size_t>(size), 0.0), reference);
+    if (kernel.nonlinearity() == Nonlinearity::all || whole_jacobian)
+      reference = jacobian_at_rest(*touch.family, cell);
     for (int m = 0; m < size; ++m) {
-      const Site offset = touch.anchor + vertices[static_cast<std::size_t>(m / d)];
-      const std::tuple key{offset.time, offset.space, m % d};
-      const auto at = static_cast<std::size_t>((touch.vertex * d + a) * size + m);
+      const Site offset = touch.anchor + touch.family->site(m);
+      const std::tuple key{offset.time, offset.space, touch.family->values()[static_cast<std::size_t>(m)].component};
+      const auto at = static_cast<std::size_t>(touch.index * size + m);
       result.A[key] += J[at];
       result.matrix[key] += reference[at];
       scale[key] += std::abs(reference[at]) + std::abs(J[at]);
@@ -106,18 +116,19 @@ void add_linear_terms(const std::map<std::tuple<int, int, int>, std::pair<double
 
 /// Outputs of every stencil that could touch the site; those of stencils that are not there are kept at zero.
 void add_output_terms(const LatticeSystem& system, int site, bool everywhere, int a, EquationTerms& equation) {
-  const int d = system.components();
   for (std::size_t f = 0; f < system.families().size(); ++f) {
     const StencilFamily& family = *system.families()[f];
-    for (int l = 0; l < family.pattern().size(); ++l) {
-      const Site anchor = Site{} - family.pattern().vertices[static_cast<std::size_t>(l)];
+    const RowKernel& kernel = *family.row_kernel();
+    for (int i = 0; i < family.size(); ++i) {
+      if (family.values()[static_cast<std::size_t>(i)].component != a) continue;
+      const Site anchor = Site{} - family.site(i);
       const bool inside = everywhere || std::ranges::all_of(family.pattern().vertices, [&](Site v) {
-        const int i = site + anchor.space + v.space;
-        return i >= 0 && i < system.lattice().sites();
+        const int x = site + anchor.space + v.space;
+        return x >= 0 && x < system.lattice().sites();
       });
       if (!inside) continue;
-      for (int c = 0; c < family.outputs(); ++c)
-        if (const double w = family.weight(c, l * d + a); w != 0)
+      for (int c = 0; c < kernel.outputs(); ++c)
+        if (const double w = kernel.weight(c, i); w != 0)
           equation.terms.push_back({Source::output, 1 - equation.shift + anchor.time, 0, static_cast<int>(f), c,
                                     anchor.space, w, 0});
     }
@@ -129,8 +140,24 @@ void add_output_terms(const LatticeSystem& system, int site, bool everywhere, in
 bool solved_at_once(const LatticeSystem& system, const SolvePlan& plan) {
   return !plan.nonlinear_in_slab && std::ranges::none_of(system.families(), [](const auto& family) {
     const int top = std::ranges::max(family->pattern().vertices, {}, &Site::time).time;
-    return family->is_placed() && family->nonlinearity() != Nonlinearity::none && family->outputs_read_until() == top;
+    const RowKernel& kernel = *family->row_kernel();
+    return family->is_placed() && kernel.nonlinearity() != Nonlinearity::none && kernel.outputs_read_until() == top;
   });
+}
+
+bool goes_by_rows(const LatticeSystem& system, const SolvePlan& plan) {
+  const int d = system.components(), last = system.lattice().sites() - 1;
+  for (const auto& family : system.families()) {
+    if (!family->row_kernel() || family->size() != family->pattern().size() * d) return false;
+    // A density that is nonlinear in its derivatives has no linear part that could be shared.
+    if (family->row_kernel()->nonlinearity() == Nonlinearity::all && system.families().size() > 1) return false;
+  }
+  bool one_row = plan.table.regular;
+  for (int i : {0, last / 2, last})
+    for (int a = 0; a < d; ++a)
+      one_row = one_row && plan.offset(i, a, 0) == 0 && plan.offset(i, a, 1) == 0 &&
+                plan.shift(i, a, 0) == plan.shift(i, a, 1);
+  return one_row;
 }
 
 AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) {
@@ -140,9 +167,7 @@ AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) 
   AssembledEquations result;
   const bool at_once = solved_at_once(system, plan);
   for (const auto& family : system.families())
-    if (family->nonlinearity() == Nonlinearity::all) result.correction_form = true;
-  if (result.correction_form && system.families().size() > 1)
-    throw BadInput("lattice.stencil", "a density that is nonlinear in its derivatives must be the only family");
+    if (family->row_kernel()->nonlinearity() == Nonlinearity::all) result.correction_form = true;
 
   const auto equation_at = [&](int site, int a, bool everywhere, std::vector<UnknownEntry>& unknowns) {
     EquationTerms equation;

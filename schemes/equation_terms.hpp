@@ -59,6 +59,10 @@ struct AssembledEquations {
 /// on x and t are not held, and are iterated on.
 bool solved_at_once(const LatticeSystem&, const SolvePlan&);
 
+/// Whole rows can be stepped: every unknown of a slab lies in its row, and every family reads d fields at each of its
+/// vertices and has a kernel for rows. What cannot is stepped slab by slab.
+bool goes_by_rows(const LatticeSystem&, const SolvePlan&);
+
 AssembledEquations assemble(const LatticeSystem&, const SolvePlan&);
 
 }  // namespace delf

@@ -14,8 +14,8 @@ class Evolution {
  public:
   /// Throws BadInput for equations that no plan can solve.
   Evolution(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families, double time_step,
-            const StepOptions& options = {})
-      : parts_(std::make_unique<Parts>(lattice, std::move(families), time_step, options)) {}
+            const StepOptions& options = {}, std::vector<Component> components = {})
+      : parts_(std::make_unique<Parts>(lattice, std::move(families), time_step, options, std::move(components))) {}
 
   const LatticeSystem& system() const { return parts_->system; }
   const SolvePlan& plan() const { return parts_->plan; }
@@ -28,8 +28,8 @@ class Evolution {
     SolvePlan plan;
     Stepper stepper;
     Parts(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families, double h,
-          const StepOptions& options)
-        : system(lattice, std::move(families), h), plan(make_plan(lattice, system.pattern())),
+          const StepOptions& options, std::vector<Component> components)
+        : system(lattice, std::move(families), h, std::move(components)), plan(make_plan(lattice, system.pattern())),
           stepper(system, plan, options) {}
   };
   std::unique_ptr<Parts> parts_;  ///< the stepper refers to the other two, which must stay where they are

@@ -2,15 +2,21 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "jets/hexagon_jet.hpp"
+#include "jets/point_jets.hpp"
 #include "jets/rectangle_jet.hpp"
+#include "jets/symmetry.hpp"
 #include "jets/triangle_jet.hpp"
 #include "jets/tuple_jets.hpp"
+#include "schemes/element_family.hpp"
 #include "schemes/energy.hpp"
 #include "schemes/guo.hpp"
+#include "schemes/lagrangian_family.hpp"
 #include "schemes/residual_family.hpp"
 #include "schemes/variational_family.hpp"
+#include "schemes/vertex_constraint.hpp"
 #include "schemes/vu_quoc_li.hpp"
 
 namespace delf {
@@ -21,8 +27,14 @@ class FieldTheory {
   virtual ~FieldTheory() = default;
   virtual int components() const = 0;
   virtual bool is_placed() const = 0;
-  /// The scheme on a stencil of `stencil_names`; null if there is none of that name.
+  /// The action on a stencil of `for_each_stencil`; null if there is none of that name.
   virtual std::shared_ptr<const StencilFamily> variational(const std::string& stencil, double h, double k) const = 0;
+  /// The action on an element with nodes inside.
+  virtual std::shared_ptr<const StencilFamily> on_element(const Element&) const = 0;
+  /// The constraint that the theory declares, with its multiplier; null if it declares none.
+  virtual std::shared_ptr<const StencilFamily> constraint() const = 0;
+  /// What leaves the density as it is, as the theory declares it.
+  virtual std::vector<LinearSymmetry> symmetries() const = 0;
   /// A comparator; null if there is none of that name for this theory.
   virtual std::shared_ptr<const StencilFamily> comparator(const std::string& method, double h, double k) const = 0;
   /// Sums over the symmetric rectangle's jets between two rows.
@@ -39,6 +51,9 @@ void for_each_stencil(Function&& f) {
   f("hexagon", "6 sites of a brick wall (Fig. 5.4); circle, N even", hexagon);
   f("six-tuple", "6 sites, φ on the middle edge, φ_x left and right of it; circle", six_tuple);
   f("nine-tuple", "9 sites, the symmetric rectangle in each of four cells; circle", nine_tuple);
+  f("midpoint", "2 sites of a time lattice, q in the middle; lattice.space = point", midpoint);
+  f("trapezoidal", "2 sites of a time lattice, half at either end (Störmer–Verlet); lattice.space = point", trapezoidal);
+  f("vertex", "2 sites of a time lattice, q at the first (symplectic Euler); lattice.space = point", vertex);
 }
 
 template <Density D>
@@ -55,6 +70,20 @@ class TheoryOf final : public FieldTheory {
       if (stencil == name) family = std::make_shared<VariationalFamily<Map, D>>(density_, h, k);
     });
     return family;
+  }
+
+  std::shared_ptr<const StencilFamily> on_element(const Element& element) const override {
+    return std::make_shared<ElementFamily<D>>(element, density_);
+  }
+
+  std::shared_ptr<const StencilFamily> constraint() const override {
+    if constexpr (Constrained<D>) return std::make_shared<LagrangianFamily<VertexConstraint<D>>>(VertexConstraint<D>{density_});
+    else return nullptr;
+  }
+
+  std::vector<LinearSymmetry> symmetries() const override {
+    if constexpr (requires { density_.symmetries(); }) return density_.symmetries();
+    else return {};
   }
 
   std::shared_ptr<const StencilFamily> comparator(const std::string& method, double h, double k) const override {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "lattice/error.hpp"
+#include "schemes/row_kernel.hpp"
 
 namespace delf {
 namespace {
@@ -19,42 +20,65 @@ Cell cell_at(const Lattice& lattice, std::int64_t row, int i, double time_step) 
 
 }  // namespace
 
+std::vector<Component> fields(int d) {
+  std::vector<Component> result;
+  for (int a = 0; a < d; ++a) result.push_back({d == 1 ? "phi" : "phi" + std::to_string(a + 1)});
+  return result;
+}
+
 double Window::operator()(std::int64_t row, int i, int a) const {
   const auto& values = rows[static_cast<std::size_t>(std::clamp(row, first_row, last_row()) - first_row)];
   if (!lattice->is_circle()) return values[static_cast<std::size_t>(i * components + a)];
   const int home = lattice->wrapped(i);
-  return values[static_cast<std::size_t>(home * components + a)] + (i - home) / lattice->sites() * turn;
+  const double value = values[static_cast<std::size_t>(home * components + a)];
+  return a < turning ? value + (i - home) / lattice->sites() * turn : value;
 }
 
 LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families,
-                             double time_step)
-    : lattice_(lattice), families_(std::move(families)), time_step_(time_step) {
-  components_ = families_.front()->components();
+                             double time_step, std::vector<Component> components)
+    : lattice_(lattice), families_(std::move(families)), time_step_(time_step), names_(std::move(components)) {
+  int read = 0;
   for (const auto& family : families_) {
-    if (family->components() != components_)
-      throw BadInput("lattice.stencil", "stencil families on one lattice must have the same number of components");
+    for (const VertexValue& value : family->values()) read = std::max(read, value.component + 1);
     if (family->pattern().placement == Placement::brick_wall) placement_ = Placement::brick_wall;
     const auto [least, most] = std::ranges::minmax(family->pattern().vertices, {}, &Site::space);
     width_ = std::max(width_, most.space - least.space);
+    if (!lattice_.is_circle() && most.space - least.space >= lattice_.sites())
+      throw BadInput("lattice.stencil",
+                     lattice_.space() == Space::point
+                         ? "lattice.stencil: this stencil has sites side by side, and on lattice.space = point there is "
+                           "one; use midpoint, trapezoidal or vertex"
+                         : "lattice.stencil: the interval is shorter than the stencil; raise lattice.sites");
   }
+  if (names_.empty()) names_ = delf::fields(read);
+  if (read > this->components())
+    throw BadInput("lattice.stencil", "lattice.stencil: a stencil reads component " + std::to_string(read - 1) + " of " +
+                                          std::to_string(this->components()) + "; name every component");
   if (placement_ == Placement::brick_wall && lattice_.is_circle() && lattice_.sites() % 2 != 0)
     throw BadInput("lattice.sites", "lattice.sites = " + std::to_string(lattice_.sites()) +
                                         ": a brick wall of hexagons closes on a circle only if the number of sites is "
                                         "even; choose an even lattice.sites");
 }
 
-std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice, Site site) const {
+int LatticeSystem::fields() const {
+  return static_cast<int>(std::ranges::count(names_, Role::field, &Component::role));
+}
+
+std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice, Site site, int component) const {
   std::vector<Touch> result;
-  for (const auto& family : families_)
-    for (int l = 0; l < family->pattern().size(); ++l) {
-      const auto& vertices = family->pattern().vertices;
-      const Site offset = Site{} - vertices[static_cast<std::size_t>(l)], anchor = site + offset;
-      const bool inside = lattice.is_circle() || std::ranges::all_of(vertices, [&](Site v) {
-                            const int i = anchor.space + v.space;
-                            return i >= 0 && i < lattice.sites();
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    const StencilFamily& family = *families_[f];
+    for (int i = 0; i < family.size(); ++i) {
+      if (family.values()[static_cast<std::size_t>(i)].component != component) continue;
+      const Site vertex = family.site(i), offset{-vertex.time, -vertex.space}, anchor = site + offset;
+      const bool inside = lattice.is_circle() || std::ranges::all_of(family.pattern().vertices, [&](Site v) {
+                            const int x = anchor.space + v.space;
+                            return x >= 0 && x < lattice.sites();
                           });
-      if (inside && family->pattern().placed_at(anchor)) result.push_back({family.get(), offset, l});
+      if (inside && family.pattern().placed_at(anchor))
+        result.push_back({&family, offset, i, static_cast<int>(f)});
     }
+  }
   return result;
 }
 
@@ -78,27 +102,30 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
   const auto number = [&] { return amplitude * (2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0); };
   // One random value for each unknown near the site, the same for all stencils that contain it.
   std::map<std::tuple<Site, int>, std::array<double, 3>> field;
-  for (const Touch& touch : touching(lattice, site)) {
-    const auto& vertices = touch.family->pattern().vertices;
-    const int d = components_, size = touch.family->size();
+  for (const Touch& touch : touching(lattice, site, component)) {
+    const int size = touch.family->size();
     std::vector<double> y(static_cast<std::size_t>(size)), J(y.size() * y.size()), r0(y.size());
     // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
     const Cell cell = cell_at(lattice, site.time + touch.anchor.time, site.space + touch.anchor.space, time_step_);
-    const auto entry = [&](int m, int b) -> Sample& {
-      return samples[{touch.anchor + vertices[static_cast<std::size_t>(m)], b}];
+    const auto key = [&](int m) {
+      const Site vertex = touch.family->site(m);
+      return std::tuple{touch.anchor + Site{vertex.time, vertex.space},
+                        touch.family->values()[static_cast<std::size_t>(m)].component};
     };
-    const std::size_t from = static_cast<std::size_t>((touch.vertex * d + component) * size);
-    touch.family->linear_part(cell, J, r0);
-    for (int m = 0; m < size; ++m) entry(m / d, m % d).constant += J[from + static_cast<std::size_t>(m)];
+    const std::size_t from = static_cast<std::size_t>(touch.index * size);
+    if (const RowKernel* kernel = touch.family->row_kernel()) {
+      kernel->linear_part(cell, J, r0);
+      for (int m = 0; m < size; ++m) samples[key(m)].constant += J[from + static_cast<std::size_t>(m)];
+    }
     for (int s = 0; s < 3; ++s) {
       for (int m = 0; m < size; ++m) {
-        auto [where, fresh] = field.try_emplace({touch.anchor + vertices[static_cast<std::size_t>(m / d)], m % d});
+        auto [where, fresh] = field.try_emplace(key(m));
         if (fresh) where->second = {number(), number(), number()};
         y[static_cast<std::size_t>(m)] = where->second[static_cast<std::size_t>(s)];
       }
       touch.family->jacobian(cell, y, J);
       for (int m = 0; m < size; ++m) {
-        Sample& sample = entry(m / d, m % d);
+        Sample& sample = samples[key(m)];
         sample.at[s] += J[from + static_cast<std::size_t>(m)];
         sample.scale += std::abs(J[from + static_cast<std::size_t>(m)]);
       }
@@ -121,7 +148,7 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
 
 SystemPattern LatticeSystem::pattern() const {
   SystemPattern pattern;
-  pattern.components = components_;
+  pattern.components = components();
   pattern.width = std::max(width_, 1);
   pattern.placement = placement_;
   pattern.equations = [this](const Lattice& lattice, Site site, int component) {
@@ -136,12 +163,14 @@ SystemPattern LatticeSystem::pattern() const {
 /// The cell of a stencil that touches (row, site), and the values of the window on its vertices.
 Cell LatticeSystem::gather(const Touch& touch, const Window& window, std::int64_t row, int site, double time_step,
                            std::vector<double>& y) const {
-  const auto& vertices = touch.family->pattern().vertices;
   const std::int64_t anchor_row = row + touch.anchor.time;
   const int anchor = site + touch.anchor.space;
   y.clear();
-  for (const Site& vertex : vertices)
-    for (int a = 0; a < components_; ++a) y.push_back(window(anchor_row + vertex.time, anchor + vertex.space, a));
+  for (int i = 0; i < touch.family->size(); ++i) {
+    const Site vertex = touch.family->site(i);
+    y.push_back(window(anchor_row + vertex.time, anchor + vertex.space,
+                       touch.family->values()[static_cast<std::size_t>(i)].component));
+  }
   return cell_at(lattice_, anchor_row, anchor, time_step);
 }
 
@@ -149,36 +178,34 @@ LatticeSystem::Value LatticeSystem::equation(const Window& window, std::int64_t 
                                              double time_step) const {
   Value value;
   std::vector<double> y, r;
-  for (const Touch& touch : touching({static_cast<int>(row & 1), site})) {
+  for (const Touch& touch : touching({static_cast<int>(row & 1), site}, component)) {
     const Cell cell = gather(touch, window, row, site, time_step, y);
     r.resize(y.size());
     touch.family->residual(cell, y, r);
-    const double term = r[static_cast<std::size_t>(touch.vertex * components_ + component)];
+    const double term = r[static_cast<std::size_t>(touch.index)];
     value.sum += term;
     value.absolute += std::abs(term);
   }
   return value;
 }
 
-void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, std::int64_t unknown_row,
+void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, int component, std::int64_t unknown_row,
                              double time_step, std::vector<Entry>& entries) const {
-  const int d = components_;
+  const int d = components();
   std::vector<double> y, J;
-  for (const Touch& touch : touching({static_cast<int>(row & 1), site})) {
+  for (const Touch& touch : touching({static_cast<int>(row & 1), site}, component)) {
     const Cell cell = gather(touch, window, row, site, time_step, y);
-    const auto& vertices = touch.family->pattern().vertices;
     const int size = touch.family->size();
     J.resize(y.size() * y.size());
     touch.family->jacobian(cell, y, J);
-    for (std::size_t m = 0; m < vertices.size(); ++m) {
-      if (row + touch.anchor.time + vertices[m].time != unknown_row) continue;
-      const int i = site + touch.anchor.space + vertices[m].space,
-                home = lattice_.is_circle() ? lattice_.wrapped(i) : i;
-      for (int a = 0; a < d; ++a)
-        for (int b = 0; b < d; ++b) {
-          const double value = J[static_cast<std::size_t>((touch.vertex * d + a) * size + static_cast<int>(m) * d + b)];
-          if (value != 0) entries.push_back({site * d + a, home * d + b, value});
-        }
+    for (int m = 0; m < size; ++m) {
+      const Site vertex = touch.family->site(m);
+      if (row + touch.anchor.time + vertex.time != unknown_row) continue;
+      const int i = site + touch.anchor.space + vertex.space, home = lattice_.is_circle() ? lattice_.wrapped(i) : i;
+      const double value = J[static_cast<std::size_t>(touch.index * size + m)];
+      if (value != 0)
+        entries.push_back(
+            {site * d + component, home * d + touch.family->values()[static_cast<std::size_t>(m)].component, value});
     }
   }
 }

@@ -4,22 +4,39 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "jets/element.hpp"
 #include "lattice/incidence.hpp"
 #include "lattice/lattice.hpp"
 #include "schemes/stencil_family.hpp"
 
 namespace delf {
 
+/// What a component of the section is.
+enum class Role {
+  field,      ///< at the vertices of the lattice: what rows record
+  inner,      ///< a field at a node inside the cells
+  multiplier  ///< of a constraint: its equation is the constraint
+};
+struct Component {
+  std::string name = "phi";
+  Role role = Role::field;
+  NodePosition at = {};  ///< in the cell, as fractions of h and k
+};
+/// d fields at the vertices: "phi", or "phi1", "phi2", …
+std::vector<Component> fields(int d);
+
 /// Consecutive rows of a section in the order of sites, row[i·d + a]; what lies beyond the circle's ends is found by
 /// going round, 2π·winding higher or lower each time.
 struct Window {
   const Lattice* lattice;
   int components = 1;
-  double turn = 0;                          ///< φ(x + L) − φ(x)
+  double turn = 0;                          ///< φ(x + L) − φ(x); multipliers are periodic
   std::int64_t first_row = 0;               ///< index of rows[0]
   std::vector<std::vector<double>> rows;
+  int turning = 1 << 30;                    ///< components from here on are periodic
 
   /// Rows beyond the window read as its nearest row: stencils may reach there without depending on it.
   double operator()(std::int64_t row, int i, int a) const;
@@ -39,27 +56,35 @@ struct Coefficient {
 ///
 ///     E(site) = Σ_families Σ_{l: Δˡ = site} rˡ(y_Δ) = 0                   Marsden–Patrick–Shkoller (5.2)
 ///
+/// one for each component: actions, constraints and whatever else there is are families alike.
 class LatticeSystem {
  public:
-  /// Throws BadInput: families with different numbers of components, a brick wall that does not close.
-  LatticeSystem(const Lattice&, std::vector<std::shared_ptr<const StencilFamily>>, double time_step);
+  /// `components` names what the families' values are; without it they are fields at the vertices. Throws BadInput: a
+  /// component without a name, a brick wall that does not close, a stencil that finds no place on the lattice.
+  LatticeSystem(const Lattice&, std::vector<std::shared_ptr<const StencilFamily>>, double time_step,
+                std::vector<Component> components = {});
 
   const Lattice& lattice() const { return lattice_; }
-  int components() const { return components_; }
+  int components() const { return static_cast<int>(names_.size()); }
+  const Component& component(int a) const { return names_[static_cast<std::size_t>(a)]; }
+  const std::vector<Component>& all_components() const { return names_; }
+  /// Components that are fields at the vertices: they come first.
+  int fields() const;
   double time_step() const { return time_step_; }
   int width() const { return width_; }            ///< the largest space offset between two sites of one equation
   Placement placement() const { return placement_; }
   std::span<const std::shared_ptr<const StencilFamily>> families() const { return families_; }
 
-  /// One stencil that touches a site: which family, its anchor relative to that site, as which vertex.
+  /// One stencil that reads a component at a site: which family, its anchor relative to that site, as which value.
   struct Touch {
     const StencilFamily* family;
     Site anchor;
-    int vertex;
+    int index;
+    int family_index;
   };
-  /// The stencils of `lattice` that touch `site`, whose row matters by its parity.
-  std::vector<Touch> touching(const Lattice& lattice, Site site) const;
-  std::vector<Touch> touching(Site site) const { return touching(lattice_, site); }
+  /// The stencils of `lattice` that read the component at `site`, whose row matters by its parity.
+  std::vector<Touch> touching(const Lattice& lattice, Site site, int component) const;
+  std::vector<Touch> touching(Site site, int component) const { return touching(lattice_, site, component); }
 
   /// The linearised equation at a site, assembled: coefficients that cancel in the sum are absent, those that are the
   /// same at three seeded random fields are linear, and their value is that of the constant part.
@@ -79,8 +104,8 @@ class LatticeSystem {
     int row, column;
     double value;
   };
-  /// ∂E(row, site)/∂y(unknown_row, ·) appended as entries with row and column site·d + component.
-  void jacobian(const Window&, std::int64_t row, int site, std::int64_t unknown_row, double time_step,
+  /// ∂E(row, site, component)/∂y(unknown_row, ·) appended as entries with row and column site·d + component.
+  void jacobian(const Window&, std::int64_t row, int site, int component, std::int64_t unknown_row, double time_step,
                 std::vector<Entry>& entries) const;
 
  private:
@@ -92,7 +117,8 @@ class LatticeSystem {
   Lattice lattice_;
   std::vector<std::shared_ptr<const StencilFamily>> families_;
   double time_step_;
-  int components_ = 1, width_ = 0;
+  std::vector<Component> names_;
+  int width_ = 0;
   Placement placement_ = Placement::every_site;
 };
 

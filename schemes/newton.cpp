@@ -8,6 +8,8 @@
 #include <map>
 #include <numbers>
 
+#include "schemes/row_kernel.hpp"
+
 namespace delf {
 namespace {
 
@@ -59,9 +61,9 @@ class SlabEquations {
     for (const Dependent& dependent : dependents_)
       for (int i = 0; i < system_.lattice().sites(); ++i) {
         entries.clear();
-        system_.jacobian(window, row_of(i, 0), i, dependent.row, h_, entries);
-        for (const auto& e : entries)
-          if (solved(i, e.row % d)) triplets.emplace_back(e.row, e.column, dependent.factor * e.value);
+        for (int a = 0; a < d; ++a)
+          if (solved(i, a)) system_.jacobian(window, row_of(i, a), i, a, dependent.row, h_, entries);
+        for (const auto& e : entries) triplets.emplace_back(e.row, e.column, dependent.factor * e.value);
       }
     Matrix J(y.size(), y.size());
     J.setFromTriplets(triplets.begin(), triplets.end());
@@ -235,7 +237,7 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
 
 bool is_stiff(const LatticeSystem& system, const SolvePlan& plan) {
   for (const auto& family : system.families())
-    if (family->nonlinearity() == Nonlinearity::all) return false;
+    if (family->row_kernel()->nonlinearity() == Nonlinearity::all) return false;
   const int d = system.components(), site = system.lattice().sites() / 2;
   Window uniform{&system.lattice(), d, 0, 0, {}};
   uniform.rows.resize(1, std::vector<double>(static_cast<std::size_t>(system.lattice().sites() * d)));
@@ -257,7 +259,7 @@ bool is_stiff(const LatticeSystem& system, const SolvePlan& plan) {
         const double value = std::numbers::pi * (2.0 * f / fields - 1);
         std::ranges::fill(uniform.rows[0], value);
         std::vector<LatticeSystem::Entry> entries;
-        system.jacobian(uniform, row, site, unknown_row, system.time_step(), entries);
+        system.jacobian(uniform, row, site, a, unknown_row, system.time_step(), entries);
         std::map<int, double> rest = constant;
         for (auto& [column, entry] : rest) entry = -entry;
         for (const auto& e : entries)

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "schemes/row_kernel.hpp"
 #include "schemes/stencil_family.hpp"
 
 namespace delf {
@@ -24,7 +25,7 @@ concept ResidualStencil = requires(const R& r) {
 
 /// A residual stencil at every site. Multiplied by hk, so that its size is that of a discrete Lagrangian's gradient.
 template <ResidualStencil R>
-class ResidualFamily final : public StencilFamily {
+class ResidualFamily final : public StencilFamily, public RowKernel {
   static constexpr int n = decltype(R::shape)::size();
   static constexpr int first_time = [] {
     int t = R::shape.vertex(0).time;
@@ -34,7 +35,8 @@ class ResidualFamily final : public StencilFamily {
 
  public:
   ResidualFamily(R stencil, double time_step, double space_step)
-      : StencilFamily(StencilPattern(R::shape), 1, false), stencil_(std::move(stencil)) {
+      : StencilFamily(StencilPattern(R::shape), values_at_every_vertex(StencilPattern(R::shape), 1), false),
+        RowKernel(n), stencil_(std::move(stencil)) {
     nonlinearity_ = Nonlinearity::values;
     outputs_ = 1;
     outputs_read_until_ = first_time;
@@ -58,6 +60,7 @@ class ResidualFamily final : public StencilFamily {
     const auto slope = stencil_.nonlinear(variables);
     for (int l = 0; l < n; ++l) J[R::centre * n + l] += cell.time_step * cell.space_step * slope.derivative(l);
   }
+  const RowKernel* row_kernel() const override { return this; }
   void linear_part(const Cell& cell, std::span<double> J, std::span<double> r0) const override {
     linear(cell, J);
     std::ranges::fill(r0, 0.0);

@@ -22,7 +22,8 @@ RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, S
 
 void RowEquations::build_outputs() {
   for (std::size_t f = 0; f < system_.families().size(); ++f) {
-    Outputs o{.family = system_.families()[f].get(), .ring = {}, .absent = {}};
+    const StencilFamily* family = system_.families()[f].get();
+    Outputs o{.family = family, .kernel = family->row_kernel(), .ring = {}, .absent = {}};
     const auto& vertices = o.family->pattern().vertices;
     o.first_time = std::ranges::min(vertices, {}, &Site::time).time;
     o.last_time = std::ranges::max(vertices, {}, &Site::time).time;
@@ -36,14 +37,14 @@ void RowEquations::build_outputs() {
     for (const auto& equation : equations_.bulk) scan(equation);
     for (const auto& special : equations_.exceptional) scan(special.equation);
     if (o.oldest > o.newest) o.oldest = 0, o.newest = -1;
-    o.ring = RowBuffer(layout_, (o.newest - o.oldest + 1) * o.family->outputs());
+    o.ring = RowBuffer(layout_, (o.newest - o.oldest + 1) * o.kernel->outputs());
     const int N = layout_.sites();
     if (!system_.lattice().is_circle())
       for (int i = 0; i < N; ++i)
         if (std::ranges::any_of(vertices, [&](Site s) { return i + s.space < 0 || i + s.space >= N; }))
           for (int slot : layout_.slots_of(i)) o.absent.push_back(slot);
     slab_rows_.resize(std::max(slab_rows_.size(), static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_)));
-    slab_out_.resize(std::max(slab_out_.size(), static_cast<std::size_t>(o.family->outputs())));
+    slab_out_.resize(std::max(slab_out_.size(), static_cast<std::size_t>(o.kernel->outputs())));
     outputs_.push_back(std::move(o));
   }
 }
@@ -105,7 +106,7 @@ void RowEquations::build_marks() {
 
 double* RowEquations::Outputs::row(std::int64_t anchor_row, int c) {
   const int count = newest - oldest + 1;
-  return ring.row(static_cast<int>(((anchor_row % count) + count) % count) * family->outputs() + c);
+  return ring.row(static_cast<int>(((anchor_row % count) + count) % count) * kernel->outputs() + c);
 }
 
 /// The outputs of the stencils anchored at a row, reading rows oldest … newest and no others.
@@ -115,9 +116,9 @@ void RowEquations::evaluate(Outputs& o, std::int64_t anchor_row, std::int64_t ol
     for (int a = 0; a < d_; ++a)
       slab_rows_[static_cast<std::size_t>((t - o.first_time) * d_ + a)] =
           rows_.y(std::clamp(anchor_row + t, oldest, newest), a);
-  const int count = o.family->outputs();
+  const int count = o.kernel->outputs();
   for (int c = 0; c < count; ++c) slab_out_[static_cast<std::size_t>(c)] = o.row(anchor_row, c);
-  o.family->evaluate({&layout_, slab_rows_.data(), positions_.rows() ? positions_.row(0) : nullptr,
+  o.kernel->evaluate({&layout_, slab_rows_.data(), positions_.rows() ? positions_.row(0) : nullptr,
                       static_cast<double>(anchor_row) * h, h, system_.lattice().space_step()},
                      slab_out_.data());
   for (int c = 0; c < count; ++c) {
@@ -262,7 +263,7 @@ double RowEquations::residual(std::int64_t n) {
   const auto each_fresh_output = [&](const auto& f) {
     for (Outputs& o : outputs_)
       for (int age = o.oldest; age <= o.newest; ++age)
-        for (int c = 0; c < o.family->outputs() && o.reads_unknown_row(age); ++c) f(o.row(n + age, c));
+        for (int c = 0; c < o.kernel->outputs() && o.reads_unknown_row(age); ++c) f(o.row(n + age, c));
   };
   each_fresh_output([&](const double* row) { before.emplace_back(row, row + layout_.doubles()); });
   evaluate_outputs(n, true);

@@ -6,6 +6,7 @@
 
 #include "schemes/equation_terms.hpp"
 #include "schemes/linear_solver.hpp"
+#include "schemes/row_kernel.hpp"
 #include "schemes/row_sum.hpp"
 #include "schemes/section_rows.hpp"
 
@@ -51,12 +52,13 @@ class RowEquations {
   /// The rows out_c of one family: a ring over the anchors' rows.
   struct Outputs {
     const StencilFamily* family;
+    const RowKernel* kernel;
     RowBuffer ring;
     int oldest = 0, newest = 0;         ///< anchors' rows that equations use, from n
     int first_time = 0, last_time = 0;  ///< of the pattern
     std::vector<int> absent;            ///< slots whose stencil leaves the lattice
 
-    bool reads_unknown_row(int age) const { return age + family->outputs_read_until() >= 1; }
+    bool reads_unknown_row(int age) const { return age + kernel->outputs_read_until() >= 1; }
     double* row(std::int64_t anchor_row, int c);
   };
 

@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "schemes/evolution.hpp"
+#include "schemes/lagrangian_family.hpp"
 #include "schemes/variational_family.hpp"
+#include "schemes/vertex_constraint.hpp"
 
 namespace delf {
 
@@ -16,6 +18,7 @@ namespace delf {
 ///     evolution.stepper().start({row0, row1});
 ///     evolution.stepper().step();
 ///
+/// A constraint that the density declares is kept by a multiplier, which is one more component.
 template <JetMap Map, Density D>
 class Scheme {
  public:
@@ -28,7 +31,16 @@ class Scheme {
     return std::make_shared<VariationalFamily<Map, D>>(density_, time_step, space_step);
   }
   Evolution on(const Lattice& lattice, double time_step, const StepOptions& options = {}) const {
-    return {lattice, {family(time_step, lattice.space_step())}, time_step, options};
+    if constexpr (Constrained<D>) {
+      std::vector<Component> components = fields(components_of<D>());
+      components.push_back({"lambda", Role::multiplier, {}});
+      return {lattice,
+              {family(time_step, lattice.space_step()),
+               std::make_shared<LagrangianFamily<VertexConstraint<D>>>(VertexConstraint<D>{density_})},
+              time_step, options, std::move(components)};
+    } else {
+      return {lattice, {family(time_step, lattice.space_step())}, time_step, options};
+    }
   }
 
  private:

@@ -8,23 +8,16 @@
 #include <numbers>
 
 #include "lattice/error.hpp"
+#include "schemes/conserved.hpp"
 #include "schemes/evolution.hpp"
 #include "schemes/field_theory.hpp"
-#include "schemes/nearest_name.hpp"
+#include "schemes/method_registry.hpp"
 #include "schemes/plan_report.hpp"
 #include "schemes/theory_registry.hpp"
+#include "schemes/unknown_name.hpp"
 
 namespace delf {
 namespace {
-
-BadInput unknown(const std::string& key, const std::string& value, const std::vector<std::string>& names) {
-  const auto near = nearest(value, names);
-  std::string known;
-  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-  return {key,
-          fmt::format("{} = {}: there is no such {}{}; choose one of {}", key, value, key.substr(key.find('.') + 1),
-                      near ? fmt::format(" (did you mean {}?)", *near) : "", known)};
-}
 
 std::unique_ptr<FieldTheory> make_theory(const Problem& problem) {
   std::vector<std::string> names;
@@ -32,54 +25,31 @@ std::unique_ptr<FieldTheory> make_theory(const Problem& problem) {
     if (problem.theory == entry->name) return entry->make(problem);
     names.emplace_back(entry->name);
   }
-  throw unknown("theory.name", problem.theory, names);
+  throw unknown_name("theory.name", problem.theory, names);
 }
 
-std::vector<std::string> names_of(const std::vector<NamedFormula>& list) {
-  std::vector<std::string> names;
-  for (const auto& item : list) names.push_back(item.name);
-  return names;
-}
-
-/// What a wall does to a scheme that its stencils cannot see.
-void check_walls(const Problem& p, const StencilFamily& family) {
-  if (p.lattice.is_circle()) return;
-  const auto [least, most] = std::ranges::minmax(family.pattern().vertices, {}, &Site::space);
-  if (family.is_variational() && most.space - least.space > 1)
-    throw BadInput(
-        "lattice.stencil",
-        fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
-                    "at the walls out of the action, and the error there does not vanish with k; use "
-                    "triangle, rectangle or rectangle-symmetric, or lattice.space = circle",
-                    p.stencil));
-  if (!family.is_variational() && (p.lattice.left() == Wall::natural || p.lattice.right() == Wall::natural))
-    throw BadInput(
-        p.lattice.left() == Wall::natural ? "boundary.left" : "boundary.right",
-        fmt::format("a natural wall varies the action, and scheme.method = {} has none; use fixed walls", p.method));
-}
-
-std::shared_ptr<const StencilFamily> make_family(const FieldTheory& theory, const Problem& p) {
-  const double h = p.time_step, k = p.lattice.space_step();
-  if (!(h > 0) || !std::isfinite(h))
+SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
+  if (!(p.time_step > 0) || !std::isfinite(p.time_step))
     throw BadInput("lattice.time_step", "lattice.time_step must be a positive, finite number");
-  if (p.method == "multisymplectic") {
-    if (auto family = theory.variational(p.stencil, h, k)) {
-      check_walls(p, *family);
-      return family;
+  std::vector<std::string> names;
+  for (const MethodEntry* entry : method_entries()) {
+    if (p.method == entry->name) {
+      SchemeParts parts = entry->build(theory, p);
+      if (p.circle_valued && parts.components.size() > 1)
+        throw BadInput("theory.fibre", "theory.fibre = S1: for one field on a lattice without nodes inside; use R");
+      return parts;
     }
-    throw unknown("lattice.stencil", p.stencil, names_of(stencils()));
+    names.emplace_back(entry->name);
   }
-  if (auto family = theory.comparator(p.method, h, k)) {
-    check_walls(p, *family);
-    return family;
-  }
-  for (const std::string& name : names_of(methods()))
-    if (name == p.method)
-      throw BadInput("scheme.method",
-                     fmt::format("scheme.method = {}: not written for theory.name = {}, whose potential "
-                                 "depends on more than the field; use scheme.method = multisymplectic",
-                                 p.method, p.theory));
-  throw unknown("scheme.method", p.method, names_of(methods()));
+  throw unknown_name("scheme.method", p.method, names);
+}
+
+Evolution make_evolution(const FieldTheory& theory, const Problem& p) {
+  SchemeParts parts = make_parts(theory, p);
+  return {p.lattice, std::move(parts.families), p.time_step,
+          {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
+           2 * std::numbers::pi * p.winding},
+          std::move(parts.components)};
 }
 
 }  // namespace
@@ -89,17 +59,49 @@ struct Simulation::Impl {
   std::unique_ptr<FieldTheory> theory;
   Evolution evolution;
   Stepper& stepper;
-  RowBuffer cell_weights, positions;
+  const LatticeSystem& system;
+  RowLayout own_layout;  ///< of the monitors, where steps do not go by rows
+  RowBuffer cell_weights, positions, last_rows;
   int winding;
+  std::vector<LinearSymmetry> symmetries;
+  std::vector<std::string> conserved_names;
 
   explicit Impl(const Problem& p)
       : problem(p),
         theory(make_theory(p)),
-        evolution(p.lattice, {make_family(*theory, p)}, p.time_step,
-                  {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
-                   2 * std::numbers::pi * p.winding}),
+        evolution(make_evolution(*theory, p)),
         stepper(evolution.stepper()),
-        winding(p.winding) {}
+        system(evolution.system()),
+        own_layout(p.lattice, 1),
+        winding(p.winding) {
+    const auto rows_of = [](const auto& family) {
+      const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+      return high.time - low.time;
+    };
+    // Stencils of more than two rows would need rows that are no longer held; a density has the symmetries, a comparator
+    // or a moving mesh does not.
+    const bool of_density = p.method == "multisymplectic" || p.method == "spacetime";
+    if (of_density && std::ranges::all_of(system.families(), [&](const auto& f) { return rows_of(f) <= 1; }))
+      symmetries = theory->symmetries();
+    for (const LinearSymmetry& s : symmetries) conserved_names.push_back(s.name);
+  }
+
+  const RowLayout& layout() const { return stepper.layout() ? *stepper.layout() : own_layout; }
+
+  /// max |G| over the constraints at the newest row.
+  double constraint() const {
+    double worst = 0;
+    const std::int64_t newest = stepper.newest();
+    if (newest < 2) return 0;
+    const Window window = stepper.window(3);
+    for (int c = 0; c < system.components(); ++c) {
+      if (system.component(c).role != Role::multiplier) continue;
+      for (int i = 0; i < problem.lattice.sites(); ++i)
+        if (evolution.plan().solved(i, c))
+          worst = std::max(worst, std::abs(system.equation(window, newest, i, c, problem.time_step).sum));
+    }
+    return worst;
+  }
 
   /// S¹: chooses for every value the representative next to its neighbour, so that the section is continuous; from there
   /// on differences are those of real numbers, and Stepper watches that they stay small enough to be told apart.
@@ -128,9 +130,10 @@ struct Simulation::Impl {
 
   void prepare_monitors() {
     if (cell_weights.rows()) return;
-    const RowLayout& layout = stepper.layout();
+    const RowLayout& layout = this->layout();
     cell_weights = RowBuffer(layout, 1);
-    const int N = problem.lattice.sites(), cells = problem.lattice.is_circle() ? N : N - 1;
+    const int N = problem.lattice.sites(), cells = problem.lattice.cells(), d = theory->components();
+    if (!stepper.layout()) last_rows = RowBuffer(layout, 2 * d);
     for (int i = 0; i < cells; ++i) cell_weights.row(0)[layout.slot(i)] = 1;
     if (!theory->is_placed()) return;
     positions = RowBuffer(layout, 1);
@@ -159,26 +162,99 @@ void Simulation::start_centred(std::span<const double> row0, std::span<const dou
 void Simulation::step() { impl_->stepper.step(); }
 std::int64_t Simulation::newest() const { return impl_->stepper.newest(); }
 
-void Simulation::copy_row(int back, std::span<double> out) const {
-  impl_->stepper.layout().gather(impl_->stepper.row_data(back, 0), out);
+void Simulation::start_legendre(std::span<const double> row0, std::span<const double> velocity) {
+  const LatticeSystem& system = impl_->system;
+  const Lattice& lattice = system.lattice();
+  const int C = system.components(), N = lattice.sites();
+  const double turn = 2 * std::numbers::pi * impl_->winding;
+  std::vector<double> momenta(row0.size(), 0.0), phi, phi_t, p;
+  bool any = false;
+  for (const auto& family : system.families()) {
+    const auto& vertices = family->pattern().vertices;
+    for (int cell = 0; cell < N; ++cell) {
+      if (!lattice.is_circle() && std::ranges::any_of(vertices, [&](Site v) { return cell + v.space >= N; })) continue;
+      std::vector<std::size_t> places;
+      phi.clear(), phi_t.clear();
+      for (int i = 0; i < family->size(); ++i) {
+        const int c = family->values()[static_cast<std::size_t>(i)].component;
+        if (family->site(i).time != 0 || system.component(c).at.time != 0) continue;
+        const int x = cell + family->site(i).space, home = lattice.is_circle() ? lattice.wrapped(x) : x;
+        places.push_back(static_cast<std::size_t>(home * C + c));
+        phi.push_back(row0[places.back()] + (x - home) / N * turn);
+        phi_t.push_back(velocity[places.back()]);
+      }
+      p.resize(places.size());
+      any = family->momentum({impl_->problem.time_step, lattice.space_step(), 0, lattice.position(cell)}, phi, phi_t, p);
+      if (!any) break;
+      for (std::size_t n = 0; n < places.size(); ++n) momenta[places[n]] += p[n];
+    }
+  }
+  if (!any)
+    throw BadInput("initial.start", "initial.start = legendre: for scheme.method = spacetime; use exact or centred");
+  impl_->stepper.start_legendre({row0.begin(), row0.end()}, momenta);
 }
+
+void Simulation::copy_row(int back, std::span<double> out, Role role) const {
+  const Impl& s = *impl_;
+  if (role == Role::field && s.system.components() == 1 && s.stepper.layout()) {
+    s.stepper.layout()->gather(s.stepper.row_data(back, 0), out);
+    return;
+  }
+  const std::vector<double> row = s.stepper.row(back);
+  std::size_t next = 0;
+  for (std::size_t at = 0; at < row.size(); ++at)
+    if (s.system.component(static_cast<int>(at) % s.system.components()).role == role) out[next++] = row[at];
+}
+
+const std::vector<Component>& Simulation::components() const { return impl_->system.all_components(); }
+int Simulation::count(Role role) const {
+  return static_cast<int>(std::ranges::count(components(), role, &Component::role));
+}
+const std::vector<std::string>& Simulation::conserved_names() const { return impl_->conserved_names; }
 
 Simulation::Monitors Simulation::monitors() const {
   Impl& s = *impl_;
   s.prepare_monitors();
-  const RowLayout& layout = s.stepper.layout();
-  const double* rows[2] = {s.stepper.row_data(1, 0), s.stepper.newest_increment(0)};
+  const RowLayout& layout = s.layout();
+  const int d = s.theory->components(), last = s.problem.lattice.sites() - 1;
+  std::vector<const double*> rows;
+  if (s.stepper.layout()) {
+    for (int a = 0; a < d; ++a) rows.push_back(s.stepper.row_data(1, a));
+    for (int a = 0; a < d; ++a) rows.push_back(s.stepper.newest_increment(a));
+  } else {
+    const int C = s.system.components();
+    const std::vector<double> newest = s.stepper.row(0), before = s.stepper.row(1);
+    std::vector<double> value(static_cast<std::size_t>(last + 1)), step(value.size());
+    for (int a = 0; a < d; ++a) {
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        const std::size_t at = i * static_cast<std::size_t>(C) + static_cast<std::size_t>(a);
+        value[i] = before[at];
+        step[i] = newest[at] - before[at];
+      }
+      layout.scatter(value, s.last_rows.row(a), 2 * std::numbers::pi * s.winding);
+      layout.scatter(step, s.last_rows.row(d + a));
+    }
+    for (int a = 0; a < 2 * d; ++a) rows.push_back(s.last_rows.row(a));
+  }
   const double h = s.problem.time_step;
   const EnergyMomentum sums =
-      s.theory->energy_momentum({&layout, rows, s.positions.rows() ? s.positions.row(0) : nullptr,
+      s.theory->energy_momentum({&layout, rows.data(), s.positions.rows() ? s.positions.row(0) : nullptr,
                                  static_cast<double>(newest() - 1) * h, h, s.problem.lattice.space_step()},
                                 s.cell_weights.row(0));
   double charge = s.winding;
   if (!s.problem.lattice.is_circle()) {
-    const double* y = s.stepper.row_data(0, 0);
-    charge = (y[layout.slot(s.problem.lattice.sites() - 1)] - y[layout.slot(0)]) / (2 * std::numbers::pi);
+    const double* y = rows[0];
+    const double* step = rows[static_cast<std::size_t>(d)];
+    const auto at = [&](int i) { return y[layout.slot(i)] + step[layout.slot(i)]; };
+    charge = (at(last) - at(0)) / (2 * std::numbers::pi);
   }
-  return {sums.energy, sums.momentum, charge};
+  Monitors monitors{sums.energy, sums.momentum, charge, s.constraint(), {}};
+  if (!s.symmetries.empty()) {
+    const Window window = s.stepper.window(2);
+    for (const LinearSymmetry& symmetry : s.symmetries)
+      monitors.conserved.push_back(noether_charge(s.system, window, newest(), symmetry));
+  }
+  return monitors;
 }
 
 int Simulation::iterations() const { return impl_->stepper.iterations(); }
@@ -194,7 +270,7 @@ const std::vector<TheoryInfo>& theories() {
   static const std::vector<TheoryInfo> list = [] {
     std::vector<TheoryInfo> result;
     for (const TheoryEntry* entry : theory_entries())
-      result.push_back({entry->name, entry->formula, entry->parameters});
+      result.push_back({entry->name, entry->formula, entry->parameters, entry->make(Problem{})->components()});
     return result;
   }();
   return list;
@@ -210,10 +286,11 @@ const std::vector<NamedFormula>& stencils() {
 }
 
 const std::vector<NamedFormula>& methods() {
-  static const std::vector<NamedFormula> list{
-      {"multisymplectic", "discrete Euler-Lagrange field equations of lattice.stencil (5.2)"},
-      {"vu-quoc-li", "comparator (5.14): conserves an energy, is not multisymplectic"},
-      {"guo", "comparator (5.15): conserves an energy, is not multisymplectic"}};
+  static const std::vector<NamedFormula> list = [] {
+    std::vector<NamedFormula> result;
+    for (const MethodEntry* entry : method_entries()) result.push_back({entry->name, entry->formula});
+    return result;
+  }();
   return list;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lattice/lattice.hpp"
+#include "schemes/lattice_system.hpp"
 
 namespace delf {
 
@@ -25,9 +26,13 @@ struct Problem {
   double tolerance = 1e-14;                      ///< scheme.tolerance
   int seed_order = 8;                            ///< scheme.seed_order
   int max_iterations = 50;                       ///< scheme.max_iterations
+  int degree_time = 2, degree_space = 2;         ///< scheme.degree_time, scheme.degree_space: of an element
+  std::string quadrature = "gauss";              ///< scheme.quadrature: in time, gauss or lobatto
+  double alpha = 1;                              ///< scheme.alpha: of the arclength constraint
 };
 
-/// A scheme on a lattice, stepping. Rows are in the order of sites, values as they are (not reduced modulo 2π).
+/// A scheme on a lattice, stepping. Rows are in the order of sites, row[i·C + c], values as they are (not reduced modulo
+/// 2π). Of the C components the first are the fields at the vertices; nodes inside cells and multipliers follow.
 class Simulation {
  public:
   /// Throws BadInput for what cannot be built or planned. Allocates everything that steps need.
@@ -35,26 +40,38 @@ class Simulation {
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
+  const std::vector<Component>& components() const;
+  int count(Role) const;  ///< components of this role
+
   /// How many rows a start needs: 2 for every scheme of Marsden–Patrick–Shkoller.
   int starting_rows() const;
-  /// Rows 0, 1, …, starting_rows() − 1.
+  /// Rows 0, 1, …, starting_rows() − 1, of all components; the multipliers' entries are not read.
   void start(const std::vector<std::vector<double>>& rows);
   /// Row 0 and φ_t there: row 1 solves the field equation at row 0 with y₋₁ = y₁ − 2hφ_t.
   void start_centred(std::span<const double> row0, std::span<const double> velocity);
+
+  /// Row 0 and φ_t there, of all components (at a = 0 of their cells' time): row 1 by the discrete Legendre transform of
+  /// an element scheme. Throws BadInput for other schemes.
+  void start_legendre(std::span<const double> row0, std::span<const double> velocity);
 
   /// One step. Throws NoConvergence or NotFinite; the rows held are then still the last good ones.
   void step();
 
   /// Index of the newest row.
   std::int64_t newest() const;
-  /// The row `back` rows before the newest, back < starting_rows().
-  void copy_row(int back, std::span<double> out) const;
+  /// The components of one role of the row `back` rows before the newest, back < starting_rows(): out[i·count + a].
+  /// Multipliers and inner nodes are those that were found together with the row.
+  void copy_row(int back, std::span<double> out, Role = Role::field) const;
 
   /// k Σ (φ_t ∂ℓ/∂φ_t − ℓ) and −k Σ φ_x ∂ℓ/∂φ_t over the symmetric rectangle's jets of the last two rows.
   struct Monitors {
     double energy, momentum, charge;
+    double constraint = 0;              ///< max |G| over the constraints that the last step solved
+    std::vector<double> conserved;      ///< of conserved_names(): Noether's sums over a cut between two rows
   };
   Monitors monitors() const;
+  /// Noether's conserved quantities of the symmetries that the theory declares (5.7).
+  const std::vector<std::string>& conserved_names() const;
 
   int iterations() const;        ///< of the last step; 0 when it was explicit
   double residual() const;       ///< of the last step's equations, relative to the sum of absolute values
@@ -71,6 +88,7 @@ class Simulation {
 struct TheoryInfo {
   std::string name, formula;
   std::vector<std::string> parameters;   ///< scene keys that it reads, such as "theory.mass"
+  int components = 1;
 };
 const std::vector<TheoryInfo>& theories();
 

@@ -5,64 +5,58 @@
 #include <string>
 #include <vector>
 
-#include "jets/fibre.hpp"
 #include "lattice/solve_plan.hpp"
-#include "schemes/lattice_system.hpp"
-#include "schemes/linear_solver.hpp"
-#include "schemes/row_layout.hpp"
+#include "schemes/step_method.hpp"
 
 namespace delf {
 
-struct StepOptions {
-  double tolerance = 1e-14;  ///< of the last change, relative to the largest |y| of the last three rows
-  int seed_order = 8;        ///< rows that the seed of an implicit step is extrapolated from
-  int max_iterations = 50;
-  Fibre fibre = Fibre::real;
-  double turn = 0;           ///< φ(x + L) − φ(x)
-};
-
-/// Steps a system row by row, as its plan says. Kept are the newest rows y and their increments v_j = y_j − y_{j−1}:
-/// with A₊ the coefficients of the unknown row, every step solves for w = v_{n+1} − v_n,
-///
-///     A₊ w = −(linear part at y_n, v_n, v_{n−1}, …) − r(0) − nonlinear part,      v += w, y += v,
-///
-/// differences throughout, so that rounding enters at the size of the increment and not of the field.
+/// Steps a system as its plan says: by whole rows where every unknown of a slab lies in one row and the equations have a
+/// regular constant part (RowStepper), slab by slab otherwise (SlabStepper).
 class Stepper {
  public:
+  /// Throws BadInput for a component that cannot be stepped.
   Stepper(const LatticeSystem&, const SolvePlan&, const StepOptions&);
-  ~Stepper();
-  Stepper(Stepper&&) noexcept;
 
-  int starting_rows() const;
-  /// Rows 0 … starting_rows()−1, each row[i·d + a].
+  int starting_rows() const { return method_->starting_rows(); }
+  /// Rows 0 … starting_rows()−1, each row[i·C + c] of all C components; what is not known yet (multipliers) is not read.
   void start(const std::vector<std::vector<double>>& rows);
   /// Row 0 and φ_t there; row 1 from the equation at row 0 with y₋₁ = y₁ − 2hφ_t (second order for every scheme).
-  void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity);
+  void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
+    method_->start_centred(row0, velocity);
+  }
+  /// Row 0 and the momenta of its vertices: row 1 from the discrete Legendre transform p₀ = −∂L/∂y₀.
+  void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
+    method_->start_legendre(row0, momenta);
+  }
 
   /// Throws NoConvergence or NotFinite and then still holds the rows that it held before.
-  void step();
+  void step() { method_->step(); }
 
-  std::int64_t newest() const;
-  std::vector<double> row(int back) const;
+  std::int64_t newest() const { return method_->newest(); }
+  /// The newest row, or one before it: fields at that row, multipliers and inner nodes as they were found with it.
+  std::vector<double> row(int back) const { return method_->row(back); }
+  /// The newest rows, every component at its own row: for checks.
+  Window window(int rows) const { return method_->window(rows); }
   /// The residual of the field equations that were solved for the newest row: max |Σ terms| / max Σ |terms| over the
   /// sites (a vacuum has no scale of its own). Costs about a step.
-  double residual() const;
-  int iterations() const;   ///< of the last step: evaluations of the nonlinear part; 0 if it was solved at once
+  double residual() const { return method_->residual(); }
+  /// Of the last step: evaluations of the nonlinear part; 0 if it was solved at once.
+  int iterations() const { return method_->iterations(); }
 
-  const RowLayout& layout() const;
-  /// The row `back` before the newest, and v of the newest, in the layout's order with halos.
-  const double* row_data(int back, int component) const;
-  const double* newest_increment(int component) const;
+  /// Rows in the lanes' layout with halos, and v of the newest; null when stepped slab by slab.
+  const RowLayout* layout() const { return method_->layout(); }
+  const double* row_data(int back, int component) const { return method_->row_data(back, component); }
+  const double* newest_increment(int component) const { return method_->newest_increment(component); }
 
-  bool iterates() const;  ///< a step is not one solve
-  std::string solver_name() const;
-  bool matrix_free() const;  ///< the constant part is one number for all sites: no matrix is allocated
-  std::size_t bytes() const;
-  std::string memory_report() const;
+  bool iterates() const { return method_->iterates(); }  ///< a step is not one solve
+  std::string solver_name() const { return method_->solver_name(); }
+  bool matrix_free() const { return method_->matrix_free(); }  ///< one number for all sites: no matrix is allocated
+  std::size_t bytes() const { return method_->bytes(); }
+  std::string memory_report() const { return method_->memory_report(); }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<StepMethod> method_;
+  std::size_t row_size_;
 };
 
 }  // namespace delf

@@ -4,12 +4,22 @@
 namespace delf {
 
 extern const TheoryEntry wave_theory, klein_gordon_theory, sine_gordon_theory, phi4_theory, double_sine_gordon_theory,
-    sine_gordon_impurity_theory;
+    sine_gordon_impurity_theory, pendulum_theory, kepler_theory, coupled_sine_gordon_theory,
+    complex_klein_gordon_theory, wave_map_theory;
 
 const std::vector<const TheoryEntry*>& theory_entries() {
   static const std::vector<const TheoryEntry*> entries{
-      &wave_theory, &klein_gordon_theory,       &sine_gordon_theory,
-      &phi4_theory, &double_sine_gordon_theory, &sine_gordon_impurity_theory};
+      &wave_theory,
+      &klein_gordon_theory,
+      &sine_gordon_theory,
+      &phi4_theory,
+      &double_sine_gordon_theory,
+      &sine_gordon_impurity_theory,
+      &coupled_sine_gordon_theory,
+      &complex_klein_gordon_theory,
+      &wave_map_theory,
+      &pendulum_theory,
+      &kepler_theory};
   return entries;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
+#include "schemes/row_kernel.hpp"
 #include "schemes/stencil_family.hpp"
 
 namespace delf {
@@ -31,7 +33,7 @@ constexpr DistinctValues<Q> distinct_values(const JetTable<n, Q>& map) {
 /// A discrete Lagrangian on every stencil of the lattice. The jet map is known at compile time, so that a row of
 /// stencils is a loop over packs with all weights constants.
 template <JetMap Map, Density D>
-class VariationalFamily final : public StencilFamily {
+class VariationalFamily final : public StencilFamily, public RowKernel {
   static constexpr const auto& map = Map::table;
   using Lagrangian = DiscreteLagrangian<Map, D>;
   static constexpr int n = map.vertices, d = components_of<D>();
@@ -45,7 +47,8 @@ class VariationalFamily final : public StencilFamily {
 
  public:
   explicit VariationalFamily(D density, double time_step, double space_step)
-      : StencilFamily(StencilPattern(map.shape), d, true), lagrangian_{std::move(density)} {
+      : StencilFamily(StencilPattern(map.shape), values_at_every_vertex(StencilPattern(map.shape), d), true),
+        RowKernel(vertices_size), lagrangian_{std::move(density)} {
     placed_ = delf::is_placed<D>();
     nonlinearity_ = structure_of(lagrangian_.density).nonlinearity;
     const double area = map.measure * time_step * space_step;
@@ -76,22 +79,36 @@ class VariationalFamily final : public StencilFamily {
   void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override {
     std::ranges::copy(lagrangian_.hessian(array(y), cell), J.begin());
   }
+  const RowKernel* row_kernel() const override { return this; }
   double lagrangian(const Cell& cell, std::span<const double> y) const { return lagrangian_(array(y), cell); }
 
   void linear_part(const Cell& cell, std::span<double> J, std::span<double> r0) const override {
     std::ranges::fill(J, 0.0);
     std::ranges::fill(r0, 0.0);
     if (nonlinearity_ == Nonlinearity::all) return;
-    const typename Lagrangian::Values zero{};
-    std::ranges::copy(lagrangian_.hessian(zero, cell), J.begin());
-    std::ranges::copy(lagrangian_.gradient(zero, cell), r0.begin());
-    if (nonlinearity_ == Nonlinearity::none) return;
-    // Take away what `evaluate` adds: the part of ℓ that is seen with φ_t = φ_x = 0.
-    const DiscreteLagrangian<Map, ValuesOnly> seen{{lagrangian_.density}};
-    const auto h = seen.hessian(zero, cell);
-    const auto g = seen.gradient(zero, cell);
-    for (std::size_t i = 0; i < J.size(); ++i) J[i] -= h[i];
-    for (std::size_t i = 0; i < r0.size(); ++i) r0[i] -= g[i];
+    // J and r(0) are the same wherever they are taken: at zero, or where the density has a value if it has none there.
+    typename Lagrangian::Values y{};
+    if (!std::isfinite(lagrangian_.hessian(y, cell)[0]))
+      for (std::size_t i = 0; i < y.size(); ++i) y[i] = 1 + 0.25 * static_cast<double>(i % d);
+    std::ranges::copy(lagrangian_.hessian(y, cell), J.begin());
+    std::ranges::copy(lagrangian_.gradient(y, cell), r0.begin());
+    if (nonlinearity_ == Nonlinearity::values) {
+      // Take away what `evaluate` adds: the part of ℓ that is seen with φ_t = φ_x = 0.
+      const DiscreteLagrangian<Map, ValuesOnly> seen{{lagrangian_.density}};
+      const auto h = seen.hessian(y, cell);
+      const auto g = seen.gradient(y, cell);
+      for (std::size_t i = 0; i < J.size(); ++i) J[i] -= h[i];
+      for (std::size_t i = 0; i < r0.size(); ++i) r0[i] -= g[i];
+    }
+    for (std::size_t i = 0; i < r0.size(); ++i)
+      for (std::size_t m = 0; m < y.size(); ++m)
+        if (y[m] != 0) r0[i] -= J[i * y.size() + m] * y[m];
+    // What cancels only up to rounding is nothing.
+    const double scale = std::ranges::max(J, {}, [](double x) { return std::abs(x); });
+    for (double& x : r0)
+      if (y[0] != 0 && std::abs(x) < 1e-13 * std::abs(scale)) x = 0;
+    for (double& x : J)
+      if (y[0] != 0 && std::abs(x) < 1e-13 * std::abs(scale)) x = 0;
   }
 
   void evaluate(const SlabRows& rows, double* const* out) const override {

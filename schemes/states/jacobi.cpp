@@ -17,6 +17,8 @@ Jacobi Jacobi::from_logit(double z) {
   return z > 0 ? Jacobi(larger, smaller) : Jacobi(smaller, larger);
 }
 
+Jacobi Jacobi::from_angle(double alpha) { return {std::sin(alpha), std::cos(alpha)}; }
+
 Jacobi::Jacobi(double kappa, double kappa_prime) : kappa_(kappa), kappa_prime_(kappa_prime) {
   // a₀ = 1, b₀ = κ′;   a_{n+1} = (a_n + b_n)/2,   b_{n+1} = √(a_n b_n),   c_{n+1} = (a_n − b_n)/2      DLMF 19.8(i)
   double a = 1, b = kappa_prime, c = kappa;

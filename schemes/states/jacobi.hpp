@@ -12,6 +12,8 @@ class Jacobi {
   static Jacobi from_epsilon(double epsilon);
   /// κ² = 1/(1 + e^{−z}), κ′² = 1/(1 + e^{z}): every modulus, small and nearly 1 alike, at a moderate z.
   static Jacobi from_logit(double z);
+  /// κ = sin(α), κ′ = cos(α), 0 ≤ α < π/2.
+  static Jacobi from_angle(double alpha);
 
   double modulus() const { return kappa_; }
   double complementary_modulus() const { return kappa_prime_; }

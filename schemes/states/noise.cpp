@@ -26,39 +26,54 @@ struct Mode {
 ///
 ///     φ(0) = S Σ_{n=1}^{M} (r_n/n) X_n,    φ_t(0) = S Σ_{n=1}^{M} (r′_n/n) q_n X′_n,    r, r′ uniform in [−1, 1),
 ///
-/// X_n = cos(q_n x + phase) around a circle, the standing mode between walls, and S such that max |φ(0)| = A.
+/// X_n = cos(q_n x + phase) around a circle, the standing mode between walls, and S such that max |φ(0)| = A. Each
+/// component has its own r, r′, phases and S.
 class Noise final : public State {
  public:
-  Noise(const Lattice& lattice, double amplitude, int most, std::uint64_t seed)
+  Noise(const Lattice& lattice, double amplitude, int most, std::uint64_t seed, int components)
       : modes_(lattice), circle_(lattice.is_circle()), A(amplitude), seed_(seed) {
     std::mt19937_64 generator(seed);
-    const auto draw = [&](int n, double decay) {
+    for (int a = 0; a < components; ++a) fields_.push_back(draw(generator, lattice, most));
+  }
+
+  int components() const override { return static_cast<int>(fields_.size()); }
+  void values(double, const Lattice& lattice, std::span<double> out) const override {
+    fill(&Field::value, lattice, out);
+  }
+  void velocities(double, const Lattice& lattice, std::span<double> out) const override {
+    fill(&Field::velocity, lattice, out);
+  }
+  bool exact() const override { return false; }
+  std::string description() const override {
+    return "noise: " + std::to_string(fields_.front().value.size()) +
+           " modes of random amplitude (falling as 1/n) and phase, max |phi| = " + text(A) +
+           (fields_.size() > 1 ? " in each component" : "") + ", seed = " + std::to_string(seed_);
+  }
+
+ private:
+  struct Field {
+    std::vector<Mode> value, velocity;
+    double scale = 0;
+  };
+
+  Field draw(std::mt19937_64& generator, const Lattice& lattice, int most) const {
+    const auto mode = [&](int n, double decay) {
       const double r = 2 * uniform(generator) - 1;
       return Mode{n, r * decay, 2 * std::numbers::pi * uniform(generator)};
     };
+    Field field;
     for (int n = 1; n <= most; ++n) {
-      value_.push_back(draw(n, 1.0 / n));
-      velocity_.push_back(draw(n, modes_.wavenumber(n) / n));
+      field.value.push_back(mode(n, 1.0 / n));
+      field.velocity.push_back(mode(n, modes_.wavenumber(n) / n));
     }
     // max |φ| over a grid of 64 points to the shortest wave
     double highest = 0;
     const int points = 64 * most;
-    for (int i = 0; i <= points; ++i) highest = std::max(highest, std::abs(sum(value_, lattice.length() * i / points)));
-    scale_ = highest > 0 ? A / highest : 0;
+    for (int i = 0; i <= points; ++i)
+      highest = std::max(highest, std::abs(sum(field.value, lattice.length() * i / points)));
+    field.scale = highest > 0 ? A / highest : 0;
+    return field;
   }
-
-  void values(double, const Lattice& lattice, std::span<double> out) const override { fill(value_, lattice, out); }
-  void velocities(double, const Lattice& lattice, std::span<double> out) const override {
-    fill(velocity_, lattice, out);
-  }
-  bool exact() const override { return false; }
-  std::string description() const override {
-    return "noise: " + std::to_string(value_.size()) +
-           " modes of random amplitude (falling as 1/n) and phase, max |phi| = " + text(A) +
-           ", seed = " + std::to_string(seed_);
-  }
-
- private:
   double sum(const std::vector<Mode>& modes, double x) const {
     double total = 0;
     for (const Mode& mode : modes)
@@ -66,17 +81,17 @@ class Noise final : public State {
                (circle_ ? std::cos(modes_.wavenumber(mode.n) * x + mode.phase) : modes_.standing(mode.n, x));
     return total;
   }
-  void fill(const std::vector<Mode>& modes, const Lattice& lattice, std::span<double> out) const {
+  void fill(std::vector<Mode> Field::*modes, const Lattice& lattice, std::span<double> out) const {
+    std::size_t next = 0;
     for (int i = 0; i < lattice.sites(); ++i)
-      out[static_cast<std::size_t>(i)] = scale_ * sum(modes, lattice.position(i));
+      for (const Field& field : fields_) out[next++] = field.scale * sum(field.*modes, lattice.position(i));
   }
 
   Modes modes_;
   bool circle_;
   double A;
   std::uint64_t seed_;
-  double scale_ = 0;
-  std::vector<Mode> value_, velocity_;
+  std::vector<Field> fields_;  ///< one for each component
 };
 
 }  // namespace
@@ -88,7 +103,8 @@ std::unique_ptr<State> noise(const StateRequest& request, const Lattice& lattice
     throw BadInput(key, key + " = " + text(M) + ": the number of modes in the noise; choose an integer from 1 up");
   // M < N/2
   const int most = std::max(1, static_cast<int>(std::min(M, static_cast<double>((lattice.sites() - 1) / 2))));
-  return std::make_unique<Noise>(lattice, finite("initial.amplitude", request.amplitude, 0.1), most, request.seed);
+  return std::make_unique<Noise>(lattice, finite("initial.amplitude", request.amplitude, 0.1), most, request.seed,
+                                 request.components);
 }
 
 }  // namespace delf::initial

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <vector>
+
+#include "jets/symmetry.hpp"
 
 namespace delf {
 
@@ -12,6 +15,9 @@ struct Wave {
   T difference_quotient(const T& a, const T&) const {
     return 0.0 * a;
   }
+
+  /// φ ↦ φ + ε
+  static std::vector<LinearSymmetry> symmetries() { return {{"translation", {0}, {1}}}; }
 };
 
 }  // namespace delf

@@ -257,7 +257,7 @@ TEST_CASE("the Jacobian of the equations is that of finite differences, across t
     for (int j = 0; j < 5; ++j) window.rows.push_back(random_row(random, N, 3));
     for (int i : {0, 5, N - 1}) {
       std::vector<LatticeSystem::Entry> entries;
-      system.jacobian(window, 0, i, 1, h, entries);
+      system.jacobian(window, 0, i, 0, 1, h, entries);
       Row by_entries(N), by_difference(N);
       for (const auto& e : entries) {
         CHECK(e.row == i);
@@ -300,7 +300,7 @@ TEST_CASE("at a natural wall the equation is what the stencils inside give, at a
   CHECK(has_coefficients(system, {0, 5}, coefficients(printed(0)["rectangle"])));
 }
 
-TEST_CASE("bricks on an odd circle, and families of different numbers of components, are refused") {
+TEST_CASE("bricks on an odd circle, components without a name, and stencils that find no place are refused") {
   const auto with = [](int sites, const Families& families) {
     return refused_key([&] { LatticeSystem(Lattice::circle(sites, 5), families, h); });
   };
@@ -308,5 +308,7 @@ TEST_CASE("bricks on an odd circle, and families of different numbers of compone
   CHECK(with(11, {hexagons}) == "lattice.sites");
   CHECK(with(12, {hexagons}) == "accepted");
   const auto two = TheoryOf<Two>(Two{}).variational("rectangle", h, k);
-  CHECK(with(12, {hexagons, two}) == "lattice.stencil");
+  CHECK(with(12, {hexagons, two}) == "accepted");  // a second field beside one that has more
+  CHECK(refused_key([&] { LatticeSystem(Lattice::circle(12, 5), {two}, h, fields(1)); }) == "lattice.stencil");
+  CHECK(refused_key([&] { LatticeSystem(Lattice::point(), {two}, h); }) == "lattice.stencil");
 }

@@ -56,14 +56,19 @@ inline std::unique_ptr<FieldTheory> theory_named(const Problem& p) {
     if (p.theory == entry->name) return entry->make(p);
   throw std::logic_error("no theory " + p.theory);
 }
+/// Theories of one field on a space that is more than a point.
 inline std::vector<std::string> theory_names() {
   std::vector<std::string> names;
-  for (const TheoryEntry* entry : theory_entries()) names.emplace_back(entry->name);
+  for (const TheoryInfo& theory : theories())
+    if (theory.components == 1 && theory.name != "pendulum") names.push_back(theory.name);
   return names;
 }
+/// Stencils for fields: not the two sites of a time lattice.
 inline std::vector<std::string> stencil_names() {
   std::vector<std::string> names;
-  for (const NamedFormula& stencil : stencils()) names.push_back(stencil.name);
+  for (const NamedFormula& stencil : stencils())
+    if (stencil.name != "midpoint" && stencil.name != "trapezoidal" && stencil.name != "vertex")
+      names.push_back(stencil.name);
   return names;
 }
 /// The scheme of a stencil, or of a comparator ("guo", "vu-quoc-li"); null if the theory has none.
@@ -104,7 +109,7 @@ inline double equation_defect(const Evolution& evolution, const Window& window) 
       if (i != 0 && i != system.lattice().sites() / 2 && i != system.lattice().sites() - 1) continue;
       entries.clear();
       for (std::int64_t r = window.first_row; r <= window.last_row(); ++r)
-        system.jacobian(window, row, i, r, system.time_step(), entries);
+        system.jacobian(window, row, i, a, r, system.time_step(), entries);
       double sum = 0;
       for (const auto& e : entries) sum += e.row == i * system.components() + a ? std::abs(e.value) : 0;
       slopes = std::max(slopes, sum);

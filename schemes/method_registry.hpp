@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "schemes/lattice_system.hpp"
+
+namespace delf {
+
+class FieldTheory;
+struct Problem;
+
+/// What a scheme is made of: stencil families over one lattice, and the components that they read.
+struct SchemeParts {
+  std::vector<std::shared_ptr<const StencilFamily>> families;
+  std::vector<Component> components;
+};
+
+/// A scheme family that a scene can name by scheme.method: one constant of this type stands at the end of each file in
+/// schemes/methods/.
+struct MethodEntry {
+  const char* name;
+  const char* formula;
+  /// Throws BadInput for what the method cannot be built for.
+  SchemeParts (*build)(const FieldTheory&, const Problem&);
+};
+
+/// The list of all of them: a new method adds one line there.
+const std::vector<const MethodEntry*>& method_entries();
+
+}  // namespace delf

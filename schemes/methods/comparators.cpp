@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "lattice/error.hpp"
+#include "schemes/field_theory.hpp"
+#include "schemes/method_registry.hpp"
+#include "schemes/simulation.hpp"
+
+namespace delf {
+namespace {
+
+SchemeParts build(const FieldTheory& theory, const Problem& p) {
+  auto family = theory.comparator(p.method, p.time_step, p.lattice.space_step());
+  if (!family)
+    throw BadInput("scheme.method", fmt::format("scheme.method = {}: not written for theory.name = {}, whose potential "
+                                                "depends on more than the field; use scheme.method = multisymplectic",
+                                                p.method, p.theory));
+  if (p.lattice.space() == Space::point)
+    throw BadInput("scheme.method", fmt::format("scheme.method = {}: a scheme for fields, and lattice.space = point has "
+                                                "none; use scheme.method = multisymplectic",
+                                                p.method));
+  if (!p.lattice.is_circle() && (p.lattice.left() == Wall::natural || p.lattice.right() == Wall::natural))
+    throw BadInput(
+        p.lattice.left() == Wall::natural ? "boundary.left" : "boundary.right",
+        fmt::format("a natural wall varies the action, and scheme.method = {} has none; use fixed walls", p.method));
+  return {{std::move(family)}, fields(1)};
+}
+
+}  // namespace
+
+extern const MethodEntry vu_quoc_li_method, guo_method;
+const MethodEntry vu_quoc_li_method{
+    "vu-quoc-li", "comparator (5.14): conserves an energy, is not multisymplectic", build};
+const MethodEntry guo_method{"guo", "comparator (5.15): conserves an energy, is not multisymplectic", build};
+
+}  // namespace delf

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lattice/error.hpp"
+#include "schemes/field_theory.hpp"
+#include "schemes/method_registry.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/unknown_name.hpp"
+
+namespace delf {
+namespace {
+
+/// What a wall does to a scheme that its stencils cannot see.
+void check_walls(const Problem& p, const StencilFamily& family) {
+  const auto [least, most] = std::ranges::minmax(family.pattern().vertices, {}, &Site::space);
+  const int width = most.space - least.space;
+  if (p.lattice.space() == Space::point ? width > 0 : width == 0)
+    throw BadInput("lattice.stencil",
+                   width > 0 ? fmt::format("lattice.stencil = {}: has sites side by side, and on lattice.space = point "
+                                           "there is one; use midpoint, trapezoidal or vertex",
+                                           p.stencil)
+                             : fmt::format("lattice.stencil = {}: is for mechanics and couples no neighbours; use "
+                                           "rectangle-symmetric, or lattice.space = point",
+                                           p.stencil));
+  if (!p.lattice.is_circle() && width > 1)
+    throw BadInput(
+        "lattice.stencil",
+        fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
+                    "at the walls out of the action, and the error there does not vanish with k; use "
+                    "triangle, rectangle or rectangle-symmetric, or lattice.space = circle",
+                    p.stencil));
+}
+
+SchemeParts build(const FieldTheory& theory, const Problem& p) {
+  SchemeParts parts{{theory.variational(p.stencil, p.time_step, p.lattice.space_step())}, fields(theory.components())};
+  if (!parts.families[0]) {
+    std::vector<std::string> names;
+    for (const auto& stencil : stencils()) names.push_back(stencil.name);
+    throw unknown_name("lattice.stencil", p.stencil, names);
+  }
+  check_walls(p, *parts.families[0]);
+  if (auto constraint = theory.constraint()) {
+    parts.families.push_back(std::move(constraint));
+    parts.components.push_back({"lambda", Role::multiplier, {}});
+  }
+  return parts;
+}
+
+}  // namespace
+
+extern const MethodEntry multisymplectic_method;
+const MethodEntry multisymplectic_method{
+    "multisymplectic", "discrete Euler-Lagrange field equations of lattice.stencil (5.2)", build};
+
+}  // namespace delf

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <numbers>
+
+#include "lattice/error.hpp"
+#include "schemes/states/builders.hpp"
+#include "schemes/states/jacobi.hpp"
+#include "schemes/states/parameters.hpp"
+
+namespace delf::initial {
+namespace {
+
+/// A pendulum let go at the angle A: sin(q/2) = k sn(K + mt; k), k = sin(A/2). With the quarter period taken out,
+/// u = mt, sn(K + u) = cn u/dn u and dn(K + u) = k′/dn u (DLMF 22.4.3), it reads
+///
+///     q = 2 atan2(k cn u, k′),   q_t = −2mkk′ sn u/dn u
+///
+class PendulumSwing final : public State {
+ public:
+  PendulumSwing(double amplitude, double mass)
+      : A(amplitude), m(mass), sign(A < 0 ? -1 : 1), jacobi(Jacobi::from_angle(std::abs(A) / 2)) {}
+
+  void values(double t, const Lattice&, std::span<double> out) const override {
+    out[0] = 2 * sign * std::atan2(jacobi.modulus() * std::cos(amplitude(t)), jacobi.complementary_modulus());
+  }
+  void velocities(double t, const Lattice&, std::span<double> out) const override {
+    const double phi = amplitude(t);
+    out[0] = -2 * sign * m * jacobi.modulus() * jacobi.complementary_modulus() * std::sin(phi) / jacobi.dn(phi);
+  }
+  bool exact() const override { return true; }
+  std::string description() const override {
+    return "pendulum-swing: q = 2 asin(k sn(K + m t; k)), k = sin(A/2), A = " + text(A) + ", m = " + text(m) +
+           ", period = " + text(4 * jacobi.K() / m);
+  }
+
+ private:
+  // am(u) within one period 4K
+  double amplitude(double t) const { return jacobi.am(std::remainder(m * t, 4 * jacobi.K())); }
+
+  double A, m, sign;
+  Jacobi jacobi;
+};
+
+}  // namespace
+
+std::unique_ptr<State> pendulum_swing(const StateRequest& request, const Lattice&) {
+  const double A = finite("initial.amplitude", request.amplitude, 2), m = positive("theory.mass", request.mass, 1);
+  if (!(std::abs(A) < std::numbers::pi))
+    throw BadInput("initial.amplitude", "initial.amplitude = " + text(A) +
+                                            ": a pendulum let go turns back before the top; choose |amplitude| < pi");
+  return std::make_unique<PendulumSwing>(A, m);
+}
+
+}  // namespace delf::initial

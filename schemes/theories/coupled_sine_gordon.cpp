@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/theories/coupled_sine_gordon.hpp"
+
+#include "schemes/field_theory.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/theory_registry.hpp"
+
+namespace delf {
+
+extern const TheoryEntry coupled_sine_gordon_theory;
+const TheoryEntry coupled_sine_gordon_theory{
+    "coupled-sine-gordon", "φ_a,tt − φ_a,xx + m² sin φ_a + λ sin(φ_a − φ_b) = 0", {"theory.mass", "theory.lambda"},
+    [](const Problem& p) -> std::unique_ptr<FieldTheory> {
+      return std::make_unique<TheoryOf<CoupledSineGordon>>(CoupledSineGordon{p.mass, p.lambda});
+    }};
+
+}  // namespace delf

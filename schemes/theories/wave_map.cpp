@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/theories/wave_map.hpp"
+
+#include "schemes/field_theory.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/theory_registry.hpp"
+
+namespace delf {
+
+extern const TheoryEntry wave_map_theory;
+const TheoryEntry wave_map_theory{
+    "wave-map", "u_tt − u_xx + (|u_t|² − |u_x|²)u = 0, |u| = 1", {},
+    [](const Problem&) -> std::unique_ptr<FieldTheory> {
+      return std::make_unique<TheoryOf<WaveMap>>(WaveMap{});
+    }};
+
+}  // namespace delf

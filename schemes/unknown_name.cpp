@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/unknown_name.hpp"
+
+#include <fmt/format.h>
+
+#include "schemes/nearest_name.hpp"
+
+namespace delf {
+
+BadInput unknown_name(const std::string& key, const std::string& value, const std::vector<std::string>& names) {
+  const auto near = nearest(value, names);
+  std::string known;
+  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+  return {key,
+          fmt::format("{} = {}: there is no such {}{}; choose one of {}", key, value, key.substr(key.find('.') + 1),
+                      near ? fmt::format(" (did you mean {}?)", *near) : "", known)};
+}
+
+}  // namespace delf
