@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstddef>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "lattice/lattice.hpp"
@@ -33,6 +35,12 @@ struct SystemPattern {
   int width = 1;  ///< the largest |space offset| in any equation
   Placement placement = Placement::every_site;  ///< brick_wall if any family is: period 2 along time and space
   Equations equations;
+  std::vector<std::string> names = {};  ///< of the components, for reports
+
+  /// "lambda", or "component 2" if there are no names.
+  std::string name(int component) const {
+    return names.empty() ? "component " + std::to_string(component) : names[static_cast<std::size_t>(component)];
+  }
 };
 
 /// On every stencil of a family, the equation of (row vertex, row component) contains (column vertex, column

@@ -42,7 +42,8 @@ std::vector<SolvePlan::Entry> entries(const Quotient& quotient, const Structural
 }
 
 /// "component 1 at sites 0 and 3", of the real lattice.
-std::string named(const SolvePlan::Table& table, const Quotient& quotient, const std::vector<int>& nodes) {
+std::string named(const SolvePlan::Table& table, const Quotient& quotient, const SystemPattern& system,
+                  const std::vector<int>& nodes) {
   std::string text;
   for (int component = 0; component < quotient.components; ++component) {
     std::set<int> sites, between;
@@ -58,7 +59,7 @@ std::string named(const SolvePlan::Table& table, const Quotient& quotient, const
     }
     if (sites.empty() && between.empty()) continue;
     if (!text.empty()) text += " and ";
-    if (quotient.components > 1) text += "component " + std::to_string(component) + " at ";
+    if (quotient.components > 1) text += system.name(component) + " at ";
     if (quotient.circle || static_cast<int>(sites.size()) == table.lattice_sites) {
       text += "every site";
       continue;
@@ -71,7 +72,8 @@ std::string named(const SolvePlan::Table& table, const Quotient& quotient, const
   return text;
 }
 
-void require_solvable(const SolvePlan::Table& table, const Quotient& quotient, const StructuralAnalysis& analysis) {
+void require_solvable(const SolvePlan::Table& table, const Quotient& quotient, const SystemPattern& system,
+                      const StructuralAnalysis& analysis) {
   if (!std::ranges::count(quotient.solved, true))
     throw BadInput("lattice.sites", "lattice.sites = " + std::to_string(table.lattice_sites) +
                                         ": no site has an equation, every value is data; raise lattice.sites");
@@ -79,14 +81,14 @@ void require_solvable(const SolvePlan::Table& table, const Quotient& quotient, c
     bool any = false;
     for (int n = 0; n < quotient.nodes(); ++n) any = any || (quotient.solved[n] && quotient.component(n) == component);
     if (!any)
-      throw BadInput("lattice.stencil", "lattice.stencil: component " + std::to_string(component) +
+      throw BadInput("lattice.stencil", "lattice.stencil: " + system.name(component) +
                                             " has no equation at any site; add a stencil that it takes part in");
   }
   if (!analysis.solvable())
     throw BadInput("lattice.stencil",
                    "lattice.stencil: no equation is left to determine the unknown of " +
-                       named(table, quotient, analysis.unmatched_unknowns) + ", and the equation of " +
-                       named(table, quotient, analysis.unmatched_equations) +
+                       named(table, quotient, system, analysis.unmatched_unknowns) + ", and the equation of " +
+                       named(table, quotient, system, analysis.unmatched_equations) +
                        " determines nothing that others do not; add a stencil that couples them, or fix the value");
 }
 
@@ -105,9 +107,9 @@ struct Analysed {
   SlabGraph slab;
   long long unknowns[2] = {0, 0}, blocks[2] = {0, 0};  // of even and odd slabs
 
-  Analysed(const Lattice& lattice, Quotient q)
+  Analysed(const Lattice& lattice, const SystemPattern& system, Quotient q)
       : quotient(std::move(q)), analysis(quotient.analysis()), table(frame(lattice, quotient)) {
-    require_solvable(table, quotient, analysis);
+    require_solvable(table, quotient, system, analysis);
     table.entries = entries(quotient, analysis);
     const int cells = quotient.circle ? lattice.sites() / quotient.sites : 1;
     slab = slab_graph(quotient, analysis, cells);
@@ -199,12 +201,13 @@ bool grow_evenly(const Analysed& a, const Analysed& longer, const Analysed& long
 
 /// The plan of a quotient. If it is shorter than the lattice, `longer` and `longest` are by one and two periods longer:
 /// every part of the lattice that is 2·width wide occurs in them, and they show how what is counted grows with it.
-SolvePlan planned(const Lattice& lattice, const Analysed& a, const Analysed* longer = nullptr,
-                  const Analysed* longest = nullptr) {
+SolvePlan planned(const Lattice& lattice, const SystemPattern& system, const Analysed& a,
+                  const Analysed* longer = nullptr, const Analysed* longest = nullptr) {
   const Quotient& quotient = a.quotient;
   SolvePlan plan;
   plan.cyclic = lattice.is_circle();
   plan.components = quotient.components;
+  plan.names = system.names;
   plan.linear = quotient.linear;
   plan.table = a.table;
   plan.table.regular = regular(quotient, a.analysis);
@@ -235,7 +238,7 @@ SolvePlan make_plan(const Lattice& lattice, const SystemPattern& system) {
   if (system.components < 1 || system.width < 0 || !system.equations)
     throw BadInput("lattice.stencil", "lattice.stencil: the system has no equations; add a stencil");
 
-  if (lattice.is_circle()) return planned(lattice, Analysed(lattice, Quotient::of_circle(lattice, system)));
+  if (lattice.is_circle()) return planned(lattice, system, Analysed(lattice, system, Quotient::of_circle(lattice, system)));
 
   // Between the walls equations repeat, and whatever repeats within 2·width sites fits into each period.
   const int period = 2 * std::max(system.width, 1);
@@ -243,12 +246,12 @@ SolvePlan make_plan(const Lattice& lattice, const SystemPattern& system) {
   for (const int zones : {1, 2, 4}) {
     const int least = 2 * zones * period + 1;
     const int sites = least + positive_mod(lattice.sites() - least, period);
-    const auto of = [&](int n) { return Analysed(lattice, Quotient::of_interval(lattice, system, n)); };
-    if (sites + 2 * period >= lattice.sites()) return planned(lattice, of(lattice.sites()));
+    const auto of = [&](int n) { return Analysed(lattice, system, Quotient::of_interval(lattice, system, n)); };
+    if (sites + 2 * period >= lattice.sites()) return planned(lattice, system, of(lattice.sites()));
 
     const Analysed a = of(sites), longer = of(sites + period), longest = of(sites + 2 * period);
     if (compare(a, longer) == Agreement::none || compare(a, longest) == Agreement::none) continue;
-    if (zones == 4 || grow_evenly(a, longer, longest)) return planned(lattice, a, &longer, &longest);
+    if (zones == 4 || grow_evenly(a, longer, longest)) return planned(lattice, system, a, &longer, &longest);
   }
   throw BadInput("lattice.stencil",
                  "lattice.stencil: the row at which a site is solved drifts from wall to wall, so that no slab of a "

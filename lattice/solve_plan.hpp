@@ -50,6 +50,7 @@ struct SolvePlan {
   long long unknowns = 0;          ///< of a slab (the larger one, if even and odd slabs differ)
   long long blocks = 0;            ///< strongly connected components of a slab
   int components = 1;
+  std::vector<std::string> names;  ///< of the components
 
   /// A site that is solved at other rows than the bulk is.
   struct Exception {

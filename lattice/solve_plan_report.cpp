@@ -16,8 +16,13 @@ std::string blocks_in_words(const SolvePlan& plan) {
   return plan.one_block() ? "one block" : std::to_string(plan.blocks) + " blocks";
 }
 
+std::string name(const SolvePlan& plan, int component) {
+  return plan.names.empty() ? "component " + std::to_string(component)
+                            : plan.names[static_cast<std::size_t>(component)];
+}
+
 std::string field(const SolvePlan& plan, int component) {
-  return plan.components == 1 ? "" : "component " + std::to_string(component) + ": ";
+  return plan.components == 1 ? "" : name(plan, component) + ": ";
 }
 
 }  // namespace
@@ -53,7 +58,7 @@ std::string SolvePlan::report() const {
     const Entry& e = node(site, component, 0);
     if (!e.solved) continue;
     text += field(*this, component) + "the value at (" + row("j", e.offset) + ", i) is determined by the equation";
-    if (e.equation_component != component) text += " of component " + std::to_string(e.equation_component);
+    if (e.equation_component != component) text += " of " + name(*this, e.equation_component);
     text += " at (" + row("j", e.offset + e.equation_time) + ", " + row("i", e.equation_space) + ")\n";
   }
   for (const Exception& e : exceptional)

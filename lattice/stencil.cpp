@@ -27,7 +27,7 @@ Stencils::Stencils(const Lattice& lattice, std::vector<StencilPattern> families)
 }
 
 Site Stencils::reduced(Site site) const {
-  return lattice_.is_circle() ? Site{site.time, lattice_.wrapped(site.space)} : site;
+  return lattice_.is_circle() ? Site{site.time, lattice_.wrapped(site.space), site.node} : site;
 }
 
 bool Stencils::in_lattice(Site site) const {
@@ -36,7 +36,8 @@ bool Stencils::in_lattice(Site site) const {
 
 bool Stencils::exists(int family, Site anchor) const {
   const StencilPattern& pattern = families_[static_cast<std::size_t>(family)];
-  return pattern.placed_at(anchor) &&
+  // Stencils are anchored at the vertices of the lattice.
+  return anchor.node == 0 && pattern.placed_at(anchor) &&
          std::ranges::all_of(pattern.vertices, [&](Site offset) { return in_lattice(anchor + offset); });
 }
 

@@ -151,6 +151,7 @@ SystemPattern LatticeSystem::pattern() const {
   pattern.components = components();
   pattern.width = std::max(width_, 1);
   pattern.placement = placement_;
+  for (const Component& component : names_) pattern.names.push_back(component.name);
   pattern.equations = [this](const Lattice& lattice, Site site, int component) {
     std::vector<Coupling> couplings;
     for (const Coefficient& c : linearised(lattice, site, component))

@@ -13,6 +13,7 @@ namespace {
 /// Rows of the table are times, the latest on top; columns are sites. Nonlinear coefficients are marked: the number is
 /// that of the constant part.
 void append_table(std::string& out, const LatticeSystem& system, Site site, const char* title) {
+  if (system.components() > 1) return;  // one table for each pair of components is no table
   const auto coefficients = system.linearised(site, 0);
   if (coefficients.empty()) return;
   const auto [first_t, last_t] = std::ranges::minmax(coefficients, {}, [](auto& c) { return c.offset.time; });
@@ -43,6 +44,7 @@ void append_table(std::string& out, const LatticeSystem& system, Site site, cons
 std::string solve_in_words(const SolvePlan& plan, const Stepper& stepper) {
   std::string words = plan.describe();
   if (plan.kind == SolveKind::explicit_ && !stepper.iterates()) return words + "; solved at once, no iteration";
+  if (!stepper.layout()) return words + "; Newton's method: " + stepper.solver_name();
   words += stepper.iterates() ? "; iterated with the constant part: " : "; solved at once, no iteration: ";
   return words + stepper.solver_name();
 }
@@ -50,9 +52,21 @@ std::string solve_in_words(const SolvePlan& plan, const Stepper& stepper) {
 std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, const Stepper& stepper) {
   std::string out;
   const Lattice& lattice = system.lattice();
-  out += fmt::format("lattice      {} sites on {}, k = {:.10g}, h = {:.10g}, h/k = {:.6g}\n", lattice.sites(),
-                     lattice.is_circle() ? "a circle" : "an interval with both walls", lattice.space_step(),
-                     system.time_step(), system.time_step() / lattice.space_step());
+  out += fmt::format("lattice      {} {} on {}, k = {:.10g}, h = {:.10g}, h/k = {:.6g}\n", lattice.sites(),
+                     lattice.sites() == 1 ? "site" : "sites",
+                     lattice.is_circle()               ? "a circle"
+                     : lattice.space() == Space::point ? "a point"
+                                                       : "an interval with both walls",
+                     lattice.space_step(), system.time_step(), system.time_step() / lattice.space_step());
+  if (system.components() > 1) {
+    out += "components  ";
+    for (const Component& c : system.all_components())
+      out += fmt::format(" {}{}", c.name,
+                         c.role == Role::inner        ? " (inner node)"
+                         : c.role == Role::multiplier ? " (multiplier)"
+                                                      : "");
+    out += '\n';
+  }
   for (const auto& family : system.families()) {
     out += "stencil      ";
     for (const Site& v : family->pattern().vertices) out += fmt::format("({:+d},{:+d}) ", v.time, v.space);
@@ -63,11 +77,15 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   out += fmt::format("solve        {}\n", to_string(plan.kind));
   std::istringstream lines(plan.report());
   for (std::string line; std::getline(lines, line);) out += "             " + line + '\n';
-  out +=
-      stepper.iterates()
-          ? "step         extrapolated seed; simplified Newton with the constant part while it contracts; else the root is\n"
-            "             followed from a small h by full Newton steps; else exit 3\n"
-          : "step         one solve, no iteration\n";
+  if (!stepper.layout())
+    out +=
+        "step         extrapolated seed; Newton's method slab by slab, block after block; a factored Jacobian is kept\n"
+        "             while it contracts by ten; else exit 3\n";
+  else
+    out += stepper.iterates() ? "step         extrapolated seed; simplified Newton with the constant part while it "
+                                "contracts; else the root is\n"
+                                "             followed from a small h by full Newton steps; else exit 3\n"
+                              : "step         one solve, no iteration\n";
   out += fmt::format("matrix       {}{}\n", stepper.matrix_free() ? "none: " : "", stepper.solver_name());
   const Site bulk{0, lattice.sites() / 2 / 2 * 2};
   if (system.placement() == Placement::brick_wall) {
@@ -87,8 +105,11 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   if (plan.linear) absent.push_back("the density (its constant Hessian is enough)");
   if (std::ranges::none_of(system.families(), [](const auto& f) { return f->is_placed(); }))
     absent.push_back("positions of sites");
-  absent.push_back("Jacobians of the full Newton method, until a step needs one");
-  absent.push_back("constraints and multipliers");
+  if (stepper.layout()) absent.push_back("Jacobians of the full Newton method, until a step needs one");
+  if (std::ranges::none_of(system.all_components(), [](const auto& c) { return c.role == Role::multiplier; }))
+    absent.push_back("constraints and multipliers");
+  if (std::ranges::none_of(system.all_components(), [](const auto& c) { return c.role == Role::inner; }))
+    absent.push_back("nodes inside cells");
   absent.push_back("monitors between recorded rows");
   for (std::size_t i = 0; i < absent.size(); ++i) out += (i ? ", " : "") + absent[i];
   return out + '\n';
