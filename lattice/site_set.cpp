@@ -23,8 +23,11 @@ std::size_t SiteSet::index(Site site) const {
 
   const long long first = sites_[row->begin].space, last = sites_[row->end - 1].space;
   if (site.space < first || site.space > last) return size();
-  if (static_cast<std::size_t>(last - first) + 1 == row->end - row->begin)
-    return row->begin + static_cast<std::size_t>(site.space - first);
+  // A row without gaps, of one node a cell.
+  if (static_cast<std::size_t>(last - first) + 1 == row->end - row->begin) {
+    const std::size_t there = row->begin + static_cast<std::size_t>(site.space - first);
+    if (sites_[there] == site) return there;
+  }
 
   const auto begin = sites_.begin() + static_cast<std::ptrdiff_t>(row->begin);
   const auto end = sites_.begin() + static_cast<std::ptrdiff_t>(row->end);

@@ -64,6 +64,7 @@ BlockSolver::BlockSolver(int n, const std::vector<std::pair<int, int>>& places, 
 
 bool BlockSolver::factor(const std::vector<double>& values) {
   values_ = values;
+  factored_ = true;
   Eigen::MatrixXd matrix;
   for (Block& b : blocks_) {
     const auto size = static_cast<Eigen::Index>(b.members.size());
@@ -107,7 +108,7 @@ std::size_t BlockSolver::bytes() const {
     const std::size_t size = b.members.size();
     total += size * sizeof(int) + (b.inside.size() + b.outside.size()) * sizeof(Entry);
     if (b.sparse)
-      total += static_cast<std::size_t>(b.matrix.nonZeros() + b.sparse->nnzL() + b.sparse->nnzU()) *
+      total += static_cast<std::size_t>(b.matrix.nonZeros() + (factored_ ? b.sparse->nnzL() + b.sparse->nnzU() : 0)) *
                (sizeof(double) + sizeof(int));
     else
       total += size * size * sizeof(double);

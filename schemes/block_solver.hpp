@@ -25,6 +25,7 @@ class BlockSolver {
 
   int blocks() const { return static_cast<int>(blocks_.size()); }
   int largest_block() const { return largest_; }
+  /// Allocated; the sparse factors are counted once there are any.
   std::size_t bytes() const;
   std::string name() const;
 
@@ -45,6 +46,7 @@ class BlockSolver {
   std::vector<Block> blocks_;
   std::vector<double> values_;
   int largest_ = 0;
+  bool factored_ = false;
   mutable Eigen::VectorXd part_;
 };
 

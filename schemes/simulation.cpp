@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "lattice/error.hpp"
@@ -237,8 +238,11 @@ Simulation::Monitors Simulation::monitors() const {
     for (int a = 0; a < 2 * d; ++a) rows.push_back(s.last_rows.row(a));
   }
   const double h = s.problem.time_step;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const bool moving = s.system.fields() != d;
   const EnergyMomentum sums =
-      s.theory->energy_momentum({&layout, rows.data(), s.positions.rows() ? s.positions.row(0) : nullptr,
+      moving ? EnergyMomentum{none, none}
+             : s.theory->energy_momentum({&layout, rows.data(), s.positions.rows() ? s.positions.row(0) : nullptr,
                                  static_cast<double>(newest() - 1) * h, h, s.problem.lattice.space_step()},
                                 s.cell_weights.row(0));
   double charge = s.winding;
@@ -248,11 +252,14 @@ Simulation::Monitors Simulation::monitors() const {
     const auto at = [&](int i) { return y[layout.slot(i)] + step[layout.slot(i)]; };
     charge = (at(last) - at(0)) / (2 * std::numbers::pi);
   }
-  Monitors monitors{sums.energy, sums.momentum, charge, s.constraint(), {}};
+  Monitors monitors{sums.energy, sums.momentum, charge, s.constraint(), {}, {}};
   if (!s.symmetries.empty()) {
     const Window window = s.stepper.window(2);
-    for (const LinearSymmetry& symmetry : s.symmetries)
-      monitors.conserved.push_back(noether_charge(s.system, window, newest(), symmetry));
+    for (const LinearSymmetry& symmetry : s.symmetries) {
+      double scale = 0;
+      monitors.conserved.push_back(noether_charge(s.system, window, newest(), symmetry, &scale));
+      monitors.conserved_scale.push_back(scale);
+    }
   }
   return monitors;
 }

@@ -63,11 +63,13 @@ class Simulation {
   /// Multipliers and inner nodes are those that were found together with the row.
   void copy_row(int back, std::span<double> out, Role = Role::field) const;
 
-  /// k Σ (φ_t ∂ℓ/∂φ_t − ℓ) and −k Σ φ_x ∂ℓ/∂φ_t over the symmetric rectangle's jets of the last two rows.
+  /// k Σ (φ_t ∂ℓ/∂φ_t − ℓ) and −k Σ φ_x ∂ℓ/∂φ_t over the symmetric rectangle's jets of the last two rows; not a
+  /// number where the sites move.
   struct Monitors {
     double energy, momentum, charge;
     double constraint = 0;              ///< max |G| over the constraints that the last step solved
     std::vector<double> conserved;      ///< of conserved_names(): Noether's sums over a cut between two rows
+    std::vector<double> conserved_scale;  ///< the sums of the absolute values of their terms
   };
   Monitors monitors() const;
   /// Noether's conserved quantities of the symmetries that the theory declares (5.7).

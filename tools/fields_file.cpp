@@ -2,9 +2,9 @@
 #include "tools/fields_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 #include "tools/failure.hpp"
 
@@ -36,12 +36,12 @@ Hdf5Handle timeless() {
 
 // A dataset that grows along its first axis, one chunk at a time, each written at once: a disk that is full is noticed
 // before anything on it refers to what did not fit.
-template <std::size_t rank>
-Hdf5Handle growing(hid_t file, const char* name, std::array<hsize_t, rank> chunk) {
-  std::array<hsize_t, rank> now = chunk, most = chunk;
+Hdf5Handle growing(hid_t file, const char* name, std::vector<hsize_t> chunk) {
+  const int rank = static_cast<int>(chunk.size());
+  std::vector<hsize_t> now = chunk, most = chunk;
   now[0] = 0;
   most[0] = H5S_UNLIMITED;
-  if constexpr (rank == 3) chunk[1] = std::min<hsize_t>(chunk[1], 1 << 20);
+  if (rank > 1) chunk[1] = std::min<hsize_t>(chunk[1], 1 << 20);
   const Hdf5Handle space(H5Screate_simple(rank, now.data(), most.data()), H5Sclose);
   const Hdf5Handle properties = timeless();
   H5Pset_chunk(properties, rank, chunk.data());
@@ -50,11 +50,18 @@ Hdf5Handle growing(hid_t file, const char* name, std::array<hsize_t, rank> chunk
   return {H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, access), H5Dclose};
 }
 
-template <std::size_t rank>
-bool append_block(hid_t dataset, std::array<hsize_t, rank> old, std::array<hsize_t, rank> block, const double* data) {
-  std::array<hsize_t, rank> now = block, offset{};
-  now[0] = old[0] + block[0];
-  offset[0] = old[0];
+// {frames, sites, …}
+std::vector<hsize_t> block_of(hsize_t frames, const std::vector<hsize_t>& shape) {
+  std::vector<hsize_t> block{frames};
+  block.insert(block.end(), shape.begin(), shape.end());
+  return block;
+}
+
+bool append_block(hid_t dataset, hsize_t old, const std::vector<hsize_t>& block, const double* data) {
+  const int rank = static_cast<int>(block.size());
+  std::vector<hsize_t> now = block, offset(block.size());
+  now[0] = old + block[0];
+  offset[0] = old;
   if (H5Dset_extent(dataset, now.data()) < 0) return false;
   const Hdf5Handle target(H5Dget_space(dataset), H5Sclose),
       source(H5Screate_simple(rank, block.data(), nullptr), H5Sclose);
@@ -65,10 +72,11 @@ bool append_block(hid_t dataset, std::array<hsize_t, rank> old, std::array<hsize
 }  // namespace
 
 FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double> space, std::int64_t expected_frames,
-                       const std::string& scene, int winding)
-    : path_(path), sites_(space.size()) {
+                       const std::string& scene, int winding, const RowNames& names)
+    : path_(path), sites_(space.size()), names_(names) {
   constexpr std::size_t block = 1 << 17;  // doubles: 1 MiB
-  frames_per_block_ = std::clamp<std::size_t>(block / sites_, 1, 1024);
+  const std::size_t columns = std::max({names.field.size(), names.inner.size(), names.multiplier.size()});
+  frames_per_block_ = std::clamp<std::size_t>(block / (sites_ * columns), 1, 1024);
   frames_per_block_ = std::min(frames_per_block_, static_cast<std::size_t>(std::max<std::int64_t>(1, expected_frames)));
   quiet_hdf5();
   file_ = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
@@ -78,50 +86,84 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   const Hdf5Handle extent(H5Screate_simple(1, &sites, nullptr), H5Sclose), properties = timeless();
   const Hdf5Handle positions(H5Dcreate2(file_, "space", H5T_IEEE_F64LE, extent, H5P_DEFAULT, properties, H5P_DEFAULT),
                              H5Dclose);
-  time_ = growing<1>(file_, "time", {frames_per_block_});
-  field_ = growing<3>(file_, "field", {frames_per_block_, sites, 1});
-  require(positions && time_ && field_ &&
+  time_ = growing(file_, "time", {frames_per_block_});
+  field_ = rows("field", {sites, names.field.size()});
+  if (!names.inner.empty()) inner_ = rows("inner", {sites, names.inner.size()});
+  if (!names.multiplier.empty()) multiplier_ = rows("multiplier", {sites, names.multiplier.size()});
+  if (names.mesh) mesh_ = rows("mesh", {sites});
+  require(positions && time_ && field_.dataset &&
               H5Dwrite(positions, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, space.data()) >= 0 &&
               write_text(positions, "units", "dimensionless") && write_text(time_, "units", "dimensionless") &&
-              write_text(field_, "units", "dimensionless") && write_text(file_, "scene", scene) &&
-              write_text(file_, "version", DELF_VERSION) && write_integer(file_, "winding", winding) &&
-              H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0,
+              write_text(field_.dataset, "units", "dimensionless") && write_text(file_, "scene", scene) &&
+              write_text(file_, "version", DELF_VERSION) && write_integer(file_, "winding", winding),
           "cannot be written");
+  const auto describe = [&](const Rows& of, const std::vector<std::string>& components) {
+    if (!of.dataset) return;
+    const bool units = &of == &field_ || write_text(of.dataset, "units", "dimensionless");
+    require(units && write_text(of.dataset, "components", fmt::format("{}", fmt::join(components, ","))),
+            "cannot be written");
+  };
+  if (!names.plain()) {
+    describe(field_, names.field);
+    describe(inner_, names.inner);
+    describe(multiplier_, names.multiplier);
+    if (names.mesh) describe(mesh_, {names.field[*names.mesh]});
+  }
+  require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
   times_.reserve(frames_per_block_);
-  rows_.reserve(frames_per_block_ * sites_);
+}
+
+FieldsFile::Rows FieldsFile::rows(const char* name, std::vector<hsize_t> shape) const {
+  Rows made{growing(file_, name, block_of(frames_per_block_, shape)), std::move(shape), {}};
+  hsize_t values = frames_per_block_;
+  for (const hsize_t n : made.shape) values *= n;
+  made.waiting.reserve(values);
+  return made;
 }
 
 FieldsFile::~FieldsFile() = default;
 
-void FieldsFile::append(double time, std::span<const double> row) {
+void FieldsFile::append(double time, const RecordedRow& row) {
   times_.push_back(time);
-  rows_.insert(rows_.end(), row.begin(), row.end());
+  const auto add = [](Rows& to, std::span<const double> values) {
+    to.waiting.insert(to.waiting.end(), values.begin(), values.end());
+  };
+  add(field_, row.field);
+  if (inner_.dataset) add(inner_, row.inner);
+  if (multiplier_.dataset) add(multiplier_, row.multiplier);
+  if (mesh_.dataset)
+    for (std::size_t i = *names_.mesh; i < row.field.size(); i += names_.field.size())
+      mesh_.waiting.push_back(row.field[i]);
   if (times_.size() == frames_per_block_) write_block();
 }
 
 void FieldsFile::write_block() {
   if (times_.empty()) return;
-  const hsize_t frames = times_.size(), sites = sites_;
-  require(append_block<1>(time_, {frames_written_}, {frames}, times_.data()) &&
-              append_block<3>(field_, {frames_written_, sites, 1}, {frames, sites, 1}, rows_.data()) &&
-              H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0,
-          "cannot be written");
+  const hsize_t frames = times_.size();
+  bool written = append_block(time_, frames_written_, {frames}, times_.data());
+  for (Rows* rows : {&field_, &inner_, &multiplier_, &mesh_})
+    if (rows->dataset)
+      written =
+          written && append_block(rows->dataset, frames_written_, block_of(frames, rows->shape), rows->waiting.data());
+  require(written && H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
   frames_written_ += frames;
   times_.clear();
-  rows_.clear();
+  for (Rows* rows : {&field_, &inner_, &multiplier_, &mesh_}) rows->waiting.clear();
 }
 
 void FieldsFile::close() {
   if (!file_) return;
   write_block();
-  const bool datasets = time_.close() && field_.close();
+  bool datasets = time_.close();
+  for (Rows* rows : {&field_, &inner_, &multiplier_, &mesh_}) datasets = rows->dataset.close() && datasets;
   require(file_.close() && datasets, "cannot be closed");
 }
 
 void FieldsFile::require(bool went_well, const char* what) {
   if (went_well) return;
   // closing would write a header that promises more than there is; without it the last flush stays readable
-  for (Hdf5Handle* handle : {&time_, &field_, &file_}) handle->abandon();
+  for (Hdf5Handle* handle : {&time_, &field_.dataset, &inner_.dataset, &multiplier_.dataset, &mesh_.dataset, &file_})
+    handle->abandon();
   throw SystemFailure(fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), what));
 }
 

@@ -33,10 +33,11 @@ FieldsReader::FieldsReader(const std::filesystem::path& path) {
   if (H5Sget_simple_extent_ndims(space) != 3 || H5Sget_simple_extent_dims(space, extent.data(), nullptr) != 3)
     throw bad_file("/field is not frames x sites x components; name the fields.h5 of a run");
   constexpr hsize_t most = std::numeric_limits<int>::max();
-  if (extent[2] != 1 || extent[0] > most || extent[1] > most)
-    throw bad_file(fmt::format("/field has {} components; the theories of this version have one", extent[2]));
+  if (extent[2] < 1 || extent[0] > most || extent[1] > most || extent[2] > most)
+    throw bad_file(fmt::format("/field is {} x {} x {}; name the fields.h5 of a run", extent[0], extent[1], extent[2]));
   frames_ = static_cast<int>(extent[0]);
   sites_ = static_cast<int>(extent[1]);
+  components_ = static_cast<int>(extent[2]);
 }
 
 std::optional<double> FieldsReader::time(int frame) const {
@@ -54,13 +55,15 @@ std::vector<double> FieldsReader::row(int frame) const {
     throw BadInput("initial.frame", fmt::format("frame {} is needed, and the file has {} of them; record more rows, "
                                                 "with output.every = 1",
                                                 frame, frames_));
-  std::vector<double> values(static_cast<std::size_t>(sites_));
-  const std::array<hsize_t, 3> offset{static_cast<hsize_t>(frame), 0, 0}, count{1, static_cast<hsize_t>(sites_), 1};
+  std::vector<double> values(static_cast<std::size_t>(sites_) * static_cast<std::size_t>(components_));
+  const std::array<hsize_t, 3> offset{static_cast<hsize_t>(frame), 0, 0}, count{1, static_cast<hsize_t>(sites_),
+                                                                             static_cast<hsize_t>(components_)};
   if (!read_slice(field_, 3, offset.data(), count.data(), values.data()))
     throw bad_file(fmt::format("frame {} cannot be read; the file is damaged", frame));
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
-      throw bad_file(fmt::format("frame {} is not finite at site {}; take an earlier frame", frame, i));
+      throw bad_file(fmt::format("frame {} is not finite at site {}; take an earlier frame", frame,
+                                 i / static_cast<std::size_t>(components_)));
   return values;
 }
 

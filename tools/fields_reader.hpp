@@ -5,26 +5,25 @@
 #include <vector>
 
 #include "tools/hdf5_handle.hpp"
+#include "tools/rows_file.hpp"
 
 namespace delf {
 
-/// Rows of a fields.h5, to start from. Throws BadInput for a file that is no such thing (key initial.file) or has no
-/// such frame (key initial.frame).
-class FieldsReader {
+/// The rows of a fields.h5.
+class FieldsReader final : public RowsFile {
  public:
   explicit FieldsReader(const std::filesystem::path&);
 
-  int sites() const noexcept { return sites_; }
-  int frames() const noexcept { return frames_; }
-  /// The time of a frame, if the file has /time.
-  std::optional<double> time(int frame) const;
-  std::vector<double> row(int frame) const;
-  /// What the field gains around the circle, in units of 2π, if the file says so.
-  std::optional<int> winding() const;
+  int sites() const override { return sites_; }
+  int frames() const override { return frames_; }
+  int components() const override { return components_; }
+  std::optional<double> time(int frame) const override;
+  std::vector<double> row(int frame) const override;
+  std::optional<int> winding() const override;
 
  private:
   Hdf5Handle file_, field_;
-  int frames_ = 0, sites_ = 0;
+  int frames_ = 0, sites_ = 0, components_ = 0;
 };
 
 }  // namespace delf

@@ -67,6 +67,11 @@ double nice_step(double range, int most) {
   return 10 * power;
 }
 
+std::string component_colour(std::size_t component) {
+  constexpr const char* colours[] = {line_colour, "#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#666666"};
+  return colours[component % std::size(colours)];
+}
+
 std::string figure_script(const std::string& name, const std::string& body) {
   std::string script;
   script += fmt::format(

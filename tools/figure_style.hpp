@@ -27,5 +27,7 @@ double nice_step(double range, int most);
 
 /// The dark colour of single lines.
 inline constexpr auto line_colour = "#31688e";
+/// The colour of a component's line: told apart by the colour-blind, and the first is that of single lines.
+std::string component_colour(std::size_t component);
 
 }  // namespace delf

@@ -9,6 +9,7 @@
 #include "tools/gnuplot.hpp"
 #include "tools/spacetime_figure.hpp"
 #include "tools/text_file.hpp"
+#include "tools/trajectory_figure.hpp"
 #include "tools/waveforms_figure.hpp"
 
 namespace delf {
@@ -21,24 +22,53 @@ struct Figure {
   const char* name;
   std::string (*body)(const FigureSource&, const fs::path& scratch);  // empty: there is nothing to show
 };
-constexpr Figure all[] = {{"spacetime", spacetime_figure}, {"waveforms", waveforms_figure}, {"energy", energy_figure}};
+constexpr Figure all[] = {{"spacetime", spacetime_figure},
+                          {"waveforms", waveforms_figure},
+                          {"trajectory", trajectory_figure},
+                          {"orbit", orbit_figure},
+                          {"energy", energy_figure}};
 
 }  // namespace
 
 std::vector<double> drawn_space(const FigureSource& source) {
+  if (source.names.mesh) {
+    constexpr int cells = 400;
+    std::vector<double> even;
+    for (int i = 0; i <= cells; ++i) even.push_back(source.lattice.length() * i / cells);
+    return even;
+  }
   std::vector<double> space = source.film.space();
   if (source.lattice.is_circle()) space.push_back(source.lattice.length());
   return space;
 }
 
-std::vector<double> drawn_frame(const FigureSource& source, int frame) {
+std::vector<double> drawn_sites(const FigureSource& source, int frame, std::size_t component) {
   const auto row = source.film.frame(frame);
-  const double unit = source.angle ? 2 * std::numbers::pi : 1;
+  const double unit = source.angle && component != source.names.mesh ? 2 * std::numbers::pi : 1;
   std::vector<double> values;
-  for (const double value : row) values.push_back(std::clamp(value / unit, -1e30, 1e30));
+  for (std::size_t i = component; i < row.size(); i += source.film.components())
+    values.push_back(std::clamp(row[i] / unit, -1e30, 1e30));
   // φ(x + L) = φ(x) + 2π·winding
   if (source.lattice.is_circle()) values.push_back(values.front() + source.winding * 2 * std::numbers::pi / unit);
   return values;
+}
+
+std::vector<double> drawn_frame(const FigureSource& source, int frame, std::size_t component) {
+  std::vector<double> values = drawn_sites(source, frame, component);
+  if (!source.names.mesh || component == *source.names.mesh) return values;
+  const std::vector<double> nodes = drawn_sites(source, frame, *source.names.mesh), space = drawn_space(source);
+  std::vector<double> there;
+  for (const double x : space) {
+    const auto after = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x) - nodes.begin();
+    const auto b = static_cast<std::size_t>(after), a = b - 1;
+    const double part = std::clamp((x - nodes[a]) / (nodes[b] - nodes[a]), 0.0, 1.0);
+    there.push_back(values[a] + part * (values[b] - values[a]));
+  }
+  return there;
+}
+
+std::string drawn_name(const FigureSource& source, std::size_t component) {
+  return source.film.components() == 1 ? "φ" : source.names.field[component];
 }
 
 int tame_frames(const FigureSource& source) {

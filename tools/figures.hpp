@@ -6,6 +6,7 @@
 
 #include "lattice/lattice.hpp"
 #include "tools/film.hpp"
+#include "tools/row_names.hpp"
 #include "tools/trace.hpp"
 
 namespace delf {
@@ -20,16 +21,23 @@ struct FigureSource {
   const Film& film;
   const Trace& energy_errors;
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread
+  RowNames names = {};
 };
 
-/// Draws the space–time map, the waveforms and the energy error into `folder`/figures, each as PNG and as SVG.
+/// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into `folder`/figures, each as PNG and as SVG.
 /// Returns what is missing, in one line, or an empty string.
 std::string draw_figures(const FigureSource&, const std::filesystem::path& folder);
 
-/// The positions that are drawn: those of the film, and on a circle the first site once more, at x = L.
+/// The positions that are drawn: those of the film, and on a circle the first site once more, at x = L; where the mesh
+/// is a field, some 400 evenly spaced ones.
 std::vector<double> drawn_space(const FigureSource&);
-/// A frame at those positions, in units of 2π if it is an angle.
-std::vector<double> drawn_frame(const FigureSource&, int frame);
+/// A component of a frame at those positions, in units of 2π if it is an angle. On a mesh that is a field itself the
+/// values are those of the piecewise linear function.
+std::vector<double> drawn_frame(const FigureSource&, int frame, std::size_t component = 0);
+/// A component at every site of the film, and on a circle at the first one once more.
+std::vector<double> drawn_sites(const FigureSource&, int frame, std::size_t component);
+/// "φ", or the name of the component where there are several.
+std::string drawn_name(const FigureSource&, std::size_t component);
 
 /// How many frames, from the first one, have not blown up: a scale made for the others would hide these.
 int tame_frames(const FigureSource&);

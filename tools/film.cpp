@@ -7,18 +7,24 @@ namespace delf {
 
 namespace {
 constexpr std::int64_t most = 600;
-std::int64_t stride_for(std::int64_t count) { return std::max<std::int64_t>(1, (count + most - 1) / most); }
+std::int64_t stride_for(std::int64_t count, std::int64_t limit = most) {
+  return std::max<std::int64_t>(1, (count + limit - 1) / limit);
+}
 }  // namespace
 
-Film::Film(const Lattice& lattice, std::int64_t expected_frames)
-    : stride_(stride_for(expected_frames)), site_stride_(static_cast<std::size_t>(stride_for(lattice.sites()))) {
+Film::Film(const Lattice& lattice, std::int64_t expected_frames, std::size_t components)
+    : stride_(stride_for(expected_frames, lattice.sites() == 1 ? 10 * most : most)),
+      site_stride_(static_cast<std::size_t>(stride_for(lattice.sites()))),
+      components_(components) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(lattice.sites()); i += site_stride_)
     space_.push_back(lattice.position(static_cast<int>(i)));
-  newest_.resize(space_.size());
+  newest_.resize(space_.size() * components_);
 }
 
 void Film::append(double time, std::span<const double> row) {
-  for (std::size_t i = 0; i < space_.size(); ++i) newest_[i] = row[i * site_stride_];
+  for (std::size_t i = 0; i < space_.size(); ++i)
+    for (std::size_t a = 0; a < components_; ++a)
+      newest_[i * components_ + a] = row[i * site_stride_ * components_ + a];
   newest_time_ = time;
   newest_kept_ = false;
   if (seen_++ % stride_ == 0) keep(time);
@@ -39,7 +45,7 @@ void Film::finish() {
 }
 
 std::span<const double> Film::frame(int index) const {
-  return std::span(values_).subspan(static_cast<std::size_t>(index) * space_.size(), space_.size());
+  return std::span(values_).subspan(static_cast<std::size_t>(index) * newest_.size(), newest_.size());
 }
 
 }  // namespace delf

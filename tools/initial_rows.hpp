@@ -6,7 +6,7 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
-#include "tools/fields_reader.hpp"
+#include "tools/rows_file.hpp"
 #include "tools/scene.hpp"
 
 namespace delf {
@@ -19,18 +19,24 @@ class InitialRows {
   int winding() const;
   StartRule rule() const;
   std::string description() const;
-  /// Row 0, for when there is nothing else to show.
+  /// Throws BadScene if these rows have other fields than the simulation.
+  void check(const Simulation&) const;
+  /// The fields of row 0, for when there is nothing else to show.
   std::vector<double> row0() const;
   void start(Simulation&) const;
   /// The solution to compare with, or null.
   const State* exact() const { return state_ && state_->exact() ? state_.get() : nullptr; }
 
  private:
-  std::vector<double> values(int row) const;
+  using Writer = void (State::*)(double, const Lattice&, std::span<double>) const;
+  /// A row of all components from what the state gives at their nodes; time fractions count only `with_times`.
+  std::vector<double> section(const Simulation&, Writer, int row, bool with_times) const;
+  std::vector<double> section(const Simulation&, int row) const;
+  std::vector<double> values(Writer, double time, const Lattice&) const;
 
   const Scene& scene_;
   std::unique_ptr<State> state_;  ///< one of these two
-  std::optional<FieldsReader> file_;
+  std::unique_ptr<RowsFile> file_;
 };
 
 }  // namespace delf

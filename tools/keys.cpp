@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
+#include "schemes/nearest_name.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
-#include "schemes/nearest_name.hpp"
 
 namespace delf {
 
@@ -32,6 +32,7 @@ Names state_names() {
 Names fibres() { return {"R", "S1"}; }
 Names spaces() { return {"circle", "interval", "point"}; }
 Names walls() { return {"fixed", "natural"}; }
+Names quadratures() { return {"gauss", "lobatto"}; }
 Names starts() { return {"exact", "centred", "legendre"}; }
 
 constexpr double largest_int = std::numeric_limits<int>::max();
@@ -45,6 +46,7 @@ constexpr Range from_zero{0, largest_int};
 constexpr Range one_or_more{1, largest_int};
 constexpr Range two_or_more{2, largest_int};
 constexpr Range up_to_eight{0, 8};
+constexpr Range degrees{1, 12};
 constexpr auto own = "the state's own";
 constexpr auto real = KeyType::real;
 constexpr auto integer = KeyType::integer;
@@ -64,8 +66,9 @@ const std::array table{
     Key{"lattice.stencil", choice, "rectangle-symmetric", "", "stencil and jet; see `delf list stencils`", "", any,
         stencil_names},
     Key{"lattice.space", choice, "circle", "", "the shape of space", "", any, spaces},
-    Key{"lattice.length", real, "", "must be given", "L", "length", positive},
-    Key{"lattice.sites", integer, "", "must be given", "N; on an interval both walls are counted", "", two_or_more},
+    Key{"lattice.length", real, "", "must be given, but for a point", "L", "length", positive},
+    Key{"lattice.sites", integer, "", "must be given, but for a point", "N; on an interval both walls are counted", "",
+        two_or_more},
     Key{"lattice.courant", real, "", "this or lattice.time_step", "h/k", "", positive},
     Key{"lattice.time_step", real, "", "this or lattice.courant", "h", "time", positive},
 
@@ -76,6 +79,10 @@ const std::array table{
         up_to_eight},
     Key{"scheme.max_iterations", integer, "50", "", "iterations of an implicit step before it has failed", "",
         one_or_more},
+    Key{"scheme.degree_time", integer, "2", "", "method = spacetime: degree of an element in time", "", degrees},
+    Key{"scheme.degree_space", integer, "2", "", "method = spacetime: degree of an element in space", "", degrees},
+    Key{"scheme.quadrature", choice, "gauss", "", "method = spacetime: the quadrature in time", "", any, quadratures},
+    Key{"scheme.alpha", real, "1", "", "method = r-adaptive: how much the mesh follows the field", "", positive},
 
     Key{"initial.state", choice, "", "must be given", "the state to start from; see `delf list states`", "", any,
         state_names},
@@ -87,11 +94,14 @@ const std::array table{
     Key{"initial.amplitude", real, "", own, "size of a wave, or of the noise"},
     Key{"initial.epsilon", real, "", own, "1 - the modulus of the elliptic functions"},
     Key{"initial.width", real, "", own, "width of a pulse", "length", positive},
-    Key{"initial.file", KeyType::text, "", "none", "state = file: a fields.h5; looked for beside the scene first"},
+    Key{"initial.eccentricity", real, "", own, "eccentricity of an orbit"},
+    Key{"initial.file", KeyType::text, "", "none",
+        "state = file: a fields.h5, or a .csv of row,site,values; looked for beside the scene first"},
     Key{"initial.frame", integer, "0", "", "state = file: the frame that row 0 is; the next frames are the next rows",
         "", from_zero},
-    Key{"initial.start", choice, "", "exact where the second row is known, else centred", "what gives row 1", "", any,
-        starts},
+    Key{"initial.start", choice, "",
+        "legendre for method = spacetime; else exact where the second row is known, or centred", "what gives row 1", "",
+        any, starts},
 
     Key{"boundary.left", choice, "fixed", "", "the left wall of an interval", "", any, walls},
     Key{"boundary.right", choice, "fixed", "", "the right wall of an interval", "", any, walls},

@@ -7,8 +7,8 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
-#include "tools/suggestion.hpp"
 #include "tools/shipped_scenes.hpp"
+#include "tools/suggestion.hpp"
 
 namespace delf {
 
@@ -30,8 +30,9 @@ void print_states() {
     fmt::print("  {:<22}   reads {}; for {}\n", "", s.parameters.empty() ? "nothing" : s.parameters, s.theories);
   }
   if (std::none_of(states().begin(), states().end(), [](const StateInfo& s) { return s.name == "file"; }))
-    fmt::print("  {:<22} rows of a fields.h5\n  {:<22}   reads initial.file, initial.frame; for all theories\n", "file",
-               "");
+    fmt::print(
+        "  {:<22} rows of a fields.h5 or a .csv\n  {:<22}   reads initial.file, initial.frame; for all theories\n",
+        "file", "");
 }
 void print_scenes() {
   for (const ShippedScene& s : shipped_scenes()) fmt::print("  {:<22} {}\n", s.name, s.title);

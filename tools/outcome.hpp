@@ -3,10 +3,18 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "tools/scene.hpp"
 
 namespace delf {
+
+/// A sum that a symmetry conserves, over the recorded rows.
+struct Conserved {
+  std::string name;
+  double initial, final;
+  double error_max;  ///< the largest |J - J_0|, relative to |J_0| unless that is 0
+};
 
 /// What a run came to: all that summary.json and the report on stdout tell.
 struct Outcome {
@@ -28,6 +36,8 @@ struct Outcome {
   int iterations_max = 0;
   double energy_initial = unknown, energy_final = unknown, energy_error_max = unknown;
   double momentum_initial = unknown, momentum_final = unknown, charge_final = unknown;
+  double constraint_max = unknown;  ///< the largest |G|, if the scheme has constraints
+  std::vector<Conserved> conserved;
   double error_linf = unknown, error_l2 = unknown;
 
   double ns_per_site_step(int sites) const {
@@ -39,7 +49,7 @@ struct Outcome {
 std::string summary_json(const Scene&, const Outcome&);
 /// The same for people, in a dozen lines.
 std::string report(const Scene&, const Outcome&);
-/// "rectangle-symmetric, N = 255, h/k = 0.125"
+/// "rectangle-symmetric, N = 255, h/k = 0.125"; on a point "midpoint, h = 0.01"
 std::string scheme_in_words(const Problem&);
 
 }  // namespace delf

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace delf {
 
@@ -12,6 +14,12 @@ struct Record {
   double momentum = 0, charge = 0;
   int iterations = 0;  ///< of the step that gave this row; the starting rows have none
   double residual = 0;
+  std::vector<double> further;  ///< the constraint, if the scheme has any, and the conserved sums
+};
+
+/// A recorded row, by the roles of its components, each site by site.
+struct RecordedRow {
+  std::span<const double> field, inner, multiplier;
 };
 
 }  // namespace delf

@@ -9,6 +9,7 @@
 #include "tools/fields_file.hpp"
 #include "tools/film.hpp"
 #include "tools/record.hpp"
+#include "tools/row_names.hpp"
 #include "tools/scene.hpp"
 #include "tools/series_file.hpp"
 #include "tools/trace.hpp"
@@ -18,9 +19,10 @@ namespace delf {
 /// Where the recorded rows of a run go: series.csv; fields.h5 and the film for figures, if the scene wants them.
 class Recorder {
  public:
-  Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding);
+  Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
+           const RowNames&);
 
-  void append(const Record&, std::span<const double> row);
+  void append(const Record&, const RecordedRow&);
   /// Writes all that waits. What fails does not keep the rest from being written; the first failure is then thrown.
   void close();
 

@@ -23,8 +23,9 @@ namespace {
 // Makes the folder, and takes away what an earlier run left there under the names that this one may write.
 void prepare(const fs::path& folder, const Scene& scene) {
   std::error_code error;
-  if (scene.initial.name == "file" && fs::equivalent(scene.initial_file, folder / "fields.h5", error))
-    throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
+  for (const char* name : {"fields.h5", "series.csv"})
+    if (scene.initial.name == "file" && fs::equivalent(scene.initial_file, folder / name, error))
+      throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder))
     throw SystemFailure(fmt::format("{}: cannot be made ({}); choose another --out", folder.string(),
@@ -37,13 +38,14 @@ void prepare(const fs::path& folder, const Scene& scene) {
 }
 
 // What the recorder keeps of the rows, as pictures. A figure that cannot be drawn fails no run.
-std::string drawn(const Scene& scene, int winding, const Recorder& recorder, const fs::path& folder) {
+std::string drawn(const Scene& scene, int winding, const RowNames& names, const Recorder& recorder,
+                  const fs::path& folder) {
   if (!recorder.film()) return {};
   const std::string& theory = scene.problem.theory;
-  const bool angle = scene.problem.circle_valued || theory.find("sine-gordon") != std::string::npos;
+  const bool angle = scene.problem.circle_valued || theory == "pendulum" || theory.find("sine-gordon") != std::string::npos;
   try {
     return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding,
-                         *recorder.film(), recorder.energy_errors(), scene.times},
+                         *recorder.film(), recorder.energy_errors(), scene.times, names},
                         folder);
   } catch (const std::exception& error) {
     return error.what();
@@ -69,13 +71,14 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
   outcome.solve_kind = simulation.solve_kind();
   outcome.bytes = simulation.bytes();
 
-  Stepping stepping(scene, initial, simulation, outcome);
+  const RowNames names(simulation);
+  Stepping stepping(scene, initial, simulation, names, outcome);
   stepping.start();
 
   prepare(folder, scene);
   const std::string resolved = resolved_text(scene, outcome.start, outcome.state);
   write_text_file(folder / "scene.ini", resolved);
-  Recorder recorder(scene, folder, resolved, outcome.winding);
+  Recorder recorder(scene, folder, resolved, outcome.winding, names);
 
   std::exception_ptr failure;
   const auto attempt = [&](auto&& part) {
@@ -93,7 +96,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
   attempt([&] { stepping.run(recorder); });
   attempt([&] { recorder.close(); });
   std::string missing;
-  if (outcome.status != "system-failure") missing = drawn(scene, outcome.winding, recorder, folder);
+  if (outcome.status != "system-failure") missing = drawn(scene, outcome.winding, names, recorder, folder);
   attempt([&] { write_text_file(folder / "summary.json", summary_json(scene, outcome)); });
 
   if (outcome.status != "system-failure") {

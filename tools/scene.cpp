@@ -17,14 +17,18 @@ namespace {
 
 constexpr double usual_records = 400;
 
+const TheoryInfo& theory_of(const Problem& problem) {
+  const auto& all = theories();
+  return *std::find_if(all.begin(), all.end(), [&](const TheoryInfo& t) { return t.name == problem.theory; });
+}
+
 Wall wall(const Values& values, std::string_view key) {
   return values.choice(key) == "natural" ? Wall::natural : Wall::fixed;
 }
 
 Lattice read_lattice(const Settings& settings, const Values& values) {
   const std::string space = values.choice("lattice.space");
-  if (space == "point")
-    throw settings.error("lattice.space", "mechanics on a point is not in this version; use circle or interval");
+  if (space == "point") return Lattice::point();
   const auto sites = static_cast<int>(values.integer("lattice.sites"));
   const double length = values.real("lattice.length");
   const Lattice lattice = space == "circle" ? Lattice::circle(sites, length)
@@ -50,6 +54,10 @@ Problem read_problem(const Settings& settings, const Values& values) {
   p.tolerance = values.real("scheme.tolerance");
   p.seed_order = static_cast<int>(values.integer("scheme.seed_order"));
   p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
+  p.degree_time = static_cast<int>(values.integer("scheme.degree_time"));
+  p.degree_space = static_cast<int>(values.integer("scheme.degree_space"));
+  p.quadrature = values.choice("scheme.quadrature");
+  p.alpha = values.real("scheme.alpha");
   const bool by_courant = values.given("lattice.courant");
   p.time_step = by_courant ? values.real("lattice.courant") * p.lattice.space_step() : values.real("lattice.time_step");
   if (!std::isnormal(p.time_step))
@@ -64,6 +72,7 @@ StateRequest read_initial(const Values& values, const Problem& problem) {
   r.theory = problem.theory;
   r.mass = problem.mass;
   r.lambda = problem.lambda;
+  r.components = theory_of(problem).components;
   r.position = values.maybe_real("initial.position");
   r.speed = values.maybe_real("initial.speed");
   r.separation = values.maybe_real("initial.separation");
@@ -72,6 +81,7 @@ StateRequest read_initial(const Values& values, const Problem& problem) {
   r.amplitude = values.maybe_real("initial.amplitude");
   r.epsilon = values.maybe_real("initial.epsilon");
   r.width = values.maybe_real("initial.width");
+  r.eccentricity = values.maybe_real("initial.eccentricity");
   if (const auto winding = values.maybe_integer("boundary.winding"); winding && problem.lattice.is_circle())
     r.winding = static_cast<int>(*winding);
   r.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
@@ -81,7 +91,7 @@ StateRequest read_initial(const Values& values, const Problem& problem) {
 // Beside the scene, where it is meant to be, or else from where the program is run.
 fs::path find_initial_file(const Settings& settings, const Values& values) {
   const auto name = values.text("initial.file");
-  if (!name) throw settings.error("initial.state", "needs initial.file, the fields.h5 to take rows from");
+  if (!name) throw settings.error("initial.state", "needs initial.file, the fields.h5 or .csv to take rows from");
   std::error_code none;
   for (const fs::path& path : {settings.file().parent_path() / *name, fs::path(*name)})
     if (fs::exists(path, none)) {
@@ -92,13 +102,12 @@ fs::path find_initial_file(const Settings& settings, const Values& values) {
   throw settings.error("initial.file", "no such file, neither beside the scene nor here; check the path");
 }
 
-std::optional<StartRule> read_start(const Settings& settings, const Values& values) {
+std::optional<StartRule> read_start(const Settings& settings, const Values& values, const Problem& problem) {
   if (!values.given("initial.start")) return std::nullopt;
   const std::string rule = values.choice("initial.start");
-  if (rule == "legendre")
-    throw settings.error("initial.start",
-                         "needs a composition or an element scheme, and those are not in this "
-                         "version; use exact or centred");
+  if (rule == "legendre" && problem.method != "spacetime")
+    throw settings.error("initial.start", "needs scheme.method = spacetime; use exact or centred");
+  if (rule == "legendre") return StartRule::legendre;
   return rule == "exact" ? StartRule::exact : StartRule::centred;
 }
 
@@ -129,7 +138,7 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   scene.initial = read_initial(values, scene.problem);
   if (scene.initial.name == "file") scene.initial_file = find_initial_file(settings, values);
   scene.initial_frame = static_cast<int>(values.integer("initial.frame"));
-  scene.start = read_start(settings, values);
+  scene.start = read_start(settings, values, scene.problem);
   scene.steps = read_steps(settings, values, scene.problem.time_step);
   scene.threads = static_cast<int>(values.integer("run.threads"));
   const auto every_default = std::llround(static_cast<double>(scene.steps) / usual_records);
@@ -145,16 +154,25 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   return scene;
 }
 
+const char* to_string(StartRule rule) {
+  return rule == StartRule::exact ? "exact" : rule == StartRule::centred ? "centred" : "legendre";
+}
+
 std::string why_without_effect(const Scene& scene, std::string_view key) {
-  const bool circle = scene.problem.lattice.is_circle();
+  const bool circle = scene.problem.lattice.is_circle(), point = scene.problem.lattice.space() == Space::point;
   if (key.starts_with("theory.") && key != "theory.name" && key != "theory.fibre") {
-    const auto& all = theories();
-    const auto theory =
-        std::find_if(all.begin(), all.end(), [&](const TheoryInfo& t) { return t.name == scene.problem.theory; });
-    const bool read = std::find(theory->parameters.begin(), theory->parameters.end(), key) != theory->parameters.end();
-    return read ? "" : "the theory " + theory->name + " does not read it";
+    const TheoryInfo& theory = theory_of(scene.problem);
+    const bool read = std::find(theory.parameters.begin(), theory.parameters.end(), key) != theory.parameters.end();
+    return read ? "" : "the theory " + theory.name + " does not read it";
   }
+  if ((key == "lattice.sites" || key == "lattice.length") && point) return "a point has neither length nor sites";
+  if ((key == "scheme.degree_time" || key == "scheme.degree_space" || key == "scheme.quadrature") &&
+      scene.problem.method != "spacetime")
+    return "only scheme.method = spacetime reads it";
+  if (key == "scheme.alpha" && scene.problem.method != "r-adaptive") return "only scheme.method = r-adaptive reads it";
+  if (key == "boundary.winding" && point) return "a point has no winding";
   if (key == "boundary.winding" && !circle) return "an interval has no winding";
+  if ((key == "boundary.left" || key == "boundary.right") && point) return "a point has no walls";
   if ((key == "boundary.left" || key == "boundary.right") && circle) return "a circle has no walls";
   if ((key == "initial.file" || key == "initial.frame") && scene.initial.name != "file")
     return "only initial.state = file reads it";

@@ -12,8 +12,9 @@
 
 namespace delf {
 
-/// What gives row 1: the known solution, or the field equation at row 0.
-enum class StartRule { exact, centred };
+/// What gives row 1: the known solution; the field equation at row 0; the discrete Legendre transform there.
+enum class StartRule { exact, centred, legendre };
+const char* to_string(StartRule);
 
 /// A scene, read and resolved: nothing in it is left to guess, except what only the initial state knows.
 struct Scene {

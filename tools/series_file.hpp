@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "tools/record.hpp"
 #include "tools/text_file.hpp"
 
 namespace delf {
 
-/// The records as series.csv: step,time,energy,energy_error,momentum,charge,iterations,residual.
+/// The records as series.csv: step,time,energy,energy_error,momentum,charge,iterations,residual,
+/// and what the scheme has further.
 class SeriesFile {
  public:
-  explicit SeriesFile(const std::filesystem::path&);
+  SeriesFile(const std::filesystem::path&, const std::vector<std::string>& further);
   void append(const Record&);
   void close() { file_.close(); }
 

@@ -33,7 +33,9 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
       std::span(map).first(space.size() * static_cast<std::size_t>(std::min(frames, tame_frames(source))));
   const auto [least, most] = std::ranges::minmax(tame);
   const bool drifts = source.angle && most - least > 8;
-  const char* quantity = drifts ? "sin²(φ/2)" : source.angle ? "φ / 2π" : "φ";
+  const std::string name = drawn_name(source, 0);
+  const std::string quantity = drifts ? "sin²(" + name + "/2)" : source.angle ? name + " / 2π" : name;
+  const std::string shown = film.components() == 1 ? "the field" : name;
   if (drifts)
     std::ranges::transform(map, map.begin(),
                            [](double turns) { return std::pow(std::sin(std::numbers::pi * turns), 2); });
@@ -42,14 +44,14 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
   const ColourScale scale = colour_scale(tame);
   const double t0 = film.time(0), t1 = film.time(frames - 1), dt = (t1 - t0) / (frames - 1);
   return gnuplot_colours(scale) +
-         figure_title(fmt::format("{}: the field over space and time", source.scene),
+         figure_title(fmt::format("{}: {} over space and time", source.scene, shown),
                       fmt::format("{}, {}", source.theory, source.scheme)) +
          fmt::format(
              "set lmargin at screen 0.105\nset rmargin at screen 0.855\n"
              "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
              "set xlabel 'space x'\nset label 103 'time t' at screen 0.025,0.4875 center rotate textcolor rgb "
              "'#333333'\n"
-             "set label 104 '{}' at screen 0.886,0.885 center textcolor rgb '#333333'\n"
+             "set label 104 '{}' at screen 0.886,0.885 center textcolor rgb '#333333' noenhanced\n"
              "set border 15\nset colorbox user origin screen 0.875,0.12 size screen 0.022,0.735 noborder\n"
              "set cbtics {} scale 0.3\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
              "plot 'map' binary array=({},{}) dx={} dy={} origin=({},{}) format='%double' using 1 with image\n",

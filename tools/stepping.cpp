@@ -30,12 +30,16 @@ class Stopwatch {
 
 }  // namespace
 
-Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, Outcome& outcome)
-    : scene_(scene),
-      initial_(initial),
-      simulation_(simulation),
-      outcome_(outcome),
-      row_(static_cast<std::size_t>(scene.problem.lattice.sites())) {}
+Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,
+                   Outcome& outcome)
+    : scene_(scene), initial_(initial), simulation_(simulation), outcome_(outcome), names_(names) {
+  const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
+  row_.resize(sites * names.field.size());
+  inner_.resize(sites * names.inner.size());
+  multiplier_.resize(sites * names.multiplier.size());
+  for (const std::string& name : simulation.conserved_names())
+    outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+}
 
 void Stepping::start() {
   try {
@@ -48,6 +52,11 @@ void Stepping::start() {
   const auto monitors = simulation_.monitors();
   outcome_.energy_initial = monitors.energy;
   outcome_.momentum_initial = monitors.momentum;
+  for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
+    const double initial = monitors.conserved[j];
+    outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0};
+  }
+  if (!names_.multiplier.empty()) outcome_.constraint_max = 0;
 }
 
 void Stepping::run(Recorder& recorder) {
@@ -121,13 +130,18 @@ void Stepping::record(std::int64_t row) {
   if (!started_) {
     row_ = initial_.row0();
     record.energy = record.energy_error = record.momentum = record.charge = Outcome::unknown;
+    record.further.assign(names_.further.size(), Outcome::unknown);
   } else {
-    simulation_.copy_row(static_cast<int>(newest_ - row), row_);
+    const int back = static_cast<int>(newest_ - row);
+    simulation_.copy_row(back, row_);
+    if (!inner_.empty()) simulation_.copy_row(back, inner_, Role::inner);
+    if (!multiplier_.empty()) simulation_.copy_row(back, multiplier_, Role::multiplier);
     const auto monitors = simulation_.monitors();
     record.energy = monitors.energy;
     record.energy_error = (monitors.energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);
     record.momentum = monitors.momentum;
     record.charge = monitors.charge;
+    monitor(monitors, record);
     record.iterations = last_iterations_;
     record.residual = row == newest_ ? simulation_.residual() : 0;  // the starting rows solve no equation
     if (!(record.residual <= outcome_.residual_max)) outcome_.residual_max = record.residual;
@@ -136,8 +150,25 @@ void Stepping::record(std::int64_t row) {
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
   outcome_.charge_final = record.charge;
-  recorder_->append(record, row_);
+  recorder_->append(record, {row_, inner_, multiplier_});
   ++outcome_.records;
+}
+
+// The constraint and the conserved sums.
+void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
+  if (!multiplier_.empty()) {
+    record.further.push_back(monitors.constraint);
+    if (!(monitors.constraint <= outcome_.constraint_max)) outcome_.constraint_max = monitors.constraint;
+  }
+  for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
+    Conserved& c = outcome_.conserved[j];
+    c.final = monitors.conserved[j];
+    record.further.push_back(c.final);
+    // relative to the sum of the absolute values of the terms: the sum itself may be zero
+    const double scale = monitors.conserved_scale[j];
+    const double error = std::abs(c.final - c.initial) / (scale > 0 ? scale : 1);
+    if (!(error <= c.error_max)) c.error_max = error;
+  }
 }
 
 void Stepping::close_outcome() {

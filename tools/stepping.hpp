@@ -11,7 +11,7 @@ namespace delf {
 /// last. What the steps cost and gave is told to the outcome, also when they fail.
 class Stepping {
  public:
-  Stepping(const Scene&, const InitialRows&, Simulation&, Outcome&);
+  Stepping(const Scene&, const InitialRows&, Simulation&, const RowNames&, Outcome&);
 
   /// Gives the simulation its first rows. Throws BadScene; if the numerics fail, run() tells it.
   void start();
@@ -28,13 +28,15 @@ class Stepping {
   std::int64_t next_record() const;
   void close_outcome();
   void measure_error();
+  void monitor(const Simulation::Monitors&, Record&);
 
   const Scene& scene_;
   const InitialRows& initial_;
   Simulation& simulation_;
   Outcome& outcome_;
   Recorder* recorder_ = nullptr;
-  std::vector<double> row_;
+  const RowNames& names_;
+  std::vector<double> row_, inner_, multiplier_;
   bool started_ = false;
   std::int64_t newest_ = 0, recorded_ = -1;
   double iterations_ = 0;

@@ -16,14 +16,14 @@ std::string summary_json(const Scene& scene, const Outcome& o) {
   json["fibre"] = p.circle_valued ? "S1" : "R";
   json["stencil"] = p.stencil;
   json["method"] = p.method;
-  json["space"] = p.lattice.is_circle() ? "circle" : "interval";
+  json["space"] = p.lattice.space() == Space::point ? "point" : p.lattice.is_circle() ? "circle" : "interval";
   json["length"] = p.lattice.length();
   json["sites"] = p.lattice.sites();
   json["space_step"] = p.lattice.space_step();
   json["time_step"] = p.time_step;
   json["winding"] = o.winding;
   json["state"] = o.state;
-  json["start"] = o.start == StartRule::exact ? "exact" : "centred";
+  json["start"] = to_string(o.start);
   json["seed"] = scene.initial.seed;
   json["steps"] = o.steps;
   json["time"] = o.time;
@@ -42,6 +42,10 @@ std::string summary_json(const Scene& scene, const Outcome& o) {
   json["momentum_initial"] = o.momentum_initial;
   json["momentum_final"] = o.momentum_final;
   json["charge_final"] = o.charge_final;
+  json["constraint_max"] = o.constraint_max;
+  auto& conserved = json["conserved"] = nlohmann::ordered_json::array();
+  for (const Conserved& c : o.conserved)
+    conserved.push_back({{"name", c.name}, {"initial", c.initial}, {"final", c.final}, {"error_max", c.error_max}});
   json["error_linf"] = o.error_linf;
   json["error_l2"] = o.error_l2;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

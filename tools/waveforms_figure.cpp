@@ -36,6 +36,16 @@ std::vector<int> chosen_frames(const FigureSource& source) {
   return frames;
 }
 
+// The names of the components in their colours, at the upper right.
+std::string key_of_components(const FigureSource& source, const std::vector<std::size_t>& components) {
+  std::string labels;
+  for (std::size_t c = 0; c < components.size(); ++c)
+    labels += fmt::format("set label {} '{}' at screen {},0.955 right textcolor rgb '{}' noenhanced\n", 110 + c,
+                          source.names.field[components[c]],
+                          0.97 - 0.07 * static_cast<double>(components.size() - 1 - c), component_colour(c));
+  return labels;
+}
+
 double mean(std::span<const double> row) {
   return std::accumulate(row.begin(), row.end(), 0.0) / static_cast<double>(row.size());
 }
@@ -43,7 +53,7 @@ double mean(std::span<const double> row) {
 }  // namespace
 
 std::string waveforms_figure(const FigureSource& source, const std::filesystem::path& scratch) {
-  if (source.film.frames() == 0) return {};
+  if (source.film.frames() == 0 || source.lattice.space() == Space::point) return {};
   const auto frames = chosen_frames(source);
   const auto space = drawn_space(source);
   const int panels = static_cast<int>(frames.size());
@@ -52,16 +62,22 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   std::string table;
   std::vector<double> shown;
   bool turned = false;
+  std::vector<std::size_t> components;
+  for (std::size_t c = 0; c < source.film.components(); ++c)
+    if (c != source.names.mesh) components.push_back(c);
   for (const int f : frames) {
-    const auto row = drawn_frame(source, f);
-    const double drift = mean(row) - mean(drawn_frame(source, 0));
-    const double turns = source.angle && std::isfinite(drift) ? std::round(drift) : 0;
-    turned = turned || turns != 0;
-    for (std::size_t i = 0; i < space.size(); ++i) {
-      shown.push_back(row[i] - turns);
-      table += fmt::format("{} {}\n", space[i], shown.back());
+    const auto nodes = source.names.mesh ? drawn_sites(source, f, *source.names.mesh) : space;
+    for (const std::size_t c : components) {
+      const auto row = drawn_sites(source, f, c);
+      const double drift = mean(row) - mean(drawn_sites(source, 0, c));
+      const double turns = source.angle && std::isfinite(drift) ? std::round(drift) : 0;
+      turned = turned || turns != 0;
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        shown.push_back(row[i] - turns);
+        table += fmt::format("{} {}\n", nodes[i], shown.back());
+      }
+      table += "\n\n";
     }
-    table += "\n\n";
   }
   write_text_file(scratch / "waveforms", table);
 
@@ -78,15 +94,25 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   for (int p = 0; p < panels; ++p) {
     const bool left = p % columns == 0, bottom = p + columns >= panels;
     body += fmt::format("set format y '{}'\nset format x '{}'\nset ylabel '{}'\nset xlabel '{}'\n", left ? "%h" : "",
-                        bottom ? "%h" : "", left ? (source.angle ? "φ / 2π" : "φ") : "", bottom ? "space x" : "");
+                        bottom ? "%h" : "",
+                        left ? (components.size() > 1 ? (source.angle ? "fields / 2π" : "fields")
+                                : source.angle        ? "φ / 2π"
+                                                      : "φ")
+                             : "",
+                        bottom ? "space x" : "");
     body += fmt::format("set label 1 't = {:.4g}' at graph 0,1 left offset 0,0.7 textcolor rgb '#333333'\n",
                         source.film.time(frames[static_cast<std::size_t>(p)]));
     if (p == 0 && turned)
       body +=
           "set label 103 'whole turns of the field are taken off' at screen 0.97,0.905 right font ',11' "
           "textcolor rgb '#666666'\n";
-    body +=
-        fmt::format("plot 'waveforms' index {} using 1:2 with lines lw 1.6 lc rgb '{}'\nunset label\n", p, line_colour);
+    if (p == 0 && components.size() > 1) body += key_of_components(source, components);
+    const int first = p * static_cast<int>(components.size());
+    for (std::size_t c = 0; c < components.size(); ++c)
+      body += fmt::format("{} 'waveforms' index {} using 1:2 with {} lw 1.6 lc rgb '{}'", c == 0 ? "plot" : ",",
+                          first + static_cast<int>(c), source.names.mesh ? "linespoints pt 7 ps 0.4" : "lines",
+                          component_colour(c));
+    body += "\nunset label\n";
   }
   return body + "unset multiplot\n";
 }

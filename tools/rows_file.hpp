@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace delf {
+
+/// Rows in a file, to start from. What is wrong with it is thrown as BadInput with the key initial.file, or
+/// initial.frame for a frame that it does not have.
+class RowsFile {
+ public:
+  virtual ~RowsFile() = default;
+  virtual int sites() const = 0;
+  virtual int frames() const = 0;
+  virtual int components() const = 0;  ///< fields at the vertices
+  /// The time of a frame, if the file says it.
+  virtual std::optional<double> time(int frame) const = 0;
+  /// Site by site: row[i·components + a].
+  virtual std::vector<double> row(int frame) const = 0;
+  /// What the field gains around the circle, in units of 2π, if the file says so.
+  virtual std::optional<int> winding() const = 0;
+};
+
+/// A table if the name ends in .csv, else a fields.h5.
+std::unique_ptr<RowsFile> open_rows(const std::filesystem::path&);
+
+}  // namespace delf
