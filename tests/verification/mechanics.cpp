@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -197,7 +196,6 @@ TEST_CASE("a pendulum and a planet are followed to second order by each stencil 
       const double e1 = error(600), e2 = error(1200), e3 = error(2400);
       const double coarse = std::log2(e1 / e2), fine = std::log2(e2 / e3);
       CAPTURE(b.theory, stencil, e1, e2, e3, coarse, fine);
-      std::printf("%s %s %.3e %.3e %.3e orders %.4f %.4f\n", b.theory, stencil, e1, e2, e3, coarse, fine);
       CHECK(std::abs(coarse - 2) < 0.1);
       CHECK(std::abs(fine - 2) < 0.1);
     }
@@ -215,7 +213,6 @@ TEST_CASE("the check can fail: explicit Euler follows them to first order only")
       return std::max(std::abs(s.q[0] - exact[0]), std::abs(s.q[1] - exact[1]));
     };
     const double order = std::log2(error(1200) / error(2400));
-    std::printf("euler %s order %.3f\n", b.theory, order);
     CAPTURE(b.theory, order);
     CHECK(std::abs(order - 1) < 0.2);
   }
@@ -225,8 +222,6 @@ TEST_CASE("the discrete field equations are Veselov's map: written by hand it ma
   for (const Body& b : {pendulum, kepler}) {
     const double midpoint = distance(b, "midpoint", midpoint_map), trapezoidal = distance(b, "trapezoidal", verlet),
                  vertex = distance(b, "vertex", symplectic_euler);
-    std::printf("%s by hand %.2e %.2e %.2e; crossed %.2e %.2e\n", b.theory, midpoint, trapezoidal, vertex,
-                distance(b, "midpoint", verlet), distance(b, "trapezoidal", heun));
     CAPTURE(b.theory, midpoint, trapezoidal, vertex);
     CHECK(midpoint < 1e-12);
     CHECK(trapezoidal < 1e-12);
@@ -247,7 +242,6 @@ TEST_CASE("a million steps: the energy stays in its band, angular momentum stays
   for (const Body& b : {pendulum, kepler})
     for (const char* stencil : time_stencils) {
       const LongRun run = long_run(b, stencil);
-      std::printf("%s %s first %.3e last %.3e spin %.2e\n", b.theory, stencil, run.first, run.last, run.spin);
       CAPTURE(b.theory, stencil, run.first, run.last, run.spin);
       CHECK(run.keeps_band());
       CHECK(run.spin < 1e-11);
@@ -273,7 +267,6 @@ TEST_CASE("angular momentum stays because the attraction is the same all round: 
     auto evolution = Scheme{midpoint, Anisotropic{squeeze}}.on(Lattice::point(), kepler.step);
     return relative_drift(evolution, {orbit.exact_row(0), orbit.exact_row(1)}, rotation, 2000);
   };
-  std::printf("aniso even %.2e uneven %.2e\n", drift(1), drift(1.1));
   CHECK(drift(1) < 1e-12);
   CHECK(drift(1.1) > 1e-3);
 }

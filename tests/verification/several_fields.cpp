@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -64,7 +63,6 @@ TEST_CASE("two coupled fields are followed to second order") {
     };
     const double e1 = error(160), e2 = error(320), e3 = error(640);
     const double coarse = std::log2(e1 / e2), fine = std::log2(e2 / e3);
-    std::printf("coupled %s %.3e %.3e %.3e orders %.4f %.4f\n", stencil, e1, e2, e3, coarse, fine);
     CAPTURE(stencil, e1, e2, e3, coarse, fine);
     CHECK(second(coarse));
     CHECK(second(fine));
@@ -76,7 +74,6 @@ TEST_CASE("a charged wave is followed to second order, at an amplitude where the
     const auto error = [&](int N) { return charged("charged-wave", stencil, N, From::exact).to(N).error(); };  // t = 3
     const double e1 = error(64), e2 = error(128), e3 = error(256);
     const double coarse = std::log2(e1 / e2), fine = std::log2(e2 / e3);
-    std::printf("charged %s %.3e %.3e %.3e orders %.4f %.4f\n", stencil, e1, e2, e3, coarse, fine);
     CAPTURE(stencil, e1, e2, e3, coarse, fine);
     CHECK(second(coarse));
     CHECK(second(fine));
@@ -107,7 +104,6 @@ TEST_CASE("the check can fail: a wave of another coupling is not approached") {
     return most;
   };
   const double order = std::log2(error(128) / error(256));
-  std::printf("wrong lambda: order %.3f\n", order);
   CHECK_FALSE(second(order));
 }
 
@@ -124,7 +120,6 @@ TEST_CASE("the charge of U(1) stays to round-off over 2000 steps on every stenci
         const std::vector<double> y = run.newest();
         for (std::size_t i = 0; i < y.size(); ++i) moved = std::max(moved, std::abs(std::abs(y[i]) - std::abs(y0[i])));
       }
-      std::printf("U1 %s %s J=%.4f drift %.2e moved %.2f\n", state, stencil, first, drift, moved);
       CAPTURE(state, stencil, first, drift, moved);
       CHECK(std::abs(first) > 0.1);
       CHECK(moved > 0.1);
@@ -141,7 +136,6 @@ TEST_CASE("the charge stays because the density is the same all round: with mass
     return relative_drift(evolution, {wave.exact_row(0), wave.exact_row(1)}, rotation, 1000);
   };
   const double even = drift(0), uneven = drift(0.3);
-  std::printf("U1 even %.2e uneven %.2e\n", even, uneven);
   CAPTURE(even, uneven);
   CHECK(even < 1e-12);
   CHECK(uneven > 1e-3);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -61,8 +60,6 @@ void stays(const std::string& stencil, int steps) {
     sphere = std::max(sphere, off_sphere(run.newest(), 3));
     for (std::size_t a = 0; a < 3; ++a) drift = std::max(drift, std::abs(now.conserved[a] - first[a]));
   }
-  std::printf("stays %s %d: G %.2e sphere %.2e drift %.2e J0 %.2e %.2e %.2e\n", stencil.c_str(), steps, constraint,
-              sphere, drift, first[0], first[1], first[2]);
   CAPTURE(stencil, constraint, sphere, drift);
   CHECK(constraint < 2e-14);
   CHECK(sphere < 2e-14);
@@ -76,7 +73,7 @@ TEST_CASE("a wave map stays on its sphere and keeps its three momenta over 10000
   stays("rectangle", 10000);
 }
 
-// On the symmetric rectangle this run ends at step 416, where Newton's method diverges: see the report of the wave map.
+// On the symmetric rectangle this run ends at step 416, where Newton's method diverges.
 TEST_CASE("a wave map stays on its sphere and keeps its three momenta on every stencil") {
   stays("triangle-vertex", 1000);
   stays("rectangle", 1000);
@@ -88,7 +85,6 @@ TEST_CASE("a wave on a great circle is followed to second order") {
     const auto error = [&](int N) { return great_circle(stencil, N).to(5 * N / 8).error(); };  // t = 1.96
     const double e1 = error(32), e2 = error(64), e3 = error(128);
     const double coarse = std::log2(e1 / e2), fine = std::log2(e2 / e3);
-    std::printf("order %s %.3e %.3e %.3e orders %.4f %.4f\n", stencil, e1, e2, e3, coarse, fine);
     CAPTURE(stencil, e1, e2, e3, coarse, fine);
     CHECK(std::abs(coarse - 2) < 0.3);
     CHECK(std::abs(fine - 2) < 0.1);
@@ -106,7 +102,6 @@ TEST_CASE("the check can fail: without the constraint the same density leaves th
     double most = 0;
     for (std::size_t n = 0; n < y.size(); ++n) most = std::max(most, std::abs(y[n] - exact[n]));
     errors.push_back(most);
-    std::printf("free %d: off %.2e error %.2e\n", N, off_sphere(y, 3), most);
     CHECK(off_sphere(y, 3) > 0.1);
   }
   CHECK(std::abs(std::log2(errors[0] / errors[1])) < 0.3);
@@ -134,8 +129,6 @@ TEST_CASE("the momenta stay because turns leave the density as it is: pulled alo
       evolution.stepper().step();
       for (std::size_t a = 0; a < 3; ++a) drift[a] = std::max(drift[a], std::abs(momentum(symmetries[a]) - first[a]));
     }
-    std::printf("pull %.1f: %.2e %.2e %.2e sphere %.2e\n", pull, drift[0], drift[1], drift[2],
-                off_sphere(evolution.stepper().row(0), 4));
     CAPTURE(pull, drift[0], drift[1], drift[2]);
     CHECK(drift[2] < 1e-12);
     CHECK((pull == 0 ? drift[0] < 1e-12 : drift[0] > 1e-2));
@@ -156,7 +149,6 @@ TEST_CASE("the multiplier's equation determines a component of the field, and on
     return std::pair{sites_where_constraint_gives_field, sites_where_field_gives_multiplier};
   };
   const auto kept = Scheme{triangle_vertex, WaveMap{}}.on(circle(32), std::numbers::pi / 32);
-  std::printf("%s\n", kept.plan().report().c_str());
   CHECK(matched(kept.plan()) == std::pair{32, 32});
   CHECK_FALSE(kept.plan().own);
   // the check can fail: without the constraint every equation of the field gives the field
