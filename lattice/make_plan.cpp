@@ -50,12 +50,9 @@ std::string named(const SolvePlan::Table& table, const Quotient& quotient, const
     for (const int n : nodes) {
       if (quotient.component(n) != component) continue;
       const int left = (table.sites - table.period) / 2, site = quotient.site(n);
-      if (table.lattice_sites == table.sites || site < left)
-        sites.insert(site);
-      else if (site >= left + table.period)
-        sites.insert(table.lattice_sites - table.sites + site);
-      else
-        between.insert(site);
+      if (table.lattice_sites == table.sites || site < left) sites.insert(site);
+      else if (site >= left + table.period) sites.insert(table.lattice_sites - table.sites + site);
+      else between.insert(site);
     }
     if (sites.empty() && between.empty()) continue;
     if (!text.empty()) text += " and ";
@@ -129,8 +126,8 @@ Agreement compare(const Analysed& shorter, const Analysed& longer) {
   auto agreement = Agreement::all;
   for (int n = 0; n < longer.quotient.nodes(); ++n) {
     const int site = extended.position(longer.quotient.site(n));
-    const auto& a = shorter.table.entries[shorter.quotient.node(site, longer.quotient.component(n),
-                                                               longer.quotient.parity(n))];
+    const auto& a =
+        shorter.table.entries[shorter.quotient.node(site, longer.quotient.component(n), longer.quotient.parity(n))];
     const auto& b = longer.table.entries[n];
     if (a.solved != b.solved || a.shift != b.shift || a.offset != b.offset) return Agreement::none;
     if (a != b) agreement = Agreement::rows;
@@ -213,6 +210,14 @@ SolvePlan planned(const Lattice& lattice, const SystemPattern& system, const Ana
   plan.table.regular = regular(quotient, a.analysis);
   plan.table.matched = !longest || compare(a, *longest) == Agreement::all;
   measure_rows(quotient, a.analysis, plan);
+  // Where there are only walls, one without a kinetic term may lie within its row.
+  const bool has_bulk = lattice.space() != Space::interval || lattice.sites() > 2 * system.width;
+  if (has_bulk && std::ranges::all_of(quotient.edges, [](const Quotient::Edge& e) { return e.time == 0; }) &&
+      std::ranges::all_of(quotient.reach, [](int time) { return time == 0; }))
+    throw BadInput(
+        "lattice.stencil",
+        "lattice.stencil: every equation lies within one row, so that no row leads to the next; add a site at "
+        "another time");
   list_exceptions(quotient, plan);
 
   const Analysed& whole = longest ? *longest : a;
@@ -238,7 +243,8 @@ SolvePlan make_plan(const Lattice& lattice, const SystemPattern& system) {
   if (system.components < 1 || system.width < 0 || !system.equations)
     throw BadInput("lattice.stencil", "lattice.stencil: the system has no equations; add a stencil");
 
-  if (lattice.is_circle()) return planned(lattice, system, Analysed(lattice, system, Quotient::of_circle(lattice, system)));
+  if (lattice.is_circle())
+    return planned(lattice, system, Analysed(lattice, system, Quotient::of_circle(lattice, system)));
 
   // Between the walls equations repeat, and whatever repeats within 2·width sites fits into each period.
   const int period = 2 * std::max(system.width, 1);
