@@ -6,6 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "lattice/stencil.hpp"
+
 namespace delf {
 
 StencilIncidence StencilIncidence::dense(const StencilPattern& pattern, Dependence dependence) {
@@ -27,13 +29,11 @@ SystemPattern system_of(int components, std::vector<StencilIncidence> families) 
   system.equations = [shared](const Lattice& lattice, Site site, int component) {
     std::vector<Coupling> equation;
     if (lattice.is_fixed(site.space)) return equation;
-    const auto inside = [&](Site s) { return lattice.is_circle() || (0 <= s.space && s.space < lattice.sites()); };
     for (const auto& [pattern, couplings] : *shared)
       for (const VertexCoupling& c : couplings) {
         if (c.row_component != component) continue;
         const Site anchor = site - pattern.vertices[c.row_vertex];
-        if (!pattern.placed_at(anchor)) continue;
-        if (!std::ranges::all_of(pattern.vertices, [&](Site offset) { return inside(anchor + offset); })) continue;
+        if (!has_stencil(lattice, pattern, anchor)) continue;
         equation.push_back({anchor + pattern.vertices[c.column_vertex] - site, c.column_component, c.dependence});
       }
     return equation;

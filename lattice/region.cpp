@@ -87,6 +87,12 @@ Region::Region(Stencils all, SiteSet u) : all_(std::move(all)), u_(std::move(u))
   boundary_ = SiteSet(std::move(edge));
 }
 
+void Region::visit_stencils(const std::function<void(int, Site, std::span<const std::size_t>)>& visit) const {
+  for_stencils_inside(all_, u_, [&](int family, Site anchor, const std::vector<std::size_t>& places) {
+    visit(family, anchor, places);
+  });
+}
+
 bool Region::contains(const Stencil& stencil) const {
   return std::ranges::all_of(stencil.sites, [&](Site site) { return contains(site); });
 }

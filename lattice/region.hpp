@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstddef>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "lattice/lattice.hpp"
@@ -45,6 +48,11 @@ class Region {
   bool in_boundary(Site site) const { return boundary_.contains(all_.reduced(site)); }
   /// U is exactly int U ∪ ∂U.
   bool regular() const { return interior_.size() + boundary_.size() == u_.size(); }
+
+  /// The place of a site of U in sites(), or sites().size() for any other.
+  std::size_t place(Site site) const { return u_.index(all_.reduced(site)); }
+  /// Calls visit(family, anchor, places of its vertices in sites()) for every stencil Δ ⊂ U, in a fixed order.
+  void visit_stencils(const std::function<void(int, Site, std::span<const std::size_t>)>& visit) const;
 
   bool contains(const Stencil&) const;
   /// {Δ ⊂ U}: the stencils that the action (5.1) sums over.

@@ -16,6 +16,13 @@ void require_closing(const Lattice& lattice, Placement placement) {
                                         std::to_string(lattice.sites() + 1));
 }
 
+bool has_stencil(const Lattice& lattice, const StencilPattern& pattern, Site anchor) {
+  return pattern.placed_at(anchor) && (lattice.is_circle() || std::ranges::all_of(pattern.vertices, [&](Site offset) {
+           const int x = anchor.space + offset.space;
+           return 0 <= x && x < lattice.sites();
+         }));
+}
+
 Stencils::Stencils(const Lattice& lattice, std::vector<StencilPattern> families)
     : lattice_(lattice), families_(std::move(families)) {
   if (families_.empty()) throw BadInput("lattice.stencil", "lattice.stencil: no stencil family is given; name one");
@@ -37,8 +44,7 @@ bool Stencils::in_lattice(Site site) const {
 bool Stencils::exists(int family, Site anchor) const {
   const StencilPattern& pattern = families_[static_cast<std::size_t>(family)];
   // Stencils are anchored at the vertices of the lattice.
-  return anchor.node == 0 && pattern.placed_at(anchor) &&
-         std::ranges::all_of(pattern.vertices, [&](Site offset) { return in_lattice(anchor + offset); });
+  return anchor.node == 0 && has_stencil(lattice_, pattern, anchor);
 }
 
 std::optional<Stencil> Stencils::find(int family, Site anchor) const {

@@ -23,6 +23,9 @@ struct Stencil {
   friend bool operator==(const Stencil&, const Stencil&) = default;
 };
 
+/// Whether there is a stencil of this pattern at `anchor`: it is placed there, and all its vertices lie in the lattice.
+bool has_stencil(const Lattice&, const StencilPattern&, Site anchor);
+
 /// X^Δ: all the stencils of some families on a lattice. A stencil exists if its family places one at the anchor and
 /// all its vertices lie in the lattice.
 class Stencils {

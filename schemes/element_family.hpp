@@ -41,7 +41,7 @@ class ElementFamily final : public StencilFamily {
 
   const Element& element() const { return element_; }
 
-  double lagrangian(const Cell& cell, std::span<const double> y) const {
+  std::optional<double> lagrangian(const Cell& cell, std::span<const double> y) const override {
     double sum = 0;
     for (const ElementPoint& p : element_.points)
       sum += p.weight * density_(jet<double>(numbers(p, cell, y), cell, p.time, p.space));

@@ -9,6 +9,42 @@ struct EnergyMomentum {
   double energy = 0, momentum = 0;
 };
 
+/// What flows where at a jet: for the balance laws of translations in time and in space,
+///
+///     ∂_t(φ_t ∂ℓ/∂φ_t − ℓ) + ∂_x(φ_t ∂ℓ/∂φ_x) = −∂ℓ/∂t        ∂_t(−φ_x ∂ℓ/∂φ_t) + ∂_x(ℓ − φ_x ∂ℓ/∂φ_x) = ∂ℓ/∂x
+///
+/// whose right-hand sides are there only for densities that depend on t and x themselves.
+struct StressEnergy {
+  double energy = 0, energy_flux = 0, momentum = 0, momentum_flux = 0;  ///< the four terms, without their derivatives
+  double by_t = 0, by_x = 0;                                            ///< ∂ℓ/∂t and ∂ℓ/∂x
+};
+/// `phi`, `phi_t`, `phi_x`: d numbers each.
+template <Density D>
+StressEnergy stress_energy(const D& density, const double* phi, const double* phi_t, const double* phi_x, double t,
+                           double x) {
+  constexpr int d = components_of<D>();
+  using Number = Dual<double, 2 * d + 2>;
+  JetFor<Number, D> jet;
+  for (int a = 0; a < d; ++a) {
+    component(jet.phi, a) = Number(phi[a]);
+    component(jet.phi_t, a) = Number::variable(phi_t[a], a);
+    component(jet.phi_x, a) = Number::variable(phi_x[a], d + a);
+  }
+  if constexpr (is_placed<D>()) {
+    jet.t = Number::variable(t, 2 * d);
+    jet.x = Number::variable(x, 2 * d + 1);
+  }
+  const Number l = density(jet);
+  StressEnergy s{-l.value, 0, 0, l.value, l.derivative(2 * d), l.derivative(2 * d + 1)};
+  for (int a = 0; a < d; ++a) {
+    s.energy += phi_t[a] * l.derivative(a);
+    s.energy_flux += phi_t[a] * l.derivative(d + a);
+    s.momentum -= phi_x[a] * l.derivative(a);
+    s.momentum_flux -= phi_x[a] * l.derivative(d + a);
+  }
+  return s;
+}
+
 /// Energy and momentum between two rows j and j+1, over the symmetric rectangle's jets whatever the scheme:
 ///
 ///   H = k Σ (φ_t ∂ℓ/∂φ_t − ℓ)                 P = −k Σ φ_x ∂ℓ/∂φ_t

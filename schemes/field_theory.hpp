@@ -10,6 +10,7 @@
 #include "jets/symmetry.hpp"
 #include "jets/triangle_jet.hpp"
 #include "jets/tuple_jets.hpp"
+#include "schemes/damped_leapfrog.hpp"
 #include "schemes/element_family.hpp"
 #include "schemes/energy.hpp"
 #include "schemes/guo.hpp"
@@ -39,6 +40,9 @@ class FieldTheory {
   virtual std::shared_ptr<const StencilFamily> comparator(const std::string& method, double h, double k) const = 0;
   /// Sums over the symmetric rectangle's jets between two rows.
   virtual EnergyMomentum energy_momentum(const SlabRows&, const double* weights) const = 0;
+  /// At one jet; components() numbers each.
+  virtual StressEnergy stress_energy(const double* phi, const double* phi_t, const double* phi_x, double t,
+                                     double x) const = 0;
 };
 
 /// Calls f(name, description, jet map) for every stencil that a scene can name: a new one adds one line here.
@@ -89,6 +93,8 @@ class TheoryOf final : public FieldTheory {
   std::shared_ptr<const StencilFamily> comparator(const std::string& method, double h, double k) const override {
     if constexpr (requires(double a) { density_.difference_quotient(a, a); }) {
       if (method == "vu-quoc-li") return std::make_shared<ResidualFamily<VuQuocLi<D>>>(VuQuocLi<D>{density_}, h, k);
+      if (method == "damped")
+        return std::make_shared<ResidualFamily<DampedLeapfrog<D>>>(DampedLeapfrog<D>{density_, h}, h, k);
       if (method == "guo") return std::make_shared<ResidualFamily<Guo<D>>>(Guo<D>{density_}, h, k);
     }
     return nullptr;
@@ -96,6 +102,11 @@ class TheoryOf final : public FieldTheory {
 
   EnergyMomentum energy_momentum(const SlabRows& rows, const double* weights) const override {
     return delf::energy_momentum(density_, rows, weights);
+  }
+
+  StressEnergy stress_energy(const double* phi, const double* phi_t, const double* phi_x, double t,
+                             double x) const override {
+    return delf::stress_energy(density_, phi, phi_t, phi_x, t, x);
   }
 
  private:

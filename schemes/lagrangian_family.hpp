@@ -28,7 +28,9 @@ class LagrangianFamily final : public StencilFamily {
   void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override {
     hessian(at(cell), y, J);
   }
-  double lagrangian(const Cell& cell, std::span<const double> y) const { return lagrangian_(y, cell); }
+  std::optional<double> lagrangian(const Cell& cell, std::span<const double> y) const override {
+    return lagrangian_(y, cell);
+  }
 
  private:
   /// L as a function of y alone.

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "lattice/error.hpp"
+#include "lattice/stencil.hpp"
 #include "schemes/row_kernel.hpp"
 
 namespace delf {
@@ -54,10 +55,7 @@ LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr
   if (read > this->components())
     throw BadInput("lattice.stencil", "lattice.stencil: a stencil reads component " + std::to_string(read - 1) + " of " +
                                           std::to_string(this->components()) + "; name every component");
-  if (placement_ == Placement::brick_wall && lattice_.is_circle() && lattice_.sites() % 2 != 0)
-    throw BadInput("lattice.sites", "lattice.sites = " + std::to_string(lattice_.sites()) +
-                                        ": a brick wall of hexagons closes on a circle only if the number of sites is "
-                                        "even; choose an even lattice.sites");
+  require_closing(lattice_, placement_);
 }
 
 int LatticeSystem::fields() const {
@@ -71,11 +69,7 @@ std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice
     for (int i = 0; i < family.size(); ++i) {
       if (family.values()[static_cast<std::size_t>(i)].component != component) continue;
       const Site vertex = family.site(i), offset{-vertex.time, -vertex.space}, anchor = site + offset;
-      const bool inside = lattice.is_circle() || std::ranges::all_of(family.pattern().vertices, [&](Site v) {
-                            const int x = anchor.space + v.space;
-                            return x >= 0 && x < lattice.sites();
-                          });
-      if (inside && family.pattern().placed_at(anchor))
+      if (delf::has_stencil(lattice, family.pattern(), anchor))
         result.push_back({&family, offset, i, static_cast<int>(f)});
     }
   }
@@ -83,7 +77,7 @@ std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice
 }
 
 std::vector<Coefficient> LatticeSystem::linearised(const Lattice& lattice, Site site, int component) const {
-  if (lattice.is_fixed(site.space)) return {};
+  if (lattice.is_fixed(site.space) && this->component(component).at.space == 0) return {};
   // Fields of order one suit most densities; where one is not defined there (a root, a logarithm), smaller ones do.
   for (double amplitude = 2; amplitude > 1e-8; amplitude /= 10)
     if (auto coefficients = linearised(lattice, site, component, amplitude)) return *coefficients;
@@ -161,18 +155,49 @@ SystemPattern LatticeSystem::pattern() const {
   return pattern;
 }
 
-/// The cell of a stencil that touches (row, site), and the values of the window on its vertices.
-Cell LatticeSystem::gather(const Touch& touch, const Window& window, std::int64_t row, int site, double time_step,
-                           std::vector<double>& y) const {
-  const std::int64_t anchor_row = row + touch.anchor.time;
-  const int anchor = site + touch.anchor.space;
+Window LatticeSystem::window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const {
+  Window window{&lattice_, components(), turn, first_row, std::move(rows)};
+  for (int c = components() - 1; c >= 0 && component(c).role == Role::multiplier; --c) window.turning = c;
+  return window;
+}
+
+bool LatticeSystem::has_stencil(const StencilFamily& family, std::int64_t row, int site) const {
+  return delf::has_stencil(lattice_, family.pattern(), {static_cast<int>(row & 1), site});
+}
+
+Cell LatticeSystem::gather(const StencilFamily& family, const Window& window, std::int64_t row, int site,
+                           double time_step, std::vector<double>& y) const {
   y.clear();
-  for (int i = 0; i < touch.family->size(); ++i) {
-    const Site vertex = touch.family->site(i);
-    y.push_back(window(anchor_row + vertex.time, anchor + vertex.space,
-                       touch.family->values()[static_cast<std::size_t>(i)].component));
+  for (int i = 0; i < family.size(); ++i) {
+    const Site vertex = family.site(i);
+    y.push_back(window(row + vertex.time, site + vertex.space, family.values()[static_cast<std::size_t>(i)].component));
   }
-  return cell_at(lattice_, anchor_row, anchor, time_step);
+  return cell_at(lattice_, row, site, time_step);
+}
+
+void LatticeSystem::equations(const Window& window, std::int64_t row, std::vector<Value>& values) const {
+  const int d = components(), N = lattice_.sites();
+  values.assign(static_cast<std::size_t>(N) * static_cast<std::size_t>(d), {});
+  std::vector<double> y, r;
+  for (const auto& family : families_) {
+    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+    for (std::int64_t anchor = row - high.time; anchor <= row - low.time; ++anchor)
+      for (int i = 0; i < N; ++i) {
+        if (!has_stencil(*family, anchor, i)) continue;
+        const Cell cell = gather(*family, window, anchor, i, time_step_, y);
+        r.resize(y.size());
+        family->residual(cell, y, r);
+        for (int m = 0; m < family->size(); ++m) {
+          const Site vertex = family->site(m);
+          if (anchor + vertex.time != row) continue;
+          const int x = i + vertex.space, home = lattice_.is_circle() ? lattice_.wrapped(x) : x;
+          Value& value = values[static_cast<std::size_t>(
+              home * d + family->values()[static_cast<std::size_t>(m)].component)];
+          value.sum += r[static_cast<std::size_t>(m)];
+          value.absolute += std::abs(r[static_cast<std::size_t>(m)]);
+        }
+      }
+  }
 }
 
 LatticeSystem::Value LatticeSystem::equation(const Window& window, std::int64_t row, int site, int component,
@@ -180,7 +205,8 @@ LatticeSystem::Value LatticeSystem::equation(const Window& window, std::int64_t 
   Value value;
   std::vector<double> y, r;
   for (const Touch& touch : touching({static_cast<int>(row & 1), site}, component)) {
-    const Cell cell = gather(touch, window, row, site, time_step, y);
+    const Cell cell =
+        gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space, time_step, y);
     r.resize(y.size());
     touch.family->residual(cell, y, r);
     const double term = r[static_cast<std::size_t>(touch.index)];
@@ -195,7 +221,8 @@ void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, i
   const int d = components();
   std::vector<double> y, J;
   for (const Touch& touch : touching({static_cast<int>(row & 1), site}, component)) {
-    const Cell cell = gather(touch, window, row, site, time_step, y);
+    const Cell cell =
+        gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space, time_step, y);
     const int size = touch.family->size();
     J.resize(y.size() * y.size());
     touch.family->jacobian(cell, y, J);

@@ -70,6 +70,10 @@ class LatticeSystem {
   const std::vector<Component>& all_components() const { return names_; }
   /// Components that are fields at the vertices: they come first.
   int fields() const;
+  /// The component keeps its value in this column: a fixed wall, where a node inside the cell lies on the wall or not.
+  bool is_held(int column, int component) const {
+    return lattice_.is_fixed(column) && names_[static_cast<std::size_t>(component)].at.space == 0;
+  }
   double time_step() const { return time_step_; }
   int width() const { return width_; }            ///< the largest space offset between two sites of one equation
   Placement placement() const { return placement_; }
@@ -94,9 +98,21 @@ class LatticeSystem {
   /// What the plan is made of.
   SystemPattern pattern() const;
 
+  /// Rows of all components, to be looked at: `turn` is φ(x + L) − φ(x), and multipliers are periodic.
+  Window window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const;
+
+  /// Whether a family has a stencil at (row, site), whose row matters by its parity.
+  bool has_stencil(const StencilFamily&, std::int64_t row, int site) const;
+  /// The stencil of a family anchored at (row, site): its cell and, into y, the values of the window on it.
+  Cell gather(const StencilFamily&, const Window&, std::int64_t row, int site, double time_step,
+              std::vector<double>& y) const;
+
   struct Value {
     double sum = 0, absolute = 0;  ///< Σ rˡ and Σ |rˡ|
   };
+  /// E of every site and component of a row, [i·C + c], whether it is an equation there or not: each stencil that
+  /// touches the row is evaluated once for every row of it.
+  void equations(const Window&, std::int64_t row, std::vector<Value>& values) const;
   /// E(site) for a window around it; h may differ from the system's own (continuation).
   Value equation(const Window&, std::int64_t row, int site, int component, double time_step) const;
 
@@ -111,8 +127,6 @@ class LatticeSystem {
  private:
   /// Nothing if the second derivatives are not finite at random fields of this amplitude.
   std::optional<std::vector<Coefficient>> linearised(const Lattice&, Site, int component, double amplitude) const;
-
-  Cell gather(const Touch&, const Window&, std::int64_t row, int site, double time_step, std::vector<double>& y) const;
 
   Lattice lattice_;
   std::vector<std::shared_ptr<const StencilFamily>> families_;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "jets/symmetry.hpp"
 #include "schemes/lattice_system.hpp"
 
 namespace delf {
@@ -14,6 +15,7 @@ struct Problem;
 struct SchemeParts {
   std::vector<std::shared_ptr<const StencilFamily>> families;
   std::vector<Component> components;
+  std::vector<LinearSymmetry> symmetries = {};  ///< that the families have: the theory's, where it is its density that they carry
 };
 
 /// A scheme family that a scene can name by scheme.method: one constant of this type stands at the end of each file in

@@ -45,8 +45,7 @@ SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
   throw unknown_name("scheme.method", p.method, names);
 }
 
-Evolution make_evolution(const FieldTheory& theory, const Problem& p) {
-  SchemeParts parts = make_parts(theory, p);
+Evolution make_evolution(SchemeParts parts, const Problem& p) {
   return {p.lattice, std::move(parts.families), p.time_step,
           {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
            2 * std::numbers::pi * p.winding},
@@ -58,49 +57,45 @@ Evolution make_evolution(const FieldTheory& theory, const Problem& p) {
 struct Simulation::Impl {
   Problem problem;
   std::unique_ptr<FieldTheory> theory;
+  std::vector<LinearSymmetry> symmetries;
   Evolution evolution;
   Stepper& stepper;
   const LatticeSystem& system;
-  RowLayout own_layout;  ///< of the monitors, where steps do not go by rows
+  std::unique_ptr<RowLayout> own_layout;  ///< of the monitors, where steps do not go by rows
   RowBuffer cell_weights, positions, last_rows;
   int winding;
-  std::vector<LinearSymmetry> symmetries;
   std::vector<std::string> conserved_names;
 
-  explicit Impl(const Problem& p)
+  Impl(const Problem& p, std::unique_ptr<FieldTheory> t, SchemeParts parts)
       : problem(p),
-        theory(make_theory(p)),
-        evolution(make_evolution(*theory, p)),
+        theory(std::move(t)),
+        symmetries(std::move(parts.symmetries)),
+        evolution(make_evolution(std::move(parts), p)),
         stepper(evolution.stepper()),
         system(evolution.system()),
-        own_layout(p.lattice, 1),
         winding(p.winding) {
-    const auto rows_of = [](const auto& family) {
+    // Stencils of more than two rows would need rows that are no longer held.
+    const bool two_rows = std::ranges::all_of(system.families(), [](const auto& family) {
       const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
-      return high.time - low.time;
-    };
-    // Stencils of more than two rows would need rows that are no longer held; a density has the symmetries, a comparator
-    // or a moving mesh does not.
-    const bool of_density = p.method == "multisymplectic" || p.method == "spacetime";
-    if (of_density && std::ranges::all_of(system.families(), [&](const auto& f) { return rows_of(f) <= 1; }))
-      symmetries = theory->symmetries();
-    for (const LinearSymmetry& s : symmetries) conserved_names.push_back(s.name);
+      return high.time - low.time <= 1;
+    });
+    for (const LinearSymmetry& s : symmetries)
+      if (two_rows) conserved_names.push_back(s.name);
   }
 
-  const RowLayout& layout() const { return stepper.layout() ? *stepper.layout() : own_layout; }
+  const RowLayout& layout() const { return own_layout ? *own_layout : *stepper.layout(); }
 
   /// max |G| over the constraints at the newest row.
   double constraint() const {
+    const bool any = std::ranges::any_of(system.all_components(), [](const Component& c) { return c.role == Role::multiplier; });
+    if (!any || stepper.newest() < 2) return 0;
     double worst = 0;
-    const std::int64_t newest = stepper.newest();
-    if (newest < 2) return 0;
-    const Window window = stepper.window(3);
-    for (int c = 0; c < system.components(); ++c) {
-      if (system.component(c).role != Role::multiplier) continue;
+    std::vector<LatticeSystem::Value> values;
+    system.equations(stepper.window(3), stepper.newest(), values);
+    for (int c = 0; c < system.components(); ++c)
       for (int i = 0; i < problem.lattice.sites(); ++i)
-        if (evolution.plan().solved(i, c))
-          worst = std::max(worst, std::abs(system.equation(window, newest, i, c, problem.time_step).sum));
-    }
+        if (system.component(c).role == Role::multiplier && evolution.plan().solved(i, c))
+          worst = std::max(worst, std::abs(values[static_cast<std::size_t>(i * system.components() + c)].sum));
     return worst;
   }
 
@@ -131,6 +126,7 @@ struct Simulation::Impl {
 
   void prepare_monitors() {
     if (cell_weights.rows()) return;
+    if (!stepper.layout()) own_layout = std::make_unique<RowLayout>(problem.lattice, 1);
     const RowLayout& layout = this->layout();
     cell_weights = RowBuffer(layout, 1);
     const int N = problem.lattice.sites(), cells = problem.lattice.cells(), d = theory->components();
@@ -144,7 +140,11 @@ struct Simulation::Impl {
   }
 };
 
-Simulation::Simulation(const Problem& problem) : impl_(std::make_unique<Impl>(problem)) {}
+Simulation::Simulation(const Problem& problem) {
+  auto theory = make_theory(problem);
+  SchemeParts parts = make_parts(*theory, problem);
+  impl_ = std::make_unique<Impl>(problem, std::move(theory), std::move(parts));
+}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 
@@ -171,9 +171,8 @@ void Simulation::start_legendre(std::span<const double> row0, std::span<const do
   std::vector<double> momenta(row0.size(), 0.0), phi, phi_t, p;
   bool any = false;
   for (const auto& family : system.families()) {
-    const auto& vertices = family->pattern().vertices;
     for (int cell = 0; cell < N; ++cell) {
-      if (!lattice.is_circle() && std::ranges::any_of(vertices, [&](Site v) { return cell + v.space >= N; })) continue;
+      if (!system.has_stencil(*family, 0, cell)) continue;
       std::vector<std::size_t> places;
       phi.clear(), phi_t.clear();
       for (int i = 0; i < family->size(); ++i) {
@@ -207,6 +206,9 @@ void Simulation::copy_row(int back, std::span<double> out, Role role) const {
     if (s.system.component(static_cast<int>(at) % s.system.components()).role == role) out[next++] = row[at];
 }
 
+const Evolution& Simulation::evolution() const { return impl_->evolution; }
+const FieldTheory& Simulation::theory() const { return *impl_->theory; }
+const std::vector<LinearSymmetry>& Simulation::symmetries() const { return impl_->symmetries; }
 const std::vector<Component>& Simulation::components() const { return impl_->system.all_components(); }
 int Simulation::count(Role role) const {
   return static_cast<int>(std::ranges::count(components(), role, &Component::role));
@@ -253,7 +255,7 @@ Simulation::Monitors Simulation::monitors() const {
     charge = (at(last) - at(0)) / (2 * std::numbers::pi);
   }
   Monitors monitors{sums.energy, sums.momentum, charge, s.constraint(), {}, {}};
-  if (!s.symmetries.empty()) {
+  if (!s.conserved_names.empty()) {
     const Window window = s.stepper.window(2);
     for (const LinearSymmetry& symmetry : s.symmetries) {
       double scale = 0;

@@ -7,10 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "jets/symmetry.hpp"
 #include "lattice/lattice.hpp"
 #include "schemes/lattice_system.hpp"
 
 namespace delf {
+
+class Evolution;
+class FieldTheory;
 
 /// What a scene states, in the engine's words.
 struct Problem {
@@ -42,6 +46,11 @@ class Simulation {
 
   const std::vector<Component>& components() const;
   int count(Role) const;  ///< components of this role
+
+  // What checks look at: the equations with their plan and rows, the theory, and the symmetries that the scheme has of it.
+  const Evolution& evolution() const;
+  const FieldTheory& theory() const;
+  const std::vector<LinearSymmetry>& symmetries() const;
 
   /// How many rows a start needs: 2 for every scheme of Marsden–Patrick–Shkoller.
   int starting_rows() const;

@@ -116,6 +116,36 @@ void SlabEquations::jacobian(const SectionRing& ring, std::int64_t J, std::vecto
   }
 }
 
+void SlabEquations::linearised(const SectionRing& y, std::int64_t J, const std::vector<SectionRing>& V,
+                               std::vector<std::vector<double>>& E, std::vector<double>& values) const {
+  values.assign(places_.size(), 0.0);
+  E.resize(V.size());
+  for (auto& e : E) e.assign(static_cast<std::size_t>(size()), 0.0);
+  for (const Member& member : members_) {
+    gather(member, y, J);
+    const std::size_t size = y_.size();
+    J_.resize(size * size);
+    member.family->jacobian(cell(member, J), y_, J_);
+    const Read* read = reads_.data() + member.first;
+    const int* entry = entry_.data() + member.first_entry;
+    for (std::size_t i = 0; i < size; ++i) {
+      if (read[i].equation < 0) continue;
+      for (std::size_t m = 0; m < size; ++m)
+        if (read[m].unknown >= 0) values[static_cast<std::size_t>(*entry++)] += J_[i * size + m];
+    }
+    for (std::size_t v = 0; v < V.size(); ++v) {
+      r_.resize(size);
+      for (std::size_t m = 0; m < size; ++m) r_[m] = V[v].row(J + read[m].row)[read[m].place];
+      for (std::size_t i = 0; i < size; ++i) {
+        if (read[i].equation < 0) continue;
+        double sum = 0;
+        for (std::size_t m = 0; m < size; ++m) sum += J_[i * size + m] * r_[m];
+        E[v][static_cast<std::size_t>(read[i].equation)] += sum;
+      }
+    }
+  }
+}
+
 std::vector<char> SlabEquations::present(std::size_t row_size, int depth) const {
   SectionRing ring(depth, row_size);
   std::mt19937_64 engine(20251121);

@@ -63,6 +63,10 @@ class SlabEquations {
   void jacobian(const SectionRing&, std::int64_t J, std::vector<double>& values,
                 const std::vector<double>* momenta = nullptr) const;
 
+  /// Σ_a ∂E/∂y_a V_a for several V at once, every a that the stencils read, and the values of places().
+  void linearised(const SectionRing& y, std::int64_t J, const std::vector<SectionRing>& V,
+                  std::vector<std::vector<double>>& E, std::vector<double>& values) const;
+
   std::size_t bytes() const;
 
  private:

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "schemes/flush_denormals.hpp"
+#include "schemes/slab_extent.hpp"
 
 namespace delf {
 namespace {
@@ -21,21 +22,13 @@ std::vector<std::pair<int, int>> pairs(const std::vector<SlabEquations::Place>& 
 }  // namespace
 
 SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
-    : system_(system), plan_(plan), options_(options), components_(system.components()),
-      back_(static_cast<std::size_t>(system.components()), 0) {
-  int least = 0;
-  for (int parity = 0; parity < plan.table.parities; ++parity)
-    for (const Node& u : plan.slab(parity).unknowns) {
-      const int offset = u.site.time - parity;
-      least = std::min(least, offset);
-      future_ = std::max(future_, offset);
-      int& back = back_[static_cast<std::size_t>(u.component)];
-      if (system.component(u.component).role == Role::field) lag_ = std::max(lag_, -offset);
-      else back = std::max(back, -offset);
-    }
-  for (int& b : back_) b = std::max(0, b - lag_);
+    : system_(system), plan_(plan), options_(options), components_(system.components()) {
+  SlabExtent extent = slab_extent(system, plan);
+  future_ = extent.above;
+  lag_ = extent.field_lag;
+  back_ = std::move(extent.behind);
   seed_order_ = std::clamp(options.seed_order, 1, 3);
-  past_ = std::max(plan.history, seed_order_ + 1 - least);
+  past_ = std::max(plan.history, seed_order_ + 1 + extent.below);
   starting_rows_ = std::max(plan.history, 1) + future_;
   const std::size_t row = static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_);
   ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row);
@@ -162,13 +155,11 @@ std::vector<double> SlabStepper::row(int back) const {
 }
 
 Window SlabStepper::window(int rows) const {
-  Window result{&system_.lattice(), components_, options_.turn, newest() - rows + 1, {}};
   const std::size_t size = static_cast<std::size_t>(system_.lattice().sites() * components_);
-  for (std::int64_t r = result.first_row; r <= newest(); ++r)
-    result.rows.emplace_back(ring_->row(r), ring_->row(r) + size);
-  for (int c = 0; c < components_; ++c)
-    if (system_.component(c).role == Role::multiplier) result.turning = std::min(result.turning, c);
-  return result;
+  std::vector<std::vector<double>> newest_rows;
+  for (std::int64_t r = newest() - rows + 1; r <= newest(); ++r)
+    newest_rows.emplace_back(ring_->row(r), ring_->row(r) + size);
+  return system_.window(newest() - rows + 1, std::move(newest_rows), options_.turn);
 }
 
 double SlabStepper::residual() const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,8 @@ class StencilFamily {
   virtual void residual(const Cell&, std::span<const double> y, std::span<double> r) const = 0;
   /// ∂r/∂y, row by row.
   virtual void jacobian(const Cell&, std::span<const double> y, std::span<double> J) const = 0;
+  /// L, where there is one; the residual is its gradient.
+  virtual std::optional<double> lagrangian(const Cell&, std::span<const double> /*y*/) const { return std::nullopt; }
   /// Elements: the momenta ∫ ∂ℓ/∂φ_t of the values at the element's lowest row (site(i).time = 0), in their order, for
   /// the fields φ and φ_t there: what a start by the discrete Legendre transform needs. False for other families.
   virtual bool momentum(const Cell&, std::span<const double> /*phi*/, std::span<const double> /*phi_t*/,

@@ -80,7 +80,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     std::ranges::copy(lagrangian_.hessian(array(y), cell), J.begin());
   }
   const RowKernel* row_kernel() const override { return this; }
-  double lagrangian(const Cell& cell, std::span<const double> y) const { return lagrangian_(array(y), cell); }
+  std::optional<double> lagrangian(const Cell& cell, std::span<const double> y) const override { return lagrangian_(array(y), cell); }
 
   void linear_part(const Cell& cell, std::span<double> J, std::span<double> r0) const override {
     std::ranges::fill(J, 0.0);

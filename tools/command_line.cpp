@@ -21,6 +21,7 @@ namespace po = boost::program_options;
 po::parsed_options parsed(const std::vector<std::string>& words) {
   po::options_description known;
   known.add_options()("help", "")("version", "")("out", po::value<std::string>());
+  known.add_options()("fields", po::value<std::string>())("nearby", po::value<std::string>());
   for (const Key& key : keys()) known.add_options()(std::string(key.name).c_str(), po::value<std::string>());
   using namespace po::command_line_style;
   constexpr int exact_names = allow_long | long_allow_adjacent | long_allow_next;  // no guessing
@@ -42,6 +43,13 @@ Arguments taken_apart(const std::vector<std::string>& words) {
     } else if (option.string_key == "out") {
       if (arguments.out || value.empty()) throw BadScene("command line: --out: give one directory, as --out DIR");
       arguments.out = value;
+    } else if (option.string_key == "fields") {
+      if (arguments.fields || value.empty())
+        throw BadScene("command line: --fields: give one file of rows, as --fields FILE");
+      arguments.fields = value;
+    } else if (option.string_key == "nearby") {
+      if (value.empty()) throw BadScene("command line: --nearby: give a file of rows, as --nearby FILE");
+      arguments.nearby.push_back(value);
     } else if (!option.string_key.empty()) {
       arguments.keys.push_back({option.string_key, value, 0});
     } else if (value.size() > 1 && value.front() == '-') {
@@ -51,6 +59,15 @@ Arguments taken_apart(const std::vector<std::string>& words) {
     }
   }
   return arguments;
+}
+
+void check_files_of_rows(const Command& command, const Arguments& arguments) {
+  const bool nearby = !arguments.nearby.empty();
+  if ((arguments.fields || nearby) && !command.reads_rows)
+    throw BadScene(fmt::format("command line: {}: `{}` looks at no recorded rows; leave it out",
+                               arguments.fields ? "--fields" : "--nearby", command.name));
+  if (nearby && !arguments.fields)
+    throw BadScene("command line: --nearby: near to which rows? Give them too, as --fields FILE");
 }
 
 ExitCode carry_out(const std::vector<std::string>& words) {
@@ -65,7 +82,9 @@ ExitCode carry_out(const std::vector<std::string>& words) {
     fmt::print("{}", usage());
     return ExitCode::bad_input;
   }
-  return find_command(arguments.words.front()).carry_out(arguments);
+  const Command& command = find_command(arguments.words.front());
+  check_files_of_rows(command, arguments);
+  return command.carry_out(arguments);
 }
 
 }  // namespace

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <numbers>
 
+#include "tools/drawing.hpp"
 #include "tools/energy_figure.hpp"
 #include "tools/figure_style.hpp"
-#include "tools/gnuplot.hpp"
 #include "tools/spacetime_figure.hpp"
-#include "tools/text_file.hpp"
 #include "tools/trajectory_figure.hpp"
 #include "tools/waveforms_figure.hpp"
 
@@ -90,20 +89,10 @@ std::vector<std::string> figure_names() {
 }
 
 std::string draw_figures(const FigureSource& source, const fs::path& folder) {
-  const ScratchFolder scratch(folder);
-  std::string script;
+  std::vector<Drawing> drawings;
   for (const Figure& figure : all)
-    if (const std::string body = figure.body(source, scratch.path()); !body.empty())
-      script += figure_script(figure.name, body);
-  if (script.empty()) return {};
-  write_text_file(scratch.path() / "script", script);
-  if (const std::string wrong = run_gnuplot(scratch.path(), "script"); !wrong.empty()) return wrong;
-  fs::create_directories(folder / "figures");
-  for (const Figure& figure : all)
-    for (const char* ending : {".png", ".svg"})
-      if (const std::string file = std::string(figure.name) + ending; fs::exists(scratch.path() / file))
-        fs::rename(scratch.path() / file, folder / "figures" / file);
-  return {};
+    drawings.push_back({figure.name, [&](const fs::path& scratch) { return figure.body(source, scratch); }});
+  return draw(drawings, folder);
 }
 
 }  // namespace delf

@@ -10,9 +10,10 @@ namespace delf {
 
 namespace {
 
-void print_keys() {
+void print_keys(std::string_view only) {
   std::string_view section;
   for (const Key& key : keys()) {
+    if (!only.empty() && !key.name.starts_with(only)) continue;
     if (const auto now = key.name.substr(0, key.name.find('.')); now != section) {
       section = now;
       fmt::print("\n[{}]\n", section);
@@ -38,7 +39,7 @@ ExitCode help(const std::string& name) {
   }
   const Command& command = find_command(name);
   fmt::print("{}\n\n{}\n", command.usage, command.details);
-  if (command.reads_scene) print_keys();
+  if (command.reads_scene) print_keys(command.section);
   return ExitCode::done;
 }
 

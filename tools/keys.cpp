@@ -7,6 +7,7 @@
 #include "schemes/nearest_name.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
+#include "tools/verify_request.hpp"
 
 namespace delf {
 
@@ -33,20 +34,21 @@ Names fibres() { return {"R", "S1"}; }
 Names spaces() { return {"circle", "interval", "point"}; }
 Names walls() { return {"fixed", "natural"}; }
 Names quadratures() { return {"gauss", "lobatto"}; }
+Names faults() { return verify_faults(); }
 Names starts() { return {"exact", "centred", "legendre"}; }
 
 constexpr double largest_int = std::numeric_limits<int>::max();
 constexpr double largest_count = 9007199254740992;  // 2⁵³: every integer below it is a double
-constexpr Range any{};
-constexpr Range positive{0, any.high, true};
-constexpr Range not_negative{0, any.high};
-constexpr Range count{0, largest_count};
-constexpr Range whole{-largest_int, largest_int};
-constexpr Range from_zero{0, largest_int};
-constexpr Range one_or_more{1, largest_int};
-constexpr Range two_or_more{2, largest_int};
-constexpr Range up_to_eight{0, 8};
-constexpr Range degrees{1, 12};
+constexpr Limits any{};
+constexpr Limits positive{0, any.high, true};
+constexpr Limits not_negative{0, any.high};
+constexpr Limits count{0, largest_count};
+constexpr Limits whole{-largest_int, largest_int};
+constexpr Limits from_zero{0, largest_int};
+constexpr Limits one_or_more{1, largest_int};
+constexpr Limits two_or_more{2, largest_int};
+constexpr Limits up_to_eight{0, 8};
+constexpr Limits degrees{1, 12};
 constexpr auto own = "the state's own";
 constexpr auto real = KeyType::real;
 constexpr auto integer = KeyType::integer;
@@ -120,10 +122,22 @@ const std::array table{
     Key{"output.times", KeyType::times, "", "six, evenly spread", "times of the waveforms figure: 0, 10, 20", "time",
         not_negative},
 
-    Key{"verify.regions", KeyType::text, "", "none", "for a later version; `run` ignores it"},
-    Key{"verify.variations", integer, "", "none", "for a later version; `run` ignores it", "", count},
-    Key{"verify.tolerance", real, "", "none", "for a later version; `run` ignores it", "", positive},
-    Key{"verify.checks", KeyType::text, "", "none", "for a later version; `run` ignores it"},
+    Key{"verify.regions", KeyType::text, "", "rectangle staircase hole wall slab random",
+        "kinds of regions, drawn from run.seed; or ROWSxSITES, such as 0:8x10:30-3:5x18:22, rows from each moment's first"},
+    Key{"verify.variations", integer, "2", "", "pairs of first variations V, W of either sort for each region", "",
+        one_or_more},
+    Key{"verify.moments", integer, "8", "", "moments of the run, evenly spread, at which regions are drawn", "",
+        one_or_more},
+    Key{"verify.tolerance", real, "1e-13", "", "a sum that ought to be zero may be this, relative to its terms", "",
+        positive},
+    Key{"verify.checks", KeyType::text, "", "all that apply",
+        "some of equations, forms, noether, balance, reversal, derivatives, newton"},
+    Key{"verify.generator", KeyType::text, "", "none",
+        "a symmetry to try, as the change of each field: 1, or -phi2, phi1"},
+    Key{"verify.force", toggle, "off", "", "take Noether's sums even for what is found to be no symmetry"},
+    Key{"verify.fault", choice, "none", "",
+        "plants a fault that must be found: variation, sign (of one derivative of L) or field (at one site)", "", any,
+        faults},
 };
 
 }  // namespace

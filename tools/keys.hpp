@@ -11,7 +11,7 @@ namespace delf {
 enum class KeyType { real, integer, toggle, choice, text, times };
 
 /// The numbers that a key may take: low ≤ value ≤ high, or low < value where the lower end is open.
-struct Range {
+struct Limits {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool open = false;
@@ -25,7 +25,7 @@ struct Key {
   std::string_view otherwise;  ///< if there is none: what holds then, in words
   std::string_view meaning;
   std::string_view unit = {};
-  Range range = {};
+  Limits range = {};
   std::vector<std::string> (*choices)() = nullptr;
 };
 

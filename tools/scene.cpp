@@ -183,6 +183,7 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
     const bool read = state != all.end() && state->parameters.find(key.substr(8)) != std::string::npos;
     return read ? "" : "the state " + scene.initial.name + " does not read it";
   }
+  if (key.starts_with("verify.")) return "";
   if (key == "run.threads" && scene.threads > 1) return "this version steps on one thread";
   return "";
 }

@@ -26,7 +26,7 @@ std::errc read(std::string_view text, Number& value) {
   return error == std::errc() && end != text.data() + text.size() ? std::errc::invalid_argument : error;
 }
 
-std::string below(std::string_view key, const Range& range, auto low) {
+std::string below(std::string_view key, const Limits& range, auto low) {
   return fmt::format("must be {} {}; raise {}", range.open ? "above" : "at least", low, key);
 }
 std::string above(std::string_view key, auto high) { return fmt::format("must be at most {}; lower {}", high, key); }
@@ -72,7 +72,7 @@ std::int64_t Values::integer(std::string_view key) const {
   const std::errc error = read(value, number);
   if (error == std::errc::result_out_of_range) throw settings_.error(key, "is too large; use a smaller integer");
   if (error != std::errc()) throw settings_.error(key, "is not an integer; write one like 255");
-  const Range& range = find_key(key)->range;
+  const Limits& range = find_key(key)->range;
   const auto low = static_cast<std::int64_t>(std::max(range.low, -9e15));
   const auto high = static_cast<std::int64_t>(std::min(range.high, 9.1e15));
   if (number < low) throw settings_.error(key, below(key, range, low));

@@ -16,9 +16,10 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                                                 "depends on more than the field; use scheme.method = multisymplectic",
                                                 p.method, p.theory));
   if (p.lattice.space() == Space::point)
-    throw BadInput("scheme.method", fmt::format("scheme.method = {}: a scheme for fields, and lattice.space = point has "
-                                                "none; use scheme.method = multisymplectic",
-                                                p.method));
+    throw BadInput("scheme.method",
+                   fmt::format("scheme.method = {}: a scheme for fields, and lattice.space = point has "
+                               "none; use scheme.method = multisymplectic",
+                               p.method));
   if (!p.lattice.is_circle() && (p.lattice.left() == Wall::natural || p.lattice.right() == Wall::natural))
     throw BadInput(
         p.lattice.left() == Wall::natural ? "boundary.left" : "boundary.right",
@@ -28,9 +29,11 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
 
 }  // namespace
 
-extern const MethodEntry vu_quoc_li_method, guo_method;
-const MethodEntry vu_quoc_li_method{
-    "vu-quoc-li", "comparator (5.14): conserves an energy, is not multisymplectic", build};
+extern const MethodEntry vu_quoc_li_method, guo_method, damped_method;
+const MethodEntry vu_quoc_li_method{"vu-quoc-li", "comparator (5.14): conserves an energy, is not multisymplectic",
+                                    build};
 const MethodEntry guo_method{"guo", "comparator (5.15): conserves an energy, is not multisymplectic", build};
+const MethodEntry damped_method{"damped", "comparator: leapfrog with friction 0.1, loses energy; for checks to fail on",
+                                build};
 
 }  // namespace delf

@@ -34,7 +34,9 @@ void check_walls(const Problem& p, const StencilFamily& family) {
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
-  SchemeParts parts{{theory.variational(p.stencil, p.time_step, p.lattice.space_step())}, fields(theory.components())};
+  SchemeParts parts{{theory.variational(p.stencil, p.time_step, p.lattice.space_step())},
+                    fields(theory.components()),
+                    theory.symmetries()};
   if (!parts.families[0]) {
     std::vector<std::string> names;
     for (const auto& stencil : stencils()) names.push_back(stencil.name);

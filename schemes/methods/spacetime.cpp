@@ -23,7 +23,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                    fmt::format("scheme.quadrature = {}: is gauss or lobatto; choose one", p.quadrature));
   const Element element = spacetime_element(p.degree_time, p.degree_space,
                                             p.quadrature == "gauss" ? TimeQuadrature::gauss : TimeQuadrature::lobatto);
-  SchemeParts parts{{theory.on_element(element)}, fields(theory.components())};
+  SchemeParts parts{{theory.on_element(element)}, fields(theory.components()), theory.symmetries()};
   for (std::size_t node = 1; node < element.nodes.size(); ++node)
     for (const Component& field : fields(theory.components()))
       parts.components.push_back({fmt::format("{} at ({:.4g}, {:.4g})", field.name, element.nodes[node].time,

@@ -39,7 +39,7 @@ Defects against_differences(const LagrangianFamily<L>& family, Random& random) {
     for (const auto& [step, weight] : {std::pair{1, 8.0}, {-1, -8.0}, {2, -1.0}, {-2, 1.0}}) {
       std::vector<double> to = y;
       to[j] += step * e;
-      slope += weight / (12 * e) * family.lagrangian(cell, to);
+      slope += weight / (12 * e) * *family.lagrangian(cell, to);
       family.residual(cell, to, moved);
       for (std::size_t i = 0; i < n; ++i) by_y[i] += weight / (12 * e) * moved[i];
     }

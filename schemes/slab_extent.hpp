@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <vector>
+
+#include "lattice/solve_plan.hpp"
+#include "schemes/lattice_system.hpp"
+
+namespace delf {
+
+/// How the unknowns and the equations of slab J lie in rows around row J.
+struct SlabExtent {
+  int below = 0;         ///< rows from its lowest unknown up to row J
+  int above = 0;         ///< rows from row J up to its highest unknown
+  int field_lag = 0;     ///< rows from the lowest unknown field up to row J: the newest whole row is J − field_lag
+  int equation_lag = 0;  ///< rows from its lowest equation up to row J
+  /// Of each component: rows that what is newest of it lies behind the newest whole row of fields.
+  std::vector<int> behind;
+};
+SlabExtent slab_extent(const LatticeSystem&, const SolvePlan&);
+
+}  // namespace delf

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/verify/equation_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "schemes/verify/drawn_region.hpp"
+
+namespace delf {
+
+EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan, double tolerance)
+    : system_(system), tolerance_(tolerance), seen_(3) {
+  for (const auto& family : system.families()) {
+    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+    reach_ = std::max(reach_, high.time - low.time);
+  }
+  constexpr std::array names{"field equations", "field equations at natural ends", "constraints"};
+  for (std::size_t n = 0; n < seen_.size(); ++n)
+    seen_[n].check = {.name = names[n], .region = {}, .tolerance = tolerance};
+  for (int i = 0; i < system.lattice().sites(); ++i)
+    for (int c = 0; c < system.components(); ++c) {
+      solved_.push_back(plan.solved(i, c));
+      sorts_.push_back(sort_of(i, c));
+    }
+}
+
+EquationCheck::Sort EquationCheck::sort_of(int site, int component) const {
+  if (system_.component(component).role == Role::multiplier) return constraint;
+  const Lattice& lattice = system_.lattice();
+  if (lattice.space() != Space::interval) return bulk;
+  const bool end = (site == 0 && lattice.left() == Wall::natural) ||
+                   (site == lattice.sites() - 1 && lattice.right() == Wall::natural);
+  return end ? natural_end : bulk;
+}
+
+/// Σ_a |∂G/∂y_a y_a| over what the constraint reads
+double EquationCheck::constraint_size(const Window& window, std::int64_t row, int site, int component) const {
+  double size = 0;
+  std::vector<double> y, J;
+  for (const auto& touch : system_.touching({static_cast<int>(row & 1), site}, component)) {
+    const Cell cell = system_.gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space,
+                                     system_.time_step(), y);
+    J.resize(y.size() * y.size());
+    touch.family->jacobian(cell, y, J);
+    for (std::size_t m = 0; m < y.size(); ++m)
+      size += std::abs(J[static_cast<std::size_t>(touch.index) * y.size() + m] * y[m]);
+  }
+  return size;
+}
+
+void EquationCheck::at(const Window& window, std::int64_t row) {
+  system_.equations(window, row, values_);
+  const auto C = static_cast<std::size_t>(system_.components());
+  std::array<double, 3> scale{};
+  for (std::size_t n = 0; n < values_.size(); ++n)
+    if (solved_[n]) {
+      const double size = sorts_[n] == constraint ? constraint_size(window, row, static_cast<int>(n / C), static_cast<int>(n % C))
+                                                  : values_[n].absolute;
+      // Ends are measured by the same scale as the bulk.
+      double& of = scale[sorts_[n] == constraint ? constraint : bulk];
+      if (!(size <= of)) of = size;
+    }
+  scale[natural_end] = scale[bulk];
+  newest_.assign(values_.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t n = 0; n < values_.size(); ++n) {
+    if (!solved_[n]) continue;
+    const double value = values_[n].sum == 0 ? 0 : std::abs(values_[n].sum) / scale[sorts_[n]];
+    newest_[n] = value;
+    Seen& seen = seen_[sorts_[n]];
+    Check& check = seen.check;
+    const int site = static_cast<int>(n / C);
+    ++check.samples;
+    if (!(value <= tolerance_)) {
+      if (seen.failures++ == 0) seen.first_row = row, seen.first_site = seen.last_site = site;
+      seen.last_row = row;
+      seen.first_site = std::min(seen.first_site, site);
+      seen.last_site = std::max(seen.last_site, site);
+    }
+    if (check.samples > 1 && value <= check.value) continue;
+    check.value = value;
+    check.normaliser = scale[sorts_[n]];
+    const Node node{{0, site}, static_cast<int>(n % C)};
+    check.region = in_words(system_, node, row);
+  }
+  ++rows_;
+}
+
+std::vector<Check> EquationCheck::checks() const {
+  std::vector<Check> result;
+  for (const Seen& seen : seen_) {
+    if (seen.check.samples == 0) continue;
+    Check check = seen.check;
+    check.count = check.samples;
+    if (seen.failures > 0) {
+      const std::string sites = system_.lattice().sites() > 1
+                                    ? fmt::format(", sites {} to {}", seen.first_site, seen.last_site) : "";
+      const double share = static_cast<double>(seen.failures) / static_cast<double>(check.samples);
+      check.failure = fmt::format(
+          "{} of {} equations do not hold: rows {} to {}{}, and worst at {}. {}", seen.failures, check.samples,
+          seen.first_row, seen.last_row, sites, check.region,
+          share < 0.05 ? "So few together say that the values in the midst of them were changed, and not by a step."
+                       : "So many say that the rows were made by other equations than these: another scheme, theory, "
+                         "time step or length, or that they were not solved to this tolerance.");
+    }
+    result.push_back(std::move(check));
+  }
+  return result;
+}
+
+}  // namespace delf

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lattice/solve_plan.hpp"
+#include "schemes/lattice_system.hpp"
+#include "schemes/verify/check.hpp"
+
+namespace delf {
+
+/// The field equations (5.2) at every site where there is one, row after row: in the bulk, at natural ends, and of
+/// constraints. Relative to the largest sum of absolute values in the row: a vacuum has no scale of its own. Constraints,
+/// whose terms cancel within one stencil, are relative to the largest Σ |∂G/∂y_a y_a| in the row.
+class EquationCheck {
+ public:
+  EquationCheck(const LatticeSystem&, const SolvePlan&, double tolerance);
+
+  /// Rows before and after a row that its equations read.
+  int reach() const { return reach_; }
+  /// Looks at one row of a window that holds reach() rows before and after it.
+  void at(const Window&, std::int64_t row);
+
+  /// Of the row looked at last: |E| relative to the row, [i·C + c]; not a number where there is no equation.
+  const std::vector<double>& newest() const { return newest_; }
+  std::int64_t rows() const { return rows_; }
+
+  std::vector<Check> checks() const;
+
+ private:
+  enum Sort { bulk, natural_end, constraint };
+  struct Seen {
+    Check check;
+    std::int64_t failures = 0, first_row = 0, last_row = 0;
+    int first_site = 0, last_site = 0;
+  };
+  Sort sort_of(int site, int component) const;
+  double constraint_size(const Window&, std::int64_t row, int site, int component) const;
+
+  const LatticeSystem& system_;
+  double tolerance_;
+  int reach_ = 1;
+  std::vector<char> solved_;     ///< of each site and component: there is an equation
+  std::vector<Sort> sorts_;
+  std::vector<Seen> seen_;       ///< one for each sort
+  std::vector<double> newest_;
+  std::vector<LatticeSystem::Value> values_;
+  std::int64_t rows_ = 0;
+};
+
+}  // namespace delf

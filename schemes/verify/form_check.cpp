@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/verify/form_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lattice/error.hpp"
+
+namespace delf {
+namespace {
+
+std::vector<RegionSystem::Pair> pairs_of(std::vector<RegionSystem::Values> variations) {
+  std::vector<RegionSystem::Pair> pairs;
+  for (std::size_t n = 0; n + 1 < variations.size(); n += 2)
+    pairs.push_back({std::move(variations[n]), std::move(variations[n + 1])});
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<Balance> symplectic_form(const LatticeSystem& system, const Window& y, const std::vector<Window>& V,
+                                     std::int64_t cut) {
+  std::vector<Balance> balances(V.size() / 2);
+  std::vector<double> values, J, v, w;
+  const int N = system.lattice().sites();
+  for (const auto& family : system.families()) {
+    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+    for (std::int64_t row = cut - high.time; row + low.time < cut; ++row)
+      for (int i = 0; i < N; ++i) {
+        if (!system.has_stencil(*family, row, i)) continue;
+        const Cell cell = system.gather(*family, y, row, i, system.time_step(), values);
+        J.resize(values.size() * values.size());
+        family->jacobian(cell, values, J);
+        for (std::size_t p = 0; p < balances.size(); ++p) {
+          system.gather(*family, V[2 * p], row, i, system.time_step(), v);
+          system.gather(*family, V[2 * p + 1], row, i, system.time_step(), w);
+          for (int n = 0; n < family->size(); ++n)
+            if (row + family->site(n).time >= cut) add_form(balances[p], static_cast<std::size_t>(n), J, v, w);
+        }
+      }
+  }
+  return balances;
+}
+
+FormCheck::FormCheck(const LatticeSystem& system, const SolvePlan& plan, int rows, Options options)
+    : system_(system), options_(std::move(options)),
+      variational_(std::ranges::all_of(system.families(), [](const auto& f) { return f->is_variational(); })),
+      tangent_(std::make_unique<Tangent>(system, plan, rows, options_.turn)),
+      forms_(options_.regions.size()), drawn_(options_.regions.size(), false) {
+  for (std::size_t n = 0; n < forms_.size(); ++n)
+    forms_[n] = {.name = "form formula, " + options_.regions[n].name, .region = {}, .tolerance = options_.tolerance};
+  local_ = {.name = "local identity, sum of all forms on a stencil", .region = {}, .tolerance = options_.tolerance};
+  cuts_ = {.name = "symplectic form, slab to slab", .region = {}, .tolerance = options_.tolerance};
+}
+
+int FormCheck::rows_wanted(const LatticeSystem& system, const SolvePlan& plan,
+                           const std::vector<RegionRequest>& regions) {
+  int solved = RegionDrawer::rows_wanted(system);
+  for (const RegionRequest& request : regions)
+    for (const Site& site : request.sites) solved = std::max(solved, site.time + 2);
+  return Tangent::least_rows(system, plan) - 1 + solved;
+}
+
+void FormCheck::take(Check& check, const Balance& balance, const std::string& where, double tolerance) {
+  const double value = balance.relative();
+  check.tolerance = tolerance;
+  ++check.samples;
+  // A value that is not a number is the worst there is.
+  if (check.samples > 1 && !(value > check.value) && !(value != value)) return;
+  check.value = value;
+  check.region = where;
+  check.normaliser = balance.absolute;
+  check.count = balance.count;
+}
+
+void FormCheck::at(const Window& y, std::mt19937_64& random) {
+  const int count = 2 * options_.pairs;
+  std::vector<Window> evolved;
+  try {
+    evolved = tangent_->evolve(y, count, random);
+  } catch (const NoConvergence& error) {
+    no_evolution_ = error.what();
+  }
+  const RegionDrawer drawer(system_, tangent_->solved_rows());
+  for (std::size_t n = 0; n < options_.regions.size(); ++n) {
+    const RegionRequest& request = options_.regions[n];
+    const auto region = drawer.draw(request, random);
+    if (!region) continue;
+    drawn_[n] = true;
+    const RegionSystem system(system_, *region, y.first_row, options_.turn);
+    const auto values = system.restricted(y);
+    if (!evolved.empty()) {
+      std::vector<RegionSystem::Values> restricted;
+      for (const Window& V : evolved) restricted.push_back(system.restricted(V));
+      auto pairs = pairs_of(std::move(restricted));
+      look(request, system, values, pairs, false);
+    }
+    if (system.nodes() <= most_local) {
+      auto pairs = pairs_of(system.first_variations(values, count, random));
+      look(request, system, values, pairs, true);
+    }
+  }
+  if (!evolved.empty() && variational_) look_at_cuts(y, evolved);
+}
+
+void FormCheck::look(const RegionRequest& request, const RegionSystem& system, const RegionSystem::Values& y,
+                     std::vector<RegionSystem::Pair>& pairs, bool local) {
+  if (options_.break_variation)
+    if (const auto node = system.coupling_node(y)) pairs[0].V[*node] += 1e-2;
+  const std::string where = fmt::format("{}, {} V and W", in_words(system.region(), system.origin(), system.stencils()),
+                                        local ? "local" : "evolved");
+  Check& check = forms_[static_cast<std::size_t>(&request - options_.regions.data())];
+  const auto balances = system.form_formula(y, pairs);
+  stencils_ += system.stencils();
+  std::size_t worst = 0;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    if (!(balances[p].relative() <= balances[worst].relative())) worst = p;
+    take(check, balances[p], where, options_.tolerance);
+  }
+  const double value = balances[worst].relative();
+  points_.push_back({request.name, system.stencils(), value, local});
+  const bool shown = check.region == where && check.value == value;
+  if (!(value <= options_.tolerance) && shown) check.failure = why(system, y, pairs[worst]);
+  if (!(value <= worst_.value)) {
+    worst_ = {value, request.name + ", " + where, system.region().sites(), {}, {}, system.boundary_terms(y, pairs[worst])};
+    for (const Site& site : worst_.sites) {
+      worst_.interior.push_back(system.region().in_interior(site));
+      worst_.boundary.push_back(system.region().in_boundary(site));
+    }
+  }
+  if (!variational_) return;
+  const auto defect = system.local_identity(y, pairs[0]);
+  Node anchor{defect.anchor, 0};
+  take(local_, defect.balance, fmt::format("the stencil at {}", in_words(system_, anchor, system.origin())),
+       options_.tolerance);
+  if (!(defect.balance.relative() <= options_.tolerance) && local_.value == defect.balance.relative())
+    local_.failure = fmt::format(
+        "The second derivatives of the stencil's Lagrangian are not symmetric at {}: of its value {} by its value {} is "
+        "not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the terms of "
+        "these derivatives.",
+        local_.region.substr(4), defect.row, defect.column, defect.column, defect.row);
+}
+
+/// In words, and where: V is none, or the equations are those of no action.
+std::string FormCheck::why(const RegionSystem& system, const RegionSystem::Values& y,
+                           const RegionSystem::Pair& pair) const {
+  for (const auto* variation : {&pair.V, &pair.W}) {
+    const auto left = system.linearised(y, *variation);
+    const auto worst = std::ranges::max_element(left, {}, &Balance::relative);
+    if (worst == left.end() || worst->relative() <= 1e-10) continue;
+    const Node node = system.node(system.equations()[static_cast<std::size_t>(worst - left.begin())]);
+    return fmt::format(
+        "{} is no first variation: at {} the linearised field equation is missed by {:.1e} of its terms. The "
+        "variation was changed there or at a site next to it, or it was evolved by other equations.",
+        variation == &pair.V ? "V" : "W", in_words(system_, node, system.origin()), worst->relative());
+  }
+  if (const auto pair_of_nodes = system.least_mutual(y))
+    return fmt::format(
+        "The equations are not those of an action: the equation at {} feels the value at {} with {:.6g}, and the other "
+        "way round it is {:.6g}. {}",
+        in_words(system_, pair_of_nodes->b, system.origin()), in_words(system_, pair_of_nodes->a, system.origin()),
+        pair_of_nodes->b_by_a, pair_of_nodes->a_by_b,
+        variational_ ? "The scheme is said to be variational: look at the derivatives of its Lagrangian."
+                     : "The scheme comes from no Lagrangian, and nothing multisymplectic is conserved.");
+  return "The linearised equations hold and are those of an action on int U, and still the terms at the boundary do not "
+         "cancel: a stencil that touches the boundary has a residual that is the gradient of no Lagrangian.";
+}
+
+void FormCheck::look_at_cuts(const Window& y, const std::vector<Window>& V) {
+  const Range solved = tangent_->solved_rows();
+  const std::int64_t first = y.first_row + solved.first, last = y.first_row + solved.last + 1;
+  const auto at_first = symplectic_form(system_, y, V, first);
+  for (std::int64_t cut = first + 1; cut <= last; ++cut) {
+    const auto here = symplectic_form(system_, y, V, cut);
+    for (std::size_t p = 0; p < here.size(); ++p) {
+      Balance change = here[p];
+      change.sum -= at_first[p].sum;
+      change.absolute = std::max(here[p].absolute, at_first[p].absolute);
+      take(cuts_, change, fmt::format("between rows {} and {}", first, cut), options_.tolerance);
+    }
+  }
+  if (!cuts_.passed())
+    cuts_.failure = fmt::format(
+        "The symplectic form of two first variations changes {}: the step is no symplectic map, or its linearisation is "
+        "not that of the equations.", cuts_.region);
+}
+
+std::vector<Check> FormCheck::checks() const {
+  std::vector<Check> result;
+  for (const Check& check : forms_)
+    if (check.samples > 0) result.push_back(check);
+  if (local_.samples > 0) result.push_back(local_);
+  if (cuts_.samples > 0) result.push_back(cuts_);
+  return result;
+}
+
+std::vector<std::string> FormCheck::left_out() const {
+  std::vector<std::string> words;
+  std::string missing;
+  for (std::size_t n = 0; n < drawn_.size(); ++n)
+    if (!drawn_[n]) missing += (missing.empty() ? "" : ", ") + options_.regions[n].name;
+  if (!missing.empty()) words.push_back("form formula on regions of this kind, for which the lattice has no room: " + missing);
+  if (!no_evolution_.empty()) words.push_back("evolved variations: " + no_evolution_);
+  if (!variational_) words.push_back("local identity and symplectic form: the scheme has no Lagrangian");
+  return words;
+}
+
+}  // namespace delf

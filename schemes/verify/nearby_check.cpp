@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/verify/nearby_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "schemes/verify/drawn_region.hpp"
+
+namespace delf {
+namespace {
+
+double largest(const RegionSystem::Values& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+/// The value at 0 of the polynomial through (x_n, q_n): q(0) = Σ_n q_n Π_{m≠n} x_m/(x_m − x_n)
+double extrapolated(const std::vector<double>& x, const std::vector<double>& q) {
+  double sum = 0;
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    double weight = 1;
+    for (std::size_t m = 0; m < x.size(); ++m)
+      if (m != n) weight *= x[m] / (x[m] - x[n]);
+    sum += weight * q[n];
+  }
+  return sum;
+}
+
+}  // namespace
+
+void NearbyCheck::at(const std::string& kind, const RegionSystem& region, const RegionSystem::Values& F,
+                     const std::vector<RegionSystem::Pair>& differences) {
+  std::vector<double> sizes, q;
+  double normaliser = 0;
+  std::int64_t count = 0;
+  const auto balances = region.form_formula(F, differences);
+  for (std::size_t p = 0; p < differences.size(); ++p) {
+    if (balances[p].absolute == 0) return;  // the differences have not come to this region yet
+    // ε, relative to a field of order one: what is curved is the potential, on that scale.
+    sizes.push_back(std::max(largest(differences[p].V), largest(differences[p].W)));
+    q.push_back(balances[p].sum / balances[p].absolute);
+    normaliser = balances[p].absolute, count = balances[p].count;
+  }
+  // What is left of the next power, and rounding: differences of size ε are known to 2⁻⁵²/ε.
+  double unknown = 10, least = std::numeric_limits<double>::infinity();
+  for (const double size : sizes) unknown *= size, least = std::min(least, size);
+  const double tolerance =
+      std::max(tolerance_, unknown + 64 * std::numeric_limits<double>::epsilon() * std::max(1.0, largest(F)) / least);
+  const double value = std::abs(extrapolated(sizes, q));
+
+  const auto [found, fresh] = worst_.try_emplace(kind, Check{.name = "form formula by differences, " + kind, .region = {}});
+  Check& check = found->second;
+  ++check.samples;
+  // Tolerances differ from region to region: the worst is what passes least.
+  if (!fresh && value / tolerance <= check.value / check.tolerance) return;
+  check.value = value;
+  check.tolerance = tolerance;
+  check.normaliser = normaliser;
+  check.count = count;
+  check.region = fmt::format("{}, differences of {:.1e}{}", in_words(region.region(), region.origin(), region.stencils()),
+                             *std::ranges::max_element(sizes),
+                             sizes.size() > 1 ? fmt::format(" and {} smaller, extrapolated", sizes.size() - 1) : "");
+  check.failure = fmt::format(
+      "The differences to the nearby solutions do not keep the form formula on {}: {:.1e} of its terms is left, and "
+      "their size explains no more than {:.1e}. The program that made these rows does not conserve this scheme's "
+      "multisymplectic form.",
+      check.region, value, tolerance);
+}
+
+std::vector<Check> NearbyCheck::checks() const {
+  std::vector<Check> result;
+  for (const auto& [kind, check] : worst_) result.push_back(check);
+  return result;
+}
+
+}  // namespace delf

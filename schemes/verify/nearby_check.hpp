@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "schemes/verify/check.hpp"
+#include "schemes/verify/region_system.hpp"
+
+namespace delf {
+
+/// The form formula on solutions made elsewhere: V and W are differences to nearby solutions A and B of the same program,
+/// and first variations of it up to the size ε of the differences,
+///
+///     Σ_∂U Ω(A − F, B − F) / Σ |terms| = q + c₁ ε + c₂ ε² + …
+///
+/// with q = 0 if the program is multisymplectic in the sense of this scheme. Pairs (A, B) of several sizes, in the same
+/// directions, are extrapolated to ε = 0.
+class NearbyCheck {
+ public:
+  explicit NearbyCheck(double tolerance) : tolerance_(tolerance) {}
+
+  /// Of one region: F, and the pairs of differences to it, in any order of size.
+  void at(const std::string& kind, const RegionSystem&, const RegionSystem::Values& F,
+          const std::vector<RegionSystem::Pair>& differences);
+  std::vector<Check> checks() const;
+
+ private:
+  double tolerance_;
+  std::map<std::string, Check> worst_;  ///< by kind of region
+};
+
+}  // namespace delf

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "jets/symmetry.hpp"
+#include "schemes/verify/check.hpp"
+#include "schemes/verify/region_system.hpp"
+
+namespace delf {
+
+/// Noether's theorem (5.7) for symmetries of the fields, on regions of a section that solves the equations. Each
+/// generator is first tried on the Lagrangian itself: one that changes it is no symmetry, and nothing is owed for it.
+class NoetherCheck {
+ public:
+  /// `forced`: the sums are taken even for what is no symmetry.
+  NoetherCheck(const LatticeSystem&, std::vector<LinearSymmetry>, double tolerance, bool forced, std::uint64_t seed);
+
+  void at(const RegionSystem&, const RegionSystem::Values& y);
+  std::vector<Check> checks() const;
+
+ private:
+  /// Σ_l Jˡ(ξ) = dL(ξ) on single stencils at random jets, which is zero where ξ is a symmetry of L.
+  Check invariance(const LinearSymmetry&, std::mt19937_64&) const;
+
+  const LatticeSystem& system_;
+  std::vector<LinearSymmetry> symmetries_;
+  std::vector<Check> invariant_, sums_;
+  bool forced_;
+};
+
+}  // namespace delf

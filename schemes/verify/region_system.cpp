@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/verify/region_system.hpp"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseQR>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "jets/forms.hpp"
+#include "schemes/conserved.hpp"
+
+namespace delf {
+
+std::vector<StencilPattern> patterns_of(const LatticeSystem& system) {
+  std::vector<StencilPattern> patterns;
+  for (const auto& family : system.families()) patterns.push_back(family->pattern());
+  return patterns;
+}
+
+RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int64_t origin, double turn)
+    : system_(system), region_(std::move(region)), origin_(origin), components_(system.components()),
+      variational_(std::ranges::all_of(system.families(), [](const auto& f) { return f->is_variational(); })),
+      kind_(region_.sites().size(), outside) {
+  for (const Site site : region_.interior()) kind_[region_.place(site)] = inside;
+  for (const Site site : region_.boundary()) kind_[region_.place(site)] = boundary;
+  solved_.assign(nodes(), false);
+  held_.assign(nodes(), false);
+  const auto C = static_cast<std::size_t>(components_);
+  const double h = system.time_step(), k = system.lattice().space_step();
+  region_.visit_stencils([&](int f, Site anchor, std::span<const std::size_t> places) {
+    const StencilFamily& family = *system_.families()[static_cast<std::size_t>(f)];
+    const int home = system_.lattice().is_circle() ? system_.lattice().wrapped(anchor.space) : anchor.space;
+    Member member{&family, f, {anchor.time, home, 0},
+                  {h, k, static_cast<double>(origin_ + anchor.time) * h, system_.lattice().position(home)},
+                  reads_.size(), false};
+    for (const VertexValue& value : family.values()) {
+      const std::size_t place = places[static_cast<std::size_t>(value.vertex)];
+      const std::size_t node = place * C + static_cast<std::size_t>(value.component);
+      reads_.push_back(node);
+      if (turn != 0) {
+        const int x = home + family.pattern().vertices[static_cast<std::size_t>(value.vertex)].space;
+        const int laps = (x - system_.lattice().wrapped(x)) / system_.lattice().sites();
+        gained_.push_back(system_.component(value.component).role == Role::multiplier ? 0.0 : laps * turn);
+      }
+      member.meets_boundary = member.meets_boundary || kind_[place] == boundary;
+      held_[node] = system_.is_held(region_.sites()[place].space, value.component);
+      solved_[node] = kind_[place] == inside && !held_[node];
+    }
+    members_.push_back(member);
+  });
+  for (std::size_t n = 0; n < solved_.size(); ++n)
+    if (solved_[n]) equations_.push_back(n);
+}
+
+Node RegionSystem::node(std::size_t n) const {
+  const auto C = static_cast<std::size_t>(components_);
+  return {region_.sites()[n / C], static_cast<int>(n % C)};
+}
+
+RegionSystem::Values RegionSystem::restricted(const Window& window) const {
+  Values values(nodes());
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const Node at = node(n);
+    values[n] = window(origin_ + at.site.time, at.site.space, at.component);
+  }
+  return values;
+}
+
+void RegionSystem::gather(const Member& member, const Values& from, std::vector<double>& to) const {
+  to.clear();
+  for (const std::size_t node : reads(member)) to.push_back(from[node]);
+}
+
+void RegionSystem::gather_section(const Member& member, const Values& y, std::vector<double>& to) const {
+  gather(member, y, to);
+  for (std::size_t i = 0; i < to.size() && !gained_.empty(); ++i) to[i] += gained_[member.first + i];
+}
+
+std::vector<Balance> RegionSystem::residual(const Values& y) const {
+  std::vector<Balance> at(nodes());
+  std::vector<double> values, r;
+  for (const Member& member : members_) {
+    gather_section(member, y, values);
+    r.resize(values.size());
+    member.family->residual(member.cell, values, r);
+    const auto read = reads(member);
+    for (std::size_t i = 0; i < r.size(); ++i)
+      if (solved_[read[i]]) at[read[i]].add(r[i]);
+  }
+  std::vector<Balance> result;
+  for (const std::size_t n : equations_) result.push_back(at[n]);
+  return result;
+}
+
+std::vector<Balance> RegionSystem::linearised(const Values& y, const Values& V) const {
+  std::vector<Balance> at(nodes());
+  std::vector<double> values, J;
+  for (const Member& member : members_) {
+    gather_section(member, y, values);
+    J.resize(values.size() * values.size());
+    member.family->jacobian(member.cell, values, J);
+    const auto read = reads(member);
+    for (std::size_t i = 0; i < read.size(); ++i)
+      if (solved_[read[i]])
+        for (std::size_t m = 0; m < read.size(); ++m) at[read[i]].add(J[i * read.size() + m] * V[read[m]]);
+  }
+  std::vector<Balance> result;
+  for (const std::size_t n : equations_) result.push_back(at[n]);
+  return result;
+}
+
+std::vector<RegionSystem::Values> RegionSystem::first_variations(const Values& y, int count,
+                                                                 std::mt19937_64& random) const {
+  // The columns are the nodes that may vary and that some equation reads; Mᵀ, so that its columns are the equations.
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<int> row(nodes(), -1), column(nodes(), -1);
+  for (std::size_t n = 0; n < equations_.size(); ++n) column[equations_[n]] = static_cast<int>(n);
+  std::vector<std::size_t> varied;
+  std::vector<double> values, J;
+  for (const Member& member : members_) {
+    const auto read = reads(member);
+    if (std::ranges::none_of(read, [&](std::size_t n) { return solved_[n]; })) continue;
+    gather_section(member, y, values);
+    J.resize(values.size() * values.size());
+    member.family->jacobian(member.cell, values, J);
+    for (std::size_t i = 0; i < read.size(); ++i)
+      for (std::size_t m = 0; m < read.size() && solved_[read[i]]; ++m) {
+        const double entry = J[i * read.size() + m];
+        if (entry == 0 || held_[read[m]]) continue;
+        if (row[read[m]] < 0) row[read[m]] = static_cast<int>(varied.size()), varied.push_back(read[m]);
+        entries.emplace_back(row[read[m]], column[read[i]], entry);
+      }
+  }
+  std::vector<Values> variations(static_cast<std::size_t>(count), Values(nodes(), 0.0));
+  std::normal_distribution<double> normal;
+  // What no equation feels is free.
+  for (Values& V : variations)
+    for (std::size_t n = 0; n < V.size(); ++n)
+      if (!held_[n]) V[n] = normal(random);
+  if (varied.empty() || equations_.empty()) return variations;
+
+  Eigen::SparseMatrix<double> transposed(static_cast<Eigen::Index>(varied.size()),
+                                         static_cast<Eigen::Index>(equations_.size()));
+  transposed.setFromTriplets(entries.begin(), entries.end());
+  transposed.makeCompressed();
+  const Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> qr(transposed);
+  // Mᵀ P = Q R: the columns of Q after the first rank(M) span the null space of M.
+  for (Values& V : variations) {
+    Eigen::VectorXd c = Eigen::VectorXd::Zero(transposed.rows());
+    for (Eigen::Index n = qr.rank(); n < c.size(); ++n) c[n] = normal(random);
+    const Eigen::VectorXd v = qr.matrixQ() * c;
+    for (std::size_t n = 0; n < varied.size(); ++n) V[varied[n]] = v[static_cast<Eigen::Index>(n)];
+  }
+  return variations;
+}
+
+std::optional<std::size_t> RegionSystem::coupling_node(const Values& y) const {
+  std::vector<double> felt(nodes(), 0.0), values, J;
+  const auto C = static_cast<std::size_t>(components_);
+  for (const Member& member : members_) {
+    const auto read = reads(member);
+    gather_section(member, y, values);
+    J.resize(values.size() * values.size());
+    member.family->jacobian(member.cell, values, J);
+    for (std::size_t i = 0; i < read.size(); ++i)
+      for (std::size_t m = 0; m < read.size() && solved_[read[i]]; ++m)
+        if (kind_[read[m] / C] == boundary && !held_[read[m]]) felt[read[m]] += std::abs(J[i * read.size() + m]);
+  }
+  const auto most = std::ranges::max_element(felt);
+  if (most == felt.end() || *most == 0) return std::nullopt;
+  return static_cast<std::size_t>(most - felt.begin());
+}
+
+std::vector<Balance> RegionSystem::form_formula(const Values& y, std::span<const Pair> pairs) const {
+  std::vector<Balance> balances(pairs.size());
+  std::vector<double> values, J, v, w;
+  const auto C = static_cast<std::size_t>(components_);
+  for (const Member& member : members_) {
+    if (!member.meets_boundary) continue;
+    gather_section(member, y, values);
+    const std::size_t n = values.size();
+    J.resize(n * n);
+    member.family->jacobian(member.cell, values, J);
+    const auto read = reads(member);
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      gather(member, pairs[p].V, v);
+      gather(member, pairs[p].W, w);
+      for (std::size_t i = 0; i < n; ++i) {
+        if (variational_) {
+          if (kind_[read[i] / C] == boundary) add_form(balances[p], i, J, v, w);
+          continue;
+        }
+        for (std::size_t m = 0; m < n; ++m)
+          if (solved_[read[i]] && kind_[read[m] / C] == boundary) {
+            balances[p].add(J[i * n + m] * w[m] * v[i]);
+            balances[p].add(-J[i * n + m] * v[m] * w[i]);
+          }
+      }
+    }
+  }
+  return balances;
+}
+
+RegionSystem::LocalDefect RegionSystem::local_identity(const Values& y, const Pair& pair) const {
+  LocalDefect worst;
+  std::vector<double> values, J, v, w;
+  for (const Member& member : members_) {
+    if (!member.family->is_variational()) continue;
+    gather_section(member, y, values);
+    const std::size_t n = values.size();
+    J.resize(n * n);
+    member.family->jacobian(member.cell, values, J);
+    gather(member, pair.V, v);
+    gather(member, pair.W, w);
+    Balance balance;
+    for (std::size_t i = 0; i < n; ++i) add_form(balance, i, J, v, w);
+    if (balance.relative() <= worst.balance.relative() && worst.balance.count > 0) continue;
+    worst = {balance, member.family_index, member.anchor, 0, 0};
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t m = 0; m < i; ++m)
+        if (const double d = std::abs(J[i * n + m] - J[m * n + i]); d > largest)
+          largest = d, worst.row = static_cast<int>(i), worst.column = static_cast<int>(m);
+  }
+  return worst;
+}
+
+std::optional<RegionSystem::OneWay> RegionSystem::least_mutual(const Values& y) const {
+  std::map<std::pair<std::size_t, std::size_t>, double> entries;
+  std::vector<double> values, J;
+  for (const Member& member : members_) {
+    const auto read = reads(member);
+    gather_section(member, y, values);
+    J.resize(values.size() * values.size());
+    member.family->jacobian(member.cell, values, J);
+    for (std::size_t i = 0; i < read.size(); ++i)
+      for (std::size_t m = 0; m < read.size(); ++m)
+        if (solved_[read[i]] && solved_[read[m]]) entries[{read[i], read[m]}] += J[i * read.size() + m];
+  }
+  std::optional<OneWay> worst;
+  double most = 0, largest = 0;
+  for (const auto& [at, there] : entries) {
+    largest = std::max(largest, std::abs(there));
+    const auto other = entries.find({at.second, at.first});
+    const double back = other == entries.end() ? 0 : other->second;
+    if (std::abs(there - back) <= most) continue;
+    most = std::abs(there - back);
+    worst = OneWay{node(at.first), node(at.second), there, back};
+  }
+  return most > 1e-12 * largest ? worst : std::nullopt;
+}
+
+std::vector<double> RegionSystem::boundary_terms(const Values& y, const Pair& pair) const {
+  std::vector<double> terms(region_.sites().size(), 0.0), values, J, v, w;
+  const auto C = static_cast<std::size_t>(components_);
+  for (const Member& member : members_) {
+    if (!member.meets_boundary) continue;
+    gather_section(member, y, values);
+    J.resize(values.size() * values.size());
+    member.family->jacobian(member.cell, values, J);
+    gather(member, pair.V, v);
+    gather(member, pair.W, w);
+    const auto read = reads(member);
+    for (std::size_t i = 0; i < read.size(); ++i)
+      if (kind_[read[i] / C] == boundary) terms[read[i] / C] += multisymplectic_form(static_cast<int>(i), 1, J, v, w);
+  }
+  for (double& term : terms) term = std::abs(term);
+  return terms;
+}
+
+Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry) const {
+  Balance balance;
+  std::vector<double> values, r, xi;
+  const auto C = static_cast<std::size_t>(components_);
+  for (const Member& member : members_) {
+    if (!member.meets_boundary) continue;
+    gather_section(member, y, values);
+    r.resize(values.size());
+    member.family->residual(member.cell, values, r);
+    generator(system_, *member.family, symmetry, values, xi);
+    const auto read = reads(member);
+    for (std::size_t i = 0; i < r.size(); ++i)
+      if (kind_[read[i] / C] == boundary)
+        balance.add(momentum_map(static_cast<int>(i), 1, r, xi));
+  }
+  return balance;
+}
+
+}  // namespace delf

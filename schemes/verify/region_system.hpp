@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "jets/symmetry.hpp"
+#include "lattice/region.hpp"
+#include "lattice/solve_plan.hpp"
+#include "schemes/lattice_system.hpp"
+#include "schemes/verify/check.hpp"
+
+namespace delf {
+
+/// The patterns of a system's families, as regions want them.
+std::vector<StencilPattern> patterns_of(const LatticeSystem&);
+
+/// A system on a region U alone: its equations at int U, their linearisation, and the sums over ∂U that the form formula
+/// and Noether's theorem are about. Sections and variations are vectors over the nodes of U: node number
+/// place of its site · C + component.
+class RegionSystem {
+ public:
+  using Values = std::vector<double>;
+
+  /// Rows of U count from `origin`, which is even: brick walls keep their parity. `turn` is φ(x + L) − φ(x).
+  RegionSystem(const LatticeSystem&, Region, std::int64_t origin = 0, double turn = 0);
+
+  const Region& region() const { return region_; }
+  std::int64_t origin() const { return origin_; }
+  std::size_t nodes() const { return region_.sites().size() * static_cast<std::size_t>(components_); }
+  std::int64_t stencils() const { return static_cast<std::int64_t>(members_.size()); }
+  /// The node of that number; rows count from the origin.
+  Node node(std::size_t n) const;
+  /// The nodes of int U where there is an equation.
+  const std::vector<std::size_t>& equations() const { return equations_; }
+
+  /// What a window says on U.
+  Values restricted(const Window&) const;
+
+  /// E_b = Σ_{l: Δˡ = b} rˡ at the nodes of equations()                                                     (5.2)
+  std::vector<Balance> residual(const Values& y) const;
+
+  /// Random solutions of the linearised equations at equations(), by an orthogonal projection onto the null space of
+  /// ∂E_b/∂y_a, and zero at fixed walls: no evolution is needed to have them, only the region.
+  std::vector<Values> first_variations(const Values& y, int count, std::mt19937_64&) const;
+  /// How badly V solves them: Σ_a ∂E_b/∂y_a V_a at each node of equations().
+  std::vector<Balance> linearised(const Values& y, const Values& V) const;
+  /// The node of ∂U that the equations of int U feel most: where a broken variation must show.
+  std::optional<std::size_t> coupling_node(const Values& y) const;
+
+  struct Pair {
+    Values V, W;
+  };
+  /// Of each pair, with every stencil differentiated once,
+  ///
+  ///     Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} Ωˡ(V, W)                                                      (5.6)
+  ///
+  /// or, if some family has no Lagrangian and with it no Ω, the same for the equations alone:
+  ///
+  ///     Σ_{b ∈ int U, a ∈ ∂U} ∂E_b/∂y_a (W_a V_b − V_a W_b)
+  std::vector<Balance> form_formula(const Values& y, std::span<const Pair> pairs) const;
+
+  struct LocalDefect {
+    Balance balance;        ///< Σ_l Ωˡ(V, W)
+    int family = 0;
+    Site anchor;            ///< its row counts from the origin
+    int row = 0, column = 0;  ///< the values between which ∂²L/∂y∂y is least symmetric
+  };
+  /// The stencil in U on which Σ_l Ωˡ(V, W) is largest, relative to its terms.
+  LocalDefect local_identity(const Values& y, const Pair&) const;
+
+  /// Of the equations in int U, which are those of an action only if ∂E_b/∂y_a = ∂E_a/∂y_b, the two that differ most.
+  struct OneWay {
+    Node b, a;
+    double b_by_a = 0, a_by_b = 0;
+  };
+  std::optional<OneWay> least_mutual(const Values& y) const;
+  /// |Σ_{l: Δˡ = a} Ωˡ(V, W)| over the sites a of ∂U: what the form formula sums; zero elsewhere.
+  std::vector<double> boundary_terms(const Values& y, const Pair&) const;
+
+  /// Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} Jˡ(ξ)                                                            (5.7)
+  Balance noether(const Values& y, const LinearSymmetry&) const;
+
+ private:
+  struct Member {
+    const StencilFamily* family;
+    int family_index;
+    Site anchor;
+    Cell cell;
+    std::size_t first;   ///< into reads_
+    bool meets_boundary;
+  };
+  enum Kind : char { outside, inside, boundary };  ///< outside: in U, but neither in int U nor in ∂U
+  void gather(const Member&, const Values& from, std::vector<double>& to) const;
+  /// The same of a section, which gains `turn` around a circle.
+  void gather_section(const Member&, const Values& y, std::vector<double>& to) const;
+  std::span<const std::size_t> reads(const Member& m) const {
+    return {reads_.data() + m.first, static_cast<std::size_t>(m.family->size())};
+  }
+
+  const LatticeSystem& system_;
+  Region region_;
+  std::int64_t origin_;
+  int components_;
+  bool variational_;
+  std::vector<Member> members_;
+  std::vector<std::size_t> reads_;     ///< of each value of each member: the node
+  std::vector<double> gained_;         ///< beside reads_: what sections gain there by going round; empty if nothing
+  std::vector<Kind> kind_;             ///< of each site
+  std::vector<std::size_t> equations_;
+  std::vector<char> solved_;           ///< of each node: it is in equations_
+  std::vector<char> held_;             ///< of each node: at a fixed wall, where V = 0
+};
+
+}  // namespace delf

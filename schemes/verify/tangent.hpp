@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "lattice/region.hpp"
+#include "lattice/solve_plan.hpp"
+#include "schemes/lattice_system.hpp"
+
+namespace delf {
+
+/// First variations along a section, slab by slab: the linearised equations of any system that has a plan, solved for
+/// V on each slab from random values on the rows before the first one. Memory is linear in the slab.
+class Tangent {
+ public:
+  /// For windows of `rows` rows.
+  Tangent(const LatticeSystem&, const SolvePlan&, int rows, double turn);
+
+  ~Tangent();
+
+  /// The least number of rows with a row in the middle on which all equations can hold.
+  static int least_rows(const LatticeSystem&, const SolvePlan&);
+  /// Of a window, counted from its first row: where V solves the linearised equations, every component's.
+  Range solved_rows() const { return {data_, rows_ - 1 - future_ - lag_}; }
+
+  /// `count` of them on the rows of y; zero where values are data, at fixed walls. Where y itself solves the equations
+  /// or not does not matter. Throws NoConvergence if a slab's linear equations are singular.
+  std::vector<Window> evolve(const Window& y, int count, std::mt19937_64&);
+
+ private:
+  struct Parity;  ///< the equations of slabs of one parity, and their solver
+  const LatticeSystem& system_;
+  int rows_;
+  int data_ = 1;    ///< rows that V starts from
+  int future_ = 0;  ///< rows after row J that slab J holds unknowns of
+  int lag_ = 0;     ///< rows from an equation of slab J up to row J, at most
+  std::vector<std::unique_ptr<Parity>> parities_;
+};
+
+}  // namespace delf

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/verify/time_reversal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "lattice/error.hpp"
+#include "schemes/evolution.hpp"
+#include "schemes/lattice_system.hpp"
+#include "schemes/simulation.hpp"
+
+namespace delf {
+namespace {
+
+using Row = std::vector<double>;
+using Rows = std::vector<Row>;
+using Values = std::vector<LatticeSystem::Value>;
+
+// ---- the equations
+
+/// How many rows the equations at one row may read, before it and after it each.
+int reach(const LatticeSystem& system) {
+  int most = 0;
+  for (const auto& family : system.families()) {
+    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+    most = std::max(most, high.time - low.time);
+  }
+  return most;
+}
+
+Rows random_rows(const LatticeSystem& system, int count, double amplitude, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  Rows rows(static_cast<std::size_t>(count),
+            Row(static_cast<std::size_t>(system.lattice().sites() * system.components())));
+  for (Row& row : rows)
+    for (double& y : row) y = amplitude * (2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0);
+  return rows;
+}
+
+/// E at the middle one of these rows.
+Values equations_in_the_middle(const LatticeSystem& system, std::int64_t first_row, Rows rows) {
+  const std::int64_t middle = first_row + static_cast<std::int64_t>(rows.size() / 2);
+  Values values;
+  system.equations(system.window(first_row, std::move(rows), 0), middle, values);
+  return values;
+}
+
+/// The same E up to rounding, or its negative, at every site that has an equation of a field.
+bool agree(const LatticeSystem& system, const Values& one, const Values& other, double sign) {
+  double scale = 0, difference = 0;
+  for (std::size_t n = 0; n < one.size(); ++n) {
+    const auto C = static_cast<std::size_t>(system.components());
+    if (system.component(static_cast<int>(n % C)).role == Role::multiplier) continue;
+    if (system.lattice().is_fixed(static_cast<int>(n / C))) continue;
+    scale = std::max({scale, one[n].absolute, other[n].absolute});
+    difference = std::max(difference, std::abs(one[n].sum - sign * other[n].sum));
+  }
+  return difference <= 1e-11 * scale;
+}
+
+bool all_finite(const Values& values) {
+  return std::ranges::all_of(values, [](const auto& value) { return std::isfinite(value.absolute); });
+}
+
+/// A scheme without a Lagrangian has nothing else that could be said for it when it loses its way.
+bool must_return(const LatticeSystem& system) {
+  constexpr std::uint64_t seed = 20260117;
+  return reversible(system, seed) ||
+         std::ranges::any_of(system.families(), [](const auto& family) { return !family->is_variational(); });
+}
+
+// ---- rows of fields
+
+/// A row of all components, with a zero for what is not a field: a start does not read it.
+Row all_components(const Simulation& simulation, const Row& fields) {
+  const auto& components = simulation.components();
+  Row all;
+  for (std::size_t at = 0; at < fields.size();)
+    for (const Component& component : components) all.push_back(component.role == Role::field ? fields[at++] : 0.0);
+  return all;
+}
+
+double largest(const Row& row) {
+  double most = 0;
+  for (const double y : row) most = std::max(most, std::abs(y));
+  return most;
+}
+
+/// max |a − b|; not a number if there is one among them.
+double largest_difference(const Rows& a, const Rows& b) {
+  double most = 0;
+  for (std::size_t r = 0; r < a.size(); ++r)
+    for (std::size_t n = 0; n < a[r].size(); ++n) {
+      const double difference = std::abs(a[r][n] - b[r][n]);
+      if (!std::isnan(most) && !(difference <= most)) most = difference;
+    }
+  return most;
+}
+
+// ---- there and back
+
+/// The way starts at rows 2 and 3. Given rows need not satisfy what rows must by themselves: a fixed wall that keeps
+/// its value, a constraint, a wall whose equation has no inertia. No way back could find them again.
+constexpr std::int64_t first_row = 2;
+
+/// Two rows of fields.
+struct Ends {
+  Row earlier, later;
+};
+struct TurningPoint {
+  std::int64_t steps;
+  Ends rows;
+};
+
+Ends last_two(const Simulation& simulation) {
+  const auto size = static_cast<std::size_t>(simulation.evolution().system().lattice().sites()) *
+                    static_cast<std::size_t>(simulation.count(Role::field));
+  Ends ends{Row(size), Row(size)};
+  simulation.copy_row(1, ends.earlier);
+  simulation.copy_row(0, ends.later);
+  return ends;
+}
+
+/// 1, 2, 4, … and the last; bricks find their places again after an even number of steps.
+std::vector<std::int64_t> turning_steps(std::int64_t last, bool bricks) {
+  std::vector<std::int64_t> list;
+  for (std::int64_t m = bricks ? 2 : 1; m <= last; m *= 2) list.push_back(m);
+  if (!list.empty() && list.back() != last && !(bricks && last % 2 != 0)) list.push_back(last);
+  return list;
+}
+
+std::string in_words(std::int64_t steps) { return steps == 1 ? "1 step" : fmt::format("{} steps", steps); }
+
+/// The start, after 0 steps, and those turning points that the way forward reaches; `failure` says why it ends early.
+std::vector<TurningPoint> forward(Simulation& simulation, const Rows& start_rows,
+                                  const std::vector<std::int64_t>& planned, std::string& failure) {
+  std::vector<TurningPoint> points;
+  const auto reach_after = [&](std::int64_t m) {
+    while (simulation.newest() < first_row + m + 1) simulation.step();
+    points.push_back({m, last_two(simulation)});
+  };
+  try {
+    simulation.start(start_rows);
+    reach_after(0);
+    for (const std::int64_t m : planned) reach_after(m);
+  } catch (const NumericalFailure& stop) {
+    failure = fmt::format("the way forward ends: {}", stop.what());
+  }
+  return points;
+}
+
+/// The distance from the start after the way back; not a number if a step failed, and `failure` says how.
+double way_back(Simulation& simulation, const TurningPoint& turn, const Ends& start, std::string& failure) {
+  try {
+    simulation.start({all_components(simulation, turn.rows.later), all_components(simulation, turn.rows.earlier)});
+    for (std::int64_t n = 0; n < turn.steps; ++n) simulation.step();
+  } catch (const NumericalFailure& stop) {
+    failure = fmt::format("the way back after {} ends: {}", in_words(turn.steps), stop.what());
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const Ends end = last_two(simulation);
+  return largest_difference({start.earlier, start.later}, {end.later, end.earlier});
+}
+
+/// The slope of the straight line through (log m, log distance) with the least squares. Distances below the last digit
+/// of the field count as that.
+double slope(const std::vector<std::int64_t>& steps, const std::vector<double>& distance) {
+  double count = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    if (std::isnan(distance[n])) continue;
+    const double u = std::log(static_cast<double>(steps[n]));
+    const double v = std::log(std::max(distance[n], std::numeric_limits<double>::epsilon()));
+    count += 1, x += u, y += v, xx += u * u, xy += u * v;
+  }
+  // (n Σuv − Σu Σv) / (n Σu² − (Σu)²)
+  if (count < 3) return std::numeric_limits<double>::quiet_NaN();
+  return (count * xy - x * y) / (count * xx - x * x);
+}
+
+Check check_of(const Reversal& reversal, double scale, std::size_t size, double tolerance, const std::string& failure) {
+  Check check;
+  check.name = "time reversal";
+  check.tolerance = tolerance, check.normaliser = scale;
+  check.count = static_cast<std::int64_t>(2 * size);
+  check.samples = static_cast<std::int64_t>(reversal.steps.size());
+  std::int64_t m = 0;
+  for (std::size_t n = 0; n < reversal.steps.size() && reversal.steps[n] <= 8; ++n)
+    m = reversal.steps[n], check.value = reversal.distance[n];
+  check.region =
+      fmt::format("rows {} and {}, after {} forward and as many back", first_row, first_row + 1, in_words(m));
+  check.failure =
+      fmt::format("the way back misses the start by {:.2g} of the field after {}: the scheme is not its own inverse",
+                  check.value, in_words(m));
+  if (!failure.empty()) {
+    check.value = std::numeric_limits<double>::quiet_NaN();
+    check.failure = failure;
+  }
+  return check;
+}
+
+}  // namespace
+
+bool reversible(const LatticeSystem& system, std::uint64_t seed) {
+  const int rows = 2 * reach(system) + 1;
+  const std::int64_t first_mirrored = system.placement() == Placement::brick_wall ? 1 : 0;
+  // Fields of order one suit most densities; where one is not defined there, smaller ones do.
+  for (double amplitude = 2; amplitude > 1e-8; amplitude /= 10) {
+    Rows section = random_rows(system, rows, amplitude, seed);
+    const Values ahead = equations_in_the_middle(system, 0, section);
+    std::ranges::reverse(section);
+    const Values back = equations_in_the_middle(system, first_mirrored, section);
+    if (all_finite(ahead) && all_finite(back)) return agree(system, ahead, back, 1) || agree(system, ahead, back, -1);
+  }
+  return false;
+}
+
+std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simulation>()>& make,
+                                      const std::vector<std::vector<double>>& start_rows, std::int64_t steps,
+                                      double tolerance) {
+  const auto simulation = make();
+  const LatticeSystem& system = simulation->evolution().system();
+  const std::vector<std::int64_t> planned = turning_steps(steps, system.placement() == Placement::brick_wall);
+  if (start_rows.size() != 2 || simulation->starting_rows() != 2 || simulation->count(Role::inner) > 0 ||
+      planned.empty())
+    return std::nullopt;
+
+  Reversal reversal;
+  reversal.promised = must_return(system);
+  std::string failure;
+  const std::vector<TurningPoint> points = forward(*simulation, start_rows, planned, failure);
+  const Ends start = points.empty() ? Ends{} : points[0].rows;
+  const double size = std::max(largest(start.earlier), largest(start.later)), scale = size > 0 ? size : 1;
+  for (std::size_t n = 1; n < points.size(); ++n) {
+    std::string why;
+    reversal.steps.push_back(points[n].steps);
+    reversal.distance.push_back(way_back(*make(), points[n], start, why) / scale);
+    if (why.empty()) continue;
+    failure = why;
+    break;
+  }
+  reversal.growth = slope(reversal.steps, reversal.distance);
+  if (reversal.promised) reversal.check = check_of(reversal, scale, start.earlier.size(), tolerance, failure);
+  return reversal;
+}
+
+}  // namespace delf

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "schemes/stencil_family.hpp"
+
+namespace delf {
+
+/// A planted fault which every check has to find: a family in which the residual of one value, and its row of the
+/// Jacobian with it, has the wrong sign. Lagrangian and momenta are left alone, and the family still says that it is
+/// variational. There is no row kernel, so that nothing goes past the fault.
+class WrongSign final : public StencilFamily {
+ public:
+  WrongSign(std::shared_ptr<const StencilFamily> right, int value)
+      : StencilFamily(right->pattern(), right->values(), right->is_variational()),
+        right_(std::move(right)),
+        value_(static_cast<std::size_t>(value)) {
+    placed_ = right_->is_placed();
+  }
+
+  void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override {
+    right_->residual(cell, y, r);
+    r[value_] = -r[value_];
+  }
+  void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override {
+    right_->jacobian(cell, y, J);
+    for (double& entry : J.subspan(value_ * y.size(), y.size())) entry = -entry;
+  }
+  std::optional<double> lagrangian(const Cell& cell, std::span<const double> y) const override {
+    return right_->lagrangian(cell, y);
+  }
+  bool momentum(const Cell& cell, std::span<const double> phi, std::span<const double> phi_t,
+                std::span<double> p) const override {
+    return right_->momentum(cell, phi, phi_t, p);
+  }
+
+ private:
+  std::shared_ptr<const StencilFamily> right_;
+  std::size_t value_;
+};
+
+}  // namespace delf

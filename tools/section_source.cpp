@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "tools/section_source.hpp"
+
+#include <algorithm>
+
+#include "schemes/evolution.hpp"
+#include "schemes/slab_extent.hpp"
+
+namespace delf {
+
+ComputedRows::ComputedRows(Simulation& simulation, std::int64_t rows) : simulation_(simulation), rows_(rows) {
+  const Evolution& evolution = simulation.evolution();
+  behind_ = std::ranges::max(slab_extent(evolution.system(), evolution.plan()).behind);
+}
+
+std::optional<std::vector<double>> ComputedRows::next() {
+  if (next_ == rows_) return std::nullopt;
+  while (simulation_.newest() - behind_ < next_) simulation_.step();
+  const auto held = static_cast<int>(simulation_.newest() - next_) + 1;
+  ++next_;
+  return simulation_.evolution().stepper().window(held).rows.front();
+}
+
+}  // namespace delf

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: MIT
+#include "tools/verification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "schemes/field_theory.hpp"
+#include "schemes/slab_extent.hpp"
+#include "schemes/verify/derivatives.hpp"
+#include "schemes/verify/newton_order.hpp"
+#include "schemes/verify/time_reversal.hpp"
+#include "schemes/verify/wrong_sign.hpp"
+#include "tools/engine.hpp"
+#include "tools/generator_text.hpp"
+#include "tools/interrupt.hpp"
+
+namespace delf {
+
+namespace {
+
+// Site updates that the parts which measure may cost: a second or two.
+constexpr std::int64_t most_updates = 4000000;
+
+std::vector<std::string> field_names(const LatticeSystem& system) {
+  std::vector<std::string> names;
+  for (const Component& c : system.all_components())
+    if (c.role == Role::field) names.push_back(c.name);
+  return names;
+}
+
+// The same families, with the first derivative of the first one's Lagrangian of the wrong sign.
+std::unique_ptr<LatticeSystem> with_wrong_sign(const LatticeSystem& right) {
+  std::vector<std::shared_ptr<const StencilFamily>> families(right.families().begin(), right.families().end());
+  families[0] = std::make_shared<WrongSign>(families[0], 0);
+  return std::make_unique<LatticeSystem>(right.lattice(), std::move(families), right.time_step(),
+                                         right.all_components());
+}
+
+// The scene at half of its steps in time and space.
+Scene refined(const Scene& scene) {
+  Scene fine = scene;
+  const Lattice& lattice = scene.problem.lattice;
+  if (lattice.is_circle()) fine.problem.lattice = Lattice::circle(2 * lattice.sites(), lattice.length());
+  else if (lattice.space() == Space::interval)
+    fine.problem.lattice =
+        Lattice::interval(2 * lattice.sites() - 1, lattice.length(), lattice.left(), lattice.right());
+  fine.problem.time_step = scene.problem.time_step / 2;
+  return fine;
+}
+
+}  // namespace
+
+Verification::Verification(const Scene& scene, const VerifyRequest& request, const std::optional<std::string>& fields,
+                           const std::vector<std::string>& nearby)
+    : scene_(scene), request_(request), initial_(scene), winding_(initial_.winding()),
+      turn_(2 * std::numbers::pi * winding_), simulation_(build(scene, winding_)),
+      faulty_(request.fault == "sign" ? with_wrong_sign(simulation_.evolution().system()) : nullptr),
+      system_(faulty_ ? *faulty_ : simulation_.evolution().system()), plan_(simulation_.evolution().plan()),
+      random_(scene.initial.seed) {
+  verdict_.seed = scene.initial.seed;
+  verdict_.subject = fields ? "rows of " + *fields : "rows computed here";
+  if (fields) open_files(*fields, nearby);
+
+  const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
+  if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps);
+  if (request.wants("forms") && (!fields || request.chosen))
+    forms_.emplace(system_, plan_, FormCheck::rows_wanted(system_, plan_, request.regions),
+                   FormCheck::Options{request.regions, request.variations, request.tolerance, turn_,
+                                      request.fault == "variation"});
+  if (request.wants("noether")) {
+    const auto all = symmetries();
+    if (!all.empty()) noether_.emplace(system_, all, of_steps, request.force, seed());
+  }
+  if (!nearby_.empty()) near_.emplace(request.tolerance);
+  choose_moments();
+}
+
+void Verification::open_files(const std::string& fields, const std::vector<std::string>& nearby) {
+  const auto behind = slab_extent(system_, plan_).behind;
+  const auto open = [&](const std::string& file, const char* option) {
+    return std::make_unique<RecordedSection>(file, system_, behind, scene_.problem.time_step, option);
+  };
+  fields_ = open(fields, "--fields");
+  if (const auto winding = fields_->winding(); winding && system_.lattice().is_circle())
+    turn_ = 2 * std::numbers::pi * *winding;
+  if (nearby.size() % 2 != 0)
+    throw BadScene("command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
+                   "directions; further pairs are the same at other sizes");
+  for (const std::string& file : nearby) {
+    nearby_.push_back(open(file, "--nearby"));
+    if (nearby_.back()->rows() != fields_->rows())
+      throw BadScene(fmt::format("command line: --nearby {}: has {} rows, and the file of --fields has {}; give as many",
+                                 file, nearby_.back()->rows(), fields_->rows()));
+  }
+  rows_ = fields_->rows() - std::ranges::max(behind);
+}
+
+void Verification::choose_moments() {
+  moment_rows_ = FormCheck::rows_wanted(system_, plan_, request_.regions);
+  if (!fields_) rows_ = std::max<std::int64_t>(scene_.steps + 1, moment_rows_);
+  const std::int64_t reach = equations_ ? equations_->reach() : 1;
+  if (rows_ < 2 * reach + 1)
+    throw BadScene(fmt::format("command line: --fields: the file has {} whole rows, and an equation reads {}; give more",
+                               rows_, 2 * reach + 1));
+  held_rows_ = static_cast<int>(2 * reach + 1);
+  if (rows_ >= moment_rows_ && (forms_ || noether_ || near_)) {
+    // Even rows, so that bricks keep their parity; the first and the last that fit among them.
+    std::set<std::int64_t> rows;
+    const std::int64_t last = rows_ - moment_rows_;
+    for (int m = 0; m < request_.moments; ++m)
+      rows.insert(request_.moments == 1 ? 0 : last * m / (request_.moments - 1) / 2 * 2);
+    moments_.assign(rows.begin(), rows.end());
+    held_rows_ = std::max(held_rows_, moment_rows_);
+  } else if (forms_ || noether_ || near_) {
+    leave_out(fmt::format("regions: they take {} rows, and there are {}", moment_rows_, rows_));
+  }
+  if (equations_) bins_.emplace(system_.lattice(), scene_.problem.time_step, reach, rows_ - 2 * reach);
+  const FieldTheory& theory = simulation_.theory();
+  if (request_.wants("balance")) {
+    if (theory.components() != system_.fields()) leave_out("balance of energy and momentum: the sites move");
+    else {
+      balance_.emplace(theory, system_.lattice(), scene_.problem.time_step, turn_);
+      balance_rows_ = std::clamp<std::int64_t>(most_updates / 4 / system_.lattice().sites(), 3, rows_);
+    }
+  }
+}
+
+std::vector<LinearSymmetry> Verification::symmetries() const {
+  std::vector<LinearSymmetry> all;
+  const bool lagrangian = std::ranges::all_of(system_.families(), [](const auto& f) { return f->is_variational(); });
+  if (!lagrangian) return all;
+  all = simulation_.symmetries();
+  if (request_.generator.empty()) return all;
+  try {
+    all.push_back(read_generator(request_.generator, field_names(system_)));
+  } catch (const BadInput& bad) {
+    throw scene_.settings.located(bad);
+  }
+  return all;
+}
+
+Window Verification::window(std::int64_t first, std::int64_t last) const {
+  const auto begin = held_.rows.begin() + (first - held_.first_row);
+  return system_.window(first, {begin, begin + (last - first + 1)}, turn_);
+}
+
+Verdict Verification::run() {
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    if (!fields_) initial_.start(simulation_);
+    pass_over_rows();
+    if (!Interrupt::asked()) {
+      if (!fields_ && balance_) measure_order();
+      if (!fields_ && request_.wants("reversal")) try_reversal();
+    }
+  } catch (const NumericalFailure& error) {
+    verdict_.status = dynamic_cast<const NotFinite*>(&error) ? "not-finite" : "no-convergence";
+    failure_ = std::current_exception();
+  }
+  if (Interrupt::asked()) verdict_.status = "interrupted";
+  collect();
+  verdict_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return std::move(verdict_);
+}
+
+void Verification::pass_over_rows() {
+  std::unique_ptr<SectionSource> source;
+  if (fields_) source = std::make_unique<RowsOfFile>(*fields_, rows_);
+  else source = std::make_unique<ComputedRows>(simulation_, rows_);
+  held_ = system_.window(0, {}, turn_);
+  Progress progress(rows_);
+  while (auto row = source->next()) {
+    take(std::move(*row));
+    progress.at(held_.last_row());
+    if (Interrupt::asked()) return;
+  }
+}
+
+void Verification::take(std::vector<double> row) {
+  const std::int64_t j = held_.first_row + static_cast<std::int64_t>(held_.rows.size());
+  if (request_.fault == "field" && j == rows_ / 2) {
+    double most = 0;
+    for (const double value : row) most = std::max(most, std::abs(value));
+    row[row.size() / static_cast<std::size_t>(2 * system_.components()) * static_cast<std::size_t>(system_.components())] +=
+        0.01 * (most > 0 ? most : 1);
+  }
+  if (first_rows_.size() < 2) first_rows_.push_back(row);
+  if (balance_ && j < balance_rows_) {
+    const auto d = static_cast<std::size_t>(system_.fields()), C = static_cast<std::size_t>(system_.components());
+    std::vector<double> fields;
+    for (std::size_t n = 0; n < row.size(); ++n)
+      if (n % C < d) fields.push_back(row[n]);
+    balance_->add(j, fields);
+  }
+  held_.rows.push_back(std::move(row));
+  if (static_cast<int>(held_.rows.size()) > held_rows_) {
+    held_.rows.erase(held_.rows.begin());
+    ++held_.first_row;
+  }
+  if (equations_ && j >= 2 * equations_->reach()) {
+    const std::int64_t middle = j - equations_->reach();
+    equations_->at(held_, middle);
+    bins_->add(middle, equations_->newest(), system_.components());
+  }
+  if (next_moment_ < moments_.size() && j == moments_[next_moment_] + moment_rows_ - 1) {
+    look_at_moment();
+    ++next_moment_;
+  }
+}
+
+void Verification::look_at_moment() {
+  const Window rows = window(moments_[next_moment_], held_.last_row());
+  if (forms_) forms_->at(rows, random_);
+  if (noether_) look_at_symmetries(rows);
+  if (near_) look_at_nearby(rows);
+  if (!fields_ && request_.wants("newton") && next_moment_ + 1 == moments_.size()) {
+    if (auto check = check_newton(system_, plan_, rows, seed())) verdict_.checks.push_back(std::move(*check));
+  }
+}
+
+void Verification::look_at_symmetries(const Window& rows) {
+  // The last rows may lack multipliers: regions end where those of variations do.
+  const SlabExtent extent = slab_extent(system_, plan_);
+  const Range solved{Tangent::least_rows(system_, plan_) - 1 - extent.above - extent.equation_lag,
+                     moment_rows_ - 1 - extent.above - extent.equation_lag};
+  const RegionDrawer drawer(system_, solved);
+  for (const RegionRequest& request : request_.regions)
+    if (const auto region = drawer.draw(request, random_)) {
+      const RegionSystem here(system_, *region, rows.first_row, turn_);
+      noether_->at(here, here.restricted(rows));
+    }
+}
+
+void Verification::look_at_nearby(const Window& rows) {
+  std::vector<Window> others;
+  for (const auto& file : nearby_) {
+    std::vector<std::vector<double>> values;
+    for (std::int64_t j = rows.first_row; j <= rows.last_row(); ++j) {
+      values.push_back(file->row(j));
+      const auto& of_fields = rows.rows[static_cast<std::size_t>(j - rows.first_row)];
+      for (std::size_t n = 0; n < of_fields.size(); ++n) values.back()[n] -= of_fields[n];
+    }
+    others.push_back(system_.window(rows.first_row, std::move(values), 0));
+  }
+  const SlabExtent extent = slab_extent(system_, plan_);
+  const RegionDrawer drawer(system_, {1, moment_rows_ - 1 - extent.above - extent.equation_lag});
+  for (const RegionRequest& request : request_.regions) {
+    const auto region = drawer.draw(request, random_);
+    if (!region) continue;
+    const RegionSystem here(system_, *region, rows.first_row, turn_);
+    std::vector<RegionSystem::Pair> pairs;
+    for (std::size_t n = 0; n + 1 < others.size(); n += 2)
+      pairs.push_back({here.restricted(others[n]), here.restricted(others[n + 1])});
+    near_->at(request.name, here, here.restricted(rows), pairs);
+    verdict_.stencils += here.stencils();
+  }
+}
+
+void Verification::measure_order() {
+  auto coarse = balance_->results();
+  try {
+    if (scene_.initial.name == "file") throw BadInput("initial.file", "rows of a file");
+    const Scene fine = refined(scene_);
+    const InitialRows initial(fine);
+    Simulation simulation = build(fine, winding_);
+    initial.start(simulation);
+    StressBalance balance(simulation.theory(), fine.problem.lattice, fine.problem.time_step, turn_);
+    ComputedRows source(simulation, 2 * (balance_rows_ - 1) + 1);
+    const auto d = static_cast<std::size_t>(system_.fields()), C = static_cast<std::size_t>(system_.components());
+    std::vector<double> fields;
+    for (std::int64_t j = 0; auto row = source.next(); ++j) {
+      fields.clear();
+      for (std::size_t n = 0; n < row->size(); ++n)
+        if (n % C < d) fields.push_back((*row)[n]);
+      balance.add(j, fields);
+      if (Interrupt::asked()) break;
+    }
+    verdict_.measured = with_orders(std::move(coarse), balance.results());
+  } catch (const Error& error) {
+    verdict_.measured = std::move(coarse);
+    leave_out(fmt::format("order of the balances: the scene cannot be run at half of its steps ({})", error.what()));
+  }
+  balance_.reset();
+}
+
+void Verification::try_reversal() {
+  const bool by_rows = simulation_.evolution().stepper().layout() != nullptr;
+  const std::int64_t most = most_updates / (by_rows ? 1 : 40) / system_.lattice().sites();
+  const std::int64_t steps = std::clamp<std::int64_t>(scene_.steps, 8, std::max<std::int64_t>(8, most));
+  const auto reversal = time_reversal(
+      [&] { return std::make_unique<Simulation>(build(scene_, winding_)); }, first_rows_, steps,
+      std::max(request_.tolerance, 100 * scene_.problem.tolerance));
+  if (!reversal) return leave_out("time reversal: two rows of fields are not the whole state of this scheme");
+  verdict_.reversal = {reversal->steps, reversal->distance};
+  if (reversal->promised) verdict_.checks.push_back(reversal->check);
+  if (reversal->distance.empty()) return;
+  verdict_.measured.push_back({.name = "time reversal, distance",
+                               .region = fmt::format("{} steps forward and back", reversal->steps.back()),
+                               .value = reversal->distance.back(),
+                               .remark = fmt::format("grows like steps^{:.2g}{}", reversal->growth,
+                                                     reversal->promised ? ""
+                                                                        : "; these equations change under t -> -t")});
+}
+
+void Verification::collect() {
+  std::vector<Check> later = std::move(verdict_.checks);
+  verdict_.checks.clear();
+  const auto add = [&](std::vector<Check> checks) {
+    verdict_.checks.insert(verdict_.checks.end(), std::make_move_iterator(checks.begin()),
+                           std::make_move_iterator(checks.end()));
+  };
+  if (equations_) {
+    add(equations_->checks());
+    verdict_.map = bins_->map();
+    verdict_.stencils += equations_->rows() * system_.lattice().sites();
+  }
+  if (forms_) {
+    add(forms_->checks());
+    for (const std::string& words : forms_->left_out()) leave_out(words);
+    for (const auto& p : forms_->points()) verdict_.points.push_back({p.kind, p.stencils, p.value, p.local});
+    const auto& worst = forms_->worst();
+    verdict_.worst.title = worst.words;
+    verdict_.worst.value = worst.value;
+    double total = 0;
+    for (const double weight : worst.weights) total += weight;
+    for (std::size_t n = 0; n < worst.sites.size(); ++n)
+      verdict_.worst.sites.push_back({worst.sites[n].time, worst.sites[n].space, worst.sites[n].node,
+                                      worst.interior[n] != 0, worst.boundary[n] != 0,
+                                      total > 0 ? worst.weights[n] / total : 0});
+    verdict_.stencils += forms_->stencils();
+  } else if (fields_) {
+    leave_out("form formula with exact first variations: it holds at any rows, and would test the scheme, not the file");
+  }
+  if (near_) add(near_->checks());
+  else if (fields_) leave_out("form formula by differences: give two nearby solutions, --nearby A.h5 --nearby B.h5");
+  if (noether_) add(noether_->checks());
+  else if (request_.wants("noether")) {
+    const bool lagrangian = std::ranges::all_of(system_.families(), [](const auto& f) { return f->is_variational(); });
+    leave_out(lagrangian ? "Noether: the theory declares no symmetry of its fields; try one by verify.generator"
+                         : "Noether: the scheme has no Lagrangian");
+  }
+  if (!fields_ && request_.wants("derivatives")) add(check_derivatives(system_, seed()));
+  add(std::move(later));
+  if (balance_) {  // without an order
+    for (Measured& m : balance_->results()) verdict_.measured.push_back(std::move(m));
+  }
+}
+
+}  // namespace delf
