@@ -59,8 +59,7 @@ std::vector<Site> draw_centres(RegionKind kind, const Lattice& lattice, const Re
     Columns columns = draw_columns(lattice, 2, most, random);
     if (kind == RegionKind::wall) columns.first = random() % 2 ? 0 : N - columns.count;
     for (int j = first; j < first + height; ++j)
-      for (int i = 0; i < columns.count; ++i)
-        add(centres, frame.rows.first + j, columns.first + i, frame.nodes);
+      for (int i = 0; i < columns.count; ++i) add(centres, frame.rows.first + j, columns.first + i, frame.nodes);
   } else if (kind == RegionKind::staircase) {
     if (most < 3) return {};
     const Columns columns = draw_columns(lattice, 3, most, random);

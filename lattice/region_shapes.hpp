@@ -23,10 +23,10 @@ const std::vector<RegionKind>& region_kinds();
 
 /// What the centres may be taken from.
 struct RegionFrame {
-  Range rows;         ///< of the centres
+  Range rows;                           ///< of the centres
   int reach_time = 1, reach_space = 1;  ///< how far apart two sites of one equation are
-  int nodes = 1;      ///< of the unit cell
-  int most_columns = 48;  ///< of regions that do not hold all of space
+  int nodes = 1;                        ///< of the unit cell
+  int most_columns = 48;                ///< of regions that do not hold all of space
 };
 
 /// Centres of a region of this kind, drawn at random; empty where there is no room for one: a hole in a lattice of few

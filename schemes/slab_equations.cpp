@@ -7,12 +7,15 @@
 #include <random>
 #include <tuple>
 
+#include "schemes/block_solver.hpp"
+
 namespace delf {
 
 SlabEquations::SlabEquations(const LatticeSystem& system, const SolvePlan& plan, int parity, int past, int future,
                              double turn)
     : time_step_(system.time_step()), space_step_(system.lattice().space_step()), components_(system.components()),
-      slab_(plan.slab(parity)) {
+      depth_(past + future + 1),
+      row_size_(static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_)), slab_(plan.slab(parity)) {
   const Lattice& lattice = system.lattice();
   std::map<std::tuple<int, int, int>, int> number_of_unknown, number_of_equation;
   const auto key = [](const Node& n) { return std::tuple{n.site.time, n.site.space, n.component}; };
@@ -146,16 +149,22 @@ void SlabEquations::linearised(const SectionRing& y, std::int64_t J, const std::
   }
 }
 
-std::vector<char> SlabEquations::present(std::size_t row_size, int depth) const {
-  SectionRing ring(depth, row_size);
+BlockSolver SlabEquations::solver() const {
+  std::vector<std::pair<int, int>> places;
+  for (const Place& place : places_) places.emplace_back(place.equation, place.unknown);
+  return {size(), places, present(), matched()};
+}
+
+std::vector<char> SlabEquations::present() const {
+  SectionRing ring(depth_, row_size_);
   std::mt19937_64 engine(20251121);
   std::vector<char> found(places_.size(), false);
   std::vector<double> values;
   for (int sample = 0; sample < 3; ++sample) {
-    for (int r = 0; r < depth; ++r)
-      for (std::size_t at = 0; at < row_size; ++at)
+    for (int r = 0; r < depth_; ++r)
+      for (std::size_t at = 0; at < row_size_; ++at)
         ring.row(r)[at] = 4.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 2.0;
-    jacobian(ring, depth, values);
+    jacobian(ring, depth_, values);
     std::vector<double> largest(slab_.unknowns.size(), 0.0);
     for (std::size_t p = 0; p < values.size(); ++p) {
       double& size = largest[static_cast<std::size_t>(places_[p].equation)];

@@ -8,6 +8,8 @@
 
 namespace delf {
 
+class BlockSolver;
+
 /// Rows of a section for stepping slab by slab, row[i·C + c], each component in its place: a ring of the newest.
 class SectionRing {
  public:
@@ -52,8 +54,9 @@ class SlabEquations {
   /// The entries that may differ from zero, each once.
   const std::vector<Place>& places() const { return places_; }
 
-  /// Which of them are not zero at three seeded random sections: what cancels between stencils is no coupling.
-  std::vector<char> present(std::size_t row_size, int depth) const;
+  /// A solver of this structure: entries that are zero at three seeded random sections, because they cancel between
+  /// stencils, are no couplings to it.
+  BlockSolver solver() const;
 
   /// E and Σ|terms| of every equation. With `momenta` (site·C + component), slab 1 from row 0 alone: the stencils below
   /// row 0 are replaced by their momenta ∂L/∂y₀, p₀ + Σ_above ∂L/∂y₀ = 0 (the discrete Legendre transform).
@@ -83,10 +86,12 @@ class SlabEquations {
     int first_entry;  ///< into entry_: for each (i, m) with an equation and an unknown
   };
   void gather(const Member&, const SectionRing&, std::int64_t J) const;
+  std::vector<char> present() const;
   Cell cell(const Member&, std::int64_t J) const;
 
   double time_step_, space_step_;
-  int components_;
+  int components_, depth_;
+  std::size_t row_size_;
   Slab slab_;
   std::vector<Member> members_;
   std::vector<Read> reads_;

@@ -7,6 +7,7 @@ namespace delf {
 
 SlabExtent slab_extent(const LatticeSystem& system, const SolvePlan& plan) {
   SlabExtent extent;
+  extent.history = plan.history;
   extent.behind.assign(static_cast<std::size_t>(system.components()), 0);
   for (int parity = 0; parity < plan.table.parities; ++parity) {
     const Slab slab = plan.slab(parity);
@@ -14,7 +15,8 @@ SlabExtent slab_extent(const LatticeSystem& system, const SolvePlan& plan) {
       const int offset = unknown.site.time - parity;
       extent.below = std::max(extent.below, -offset);
       extent.above = std::max(extent.above, offset);
-      if (system.component(unknown.component).role == Role::field) extent.field_lag = std::max(extent.field_lag, -offset);
+      if (system.component(unknown.component).role == Role::field)
+        extent.field_lag = std::max(extent.field_lag, -offset);
       int& behind = extent.behind[static_cast<std::size_t>(unknown.component)];
       behind = std::max(behind, -offset);
     }

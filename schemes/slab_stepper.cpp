@@ -11,16 +11,6 @@
 #include "schemes/slab_extent.hpp"
 
 namespace delf {
-namespace {
-
-std::vector<std::pair<int, int>> pairs(const std::vector<SlabEquations::Place>& places) {
-  std::vector<std::pair<int, int>> result;
-  for (const auto& p : places) result.emplace_back(p.equation, p.unknown);
-  return result;
-}
-
-}  // namespace
-
 SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
     : system_(system), plan_(plan), options_(options), components_(system.components()) {
   SlabExtent extent = slab_extent(system, plan);
@@ -34,8 +24,7 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
   ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row);
   for (int p = 0; p < plan.table.parities; ++p) {
     SlabEquations equations(system, plan, p, past_, future_, options.turn);
-    BlockSolver solver(equations.size(), pairs(equations.places()), equations.present(row, ring_->depth()),
-                       equations.matched());
+    BlockSolver solver = equations.solver();
     parities_.push_back({std::move(equations), std::move(solver)});
   }
 }

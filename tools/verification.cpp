@@ -57,10 +57,15 @@ Scene refined(const Scene& scene) {
 
 Verification::Verification(const Scene& scene, const VerifyRequest& request, const std::optional<std::string>& fields,
                            const std::vector<std::string>& nearby)
-    : scene_(scene), request_(request), initial_(scene), winding_(initial_.winding()),
-      turn_(2 * std::numbers::pi * winding_), simulation_(build(scene, winding_)),
+    : scene_(scene),
+      request_(request),
+      initial_(scene),
+      winding_(initial_.winding()),
+      turn_(2 * std::numbers::pi * winding_),
+      simulation_(build(scene, winding_)),
       faulty_(request.fault == "sign" ? with_wrong_sign(simulation_.evolution().system()) : nullptr),
-      system_(faulty_ ? *faulty_ : simulation_.evolution().system()), plan_(simulation_.evolution().plan()),
+      system_(faulty_ ? *faulty_ : simulation_.evolution().system()),
+      plan_(simulation_.evolution().plan()),
       random_(scene.initial.seed) {
   verdict_.seed = scene.initial.seed;
   verdict_.subject = fields ? "rows of " + *fields : "rows computed here";
@@ -89,13 +94,15 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
   if (const auto winding = fields_->winding(); winding && system_.lattice().is_circle())
     turn_ = 2 * std::numbers::pi * *winding;
   if (nearby.size() % 2 != 0)
-    throw BadScene("command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
-                   "directions; further pairs are the same at other sizes");
+    throw BadScene(
+        "command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
+        "directions; further pairs are the same at other sizes");
   for (const std::string& file : nearby) {
     nearby_.push_back(open(file, "--nearby"));
     if (nearby_.back()->rows() != fields_->rows())
-      throw BadScene(fmt::format("command line: --nearby {}: has {} rows, and the file of --fields has {}; give as many",
-                                 file, nearby_.back()->rows(), fields_->rows()));
+      throw BadScene(
+          fmt::format("command line: --nearby {}: has {} rows, and the file of --fields has {}; give as many", file,
+                      nearby_.back()->rows(), fields_->rows()));
   }
   rows_ = fields_->rows() - std::ranges::max(behind);
 }
@@ -105,8 +112,9 @@ void Verification::choose_moments() {
   if (!fields_) rows_ = std::max<std::int64_t>(scene_.steps + 1, moment_rows_);
   const std::int64_t reach = equations_ ? equations_->reach() : 1;
   if (rows_ < 2 * reach + 1)
-    throw BadScene(fmt::format("command line: --fields: the file has {} whole rows, and an equation reads {}; give more",
-                               rows_, 2 * reach + 1));
+    throw BadScene(
+        fmt::format("command line: --fields: the file has {} whole rows, and an equation reads {}; give more", rows_,
+                    2 * reach + 1));
   held_rows_ = static_cast<int>(2 * reach + 1);
   if (rows_ >= moment_rows_ && (forms_ || noether_ || near_)) {
     // Even rows, so that bricks keep their parity; the first and the last that fit among them.
@@ -186,8 +194,8 @@ void Verification::take(std::vector<double> row) {
   if (request_.fault == "field" && j == rows_ / 2) {
     double most = 0;
     for (const double value : row) most = std::max(most, std::abs(value));
-    row[row.size() / static_cast<std::size_t>(2 * system_.components()) * static_cast<std::size_t>(system_.components())] +=
-        0.01 * (most > 0 ? most : 1);
+    row[row.size() / static_cast<std::size_t>(2 * system_.components()) *
+        static_cast<std::size_t>(system_.components())] += 0.01 * (most > 0 ? most : 1);
   }
   if (first_rows_.size() < 2) first_rows_.push_back(row);
   if (balance_ && j < balance_rows_) {
@@ -292,19 +300,18 @@ void Verification::try_reversal() {
   const bool by_rows = simulation_.evolution().stepper().layout() != nullptr;
   const std::int64_t most = most_updates / (by_rows ? 1 : 40) / system_.lattice().sites();
   const std::int64_t steps = std::clamp<std::int64_t>(scene_.steps, 8, std::max<std::int64_t>(8, most));
-  const auto reversal = time_reversal(
-      [&] { return std::make_unique<Simulation>(build(scene_, winding_)); }, first_rows_, steps,
-      std::max(request_.tolerance, 100 * scene_.problem.tolerance));
+  const auto reversal = time_reversal([&] { return std::make_unique<Simulation>(build(scene_, winding_)); },
+                                      first_rows_, steps, std::max(request_.tolerance, 100 * scene_.problem.tolerance));
   if (!reversal) return leave_out("time reversal: two rows of fields are not the whole state of this scheme");
   verdict_.reversal = {reversal->steps, reversal->distance};
   if (reversal->promised) verdict_.checks.push_back(reversal->check);
   if (reversal->distance.empty()) return;
-  verdict_.measured.push_back({.name = "time reversal, distance",
-                               .region = fmt::format("{} steps forward and back", reversal->steps.back()),
-                               .value = reversal->distance.back(),
-                               .remark = fmt::format("grows like steps^{:.2g}{}", reversal->growth,
-                                                     reversal->promised ? ""
-                                                                        : "; these equations change under t -> -t")});
+  verdict_.measured.push_back(
+      {.name = "time reversal, distance",
+       .region = fmt::format("{} steps forward and back", reversal->steps.back()),
+       .value = reversal->distance.back(),
+       .remark = fmt::format("grows like steps^{:.2g}{}", reversal->growth,
+                             reversal->promised ? "" : "; these equations change under t -> -t")});
 }
 
 void Verification::collect() {
@@ -334,7 +341,8 @@ void Verification::collect() {
                                       total > 0 ? worst.weights[n] / total : 0});
     verdict_.stencils += forms_->stencils();
   } else if (fields_) {
-    leave_out("form formula with exact first variations: it holds at any rows, and would test the scheme, not the file");
+    leave_out(
+        "form formula with exact first variations: it holds at any rows, and would test the scheme, not the file");
   }
   if (near_) add(near_->checks());
   else if (fields_) leave_out("form formula by differences: give two nearby solutions, --nearby A.h5 --nearby B.h5");

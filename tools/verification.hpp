@@ -59,7 +59,7 @@ class Verification {
   int winding_;
   double turn_;
   Simulation simulation_;
-  std::unique_ptr<LatticeSystem> faulty_;   ///< if a sign is to be wrong
+  std::unique_ptr<LatticeSystem> faulty_;  ///< if a sign is to be wrong
   const LatticeSystem& system_;
   const SolvePlan& plan_;
   std::unique_ptr<RecordedSection> fields_;
@@ -73,11 +73,11 @@ class Verification {
   std::optional<StressBalance> balance_;
   std::optional<ResidualBins> bins_;
 
-  std::int64_t rows_ = 0;                 ///< of the section
+  std::int64_t rows_ = 0;  ///< of the section
   std::int64_t balance_rows_ = 0;
-  int held_rows_ = 3;                     ///< how many are held at once
-  int moment_rows_ = 0;                   ///< rows of a moment
-  std::vector<std::int64_t> moments_;     ///< first rows
+  int held_rows_ = 3;                  ///< how many are held at once
+  int moment_rows_ = 0;                ///< rows of a moment
+  std::vector<std::int64_t> moments_;  ///< first rows
   std::size_t next_moment_ = 0;
   Window held_;
   std::vector<std::vector<double>> first_rows_;

@@ -47,10 +47,10 @@ RegionRequest read_region(const Scene& scene, const std::string& word) {
     if (cross >= end || !read_range(std::string_view(word).substr(begin, cross - begin), rows) ||
         !read_range(std::string_view(word).substr(cross + 1, end - cross - 1), sites) || rows.first < 0 ||
         rows.last > most_rows || sites.first < 0 || sites.last >= 2 * scene.problem.lattice.sites())
-      throw scene.settings.error(
-          "verify.regions", fmt::format("\"{}\" is no region; write a kind, such as hole, or ROWSxSITES, such as "
-                                        "0:8x10:30, with more added by + or taken away by -",
-                                        word));
+      throw scene.settings.error("verify.regions",
+                                 fmt::format("\"{}\" is no region; write a kind, such as hole, or ROWSxSITES, such as "
+                                             "0:8x10:30, with more added by + or taken away by -",
+                                             word));
     for (int j = rows.first; j <= rows.last; ++j)
       for (int i = sites.first; i <= sites.last; ++i) {
         const Site site{j, scene.problem.lattice.is_circle() ? scene.problem.lattice.wrapped(i) : i};
@@ -101,9 +101,9 @@ VerifyRequest read_verify_request(const Scene& scene) {
   request.chosen = !request.checks.empty();
   for (const std::string& check : request.checks)
     if (std::ranges::find(verify_checks(), check) == verify_checks().end())
-      throw scene.settings.error("verify.checks",
-                                 fmt::format("{} is no check{}; there are {}", check,
-                                             suggestion(check, verify_checks()), fmt::join(verify_checks(), ", ")));
+      throw scene.settings.error(
+          "verify.checks", fmt::format("{} is no check{}; there are {}", check, suggestion(check, verify_checks()),
+                                       fmt::join(verify_checks(), ", ")));
   if (!request.chosen) request.checks = verify_checks();
   request.variations = static_cast<int>(values.integer("verify.variations"));
   request.moments = static_cast<int>(values.integer("verify.moments"));

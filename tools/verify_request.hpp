@@ -18,9 +18,9 @@ struct VerifyRequest {
   int variations = 2;
   int moments = 8;
   double tolerance = 1e-13;
-  std::string generator;            ///< empty: none
+  std::string generator;  ///< empty: none
   bool force = false;
-  std::string fault;                ///< none, variation, sign, field
+  std::string fault;  ///< none, variation, sign, field
 
   bool wants(std::string_view check) const;
 };

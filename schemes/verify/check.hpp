@@ -40,13 +40,13 @@ inline void add_form(Balance& balance, std::size_t i, std::span<const double> ja
 /// relative; a value that is not a number is a failure.
 struct Check {
   std::string name;
-  std::string region;       ///< where the value is: "staircase of 31 sites, rows 812 … 819, local V, W"
+  std::string region;  ///< where the value is: "staircase of 31 sites, rows 812 … 819, local V, W"
   double value = 0;
   double tolerance = 0;
-  double normaliser = 1;    ///< what `value` is relative to
-  std::int64_t count = 0;   ///< terms of the sum that `value` is of
-  std::int64_t samples = 0; ///< how many such sums were tried
-  std::string failure = {}; ///< what a failure means and where it is, in words; for those that passed it is not read
+  double normaliser = 1;     ///< what `value` is relative to
+  std::int64_t count = 0;    ///< terms of the sum that `value` is of
+  std::int64_t samples = 0;  ///< how many such sums were tried
+  std::string failure = {};  ///< what a failure means and where it is, in words; for those that passed it is not read
 
   bool passed() const { return value <= tolerance; }
 };

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "schemes/verify/region_system.hpp"
 
@@ -24,6 +26,22 @@ RegionFrame frame_of(const LatticeSystem& system, Range solved) {
   return frame;
 }
 
+/// From the first column to the last; on a circle the first is the one after the widest gap, and the last may lie
+/// beyond N − 1.
+std::pair<int, int> columns_of(const Region& region) {
+  std::set<int> columns;
+  for (const Site& site : region.sites()) columns.insert(site.space);
+  const int N = region.lattice().sites();
+  int left = *columns.begin(), right = *columns.rbegin();
+  if (!region.lattice().is_circle() || static_cast<int>(columns.size()) == N) return {left, right};
+  int widest = left + N - right, before = left;
+  for (const int column : columns) {
+    if (column - before > widest) widest = column - before, left = column, right = before + N;
+    before = column;
+  }
+  return {left, right};
+}
+
 }  // namespace
 
 RegionDrawer::RegionDrawer(const LatticeSystem& system, Range solved)
@@ -41,23 +59,38 @@ std::optional<Region> RegionDrawer::draw(const RegionRequest& request, std::mt19
     std::vector<Site> sites;
     for (const Site site : request.sites)
       for (int node = 0; node < frame_.nodes; ++node) sites.push_back({first + site.time, site.space, node});
-    const Region asked = Region::from_sites(lattice, patterns_, std::move(sites));
-    if (asked.interior().empty()) return std::nullopt;
-    return Region::from_sites(lattice, patterns_, asked.closure());
+    return within(Region::from_sites(lattice, patterns_, std::move(sites)));
   }
   const std::vector<Site> centres = draw_centres(*request.kind, lattice, frame_, random);
   if (centres.empty()) return std::nullopt;
-  Region region = region_around(lattice, patterns_, centres);
-  if (region.interior().empty() || region.boundary().empty()) return std::nullopt;
+  return within(region_around(lattice, patterns_, centres));
+}
+
+/// cl U, with nothing interior outside the rows on which equations hold: at natural walls few stencils touch a site, and
+/// one at the edge of U may be interior to it.
+std::optional<Region> RegionDrawer::within(Region region) const {
+  const Lattice& lattice = system_.lattice();
+  const auto outside = [&](const Site& site) {
+    return site.time < frame_.rows.first || site.time > frame_.rows.last;
+  };
+  while (std::ranges::any_of(region.interior(), outside)) {
+    std::vector<Site> sites;
+    for (const Site& site : region.sites())
+      if (!(outside(site) && region.in_interior(site))) sites.push_back(site);
+    region = Region::from_sites(lattice, patterns_, std::move(sites));
+  }
+  if (region.interior().empty()) return std::nullopt;
+  if (!region.regular()) region = Region::from_sites(lattice, patterns_, region.closure());
+  if (region.boundary().empty()) return std::nullopt;
   return region;
 }
 
 std::string in_words(const Region& region, std::int64_t origin, std::int64_t stencils) {
   const auto& sites = region.sites();
-  const auto [left, right] = std::ranges::minmax(sites, {}, &Site::space);
   const auto first = origin + sites.front().time, last = origin + sites.back().time;
   if (region.lattice().sites() == 1) return fmt::format("rows {} to {}, {} stencils", first, last, stencils);
-  return fmt::format("rows {} to {}, sites {} to {}, {} stencils", first, last, left.space, right.space, stencils);
+  const auto [left, right] = columns_of(region);
+  return fmt::format("rows {} to {}, sites {} to {}, {} stencils", first, last, left, right, stencils);
 }
 
 std::string in_words(const LatticeSystem& system, const Node& node, std::int64_t origin) {

@@ -13,7 +13,7 @@ namespace delf {
 /// A region that is asked for: a kind, drawn anew at every moment, or the sites themselves, whose rows count from the
 /// first one of the moment whose equations can be asked.
 struct RegionRequest {
-  std::string name;                ///< of the kind, or "given"
+  std::string name;  ///< of the kind, or "given"
   std::optional<RegionKind> kind;
   std::vector<Site> sites = {};
 };
@@ -30,6 +30,8 @@ class RegionDrawer {
   static int rows_wanted(const LatticeSystem&);
 
  private:
+  std::optional<Region> within(Region) const;
+
   const LatticeSystem& system_;
   std::vector<StencilPattern> patterns_;
   RegionFrame frame_;

@@ -37,8 +37,8 @@ EquationCheck::Sort EquationCheck::sort_of(int site, int component) const {
   return end ? natural_end : bulk;
 }
 
-/// Σ_a |∂G/∂y_a y_a| over what the constraint reads
-double EquationCheck::constraint_size(const Window& window, std::int64_t row, int site, int component) const {
+/// Σ_a |∂E/∂y_a y_a|
+double EquationCheck::size_of(const Window& window, std::int64_t row, int site, int component) const {
   double size = 0;
   std::vector<double> y, J;
   for (const auto& touch : system_.touching({static_cast<int>(row & 1), site}, component)) {
@@ -52,19 +52,31 @@ double EquationCheck::constraint_size(const Window& window, std::int64_t row, in
   return size;
 }
 
+/// Where a field or a node is largest in the rows that the equations read, of the sites that have the component's
+/// equation; −1 if none has.
+int EquationCheck::largest_site(const Window& window, std::int64_t row, int component) const {
+  double most = -1;
+  int site = -1;
+  for (std::int64_t j = row - reach_; j <= row + reach_; ++j)
+    for (int i = 0; i < system_.lattice().sites(); ++i)
+      for (int c = 0; c < system_.components(); ++c)
+        if (solved_[static_cast<std::size_t>(i * system_.components() + component)] &&
+            system_.component(c).role != Role::multiplier)
+          if (const double size = std::abs(window(j, i, c)); size > most) most = size, site = i;
+  return site;
+}
+
 void EquationCheck::at(const Window& window, std::int64_t row) {
   system_.equations(window, row, values_);
   const auto C = static_cast<std::size_t>(system_.components());
   std::array<double, 3> scale{};
-  for (std::size_t n = 0; n < values_.size(); ++n)
-    if (solved_[n]) {
-      const double size = sorts_[n] == constraint ? constraint_size(window, row, static_cast<int>(n / C), static_cast<int>(n % C))
-                                                  : values_[n].absolute;
-      // Ends are measured by the same scale as the bulk.
-      double& of = scale[sorts_[n] == constraint ? constraint : bulk];
-      if (!(size <= of)) of = size;
-    }
-  scale[natural_end] = scale[bulk];
+  for (int c = 0; c < system_.components(); ++c) {
+    const int largest = largest_site(window, row, c);
+    if (largest < 0) continue;
+    double& of = scale[system_.component(c).role == Role::multiplier ? constraint : bulk];
+    of = std::max(of, size_of(window, row, largest, c));
+  }
+  scale[natural_end] = scale[bulk];  // ends are measured by the scale of the bulk
   newest_.assign(values_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t n = 0; n < values_.size(); ++n) {
     if (!solved_[n]) continue;
@@ -96,15 +108,17 @@ std::vector<Check> EquationCheck::checks() const {
     Check check = seen.check;
     check.count = check.samples;
     if (seen.failures > 0) {
-      const std::string sites = system_.lattice().sites() > 1
-                                    ? fmt::format(", sites {} to {}", seen.first_site, seen.last_site) : "";
-      const double share = static_cast<double>(seen.failures) / static_cast<double>(check.samples);
+      const std::string sites =
+          system_.lattice().sites() > 1 ? fmt::format(", sites {} to {}", seen.first_site, seen.last_site) : "";
+      const bool together = seen.last_row - seen.first_row <= 4 * reach_ && seen.last_site - seen.first_site <= 8;
+      const bool few = static_cast<double>(seen.failures) < 0.05 * static_cast<double>(check.samples);
       check.failure = fmt::format(
           "{} of {} equations do not hold: rows {} to {}{}, and worst at {}. {}", seen.failures, check.samples,
           seen.first_row, seen.last_row, sites, check.region,
-          share < 0.05 ? "So few together say that the values in the midst of them were changed, and not by a step."
-                       : "So many say that the rows were made by other equations than these: another scheme, theory, "
-                         "time step or length, or that they were not solved to this tolerance.");
+          together && few ? "So few, and together: the values in the midst of them were changed, and not by a step."
+          : few           ? "So few, and scattered: single steps were not solved to this tolerance."
+                : "So many say that the rows were made by other equations than these: another scheme, theory, "
+                  "time step or length, or that they were not solved to this tolerance.");
     }
     result.push_back(std::move(check));
   }

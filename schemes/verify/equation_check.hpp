@@ -11,8 +11,8 @@
 namespace delf {
 
 /// The field equations (5.2) at every site where there is one, row after row: in the bulk, at natural ends, and of
-/// constraints. Relative to the largest sum of absolute values in the row: a vacuum has no scale of its own. Constraints,
-/// whose terms cancel within one stencil, are relative to the largest Σ |∂G/∂y_a y_a| in the row.
+/// constraints. Relative to Σ_a |∂E/∂y_a y_a| where the field is largest near the row: what is summed in the end are
+/// values times coefficients, and where the field rests, or in a vacuum, the sum has no scale of its own.
 class EquationCheck {
  public:
   EquationCheck(const LatticeSystem&, const SolvePlan&, double tolerance);
@@ -36,14 +36,15 @@ class EquationCheck {
     int first_site = 0, last_site = 0;
   };
   Sort sort_of(int site, int component) const;
-  double constraint_size(const Window&, std::int64_t row, int site, int component) const;
+  double size_of(const Window&, std::int64_t row, int site, int component) const;
+  int largest_site(const Window&, std::int64_t row, int component) const;
 
   const LatticeSystem& system_;
   double tolerance_;
   int reach_ = 1;
-  std::vector<char> solved_;     ///< of each site and component: there is an equation
+  std::vector<char> solved_;  ///< of each site and component: there is an equation
   std::vector<Sort> sorts_;
-  std::vector<Seen> seen_;       ///< one for each sort
+  std::vector<Seen> seen_;  ///< one for each sort
   std::vector<double> newest_;
   std::vector<LatticeSystem::Value> values_;
   std::int64_t rows_ = 0;

@@ -44,10 +44,12 @@ std::vector<Balance> symplectic_form(const LatticeSystem& system, const Window& 
 }
 
 FormCheck::FormCheck(const LatticeSystem& system, const SolvePlan& plan, int rows, Options options)
-    : system_(system), options_(std::move(options)),
+    : system_(system),
+      options_(std::move(options)),
       variational_(std::ranges::all_of(system.families(), [](const auto& f) { return f->is_variational(); })),
       tangent_(std::make_unique<Tangent>(system, plan, rows, options_.turn)),
-      forms_(options_.regions.size()), drawn_(options_.regions.size(), false) {
+      forms_(options_.regions.size()),
+      drawn_(options_.regions.size(), false) {
   for (std::size_t n = 0; n < forms_.size(); ++n)
     forms_[n] = {.name = "form formula, " + options_.regions[n].name, .region = {}, .tolerance = options_.tolerance};
   local_ = {.name = "local identity, sum of all forms on a stencil", .region = {}, .tolerance = options_.tolerance};
@@ -123,10 +125,12 @@ void FormCheck::look(const RegionRequest& request, const RegionSystem& system, c
   const bool shown = check.region == where && check.value == value;
   if (!(value <= options_.tolerance) && shown) check.failure = why(system, y, pairs[worst]);
   if (!(value <= worst_.value)) {
-    worst_ = {value, request.name + ", " + where, system.region().sites(), {}, {}, system.boundary_terms(y, pairs[worst])};
-    for (const Site& site : worst_.sites) {
+    worst_ = {value, request.name + ", " + where,           system.region().sites(), {},
+              {},    system.boundary_terms(y, pairs[worst])};
+    for (Site& site : worst_.sites) {
       worst_.interior.push_back(system.region().in_interior(site));
       worst_.boundary.push_back(system.region().in_boundary(site));
+      site.time += static_cast<int>(system.origin());
     }
   }
   if (!variational_) return;
@@ -136,8 +140,10 @@ void FormCheck::look(const RegionRequest& request, const RegionSystem& system, c
        options_.tolerance);
   if (!(defect.balance.relative() <= options_.tolerance) && local_.value == defect.balance.relative())
     local_.failure = fmt::format(
-        "The second derivatives of the stencil's Lagrangian are not symmetric at {}: of its value {} by its value {} is "
-        "not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the terms of "
+        "The second derivatives of the stencil's Lagrangian are not symmetric at {}: of its value {} by its value {} "
+        "is "
+        "not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the terms "
+        "of "
         "these derivatives.",
         local_.region.substr(4), defect.row, defect.column, defect.column, defect.row);
 }
@@ -163,7 +169,8 @@ std::string FormCheck::why(const RegionSystem& system, const RegionSystem::Value
         pair_of_nodes->b_by_a, pair_of_nodes->a_by_b,
         variational_ ? "The scheme is said to be variational: look at the derivatives of its Lagrangian."
                      : "The scheme comes from no Lagrangian, and nothing multisymplectic is conserved.");
-  return "The linearised equations hold and are those of an action on int U, and still the terms at the boundary do not "
+  return "The linearised equations hold and are those of an action on int U, and still the terms at the boundary do "
+         "not "
          "cancel: a stencil that touches the boundary has a residual that is the gradient of no Lagrangian.";
 }
 
@@ -182,8 +189,10 @@ void FormCheck::look_at_cuts(const Window& y, const std::vector<Window>& V) {
   }
   if (!cuts_.passed())
     cuts_.failure = fmt::format(
-        "The symplectic form of two first variations changes {}: the step is no symplectic map, or its linearisation is "
-        "not that of the equations.", cuts_.region);
+        "The symplectic form of two first variations changes {}: the step is no symplectic map, or its linearisation "
+        "is "
+        "not that of the equations.",
+        cuts_.region);
 }
 
 std::vector<Check> FormCheck::checks() const {
@@ -200,7 +209,8 @@ std::vector<std::string> FormCheck::left_out() const {
   std::string missing;
   for (std::size_t n = 0; n < drawn_.size(); ++n)
     if (!drawn_[n]) missing += (missing.empty() ? "" : ", ") + options_.regions[n].name;
-  if (!missing.empty()) words.push_back("form formula on regions of this kind, for which the lattice has no room: " + missing);
+  if (!missing.empty())
+    words.push_back("form formula on regions of this kind, for which the lattice has no room: " + missing);
   if (!no_evolution_.empty()) words.push_back("evolved variations: " + no_evolution_);
   if (!variational_) words.push_back("local identity and symplectic form: the scheme has no Lagrangian");
   return words;

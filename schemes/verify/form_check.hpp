@@ -20,9 +20,9 @@ class FormCheck {
  public:
   struct Options {
     std::vector<RegionRequest> regions;
-    int pairs = 2;             ///< of V and W, of either sort, for each region
+    int pairs = 2;  ///< of V and W, of either sort, for each region
     double tolerance = 1e-13;
-    double turn = 0;           ///< φ(x + L) − φ(x)
+    double turn = 0;               ///< φ(x + L) − φ(x)
     bool break_variation = false;  ///< plants a fault: V is wrong at the site of ∂U that int U feels most
   };
   static constexpr std::size_t most_local = 1500;
@@ -72,13 +72,13 @@ class FormCheck {
   Options options_;
   bool variational_;
   std::unique_ptr<Tangent> tangent_;
-  std::vector<Check> forms_;       ///< one for each request
+  std::vector<Check> forms_;  ///< one for each request
   std::vector<bool> drawn_;
   Check local_, cuts_;
   std::vector<Point> points_;
   Worst worst_;
   std::int64_t stencils_ = 0;
-  std::string no_evolution_;       ///< why there was none, if there was none
+  std::string no_evolution_;  ///< why there was none, if there was none
 };
 
 /// ω(V, W) over the cut below row `cut`: Σ_Δ Σ_{l: Δˡ at or above it} Ωˡ(V, W), over the stencils that reach across.

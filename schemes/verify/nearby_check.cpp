@@ -45,14 +45,18 @@ void NearbyCheck::at(const std::string& kind, const RegionSystem& region, const 
     q.push_back(balances[p].sum / balances[p].absolute);
     normaliser = balances[p].absolute, count = balances[p].count;
   }
-  // What is left of the next power, and rounding: differences of size ε are known to 2⁻⁵²/ε.
-  double unknown = 10, least = std::numeric_limits<double>::infinity();
-  for (const double size : sizes) unknown *= size, least = std::min(least, size);
-  const double tolerance =
-      std::max(tolerance_, unknown + 64 * std::numeric_limits<double>::epsilon() * std::max(1.0, largest(F)) / least);
+  // What is left of the next power, and rounding: the values whose differences these are were rounded when they were made.
+  const double delta = 8 * std::numeric_limits<double>::epsilon() * largest(F);
+  double next_power = 10, rounding = 0;
+  for (std::size_t p = 0; p < differences.size(); ++p) {
+    next_power *= sizes[p];
+    rounding = std::max(rounding, region.form_error(F, differences[p], delta) / balances[p].absolute);
+  }
+  const double tolerance = std::max(tolerance_, next_power + rounding);
   const double value = std::abs(extrapolated(sizes, q));
 
-  const auto [found, fresh] = worst_.try_emplace(kind, Check{.name = "form formula by differences, " + kind, .region = {}});
+  const auto [found, fresh] =
+      worst_.try_emplace(kind, Check{.name = "form formula by differences, " + kind, .region = {}});
   Check& check = found->second;
   ++check.samples;
   // Tolerances differ from region to region: the worst is what passes least.
@@ -61,9 +65,10 @@ void NearbyCheck::at(const std::string& kind, const RegionSystem& region, const 
   check.tolerance = tolerance;
   check.normaliser = normaliser;
   check.count = count;
-  check.region = fmt::format("{}, differences of {:.1e}{}", in_words(region.region(), region.origin(), region.stencils()),
-                             *std::ranges::max_element(sizes),
-                             sizes.size() > 1 ? fmt::format(" and {} smaller, extrapolated", sizes.size() - 1) : "");
+  check.region =
+      fmt::format("{}, differences of {:.1e}{}", in_words(region.region(), region.origin(), region.stencils()),
+                  *std::ranges::max_element(sizes),
+                  sizes.size() > 1 ? fmt::format(" and {} smaller, extrapolated", sizes.size() - 1) : "");
   check.failure = fmt::format(
       "The differences to the nearby solutions do not keep the form formula on {}: {:.1e} of its terms is left, and "
       "their size explains no more than {:.1e}. The program that made these rows does not conserve this scheme's "

@@ -13,6 +13,7 @@
 
 #include "schemes/block_solver.hpp"
 #include "schemes/slab_equations.hpp"
+#include "schemes/slab_extent.hpp"
 
 namespace delf {
 namespace {
@@ -21,38 +22,17 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_iterations = 60;  ///< enough for an error that shrinks by 0.6 each time
 constexpr double nearest = 1e-4;     ///< of the starts, relative to the field
 
-/// Rows around row J that the equations of slab J are made of: J − past … J + future.
-struct Reach {
-  int past, future;
-};
-Reach reach_of(const SolvePlan& plan) {
-  Reach reach{plan.history, 0};
-  for (int parity = 0; parity < plan.table.parities; ++parity)
-    for (const Node& u : plan.slab(parity).unknowns) {
-      reach.past = std::max(reach.past, parity - u.site.time);
-      reach.future = std::max(reach.future, u.site.time - parity);
-    }
-  return reach;
-}
-
-std::vector<std::pair<int, int>> pairs(const std::vector<SlabEquations::Place>& places) {
-  std::vector<std::pair<int, int>> result;
-  for (const auto& p : places) result.emplace_back(p.equation, p.unknown);
-  return result;
-}
-
 /// One slab of a solution: its equations, and its unknowns as one vector.
 class SolvedSlab {
  public:
-  SolvedSlab(const LatticeSystem& system, const SolvePlan& plan, const Window& solution, Reach reach)
+  SolvedSlab(const LatticeSystem& system, const SolvePlan& plan, const Window& solution, const SlabExtent& extent)
       : system_(system),
-        J_(solution.last_row() - reach.future),
+        J_(solution.last_row() - extent.above),
         parity_(static_cast<int>(((J_ % plan.table.parities) + plan.table.parities) % plan.table.parities)),
-        equations_(system, plan, parity_, reach.past, reach.future, solution.turn),
-        ring_(reach.past + reach.future + 1, solution.rows.back().size()),
-        solver_(equations_.size(), pairs(equations_.places()),
-                equations_.present(solution.rows.back().size(), ring_.depth()), equations_.matched()) {
-    for (std::int64_t r = J_ - reach.past; r <= J_ + reach.future; ++r)
+        equations_(system, plan, parity_, extent.past(), extent.above, solution.turn),
+        ring_(extent.past() + extent.above + 1, solution.rows.back().size()),
+        solver_(equations_.solver()) {
+    for (std::int64_t r = J_ - extent.past(); r <= J_ + extent.above; ++r)
       std::ranges::copy(solution.rows[static_cast<std::size_t>(r - solution.first_row)], ring_.row(r));
     for (int n = 0; n < size(); ++n) solution_.push_back(equations_.value(ring_, J_, n));
   }
@@ -191,9 +171,9 @@ Descents descents(SolvedSlab& slab, std::uint64_t seed) {
 
 std::optional<Check> check_newton(const LatticeSystem& system, const SolvePlan& plan, const Window& solution,
                                   std::uint64_t seed) {
-  const Reach reach = reach_of(plan);
-  if (static_cast<int>(solution.rows.size()) < reach.past + reach.future + 1) return std::nullopt;
-  SolvedSlab slab(system, plan, solution, reach);
+  const SlabExtent extent = slab_extent(system, plan);
+  if (static_cast<int>(solution.rows.size()) < extent.past() + extent.above + 1) return std::nullopt;
+  SolvedSlab slab(system, plan, solution, extent);
   const Descents all = descents(slab, seed);
 
   Check check{"Newton: quadratic convergence", fmt::format("slab {}, {} unknowns: ", slab.number(), slab.size()), 0,

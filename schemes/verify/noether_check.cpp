@@ -19,7 +19,8 @@ NoetherCheck::NoetherCheck(const LatticeSystem& system, std::vector<LinearSymmet
     Check& check = invariant_.back();
     if (!check.passed())
       check.failure = fmt::format(
-          "{} is not a symmetry: along it the Lagrangian changes by {:.2g} of its terms. Noether's theorem owes nothing "
+          "{} is not a symmetry: along it the Lagrangian changes by {:.2g} of its terms. Noether's theorem owes "
+          "nothing "
           "for it{}.",
           symmetry.name, check.value, forced ? ", and the sums below were asked for all the same" : "");
   }
@@ -61,11 +62,11 @@ void NoetherCheck::at(const RegionSystem& region, const RegionSystem::Values& y)
     check.normaliser = balance.absolute;
     check.count = balance.count;
     check.region = in_words(region.region(), region.origin(), region.stencils());
-    check.failure = fmt::format(
-        "What flows into {} is not what flows out: {:.2g} of the momenta of {} is left. {}", check.region, check.value,
-        symmetries_[n].name,
-        invariant_[n].passed() ? "The Lagrangian has this symmetry, so the field equations do not hold there."
-                               : "The Lagrangian does not have this symmetry.");
+    check.failure = fmt::format("What flows into {} is not what flows out: {:.2g} of the momenta of {} is left. {}",
+                                check.region, check.value, symmetries_[n].name,
+                                invariant_[n].passed()
+                                    ? "The Lagrangian has this symmetry, so the field equations do not hold there."
+                                    : "The Lagrangian does not have this symmetry.");
   }
 }
 

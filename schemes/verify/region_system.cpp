@@ -21,7 +21,10 @@ std::vector<StencilPattern> patterns_of(const LatticeSystem& system) {
 }
 
 RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int64_t origin, double turn)
-    : system_(system), region_(std::move(region)), origin_(origin), components_(system.components()),
+    : system_(system),
+      region_(std::move(region)),
+      origin_(origin),
+      components_(system.components()),
       variational_(std::ranges::all_of(system.families(), [](const auto& f) { return f->is_variational(); })),
       kind_(region_.sites().size(), outside) {
   for (const Site site : region_.interior()) kind_[region_.place(site)] = inside;
@@ -33,9 +36,12 @@ RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int6
   region_.visit_stencils([&](int f, Site anchor, std::span<const std::size_t> places) {
     const StencilFamily& family = *system_.families()[static_cast<std::size_t>(f)];
     const int home = system_.lattice().is_circle() ? system_.lattice().wrapped(anchor.space) : anchor.space;
-    Member member{&family, f, {anchor.time, home, 0},
+    Member member{&family,
+                  f,
+                  {anchor.time, home, 0},
                   {h, k, static_cast<double>(origin_ + anchor.time) * h, system_.lattice().position(home)},
-                  reads_.size(), false};
+                  reads_.size(),
+                  false};
     for (const VertexValue& value : family.values()) {
       const std::size_t place = places[static_cast<std::size_t>(value.vertex)];
       const std::size_t node = place * C + static_cast<std::size_t>(value.component);
@@ -195,13 +201,33 @@ std::vector<Balance> RegionSystem::form_formula(const Values& y, std::span<const
         }
         for (std::size_t m = 0; m < n; ++m)
           if (solved_[read[i]] && kind_[read[m] / C] == boundary) {
-            balances[p].add(J[i * n + m] * w[m] * v[i]);
-            balances[p].add(-J[i * n + m] * v[m] * w[i]);
+            balances[p].add(J[i * n + m] * (w[m] * v[i] - v[m] * w[i]));
           }
       }
     }
   }
   return balances;
+}
+
+double RegionSystem::form_error(const Values& y, const Pair& pair, double delta) const {
+  double sum = 0;
+  std::vector<double> values, J, v, w;
+  const auto C = static_cast<std::size_t>(components_);
+  for (const Member& member : members_) {
+    if (!member.meets_boundary) continue;
+    gather_section(member, y, values);
+    const std::size_t n = values.size();
+    J.resize(n * n);
+    member.family->jacobian(member.cell, values, J);
+    gather(member, pair.V, v);
+    gather(member, pair.W, w);
+    const auto read = reads(member);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t m = 0; m < n; ++m)
+        if (kind_[read[variational_ ? i : m] / C] == boundary)
+          sum += std::abs(J[i * n + m]) * (std::abs(v[m]) + std::abs(w[i]) + std::abs(w[m]) + std::abs(v[i]));
+  }
+  return delta * sum;
 }
 
 RegionSystem::LocalDefect RegionSystem::local_identity(const Values& y, const Pair& pair) const {
@@ -283,8 +309,7 @@ Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry) c
     generator(system_, *member.family, symmetry, values, xi);
     const auto read = reads(member);
     for (std::size_t i = 0; i < r.size(); ++i)
-      if (kind_[read[i] / C] == boundary)
-        balance.add(momentum_map(static_cast<int>(i), 1, r, xi));
+      if (kind_[read[i] / C] == boundary) balance.add(momentum_map(static_cast<int>(i), 1, r, xi));
   }
   return balance;
 }

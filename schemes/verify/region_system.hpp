@@ -62,10 +62,13 @@ class RegionSystem {
   ///     Σ_{b ∈ int U, a ∈ ∂U} ∂E_b/∂y_a (W_a V_b − V_a W_b)
   std::vector<Balance> form_formula(const Values& y, std::span<const Pair> pairs) const;
 
+  /// What an error of δ in every value of V and W can make of that sum: δ Σ |∂rⁱ/∂yᵐ| (|Vᵐ| + |Wⁱ| + |Wᵐ| + |Vⁱ|).
+  double form_error(const Values& y, const Pair&, double delta) const;
+
   struct LocalDefect {
-    Balance balance;        ///< Σ_l Ωˡ(V, W)
+    Balance balance;  ///< Σ_l Ωˡ(V, W)
     int family = 0;
-    Site anchor;            ///< its row counts from the origin
+    Site anchor;              ///< its row counts from the origin
     int row = 0, column = 0;  ///< the values between which ∂²L/∂y∂y is least symmetric
   };
   /// The stencil in U on which Σ_l Ωˡ(V, W) is largest, relative to its terms.
@@ -89,7 +92,7 @@ class RegionSystem {
     int family_index;
     Site anchor;
     Cell cell;
-    std::size_t first;   ///< into reads_
+    std::size_t first;  ///< into reads_
     bool meets_boundary;
   };
   enum Kind : char { outside, inside, boundary };  ///< outside: in U, but neither in int U nor in ∂U
@@ -106,12 +109,12 @@ class RegionSystem {
   int components_;
   bool variational_;
   std::vector<Member> members_;
-  std::vector<std::size_t> reads_;     ///< of each value of each member: the node
-  std::vector<double> gained_;         ///< beside reads_: what sections gain there by going round; empty if nothing
-  std::vector<Kind> kind_;             ///< of each site
+  std::vector<std::size_t> reads_;  ///< of each value of each member: the node
+  std::vector<double> gained_;      ///< beside reads_: what sections gain there by going round; empty if nothing
+  std::vector<Kind> kind_;          ///< of each site
   std::vector<std::size_t> equations_;
-  std::vector<char> solved_;           ///< of each node: it is in equations_
-  std::vector<char> held_;             ///< of each node: at a fixed wall, where V = 0
+  std::vector<char> solved_;  ///< of each node: it is in equations_
+  std::vector<char> held_;    ///< of each node: at a fixed wall, where V = 0
 };
 
 }  // namespace delf

@@ -18,6 +18,22 @@ NoConvergence singular(std::int64_t row) {
   return NoConvergence("the linearised equations of the slab at row " + std::to_string(row) + " are singular");
 }
 
+/// b − A x, and Σ|terms| of each equation.
+std::vector<double> remainder(const SlabEquations& equations, const std::vector<double>& A,
+                              const std::vector<double>& b, const std::vector<double>& x,
+                              std::vector<double>& absolute) {
+  std::vector<double> left = b;
+  absolute.assign(b.size(), 0.0);
+  for (std::size_t n = 0; n < b.size(); ++n) absolute[n] = std::abs(b[n]);
+  for (std::size_t n = 0; n < A.size(); ++n) {
+    const auto [equation, unknown] = equations.places()[n];
+    const double term = A[n] * x[static_cast<std::size_t>(unknown)];
+    left[static_cast<std::size_t>(equation)] -= term;
+    absolute[static_cast<std::size_t>(equation)] += std::abs(term);
+  }
+  return left;
+}
+
 }  // namespace
 
 struct Tangent::Parity {
@@ -29,21 +45,18 @@ Tangent::~Tangent() = default;
 
 int Tangent::least_rows(const LatticeSystem& system, const SolvePlan& plan) {
   const SlabExtent extent = slab_extent(system, plan);
-  return std::max({plan.history, extent.below, 1}) + extent.above + extent.equation_lag + 1;
+  return extent.past() + extent.above + extent.equation_lag + 1;
 }
 
 Tangent::Tangent(const LatticeSystem& system, const SolvePlan& plan, int rows, double turn)
     : system_(system), rows_(rows) {
   const SlabExtent extent = slab_extent(system, plan);
-  data_ = std::max({plan.history, extent.below, 1});
+  data_ = extent.past();
   future_ = extent.above;
   lag_ = extent.equation_lag;
-  const std::size_t size = static_cast<std::size_t>(system.lattice().sites() * system.components());
   for (int p = 0; p < plan.table.parities; ++p) {
     SlabEquations equations(system, plan, p, data_, future_, turn);
-    std::vector<std::pair<int, int>> places;
-    for (const auto& place : equations.places()) places.emplace_back(place.equation, place.unknown);
-    BlockSolver solver(equations.size(), places, equations.present(size, data_ + future_ + 1), equations.matched());
+    BlockSolver solver = equations.solver();
     parities_.push_back(std::make_unique<Parity>(Parity{std::move(equations), std::move(solver)}));
   }
 }
@@ -60,38 +73,32 @@ std::vector<Window> Tangent::evolve(const Window& y, int count, std::mt19937_64&
   for (SectionRing& v : V)
     for (int r = 0; r < rows_; ++r)
       for (int i = 0; i < N; ++i)
-        for (int c = 0; c < C; ++c)
-          v.row(y.first_row + r)[i * C + c] = system_.is_held(i, c) ? 0.0 : normal(random);
+        for (int c = 0; c < C; ++c) v.row(y.first_row + r)[i * C + c] = system_.is_held(i, c) ? 0.0 : normal(random);
 
   std::vector<std::vector<double>> E;
-  std::vector<double> values, change;
+  std::vector<double> values, x, more, size_of_terms;
   for (std::int64_t J = y.first_row + data_; J <= y.last_row() - future_; ++J) {
     Parity& p = *parities_[static_cast<std::size_t>(J) % parities_.size()];
     for (SectionRing& v : V)
       for (int n = 0; n < p.equations.size(); ++n) p.equations.value(v, J, n) = 0;
-    // A V_unknown = −Σ_known ∂E/∂y_a V_a; once more for what rounding left
-    for (int pass = 0; pass < 2; ++pass) {
-      p.equations.linearised(section, J, V, E, values);
-      if (pass == 0 && !p.solver.factor(values)) throw singular(J);
-      for (std::size_t v = 0; v < V.size(); ++v) {
-        p.solver.solve(E[v], change);
-        double changed = 0, size = 0;
-        for (int n = 0; n < p.equations.size(); ++n) {
-          double& value = p.equations.value(V[v], J, n);
-          value -= change[static_cast<std::size_t>(n)];
-          changed = std::max(changed, std::abs(change[static_cast<std::size_t>(n)]));
-          size = std::max(size, std::abs(value));
-        }
-        // What the first pass left is rounding, unless the matrix is singular but for rounding.
-        if (pass == 1 && !(changed <= 1e-6 * size)) throw singular(J);
-      }
+    p.equations.linearised(section, J, V, E, values);
+    if (!p.solver.factor(values)) throw singular(J);
+    for (std::size_t v = 0; v < V.size(); ++v) {
+      // A x = Σ_known ∂E/∂y_a V_a, V_unknown = −x; once more for what rounding left
+      p.solver.solve(E[v], x);
+      p.solver.solve(remainder(p.equations, values, E[v], x, size_of_terms), more);
+      for (std::size_t n = 0; n < x.size(); ++n) x[n] += more[n];
+      // Where something of an equation is left even so, the matrix is singular but for rounding.
+      const std::vector<double> left = remainder(p.equations, values, E[v], x, size_of_terms);
+      for (std::size_t n = 0; n < left.size(); ++n)
+        if (!(std::abs(left[n]) <= 1e-10 * size_of_terms[n])) throw singular(J);
+      for (int n = 0; n < p.equations.size(); ++n) p.equations.value(V[v], J, n) = -x[static_cast<std::size_t>(n)];
     }
   }
   std::vector<Window> windows;
   for (SectionRing& v : V) {
     std::vector<std::vector<double>> rows;
-    for (int r = 0; r < rows_; ++r)
-      rows.emplace_back(v.row(y.first_row + r), v.row(y.first_row + r) + size);
+    for (int r = 0; r < rows_; ++r) rows.emplace_back(v.row(y.first_row + r), v.row(y.first_row + r) + size);
     windows.push_back(system_.window(y.first_row, std::move(rows), 0));
   }
   return windows;
