@@ -13,9 +13,12 @@ namespace delf {
 
 SlabEquations::SlabEquations(const LatticeSystem& system, const SolvePlan& plan, int parity, int past, int future,
                              double turn)
-    : time_step_(system.time_step()), space_step_(system.lattice().space_step()), components_(system.components()),
+    : time_step_(system.time_step()),
+      space_step_(system.lattice().space_step()),
+      components_(system.components()),
       depth_(past + future + 1),
-      row_size_(static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_)), slab_(plan.slab(parity)) {
+      row_size_(static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_)),
+      slab_(plan.slab(parity)) {
   const Lattice& lattice = system.lattice();
   std::map<std::tuple<int, int, int>, int> number_of_unknown, number_of_equation;
   const auto key = [](const Node& n) { return std::tuple{n.site.time, n.site.space, n.component}; };
@@ -40,17 +43,17 @@ SlabEquations::SlabEquations(const LatticeSystem& system, const SolvePlan& plan,
       const int home = lattice.is_circle() ? lattice.wrapped(space) : space;
       if (!seen.try_emplace({touch.family_index, row, home}, 0).second) continue;
 
-      Member member{&family, static_cast<int>(reads_.size()), row, row, lattice.position(home),
-                    static_cast<int>(entry_.size())};
+      Member member{&family, static_cast<int>(reads_.size()), row,
+                    row,     lattice.position(home),          static_cast<int>(entry_.size())};
       for (int i = 0; i < family.size(); ++i) {
         const Site vertex = family.site(i);
         const int c = family.values()[static_cast<std::size_t>(i)].component;
         const int r = row + vertex.time, x = home + vertex.space, at = lattice.is_circle() ? lattice.wrapped(x) : x;
         const bool turns = system.component(c).role != Role::multiplier;
         member.lowest_row = std::min(member.lowest_row, r);
-        reads_.push_back({std::clamp(r, -past, future), at * components_ + c,
-                          turns ? turn * ((x - at) / lattice.sites()) : 0.0, find(number_of_equation, std::tuple{r, at, c}),
-                          find(number_of_unknown, std::tuple{r, at, c})});
+        reads_.push_back(
+            {std::clamp(r, -past, future), at * components_ + c, turns ? turn * ((x - at) / lattice.sites()) : 0.0,
+             find(number_of_equation, std::tuple{r, at, c}), find(number_of_unknown, std::tuple{r, at, c})});
       }
       for (int i = 0; i < family.size(); ++i)
         for (int m = 0; m < family.size(); ++m) {
@@ -102,29 +105,18 @@ void SlabEquations::residual(const SectionRing& ring, std::int64_t J, std::vecto
 
 void SlabEquations::jacobian(const SectionRing& ring, std::int64_t J, std::vector<double>& values,
                              const std::vector<double>* momenta) const {
-  values.assign(places_.size(), 0.0);
-  for (const Member& member : members_) {
-    if (momenta && J + member.lowest_row < 0) continue;
-    gather(member, ring, J);
-    const std::size_t size = y_.size();
-    J_.resize(size * size);
-    member.family->jacobian(cell(member, J), y_, J_);
-    const Read* read = reads_.data() + member.first;
-    const int* entry = entry_.data() + member.first_entry;
-    for (std::size_t i = 0; i < size; ++i) {
-      if (read[i].equation < 0) continue;
-      for (std::size_t m = 0; m < size; ++m)
-        if (read[m].unknown >= 0) values[static_cast<std::size_t>(*entry++)] += J_[i * size + m];
-    }
-  }
+  std::vector<std::vector<double>> none;
+  linearised(ring, J, {}, none, values, momenta);
 }
 
 void SlabEquations::linearised(const SectionRing& y, std::int64_t J, const std::vector<SectionRing>& V,
-                               std::vector<std::vector<double>>& E, std::vector<double>& values) const {
+                               std::vector<std::vector<double>>& E, std::vector<double>& values,
+                               const std::vector<double>* momenta) const {
   values.assign(places_.size(), 0.0);
   E.resize(V.size());
   for (auto& e : E) e.assign(static_cast<std::size_t>(size()), 0.0);
   for (const Member& member : members_) {
+    if (momenta && J + member.lowest_row < 0) continue;
     gather(member, y, J);
     const std::size_t size = y_.size();
     J_.resize(size * size);

@@ -21,9 +21,7 @@ class SectionRing {
   std::size_t bytes() const { return values_.size() * sizeof(double); }
 
  private:
-  std::size_t slot(std::int64_t r) const {
-    return static_cast<std::size_t>(((r % depth_) + depth_) % depth_) * size_;
-  }
+  std::size_t slot(std::int64_t r) const { return static_cast<std::size_t>(((r % depth_) + depth_) % depth_) * size_; }
   int depth_;
   std::size_t size_;
   std::vector<double> values_;
@@ -68,7 +66,8 @@ class SlabEquations {
 
   /// Σ_a ∂E/∂y_a V_a for several V at once, every a that the stencils read, and the values of places().
   void linearised(const SectionRing& y, std::int64_t J, const std::vector<SectionRing>& V,
-                  std::vector<std::vector<double>>& E, std::vector<double>& values) const;
+                  std::vector<std::vector<double>>& E, std::vector<double>& values,
+                  const std::vector<double>* momenta = nullptr) const;
 
   std::size_t bytes() const;
 

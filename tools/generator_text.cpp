@@ -37,6 +37,7 @@ std::optional<double> number(const std::string& text) {
 // "2*phi1", "phi1" or "0.5", with its sign, into row a
 void add_term(LinearSymmetry& symmetry, std::size_t a, double sign, const std::string& term,
               const std::vector<std::string>& fields) {
+  if (term.empty()) throw wrong("a sign has nothing after it; write terms like 0.5, phi1 or 2*phi1");
   double factor = sign;
   std::string name;
   for (const std::string& part : parts_of(term, '*')) {
@@ -44,6 +45,7 @@ void add_term(LinearSymmetry& symmetry, std::size_t a, double sign, const std::s
     else if (name.empty() && !part.empty()) name = part;
     else throw wrong(fmt::format("\"{}\" is no term; write one like 0.5, phi1 or 2*phi1", term));
   }
+  if (!std::isfinite(factor)) throw wrong(fmt::format("\"{}\" is too large; any multiple of it will do", term));
   if (name.empty()) {
     symmetry.shift[a] += factor;
     return;
@@ -61,8 +63,8 @@ LinearSymmetry read_generator(const std::string& text, const std::vector<std::st
   LinearSymmetry symmetry{"generator (" + text + ")", std::vector<double>(d * d, 0.0), std::vector<double>(d, 0.0)};
   const std::vector<std::string> changes = parts_of(text, ',');
   if (changes.size() != d)
-    throw wrong(fmt::format("has {} parts; give one for each of {}, separated by commas", changes.size(),
-                            fmt::join(fields, ", ")));
+    throw wrong(fmt::format("has {} part{}; give one for each of {}, separated by commas", changes.size(),
+                            changes.size() == 1 ? "" : "s", fmt::join(fields, ", ")));
   for (std::size_t a = 0; a < d; ++a) {
     const std::string& sum = changes[a];
     for (std::size_t begin = 0; begin < sum.size();) {
@@ -70,14 +72,18 @@ LinearSymmetry read_generator(const std::string& text, const std::vector<std::st
       if (sum[begin] == '-' || sum[begin] == '+') ++begin;
       // A sign after an e belongs to a number: 1e-3.
       std::size_t end = begin;
-      while (end < sum.size() && ((sum[end] != '+' && sum[end] != '-') || (end > begin && (sum[end - 1] == 'e') &&
-                                                                          end > begin + 1 && std::isdigit(sum[end - 2]))))
+      while (end < sum.size() &&
+             ((sum[end] != '+' && sum[end] != '-') || (end > begin && (sum[end - 1] == 'e' || sum[end - 1] == 'E') &&
+                                                       end > begin + 1 && std::isdigit(sum[end - 2]))))
         ++end;
       add_term(symmetry, a, sign, trimmed(sum.substr(begin, end - begin)), fields);
       begin = end;
     }
     if (sum.empty()) throw wrong("has an empty part; write 0 for a field that stays as it is");
   }
+  const auto is_zero = [](double x) { return x == 0; };
+  if (std::ranges::all_of(symmetry.shift, is_zero) && std::ranges::all_of(symmetry.matrix, is_zero))
+    throw wrong("changes no field, and of that nothing follows; give a change that is not 0");
   return symmetry;
 }
 

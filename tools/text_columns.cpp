@@ -61,7 +61,8 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
     }
     for (; columns_of(word) > width; word.remove_prefix(bytes_of(word, width)))
       lines.emplace_back(word.substr(0, bytes_of(word, width)));
-    line += (line.empty() ? "" : " ") + std::string(word);
+    if (!line.empty()) line += ' ';
+    line += word;
   }
   if (!line.empty()) lines.push_back(line);
   return lines;

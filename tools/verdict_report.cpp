@@ -33,33 +33,37 @@ std::string header(const Scene& scene, const Verdict& v) {
          header_line("status", v.status);
 }
 
+std::string number(double value) {
+  if (std::isnan(value)) return "no number";
+  return std::isinf(value) ? "infinite" : fmt::format("{:.3g}", value);
+}
+
 std::string table_of_checks(const Verdict& v) {
   std::vector<std::vector<std::string>> rows;
   for (const Check& c : v.checks)
-    rows.push_back({c.name, fmt::format("{:.3g}", c.value), fmt::format("{:.2g}", c.tolerance),
-                    fmt::format("{}", c.count), c.region, c.passed() ? "ok" : "FAILED"});
+    rows.push_back({c.name, number(c.value), fmt::format("{:.2g}", c.tolerance), fmt::format("{}", c.count), c.region,
+                    c.passed() ? "ok" : "FAILED"});
   if (rows.empty()) return {};
-  return "\n" + text_table({{"check", false, widest_name},
-                            {"largest", true},
-                            {"tolerance", true},
-                            {"count", true},
-                            {"where", false, 0, true},
-                            {"verdict"}},
-                           rows, widest_line);
+  return fmt::format("\n{}", text_table({{"check", false, widest_name},
+                                         {"largest", true},
+                                         {"tolerance", true},
+                                         {"count", true},
+                                         {"where", false, 0, true},
+                                         {"verdict"}},
+                                        rows, widest_line));
 }
 
 std::string table_of_measured(const Verdict& v) {
   std::vector<std::vector<std::string>> rows;
   for (const Measured& m : v.measured)
-    rows.push_back({m.name, fmt::format("{:.3g}", m.value),
-                    std::isfinite(m.order) ? fmt::format("{:.2f}", m.order) : "",
+    rows.push_back({m.name, number(m.value), std::isfinite(m.order) ? fmt::format("{:.2f}", m.order) : "",
                     m.region + (m.region.empty() || m.remark.empty() ? "" : "; ") + m.remark});
   if (rows.empty()) return {};
-  return "\n" + text_table({{"measured, not promised", false, widest_name},
-                            {"value", true},
-                            {"order in h", true},
-                            {"where", false, 0, true}},
-                           rows, widest_line);
+  return fmt::format("\n{}", text_table({{"measured, not promised", false, widest_name},
+                                         {"value", true},
+                                         {"order in h", true},
+                                         {"where", false, 0, true}},
+                                        rows, widest_line));
 }
 
 std::string left_out(const Verdict& v) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <set>
 
@@ -20,6 +21,8 @@
 #include "tools/interrupt.hpp"
 
 namespace delf {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -98,6 +101,10 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
         "command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
         "directions; further pairs are the same at other sizes");
   for (const std::string& file : nearby) {
+    // A difference that is zero, or the same twice, keeps the form whatever the rows are.
+    for (std::size_t n = 0; n <= nearby_.size(); ++n)
+      if (std::error_code unreadable; fs::equivalent(file, n == 0 ? fields : nearby[n - 1], unreadable))
+        throw BadScene(fmt::format("command line: --nearby {}: is given twice; give solutions that differ", file));
     nearby_.push_back(open(file, "--nearby"));
     if (nearby_.back()->rows() != fields_->rows())
       throw BadScene(
@@ -112,19 +119,20 @@ void Verification::choose_moments() {
   if (!fields_) rows_ = std::max<std::int64_t>(scene_.steps + 1, moment_rows_);
   const std::int64_t reach = equations_ ? equations_->reach() : 1;
   if (rows_ < 2 * reach + 1)
-    throw BadScene(
-        fmt::format("command line: --fields: the file has {} whole rows, and an equation reads {}; give more", rows_,
-                    2 * reach + 1));
+    throw BadScene(fmt::format(
+        "command line: --fields: of this scheme the file has {} whole row{}, and an equation reads {}; record more",
+        rows_, rows_ == 1 ? "" : "s", 2 * reach + 1));
   held_rows_ = static_cast<int>(2 * reach + 1);
-  if (rows_ >= moment_rows_ && (forms_ || noether_ || near_)) {
+  const bool regions = forms_ || noether_ || near_;
+  if (rows_ >= moment_rows_ && (regions || (!fields_ && request_.wants("newton")))) {
     // Even rows, so that bricks keep their parity; the first and the last that fit among them.
     std::set<std::int64_t> rows;
     const std::int64_t last = rows_ - moment_rows_;
-    for (int m = 0; m < request_.moments; ++m)
-      rows.insert(request_.moments == 1 ? 0 : last * m / (request_.moments - 1) / 2 * 2);
+    const std::int64_t moments = std::min<std::int64_t>(request_.moments, last / 2 + 1);
+    for (std::int64_t m = 0; m < moments; ++m) rows.insert(moments == 1 ? 0 : last * m / (moments - 1) / 2 * 2);
     moments_.assign(rows.begin(), rows.end());
     held_rows_ = std::max(held_rows_, moment_rows_);
-  } else if (forms_ || noether_ || near_) {
+  } else if (regions) {
     leave_out(fmt::format("regions: they take {} rows, and there are {}", moment_rows_, rows_));
   }
   if (equations_) bins_.emplace(system_.lattice(), scene_.problem.time_step, reach, rows_ - 2 * reach);
@@ -310,8 +318,9 @@ void Verification::try_reversal() {
       {.name = "time reversal, distance",
        .region = fmt::format("{} steps forward and back", reversal->steps.back()),
        .value = reversal->distance.back(),
-       .remark = fmt::format("grows like steps^{:.2g}{}", reversal->growth,
-                             reversal->promised ? "" : "; these equations change under t -> -t")});
+       .remark = (std::isfinite(reversal->growth) ? fmt::format("grows like steps^{:.2g}", reversal->growth)
+                                                  : std::string("too few steps to see it grow")) +
+                 (reversal->promised ? "" : "; these equations change under t -> -t")});
 }
 
 void Verification::collect() {
@@ -344,6 +353,8 @@ void Verification::collect() {
     leave_out(
         "form formula with exact first variations: it holds at any rows, and would test the scheme, not the file");
   }
+  if (near_ && !moments_.empty() && near_->checks().empty())
+    leave_out("form formula by differences: where regions were drawn, a nearby solution is the same as --fields");
   if (near_) add(near_->checks());
   else if (fields_) leave_out("form formula by differences: give two nearby solutions, --nearby A.h5 --nearby B.h5");
   if (noether_) add(noether_->checks());
@@ -354,9 +365,20 @@ void Verification::collect() {
   }
   if (!fields_ && request_.wants("derivatives")) add(check_derivatives(system_, seed()));
   add(std::move(later));
+  if (fields_ && request_.chosen)
+    for (const char* name : {"reversal", "derivatives", "newton"})
+      if (request_.wants(name)) leave_out(fmt::format("{}: of the scheme and not of rows; leave out --fields", name));
   if (balance_) {  // without an order
     for (Measured& m : balance_->results()) verdict_.measured.push_back(std::move(m));
   }
+  // A fault that was planted where nobody looked must not pass for one that is not there.
+  if (request_.fault != "none" && verdict_.status == "done" && verdict_.failed() == 0)
+    verdict_.checks.push_back({.name = "planted fault: " + request_.fault,
+                               .region = "nowhere",
+                               .value = 1,
+                               .failure =
+                                   "The planted fault was not found: no check that was made looks for it. Ask for "
+                                   "more of them by verify.checks, or plant no fault."});
 }
 
 }  // namespace delf

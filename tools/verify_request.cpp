@@ -40,8 +40,8 @@ RegionRequest read_region(const Scene& scene, const std::string& word) {
   constexpr int most_rows = 10000;
   RegionRequest request{"given " + word, std::nullopt, {}};
   for (std::size_t begin = 0; begin < word.size();) {
-    const bool away = word[begin] == '-';
-    if (word[begin] == '+' || word[begin] == '-') ++begin;
+    const bool away = begin > 0 && word[begin] == '-';  // there is nothing yet that the first could be taken from
+    if (begin > 0) ++begin;
     const std::size_t end = std::min(word.find_first_of("+-", begin), word.size()), cross = word.find('x', begin);
     Range rows, sites;
     if (cross >= end || !read_range(std::string_view(word).substr(begin, cross - begin), rows) ||
@@ -84,14 +84,14 @@ VerifyRequest read_verify_request(const Scene& scene) {
     const auto& kinds = region_kinds();
     const auto kind = std::ranges::find_if(kinds, [&](RegionKind k) { return word == to_string(k); });
     if (kind != kinds.end()) request.regions.push_back({word, *kind, {}});
-    else if (word.find('x') != std::string::npos && word.find(':') != std::string::npos)
-      request.regions.push_back(read_region(scene, word));
+    else if (word.find_first_of("0123456789") != std::string::npos) request.regions.push_back(read_region(scene, word));
     else {
       std::vector<std::string> names;
       for (const RegionKind k : kinds) names.emplace_back(to_string(k));
-      throw scene.settings.error("verify.regions", fmt::format("{} is no kind of region{}; kinds are {}, or write "
-                                                               "ROWSxSITES, such as 0:8x10:30",
-                                                               word, suggestion(word, names), fmt::join(names, ", ")));
+      throw scene.settings.error("verify.regions",
+                                 fmt::format("{} is no kind of region{}; or write ROWSxSITES, such as "
+                                             "0:8x10:30",
+                                             word, suggestion(word, names)));
     }
   }
   if (request.regions.empty())
@@ -101,9 +101,8 @@ VerifyRequest read_verify_request(const Scene& scene) {
   request.chosen = !request.checks.empty();
   for (const std::string& check : request.checks)
     if (std::ranges::find(verify_checks(), check) == verify_checks().end())
-      throw scene.settings.error(
-          "verify.checks", fmt::format("{} is no check{}; there are {}", check, suggestion(check, verify_checks()),
-                                       fmt::join(verify_checks(), ", ")));
+      throw scene.settings.error("verify.checks",
+                                 fmt::format("{} is no check{}", check, suggestion(check, verify_checks())));
   if (!request.chosen) request.checks = verify_checks();
   request.variations = static_cast<int>(values.integer("verify.variations"));
   request.moments = static_cast<int>(values.integer("verify.moments"));

@@ -52,7 +52,7 @@ FormCheck::FormCheck(const LatticeSystem& system, const SolvePlan& plan, int row
       drawn_(options_.regions.size(), false) {
   for (std::size_t n = 0; n < forms_.size(); ++n)
     forms_[n] = {.name = "form formula, " + options_.regions[n].name, .region = {}, .tolerance = options_.tolerance};
-  local_ = {.name = "local identity, sum of all forms on a stencil", .region = {}, .tolerance = options_.tolerance};
+  local_ = {.name = "local identity of the forms", .region = {}, .tolerance = options_.tolerance};
   cuts_ = {.name = "symplectic form, slab to slab", .region = {}, .tolerance = options_.tolerance};
 }
 

@@ -85,6 +85,18 @@ void RegionSystem::gather_section(const Member& member, const Values& y, std::ve
   for (std::size_t i = 0; i < to.size() && !gained_.empty(); ++i) to[i] += gained_[member.first + i];
 }
 
+template <class Visit>
+void RegionSystem::each_jacobian(const Values& y, bool at_boundary, Visit visit) const {
+  std::vector<double> values, J;
+  for (const Member& member : members_) {
+    if (at_boundary && !member.meets_boundary) continue;
+    gather_section(member, y, values);
+    J.resize(values.size() * values.size());
+    member.family->jacobian(member.cell, values, J);
+    visit(member, reads(member), J);
+  }
+}
+
 std::vector<Balance> RegionSystem::residual(const Values& y) const {
   std::vector<Balance> at(nodes());
   std::vector<double> values, r;
@@ -103,16 +115,11 @@ std::vector<Balance> RegionSystem::residual(const Values& y) const {
 
 std::vector<Balance> RegionSystem::linearised(const Values& y, const Values& V) const {
   std::vector<Balance> at(nodes());
-  std::vector<double> values, J;
-  for (const Member& member : members_) {
-    gather_section(member, y, values);
-    J.resize(values.size() * values.size());
-    member.family->jacobian(member.cell, values, J);
-    const auto read = reads(member);
+  each_jacobian(y, false, [&](const Member&, Reads read, const std::vector<double>& J) {
     for (std::size_t i = 0; i < read.size(); ++i)
-      if (solved_[read[i]])
-        for (std::size_t m = 0; m < read.size(); ++m) at[read[i]].add(J[i * read.size() + m] * V[read[m]]);
-  }
+      for (std::size_t m = 0; m < read.size() && solved_[read[i]]; ++m)
+        at[read[i]].add(J[i * read.size() + m] * V[read[m]]);
+  });
   std::vector<Balance> result;
   for (const std::size_t n : equations_) result.push_back(at[n]);
   return result;
@@ -120,18 +127,12 @@ std::vector<Balance> RegionSystem::linearised(const Values& y, const Values& V) 
 
 std::vector<RegionSystem::Values> RegionSystem::first_variations(const Values& y, int count,
                                                                  std::mt19937_64& random) const {
-  // The columns are the nodes that may vary and that some equation reads; Mᵀ, so that its columns are the equations.
+  // The columns of M are the nodes that may vary and that some equation reads. Mᵀ: its columns are the equations.
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<int> row(nodes(), -1), column(nodes(), -1);
   for (std::size_t n = 0; n < equations_.size(); ++n) column[equations_[n]] = static_cast<int>(n);
   std::vector<std::size_t> varied;
-  std::vector<double> values, J;
-  for (const Member& member : members_) {
-    const auto read = reads(member);
-    if (std::ranges::none_of(read, [&](std::size_t n) { return solved_[n]; })) continue;
-    gather_section(member, y, values);
-    J.resize(values.size() * values.size());
-    member.family->jacobian(member.cell, values, J);
+  each_jacobian(y, false, [&](const Member&, Reads read, const std::vector<double>& J) {
     for (std::size_t i = 0; i < read.size(); ++i)
       for (std::size_t m = 0; m < read.size() && solved_[read[i]]; ++m) {
         const double entry = J[i * read.size() + m];
@@ -139,7 +140,7 @@ std::vector<RegionSystem::Values> RegionSystem::first_variations(const Values& y
         if (row[read[m]] < 0) row[read[m]] = static_cast<int>(varied.size()), varied.push_back(read[m]);
         entries.emplace_back(row[read[m]], column[read[i]], entry);
       }
-  }
+  });
   std::vector<Values> variations(static_cast<std::size_t>(count), Values(nodes(), 0.0));
   std::normal_distribution<double> normal;
   // What no equation feels is free.
@@ -164,17 +165,12 @@ std::vector<RegionSystem::Values> RegionSystem::first_variations(const Values& y
 }
 
 std::optional<std::size_t> RegionSystem::coupling_node(const Values& y) const {
-  std::vector<double> felt(nodes(), 0.0), values, J;
-  const auto C = static_cast<std::size_t>(components_);
-  for (const Member& member : members_) {
-    const auto read = reads(member);
-    gather_section(member, y, values);
-    J.resize(values.size() * values.size());
-    member.family->jacobian(member.cell, values, J);
+  std::vector<double> felt(nodes(), 0.0);
+  each_jacobian(y, true, [&](const Member&, Reads read, const std::vector<double>& J) {
     for (std::size_t i = 0; i < read.size(); ++i)
       for (std::size_t m = 0; m < read.size() && solved_[read[i]]; ++m)
-        if (kind_[read[m] / C] == boundary && !held_[read[m]]) felt[read[m]] += std::abs(J[i * read.size() + m]);
-  }
+        if (at_boundary(read[m]) && !held_[read[m]]) felt[read[m]] += std::abs(J[i * read.size() + m]);
+  });
   const auto most = std::ranges::max_element(felt);
   if (most == felt.end() || *most == 0) return std::nullopt;
   return static_cast<std::size_t>(most - felt.begin());
@@ -182,90 +178,64 @@ std::optional<std::size_t> RegionSystem::coupling_node(const Values& y) const {
 
 std::vector<Balance> RegionSystem::form_formula(const Values& y, std::span<const Pair> pairs) const {
   std::vector<Balance> balances(pairs.size());
-  std::vector<double> values, J, v, w;
-  const auto C = static_cast<std::size_t>(components_);
-  for (const Member& member : members_) {
-    if (!member.meets_boundary) continue;
-    gather_section(member, y, values);
-    const std::size_t n = values.size();
-    J.resize(n * n);
-    member.family->jacobian(member.cell, values, J);
-    const auto read = reads(member);
+  std::vector<double> v, w;
+  each_jacobian(y, true, [&](const Member& member, Reads read, const std::vector<double>& J) {
+    const std::size_t n = read.size();
     for (std::size_t p = 0; p < pairs.size(); ++p) {
       gather(member, pairs[p].V, v);
       gather(member, pairs[p].W, w);
       for (std::size_t i = 0; i < n; ++i) {
         if (variational_) {
-          if (kind_[read[i] / C] == boundary) add_form(balances[p], i, J, v, w);
+          if (at_boundary(read[i])) add_form(balances[p], i, J, v, w);
           continue;
         }
-        for (std::size_t m = 0; m < n; ++m)
-          if (solved_[read[i]] && kind_[read[m] / C] == boundary) {
-            balances[p].add(J[i * n + m] * (w[m] * v[i] - v[m] * w[i]));
-          }
+        for (std::size_t m = 0; m < n && solved_[read[i]]; ++m)
+          if (at_boundary(read[m])) balances[p].add(J[i * n + m] * (w[m] * v[i] - v[m] * w[i]));
       }
     }
-  }
+  });
   return balances;
 }
 
 double RegionSystem::form_error(const Values& y, const Pair& pair, double delta) const {
   double sum = 0;
-  std::vector<double> values, J, v, w;
-  const auto C = static_cast<std::size_t>(components_);
-  for (const Member& member : members_) {
-    if (!member.meets_boundary) continue;
-    gather_section(member, y, values);
-    const std::size_t n = values.size();
-    J.resize(n * n);
-    member.family->jacobian(member.cell, values, J);
-    gather(member, pair.V, v);
-    gather(member, pair.W, w);
-    const auto read = reads(member);
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t m = 0; m < n; ++m)
-        if (kind_[read[variational_ ? i : m] / C] == boundary)
-          sum += std::abs(J[i * n + m]) * (std::abs(v[m]) + std::abs(w[i]) + std::abs(w[m]) + std::abs(v[i]));
-  }
+  each_jacobian(y, true, [&](const Member&, Reads read, const std::vector<double>& J) {
+    const auto size = [&](std::size_t i) { return std::abs(pair.V[read[i]]) + std::abs(pair.W[read[i]]); };
+    for (std::size_t i = 0; i < read.size(); ++i)
+      for (std::size_t m = 0; m < read.size(); ++m)
+        if (at_boundary(read[variational_ ? i : m])) sum += std::abs(J[i * read.size() + m]) * (size(i) + size(m));
+  });
   return delta * sum;
 }
 
 RegionSystem::LocalDefect RegionSystem::local_identity(const Values& y, const Pair& pair) const {
   LocalDefect worst;
-  std::vector<double> values, J, v, w;
-  for (const Member& member : members_) {
-    if (!member.family->is_variational()) continue;
-    gather_section(member, y, values);
-    const std::size_t n = values.size();
-    J.resize(n * n);
-    member.family->jacobian(member.cell, values, J);
+  std::vector<double> v, w;
+  each_jacobian(y, false, [&](const Member& member, Reads read, const std::vector<double>& J) {
+    if (!member.family->is_variational()) return;
     gather(member, pair.V, v);
     gather(member, pair.W, w);
+    const std::size_t n = read.size();
     Balance balance;
     for (std::size_t i = 0; i < n; ++i) add_form(balance, i, J, v, w);
-    if (balance.relative() <= worst.balance.relative() && worst.balance.count > 0) continue;
+    if (balance.relative() <= worst.balance.relative() && worst.balance.count > 0) return;
     worst = {balance, member.family_index, member.anchor, 0, 0};
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t m = 0; m < i; ++m)
         if (const double d = std::abs(J[i * n + m] - J[m * n + i]); d > largest)
           largest = d, worst.row = static_cast<int>(i), worst.column = static_cast<int>(m);
-  }
+  });
   return worst;
 }
 
 std::optional<RegionSystem::OneWay> RegionSystem::least_mutual(const Values& y) const {
   std::map<std::pair<std::size_t, std::size_t>, double> entries;
-  std::vector<double> values, J;
-  for (const Member& member : members_) {
-    const auto read = reads(member);
-    gather_section(member, y, values);
-    J.resize(values.size() * values.size());
-    member.family->jacobian(member.cell, values, J);
+  each_jacobian(y, false, [&](const Member&, Reads read, const std::vector<double>& J) {
     for (std::size_t i = 0; i < read.size(); ++i)
       for (std::size_t m = 0; m < read.size(); ++m)
         if (solved_[read[i]] && solved_[read[m]]) entries[{read[i], read[m]}] += J[i * read.size() + m];
-  }
+  });
   std::optional<OneWay> worst;
   double most = 0, largest = 0;
   for (const auto& [at, there] : entries) {
@@ -280,19 +250,14 @@ std::optional<RegionSystem::OneWay> RegionSystem::least_mutual(const Values& y) 
 }
 
 std::vector<double> RegionSystem::boundary_terms(const Values& y, const Pair& pair) const {
-  std::vector<double> terms(region_.sites().size(), 0.0), values, J, v, w;
+  std::vector<double> terms(region_.sites().size(), 0.0), v, w;
   const auto C = static_cast<std::size_t>(components_);
-  for (const Member& member : members_) {
-    if (!member.meets_boundary) continue;
-    gather_section(member, y, values);
-    J.resize(values.size() * values.size());
-    member.family->jacobian(member.cell, values, J);
+  each_jacobian(y, true, [&](const Member& member, Reads read, const std::vector<double>& J) {
     gather(member, pair.V, v);
     gather(member, pair.W, w);
-    const auto read = reads(member);
     for (std::size_t i = 0; i < read.size(); ++i)
-      if (kind_[read[i] / C] == boundary) terms[read[i] / C] += multisymplectic_form(static_cast<int>(i), 1, J, v, w);
-  }
+      if (at_boundary(read[i])) terms[read[i] / C] += multisymplectic_form(static_cast<int>(i), 1, J, v, w);
+  });
   for (double& term : terms) term = std::abs(term);
   return terms;
 }
@@ -300,7 +265,6 @@ std::vector<double> RegionSystem::boundary_terms(const Values& y, const Pair& pa
 Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry) const {
   Balance balance;
   std::vector<double> values, r, xi;
-  const auto C = static_cast<std::size_t>(components_);
   for (const Member& member : members_) {
     if (!member.meets_boundary) continue;
     gather_section(member, y, values);
@@ -309,7 +273,7 @@ Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry) c
     generator(system_, *member.family, symmetry, values, xi);
     const auto read = reads(member);
     for (std::size_t i = 0; i < r.size(); ++i)
-      if (kind_[read[i] / C] == boundary) balance.add(momentum_map(static_cast<int>(i), 1, r, xi));
+      if (at_boundary(read[i])) balance.add(momentum_map(static_cast<int>(i), 1, r, xi));
   }
   return balance;
 }

@@ -96,12 +96,15 @@ class RegionSystem {
     bool meets_boundary;
   };
   enum Kind : char { outside, inside, boundary };  ///< outside: in U, but neither in int U nor in ∂U
+  using Reads = std::span<const std::size_t>;
+  /// Calls visit(member, reads, ∂r/∂y) for every stencil in U, or for those that meet ∂U.
+  template <class Visit>
+  void each_jacobian(const Values& y, bool at_boundary, Visit visit) const;
+  bool at_boundary(std::size_t node) const { return kind_[node / static_cast<std::size_t>(components_)] == boundary; }
   void gather(const Member&, const Values& from, std::vector<double>& to) const;
   /// The same of a section, which gains `turn` around a circle.
   void gather_section(const Member&, const Values& y, std::vector<double>& to) const;
-  std::span<const std::size_t> reads(const Member& m) const {
-    return {reads_.data() + m.first, static_cast<std::size_t>(m.family->size())};
-  }
+  Reads reads(const Member& m) const { return {reads_.data() + m.first, static_cast<std::size_t>(m.family->size())}; }
 
   const LatticeSystem& system_;
   Region region_;
