@@ -34,7 +34,7 @@ Columns draw_columns(const Lattice& lattice, int least, int most, std::mt19937_6
 const char* to_string(RegionKind kind) { return names[static_cast<std::size_t>(kind)]; }
 
 const std::vector<RegionKind>& region_kinds() {
-  static const std::vector<RegionKind> all{RegionKind::rectangle, RegionKind::staircase, RegionKind::hole,
+  static const std::vector<RegionKind> all{RegionKind::box, RegionKind::staircase, RegionKind::hole,
                                            RegionKind::wall,      RegionKind::slab,      RegionKind::random};
   return all;
 }
@@ -53,7 +53,7 @@ std::vector<Site> draw_centres(RegionKind kind, const Lattice& lattice, const Re
     const int height = between(random, std::min(2, rows), rows), first = between(random, 0, rows - height);
     for (int j = first; j < first + height; ++j)
       for (int i = 0; i < N; ++i) add(centres, frame.rows.first + j, i, frame.nodes);
-  } else if (kind == RegionKind::rectangle || kind == RegionKind::wall) {
+  } else if (kind == RegionKind::box || kind == RegionKind::wall) {
     if (kind == RegionKind::wall && lattice.space() != Space::interval) return {};
     const int height = between(random, 1, rows), first = between(random, 0, rows - height);
     Columns columns = draw_columns(lattice, 2, most, random);

@@ -11,7 +11,7 @@ namespace delf {
 /// What regions may look like. Each is the union of the stencils that touch a set of centres of that form, so that
 /// every centre is interior and the region is regular.
 enum class RegionKind {
-  rectangle,
+  box,        ///< "rectangle", a word that is taken
   staircase,  ///< rows that begin further and further along
   hole,       ///< a rectangle with sites inside that are not in U
   wall,       ///< a rectangle that ends at a wall of the interval

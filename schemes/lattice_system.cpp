@@ -58,6 +58,10 @@ LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr
   require_closing(lattice_, placement_);
 }
 
+bool is_variational(const LatticeSystem& system) {
+  return std::ranges::all_of(system.families(), [](const auto& family) { return family->is_variational(); });
+}
+
 int LatticeSystem::fields() const {
   return static_cast<int>(std::ranges::count(names_, Role::field, &Component::role));
 }

@@ -33,10 +33,10 @@ std::vector<Component> fields(int d);
 struct Window {
   const Lattice* lattice;
   int components = 1;
-  double turn = 0;                          ///< φ(x + L) − φ(x); multipliers are periodic
-  std::int64_t first_row = 0;               ///< index of rows[0]
+  double turn = 0;             ///< φ(x + L) − φ(x); multipliers are periodic
+  std::int64_t first_row = 0;  ///< index of rows[0]
   std::vector<std::vector<double>> rows;
-  int turning = 1 << 30;                    ///< components from here on are periodic
+  int turning = 1 << 30;  ///< components from here on are periodic
 
   /// Rows beyond the window read as its nearest row: stencils may reach there without depending on it.
   double operator()(std::int64_t row, int i, int a) const;
@@ -50,6 +50,10 @@ struct Coefficient {
   double value = 0;
   Dependence dependence = Dependence::linear;
 };
+
+class LatticeSystem;
+/// Every residual is the gradient of a Lagrangian: there is an action.
+bool is_variational(const LatticeSystem&);
 
 /// The discrete Euler–Lagrange field equations of some stencil families on a lattice, one stencil at a time: what
 /// plans, starting rows, Newton steps and checks are made of. Steps themselves go by whole rows (Stepper).
@@ -75,7 +79,7 @@ class LatticeSystem {
     return lattice_.is_fixed(column) && names_[static_cast<std::size_t>(component)].at.space == 0;
   }
   double time_step() const { return time_step_; }
-  int width() const { return width_; }            ///< the largest space offset between two sites of one equation
+  int width() const { return width_; }  ///< the largest space offset between two sites of one equation
   Placement placement() const { return placement_; }
   std::span<const std::shared_ptr<const StencilFamily>> families() const { return families_; }
 

@@ -20,8 +20,10 @@ SlabExtent slab_extent(const LatticeSystem& system, const SolvePlan& plan) {
       int& behind = extent.behind[static_cast<std::size_t>(unknown.component)];
       behind = std::max(behind, -offset);
     }
-    for (const Node& equation : slab.equations)
+    for (const Node& equation : slab.equations) {
       extent.equation_lag = std::max(extent.equation_lag, parity - equation.site.time);
+      extent.equation_lead = std::max(extent.equation_lead, equation.site.time - parity);
+    }
   }
   for (int c = 0; c < system.components(); ++c) {
     int& behind = extent.behind[static_cast<std::size_t>(c)];

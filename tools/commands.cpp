@@ -83,7 +83,7 @@ const std::vector<Command>& table() {
        "Prints what would be solved and how, what it costs, what would be written and what is left out. The keys are\n"
        "those of `delf run`:",
        true, carry_out_plan},
-      {"verify", "delf verify SCENE [--fields FILE] [--nearby FILE ...] [--KEY=VALUE ...]",
+      {"verify", "delf verify SCENE [--fields FILE] [--KEY=VALUE ...]",
        "whether its rows are what theory promises",
        "Steps a scene, or reads the rows that another program made of it, and checks the field equations at every site, the\n"
        "discrete multisymplectic form formula (5.6) on regions of all kinds, Noether's theorem (5.7), time reversal, the\n"

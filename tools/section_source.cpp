@@ -8,6 +8,14 @@
 
 namespace delf {
 
+std::vector<double> fields_of(const LatticeSystem& system, const std::vector<double>& row) {
+  const auto d = static_cast<std::size_t>(system.fields()), C = static_cast<std::size_t>(system.components());
+  std::vector<double> fields;
+  for (std::size_t n = 0; n < row.size(); ++n)
+    if (n % C < d) fields.push_back(row[n]);
+  return fields;
+}
+
 ComputedRows::ComputedRows(Simulation& simulation, std::int64_t rows) : simulation_(simulation), rows_(rows) {
   const Evolution& evolution = simulation.evolution();
   behind_ = std::ranges::max(slab_extent(evolution.system(), evolution.plan()).behind);

@@ -9,6 +9,9 @@
 
 namespace delf {
 
+/// The fields at the vertices alone, [i·d + a], of a row of all components.
+std::vector<double> fields_of(const LatticeSystem&, const std::vector<double>& row);
+
 /// Rows of a section one after the other from row 0 on, each with all its components at that very row: [i·C + c].
 class SectionSource {
  public:

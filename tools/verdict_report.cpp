@@ -95,7 +95,9 @@ std::string conclusion(const Verdict& v) {
   const auto all = static_cast<std::int64_t>(v.checks.size()), failed = v.failed();
   if (failed > 0) return fmt::format("FAILED: {} of {} checks\n", failed, all);
   if (v.status != "done") return fmt::format("not finished ({}): {} of {} checks passed so far\n", v.status, all, all);
-  if (all == 0) return "FAILED: there was nothing to check\n";
+  if (all == 0)
+    return v.measured.empty() ? "FAILED: there was nothing to check\n"
+                              : "measured; nothing that is promised was checked\n";
   return fmt::format("passed: {} of {} checks\n", all, all);
 }
 

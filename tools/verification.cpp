@@ -14,20 +14,18 @@
 #include "schemes/slab_extent.hpp"
 #include "schemes/verify/derivatives.hpp"
 #include "schemes/verify/newton_order.hpp"
-#include "schemes/verify/time_reversal.hpp"
 #include "schemes/verify/wrong_sign.hpp"
 #include "tools/engine.hpp"
+#include "tools/further_runs.hpp"
 #include "tools/generator_text.hpp"
 #include "tools/interrupt.hpp"
+#include "tools/progress.hpp"
 
 namespace delf {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-// Site updates that the parts which measure may cost: a second or two.
-constexpr std::int64_t most_updates = 4000000;
 
 std::vector<std::string> field_names(const LatticeSystem& system) {
   std::vector<std::string> names;
@@ -42,18 +40,6 @@ std::unique_ptr<LatticeSystem> with_wrong_sign(const LatticeSystem& right) {
   families[0] = std::make_shared<WrongSign>(families[0], 0);
   return std::make_unique<LatticeSystem>(right.lattice(), std::move(families), right.time_step(),
                                          right.all_components());
-}
-
-// The scene at half of its steps in time and space.
-Scene refined(const Scene& scene) {
-  Scene fine = scene;
-  const Lattice& lattice = scene.problem.lattice;
-  if (lattice.is_circle()) fine.problem.lattice = Lattice::circle(2 * lattice.sites(), lattice.length());
-  else if (lattice.space() == Space::interval)
-    fine.problem.lattice =
-        Lattice::interval(2 * lattice.sites() - 1, lattice.length(), lattice.left(), lattice.right());
-  fine.problem.time_step = scene.problem.time_step / 2;
-  return fine;
 }
 
 }  // namespace
@@ -75,43 +61,42 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   if (fields) open_files(*fields, nearby);
 
   const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
-  if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps);
+  if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows());
   if (request.wants("forms") && (!fields || request.chosen))
     forms_.emplace(system_, plan_, FormCheck::rows_wanted(system_, plan_, request.regions),
                    FormCheck::Options{request.regions, request.variations, request.tolerance, turn_,
                                       request.fault == "variation"});
-  if (request.wants("noether")) {
-    const auto all = symmetries();
+  if (const auto all = symmetries(); request.wants("noether")) {
     if (!all.empty()) noether_.emplace(system_, all, of_steps, request.force, seed());
   }
-  if (!nearby_.empty()) near_.emplace(request.tolerance);
+  if (!nearby.empty()) near_.emplace(request.tolerance);
+  require_interiors();
   choose_moments();
+  if (fields) open_nearby(*fields, nearby);
 }
 
 void Verification::open_files(const std::string& fields, const std::vector<std::string>& nearby) {
   const auto behind = slab_extent(system_, plan_).behind;
-  const auto open = [&](const std::string& file, const char* option) {
-    return std::make_unique<RecordedSection>(file, system_, behind, scene_.problem.time_step, option);
-  };
-  fields_ = open(fields, "--fields");
+  fields_ = std::make_unique<RecordedSection>(fields, system_, behind, scene_.problem.time_step, "--fields");
   if (const auto winding = fields_->winding(); winding && system_.lattice().is_circle())
     turn_ = 2 * std::numbers::pi * *winding;
   if (nearby.size() % 2 != 0)
     throw BadScene(
         "command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
         "directions; further pairs are the same at other sizes");
-  for (const std::string& file : nearby) {
-    // A difference that is zero, or the same twice, keeps the form whatever the rows are.
-    for (std::size_t n = 0; n <= nearby_.size(); ++n)
-      if (std::error_code unreadable; fs::equivalent(file, n == 0 ? fields : nearby[n - 1], unreadable))
-        throw BadScene(fmt::format("command line: --nearby {}: is given twice; give solutions that differ", file));
-    nearby_.push_back(open(file, "--nearby"));
-    if (nearby_.back()->rows() != fields_->rows())
-      throw BadScene(
-          fmt::format("command line: --nearby {}: has {} rows, and the file of --fields has {}; give as many", file,
-                      nearby_.back()->rows(), fields_->rows()));
-  }
   rows_ = fields_->rows() - std::ranges::max(behind);
+}
+
+// A region that is asked for and holds no equation would pass for verified.
+void Verification::require_interiors() const {
+  std::mt19937_64 unused;
+  const RegionDrawer drawer(
+      system_, Tangent::solved_rows(system_, plan_, FormCheck::rows_wanted(system_, plan_, request_.regions)));
+  for (const RegionRequest& request : request_.regions)
+    if (!request.kind && !drawer.draw(request, unused))
+      throw scene_.settings.error("verify.regions", fmt::format("{} has no interior: every site of it is touched by a "
+                                                                "stencil that reaches out of it; make it larger",
+                                                                request.name.substr(request.name.find(' ') + 1)));
 }
 
 void Verification::choose_moments() {
@@ -147,17 +132,33 @@ void Verification::choose_moments() {
 }
 
 std::vector<LinearSymmetry> Verification::symmetries() const {
-  std::vector<LinearSymmetry> all;
-  const bool lagrangian = std::ranges::all_of(system_.families(), [](const auto& f) { return f->is_variational(); });
-  if (!lagrangian) return all;
-  all = simulation_.symmetries();
-  if (request_.generator.empty()) return all;
-  try {
-    all.push_back(read_generator(request_.generator, field_names(system_)));
-  } catch (const BadInput& bad) {
-    throw scene_.settings.located(bad);
+  std::vector<LinearSymmetry> all = simulation_.symmetries();
+  if (!request_.generator.empty()) {
+    try {
+      all.push_back(read_generator(request_.generator, field_names(system_)));
+    } catch (const BadInput& bad) {
+      throw scene_.settings.located(bad);
+    }
   }
+  if (!is_variational(system_)) all.clear();
   return all;
+}
+
+// Read beside the rows themselves; how many of them are held is known by now.
+void Verification::open_nearby(const std::string& fields, const std::vector<std::string>& nearby) {
+  const auto behind = slab_extent(system_, plan_).behind;
+  for (const std::string& file : nearby) {
+    // A difference that is zero, or the same twice, keeps the form whatever the rows are.
+    for (std::size_t n = 0; n <= nearby_.size(); ++n)
+      if (std::error_code unreadable; fs::equivalent(file, n == 0 ? fields : nearby[n - 1], unreadable))
+        throw BadScene(fmt::format("command line: --nearby {}: is given twice; give solutions that differ", file));
+    nearby_.push_back(
+        std::make_unique<NearbyRows>(file, system_, behind, scene_.problem.time_step, turn_, held_rows_, equations_));
+    if (nearby_.back()->rows() != fields_->rows())
+      throw BadScene(
+          fmt::format("command line: --nearby {}: has {} rows, and the file of --fields has {}; give as many", file,
+                      nearby_.back()->rows(), fields_->rows()));
+  }
 }
 
 Window Verification::window(std::int64_t first, std::int64_t last) const {
@@ -171,8 +172,13 @@ Verdict Verification::run() {
     if (!fields_) initial_.start(simulation_);
     pass_over_rows();
     if (!Interrupt::asked()) {
-      if (!fields_ && balance_) measure_order();
-      if (!fields_ && request_.wants("reversal")) try_reversal();
+      if (!fields_ && balance_) {
+        measure_orders(scene_, winding_, balance_->results(), balance_rows_, verdict_);
+        balance_.reset();
+      }
+      if (!fields_ && request_.wants("reversal"))
+        reverse_time(scene_, winding_, first_rows_, std::max(request_.tolerance, 100 * scene_.problem.tolerance),
+                     verdict_);
     }
   } catch (const NumericalFailure& error) {
     verdict_.status = dynamic_cast<const NotFinite*>(&error) ? "not-finite" : "no-convergence";
@@ -206,13 +212,7 @@ void Verification::take(std::vector<double> row) {
         static_cast<std::size_t>(system_.components())] += 0.01 * (most > 0 ? most : 1);
   }
   if (first_rows_.size() < 2) first_rows_.push_back(row);
-  if (balance_ && j < balance_rows_) {
-    const auto d = static_cast<std::size_t>(system_.fields()), C = static_cast<std::size_t>(system_.components());
-    std::vector<double> fields;
-    for (std::size_t n = 0; n < row.size(); ++n)
-      if (n % C < d) fields.push_back(row[n]);
-    balance_->add(j, fields);
-  }
+  if (balance_ && j < balance_rows_) balance_->add(j, fields_of(system_, row));
   held_.rows.push_back(std::move(row));
   if (static_cast<int>(held_.rows.size()) > held_rows_) {
     held_.rows.erase(held_.rows.begin());
@@ -223,6 +223,7 @@ void Verification::take(std::vector<double> row) {
     equations_->at(held_, middle);
     bins_->add(middle, equations_->newest(), system_.components());
   }
+  for (const auto& nearby : nearby_) nearby->take(j);
   if (next_moment_ < moments_.size() && j == moments_[next_moment_] + moment_rows_ - 1) {
     look_at_moment();
     ++next_moment_;
@@ -240,10 +241,7 @@ void Verification::look_at_moment() {
 }
 
 void Verification::look_at_symmetries(const Window& rows) {
-  // The last rows may lack multipliers: regions end where those of variations do.
-  const SlabExtent extent = slab_extent(system_, plan_);
-  const Range solved{Tangent::least_rows(system_, plan_) - 1 - extent.above - extent.equation_lag,
-                     moment_rows_ - 1 - extent.above - extent.equation_lag};
+  const Range solved = Tangent::solved_rows(system_, plan_, moment_rows_);
   const RegionDrawer drawer(system_, solved);
   for (const RegionRequest& request : request_.regions)
     if (const auto region = drawer.draw(request, random_)) {
@@ -254,17 +252,8 @@ void Verification::look_at_symmetries(const Window& rows) {
 
 void Verification::look_at_nearby(const Window& rows) {
   std::vector<Window> others;
-  for (const auto& file : nearby_) {
-    std::vector<std::vector<double>> values;
-    for (std::int64_t j = rows.first_row; j <= rows.last_row(); ++j) {
-      values.push_back(file->row(j));
-      const auto& of_fields = rows.rows[static_cast<std::size_t>(j - rows.first_row)];
-      for (std::size_t n = 0; n < of_fields.size(); ++n) values.back()[n] -= of_fields[n];
-    }
-    others.push_back(system_.window(rows.first_row, std::move(values), 0));
-  }
-  const SlabExtent extent = slab_extent(system_, plan_);
-  const RegionDrawer drawer(system_, {1, moment_rows_ - 1 - extent.above - extent.equation_lag});
+  for (const auto& nearby : nearby_) others.push_back(nearby->difference(rows));
+  const RegionDrawer drawer(system_, Tangent::solved_rows(system_, plan_, moment_rows_));
   for (const RegionRequest& request : request_.regions) {
     const auto region = drawer.draw(request, random_);
     if (!region) continue;
@@ -275,52 +264,6 @@ void Verification::look_at_nearby(const Window& rows) {
     near_->at(request.name, here, here.restricted(rows), pairs);
     verdict_.stencils += here.stencils();
   }
-}
-
-void Verification::measure_order() {
-  auto coarse = balance_->results();
-  try {
-    if (scene_.initial.name == "file") throw BadInput("initial.file", "rows of a file");
-    const Scene fine = refined(scene_);
-    const InitialRows initial(fine);
-    Simulation simulation = build(fine, winding_);
-    initial.start(simulation);
-    StressBalance balance(simulation.theory(), fine.problem.lattice, fine.problem.time_step, turn_);
-    ComputedRows source(simulation, 2 * (balance_rows_ - 1) + 1);
-    const auto d = static_cast<std::size_t>(system_.fields()), C = static_cast<std::size_t>(system_.components());
-    std::vector<double> fields;
-    for (std::int64_t j = 0; auto row = source.next(); ++j) {
-      fields.clear();
-      for (std::size_t n = 0; n < row->size(); ++n)
-        if (n % C < d) fields.push_back((*row)[n]);
-      balance.add(j, fields);
-      if (Interrupt::asked()) break;
-    }
-    verdict_.measured = with_orders(std::move(coarse), balance.results());
-  } catch (const Error& error) {
-    verdict_.measured = std::move(coarse);
-    leave_out(fmt::format("order of the balances: the scene cannot be run at half of its steps ({})", error.what()));
-  }
-  balance_.reset();
-}
-
-void Verification::try_reversal() {
-  const bool by_rows = simulation_.evolution().stepper().layout() != nullptr;
-  const std::int64_t most = most_updates / (by_rows ? 1 : 40) / system_.lattice().sites();
-  const std::int64_t steps = std::clamp<std::int64_t>(scene_.steps, 8, std::max<std::int64_t>(8, most));
-  const auto reversal = time_reversal([&] { return std::make_unique<Simulation>(build(scene_, winding_)); },
-                                      first_rows_, steps, std::max(request_.tolerance, 100 * scene_.problem.tolerance));
-  if (!reversal) return leave_out("time reversal: two rows of fields are not the whole state of this scheme");
-  verdict_.reversal = {reversal->steps, reversal->distance};
-  if (reversal->promised) verdict_.checks.push_back(reversal->check);
-  if (reversal->distance.empty()) return;
-  verdict_.measured.push_back(
-      {.name = "time reversal, distance",
-       .region = fmt::format("{} steps forward and back", reversal->steps.back()),
-       .value = reversal->distance.back(),
-       .remark = (std::isfinite(reversal->growth) ? fmt::format("grows like steps^{:.2g}", reversal->growth)
-                                                  : std::string("too few steps to see it grow")) +
-                 (reversal->promised ? "" : "; these equations change under t -> -t")});
 }
 
 void Verification::collect() {
@@ -353,15 +296,18 @@ void Verification::collect() {
     leave_out(
         "form formula with exact first variations: it holds at any rows, and would test the scheme, not the file");
   }
-  if (near_ && !moments_.empty() && near_->checks().empty())
+  if (near_ && !moments_.empty() && near_->checks().empty() && near_->left_out().empty())
     leave_out("form formula by differences: where regions were drawn, a nearby solution is the same as --fields");
-  if (near_) add(near_->checks());
-  else if (fields_) leave_out("form formula by differences: give two nearby solutions, --nearby A.h5 --nearby B.h5");
+  for (const auto& nearby : nearby_) add(nearby->checks());
+  if (near_) {
+    add(near_->checks());
+    for (const std::string& words : near_->left_out()) leave_out(words);
+  } else if (fields_) leave_out("form formula by differences: give two nearby solutions, --nearby A.h5 --nearby B.h5");
   if (noether_) add(noether_->checks());
   else if (request_.wants("noether")) {
-    const bool lagrangian = std::ranges::all_of(system_.families(), [](const auto& f) { return f->is_variational(); });
-    leave_out(lagrangian ? "Noether: the theory declares no symmetry of its fields; try one by verify.generator"
-                         : "Noether: the scheme has no Lagrangian");
+    leave_out(is_variational(system_)
+                  ? "Noether: the theory declares no symmetry of its fields; try one by verify.generator"
+                  : "Noether: the scheme has no Lagrangian");
   }
   if (!fields_ && request_.wants("derivatives")) add(check_derivatives(system_, seed()));
   add(std::move(later));

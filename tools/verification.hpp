@@ -15,7 +15,7 @@
 #include "schemes/verify/noether_check.hpp"
 #include "schemes/verify/stress_balance.hpp"
 #include "tools/initial_rows.hpp"
-#include "tools/progress.hpp"
+#include "tools/nearby_rows.hpp"
 #include "tools/recorded_section.hpp"
 #include "tools/residual_bins.hpp"
 #include "tools/section_source.hpp"
@@ -39,14 +39,14 @@ class Verification {
 
  private:
   void open_files(const std::string& fields, const std::vector<std::string>& nearby);
+  void open_nearby(const std::string& fields, const std::vector<std::string>& nearby);
+  void require_interiors() const;
   void choose_moments();
   void pass_over_rows();
   void take(std::vector<double> row);
   void look_at_moment();
   void look_at_nearby(const Window&);
   void look_at_symmetries(const Window&);
-  void measure_order();
-  void try_reversal();
   std::vector<LinearSymmetry> symmetries() const;
   Window window(std::int64_t first, std::int64_t last) const;
   void collect();
@@ -63,7 +63,7 @@ class Verification {
   const LatticeSystem& system_;
   const SolvePlan& plan_;
   std::unique_ptr<RecordedSection> fields_;
-  std::vector<std::unique_ptr<RecordedSection>> nearby_;
+  std::vector<std::unique_ptr<NearbyRows>> nearby_;
   std::mt19937_64 random_;
 
   std::optional<EquationCheck> equations_;

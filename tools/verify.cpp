@@ -18,14 +18,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Makes the folder, and takes away what an earlier verification left there.
+// What an earlier verification left there stays until there is something new.
 void prepare(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder))
     throw SystemFailure(fmt::format("{}: cannot be made ({}); choose another --out", folder.string(),
                                     error ? error.message() : "it is no directory"));
-  fs::remove(folder / "verify.json", error);
+}
+
+void remove_figures(const fs::path& folder) {
+  std::error_code error;
   for (const std::string& name : verdict_figure_names())
     for (const char* ending : {".png", ".svg"}) fs::remove(folder / "figures" / (name + ending), error);
 }
@@ -38,6 +41,7 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   prepare(folder);
   const Verdict verdict = verification.run();
   write_text_file(folder / "verify.json", verdict_json(scene, verdict));
+  remove_figures(folder);
   std::string missing;
   if (scene.figures) {
     try {

@@ -70,9 +70,7 @@ std::optional<Region> RegionDrawer::draw(const RegionRequest& request, std::mt19
 /// one at the edge of U may be interior to it.
 std::optional<Region> RegionDrawer::within(Region region) const {
   const Lattice& lattice = system_.lattice();
-  const auto outside = [&](const Site& site) {
-    return site.time < frame_.rows.first || site.time > frame_.rows.last;
-  };
+  const auto outside = [&](const Site& site) { return site.time < frame_.rows.first || site.time > frame_.rows.last; };
   while (std::ranges::any_of(region.interior(), outside)) {
     std::vector<Site> sites;
     for (const Site& site : region.sites())

@@ -12,8 +12,8 @@
 
 namespace delf {
 
-EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan, double tolerance)
-    : system_(system), tolerance_(tolerance), seen_(3) {
+EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan, double tolerance, int data_rows)
+    : system_(&system), tolerance_(tolerance), data_rows_(data_rows), seen_(3) {
   for (const auto& family : system.families()) {
     const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
     reach_ = std::max(reach_, high.time - low.time);
@@ -24,13 +24,14 @@ EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan,
   for (int i = 0; i < system.lattice().sites(); ++i)
     for (int c = 0; c < system.components(); ++c) {
       solved_.push_back(plan.solved(i, c));
+      shifts_.push_back(solved_.back() ? plan.shift(i, c) : 0);
       sorts_.push_back(sort_of(i, c));
     }
 }
 
 EquationCheck::Sort EquationCheck::sort_of(int site, int component) const {
-  if (system_.component(component).role == Role::multiplier) return constraint;
-  const Lattice& lattice = system_.lattice();
+  if (system_->component(component).role == Role::multiplier) return constraint;
+  const Lattice& lattice = system_->lattice();
   if (lattice.space() != Space::interval) return bulk;
   const bool end = (site == 0 && lattice.left() == Wall::natural) ||
                    (site == lattice.sites() - 1 && lattice.right() == Wall::natural);
@@ -41,9 +42,9 @@ EquationCheck::Sort EquationCheck::sort_of(int site, int component) const {
 double EquationCheck::size_of(const Window& window, std::int64_t row, int site, int component) const {
   double size = 0;
   std::vector<double> y, J;
-  for (const auto& touch : system_.touching({static_cast<int>(row & 1), site}, component)) {
-    const Cell cell = system_.gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space,
-                                     system_.time_step(), y);
+  for (const auto& touch : system_->touching({static_cast<int>(row & 1), site}, component)) {
+    const Cell cell = system_->gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space,
+                                      system_->time_step(), y);
     J.resize(y.size() * y.size());
     touch.family->jacobian(cell, y, J);
     for (std::size_t m = 0; m < y.size(); ++m)
@@ -58,28 +59,28 @@ int EquationCheck::largest_site(const Window& window, std::int64_t row, int comp
   double most = -1;
   int site = -1;
   for (std::int64_t j = row - reach_; j <= row + reach_; ++j)
-    for (int i = 0; i < system_.lattice().sites(); ++i)
-      for (int c = 0; c < system_.components(); ++c)
-        if (solved_[static_cast<std::size_t>(i * system_.components() + component)] &&
-            system_.component(c).role != Role::multiplier)
+    for (int i = 0; i < system_->lattice().sites(); ++i)
+      for (int c = 0; c < system_->components(); ++c)
+        if (solved_[static_cast<std::size_t>(i * system_->components() + component)] &&
+            system_->component(c).role != Role::multiplier)
           if (const double size = std::abs(window(j, i, c)); size > most) most = size, site = i;
   return site;
 }
 
 void EquationCheck::at(const Window& window, std::int64_t row) {
-  system_.equations(window, row, values_);
-  const auto C = static_cast<std::size_t>(system_.components());
+  system_->equations(window, row, values_);
+  const auto C = static_cast<std::size_t>(system_->components());
   std::array<double, 3> scale{};
-  for (int c = 0; c < system_.components(); ++c) {
+  for (int c = 0; c < system_->components(); ++c) {
     const int largest = largest_site(window, row, c);
     if (largest < 0) continue;
-    double& of = scale[system_.component(c).role == Role::multiplier ? constraint : bulk];
+    double& of = scale[system_->component(c).role == Role::multiplier ? constraint : bulk];
     of = std::max(of, size_of(window, row, largest, c));
   }
   scale[natural_end] = scale[bulk];  // ends are measured by the scale of the bulk
   newest_.assign(values_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t n = 0; n < values_.size(); ++n) {
-    if (!solved_[n]) continue;
+    if (!solved_[n] || row + shifts_[n] < data_rows_) continue;
     const double value = values_[n].sum == 0 ? 0 : std::abs(values_[n].sum) / scale[sorts_[n]];
     newest_[n] = value;
     Seen& seen = seen_[sorts_[n]];
@@ -92,11 +93,11 @@ void EquationCheck::at(const Window& window, std::int64_t row) {
       seen.first_site = std::min(seen.first_site, site);
       seen.last_site = std::max(seen.last_site, site);
     }
-    if (check.samples > 1 && value <= check.value) continue;
+    if (check.samples > 1 && !worse(value, check.value)) continue;
     check.value = value;
     check.normaliser = scale[sorts_[n]];
     const Node node{{0, site}, static_cast<int>(n % C)};
-    check.region = in_words(system_, node, row);
+    check.region = in_words(*system_, node, row);
   }
   ++rows_;
 }
@@ -109,7 +110,7 @@ std::vector<Check> EquationCheck::checks() const {
     check.count = check.samples;
     if (seen.failures > 0) {
       const std::string sites =
-          system_.lattice().sites() > 1 ? fmt::format(", sites {} to {}", seen.first_site, seen.last_site) : "";
+          system_->lattice().sites() > 1 ? fmt::format(", sites {} to {}", seen.first_site, seen.last_site) : "";
       const bool together = seen.last_row - seen.first_row <= 4 * reach_ && seen.last_site - seen.first_site <= 8;
       const bool few = static_cast<double>(seen.failures) < 0.05 * static_cast<double>(check.samples);
       check.failure = fmt::format(

@@ -15,7 +15,9 @@ namespace delf {
 /// values times coefficients, and where the field rests, or in a vacuum, the sum has no scale of its own.
 class EquationCheck {
  public:
-  EquationCheck(const LatticeSystem&, const SolvePlan&, double tolerance);
+  /// Rows 0 … data_rows − 1 are data, which a run was started from: equations that read no later row were never solved,
+  /// and are not asked.
+  EquationCheck(const LatticeSystem&, const SolvePlan&, double tolerance, int data_rows = 0);
 
   /// Rows before and after a row that its equations read.
   int reach() const { return reach_; }
@@ -39,12 +41,14 @@ class EquationCheck {
   double size_of(const Window&, std::int64_t row, int site, int component) const;
   int largest_site(const Window&, std::int64_t row, int component) const;
 
-  const LatticeSystem& system_;
+  const LatticeSystem* system_;
   double tolerance_;
+  int data_rows_;
   int reach_ = 1;
   std::vector<char> solved_;  ///< of each site and component: there is an equation
   std::vector<Sort> sorts_;
-  std::vector<Seen> seen_;  ///< one for each sort
+  std::vector<int> shifts_;  ///< rows from the equation up to the slab that solves it
+  std::vector<Seen> seen_;   ///< one for each sort
   std::vector<double> newest_;
   std::vector<LatticeSystem::Value> values_;
   std::int64_t rows_ = 0;

@@ -46,8 +46,9 @@ std::vector<Balance> symplectic_form(const LatticeSystem& system, const Window& 
 FormCheck::FormCheck(const LatticeSystem& system, const SolvePlan& plan, int rows, Options options)
     : system_(system),
       options_(std::move(options)),
-      variational_(std::ranges::all_of(system.families(), [](const auto& f) { return f->is_variational(); })),
+      variational_(is_variational(system)),
       tangent_(std::make_unique<Tangent>(system, plan, rows, options_.turn)),
+      solved_(Tangent::solved_rows(system, plan, rows)),
       forms_(options_.regions.size()),
       drawn_(options_.regions.size(), false) {
   for (std::size_t n = 0; n < forms_.size(); ++n)
@@ -68,8 +69,7 @@ void FormCheck::take(Check& check, const Balance& balance, const std::string& wh
   const double value = balance.relative();
   check.tolerance = tolerance;
   ++check.samples;
-  // A value that is not a number is the worst there is.
-  if (check.samples > 1 && !(value > check.value) && !(value != value)) return;
+  if (check.samples > 1 && !worse(value, check.value)) return;
   check.value = value;
   check.region = where;
   check.normaliser = balance.absolute;
@@ -84,7 +84,7 @@ void FormCheck::at(const Window& y, std::mt19937_64& random) {
   } catch (const NoConvergence& error) {
     no_evolution_ = error.what();
   }
-  const RegionDrawer drawer(system_, tangent_->solved_rows());
+  const RegionDrawer drawer(system_, solved_);
   for (std::size_t n = 0; n < options_.regions.size(); ++n) {
     const RegionRequest& request = options_.regions[n];
     const auto region = drawer.draw(request, random);
@@ -92,6 +92,7 @@ void FormCheck::at(const Window& y, std::mt19937_64& random) {
     drawn_[n] = true;
     const RegionSystem system(system_, *region, y.first_row, options_.turn);
     const auto values = system.restricted(y);
+    if (variational_) look_at_stencils(system, values, random);
     if (!evolved.empty()) {
       std::vector<RegionSystem::Values> restricted;
       for (const Window& V : evolved) restricted.push_back(system.restricted(V));
@@ -133,19 +134,26 @@ void FormCheck::look(const RegionRequest& request, const RegionSystem& system, c
       site.time += static_cast<int>(system.origin());
     }
   }
-  if (!variational_) return;
-  const auto defect = system.local_identity(y, pairs[0]);
+}
+
+/// ΣΩˡ = 0 whatever V and W are.
+void FormCheck::look_at_stencils(const RegionSystem& system, const RegionSystem::Values& y, std::mt19937_64& random) {
+  RegionSystem::Pair pair{RegionSystem::Values(system.nodes()), RegionSystem::Values(system.nodes())};
+  std::normal_distribution<double> normal;
+  for (auto* values : {&pair.V, &pair.W})
+    for (double& value : *values) value = normal(random);
+  const auto defect = system.local_identity(y, pair);
   Node anchor{defect.anchor, 0};
   take(local_, defect.balance, fmt::format("the stencil at {}", in_words(system_, anchor, system.origin())),
        options_.tolerance);
   if (!(defect.balance.relative() <= options_.tolerance) && local_.value == defect.balance.relative())
     local_.failure = fmt::format(
-        "The second derivatives of the stencil's Lagrangian are not symmetric at {}: of its value {} by its value {} "
+        "The second derivatives of the stencil's Lagrangian are not symmetric on {}: of its value {} by its value {} "
         "is "
         "not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the terms "
         "of "
         "these derivatives.",
-        local_.region.substr(4), defect.row, defect.column, defect.column, defect.row);
+        local_.region, defect.row, defect.column, defect.column, defect.row);
 }
 
 /// In words, and where: V is none, or the equations are those of no action.
@@ -175,7 +183,7 @@ std::string FormCheck::why(const RegionSystem& system, const RegionSystem::Value
 }
 
 void FormCheck::look_at_cuts(const Window& y, const std::vector<Window>& V) {
-  const Range solved = tangent_->solved_rows();
+  const Range solved = solved_;
   const std::int64_t first = y.first_row + solved.first, last = y.first_row + solved.last + 1;
   const auto at_first = symplectic_form(system_, y, V, first);
   for (std::int64_t cut = first + 1; cut <= last; ++cut) {

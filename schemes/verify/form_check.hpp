@@ -32,7 +32,7 @@ class FormCheck {
   /// Rows that windows must have.
   static int rows_wanted(const LatticeSystem&, const SolvePlan&, const std::vector<RegionRequest>&);
   /// Of a window, counted from its first row: where regions lie.
-  Range solved_rows() const { return tangent_->solved_rows(); }
+  Range solved_rows() const { return solved_; }
 
   /// Looks at one moment: consecutive rows of a section, every component at its own row, the first row even.
   void at(const Window&, std::mt19937_64&);
@@ -64,6 +64,7 @@ class FormCheck {
   void look(const RegionRequest&, const RegionSystem&, const RegionSystem::Values& y,
             std::vector<RegionSystem::Pair>& pairs, bool local);
   std::string why(const RegionSystem&, const RegionSystem::Values& y, const RegionSystem::Pair&) const;
+  void look_at_stencils(const RegionSystem&, const RegionSystem::Values& y, std::mt19937_64&);
   void look_at_cuts(const Window& y, const std::vector<Window>& V);
   /// Keeps the worst of a check's samples.
   static void take(Check&, const Balance&, const std::string& where, double tolerance);
@@ -72,6 +73,7 @@ class FormCheck {
   Options options_;
   bool variational_;
   std::unique_ptr<Tangent> tangent_;
+  Range solved_;
   std::vector<Check> forms_;  ///< one for each request
   std::vector<bool> drawn_;
   Check local_, cuts_;

@@ -55,12 +55,17 @@ void NearbyCheck::at(const std::string& kind, const RegionSystem& region, const 
   const double tolerance = std::max(tolerance_, next_power + rounding);
   const double value = std::abs(extrapolated(sizes, q));
 
-  const auto [found, fresh] =
-      worst_.try_emplace(kind, Check{.name = "form formula by differences, " + kind, .region = {}});
-  Check& check = found->second;
-  ++check.samples;
+  // Where they explain a tenth of the sum, nothing can be told any more.
+  if (!(tolerance < 0.1)) {
+    ++too_far_;
+    return;
+  }
+  const std::string name = "form formula by differences, " + kind;
+  auto found = std::ranges::find(worst_, name, &Check::name);
+  if (found == worst_.end()) found = worst_.insert(worst_.end(), Check{.name = name, .region = {}, .tolerance = 1});
+  Check& check = *found;
   // Tolerances differ from region to region: the worst is what passes least.
-  if (!fresh && value / tolerance <= check.value / check.tolerance) return;
+  if (check.samples++ > 0 && !worse(value / tolerance, check.value / check.tolerance)) return;
   check.value = value;
   check.tolerance = tolerance;
   check.normaliser = normaliser;
@@ -76,10 +81,14 @@ void NearbyCheck::at(const std::string& kind, const RegionSystem& region, const 
       check.region, value, tolerance);
 }
 
-std::vector<Check> NearbyCheck::checks() const {
-  std::vector<Check> result;
-  for (const auto& [kind, check] : worst_) result.push_back(check);
-  return result;
+std::vector<Check> NearbyCheck::checks() const { return worst_; }
+
+std::vector<std::string> NearbyCheck::left_out() const {
+  if (too_far_ == 0) return {};
+  return {
+      fmt::format("form formula by differences on {} region{}: the differences there are too large, or too small to "
+                  "be more than rounding, to stand for first variations",
+                  too_far_, too_far_ == 1 ? "" : "s")};
 }
 
 }  // namespace delf

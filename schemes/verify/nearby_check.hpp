@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <map>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,10 +24,14 @@ class NearbyCheck {
   void at(const std::string& kind, const RegionSystem&, const RegionSystem::Values& F,
           const std::vector<RegionSystem::Pair>& differences);
   std::vector<Check> checks() const;
+  /// What could not be told, in words.
+  std::vector<std::string> left_out() const;
 
  private:
   double tolerance_;
-  std::map<std::string, Check> worst_;  ///< by kind of region
+  std::vector<Check> worst_;  ///< one for each kind of region
+  std::int64_t too_far_ =
+      0;  ///< regions on which the differences are too large, or too much rounding, to tell anything
 };
 
 }  // namespace delf

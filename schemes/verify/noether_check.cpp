@@ -43,7 +43,7 @@ Check NoetherCheck::invariance(const LinearSymmetry& symmetry, std::mt19937_64& 
       Balance balance;
       for (std::size_t i = 0; i < r.size(); ++i) balance.add(r[i] * xi[i]);
       ++check.samples;
-      if (check.samples > 1 && balance.relative() <= check.value) continue;
+      if (check.samples > 1 && !worse(balance.relative(), check.value)) continue;
       check.value = balance.relative();
       check.normaliser = balance.absolute;
       check.count = balance.count;
@@ -57,7 +57,7 @@ void NoetherCheck::at(const RegionSystem& region, const RegionSystem::Values& y)
     if (!invariant_[n].passed() && !forced_) continue;
     const Balance balance = region.noether(y, symmetries_[n]);
     Check& check = sums_[n];
-    if (check.samples++ > 0 && balance.relative() <= check.value) continue;
+    if (check.samples++ > 0 && !worse(balance.relative(), check.value)) continue;
     check.value = balance.relative();
     check.normaliser = balance.absolute;
     check.count = balance.count;

@@ -25,7 +25,7 @@ RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int6
       region_(std::move(region)),
       origin_(origin),
       components_(system.components()),
-      variational_(std::ranges::all_of(system.families(), [](const auto& f) { return f->is_variational(); })),
+      variational_(is_variational(system)),
       kind_(region_.sites().size(), outside) {
   for (const Site site : region_.interior()) kind_[region_.place(site)] = inside;
   for (const Site site : region_.boundary()) kind_[region_.place(site)] = boundary;

@@ -25,7 +25,7 @@ Measured measured(const std::string& name, const BalanceLaw::Largest& largest, d
   m.normaliser = scale > 0 ? scale : 1;
   m.value = largest.value / m.normaliser;
   m.count = largest.count;
-  if (!measurable && energy > 0) m.remark = "there is no momentum: relative to energy";
+  if (!measurable && energy > 0 && !std::isnan(largest.scale)) m.remark = "there is no momentum: relative to energy";
   return m;
 }
 

@@ -44,18 +44,23 @@ struct Tangent::Parity {
 Tangent::~Tangent() = default;
 
 int Tangent::least_rows(const LatticeSystem& system, const SolvePlan& plan) {
+  const Range one = solved_rows(system, plan, 0);
+  return one.first - one.last + 1;
+}
+
+Range Tangent::solved_rows(const LatticeSystem& system, const SolvePlan& plan, int rows) {
+  // Slabs past … rows − 1 − above are solved, and an equation at row j is in one of slabs j − lead … j + lag.
   const SlabExtent extent = slab_extent(system, plan);
-  return extent.past() + extent.above + extent.equation_lag + 1;
+  return {extent.past() + extent.equation_lead, rows - 1 - extent.above - extent.equation_lag};
 }
 
 Tangent::Tangent(const LatticeSystem& system, const SolvePlan& plan, int rows, double turn)
     : system_(system), rows_(rows) {
   const SlabExtent extent = slab_extent(system, plan);
   data_ = extent.past();
-  future_ = extent.above;
-  lag_ = extent.equation_lag;
+  above_ = extent.above;
   for (int p = 0; p < plan.table.parities; ++p) {
-    SlabEquations equations(system, plan, p, data_, future_, turn);
+    SlabEquations equations(system, plan, p, data_, above_, turn);
     BlockSolver solver = equations.solver();
     parities_.push_back(std::make_unique<Parity>(Parity{std::move(equations), std::move(solver)}));
   }
@@ -77,7 +82,7 @@ std::vector<Window> Tangent::evolve(const Window& y, int count, std::mt19937_64&
 
   std::vector<std::vector<double>> E;
   std::vector<double> values, x, more, size_of_terms;
-  for (std::int64_t J = y.first_row + data_; J <= y.last_row() - future_; ++J) {
+  for (std::int64_t J = y.first_row + data_; J <= y.last_row() - above_; ++J) {
     Parity& p = *parities_[static_cast<std::size_t>(J) % parities_.size()];
     for (SectionRing& v : V)
       for (int n = 0; n < p.equations.size(); ++n) p.equations.value(v, J, n) = 0;

@@ -22,8 +22,8 @@ class Tangent {
 
   /// The least number of rows with a row in the middle on which all equations can hold.
   static int least_rows(const LatticeSystem&, const SolvePlan&);
-  /// Of a window, counted from its first row: where V solves the linearised equations, every component's.
-  Range solved_rows() const { return {data_, rows_ - 1 - future_ - lag_}; }
+  /// Of a window of `rows` rows, counted from its first: where V solves the linearised equations, every component's.
+  static Range solved_rows(const LatticeSystem&, const SolvePlan&, int rows);
 
   /// `count` of them on the rows of y; zero where values are data, at fixed walls. Where y itself solves the equations
   /// or not does not matter. Throws NoConvergence if a slab's linear equations are singular.
@@ -33,9 +33,8 @@ class Tangent {
   struct Parity;  ///< the equations of slabs of one parity, and their solver
   const LatticeSystem& system_;
   int rows_;
-  int data_ = 1;    ///< rows that V starts from
-  int future_ = 0;  ///< rows after row J that slab J holds unknowns of
-  int lag_ = 0;     ///< rows from an equation of slab J up to row J, at most
+  int data_ = 1;   ///< rows that V starts from
+  int above_ = 0;  ///< rows after row J that slab J holds unknowns of
   std::vector<std::unique_ptr<Parity>> parities_;
 };
 

@@ -187,18 +187,14 @@ Check check_of(const Reversal& reversal, double scale, std::size_t size, double 
   check.tolerance = tolerance, check.normaliser = scale;
   check.count = static_cast<std::int64_t>(2 * size);
   check.samples = static_cast<std::int64_t>(reversal.steps.size());
-  std::int64_t m = 0;
-  for (std::size_t n = 0; n < reversal.steps.size() && reversal.steps[n] <= 8; ++n)
-    m = reversal.steps[n], check.value = reversal.distance[n];
+  const std::int64_t m = reversal.steps.empty() ? 0 : reversal.steps.front();
+  check.value = reversal.distance.empty() ? std::numeric_limits<double>::quiet_NaN() : reversal.distance.front();
   check.region =
       fmt::format("rows {} and {}, after {} forward and as many back", first_row, first_row + 1, in_words(m));
   check.failure =
       fmt::format("the way back misses the start by {:.2g} of the field after {}: the scheme is not its own inverse",
                   check.value, in_words(m));
-  if (!failure.empty()) {
-    check.value = std::numeric_limits<double>::quiet_NaN();
-    check.failure = failure;
-  }
+  if (std::isnan(check.value) && !failure.empty()) check.failure = failure;
   return check;
 }
 
@@ -235,13 +231,14 @@ std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simula
   const Ends start = points.empty() ? Ends{} : points[0].rows;
   const double size = std::max(largest(start.earlier), largest(start.later)), scale = size > 0 ? size : 1;
   for (std::size_t n = 1; n < points.size(); ++n) {
-    std::string why;
+    const double distance = way_back(*make(), points[n], start, failure);
+    // A way of one step that fails is a failure; of longer ones it says that rounding has grown too far.
+    if (std::isnan(distance) && n > 1) break;
     reversal.steps.push_back(points[n].steps);
-    reversal.distance.push_back(way_back(*make(), points[n], start, why) / scale);
-    if (why.empty()) continue;
-    failure = why;
-    break;
+    reversal.distance.push_back(distance / scale);
+    if (std::isnan(distance)) break;
   }
+  reversal.end = failure;
   reversal.growth = slope(reversal.steps, reversal.distance);
   if (reversal.promised) reversal.check = check_of(reversal, scale, start.earlier.size(), tolerance, failure);
   return reversal;

@@ -29,7 +29,8 @@ struct Reversal {
   std::vector<double> distance;     ///< max |y − start| / max |start| after m steps forward and m back
   double growth =
       std::numeric_limits<double>::quiet_NaN();  ///< slope of log distance against log m, three points or more
-  Check check;                                   ///< of the largest m ≤ 8
+  Check check;                                   ///< of the smallest m: later distances are what rounding has grown to
+  std::string end;                               ///< why the distances end early, if they do
 };
 
 /// `make` gives fresh simulations that have not started; `start_rows` are rows 0 and 1 of all components, of which a

@@ -19,7 +19,7 @@ std::vector<Check> verify(const LatticeSystem& system, const SolvePlan& plan, co
     throw BadInput("run.steps", "verify: regions of this scheme take " + std::to_string(wanted) +
                                     " rows, and there are " + std::to_string(given) + "; give more");
 
-  EquationCheck equations(system, plan, options.tolerance);
+  EquationCheck equations(system, plan, options.tolerance, options.data_rows);
   for (std::int64_t row = rows.first_row + equations.reach(); row <= rows.last_row() - equations.reach(); ++row)
     equations.at(rows, row);
   std::vector<Check> checks = equations.checks();

@@ -15,6 +15,7 @@ struct VerifyOptions {
   int variations = 2;                      ///< pairs of V and W, of either sort, for each region
   std::uint64_t seed = 1;                  ///< of regions and variations
   std::vector<LinearSymmetry> symmetries;  ///< to try Noether's theorem with
+  int data_rows = 2;                       ///< rows from row 0 on that the run was started from
 };
 
 /// Everything that can be asked of some consecutive rows of a section at once: the field equations on every row that has

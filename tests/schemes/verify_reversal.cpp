@@ -137,11 +137,11 @@ TEST_CASE("the distances are those of 1, 2, 4 and so on steps, and of the whole 
   const auto reversal = there_and_back(sine_gordon("rectangle"), "breather", 21);
   REQUIRE(reversal);
   CHECK(reversal->steps == std::vector<std::int64_t>{1, 2, 4, 8, 16, 21});
-  CHECK(reversal->check.value == reversal->distance[3]);
+  CHECK(reversal->check.value == reversal->distance[0]);
   CHECK(std::isfinite(reversal->growth));
   const auto brief = there_and_back(sine_gordon("rectangle"), "breather", 2);
   REQUIRE(brief);
-  CHECK(brief->check.value == brief->distance[1]);
+  CHECK(brief->check.value == brief->distance[0]);
   CHECK(std::isnan(brief->growth));
 }
 
@@ -164,7 +164,7 @@ TEST_CASE("friction has no Lagrangian to excuse it: the way back misses the star
   CAPTURE(reversal->check.value, reversal->check.failure);
   CHECK_FALSE(reversal->check.passed());
   CHECK(reversal->check.value > 1e-4);
-  CHECK(reversal->check.failure.find("after 8 steps: the scheme is not its own inverse") != std::string::npos);
+  CHECK(reversal->check.failure.find("after 1 step: the scheme is not its own inverse") != std::string::npos);
 }
 
 TEST_CASE("the check can fail: another scheme on the way back, or another step, misses the start") {

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
+#include "schemes/nearest_name.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/failure.hpp"
 #include "tools/keys.hpp"
-#include "schemes/nearest_name.hpp"
 
 using namespace delf::testing;
 
 TEST_CASE("help, version and lists go to stdout and succeed") {
   const Folder folder;
-  for (const char* arguments : {"help", "--help", "-h", "help run", "run --help", "help plan", "list", "list theories",
-                                "list stencils", "list schemes", "list states", "list scenes", "--version"}) {
+  for (const char* arguments :
+       {"help", "--help", "-h", "help run", "run --help", "help plan", "help verify", "verify --help", "list",
+        "list theories", "list stencils", "list schemes", "list states", "list scenes", "--version"}) {
     const Ran ran = delf_program(folder, arguments);
     INFO(arguments);
     CHECK(ran.code == 0);
@@ -33,7 +34,8 @@ TEST_CASE("without a command the usage is shown, and that is not success") {
   const Ran ran = delf_program(folder, "");
   CHECK(ran.code == 2);
   CHECK(contains(ran.out, "delf run SCENE"));
-  CHECK_FALSE(contains(ran.out, "delf verify"));
+  CHECK(contains(ran.out, "delf verify SCENE"));
+  CHECK_FALSE(contains(ran.out, "delf stability"));
 }
 
 TEST_CASE("a command that is not there is refused in one line") {
@@ -48,7 +50,6 @@ TEST_CASE("a command that is not there is refused in one line") {
   };
   refused("rnu collision", "did you mean run?");
   refused("collision", "did you mean `delf run collision`?");
-  refused("verify collision", "comes in a later version");
   refused("workprecision collision", "comes in a later version");
   refused("stability collision", "comes in a later version");
   refused("run", "Name a scene file");

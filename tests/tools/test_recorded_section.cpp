@@ -5,6 +5,7 @@
 #include "schemes/evolution.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/python.hpp"
 #include "tools/engine.hpp"
 #include "tools/fields_file.hpp"
 #include "tools/recorded_section.hpp"
@@ -265,19 +266,12 @@ TEST_CASE("the rows of runs, read as sections, solve their equations") {
 
 TEST_CASE("the NumPy example solves the equations of its scene, and by Runge and Kutta it does not") {
   const Folder folder;
-  std::string python;
-  for (const char* candidate : {"python3", "/usr/bin/python3"})
-    if (python.empty() && shell(folder, std::string(candidate) + " -c 'import h5py, numpy'").code == 0)
-      python = candidate;
-  if (python.empty()) {
-    WARN("there is no Python with numpy and h5py: the example is not tested");
-    return;
-  }
+  const std::string with = python(folder);
   const std::string examples = DELF_SCENES_SOURCE "/../examples/";
   double step = 0;
   const delf::Simulation simulation = built(examples + "leapfrog.ini", step);
   const auto largest = [&](const std::string& method) {
-    const Ran ran = shell(folder, python + " '" + examples + "leapfrog.py' " + method + " " + method);
+    const Ran ran = shell(folder, with + " '" + examples + "leapfrog.py' " + method + " " + method);
     INFO(ran.err);
     REQUIRE(ran.code == 0);
     double worst = 0;

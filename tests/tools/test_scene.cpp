@@ -94,10 +94,10 @@ TEST_CASE("keys that have no effect are warned of, with their line, and stop not
   CHECK(scene_of(folder, small_scene("[theory]\nmass = 2\n[initial]\nspeed = 0.1\n")).warnings.empty());
 }
 
-TEST_CASE("keys of a later command are read, and ignored") {
+TEST_CASE("keys of verify are read, and mean nothing to a run") {
   const Folder folder;
-  const Scene scene =
-      scene_of(folder, small_scene("[verify]\nregions = 9\nvariations = 3\ntolerance = 1e-13\nchecks = all\n"));
+  const Scene scene = scene_of(
+      folder, small_scene("[verify]\nregions = slab, 0:4x2:9\nvariations = 3\ntolerance = 1e-13\nchecks = forms\n"));
   CHECK(scene.warnings.empty());
   CHECK_THROWS_AS(scene_of(folder, small_scene("[verify]\ntolerance = x\n")), BadScene);
 }

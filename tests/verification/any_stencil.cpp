@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <random>
@@ -12,7 +13,7 @@
 #include "schemes/lagrangian_family.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/random_stencil.hpp"
-#include "tests/verification/section_patch.hpp"
+#include "tests/verification/patch.hpp"
 
 using namespace delf;
 using namespace delf::testing;
@@ -53,14 +54,13 @@ std::vector<std::vector<double>> random_rows(Random& random, int rows, int sites
 }
 
 double form_defect(int seed, const Family& family) {
-  std::mt19937 random(static_cast<unsigned>(seed));
+  std::mt19937_64 random(static_cast<std::uint64_t>(seed));
   const Lattice lattice = ring(seed);
-  SectionPatch patch(random_region(random, lattice, FamilyList{family}, lattice.sites() - 3), {family}, h);
-  REQUIRE(patch.U.regular());
-  REQUIRE(patch.equations() > 0);
-  patch.y = random_vector(random, patch.size());
-  const auto V = patch.first_variation(random), W = patch.first_variation(random);
-  return patch.form_formula(V, W).relative();
+  Patch patch(lattice, {family}, h, random_centres(random, seam_or_wall(lattice)));
+  REQUIRE(patch.U().regular());
+  REQUIRE(!patch.on.equations().empty());
+  patch.y = random_values(random, patch.on.nodes());
+  return patch.form_formula(patch.variations(random)).relative();
 }
 
 }  // namespace

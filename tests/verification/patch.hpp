@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <Eigen/Dense>
-#include <cmath>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <random>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "jets/forms.hpp"
-#include "lattice/region.hpp"
+#include "lattice/region_shapes.hpp"
 #include "schemes/field_theory.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/theory_registry.hpp"
+#include "schemes/verify/region_system.hpp"
 #include "tests/verification/experiment.hpp"
 
 namespace delf::testing {
 
 using Family = std::shared_ptr<const StencilFamily>;
+using FamilyList = std::vector<Family>;
 
 inline Family make_family(const std::string& theory, const SchemeName& scheme, double h, double k) {
   for (const TheoryEntry* entry : theory_entries())
@@ -30,143 +33,162 @@ inline Family make_family(const std::string& theory, const SchemeName& scheme, d
   throw std::invalid_argument(theory);
 }
 
-inline Eigen::VectorXd random_vector(std::mt19937& random, Eigen::Index size) {
-  return Eigen::VectorXd::NullaryExpr(size, [&] { return std::normal_distribution<double>{}(random); });
+inline std::vector<StencilPattern> patterns(const FamilyList& families) {
+  std::vector<StencilPattern> result;
+  for (const Family& family : families) result.push_back(family->pattern());
+  return result;
 }
 
-/// What a sum left, beside the sum of its absolute values.
-struct Balance {
-  double sum = 0, absolute = 0;
+inline RegionSystem::Values random_values(std::mt19937_64& random, std::size_t size) {
+  RegionSystem::Values values(size);
+  for (double& value : values) value = std::normal_distribution<double>{}(random);
+  return values;
+}
 
-  void add(double term) { sum += term, absolute += std::abs(term); }
-  double relative() const { return std::abs(sum) / absolute; }
-};
-
-/// U = all stencils that touch some random sites of a small window, so that U is regular: a region with holes, steps
-/// and islands, across the seam of a circle or at the left wall of an interval.
-inline Region random_region(std::mt19937& random, const Lattice& lattice, const StencilPattern& pattern) {
-  const int first = lattice.is_circle() ? lattice.sites() - 3 : 0;
+/// Sites of four rows and the five columns from `first` on, each of `nodes` nodes of their cells: regions around them
+/// have holes, steps and islands.
+inline std::vector<Site> random_centres(std::mt19937_64& random, int first, int nodes = 1) {
   std::vector<Site> centres{{2, first + 2}};
   for (int time = 0; time < 4; ++time)
     for (int space = first; space < first + 5; ++space)
-      if (random() % 2) centres.push_back({time, space});
-  const Region around = Region::from_sites(lattice, {pattern}, centres);
-  std::vector<Site> sites;
-  for (const Site centre : around.sites())
-    for (const Stencil& s : around.touching(centre)) sites.insert(sites.end(), s.sites.begin(), s.sites.end());
-  return Region::from_sites(lattice, {pattern}, sites);
+      for (int node = 0; node < nodes; ++node)
+        if (random() % 2) centres.push_back({time, space, node});
+  return centres;
 }
+/// Across the seam of a circle or at the left wall of an interval.
+inline int seam_or_wall(const Lattice& lattice) { return lattice.is_circle() ? lattice.sites() - 3 : 0; }
 
-/// A field on a region U, with its equations on int U. Fields and variations are vectors over the sites of U.
-class Patch {
+/// A section of some families on a region.
+struct Patch {
+  Patch(FamilyList families, double h, const Region& region)
+      : system(std::make_shared<const LatticeSystem>(region.lattice(), std::move(families), h)),
+        on(*system, region),
+        y(on.nodes()) {}
+  /// Around some centres.
+  Patch(const Lattice& lattice, const FamilyList& families, double h, const std::vector<Site>& centres)
+      : Patch(families, h, region_around(lattice, patterns(families), centres)) {}
+
+  std::shared_ptr<const LatticeSystem> system;
+  RegionSystem on;
+  RegionSystem::Values y;
+
+  const Region& U() const { return on.region(); }
+  RegionSystem::Pair variations(std::mt19937_64& random) const {
+    auto drawn = on.first_variations(y, 2, random);
+    return {std::move(drawn[0]), std::move(drawn[1])};
+  }
+  Balance form_formula(const RegionSystem::Pair& pair) const { return on.form_formula(y, {&pair, 1}).front(); }
+};
+
+/// One field, and the sums of the papers over a set U of sites by plain loops over their definitions, with nothing of
+/// the library but the residual of one stencil and its Jacobian: what the library has to agree with. Values are in the
+/// order of the sites.
+class ByHand {
  public:
-  Patch(Region region, Family family, double time_step)
-      : U(std::move(region)), family_(std::move(family)), cell_{time_step, U.lattice().space_step(), 0, 0} {
-    for (const Site site : U.sites()) index_.emplace(site, static_cast<Eigen::Index>(index_.size()));
-    y = Eigen::VectorXd::Zero(size());
+  ByHand(const Lattice& lattice, Family family, double h, const std::vector<Site>& U, const std::vector<double>& y)
+      : family_(std::move(family)), n_(static_cast<std::size_t>(family_->size())) {
+    for (const Site site : std::set<Site>(U.begin(), U.end())) place_.emplace(site, place_.size());
+    const Cell cell{h, lattice.space_step(), 0, 0};
+    const int N = lattice.sites(), first = place_.begin()->first.time, last = place_.rbegin()->first.time;
+    std::set<std::size_t> touched, missed;  // by a stencil; by one that is not in U
+    for (int j = first - 2; j <= last + 2; ++j)
+      for (int i = lattice.is_circle() ? 0 : -2; i < (lattice.is_circle() ? N : N + 2); ++i) {
+        if (family_->pattern().placement == Placement::brick_wall && ((i + j) & 1)) continue;
+        bool in_lattice = true, in_U = true;
+        std::vector<std::size_t> sites;
+        for (const Site v : family_->pattern().vertices) {
+          Site site{j + v.time, i + v.space};
+          if (lattice.is_circle()) site.space = (site.space + N) % N;
+          in_lattice = in_lattice && site.space >= 0 && site.space < N;
+          if (place_.contains(site)) sites.push_back(place_.at(site));
+          else in_U = false;
+        }
+        if (!in_lattice) continue;
+        (in_U ? touched : missed).insert(sites.begin(), sites.end());
+        if (!in_U) continue;
+        Term term{sites, {}, std::vector<double>(n_), std::vector<double>(n_ * n_)};
+        for (const std::size_t site : sites) term.y.push_back(y[site]);
+        family_->residual(cell, term.y, term.r);
+        family_->jacobian(cell, term.y, term.J);
+        terms_.push_back(term);
+      }
+    for (const auto& [site, a] : place_)
+      if (touched.contains(a) && !missed.contains(a)) interior_.insert(a);
+    for (const Term& term : terms_)
+      for (const std::size_t b : term.sites)
+        if (interior_.contains(b))
+          for (const std::size_t a : term.sites)
+            if (!interior_.contains(a)) boundary_.insert(a);
   }
 
-  Region U;
-  Eigen::VectorXd y;
-
-  Eigen::Index size() const { return static_cast<Eigen::Index>(index_.size()); }
-  Eigen::Index index(Site site) const { return index_.at(site); }
-
-  std::vector<double> on(const Stencil& stencil, const Eigen::VectorXd& values) const {
-    std::vector<double> result;
-    for (const Site site : stencil.sites) result.push_back(values[index(site)]);
-    return result;
-  }
-  std::vector<double> residual(const Stencil& stencil) const {
-    std::vector<double> r(stencil.sites.size());
-    family_->residual(cell_, on(stencil, y), r);
-    return r;
-  }
-  std::vector<double> jacobian(const Stencil& stencil) const {
-    std::vector<double> J(stencil.sites.size() * stencil.sites.size());
-    family_->jacobian(cell_, on(stencil, y), J);
-    return J;
-  }
+  std::size_t index(Site site) const { return place_.at(site); }
+  const std::set<std::size_t>& interior() const { return interior_; }
+  const std::set<std::size_t>& boundary() const { return boundary_; }
 
   /// E_b = Σ_{l: Δˡ = b} rˡ for b in int U                                                               (5.2)
   Eigen::VectorXd equations() const {
-    Eigen::VectorXd E = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(U.interior().size()));
-    for (Eigen::Index b = 0; b < E.size(); ++b)
-      for (const Stencil& stencil : U.touching(U.interior()[static_cast<std::size_t>(b)]))
-        for (int l = 0; l < stencil.size(); ++l)
-          if (stencil.vertex(l) == U.interior()[static_cast<std::size_t>(b)])
-            E[b] += residual(stencil)[static_cast<std::size_t>(l)];
+    Eigen::VectorXd E = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(place_.size()));
+    for (const Term& term : terms_)
+      for (std::size_t l = 0; l < n_; ++l)
+        if (interior_.contains(term.sites[l])) E[row(term.sites[l])] += term.r[l];
     return E;
   }
-  /// ∂E_b/∂y_a for b in int U, a in U
+  /// ∂E_b/∂y_a for b in int U, a in U; the rows of all other b are zero.
   Eigen::MatrixXd linearised() const {
-    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(U.interior().size()), size());
-    for (Eigen::Index b = 0; b < M.rows(); ++b)
-      for (const Stencil& stencil : U.touching(U.interior()[static_cast<std::size_t>(b)])) {
-        const auto J = jacobian(stencil);
-        for (int l = 0; l < stencil.size(); ++l)
-          for (int m = 0; m < stencil.size(); ++m)
-            if (stencil.vertex(l) == U.interior()[static_cast<std::size_t>(b)])
-              M(b, index(stencil.vertex(m))) += J[static_cast<std::size_t>(l * stencil.size() + m)];
-      }
+    const auto size = static_cast<Eigen::Index>(place_.size());
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(size, size);
+    for (const Term& term : terms_)
+      for (std::size_t l = 0; l < n_; ++l)
+        for (std::size_t m = 0; m < n_ && interior_.contains(term.sites[l]); ++m)
+          M(row(term.sites[l]), row(term.sites[m])) += term.J[l * n_ + m];
     return M;
   }
-  /// A random solution of the linearised equations on int U.
-  Eigen::VectorXd first_variation(std::mt19937& random) const {
-    const Eigen::MatrixXd M = linearised();
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(M);
-    Eigen::VectorXd V = random_vector(random, size());
-    for (int refine = 0; refine < 3; ++refine) V -= solver.solve(M * V);
-    return V;
-  }
-  /// Newton's method on int U, from where y is to the nearest solution.
-  void solve() {
-    for (int n = 0; n < 30; ++n) {
-      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(linearised());
-      y -= solver.solve(equations());
-    }
-  }
 
-  /// Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} Ωˡ(V, W)                                                       (5.6)
-  Balance form_formula(const Eigen::VectorXd& V, const Eigen::VectorXd& W) const {
-    Balance balance;
-    for (const Stencil& stencil : U.boundary_stencils()) {
-      const auto J = jacobian(stencil), v = on(stencil, V), w = on(stencil, W);
-      for (int l = 0; l < stencil.size(); ++l)
-        if (U.in_boundary(stencil.vertex(l))) balance.add(multisymplectic_form(l, 1, J, v, w));
-    }
-    return balance;
+  /// Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} Ωˡ(V, W),  Ωˡ(V, W) = −Σ_m ∂²L/∂yˡ∂yᵐ (Vᵐ Wˡ − Wᵐ Vˡ)             (5.6)
+  double form_formula(const std::vector<double>& V, const std::vector<double>& W) const {
+    double sum = 0;
+    for (const Term& term : terms_)
+      for (std::size_t l = 0; l < n_; ++l)
+        for (std::size_t m = 0; m < n_ && boundary_.contains(term.sites[l]); ++m) {
+          const std::size_t a = term.sites[l], c = term.sites[m];
+          sum -= term.J[l * n_ + m] * (V[c] * W[a] - W[c] * V[a]);
+        }
+    return sum;
   }
   /// The same from equations alone, so that those without a Lagrangian can be asked too:
-  /// Σ_{b ∈ int U, a ∈ ∂U} (∂E_b/∂y_a)(W_a V_b − V_a W_b)
-  Balance defect(const Eigen::VectorXd& V, const Eigen::VectorXd& W) const {
-    Balance balance;
+  /// Σ_{b ∈ int U, a ∈ ∂U} ∂E_b/∂y_a (W_a V_b − V_a W_b)
+  double defect(const std::vector<double>& V, const std::vector<double>& W) const {
     const Eigen::MatrixXd M = linearised();
-    for (Eigen::Index n = 0; n < M.rows(); ++n) {
-      const Eigen::Index b = index(U.interior()[static_cast<std::size_t>(n)]);
-      for (const Site site : U.boundary()) {
-        const Eigen::Index a = index(site);
-        if (M(n, a) != 0) balance.add(M(n, a) * (W[a] * V[b] - V[a] * W[b]));
-      }
-    }
-    return balance;
+    double sum = 0;
+    for (const std::size_t b : interior_)
+      for (const std::size_t a : boundary_) sum += M(row(b), row(a)) * (W[a] * V[b] - V[a] * W[b]);
+    return sum;
   }
-  /// Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} Jˡ(ξ) for φ → φ + ε                                             (5.7)
-  Balance noether() const {
-    Balance balance;
-    for (const Stencil& stencil : U.boundary_stencils()) {
-      const auto r = residual(stencil);
-      const std::vector<double> xi(r.size(), 1.0);
-      for (int l = 0; l < stencil.size(); ++l)
-        if (U.in_boundary(stencil.vertex(l))) balance.add(momentum_map(l, 1, r, xi));
-    }
-    return balance;
+  /// Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} Jˡ(ξ),  Jˡ(ξ) = ∂L/∂yˡ ξ(yˡ),  for ξ(y) = slope · y + shift         (5.7)
+  double noether(double slope, double shift) const {
+    double sum = 0;
+    for (const Term& term : terms_)
+      for (std::size_t l = 0; l < n_; ++l)
+        if (boundary_.contains(term.sites[l])) sum += term.r[l] * (slope * term.y[l] + shift);
+    return sum;
   }
 
  private:
+  struct Term {
+    std::vector<std::size_t> sites;
+    std::vector<double> y, r, J;
+  };
+  static Eigen::Index row(std::size_t n) { return static_cast<Eigen::Index>(n); }
+
   Family family_;
-  Cell cell_;
-  std::map<Site, Eigen::Index> index_;
+  std::size_t n_;
+  std::map<Site, std::size_t> place_;
+  std::vector<Term> terms_;
+  std::set<std::size_t> interior_, boundary_;
 };
+inline ByHand by_hand(const Patch& patch) {
+  const LatticeSystem& system = *patch.system;
+  return {system.lattice(), system.families().front(), system.time_step(), patch.U().sites(), patch.y};
+}
 
 }  // namespace delf::testing

@@ -20,7 +20,7 @@
 #include "schemes/variational_family.hpp"
 #include "schemes/vertex_constraint.hpp"
 #include "tests/catch.hpp"
-#include "tests/verification/section_patch.hpp"
+#include "tests/verification/patch.hpp"
 
 using namespace delf;
 using namespace delf::testing;
@@ -133,44 +133,42 @@ FamilyList r_adaptive_families() {
           std::make_shared<LagrangianFamily<ArclengthConstraint>>(ArclengthConstraint{1.5})};
 }
 
-SectionPatch patch_on(std::mt19937& random, Region region, FamilyList families) {
-  SectionPatch patch(std::move(region), std::move(families), h);
-  REQUIRE(patch.U.regular());
-  REQUIRE(patch.equations() > 0);
-  patch.y = random_vector(random, patch.size());
+Patch filled(std::mt19937_64& random, Patch patch) {
+  REQUIRE(patch.U().regular());
+  REQUIRE(!patch.on.equations().empty());
+  patch.y = random_values(random, patch.on.nodes());
   return patch;
 }
-SectionPatch element_patch(std::mt19937& random, const FamilyList& families, int nodes) {
-  return patch_on(random, random_region(random, Lattice::circle(12, 12 * k), families, 9, nodes), families);
+Patch circle_patch(std::mt19937_64& random, const FamilyList& families, int nodes = 1) {
+  return filled(random, Patch(Lattice::circle(12, 12 * k), families, h, random_centres(random, 9, nodes)));
 }
-SectionPatch r_adaptive_patch(std::mt19937& random) {
-  const auto families = r_adaptive_families();
-  SectionPatch patch =
-      patch_on(random, random_region(random, Lattice::interval(12, 11 * k), families, 3), families);
+Patch r_adaptive_patch(std::mt19937_64& random) {
+  Patch patch =
+      filled(random, Patch(Lattice::interval(12, 11 * k), r_adaptive_families(), h, random_centres(random, 3)));
   std::uniform_real_distribution<double> shift(-0.3 * k, 0.3 * k);
-  for (Eigen::Index n = 0; n < patch.size(); ++n) {
-    const Node node = patch.nodes()[static_cast<std::size_t>(n)];
+  for (std::size_t n = 0; n < patch.y.size(); ++n) {
+    const Node node = patch.on.node(n);
     if (node.component == 1) patch.y[n] = k * node.site.space + shift(random);  // X ascends
   }
   return patch;
 }
-SectionPatch wave_map_patch(std::mt19937& random) {
-  const auto families = wave_map_families();
-  return patch_on(random, random_region(random, Lattice::circle(12, 12 * k), families, 9), families);
+
+/// One of the equations is that of this component.
+bool has_equation_of(const Patch& patch, int component) {
+  return std::ranges::any_of(patch.on.equations(),
+                             [&](std::size_t n) { return patch.on.node(n).component == component; });
 }
 
-double form_defect(std::mt19937& random, const SectionPatch& patch) {
-  const auto V = patch.first_variation(random), W = patch.first_variation(random);
-  return patch.form_formula(V, W).relative();
+double form_defect(std::mt19937_64& random, const Patch& patch) {
+  return patch.form_formula(patch.variations(random)).relative();
 }
 /// With V wrong at one node of ∂U, which breaks the linearised equations.
-double broken_defect(std::mt19937& random, const SectionPatch& patch) {
-  auto V = patch.first_variation(random);
-  const auto W = patch.first_variation(random);
-  const auto node = patch.coupling_node();
+double broken_defect(std::mt19937_64& random, const Patch& patch) {
+  auto pair = patch.variations(random);
+  const auto node = patch.on.coupling_node(patch.y);
   REQUIRE(node);
-  V[*node] += 0.01;
-  return patch.form_formula(V, W).relative();
+  pair.V[*node] += 0.01;
+  return patch.form_formula(pair).relative();
 }
 
 }  // namespace
@@ -223,13 +221,13 @@ TEST_CASE("the order of spacetime elements is that of their degree") {
 }
 
 TEST_CASE("elements satisfy the multisymplectic form formula on random unions of elements") {
-  std::mt19937 random(31);
+  std::mt19937_64 random(31);
   for (const auto& [degree_time, degree_space] : degrees)
     for (const TimeQuadrature quadrature : {TimeQuadrature::lobatto, TimeQuadrature::gauss}) {
       const auto families = element_families(degree_time, degree_space, quadrature);
       for (int trial = 0; trial < 8; ++trial) {
-        const SectionPatch patch = element_patch(random, families, degree_time * degree_space);
-        CAPTURE(degree_time, degree_space, patch.size(), patch.equations());
+        const Patch patch = circle_patch(random, families, degree_time * degree_space);
+        CAPTURE(degree_time, degree_space, patch.U().sites().size(), patch.on.equations().size());
         CHECK(form_defect(random, patch) < round_off);
         CHECK(broken_defect(random, patch) > 1e-6);
       }
@@ -237,40 +235,42 @@ TEST_CASE("elements satisfy the multisymplectic form formula on random unions of
 }
 
 TEST_CASE("elements satisfy the multisymplectic form formula on a slab of the circle") {
-  std::mt19937 random(37);
+  std::mt19937_64 random(37);
   const Lattice lattice = Lattice::circle(8, 8 * k);
   for (const auto& [degree_time, degree_space] : degrees)
     for (const TimeQuadrature quadrature : {TimeQuadrature::lobatto, TimeQuadrature::gauss}) {
       const auto families = element_families(degree_time, degree_space, quadrature);
       std::vector<Site> middle;  // two rows of elements meet there
       for (int i = 0; i < lattice.sites(); ++i) middle.push_back({1, i});
-      const SectionPatch patch = patch_on(random, region_around(lattice, families, middle), families);
-      CAPTURE(degree_time, degree_space, patch.size(), patch.equations());
+      const Patch patch = filled(random, Patch(lattice, families, h, middle));
+      CAPTURE(degree_time, degree_space, patch.U().sites().size(), patch.on.equations().size());
       // all nodes but those at the times 0 and 2
-      CHECK(patch.equations() == lattice.sites() * degree_space * (2 * degree_time - 1));
-      CHECK(patch.size() == lattice.sites() * degree_space * (2 * degree_time + 1));
+      CHECK(patch.on.equations().size() ==
+            static_cast<std::size_t>(lattice.sites() * degree_space * (2 * degree_time - 1)));
+      CHECK(patch.U().sites().size() ==
+            static_cast<std::size_t>(lattice.sites() * degree_space * (2 * degree_time + 1)));
       CHECK(form_defect(random, patch) < round_off);
       CHECK(broken_defect(random, patch) > 1e-6);
     }
 }
 
 TEST_CASE("the moving mesh with its arclength multiplier satisfies the multisymplectic form formula") {
-  std::mt19937 random(41);
+  std::mt19937_64 random(41);
   for (int trial = 0; trial < 20; ++trial) {
-    const SectionPatch patch = r_adaptive_patch(random);
-    CAPTURE(trial, patch.size(), patch.equations());
-    CHECK(std::ranges::any_of(patch.nodes(), [](const Node& node) { return node.component == 2; }));
+    const Patch patch = r_adaptive_patch(random);
+    CAPTURE(trial, patch.U().sites().size(), patch.on.equations().size());
+    CHECK(has_equation_of(patch, 2));
     CHECK(form_defect(random, patch) < round_off);
     CHECK(broken_defect(random, patch) > 1e-6);
   }
 }
 
 TEST_CASE("the wave map with its multiplier satisfies the multisymplectic form formula") {
-  std::mt19937 random(43);
+  std::mt19937_64 random(43);
   for (int trial = 0; trial < 20; ++trial) {
-    const SectionPatch patch = wave_map_patch(random);
-    CAPTURE(trial, patch.size(), patch.equations());
-    CHECK(std::ranges::any_of(patch.nodes(), [](const Node& node) { return node.component == 3; }));
+    const Patch patch = circle_patch(random, wave_map_families());
+    CAPTURE(trial, patch.U().sites().size(), patch.on.equations().size());
+    CHECK(has_equation_of(patch, 3));
     CHECK(form_defect(random, patch) < round_off);
     CHECK(broken_defect(random, patch) > 1e-6);
   }

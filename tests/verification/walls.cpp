@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "tests/catch.hpp"
 #include "tests/verification/experiment.hpp"
@@ -36,10 +39,8 @@ double error_at(const SchemeName& scheme, const Solution& solution, int cells, S
   const Problem p = problem_for(scheme, solution.theory, lattice, 0.5);
   StateRequest request;
   request.name = solution.name, request.theory = solution.theory;
-  if (request.name == "plane-wave")
-    request.wavenumber = 2;
-  else
-    request.position = solution.right == natural ? solution.length : 0;
+  if (request.name == "plane-wave") request.wavenumber = 2;
+  else request.position = solution.right == natural ? solution.length : 0;
   if (request.name == "breather") request.frequency = 0.6;
   if (request.name == "kink-kink") request.speed = 0.5, request.separation = 6;
   const int steps = static_cast<int>(std::lround(solution.until / p.time_step));
@@ -121,4 +122,48 @@ TEST_CASE("to rectangles a natural wall is a mirror, and a fixed wall one that c
 
 TEST_CASE("the mirror can fail: triangles are not symmetric under reflection") {
   CHECK(from_mirror_image({"triangle"}, natural) > 1e-3);
+}
+
+namespace {
+
+/// Of spacetime elements of degree 2, started by the discrete Legendre transform.
+double element_error_at(const Solution& solution, int cells) {
+  Problem p;
+  p.theory = solution.theory, p.method = "spacetime";
+  p.lattice = Lattice::interval(cells + 1, solution.length, solution.left, solution.right);
+  p.time_step = 0.5 * p.lattice.space_step();
+  StateRequest request;
+  request.name = solution.name, request.theory = solution.theory, request.wavenumber = 2;
+  const auto state = make_state(request, p.lattice);
+  Simulation simulation(p);
+  const auto sites = static_cast<std::size_t>(p.lattice.sites()), C = simulation.components().size();
+  std::vector<double> row(sites * C), velocity(sites * C), at_node(sites);
+  for (std::size_t c = 0; c < C; ++c) {
+    const Lattice shifted = p.lattice.shifted(simulation.components()[c].at.space * p.lattice.space_step());
+    state->values(0, shifted, at_node);
+    for (std::size_t i = 0; i < sites; ++i) row[i * C + c] = at_node[i];
+    state->velocities(0, shifted, at_node);
+    for (std::size_t i = 0; i < sites; ++i) velocity[i * C + c] = at_node[i];
+  }
+  simulation.start_legendre(row, velocity);
+  const auto steps = static_cast<std::int64_t>(std::lround(solution.until / p.time_step));
+  while (simulation.newest() < steps) simulation.step();
+  std::vector<double> newest(sites), exact(sites);
+  simulation.copy_row(0, newest);
+  state->values(static_cast<double>(steps) * p.time_step, p.lattice, exact);
+  double error = 0;
+  for (std::size_t i = 0; i < sites; ++i) error = std::max(error, std::abs(newest[i] - exact[i]));
+  return error;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "fixed and natural walls are of fourth order for elements of degree 2, whose nodes inside the first cell move") {
+  for (const Solution& solution : {nodes, crests, crest_node, node_crest}) {
+    const double order = std::log2(element_error_at(solution, 20) / element_error_at(solution, 40));
+    CAPTURE(solution.name, solution.left == natural, solution.right == natural, order);
+    CHECK(order > 3.8);
+    CHECK(order < 4.2);
+  }
 }
