@@ -149,10 +149,9 @@ void FormCheck::look_at_stencils(const RegionSystem& system, const RegionSystem:
   if (!(defect.balance.relative() <= options_.tolerance) && local_.value == defect.balance.relative())
     local_.failure = fmt::format(
         "The second derivatives of the stencil's Lagrangian are not symmetric on {}: of its value {} by its value {} "
-        "is "
-        "not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the terms "
-        "of "
-        "these derivatives.",
+        "is not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the "
+        "terms "
+        "of these derivatives.",
         local_.region, defect.row, defect.column, defect.column, defect.row);
 }
 
@@ -219,6 +218,10 @@ std::vector<std::string> FormCheck::left_out() const {
     if (!drawn_[n]) missing += (missing.empty() ? "" : ", ") + options_.regions[n].name;
   if (!missing.empty())
     words.push_back("form formula on regions of this kind, for which the lattice has no room: " + missing);
+  for (std::size_t n = 0; n < drawn_.size(); ++n)
+    if (drawn_[n] && forms_[n].samples == 0)
+      words.push_back(fmt::format("form formula, {}: more than {} nodes, and no evolved variations",
+                                  options_.regions[n].name, most_local));
   if (!no_evolution_.empty()) words.push_back("evolved variations: " + no_evolution_);
   if (!variational_) words.push_back("local identity and symplectic form: the scheme has no Lagrangian");
   return words;
