@@ -37,4 +37,9 @@ struct NotFinite : NumericalFailure {
   using NumericalFailure::NumericalFailure;
 };
 
+/// Sites of a mesh that moves would pass each other.
+struct MeshCrossing : NumericalFailure {
+  using NumericalFailure::NumericalFailure;
+};
+
 }  // namespace delf

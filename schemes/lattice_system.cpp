@@ -44,6 +44,8 @@ LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr
     if (family->pattern().placement == Placement::brick_wall) placement_ = Placement::brick_wall;
     const auto [least, most] = std::ranges::minmax(family->pattern().vertices, {}, &Site::space);
     width_ = std::max(width_, most.space - least.space);
+    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+    height_ = std::max(height_, high.time - low.time);
     if (!lattice_.is_circle() && most.space - least.space >= lattice_.sites())
       throw BadInput("lattice.stencil",
                      lattice_.space() == Space::point

@@ -24,6 +24,7 @@ struct Component {
   std::string name = "phi";
   Role role = Role::field;
   NodePosition at = {};  ///< in the cell, as fractions of h and k
+  bool position = false;  ///< of the sites themselves, which move: it grows along every row
 };
 /// d fields at the vertices: "phi", or "phi1", "phi2", …
 std::vector<Component> fields(int d);
@@ -80,6 +81,7 @@ class LatticeSystem {
   }
   double time_step() const { return time_step_; }
   int width() const { return width_; }  ///< the largest space offset between two sites of one equation
+  int height() const { return height_; }  ///< the same in time
   Placement placement() const { return placement_; }
   std::span<const std::shared_ptr<const StencilFamily>> families() const { return families_; }
 
@@ -136,7 +138,7 @@ class LatticeSystem {
   std::vector<std::shared_ptr<const StencilFamily>> families_;
   double time_step_;
   std::vector<Component> names_;
-  int width_ = 0;
+  int width_ = 0, height_ = 0;
   Placement placement_ = Placement::every_site;
 };
 

@@ -75,12 +75,8 @@ struct Simulation::Impl {
         system(evolution.system()),
         winding(p.winding) {
     // Stencils of more than two rows would need rows that are no longer held.
-    const bool two_rows = std::ranges::all_of(system.families(), [](const auto& family) {
-      const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
-      return high.time - low.time <= 1;
-    });
     for (const LinearSymmetry& s : symmetries)
-      if (two_rows) conserved_names.push_back(s.name);
+      if (system.height() <= 1) conserved_names.push_back(s.name);
   }
 
   const RowLayout& layout() const { return own_layout ? *own_layout : *stepper.layout(); }

@@ -33,6 +33,10 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (std::ranges::any_of(rows[r], [](double x) { return overflowed(std::abs(x)); }))
       throw NotFinite(fmt::format("row {} of the start is not finite", r));
+    if (const auto i = crossing(rows[r].data()))
+      throw BadInput("initial.file", fmt::format("sites {} and {} of the mesh are not in order in row {}; give rows in "
+                                                 "which the positions grow",
+                                                 *i, *i + 1, r));
     std::ranges::copy(rows[r], ring_->row(static_cast<std::int64_t>(r)));
   }
   J_ = static_cast<std::int64_t>(rows.size()) - 1 - future_;
@@ -73,10 +77,19 @@ void SlabStepper::seed(Parity& p, std::int64_t J) {
 }
 
 void SlabStepper::fail(std::int64_t J, const char* why) const {
-  throw NoConvergence(fmt::format(
-      "step {}, t = {:.6g}: the equations of the slab were not solved: {}; reduce lattice.courant or "
-      "lattice.time_step",
-      J, static_cast<double>(J) * system_.time_step(), why));
+  throw NoConvergence(
+      fmt::format("step {}, t = {:.6g}: the equations of the slab were not solved: {}; reduce lattice.courant or "
+                  "lattice.time_step",
+                  J, static_cast<double>(J) * system_.time_step(), why));
+}
+
+/// The first of two neighbouring sites that have passed each other in a row, where a component is the position of the
+/// sites: Newton's method is content with a tangled mesh, since the equations do not know which site comes first.
+std::optional<int> SlabStepper::crossing(const double* row) const {
+  for (int c = 0; c < components_; ++c)
+    for (int i = 0; system_.component(c).position && i + 1 < system_.lattice().sites(); ++i)
+      if (!(row[i * components_ + c] < row[(i + 1) * components_ + c])) return i;
+  return std::nullopt;
 }
 
 void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
@@ -125,6 +138,10 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
     before = change;
   }
   if (momenta) p.factored = false;
+  if (const auto i = crossing(ring_->row(J - lag_)))
+    throw MeshCrossing(fmt::format(
+        "step {}, t = {:.6g}: sites {} and {} of the mesh pass each other; reduce lattice.time_step or scheme.alpha", J,
+        static_cast<double>(J) * system_.time_step(), *i, *i + 1));
   ++known_;
 }
 

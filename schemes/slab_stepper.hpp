@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "lattice/solve_plan.hpp"
 #include "schemes/block_solver.hpp"
@@ -43,6 +44,7 @@ class SlabStepper final : public StepMethod {
   const Parity& parity(std::int64_t J) const { return parities_[static_cast<std::size_t>(J) % parities_.size()]; }
   void seed(Parity&, std::int64_t J);
   void solve(std::int64_t J, const std::vector<double>* momenta);
+  std::optional<int> crossing(const double* row) const;
   [[noreturn]] void fail(std::int64_t J, const char* why) const;
 
   const LatticeSystem& system_;

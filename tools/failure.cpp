@@ -11,6 +11,11 @@ ExitCode exit_code(const std::exception& error) {
   return ExitCode::system_failed;  // SystemFailure, std::bad_alloc, std::filesystem::filesystem_error, …
 }
 
+const char* status_of(const NumericalFailure& error) {
+  if (dynamic_cast<const NotFinite*>(&error)) return "not-finite";
+  return dynamic_cast<const MeshCrossing*>(&error) ? "mesh-crossing" : "no-convergence";
+}
+
 std::string error_line(const std::exception& error) {
   std::string line = error.what();
   if (dynamic_cast<const std::bad_alloc*>(&error)) line = "out of memory; ask for fewer sites or records";

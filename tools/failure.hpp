@@ -29,6 +29,8 @@ enum class ExitCode {
 
 /// The exit code of whatever was thrown.
 ExitCode exit_code(const std::exception&);
+/// What summary.json and verify.json call it: not-finite, mesh-crossing or no-convergence.
+const char* status_of(const NumericalFailure&);
 /// The one line that tells it on stderr.
 std::string error_line(const std::exception&);
 

@@ -89,7 +89,7 @@ void Stepping::record_and_step() {
 
 // The rows held are still the last good ones.
 void Stepping::fail(const NumericalFailure& error) {
-  outcome_.status = dynamic_cast<const NotFinite*>(&error) ? "not-finite" : "no-convergence";
+  outcome_.status = status_of(error);
   const std::string what = error.what();
   const std::string where = what.starts_with("step ")
                                 ? ""

@@ -181,7 +181,7 @@ Verdict Verification::run() {
                      verdict_);
     }
   } catch (const NumericalFailure& error) {
-    verdict_.status = dynamic_cast<const NotFinite*>(&error) ? "not-finite" : "no-convergence";
+    verdict_.status = status_of(error);
     failure_ = std::current_exception();
   }
   if (Interrupt::asked()) verdict_.status = "interrupted";

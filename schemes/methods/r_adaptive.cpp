@@ -18,7 +18,7 @@ SchemeParts build(const FieldTheory&, const Problem& p) {
                                     "lattice.space = interval and fixed walls");
   return {{std::make_shared<LagrangianFamily<MovingRectangle>>(MovingRectangle{}),
            std::make_shared<LagrangianFamily<ArclengthConstraint>>(ArclengthConstraint{p.alpha})},
-          {{"phi"}, {"X"}, {"lambda", Role::multiplier, {}}}};
+          {{"phi"}, {"X", Role::field, {}, true}, {"lambda", Role::multiplier, {}}}};
 }
 
 }  // namespace

@@ -12,17 +12,10 @@
 namespace delf {
 namespace {
 
-/// How far apart two sites of one equation are: the largest stencil's height and width.
 RegionFrame frame_of(const LatticeSystem& system, Range solved) {
-  RegionFrame frame{solved, 1, 1, 1};
-  for (const auto& family : system.families()) {
-    const auto& vertices = family->pattern().vertices;
-    const auto [low, high] = std::ranges::minmax(vertices, {}, &Site::time);
-    const auto [left, right] = std::ranges::minmax(vertices, {}, &Site::space);
-    frame.reach_time = std::max(frame.reach_time, high.time - low.time);
-    frame.reach_space = std::max(frame.reach_space, right.space - left.space);
-    for (const Site& vertex : vertices) frame.nodes = std::max(frame.nodes, vertex.node + 1);
-  }
+  RegionFrame frame{solved, std::max(1, system.height()), std::max(1, system.width()), 1};
+  for (const auto& family : system.families())
+    for (const Site& vertex : family->pattern().vertices) frame.nodes = std::max(frame.nodes, vertex.node + 1);
   return frame;
 }
 

@@ -14,10 +14,7 @@ namespace delf {
 
 EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan, double tolerance, int data_rows)
     : system_(&system), tolerance_(tolerance), data_rows_(data_rows), seen_(3) {
-  for (const auto& family : system.families()) {
-    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
-    reach_ = std::max(reach_, high.time - low.time);
-  }
+  reach_ = std::max(1, system.height());
   constexpr std::array names{"field equations", "field equations at natural ends", "constraints"};
   for (std::size_t n = 0; n < seen_.size(); ++n)
     seen_[n].check = {.name = names[n], .region = {}, .tolerance = tolerance};

@@ -149,8 +149,7 @@ void FormCheck::look_at_stencils(const RegionSystem& system, const RegionSystem:
   if (!(defect.balance.relative() <= options_.tolerance) && local_.value == defect.balance.relative())
     local_.failure = fmt::format(
         "The second derivatives of the stencil's Lagrangian are not symmetric on {}: of its value {} by its value {} "
-        "is not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the "
-        "terms "
+        "is not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the terms "
         "of these derivatives.",
         local_.region, defect.row, defect.column, defect.column, defect.row);
 }
@@ -176,8 +175,7 @@ std::string FormCheck::why(const RegionSystem& system, const RegionSystem::Value
         pair_of_nodes->b_by_a, pair_of_nodes->a_by_b,
         variational_ ? "The scheme is said to be variational: look at the derivatives of its Lagrangian."
                      : "The scheme comes from no Lagrangian, and nothing multisymplectic is conserved.");
-  return "The linearised equations hold and are those of an action on int U, and still the terms at the boundary do "
-         "not "
+  return "The linearised equations hold and are those of an action on int U, and still the terms at the boundary do not "
          "cancel: a stencil that touches the boundary has a residual that is the gradient of no Lagrangian.";
 }
 
@@ -196,8 +194,7 @@ void FormCheck::look_at_cuts(const Window& y, const std::vector<Window>& V) {
   }
   if (!cuts_.passed())
     cuts_.failure = fmt::format(
-        "The symplectic form of two first variations changes {}: the step is no symplectic map, or its linearisation "
-        "is "
+        "The symplectic form of two first variations changes {}: the step is no symplectic map, or its linearisation is "
         "not that of the equations.",
         cuts_.region);
 }

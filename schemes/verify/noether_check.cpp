@@ -19,8 +19,7 @@ NoetherCheck::NoetherCheck(const LatticeSystem& system, std::vector<LinearSymmet
     Check& check = invariant_.back();
     if (!check.passed())
       check.failure = fmt::format(
-          "{} is not a symmetry: along it the Lagrangian changes by {:.2g} of its terms. Noether's theorem owes "
-          "nothing "
+          "{} is not a symmetry: along it the Lagrangian changes by {:.2g} of its terms. Noether's theorem owes nothing "
           "for it{}.",
           symmetry.name, check.value, forced ? ", and the sums below were asked for all the same" : "");
   }

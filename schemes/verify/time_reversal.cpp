@@ -22,16 +22,6 @@ using Values = std::vector<LatticeSystem::Value>;
 
 // ---- the equations
 
-/// How many rows the equations at one row may read, before it and after it each.
-int reach(const LatticeSystem& system) {
-  int most = 0;
-  for (const auto& family : system.families()) {
-    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
-    most = std::max(most, high.time - low.time);
-  }
-  return most;
-}
-
 Rows random_rows(const LatticeSystem& system, int count, double amplitude, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   Rows rows(static_cast<std::size_t>(count),
@@ -69,8 +59,7 @@ bool all_finite(const Values& values) {
 /// A scheme without a Lagrangian has nothing else that could be said for it when it loses its way.
 bool must_return(const LatticeSystem& system) {
   constexpr std::uint64_t seed = 20260117;
-  return reversible(system, seed) ||
-         std::ranges::any_of(system.families(), [](const auto& family) { return !family->is_variational(); });
+  return reversible(system, seed) || !is_variational(system);
 }
 
 // ---- rows of fields
@@ -201,7 +190,7 @@ Check check_of(const Reversal& reversal, double scale, std::size_t size, double 
 }  // namespace
 
 bool reversible(const LatticeSystem& system, std::uint64_t seed) {
-  const int rows = 2 * reach(system) + 1;
+  const int rows = 2 * system.height() + 1;
   const std::int64_t first_mirrored = system.placement() == Placement::brick_wall ? 1 : 0;
   // Fields of order one suit most densities; where one is not defined there, smaller ones do.
   for (double amplitude = 2; amplitude > 1e-8; amplitude /= 10) {

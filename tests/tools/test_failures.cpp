@@ -53,6 +53,37 @@ TEST_CASE("an implicit step that cannot be solved ends with exit code 3") {
   CHECK(lines(read(folder / "hard/series.csv")).size() >= 2);
 }
 
+TEST_CASE("a mesh that crosses itself ends with exit code 3, and the last mesh in order is saved") {
+  const Folder folder;
+  const Ran ran = delf_program(folder,
+                               "run r-adaptive --lattice.time_step=0.2 --run.steps=100 --output.every=1 "
+                               "--output.figures=off --out out");
+  INFO(ran.err);
+  CHECK(ran.code == 3);
+  CHECK(contains(ran.err, "of the mesh pass each other"));
+  CHECK(status(folder, "out") == "mesh-crossing");
+  const FieldsReader fields(folder / "out/fields.h5");
+  const auto last = fields.row(fields.frames() - 1);  // phi, X site by site
+  for (std::size_t n = 1; n + 2 < last.size(); n += 2) CHECK(last[n] < last[n + 2]);
+}
+
+TEST_CASE("a mesh that is not in order from the start is bad input") {
+  const Folder folder;
+  std::string rows = "row,site,phi,X\n";
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 5; ++i)
+      rows += std::to_string(j) + "," + std::to_string(i) + ",0," + std::to_string(i == 2 && j == 1 ? 3.5 : i) + "\n";
+  folder.write("rows.csv", rows);
+  const std::string scene = folder.write("scene.ini",
+                                         "[theory]\nname = sine-gordon\n[lattice]\nspace = interval\nlength = 4\n"
+                                         "sites = 5\ntime_step = 0.01\n[scheme]\nmethod = r-adaptive\n"
+                                         "[initial]\nstate = file\nfile = rows.csv\n[run]\nsteps = 3\n");
+  const Ran ran = delf_program(folder, "run " + scene);
+  INFO(ran.err);
+  CHECK(ran.code == 2);
+  CHECK(contains(ran.err, "sites 2 and 3 of the mesh are not in order in row 1"));
+}
+
 TEST_CASE("an interrupted run writes all so far, and ends with exit code 130") {
   const Folder folder;
   const auto signal = GENERATE(as<std::string>(), "INT", "TERM");

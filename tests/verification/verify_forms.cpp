@@ -32,7 +32,7 @@ Window random_window(const LatticeSystem& system, const std::string& theory, int
   for (auto& row : values)
     for (int i = 0; i < system.lattice().sites(); ++i)
       for (int c = 0; c < system.components(); ++c) {
-        const bool position = system.component(c).name == "X";
+        const bool position = system.component(c).position;
         const double k = system.lattice().space_step();
         if (position) row.push_back((i + 0.2 * uniform(random)) * k);  // a mesh that does not cross
         else if (theory == "kepler") row.push_back(c % 2 == 0 ? 1.5 + 0.5 * uniform(random) : 0.5 * uniform(random));
