@@ -26,10 +26,7 @@ void prepare(const fs::path& folder, const Scene& scene) {
   for (const char* name : {"fields.h5", "series.csv"})
     if (scene.initial.name == "file" && fs::equivalent(scene.initial_file, folder / name, error))
       throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
-    throw SystemFailure(fmt::format("{}: cannot be made ({}); choose another --out", folder.string(),
-                                    error ? error.message() : "it is no directory"));
+  make_results_folder(folder);
   std::vector<fs::path> earlier;
   for (const char* name : {"summary.json", "series.csv", "fields.h5", "scene.ini"}) earlier.push_back(folder / name);
   for (const std::string& name : figure_names())

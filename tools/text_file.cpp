@@ -34,4 +34,12 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
   file.close();
 }
 
+void make_results_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder))
+    throw SystemFailure(fmt::format("{}: cannot be made ({}); choose another --out", folder.string(),
+                                    error ? error.message() : "it is no directory"));
+}
+
 }  // namespace delf

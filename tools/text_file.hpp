@@ -21,6 +21,9 @@ class TextFile {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 
+/// A folder for results, made if it is not there. Throws SystemFailure.
+void make_results_folder(const std::filesystem::path&);
+
 /// The whole file at once.
 void write_text_file(const std::filesystem::path&, std::string_view);
 

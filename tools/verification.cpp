@@ -60,10 +60,12 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   verdict_.subject = fields ? "rows of " + *fields : "rows computed here";
   if (fields) open_files(*fields, nearby);
 
+  moment_rows_ = FormCheck::rows_wanted(system_, plan_, request.regions);
+  drawer_.emplace(system_, Tangent::solved_rows(system_, plan_, moment_rows_));
   const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
   if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows());
   if (request.wants("forms") && (!fields || request.chosen))
-    forms_.emplace(system_, plan_, FormCheck::rows_wanted(system_, plan_, request.regions),
+    forms_.emplace(system_, plan_, moment_rows_,
                    FormCheck::Options{request.regions, request.variations, request.tolerance, turn_,
                                       request.fault == "variation"});
   if (const auto all = symmetries(); request.wants("noether")) {
@@ -90,17 +92,14 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
 // A region that is asked for and holds no equation would pass for verified.
 void Verification::require_interiors() const {
   std::mt19937_64 unused;
-  const RegionDrawer drawer(
-      system_, Tangent::solved_rows(system_, plan_, FormCheck::rows_wanted(system_, plan_, request_.regions)));
   for (const RegionRequest& request : request_.regions)
-    if (!request.kind && !drawer.draw(request, unused))
+    if (!request.kind && !drawer_->draw(request, unused))
       throw scene_.settings.error("verify.regions", fmt::format("{} has no interior: every site of it is touched by a "
                                                                 "stencil that reaches out of it; make it larger",
                                                                 request.name.substr(request.name.find(' ') + 1)));
 }
 
 void Verification::choose_moments() {
-  moment_rows_ = FormCheck::rows_wanted(system_, plan_, request_.regions);
   if (!fields_) rows_ = std::max<std::int64_t>(scene_.steps + 1, moment_rows_);
   const std::int64_t reach = equations_ ? equations_->reach() : 1;
   if (rows_ < 2 * reach + 1)
@@ -233,29 +232,18 @@ void Verification::take(std::vector<double> row) {
 void Verification::look_at_moment() {
   const Window rows = window(moments_[next_moment_], held_.last_row());
   if (forms_) forms_->at(rows, random_);
-  if (noether_) look_at_symmetries(rows);
+  if (noether_) noether_->at(rows, *drawer_, request_.regions, random_);
   if (near_) look_at_nearby(rows);
   if (!fields_ && request_.wants("newton") && next_moment_ + 1 == moments_.size()) {
     if (auto check = check_newton(system_, plan_, rows, seed())) verdict_.checks.push_back(std::move(*check));
   }
 }
 
-void Verification::look_at_symmetries(const Window& rows) {
-  const Range solved = Tangent::solved_rows(system_, plan_, moment_rows_);
-  const RegionDrawer drawer(system_, solved);
-  for (const RegionRequest& request : request_.regions)
-    if (const auto region = drawer.draw(request, random_)) {
-      const RegionSystem here(system_, *region, rows.first_row, turn_);
-      noether_->at(here, here.restricted(rows));
-    }
-}
-
 void Verification::look_at_nearby(const Window& rows) {
   std::vector<Window> others;
   for (const auto& nearby : nearby_) others.push_back(nearby->difference(rows));
-  const RegionDrawer drawer(system_, Tangent::solved_rows(system_, plan_, moment_rows_));
   for (const RegionRequest& request : request_.regions) {
-    const auto region = drawer.draw(request, random_);
+    const auto region = drawer_->draw(request, random_);
     if (!region) continue;
     const RegionSystem here(system_, *region, rows.first_row, turn_);
     std::vector<RegionSystem::Pair> pairs;

@@ -46,7 +46,6 @@ class Verification {
   void take(std::vector<double> row);
   void look_at_moment();
   void look_at_nearby(const Window&);
-  void look_at_symmetries(const Window&);
   std::vector<LinearSymmetry> symmetries() const;
   Window window(std::int64_t first, std::int64_t last) const;
   void collect();
@@ -68,6 +67,7 @@ class Verification {
 
   std::optional<EquationCheck> equations_;
   std::optional<FormCheck> forms_;
+  std::optional<RegionDrawer> drawer_;  ///< in the rows of a moment
   std::optional<NoetherCheck> noether_;
   std::optional<NearbyCheck> near_;
   std::optional<StressBalance> balance_;

@@ -18,15 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What an earlier verification left there stays until there is something new.
-void prepare(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
-    throw SystemFailure(fmt::format("{}: cannot be made ({}); choose another --out", folder.string(),
-                                    error ? error.message() : "it is no directory"));
-}
-
 void remove_figures(const fs::path& folder) {
   std::error_code error;
   for (const std::string& name : verdict_figure_names())
@@ -38,7 +29,7 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   const Interrupt interrupt;
   const VerifyRequest request = read_verify_request(scene);
   Verification verification(scene, request, fields, nearby);
-  prepare(folder);
+  make_results_folder(folder);  // what an earlier one left there stays until there is something new
   const Verdict verdict = verification.run();
   write_text_file(folder / "verify.json", verdict_json(scene, verdict));
   remove_figures(folder);

@@ -52,6 +52,12 @@ struct Check {
   std::string failure = {};  ///< what a failure means and where it is, in words; for those that passed it is not read
 
   bool passed() const { return value <= tolerance; }
+  /// One more sample: true if it is the worst so far, and what the check tells from now on.
+  bool take(const Balance& balance, const std::string& where) {
+    if (samples++ > 0 && !worse(balance.relative(), value)) return false;
+    value = balance.relative(), normaliser = balance.absolute, count = balance.count, region = where;
+    return true;
+  }
 };
 
 /// A quantity that is measured because no theorem promises it: there is nothing to pass.

@@ -50,26 +50,35 @@ double EquationCheck::size_of(const Window& window, std::int64_t row, int site, 
   return size;
 }
 
-/// Where a field or a node is largest in the rows that the equations read, of the sites that have the component's
-/// equation; −1 if none has.
-int EquationCheck::largest_site(const Window& window, std::int64_t row, int component) const {
-  double most = -1;
-  int site = -1;
+/// The largest field or node at each site, of the rows that the equations read.
+void EquationCheck::find_sizes(const Window& window, std::int64_t row) {
+  sizes_.assign(static_cast<std::size_t>(system_->lattice().sites()), 0.0);
   for (std::int64_t j = row - reach_; j <= row + reach_; ++j)
     for (int i = 0; i < system_->lattice().sites(); ++i)
       for (int c = 0; c < system_->components(); ++c)
-        if (solved_[static_cast<std::size_t>(i * system_->components() + component)] &&
-            system_->component(c).role != Role::multiplier)
-          if (const double size = std::abs(window(j, i, c)); size > most) most = size, site = i;
+        if (system_->component(c).role != Role::multiplier) {
+          double& size = sizes_[static_cast<std::size_t>(i)];
+          size = std::max(size, std::abs(window(j, i, c)));
+        }
+}
+
+/// Where that is largest, of the sites that have the component's equation; −1 if none has.
+int EquationCheck::largest_site(int component) const {
+  int site = -1;
+  for (int i = 0; i < system_->lattice().sites(); ++i)
+    if (solved_[static_cast<std::size_t>(i * system_->components() + component)] &&
+        (site < 0 || sizes_[static_cast<std::size_t>(i)] > sizes_[static_cast<std::size_t>(site)]))
+      site = i;
   return site;
 }
 
 void EquationCheck::at(const Window& window, std::int64_t row) {
   system_->equations(window, row, values_);
   const auto C = static_cast<std::size_t>(system_->components());
+  find_sizes(window, row);
   std::array<double, 3> scale{};
   for (int c = 0; c < system_->components(); ++c) {
-    const int largest = largest_site(window, row, c);
+    const int largest = largest_site(c);
     if (largest < 0) continue;
     double& of = scale[system_->component(c).role == Role::multiplier ? constraint : bulk];
     of = std::max(of, size_of(window, row, largest, c));

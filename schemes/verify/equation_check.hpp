@@ -39,7 +39,8 @@ class EquationCheck {
   };
   Sort sort_of(int site, int component) const;
   double size_of(const Window&, std::int64_t row, int site, int component) const;
-  int largest_site(const Window&, std::int64_t row, int component) const;
+  void find_sizes(const Window&, std::int64_t row);
+  int largest_site(int component) const;
 
   const LatticeSystem* system_;
   double tolerance_;
@@ -49,7 +50,7 @@ class EquationCheck {
   std::vector<Sort> sorts_;
   std::vector<int> shifts_;  ///< rows from the equation up to the slab that solves it
   std::vector<Seen> seen_;   ///< one for each sort
-  std::vector<double> newest_;
+  std::vector<double> sizes_, newest_;
   std::vector<LatticeSystem::Value> values_;
   std::int64_t rows_ = 0;
 };

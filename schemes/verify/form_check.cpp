@@ -65,17 +65,6 @@ int FormCheck::rows_wanted(const LatticeSystem& system, const SolvePlan& plan,
   return Tangent::least_rows(system, plan) - 1 + solved;
 }
 
-void FormCheck::take(Check& check, const Balance& balance, const std::string& where, double tolerance) {
-  const double value = balance.relative();
-  check.tolerance = tolerance;
-  ++check.samples;
-  if (check.samples > 1 && !worse(value, check.value)) return;
-  check.value = value;
-  check.region = where;
-  check.normaliser = balance.absolute;
-  check.count = balance.count;
-}
-
 void FormCheck::at(const Window& y, std::mt19937_64& random) {
   const int count = 2 * options_.pairs;
   std::vector<Window> evolved;
@@ -117,13 +106,13 @@ void FormCheck::look(const RegionRequest& request, const RegionSystem& system, c
   const auto balances = system.form_formula(y, pairs);
   stencils_ += system.stencils();
   std::size_t worst = 0;
+  bool shown = false;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     if (!(balances[p].relative() <= balances[worst].relative())) worst = p;
-    take(check, balances[p], where, options_.tolerance);
+    if (check.take(balances[p], where)) shown = true;
   }
   const double value = balances[worst].relative();
   points_.push_back({request.name, system.stencils(), value, local});
-  const bool shown = check.region == where && check.value == value;
   if (!(value <= options_.tolerance) && shown) check.failure = why(system, y, pairs[worst]);
   if (!(value <= worst_.value)) {
     worst_ = {value, request.name + ", " + where,           system.region().sites(), {},
@@ -144,12 +133,12 @@ void FormCheck::look_at_stencils(const RegionSystem& system, const RegionSystem:
     for (double& value : *values) value = normal(random);
   const auto defect = system.local_identity(y, pair);
   Node anchor{defect.anchor, 0};
-  take(local_, defect.balance, fmt::format("the stencil at {}", in_words(system_, anchor, system.origin())),
-       options_.tolerance);
-  if (!(defect.balance.relative() <= options_.tolerance) && local_.value == defect.balance.relative())
+  if (local_.take(defect.balance, fmt::format("the stencil at {}", in_words(system_, anchor, system.origin()))) &&
+      !local_.passed())
     local_.failure = fmt::format(
         "The second derivatives of the stencil's Lagrangian are not symmetric on {}: of its value {} by its value {} "
-        "is not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the terms "
+        "is not that of {} by {}. A residual like this is the gradient of no Lagrangian; look at the sign and the "
+        "terms "
         "of these derivatives.",
         local_.region, defect.row, defect.column, defect.column, defect.row);
 }
@@ -175,13 +164,13 @@ std::string FormCheck::why(const RegionSystem& system, const RegionSystem::Value
         pair_of_nodes->b_by_a, pair_of_nodes->a_by_b,
         variational_ ? "The scheme is said to be variational: look at the derivatives of its Lagrangian."
                      : "The scheme comes from no Lagrangian, and nothing multisymplectic is conserved.");
-  return "The linearised equations hold and are those of an action on int U, and still the terms at the boundary do not "
+  return "The linearised equations hold and are those of an action on int U, and still the terms at the boundary do "
+         "not "
          "cancel: a stencil that touches the boundary has a residual that is the gradient of no Lagrangian.";
 }
 
 void FormCheck::look_at_cuts(const Window& y, const std::vector<Window>& V) {
-  const Range solved = solved_;
-  const std::int64_t first = y.first_row + solved.first, last = y.first_row + solved.last + 1;
+  const std::int64_t first = y.first_row + solved_.first, last = y.first_row + solved_.last + 1;
   const auto at_first = symplectic_form(system_, y, V, first);
   for (std::int64_t cut = first + 1; cut <= last; ++cut) {
     const auto here = symplectic_form(system_, y, V, cut);
@@ -189,12 +178,13 @@ void FormCheck::look_at_cuts(const Window& y, const std::vector<Window>& V) {
       Balance change = here[p];
       change.sum -= at_first[p].sum;
       change.absolute = std::max(here[p].absolute, at_first[p].absolute);
-      take(cuts_, change, fmt::format("between rows {} and {}", first, cut), options_.tolerance);
+      cuts_.take(change, fmt::format("between rows {} and {}", first, cut));
     }
   }
   if (!cuts_.passed())
     cuts_.failure = fmt::format(
-        "The symplectic form of two first variations changes {}: the step is no symplectic map, or its linearisation is "
+        "The symplectic form of two first variations changes {}: the step is no symplectic map, or its linearisation "
+        "is "
         "not that of the equations.",
         cuts_.region);
 }

@@ -66,8 +66,6 @@ class FormCheck {
   std::string why(const RegionSystem&, const RegionSystem::Values& y, const RegionSystem::Pair&) const;
   void look_at_stencils(const RegionSystem&, const RegionSystem::Values& y, std::mt19937_64&);
   void look_at_cuts(const Window& y, const std::vector<Window>& V);
-  /// Keeps the worst of a check's samples.
-  static void take(Check&, const Balance&, const std::string& where, double tolerance);
 
   const LatticeSystem& system_;
   Options options_;

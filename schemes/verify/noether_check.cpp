@@ -19,7 +19,8 @@ NoetherCheck::NoetherCheck(const LatticeSystem& system, std::vector<LinearSymmet
     Check& check = invariant_.back();
     if (!check.passed())
       check.failure = fmt::format(
-          "{} is not a symmetry: along it the Lagrangian changes by {:.2g} of its terms. Noether's theorem owes nothing "
+          "{} is not a symmetry: along it the Lagrangian changes by {:.2g} of its terms. Noether's theorem owes "
+          "nothing "
           "for it{}.",
           symmetry.name, check.value, forced ? ", and the sums below were asked for all the same" : "");
   }
@@ -41,12 +42,7 @@ Check NoetherCheck::invariance(const LinearSymmetry& symmetry, std::mt19937_64& 
       generator(system_, *family, symmetry, y, xi);
       Balance balance;
       for (std::size_t i = 0; i < r.size(); ++i) balance.add(r[i] * xi[i]);
-      ++check.samples;
-      if (check.samples > 1 && !worse(balance.relative(), check.value)) continue;
-      check.value = balance.relative();
-      check.normaliser = balance.absolute;
-      check.count = balance.count;
-      check.region = fmt::format("{} random jets of each stencil family", jets);
+      check.take(balance, fmt::format("{} random jets of each stencil family", jets));
     }
   return check;
 }
@@ -54,19 +50,24 @@ Check NoetherCheck::invariance(const LinearSymmetry& symmetry, std::mt19937_64& 
 void NoetherCheck::at(const RegionSystem& region, const RegionSystem::Values& y) {
   for (std::size_t n = 0; n < symmetries_.size(); ++n) {
     if (!invariant_[n].passed() && !forced_) continue;
-    const Balance balance = region.noether(y, symmetries_[n]);
     Check& check = sums_[n];
-    if (check.samples++ > 0 && !worse(balance.relative(), check.value)) continue;
-    check.value = balance.relative();
-    check.normaliser = balance.absolute;
-    check.count = balance.count;
-    check.region = in_words(region.region(), region.origin(), region.stencils());
+    if (!check.take(region.noether(y, symmetries_[n]), in_words(region.region(), region.origin(), region.stencils())))
+      continue;
     check.failure = fmt::format("What flows into {} is not what flows out: {:.2g} of the momenta of {} is left. {}",
                                 check.region, check.value, symmetries_[n].name,
                                 invariant_[n].passed()
                                     ? "The Lagrangian has this symmetry, so the field equations do not hold there."
                                     : "The Lagrangian does not have this symmetry.");
   }
+}
+
+void NoetherCheck::at(const Window& rows, const RegionDrawer& drawer, const std::vector<RegionRequest>& regions,
+                      std::mt19937_64& random) {
+  for (const RegionRequest& request : regions)
+    if (const auto region = drawer.draw(request, random)) {
+      const RegionSystem here(system_, *region, rows.first_row, rows.turn);
+      at(here, here.restricted(rows));
+    }
 }
 
 std::vector<Check> NoetherCheck::checks() const {

@@ -6,6 +6,7 @@
 
 #include "jets/symmetry.hpp"
 #include "schemes/verify/check.hpp"
+#include "schemes/verify/drawn_region.hpp"
 #include "schemes/verify/region_system.hpp"
 
 namespace delf {
@@ -18,6 +19,8 @@ class NoetherCheck {
   NoetherCheck(const LatticeSystem&, std::vector<LinearSymmetry>, double tolerance, bool forced, std::uint64_t seed);
 
   void at(const RegionSystem&, const RegionSystem::Values& y);
+  /// On a region of each kind that is asked for and has room, drawn in these rows.
+  void at(const Window& rows, const RegionDrawer&, const std::vector<RegionRequest>&, std::mt19937_64&);
   std::vector<Check> checks() const;
 
  private:

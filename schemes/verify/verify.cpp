@@ -32,12 +32,7 @@ std::vector<Check> verify(const LatticeSystem& system, const SolvePlan& plan, co
   add(forms.checks());
 
   NoetherCheck noether(system, options.symmetries, options.tolerance, false, options.seed);
-  const RegionDrawer drawer(system, forms.solved_rows());
-  for (const RegionRequest& request : regions)
-    if (const auto region = drawer.draw(request, random)) {
-      const RegionSystem here(system, *region, rows.first_row, rows.turn);
-      noether.at(here, here.restricted(rows));
-    }
+  noether.at(rows, RegionDrawer(system, forms.solved_rows()), regions, random);
   add(noether.checks());
   return checks;
 }
