@@ -3,6 +3,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <utility>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 namespace delf {
 
@@ -18,11 +22,13 @@ inline constexpr int lanes = 2;
 /// (inside a Dual) as just another number. Mathematical functions are in jets/pack_math.hpp.
 struct Pack {
   using Vector = double __attribute__((vector_size(sizeof(double) * lanes)));
+  using Bits = long long __attribute__((vector_size(sizeof(double) * lanes)));
+  static constexpr long long sign_bit = static_cast<long long>(1ull << 63);
   Vector v;
 
   Pack() = default;
   constexpr Pack(Vector vector) : v(vector) {}
-  constexpr Pack(double x) : v(Vector{} + x) {}
+  constexpr Pack(double x) : v(x - Vector{}) {}  // not Vector{} + x: −0 + 0 is +0
 
   /// From and to memory aligned to a whole pack.
   static Pack load(const double* p) { return Pack{*reinterpret_cast<const Aliased*>(p)}; }
@@ -44,22 +50,61 @@ struct Pack {
 };
 
 inline Pack abs(Pack a) {
-  return {a.v < 0 ? -a.v : a.v};
+  return {reinterpret_cast<Pack::Vector>(reinterpret_cast<Pack::Bits>(a.v) & ~Pack::sign_bit)};
 }
+
+namespace detail {
+// The larger or smaller of two, and b if either is NaN: what one instruction gives. (Compilers find it in a > b ? a : b
+// for some instruction sets only. Masks of all lanes spare gcc a warning about its own headers.)
+inline Pack larger(Pack a, Pack b) {
+#if defined(__AVX512F__)
+  return {_mm512_maskz_max_pd(0xff, a.v, b.v)};
+#elif defined(__AVX__)
+  return {_mm256_max_pd(a.v, b.v)};
+#elif defined(__SSE2__)
+  return {_mm_max_pd(a.v, b.v)};
+#else
+  return {a.v > b.v ? a.v : b.v};
+#endif
+}
+inline Pack smaller(Pack a, Pack b) {
+#if defined(__AVX512F__)
+  return {_mm512_maskz_min_pd(0xff, a.v, b.v)};
+#elif defined(__AVX__)
+  return {_mm256_min_pd(a.v, b.v)};
+#elif defined(__SSE2__)
+  return {_mm_min_pd(a.v, b.v)};
+#else
+  return {a.v < b.v ? a.v : b.v};
+#endif
+}
+}  // namespace detail
+
 /// The larger of two; a NaN in either stays a NaN, so that a maximum over a row shows it.
 inline Pack max_or_nan(Pack a, Pack b) {
-  const Pack::Vector larger = a.v > b.v ? a.v : b.v;
-  return {a.v == a.v ? larger : a.v};
+#if defined(__AVX512F__)
+  return {_mm512_mask_max_pd(a.v, _mm512_cmp_pd_mask(a.v, a.v, _CMP_ORD_Q), a.v, b.v)};
+#else  // all bits set is a NaN
+  return {reinterpret_cast<Pack::Vector>(reinterpret_cast<Pack::Bits>(detail::larger(a, b).v) | (a.v != a.v))};
+#endif
 }
 inline double sum(Pack a) {
   double s = 0;
   for (int l = 0; l < lanes; ++l) s += a[l];
   return s;
 }
+
+namespace detail {
+template <int by, int... l>
+inline Pack rotated(Pack a, std::integer_sequence<int, l...>) {
+  return {__builtin_shufflevector(a.v, a.v, ((l + by) % lanes)...)};
+}
+}  // namespace detail
 inline double max_or_nan(Pack a) {
-  double m = a[0];
-  for (int l = 1; l < lanes; ++l) m = (a[l] > m || a[l] != a[l]) ? a[l] : m;
-  return m;
+  constexpr auto all = std::make_integer_sequence<int, lanes>();
+  if constexpr (lanes > 4) a = max_or_nan(a, detail::rotated<4>(a, all));
+  if constexpr (lanes > 2) a = max_or_nan(a, detail::rotated<2>(a, all));
+  return max_or_nan(a, detail::rotated<1>(a, all))[0];
 }
 
 }  // namespace delf

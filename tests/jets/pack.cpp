@@ -37,6 +37,7 @@ TEST_CASE("a pack is loaded and stored lane by lane") {
     CHECK(to[2 * lanes + l] == from[lanes + l]);
     CHECK(to[lanes + l] == 0);
     CHECK(Pack(2.5)[l] == 2.5);
+    CHECK(std::signbit(Pack(-0.0)[l]));
   }
 }
 
@@ -70,6 +71,22 @@ TEST_CASE("max_or_nan is the larger, and a NaN in any lane of either stays one")
     CHECK(std::isnan(max_or_nan(with(a, l, not_a_number))));
     CHECK(std::isnan(abs(with(a, l, not_a_number))[l]));
   }
+}
+
+TEST_CASE("the maximum over lanes is found wherever it is") {
+  for (int l = 0; l < lanes; ++l) {
+    CHECK(max_or_nan(with(ramp(-1, -0.5), l, 3)) == 3);
+    CHECK(max_or_nan(with(Pack(-7.0), l, -6)) == -6);
+    CHECK(max_or_nan(with(Pack(-std::numeric_limits<double>::infinity()), l, -1e300)) == -1e300);
+    for (int other = 0; other < lanes; ++other)
+      CHECK(std::isnan(
+          max_or_nan(with(with(Pack(1.0), l, std::numeric_limits<double>::infinity()), other, not_a_number))));
+  }
+}
+
+TEST_CASE("abs clears the sign, that of -0 too") {
+  CHECK_FALSE(std::signbit(abs(Pack(-0.0))[lanes - 1]));
+  CHECK(abs(Pack(-std::numeric_limits<double>::infinity()))[0] == std::numeric_limits<double>::infinity());
 }
 
 TEST_CASE("a running maximum over a row shows a NaN wherever it was, and a plain maximum loses it") {
