@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <Eigen/Dense>
-#include <Eigen/SparseLU>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -11,16 +9,26 @@
 namespace delf {
 
 /// A square matrix of fixed structure, solved block by block: the strongly connected components of its graph, each after
-/// those that it needs. Small blocks are dense, large ones sparse.
+/// those that it needs. Small blocks are dense. Large ones are block tridiagonal by sites where they can be, round the
+/// circle or not, and sparse where not.
 class BlockSolver {
  public:
+  /// Where rows and columns belong on a line or a circle; nothing if that is not known.
+  struct Sites {
+    std::vector<int> of_row, of_column;
+  };
+
   /// `places`: (row, column) of each entry. With `matched`, row n is solved for column n, and the blocks are found from
   /// that; without, all is one block. A place that is not `present` is zero whatever its value says.
-  BlockSolver(int n, const std::vector<std::pair<int, int>>& places, const std::vector<char>& present, bool matched);
+  BlockSolver(int n, const std::vector<std::pair<int, int>>& places, const std::vector<char>& present, bool matched,
+              const Sites& sites = {});
+  ~BlockSolver();
+  BlockSolver(BlockSolver&&) noexcept;
+  BlockSolver& operator=(BlockSolver&&) noexcept;
 
   /// False if a block is singular. `values` in the order of places.
   bool factor(const std::vector<double>& values);
-  /// x = A⁻¹ b
+  /// x = A⁻¹ b. Allocates nothing but where a large block is sparse.
   void solve(const std::vector<double>& b, std::vector<double>& x) const;
 
   int blocks() const { return static_cast<int>(blocks_.size()); }
@@ -29,25 +37,32 @@ class BlockSolver {
   std::size_t bytes() const;
   std::string name() const;
 
- private:
   struct Entry {
     int row, column, place;  ///< row and column within the block, or column of the whole
   };
+
+ private:
+  struct Large;
   struct Block {
-    std::vector<int> members;
-    std::vector<Entry> inside, outside;
-    Eigen::PartialPivLU<Eigen::MatrixXd> dense;
-    std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> sparse;
-    Eigen::SparseMatrix<double> matrix;
-    std::vector<int> where;  ///< of the inside entries, in matrix.valuePtr()
+    int first = 0, size = 0;                   ///< into members_
+    std::size_t inside = 0, inside_end = 0;    ///< into inside_
+    std::size_t outside = 0, outside_end = 0;  ///< into outside_
+    std::size_t factors = 0;                   ///< into factors_, if it is dense
+    int large = -1;                            ///< into large_, if not
   };
   static constexpr int largest_dense = 24;
 
+  void list_entries(int n, const std::vector<std::pair<int, int>>& places, const std::vector<char>& present);
+  bool factor_dense(const Block&, const std::vector<double>& values);
+  void solve_dense(const Block&) const;
+
   std::vector<Block> blocks_;
-  std::vector<double> values_;
+  std::vector<int> members_, pivots_;
+  std::vector<Entry> inside_, outside_;
+  std::vector<double> values_, factors_;
+  std::vector<std::unique_ptr<Large>> large_;
   int largest_ = 0;
-  bool factored_ = false;
-  mutable Eigen::VectorXd part_;
+  mutable std::vector<double> part_;
 };
 
 }  // namespace delf

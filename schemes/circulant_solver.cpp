@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/circulant_solver.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -13,65 +14,125 @@ CirculantSolver::CirculantSolver(const RowLayout& layout, double centre, double 
   q_ = 2 * ratio / (1 + std::sqrt(1 - 4 * ratio * ratio));
   scale_ = (1 + q_ * q_) / centre;
   double power = q_;
-  for (int v = 0; v < layout.packs() && std::abs(power) > 1e-19; ++v, power *= q_) powers_.push_back(power);
-  double all = 1;
+  for (int v = 0; v < layout.packs() && std::abs(power) > 1e-19; ++v, power *= q_) forward_.push_back(power);
   for (int l = 0; l < lanes; ++l) {
     const int before = (l + lanes - 1) % lanes;
     gap_[l] = layout.start(l) + (l == 0 ? layout.sites() : 0) - layout.start(before) - 1;
-    entering_[l] = std::pow(q_, gap_[l] + 1);
-    all *= entering_[l];
   }
-  closing_ = 1 / (1 - all);
+  near_ = static_cast<int>(forward_.size());
+  // Arcs overlap by at most two sites or so: the index that the arc before needs is small.
+  const int deepest = layout.packs() - 1 - *std::ranges::min_element(gap_);
+  near_ = std::min(layout.packs(), near_ + deepest);
+  while (static_cast<int>(forward_.size()) < near_) forward_.push_back(0);
+  build_closure();
+}
+
+/// With e_l what the recurrence from nothing leaves at the site before arc l, U_l the true value there; and with s_l what
+/// it leaves of x at the site after arc l, found in arc m = l + 1 at the index j_m, X_l the true value:
+///
+///     U_l = e_l + q^(gap_l + 1) U_{l−1}
+///     X_l = s_m + K_m U_m + q^(M − j_m) X_m,      K_m = Σ_{i ≥ j_m} q^(i − j_m) q^(i + 1)
+void CirculantSolver::build_closure() {
+  const int M = layout_->packs();
+  using Square = Eigen::Matrix<double, lanes, lanes>;
+  Square U = Square::Identity(), X = Square::Identity(), next = Square::Zero(), K = Square::Zero();
+  backward_ = RowBuffer(*layout_, 1);
+  for (int l = 0; l < lanes; ++l) {
+    const int before = (l + lanes - 1) % lanes, j = M - 1 - gap_[l];
+    U(l, before) -= std::pow(q_, gap_[l] + 1);
+    X(before, l) -= std::pow(q_, M - j);
+    next(before, l) = 1;
+    double power = 1;
+    for (int v = j; v < near_; ++v, power *= q_) {
+      backward_.row(0)[layout_->at(v) + l] = power;
+      K(l, l) += power * forward_[static_cast<std::size_t>(v)];
+    }
+  }
+  const Square from_ends = U.inverse(), from_sums = X.inverse() * next, both = from_sums * K * from_ends;
+  for (int m = 0; m < lanes; ++m)
+    for (int l = 0; l < lanes; ++l) {
+      const auto at = static_cast<std::size_t>(m);
+      u_from_ends_[at].v[l] = from_ends(l, m);
+      x_from_sums_[at].v[l] = from_sums(l, m);
+      x_from_ends_[at].v[l] = both(l, m);
+    }
+}
+
+namespace {
+
+/// u_i = r_i/c + q u_{i−1}
+struct Recurrence {
+  double q;
+  double* u;
+  Pack last = 0.0;
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack r) {
+    last = r + q * last;
+    last.store(u + at);
+  }
+};
+/// The same near the ends of arcs, with Σ weight · u.
+struct SummedRecurrence {
+  Recurrence recurrence;
+  const double* weights;
+  Pack sums = 0.0;
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack r) {
+    recurrence(at, r);
+    sums += Pack::load(weights + at) * recurrence.last;
+  }
+};
+
+}  // namespace
+
+CirculantSolver::Entering CirculantSolver::forward(const RowSum& right_side, double* u) const {
+  const RowLayout& layout = *layout_;
+  const SummedRecurrence near = right_side.pass(layout, {0, near_}, SummedRecurrence{{q_, u}, backward_.row(0)});
+  right_side.pass(layout, {near_, layout.packs()}, near.recurrence);
+  const Pack sums = near.sums;
+  Entering entering{Pack(0.0), Pack(0.0)};
+  Pack x_by_ends(0.0);
+  for (int m = 0; m < lanes; ++m) {
+    const auto at = static_cast<std::size_t>(m);
+    const Pack end(u[layout.at(gap_[m]) + (m + lanes - 1) % lanes]);
+    entering.u += u_from_ends_[at] * end;
+    x_by_ends += x_from_ends_[at] * end;
+    entering.x += x_from_sums_[at] * Pack(sums[m]);
+  }
+  entering.x += x_by_ends;
+  return entering;
+}
+
+template <class Sink>
+Sink CirculantSolver::backward(const Entering& entering, const double* u, Sink sink) const {
+  const RowLayout& layout = *layout_;
+  Pack x = entering.x;
+  const Pack entering_u = entering.u;
+  const double q = q_;
+  int v = layout.packs() - 1;
+  for (; v >= near_; --v) {
+    const std::ptrdiff_t at = layout.at(v);
+    x = Pack::load(u + at) + q * x;
+    sink(at, x);
+  }
+  const double* const powers = forward_.data();
+  for (; v >= 0; --v) {
+    const std::ptrdiff_t at = layout.at(v);
+    x = (Pack::load(u + at) + powers[v] * entering_u) + q * x;
+    sink(at, x);
+  }
+  return sink;
 }
 
 void CirculantSolver::solve(const double* const* rhs, double* const* w) const {
-  const int packs = layout_->packs(), near = static_cast<int>(powers_.size());
+  RowSum scaled;
+  scaled.add(0, 0, scale_);
+  scaled.bind(rhs);
   double* const x = w[0];
+  backward(forward(scaled, x), x, [x](std::ptrdiff_t at, Pack value) { value.store(x + at); });
+}
 
-  // u_i = r_i + q u_{i−1}
-  Pack u(0.0);
-  for (int v = 0; v < packs; ++v) {
-    u = scale_ * Pack::load(rhs[0] + layout_->at(v)) + q_ * u;
-    u.store(x + layout_->at(v));
-  }
-  // What enters arc l from the one before it, at first without what entered that: E_l = enter_l + entering_l E_{l−1},
-  // closed round the circle by E_0 = (enter_0 + entering_0 c)/(1 − Π entering), c = E_{lanes−1} for E_0 = 0.
-  double enter[lanes], c = 0;
-  for (int l = 0; l < lanes; ++l) enter[l] = x[layout_->at(gap_[l]) + (l + lanes - 1) % lanes];
-  for (int l = 1; l < lanes; ++l) c = enter[l] + entering_[l] * c;
-  double carried = (enter[0] + entering_[0] * c) * closing_;
-  Pack E;
-  for (int l = 0; l < lanes; ++l) {
-    if (l > 0) carried = enter[l] + entering_[l] * carried;
-    E.v[l] = carried;
-  }
-  for (int v = 0; v < near; ++v) {
-    double* const at = x + layout_->at(v);
-    (Pack::load(at) + powers_[static_cast<std::size_t>(v)] * E).store(at);
-  }
-
-  // x_i = u_i + q x_{i+1}, the same the other way round: what enters arc l comes from the start of arc l+1.
-  u = Pack(0.0);
-  for (int v = packs - 1; v >= 0; --v) {
-    u = Pack::load(x + layout_->at(v)) + q_ * u;
-    u.store(x + layout_->at(v));
-  }
-  // The site after the last of arc l has index packs − 1 − gap_{l+1} in arc l+1.
-  for (int l = 0; l < lanes; ++l) {
-    const int next = (l + 1) % lanes;
-    enter[l] = x[layout_->at(packs - 1 - gap_[next]) + next];
-  }
-  c = 0;
-  for (int l = lanes - 2; l >= 0; --l) c = enter[l] + entering_[l + 1] * c;
-  carried = (enter[lanes - 1] + entering_[0] * c) * closing_;
-  for (int l = lanes - 1; l >= 0; --l) {
-    if (l < lanes - 1) carried = enter[l] + entering_[l + 1] * carried;
-    E.v[l] = carried;
-  }
-  for (int v = 0; v < near; ++v) {
-    double* const at = x + layout_->at(packs - 1 - v);
-    (Pack::load(at) + powers_[static_cast<std::size_t>(v)] * E).store(at);
-  }
+double CirculantSolver::advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
+                                double* const* w) const {
+  return backward(forward(*right_sides[0], w[0]), w[0], IncrementPass(rows[0])).largest();
 }
 
 }  // namespace delf

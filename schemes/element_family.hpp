@@ -2,13 +2,16 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "jets/pack.hpp"
 #include "jets/spacetime_element.hpp"
+#include "jets/structure.hpp"
 #include "schemes/stencil_family.hpp"
 
 namespace delf {
@@ -24,7 +27,9 @@ class ElementFamily final : public StencilFamily {
   static constexpr int m = 3 * d;  ///< numbers in a jet: φ¹ … φᵈ, φ_t¹ …, φ_x¹ …
   using Number = Dual<double, m>;
   using Twice = Dual<Number, m>;
+  using Packed = Dual<Pack, m>;
   using Numbers = std::array<double, static_cast<std::size_t>(m)>;
+  using Packs = std::array<Pack, static_cast<std::size_t>(m)>;
 
  public:
   ElementFamily(Element element, D density)
@@ -37,6 +42,7 @@ class ElementFamily final : public StencilFamily {
     space_ = lobatto_rule(bottom_ - 1);
     const LagrangeBasis basis(space_.points);
     for (const double x : space_.points) std::ranges::copy(basis.slopes(x), std::back_inserter(space_slopes_));
+    list_weights();
   }
 
   const Element& element() const { return element_; }
@@ -62,12 +68,79 @@ class ElementFamily final : public StencilFamily {
     }
   }
 
+  bool residuals(const Cell& cell, const double* x, const double* y, double* r) const override {
+    const double per_h = 1 / cell.time_step, per_k = 1 / cell.space_step;
+    for (int i = 0; i < size(); ++i) Pack(0.0).store(r + i * lanes);
+    for (const PointWeights& p : weights_) {
+      Packs j;
+      j.fill(Pack(0.0));
+      for (const NodeWeight& w : p.values)
+        for (int a = 0; a < d; ++a) {
+          const Pack value = Pack::load(y + (w.node * d + a) * lanes);
+          j[index(a)] += w.phi * value;
+          j[index(d + a)] += w.derivative * value;
+        }
+      for (const NodeWeight& w : p.slopes)
+        for (int a = 0; a < d; ++a) j[index(2 * d + a)] += w.derivative * Pack::load(y + (w.node * d + a) * lanes);
+      for (int a = 0; a < d; ++a) j[index(d + a)] *= per_h, j[index(2 * d + a)] *= per_k;
+
+      const Packed l = density_(packed_jet(j, cell, x, p.time, p.space));
+      const double area = cell.time_step * cell.space_step * p.weight;
+      for (int a = 0; a < d; ++a) {
+        const Pack by_phi = area * l.d[index(a)], by_t = area * per_h * l.d[index(d + a)],
+                   by_x = area * per_k * l.d[index(2 * d + a)];
+        for (const NodeWeight& w : p.values) {
+          double* const out = r + (w.node * d + a) * lanes;
+          (Pack::load(out) + w.phi * by_phi + w.derivative * by_t).store(out);
+        }
+        for (const NodeWeight& w : p.slopes) {
+          double* const out = r + (w.node * d + a) * lanes;
+          (Pack::load(out) + w.derivative * by_x).store(out);
+        }
+      }
+    }
+    return true;
+  }
+
   void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override {
+    add_up(J, cell, [&](const ElementPoint& p) { return hessian(numbers(p, cell, y), cell, p); });
+  }
+
+  /// With the entries of ∂²ℓ/∂j∂j alone that are proved to be the same for every jet.
+  bool constant_jacobian(const Cell& cell, std::span<double> J) const override {
+    const Abstract proved = structure_of(density_).of_density;
+    Numbers j{};
+    // Constant entries are the same wherever they are taken: at zero, or where the density has a value if not there.
+    if (!std::isfinite(density_(jet<double>(j, cell, 0, 0))))
+      for (int i = 0; i < m; ++i) j[index(i)] = 1 + 0.25 * i;
+    add_up(J, cell, [&](const ElementPoint& p) {
+      Hessian H = hessian(j, cell, p);
+      for (int a = 0; a < m; ++a)
+        for (int b = 0; b < m; ++b)
+          if (proved.varying[index(a)] >> b & 1u) H[index(a)][index(b)] = 0;
+      return H;
+    });
+    return std::ranges::all_of(J, [](double x) { return std::isfinite(x); });
+  }
+
+ private:
+  using Hessian = std::array<Numbers, static_cast<std::size_t>(m)>;
+
+  Hessian hessian(const Numbers& j, const Cell& cell, const ElementPoint& p) const {
+    const Twice l = density_(jet<Twice>(j, cell, p.time, p.space));
+    Hessian H;
+    for (int a = 0; a < m; ++a) H[index(a)] = l.d[index(a)].d;
+    return H;
+  }
+
+  /// J = hk Σ_q w_q Jᵀ_q H_q J_q, with H_q = ∂²ℓ/∂j∂j at the point q
+  template <class HessianAt>
+  void add_up(std::span<double> J, const Cell& cell, const HessianAt& hessian_at) const {
     std::ranges::fill(J, 0.0);
     const double h = cell.time_step, k = cell.space_step;
-    const std::size_t n = y.size();
+    const std::size_t n = index(size());
     for (const ElementPoint& p : element_.points) {
-      const Twice l = density_(jet<Twice>(numbers(p, cell, y), cell, p.time, p.space));
+      const Hessian H = hessian_at(p);
       const double area = h * k * p.weight;
       for (int v = 0; v < pattern_.size(); ++v) {
         const auto [phi, phi_t, phi_x] = row(p, cell, v);
@@ -76,20 +149,20 @@ class ElementFamily final : public StencilFamily {
           // hk w_q Jᵀ_qv ∂²ℓ/∂j∂j
           Numbers left;
           for (int c = 0; c < m; ++c)
-            left[index(c)] = area * (phi * l.d[index(a)].d[index(c)] + phi_t * l.d[index(d + a)].d[index(c)] +
-                                     phi_x * l.d[index(2 * d + a)].d[index(c)]);
+            left[index(c)] = area * (phi * H[index(a)][index(c)] + phi_t * H[index(d + a)][index(c)] +
+                                     phi_x * H[index(2 * d + a)][index(c)]);
           double* const out = J.data() + index(v, a) * n;
           for (int u = 0; u < pattern_.size(); ++u) {
             const auto [by_phi, by_t, by_x] = row(p, cell, u);
             for (int b = 0; b < d; ++b)
-              out[index(u, b)] +=
-                  left[index(b)] * by_phi + left[index(d + b)] * by_t + left[index(2 * d + b)] * by_x;
+              out[index(u, b)] += left[index(b)] * by_phi + left[index(d + b)] * by_t + left[index(2 * d + b)] * by_x;
           }
         }
       }
     }
   }
 
+ public:
   /// The number of nodes on the lower side of a cell, p_x + 1.
   int bottom_nodes() const { return bottom_; }
 
@@ -116,6 +189,43 @@ class ElementFamily final : public StencilFamily {
  private:
   static constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
   static constexpr std::size_t index(int v, int a) { return static_cast<std::size_t>(v * d + a); }
+
+  /// What one value weighs in a jet: in φ and φ_t, or in φ_x, but for 1/h and 1/k.
+  struct NodeWeight {
+    int node;
+    double phi, derivative;
+  };
+  /// A point of the quadrature, with the values that its φ and φ_t read, and those that its φ_x reads.
+  struct PointWeights {
+    double weight, time, space;
+    std::vector<NodeWeight> values, slopes;
+  };
+  void list_weights() {
+    for (const ElementPoint& p : element_.points) {
+      PointWeights point{p.weight, p.time, p.space, {}, {}};
+      for (int v = 0; v < pattern_.size(); ++v) {
+        if (p.phi[index(v)] != 0 || p.phi_t[index(v)] != 0)
+          point.values.push_back({v, p.phi[index(v)], p.phi_t[index(v)]});
+        if (p.phi_x[index(v)] != 0) point.slopes.push_back({v, 0, p.phi_x[index(v)]});
+      }
+      weights_.push_back(std::move(point));
+    }
+  }
+
+  static JetFor<Packed, D> packed_jet(const Packs& j, const Cell& cell, [[maybe_unused]] const double* x,
+                                      [[maybe_unused]] double time, [[maybe_unused]] double space) {
+    JetFor<Packed, D> result;
+    for (int a = 0; a < d; ++a) {
+      component(result.phi, a) = Packed::variable(j[index(a)], a);
+      component(result.phi_t, a) = Packed::variable(j[index(d + a)], d + a);
+      component(result.phi_x, a) = Packed::variable(j[index(2 * d + a)], 2 * d + a);
+    }
+    if constexpr (delf::is_placed<D>()) {
+      result.t = Packed(Pack(cell.t + time * cell.time_step));
+      result.x = Packed(Pack::load(x) + space * cell.space_step);
+    }
+    return result;
+  }
 
   /// Node `node` of the cell has the components node·d + a of the section.
   static std::vector<VertexValue> values_of(const StencilPattern& pattern) {
@@ -171,6 +281,7 @@ class ElementFamily final : public StencilFamily {
 
   Element element_;
   D density_;
+  std::vector<PointWeights> weights_;
   int bottom_ = 0;
   LineRule space_;
   std::vector<double> space_slopes_;  ///< ψ′_b(x_q) at q (p_x + 1) + b

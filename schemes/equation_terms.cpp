@@ -147,6 +147,8 @@ bool solved_at_once(const LatticeSystem& system, const SolvePlan& plan) {
 
 bool goes_by_rows(const LatticeSystem& system, const SolvePlan& plan) {
   const int d = system.components(), last = system.lattice().sites() - 1;
+  // Between walls the number of sites is odd, and arcs of an even number of sites do not cover them.
+  if (system.placement() == Placement::brick_wall && !system.lattice().is_circle()) return false;
   for (const auto& family : system.families()) {
     if (!family->row_kernel() || family->size() != family->pattern().size() * d) return false;
     // A density that is nonlinear in its derivatives has no linear part that could be shared.

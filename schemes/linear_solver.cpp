@@ -8,6 +8,7 @@
 #include "lattice/error.hpp"
 #include "schemes/circulant_solver.hpp"
 #include "schemes/cyclic_band_lu.hpp"
+#include "schemes/lane_band_solver.hpp"
 
 namespace delf {
 namespace {
@@ -50,6 +51,12 @@ class ScalarSolver final : public LinearSolver {
       (inverse_ * Pack::load(rhs[0] + at)).store(w[0] + at);
     }
   }
+  double advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
+                 double* const*) const override {
+    return right_sides[0]->pass(layout, layout.all(), IncrementPass(rows[0])).largest();
+  }
+  double right_side_scale(int) const override { return inverse_; }
+  bool needs_work_rows() const override { return false; }
   std::size_t bytes() const override { return 0; }
   std::string name() const override { return "division by one number"; }
 
@@ -63,8 +70,12 @@ template <class Factored>
 class OrderedSolver final : public LinearSolver {
  public:
   OrderedSolver(const RowLayout& layout, int d, Factored factored, std::string name)
-      : layout_(&layout), d_(d), factored_(std::move(factored)), name_(std::move(name)),
-        site_(static_cast<std::size_t>(layout.sites())), all_(site_.size() * static_cast<std::size_t>(d)) {}
+      : layout_(&layout),
+        d_(d),
+        factored_(std::move(factored)),
+        name_(std::move(name)),
+        site_(static_cast<std::size_t>(layout.sites())),
+        all_(site_.size() * static_cast<std::size_t>(d)) {}
   void solve(const double* const* rhs, double* const* w) const override {
     const auto d = static_cast<std::size_t>(d_);
     for (std::size_t a = 0; a < d; ++a) {
@@ -82,9 +93,7 @@ class OrderedSolver final : public LinearSolver {
           w[a][layout_->at(v) + l] = values[static_cast<std::size_t>(layout_->start(l) + v)];
     }
   }
-  std::size_t bytes() const override {
-    return factored_.bytes() + (site_.size() + all_.size()) * sizeof(double);
-  }
+  std::size_t bytes() const override { return factored_.bytes() + (site_.size() + all_.size()) * sizeof(double); }
   std::string name() const override { return name_; }
 
  private:
@@ -106,7 +115,58 @@ struct SparseFactors {
   }
 };
 
+/// Components that do not meet.
+class ByComponent final : public LinearSolver {
+ public:
+  explicit ByComponent(std::vector<std::unique_ptr<LinearSolver>> solvers) : solvers_(std::move(solvers)) {}
+  void solve(const double* const* rhs, double* const* w) const override {
+    for (std::size_t a = 0; a < solvers_.size(); ++a) solvers_[a]->solve(rhs + a, w + a);
+  }
+  double advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
+                 double* const* w) const override {
+    double largest = 0;
+    for (std::size_t a = 0; a < solvers_.size(); ++a)
+      largest = larger_or_nan(solvers_[a]->advance(layout, 1, right_sides + a, rows + a, w + a), largest);
+    return largest;
+  }
+  bool needs_work_rows() const override {
+    return std::ranges::any_of(solvers_, [](const auto& s) { return s->needs_work_rows(); });
+  }
+  double right_side_scale(int a) const override { return solvers_[static_cast<std::size_t>(a)]->right_side_scale(0); }
+  std::size_t bytes() const override {
+    std::size_t total = 0;
+    for (const auto& s : solvers_) total += s->bytes();
+    return total;
+  }
+  std::string name() const override { return solvers_[0]->name() + ", component by component"; }
+
+ private:
+  std::vector<std::unique_ptr<LinearSolver>> solvers_;
+};
+
 }  // namespace
+
+double LinearSolver::advance(const RowLayout& layout, int components, const RowSum* const* right_sides,
+                             const RowIncrement* rows, double* const* w) const {
+  for (int a = 0; a < components; ++a) {
+    double* const to = w[a];
+    right_sides[a]->pass(layout, layout.all(), [to](std::ptrdiff_t at, Pack sum) { sum.store(to + at); });
+  }
+  solve(w, w);
+  double largest = 0;
+  for (int a = 0; a < components; ++a) {
+    layout.copy_overlaps(w[a]);  // solvers need not fill them
+    IncrementPass pass(rows[a]);
+    for (int v = 0; v < layout.packs(); ++v) pass(layout.at(v), Pack::load(w[a] + layout.at(v)));
+    largest = larger_or_nan(pass.largest(), largest);
+  }
+  return largest;
+}
+
+std::unique_ptr<LinearSolver> by_component(std::vector<std::unique_ptr<LinearSolver>> solvers) {
+  if (solvers.size() == 1) return std::move(solvers[0]);
+  return std::make_unique<ByComponent>(std::move(solvers));
+}
 
 std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& layout, int d,
                                      const std::vector<LatticeSystem::Entry>& entries) {
@@ -126,6 +186,7 @@ std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& la
       throw NoConvergence("the constant part of the equations is singular");
     return std::make_unique<DiagonalSolver>(layout, d, diagonal);
   }
+  if (auto by_lanes = LaneBandSolver::factor(lattice, layout, d, entries)) return by_lanes;
   if (size > 2 * (lower + upper) + 2) {
     auto band = CyclicBandLU::factor(size, lower, upper, lattice.is_circle(), entries);
     if (band)

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "schemes/lattice_system.hpp"
+#include "schemes/row_increment.hpp"
 #include "schemes/row_layout.hpp"
+#include "schemes/row_sum.hpp"
 
 namespace delf {
 
@@ -17,6 +19,13 @@ class LinearSolver {
   virtual ~LinearSolver() = default;
   /// w may be rhs. Halos of w are not filled.
   virtual void solve(const double* const* rhs, double* const* w) const = 0;
+  /// The step itself: w from right sides that are summed on the way, and with it the new row. The right sides are those
+  /// of A w times right_side_scale(); `w` is work space. Returns the largest |y|. Overlaps and halos of the new row are the caller's business.
+  virtual double advance(const RowLayout&, int components, const RowSum* const* right_sides, const RowIncrement* rows,
+                         double* const* w) const;
+  virtual double right_side_scale(int /*component*/) const { return 1; }
+  /// Whether advance() needs the rows w.
+  virtual bool needs_work_rows() const { return true; }
   virtual std::size_t bytes() const = 0;
   virtual std::string name() const = 0;
 };
@@ -35,5 +44,8 @@ std::unique_ptr<LinearSolver> factor(const Lattice&, const RowLayout&, int compo
 
 /// The same for a matrix that is alike at every site of a circle, from its stencil alone, for d = 1.
 std::unique_ptr<LinearSolver> factor_uniform(const Lattice&, const RowLayout&, std::span<const BandEntry> stencil);
+
+/// For components that the matrix does not couple: each has its own solver.
+std::unique_ptr<LinearSolver> by_component(std::vector<std::unique_ptr<LinearSolver>>);
 
 }  // namespace delf

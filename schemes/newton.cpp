@@ -235,9 +235,11 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
   return as_result(followed, iterations + followed.iterations);
 }
 
-bool is_stiff(const LatticeSystem& system, const SolvePlan& plan) {
+std::optional<FixedPointBound> fixed_point_bound(const LatticeSystem& system, const SolvePlan& plan,
+                                                 double amplitude) {
   for (const auto& family : system.families())
-    if (family->row_kernel()->nonlinearity() == Nonlinearity::all) return false;
+    if (family->row_kernel()->nonlinearity() == Nonlinearity::all) return std::nullopt;
+  FixedPointBound bound{0, std::numeric_limits<double>::infinity()};
   const int d = system.components(), site = system.lattice().sites() / 2;
   Window uniform{&system.lattice(), d, 0, 0, {}};
   uniform.rows.resize(1, std::vector<double>(static_cast<std::size_t>(system.lattice().sites() * d)));
@@ -253,10 +255,11 @@ bool is_stiff(const LatticeSystem& system, const SolvePlan& plan) {
         const int i = site + c.offset.space;
         constant[(system.lattice().is_circle() ? system.lattice().wrapped(i) : i) * d + c.component] += c.value;
       }
-      // The fixed point contracts by at most Σ |J_ij − A_ij| / dominance; J at uniform fields through [−π, π].
+      // The fixed point contracts by at most Σ |J_ij − A_ij| / dominance; J at uniform fields.
+      bound.dominance = std::min(bound.dominance, dominance);
       constexpr int fields = 16;
       for (int f = 0; f <= fields; ++f) {
-        const double value = std::numbers::pi * (2.0 * f / fields - 1);
+        const double value = amplitude * (2.0 * f / fields - 1);
         std::ranges::fill(uniform.rows[0], value);
         std::vector<LatticeSystem::Entry> entries;
         system.jacobian(uniform, row, site, a, unknown_row, system.time_step(), entries);
@@ -266,10 +269,10 @@ bool is_stiff(const LatticeSystem& system, const SolvePlan& plan) {
           if (e.row == site * d + a) rest[e.column] += e.value;
         double sum = 0;
         for (const auto& [column, entry] : rest) sum += std::abs(entry);
-        if (std::isfinite(sum) && sum > 0.9 * dominance) return true;
+        if (std::isfinite(sum)) bound.nonlinear = std::max(bound.nonlinear, sum);
       }
     }
-  return false;
+  return bound;
 }
 
 }  // namespace delf

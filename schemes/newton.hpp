@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "lattice/solve_plan.hpp"
@@ -28,9 +29,14 @@ NewtonResult solve_centred_start(const LatticeSystem&, const SolvePlan&, const W
                                  const std::vector<double>& velocity, bool stiff, double tolerance,
                                  int max_iterations);
 
-/// Whether a step may have more than one root: at some uniform field in [−π, π] the nonlinear part of the Jacobian is
-/// not dominated by the constant part, so that the fixed point need not contract. (A density that is nonlinear in its
-/// derivatives has no scale of its own to sample: it is judged by how its steps contract.)
-bool is_stiff(const LatticeSystem&, const SolvePlan&);
+/// How the fixed point with the constant part A₊ of a step's Jacobian J contracts: by nonlinear/dominance at worst, in the
+/// largest norm, of what y_{n+1} differs.
+struct FixedPointBound {
+  double nonlinear = 0;  ///< max Σ_j |J_ij − A_ij|, over uniform fields up to an amplitude
+  double dominance = 0;  ///< min |A_ii| − Σ_{j≠i} |A_ij|
+};
+/// Uniform fields from −amplitude to amplitude are looked at. Nothing for a density that is nonlinear in its derivatives: it
+/// has no scale of its own to sample, and is judged by how its steps contract.
+std::optional<FixedPointBound> fixed_point_bound(const LatticeSystem&, const SolvePlan&, double amplitude);
 
 }  // namespace delf

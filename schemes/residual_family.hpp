@@ -36,12 +36,15 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
  public:
   ResidualFamily(R stencil, double time_step, double space_step)
       : StencilFamily(StencilPattern(R::shape), values_at_every_vertex(StencilPattern(R::shape), 1), false),
-        RowKernel(n), stencil_(std::move(stencil)) {
+        RowKernel(n),
+        stencil_(std::move(stencil)) {
     nonlinearity_ = Nonlinearity::values;
     outputs_ = 1;
     outputs_read_until_ = first_time;
     for (int l = 0; l < n; ++l)
       if (R::nonlinear_in[l]) outputs_read_until_ = std::max(outputs_read_until_, R::shape.vertex(l).time);
+    for (int l = 0; l < n; ++l)
+      if (R::nonlinear_in[l]) arguments_.push_back({{{R::shape.vertex(l), 1.0}}});
     weights_.assign(n, 0.0);
     weights_[R::centre] = time_step * space_step;
   }
@@ -66,8 +69,9 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     std::ranges::fill(r0, 0.0);
   }
 
-  [[gnu::flatten]] void evaluate(const SlabRows& rows, double* const* out) const override {
-    for (int v = 0; v < rows.layout->packs(); ++v) {
+  using RowKernel::evaluate;
+  [[gnu::flatten]] void evaluate(const SlabRows& rows, double* const* out, PackRange packs) const override {
+    for (int v = packs.first; v < packs.last; v += packs.stride) {
       const std::ptrdiff_t at = rows.layout->at(v);
       std::array<Pack, n> y{};
       for (int l = 0; l < n; ++l)

@@ -8,58 +8,48 @@
 
 namespace delf {
 
-RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, SectionRows& rows, int history)
-    : system_(system), rows_(rows), layout_(rows.layout()), d_(system.components()), history_(history),
-      bricks_(system.placement() == Placement::brick_wall), equations_(assemble(system, plan)), w_(layout_, d_),
-      E_(layout_, d_), kept_(layout_, d_), solver_in_(static_cast<std::size_t>(d_)),
-      solver_out_(static_cast<std::size_t>(d_)) {
-  build_outputs();
+RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, SectionRows& rows, int history,
+                           double turn)
+    : system_(system),
+      rows_(rows),
+      layout_(rows.layout()),
+      d_(system.components()),
+      history_(history),
+      turn_(turn),
+      time_step_(system.time_step()),
+      space_step_(system.lattice().space_step()),
+      bricks_(system.placement() == Placement::brick_wall),
+      equations_(assemble(system, plan)),
+      y_slots_(rows.rows_held()),
+      v_slots_(rows.increments_held()) {
   build_solvers();
+  build_loop();
+  build_outputs();
   build_marks();
+  build_sums();
+  build_looks();
 }
 
 // ---- set-up
 
-void RowEquations::build_outputs() {
-  for (std::size_t f = 0; f < system_.families().size(); ++f) {
-    const StencilFamily* family = system_.families()[f].get();
-    Outputs o{.family = family, .kernel = family->row_kernel(), .ring = {}, .absent = {}};
-    const auto& vertices = o.family->pattern().vertices;
-    o.first_time = std::ranges::min(vertices, {}, &Site::time).time;
-    o.last_time = std::ranges::max(vertices, {}, &Site::time).time;
-    o.oldest = std::numeric_limits<int>::max();
-    o.newest = std::numeric_limits<int>::min();
-    const auto scan = [&](const EquationTerms& equation) {
-      for (const Term& t : equation.terms)
-        if (t.source == Source::output && t.family == static_cast<int>(f))
-          o.oldest = std::min(o.oldest, t.age), o.newest = std::max(o.newest, t.age);
-    };
-    for (const auto& equation : equations_.bulk) scan(equation);
-    for (const auto& special : equations_.exceptional) scan(special.equation);
-    if (o.oldest > o.newest) o.oldest = 0, o.newest = -1;
-    o.ring = RowBuffer(layout_, (o.newest - o.oldest + 1) * o.kernel->outputs());
-    const int N = layout_.sites();
-    if (!system_.lattice().is_circle())
-      for (int i = 0; i < N; ++i)
-        if (std::ranges::any_of(vertices, [&](Site s) { return i + s.space < 0 || i + s.space >= N; }))
-          for (int slot : layout_.slots_of(i)) o.absent.push_back(slot);
-    slab_rows_.resize(std::max(slab_rows_.size(), static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_)));
-    slab_out_.resize(std::max(slab_out_.size(), static_cast<std::size_t>(o.kernel->outputs())));
-    outputs_.push_back(std::move(o));
-  }
-}
-
 void RowEquations::build_solvers() {
   const Lattice& lattice = system_.lattice();
-  bool alternating = false;
-  for (const auto& row : equations_.unknowns)
-    for (const UnknownEntry& e : row) alternating = alternating || e.alternating != 0;
+  bool alternating = false, coupled = false;
+  for (std::size_t a = 0; a < equations_.unknowns.size(); ++a)
+    for (const UnknownEntry& e : equations_.unknowns[a]) {
+      alternating = alternating || e.alternating != 0;
+      coupled = coupled || e.component != static_cast<int>(a);
+    }
   for (const auto& special : equations_.exceptional)
     for (const UnknownEntry& e : special.unknowns) alternating = alternating || e.alternating != 0;
-  if (lattice.is_circle() && d_ == 1 && !alternating) {
-    std::vector<BandEntry> stencil;
-    for (const UnknownEntry& e : equations_.unknowns[0]) stencil.push_back({e.space, e.coefficient});
-    solver_[0] = factor_uniform(lattice, layout_, stencil);
+  if (lattice.is_circle() && !coupled && !alternating) {
+    std::vector<std::unique_ptr<LinearSolver>> solvers;
+    for (const auto& unknowns : equations_.unknowns) {
+      std::vector<BandEntry> stencil;
+      for (const UnknownEntry& e : unknowns) stencil.push_back({e.space, e.coefficient});
+      solvers.push_back(factor_uniform(lattice, layout_, stencil));
+    }
+    solver_[0] = by_component(std::move(solvers));
     return;
   }
   for (int parity = 0; parity < (alternating ? 2 : 1); ++parity) {
@@ -88,197 +78,544 @@ void RowEquations::build_solvers() {
   }
 }
 
-void RowEquations::build_marks() {
-  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
-  if (std::ranges::any_of(system_.families(), [](const auto& f) { return f->is_placed(); })) {
-    positions_ = RowBuffer(layout_, 1);
-    for (int i = 0; i < layout_.sites(); ++i) site[static_cast<std::size_t>(i)] = system_.lattice().position(i);
-    layout_.scatter(site, positions_.row(0));
-  }
-  if (bricks_) {
-    signs_ = RowBuffer(layout_, 1);
-    for (int i = 0; i < layout_.sites(); ++i) site[static_cast<std::size_t>(i)] = i % 2 == 0 ? 1 : -1;
-    layout_.scatter(site, signs_.row(0));
-  }
-}
-
-// ---- the nonlinear part
-
-double* RowEquations::Outputs::row(std::int64_t anchor_row, int c) {
-  const int count = newest - oldest + 1;
-  return ring.row(static_cast<int>(((anchor_row % count) + count) % count) * kernel->outputs() + c);
-}
-
-/// The outputs of the stencils anchored at a row, reading rows oldest … newest and no others.
-void RowEquations::evaluate(Outputs& o, std::int64_t anchor_row, std::int64_t oldest, std::int64_t newest) {
-  const double h = system_.time_step();
-  for (int t = o.first_time; t <= o.last_time; ++t)
-    for (int a = 0; a < d_; ++a)
-      slab_rows_[static_cast<std::size_t>((t - o.first_time) * d_ + a)] =
-          rows_.y(std::clamp(anchor_row + t, oldest, newest), a);
-  const int count = o.kernel->outputs();
-  for (int c = 0; c < count; ++c) slab_out_[static_cast<std::size_t>(c)] = o.row(anchor_row, c);
-  o.kernel->evaluate({&layout_, slab_rows_.data(), positions_.rows() ? positions_.row(0) : nullptr,
-                      static_cast<double>(anchor_row) * h, h, system_.lattice().space_step()},
-                     slab_out_.data());
-  for (int c = 0; c < count; ++c) {
-    double* out = slab_out_[static_cast<std::size_t>(c)];
-    for (int slot : o.absent) out[slot] = 0;
-    if (o.family->pattern().placement == Placement::brick_wall) {
-      const double sign = anchor_row % 2 == 0 ? 0.5 : -0.5;
-      for (int p = 0; p < layout_.packs(); ++p) {
-        const auto at = layout_.at(p);
-        (Pack::load(out + at) * (0.5 + sign * Pack::load(signs_.row(0) + at))).store(out + at);
-      }
+/// One loop will do if the unknown row has one coefficient, and all that is known are differences to neighbours and
+/// outputs of the site's own value.
+void RowEquations::build_loop() {
+  if (system_.families().size() != 1 || bricks_ || equations_.correction_form || !equations_.exceptional.empty())
+    return;
+  const RowKernel& kernel = *system_.families()[0]->row_kernel();
+  const auto neighbours = kernel.explicit_neighbours();
+  if (neighbours.empty() || kernel.nonlinearity() != Nonlinearity::values) return;
+  std::vector<double> linear(neighbours.size() * static_cast<std::size_t>(d_), 0.0), nonlinear;
+  for (int a = 0; a < d_; ++a) {
+    const auto own = static_cast<std::size_t>(a);
+    const EquationTerms& equation = equations_.bulk[own];
+    const auto& unknowns = equations_.unknowns[own];
+    if (unknowns.size() != 1 || unknowns[0].space != 0 || unknowns[0].component != a || equation.constant != 0) return;
+    const double factor = -1 / unknowns[0].coefficient;
+    nonlinear.push_back(0);
+    for (const Term& t : equation.terms) {
+      const auto at = std::ranges::find(neighbours, t.shift) - neighbours.begin();
+      const bool beside = at < static_cast<std::ptrdiff_t>(neighbours.size());
+      if (t.source == Source::output && t.age + kernel.outputs_read_until() <= 0)
+        nonlinear.back() += factor * t.coefficient;
+      else if (t.source == Source::difference && t.component == a && beside)
+        linear[own * neighbours.size() + static_cast<std::size_t>(at)] += factor * t.coefficient;
+      else if (t.source != Source::unknown) return;
     }
-    layout_.fill_halo(out);
+  }
+  one_loop_ = &kernel;
+  loop_linear_ = std::move(linear);
+  loop_nonlinear_ = std::move(nonlinear);
+  loop_reach_ = std::ranges::max(neighbours);
+  loop_now_.resize(static_cast<std::size_t>(d_));
+  loop_v_before_.resize(static_cast<std::size_t>(d_));
+}
+
+void RowEquations::build_outputs() {
+  for (std::size_t f = 0; f < system_.families().size(); ++f) {
+    const StencilFamily* family = system_.families()[f].get();
+    Outputs o{.family = family, .kernel = family->row_kernel(), .ring = {}, .slots = RingSlots(1)};
+    const auto& vertices = o.family->pattern().vertices;
+    o.first_time = std::ranges::min(vertices, {}, &Site::time).time;
+    o.last_time = std::ranges::max(vertices, {}, &Site::time).time;
+    int oldest = std::numeric_limits<int>::max(), newest = std::numeric_limits<int>::min();
+    const auto scan = [&](const EquationTerms& equation) {
+      for (const Term& t : equation.terms)
+        if (t.source == Source::output && t.family == static_cast<int>(f)) {
+          oldest = std::min(oldest, t.age), newest = std::max(newest, t.age);
+          o.lowest = std::min(o.lowest, t.shift), o.highest = std::max(o.highest, t.shift);
+        }
+    };
+    for (const auto& equation : equations_.bulk) scan(equation);
+    for (const auto& special : equations_.exceptional) scan(special.equation);
+    if (oldest <= newest) o.oldest = oldest, o.newest = newest;
+    o.slots = RingSlots(std::max(1, o.rows()));
+    if (!is_one_loop()) o.ring = RowBuffer(layout_, o.rows() * o.kernel->outputs());
+    slab_rows_.resize(std::max(slab_rows_.size(), static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_)));
+    slab_out_.resize(std::max(slab_out_.size(), static_cast<std::size_t>(o.kernel->outputs())));
+    outputs_.push_back(std::move(o));
   }
 }
 
-void RowEquations::evaluate_outputs(std::int64_t n, bool reading_unknown_row) {
-  for (Outputs& o : outputs_)
-    for (int age = o.oldest; age <= o.newest; ++age)
-      if (o.reads_unknown_row(age) == reading_unknown_row)
-        evaluate(o, n + age, n + 1 - history_, reading_unknown_row ? n + 1 : n);
+void RowEquations::build_marks() {
+  if (std::ranges::none_of(system_.families(), [](const auto& f) { return f->is_placed(); })) return;
+  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
+  positions_ = RowBuffer(layout_, 1);
+  for (int i = 0; i < layout_.sites(); ++i) site[static_cast<std::size_t>(i)] = system_.lattice().position(i);
+  layout_.scatter(site, positions_.row(0));
 }
 
-void RowEquations::evaluate_known_outputs(std::int64_t n) {
-  for (Outputs& o : outputs_)
-    if (o.oldest <= o.newest && !o.reads_unknown_row(o.newest)) evaluate(o, n + o.newest, n + 1 - history_, n);
-}
-
-// ---- the equations, row by row
-
-bool RowEquations::belongs(const Term& t, int parts) const {
-  if (t.source == Source::unknown) return parts & unknown;
-  if (t.source == Source::output && outputs_[static_cast<std::size_t>(t.family)].reads_unknown_row(t.age))
-    return parts & fresh;
-  return parts & known;
-}
-
-const double* RowEquations::row_of(const Term& t, std::int64_t n) {
-  switch (t.source) {
-    case Source::difference:
-    case Source::value: return rows_.y(n, t.component);
-    case Source::increment: return rows_.v(n - t.age, t.component);
-    case Source::unknown: return w_.row(t.component);
-    case Source::output: return outputs_[static_cast<std::size_t>(t.family)].row(n + t.age, t.output);
+void RowEquations::build_sums() {
+  const auto terms_of = [&](const auto& f) {
+    for (const auto& equation : equations_.bulk) std::ranges::for_each(equation.terms, f);
+    for (const auto& special : equations_.exceptional) std::ranges::for_each(special.equation.terms, f);
+  };
+  terms_of([&](const Term& t) {
+    if (t.source == Source::increment) ages_ = std::max(ages_, t.age + 1);
+  });
+  y_base_ = 0;
+  v_base_ = d_;
+  int next = v_base_ + ages_ * d_;
+  for (Outputs& o : outputs_) {
+    o.base = next;
+    next += o.rows() * o.kernel->outputs();
   }
-  return nullptr;
-}
+  E_base_ = next;
+  w_base_ = next + d_;
+  bases_.resize(static_cast<std::size_t>(w_base_ + d_));
 
-void RowEquations::clear() {
-  for (int a = 0; a < d_; ++a) std::fill_n(E_.row(a), layout_.doubles(), 0.0);
-  exceptional_.assign(equations_.exceptional.size(), 0.0);
-}
-
-void RowEquations::keep() {
-  for (int a = 0; a < d_; ++a) std::copy_n(E_.row(a), layout_.doubles(), kept_.row(a));
-  kept_exceptional_ = exceptional_;
-}
-
-void RowEquations::restore() {
-  for (int a = 0; a < d_; ++a) std::copy_n(kept_.row(a), layout_.doubles(), E_.row(a));
-  exceptional_ = kept_exceptional_;
-}
-
-void RowEquations::add(std::int64_t n, int parts, bool measure) {
-  if (measure) {
-    if (!absolute_.rows()) absolute_ = RowBuffer(layout_, d_);
-    for (int a = 0; a < d_; ++a) std::fill_n(absolute_.row(a), layout_.doubles(), 0.0);
-  }
+  is_stored_ = bricks_ || !equations_.exceptional.empty();
   for (int a = 0; a < d_; ++a) {
     const EquationTerms& equation = equations_.bulk[static_cast<std::size_t>(a)];
-    sum_.clear();
-    const double parity = (n + 1 - equation.shift) % 2 == 0 ? 1 : -1;
-    for (const Term& t : equation.terms)
-      if (belongs(t, parts))
-        sum_.add(row_of(t, n), static_cast<std::ptrdiff_t>(t.shift) * lanes, t.coefficient, parity * t.alternating,
-                 t.source == Source::difference);
-    const bool constant = parts & known;
-    sum_.evaluate(layout_, constant ? equation.constant : 0, constant ? parity * equation.constant_alternating : 0,
-                  bricks_ ? signs_.row(0) : nullptr, E_.row(a), measure ? absolute_.row(a) : nullptr);
+    for (int parity = 0; parity < (bricks_ ? 2 : 1); ++parity) {
+      const double sign = parity == 0 ? 1 : -1;
+      RowSum known, all;
+      for (const Term& t : equation.terms) {
+        if (bricks_ && !brick_exists(t, equation.shift, parity)) continue;
+        const double coefficient = t.coefficient + sign * t.alternating;
+        add_term(all, t, coefficient);
+        if (t.source != Source::unknown) add_term(known, t, coefficient);
+      }
+      for (RowSum* sum : {&all, &known}) sum->add_constant(equation.constant + sign * equation.constant_alternating);
+      known.scale(is_stored_ ? -1 : -solver_[0]->right_side_scale(a));
+      sums_.push_back(std::move(known));
+      measured_.push_back(std::move(all));
+    }
+    if (!is_stored_) continue;
+    RowSum stored;
+    stored.add(E_base_ + a, 0, solver_[0]->right_side_scale(a));
+    stored_.push_back(std::move(stored));
   }
-  if (!equations_.exceptional.empty()) add_at_exceptional_sites(n, parts, measure);
+  if (is_one_loop()) return;
+  if (is_stored_) E_ = RowBuffer(layout_, d_);
+  if (solver_[0]->needs_work_rows()) w_ = RowBuffer(layout_, d_);
+  for (int a = 0; a < d_; ++a) w_rows_.push_back(w_.rows() ? w_.row(a) : nullptr);
+  increments_.resize(static_cast<std::size_t>(d_));
 }
 
-int RowEquations::slot_beside(int site, int shift) const {
-  return layout_.slot(std::clamp(site + shift, 0, layout_.sites() - 1));
+/// What outputs look at, at the unknown row, from the first of its vertices on; each alike but for a shift counts once.
+void RowEquations::build_looks() {
+  if (!reads_unknown_row()) return;
+  candidate_ = RowBuffer(layout_, d_);
+  for (const Outputs& o : outputs_) {
+    const Argument whole{{{Site{}, 1.0}}};
+    const auto& arguments = o.kernel->arguments();
+    for (std::size_t c = 0; c < std::max<std::size_t>(1, arguments.size()); ++c) {
+      Argument look;
+      if (arguments.empty()) look = whole;
+      else
+        for (const Argument::Part& part : arguments[c].parts)
+          if (part.vertex.time == o.kernel->outputs_read_until()) look.parts.push_back(part);
+      if (look.parts.empty()) continue;
+      if (look.parts.size() > 3) look = whole;
+      const int first = look.parts[0].vertex.space;
+      for (Argument::Part& part : look.parts) part.vertex = {0, part.vertex.space - first};
+      const auto same = [&](const Argument& other) {
+        return std::ranges::equal(other.parts, look.parts, [](const Argument::Part& p, const Argument::Part& q) {
+          return p.vertex == q.vertex && p.weight == q.weight;
+        });
+      };
+      if (std::ranges::none_of(looks_, same)) looks_.push_back(std::move(look));
+    }
+  }
+}
+
+double RowEquations::least_weight() const {
+  double least = 1;
+  for (const Argument& look : looks_) {
+    double sum = 0;
+    for (const Argument::Part& part : look.parts) sum += std::abs(part.weight);
+    least = std::min(least, sum);
+  }
+  return least;
+}
+
+/// With E = Σ_c W_c * out_c, the change of y_{n+1} is at most Σ_c ‖A₊⁻¹ W_c‖₁ times that of the outputs; and the nonlinear
+/// part of ∂E/∂y_{n+1} sums to ℓ″ Σ_c |W_c| |weights of argument c|.
+double RowEquations::gain() {
+  if (d_ != 1 || !equations_.exceptional.empty() || equations_.correction_form || solver_[1]) return 0;
+  if (system_.families().size() != 1 || system_.families()[0]->row_kernel()->arguments().empty()) return 0;
+  const Outputs& o = outputs_[0];
+  RowBuffer impulse(layout_, 1), response(layout_, 1);
+  std::vector<double> sites(static_cast<std::size_t>(layout_.sites()));
+  double responses = 0, sums[2] = {0, 0};
+  for (int age = o.oldest; age <= o.newest; ++age)
+    for (int c = 0; c < o.kernel->outputs() && o.reads_unknown_row(age); ++c) {
+      std::ranges::fill(sites, 0.0);
+      double weights = 0;
+      for (const Argument::Part& part :
+           o.kernel->arguments()[static_cast<std::size_t>(c % static_cast<int>(o.kernel->arguments().size()))].parts)
+        if (part.vertex.time + age == 1) weights += std::abs(part.weight);
+      if (weights == 0) continue;
+      for (const Term& t : equations_.bulk[0].terms)
+        if (t.source == Source::output && t.age == age && t.output == c) {
+          sites[static_cast<std::size_t>(system_.lattice().wrapped(layout_.sites() / 2 - t.shift))] += t.coefficient;
+          for (int parity = 0; parity < 2; ++parity)
+            if (!bricks_ || brick_exists(t, equations_.bulk[0].shift, parity))
+              sums[parity] += std::abs(t.coefficient) * weights;
+        }
+      layout_.scatter(sites, impulse.row(0));
+      const double* const rhs[] = {impulse.row(0)};
+      double* const w[] = {response.row(0)};
+      solver_[0]->solve(rhs, w);
+      layout_.copy_overlaps(w[0]);
+      layout_.gather(w[0], sites);
+      for (double x : sites) responses += std::abs(x);
+    }
+  const double sum = std::max(sums[0], sums[1]);
+  return sum > 0 ? responses / sum : 0;
+}
+
+/// Whether the term's brick is there, for an equation whose row + site has this parity.
+bool RowEquations::brick_exists(const Term& t, int equation_shift, int parity) const {
+  if (t.source != Source::output) return true;
+  const bool bricks = outputs_[static_cast<std::size_t>(t.family)].family->pattern().placement == Placement::brick_wall;
+  return !bricks || (parity + t.age - 1 + equation_shift + t.shift) % 2 == 0;
+}
+
+int RowEquations::index_of(const Term& t) const {
+  switch (t.source) {
+    case Source::difference:
+    case Source::value:
+      return y_base_ + t.component;
+    case Source::increment:
+      return v_base_ + t.age * d_ + t.component;
+    case Source::unknown:
+      return w_base_ + t.component;
+    case Source::output:
+      break;
+  }
+  const Outputs& o = outputs_[static_cast<std::size_t>(t.family)];
+  return o.base + (t.age - o.oldest) * o.kernel->outputs() + t.output;
+}
+
+void RowEquations::add_term(RowSum& sum, const Term& t, double coefficient) const {
+  if (coefficient == 0) return;
+  if (t.source == Source::difference) sum.add_difference(index_of(t), t.shift, coefficient);
+  else sum.add(index_of(t), t.shift, coefficient);
+}
+
+// ---- a step
+
+void RowEquations::begin(std::int64_t n) {
+  n_ = n;
+  if (is_one_loop()) return;
+  y_slots_.at(n);
+  v_slots_.at(n);
+  for (int a = 0; a < d_; ++a) {
+    bases_[static_cast<std::size_t>(y_base_ + a)] = rows_.y_at(y_slots_(0), a);
+    for (int age = 0; age < ages_; ++age)
+      bases_[static_cast<std::size_t>(v_base_ + age * d_ + a)] = rows_.v_at(v_slots_(age), a);
+  }
+  for (Outputs& o : outputs_) {
+    o.slots.at(n);
+    const int count = o.kernel->outputs();
+    for (int age = o.oldest; age <= o.newest; ++age)
+      for (int c = 0; c < count; ++c)
+        bases_[static_cast<std::size_t>(o.base + (age - o.oldest) * count + c)] = o.ring.row(o.slots(-age) * count + c);
+  }
+  for (int a = 0; a < d_; ++a) {
+    const auto at = static_cast<std::size_t>(a);
+    double *const v = rows_.v_at(v_slots_(-1), a), *const y = rows_.y_at(y_slots_(-1), a);
+    increments_[at] = {equations_.correction_form ? v : rows_.v_at(v_slots_(0), a), rows_.y_at(y_slots_(0), a), v, y};
+    if (is_stored_) bases_[static_cast<std::size_t>(E_base_ + a)] = E_.row(a);
+  }
+  for (RowSum& sum : sums_) sum.bind(bases_.data());
+  for (RowSum& sum : stored_) sum.bind(bases_.data());
+}
+
+int RowEquations::first_of_part(int part, int parts) const {
+  if (part == 0 || part == parts) return part == 0 ? 0 : layout_.packs();
+  return static_cast<int>(static_cast<long long>(part) * layout_.packs() / parts);
+}
+
+/// At the ends of the row that is its halo, which stays; in between it is a copy.
+const double* RowEquations::edge(int part, int parts, int side, int a) const {
+  const double* const y = loop_now_[static_cast<std::size_t>(a)];
+  if (part == 0 && side == 0) return y + layout_.at(-loop_reach_);
+  if (part + 1 == parts && side == 1) return y + layout_.at(layout_.packs());
+  return edges_.row(0) + static_cast<std::ptrdiff_t>(((2 * part + side) * d_ + a) * loop_reach_) * lanes;
+}
+
+void RowEquations::begin_loop(int parts, bool in_place) {
+  for (int a = 0; a < d_; ++a) {
+    loop_now_[static_cast<std::size_t>(a)] = rows_.y(n_, a);
+    loop_v_before_[static_cast<std::size_t>(a)] = rows_.v(n_, a);
+  }
+  if (in_place) rows_.overwrite_newest();
+  if (parts == 1) return;
+  const auto doubles = static_cast<std::size_t>(2 * parts * d_ * loop_reach_ * lanes);
+  if (edges_.bytes() < doubles * sizeof(double)) edges_ = RowBuffer(doubles);
+  for (int boundary = 1; boundary < parts; ++boundary)
+    for (int a = 0; a < d_; ++a) {
+      const double* const y = loop_now_[static_cast<std::size_t>(a)] + layout_.at(first_of_part(boundary, parts));
+      const int doubles_beside = loop_reach_ * lanes;
+      std::copy_n(y, doubles_beside, const_cast<double*>(edge(boundary - 1, parts, 1, a)));
+      std::copy_n(y - doubles_beside, doubles_beside, const_cast<double*>(edge(boundary, parts, 0, a)));
+    }
+}
+
+double RowEquations::loop(int part, int parts) const {
+  constexpr int most = RowKernel::most_components;
+  const double *now[most], *v_before[most], *before[most], *after[most];
+  double *v[most], *y[most];
+  for (int a = 0; a < d_; ++a) {
+    now[a] = loop_now_[static_cast<std::size_t>(a)];
+    v_before[a] = loop_v_before_[static_cast<std::size_t>(a)];
+    v[a] = rows_.v(n_ + 1, a);
+    y[a] = rows_.y(n_ + 1, a);
+    before[a] = edge(part, parts, 0, a);
+    after[a] = edge(part, parts, 1, a);
+  }
+  return one_loop_->explicit_step({{&layout_, now, positions_.rows() ? positions_.row(0) : nullptr,
+                                    static_cast<double>(n_) * time_step_, time_step_, space_step_},
+                                   before,
+                                   after,
+                                   v_before,
+                                   v,
+                                   y,
+                                   loop_linear_.data(),
+                                   loop_nonlinear_.data()},
+                                  {first_of_part(part, parts), first_of_part(part + 1, parts)});
+}
+
+void RowEquations::close_loop() {
+  for (int a = 0; a < d_; ++a) layout_.fill_halo(rows_.y(n_ + 1, a), turn_);
+}
+
+void RowEquations::close_new_row() {
+  for (int a = 0; a < d_; ++a) {
+    double *const v = rows_.v_at(v_slots_(-1), a), *const y = rows_.y_at(y_slots_(-1), a);
+    layout_.copy_overlaps(v);
+    layout_.copy_overlaps(y);
+    layout_.fill_halo(v);
+    layout_.fill_halo(y, turn_);
+  }
+}
+
+/// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others, wherever
+/// the equations of a pack read them: beyond the ends of arcs too.
+void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which) {
+  const std::int64_t anchor_row = n_ + age;
+  const int newest = o.reads_unknown_row(age) ? 1 : 0;
+  for (int t = o.first_time; t <= o.last_time; ++t)
+    for (int a = 0; a < d_; ++a) {
+      const int row = std::clamp(age + t, 1 - history_, newest);
+      slab_rows_[static_cast<std::size_t>((t - o.first_time) * d_ + a)] =
+          row == 1 && which == At::candidate ? candidate_.row(a)
+          : is_one_loop()                    ? rows_.y(n_ + row, a)
+                                             : rows_.y_at(y_slots_(-row), a);
+    }
+  const bool turns = turn_ != 0;  // what is read across the seam is the site's own output, whatever the density
+  PackRange packs{turns ? 0 : o.lowest, layout_.packs() + (turns ? 0 : o.highest)};
+  if (o.family->pattern().placement == Placement::brick_wall) {
+    packs.stride = 2;
+    if ((packs.first + anchor_row) % 2 != 0) ++packs.first;
+  }
+  o.kernel->evaluate({&layout_, slab_rows_.data(), positions_.rows() ? positions_.row(0) : nullptr,
+                      static_cast<double>(anchor_row) * time_step_, time_step_, space_step_},
+                     out, packs);
+  if (turns)
+    for (int c = 0; c < o.kernel->outputs(); ++c) layout_.fill_halo(out[c]);
+}
+
+void RowEquations::evaluate_outputs() {
+  if (is_one_loop()) return;
+  for (Outputs& o : outputs_)
+    for (int age = o.oldest; age <= o.newest; ++age)
+      if (!o.reads_unknown_row(age)) evaluate_in_ring(o, age, At::row);
+}
+
+void RowEquations::evaluate_unknown_outputs(At at) {
+  for (Outputs& o : outputs_)
+    for (int age = o.oldest; age <= o.newest; ++age)
+      if (o.reads_unknown_row(age)) evaluate_in_ring(o, age, at);
+}
+
+void RowEquations::evaluate_in_ring(Outputs& o, int age, At at) {
+  const int count = o.kernel->outputs(), slot = o.slots(-age);
+  for (int c = 0; c < count; ++c) slab_out_[static_cast<std::size_t>(c)] = o.ring.row(slot * count + c);
+  evaluate(o, age, slab_out_.data(), at);
+}
+
+void RowEquations::evaluate_known_outputs() {
+  for (Outputs& o : outputs_)
+    if (o.oldest <= o.newest && !o.reads_unknown_row(o.newest)) evaluate_in_ring(o, o.newest, At::row);
+}
+
+bool RowEquations::reads_unknown_row() const {
+  return std::ranges::any_of(outputs_, [](const Outputs& o) { return o.rows() > 0 && o.reads_unknown_row(o.newest); });
+}
+
+double RowEquations::advance() {
+  const RowSum* right_sides[RowKernel::most_components];
+  const std::int64_t equation_row = n_ + 1 - equations_.bulk[0].shift;
+  for (int a = 0; a < d_; ++a) {
+    const auto at = static_cast<std::size_t>(a);
+    right_sides[a] = is_stored_ ? &stored_[at] : &sums_[at];
+    if (!is_stored_) continue;
+    double* const E = E_.row(a);
+    const auto store = [E](std::ptrdiff_t to, Pack sum) __attribute__((always_inline)) { sum.store(E + to); };
+    if (bricks_)
+      for (int pack = 0; pack < 2; ++pack)
+        sums_[2 * at + static_cast<std::size_t>((equation_row + pack) % 2 != 0)].pass(
+            layout_, {pack, layout_.packs(), 2}, store);
+    else sums_[at].pass(layout_, layout_.all(), store);
+  }
+  if (!equations_.exceptional.empty()) set_exceptional_sites();
+  const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
+  const double largest = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides, increments_.data(), w_rows_.data());
+  close_new_row();
+  return largest;
+}
+
+void RowEquations::make_row_the_candidate() {
+  for (int a = 0; a < d_; ++a) std::copy_n(rows_.y_at(y_slots_(-1), a), layout_.doubles(), candidate_.row(a));
+}
+
+namespace {
+
+/// max |Σ_p weight_p (y − z)(shifted by p)| for a number of parts that is known.
+template <int count>
+Pack largest_difference(const RowLayout& layout, const Argument& look, const double* y, const double* z) {
+  const double *above[count], *below[count];
+  double weight[count];
+  for (int p = 0; p < count; ++p) {
+    const auto& part = look.parts[static_cast<std::size_t>(p)];
+    const std::ptrdiff_t shift = static_cast<std::ptrdiff_t>(part.vertex.space) * lanes;
+    above[p] = y + shift, below[p] = z + shift, weight[p] = part.weight;
+  }
+  const auto difference = [&](int v) {
+    const std::ptrdiff_t at = layout.at(v);
+    Pack sum(0.0);
+    for (int p = 0; p < count; ++p) sum += weight[p] * (Pack::load(above[p] + at) - Pack::load(below[p] + at));
+    return abs(sum);
+  };
+  // Two at a time: a maximum waits for the one before it.
+  Pack largest(0.0), other(0.0);
+  int v = 0;
+  for (; v + 1 < layout.packs(); v += 2) {
+    largest = max_or_nan(difference(v), largest);
+    other = max_or_nan(difference(v + 1), other);
+  }
+  if (v < layout.packs()) largest = max_or_nan(difference(v), largest);
+  return max_or_nan(other, largest);
+}
+
+}  // namespace
+
+double RowEquations::largest_change(const std::vector<Argument>& looks) const {
+  Pack largest(0.0);
+  for (const Argument& look : looks)
+    for (int a = 0; a < d_; ++a) {
+      const double *y = rows_.y_at(y_slots_(-1), a), *z = candidate_.row(a);
+      switch (look.parts.size()) {
+        case 1:
+          largest = max_or_nan(largest_difference<1>(layout_, look, y, z), largest);
+          break;
+        case 2:
+          largest = max_or_nan(largest_difference<2>(layout_, look, y, z), largest);
+          break;
+        default:
+          largest = max_or_nan(largest_difference<3>(layout_, look, y, z), largest);
+          break;
+      }
+    }
+  return max_or_nan(largest);
 }
 
 /// The pass over whole rows has left the bulk's equation at these sites: puts their own sums in its place.
-void RowEquations::add_at_exceptional_sites(std::int64_t n, int parts, bool measure) {
-  for (std::size_t e = 0; e < equations_.exceptional.size(); ++e) {
-    const SiteEquation& special = equations_.exceptional[e];
-    const int own = layout_.slot(special.site), a = special.component;
-    double value = 0, size = 0;
-    if (special.fixed) {
-      // v_{n+1} = v_n + w = 0; where w corrects the candidate, v_{n+1} is the candidate's
-      if (equations_.correction_form) {
-        if (parts & fresh) value += rows_.v(n + 1, a)[own];
-      } else {
-        if (parts & known) value += rows_.v(n, a)[own];
-        if (parts & unknown) value += w_.row(a)[own];
-      }
-    } else {
-      const EquationTerms& equation = special.equation;
-      const double sign = (n + 1 - equation.shift + special.site) % 2 == 0 ? 1 : -1;
-      if (parts & known) value += equation.constant + sign * equation.constant_alternating;
-      for (const Term& t : equation.terms) {
-        if (!belongs(t, parts)) continue;
-        const double* row = row_of(t, n);
-        const double x = row[slot_beside(special.site, t.shift)] - (t.source == Source::difference ? row[own] : 0);
-        value += (t.coefficient + sign * t.alternating) * x;
-        size += std::abs((t.coefficient + sign * t.alternating) * x);
-      }
-    }
-    exceptional_[e] += value;
-    for (int slot : layout_.slots_of(special.site)) {
-      E_.row(a)[slot] = exceptional_[e];
-      if (measure) absolute_.row(a)[slot] = size;
-    }
+void RowEquations::set_exceptional_sites() {
+  for (const SiteEquation& special : equations_.exceptional) {
+    const double E = value_at(special, false, nullptr);
+    for (int slot : layout_.slots_of(special.site)) E_.row(special.component)[slot] = -E;
   }
 }
 
-void RowEquations::solve(std::int64_t n) {
-  for (int a = 0; a < d_; ++a) {
-    double* E = E_.row(a);
-    for (int p = 0; p < layout_.packs(); ++p) {
-      const auto at = layout_.at(p);
-      (-Pack::load(E + at)).store(E + at);
-    }
-    solver_in_[static_cast<std::size_t>(a)] = E;
-    solver_out_[static_cast<std::size_t>(a)] = w_.row(a);
+/// E at one site, by its own terms.
+double RowEquations::value_at(const SiteEquation& special, bool unknown_too, double* absolute) const {
+  const int own = layout_.slot(special.site), a = special.component;
+  if (special.fixed) {
+    // v_{n+1} = v_n + w = 0; where w corrects the candidate, v_{n+1} is the candidate's
+    if (equations_.correction_form || unknown_too) return rows_.v_at(v_slots_(-1), a)[own];
+    return rows_.v_at(v_slots_(0), a)[own];
   }
-  (solver_[1] && (n + 1) % 2 != 0 ? solver_[1] : solver_[0])->solve(solver_in_.data(), solver_out_.data());
-  for (int a = 0; a < d_; ++a) layout_.copy_overlaps(w_.row(a));
+  const EquationTerms& equation = special.equation;
+  const double sign = (n_ + 1 - equation.shift + special.site) % 2 == 0 ? 1 : -1;
+  double value = equation.constant + sign * equation.constant_alternating;
+  for (const Term& t : equation.terms) {
+    if (t.source == Source::unknown && !unknown_too) continue;
+    const double* row = bases_[static_cast<std::size_t>(index_of(t))];
+    const int beside = layout_.slot(std::clamp(special.site + t.shift, 0, layout_.sites() - 1));
+    const double x =
+        (t.coefficient + sign * t.alternating) * (row[beside] - (t.source == Source::difference ? row[own] : 0));
+    value += x;
+    if (absolute) *absolute += std::abs(x);
+  }
+  return value;
 }
 
 double RowEquations::residual(std::int64_t n) {
-  for (int a = 0; a < d_; ++a)
-    for (std::size_t s = 0; s < layout_.doubles(); ++s) w_.row(a)[s] = rows_.v(n + 1, a)[s] - rows_.v(n, a)[s];
-  // A step goes on from the outputs of its last iterate: what is taken here from the accepted row must not stay, or a
+  begin(n);
+  for (int a = 0; a < d_; ++a) {
+    bases_[static_cast<std::size_t>(y_base_ + a)] = rows_.y(n, a);
+    for (int age = 0; age < ages_; ++age)
+      bases_[static_cast<std::size_t>(v_base_ + age * d_ + a)] = rows_.v(n - age, a);
+  }
+  // A step goes on from the outputs of its last iterate: what is taken here from the accepted row goes elsewhere, or a
   // run would depend on when it was looked at.
-  std::vector<std::vector<double>> before;
-  const auto each_fresh_output = [&](const auto& f) {
-    for (Outputs& o : outputs_)
-      for (int age = o.oldest; age <= o.newest; ++age)
-        for (int c = 0; c < o.kernel->outputs() && o.reads_unknown_row(age); ++c) f(o.row(n + age, c));
-  };
-  each_fresh_output([&](const double* row) { before.emplace_back(row, row + layout_.doubles()); });
-  evaluate_outputs(n, true);
-  clear();
-  add(n, known | fresh | unknown, true);
-  std::size_t next = 0;
-  each_fresh_output([&](double* row) { std::ranges::copy(before[next++], row); });
-
-  double worst = 0, size = 0;
-  for (int a = 0; a < d_; ++a)
-    for (int i = 0; i < layout_.sites(); ++i) {
-      worst = std::max(worst, std::abs(E_.row(a)[layout_.slot(i)]));
-      size = std::max(size, absolute_.row(a)[layout_.slot(i)]);
+  int next = 3 * d_;
+  for (const Outputs& o : outputs_) next += o.rows() * o.kernel->outputs();
+  if (!scratch_.rows()) scratch_ = RowBuffer(layout_, next);
+  for (int a = 0; a < d_; ++a) {
+    double* const w = scratch_.row(a);
+    const double *v_new = rows_.v(n + 1, a), *v = rows_.v(n, a);
+    for (std::size_t s = 0; s < layout_.doubles(); ++s) w[s] = v_new[s] - v[s];
+    bases_[static_cast<std::size_t>(w_base_ + a)] = w;
+  }
+  next = 3 * d_;
+  for (const Outputs& o : outputs_)
+    for (int age = o.oldest; age <= o.newest; ++age) {
+      if (!o.reads_unknown_row(age) && !is_one_loop()) continue;
+      const int count = o.kernel->outputs();
+      for (int c = 0; c < count; ++c) {
+        slab_out_[static_cast<std::size_t>(c)] = scratch_.row(next++);
+        bases_[static_cast<std::size_t>(o.base + (age - o.oldest) * count + c)] =
+            slab_out_[static_cast<std::size_t>(c)];
+      }
+      evaluate(o, age, slab_out_.data());
     }
-  return size > 0 ? worst / size : 0;
+
+  const std::int64_t equation_row = n_ + 1 - equations_.bulk[0].shift;
+  for (int a = 0; a < d_; ++a) {
+    double *const E = scratch_.row(d_ + a), *const size = scratch_.row(2 * d_ + a);
+    for (int pack = 0; pack < (bricks_ ? 2 : 1); ++pack) {
+      const auto at = static_cast<std::size_t>(bricks_ ? 2 * a + ((equation_row + pack) % 2 != 0 ? 1 : 0) : a);
+      measured_[at].bind(bases_.data());
+      measured_[at].measure(layout_, {pack, layout_.packs(), bricks_ ? 2 : 1},
+                            [E, size](std::ptrdiff_t to, Pack sum, Pack absolute) {
+                              sum.store(E + to);
+                              absolute.store(size + to);
+                            });
+    }
+  }
+  for (const SiteEquation& special : equations_.exceptional) {
+    double absolute = 0;
+    const double E = value_at(special, true, &absolute);
+    for (int slot : layout_.slots_of(special.site)) {
+      scratch_.row(d_ + special.component)[slot] = E;
+      scratch_.row(2 * d_ + special.component)[slot] = absolute;
+    }
+  }
+  Pack worst(0.0), largest_term(0.0);
+  for (int a = 0; a < d_; ++a)
+    for (int v = 0; v < layout_.packs(); ++v) {
+      worst = max_or_nan(abs(Pack::load(scratch_.row(d_ + a) + layout_.at(v))), worst);
+      largest_term = max_or_nan(Pack::load(scratch_.row(2 * d_ + a) + layout_.at(v)), largest_term);
+    }
+  const double size = max_or_nan(largest_term);
+  return size != 0 ? max_or_nan(worst) / size : 0;
 }
 
 std::size_t RowEquations::output_bytes() const {
@@ -286,12 +623,10 @@ std::size_t RowEquations::output_bytes() const {
   for (const Outputs& o : outputs_) total += o.ring.bytes();
   return total;
 }
-std::size_t RowEquations::matrix_bytes() const {
-  return solver_[0]->bytes() + (solver_[1] ? solver_[1]->bytes() : 0);
-}
+std::size_t RowEquations::matrix_bytes() const { return solver_[0]->bytes() + (solver_[1] ? solver_[1]->bytes() : 0); }
 std::size_t RowEquations::work_bytes() const {
   std::size_t total = layout_.bytes();
-  for (const RowBuffer* b : {&w_, &E_, &kept_, &absolute_, &positions_, &signs_}) total += b->bytes();
+  for (const RowBuffer* b : {&w_, &E_, &candidate_, &scratch_, &positions_}) total += b->bytes();
   return total;
 }
 

@@ -6,40 +6,61 @@
 
 #include "schemes/equation_terms.hpp"
 #include "schemes/linear_solver.hpp"
+#include "schemes/ring_slots.hpp"
 #include "schemes/row_kernel.hpp"
 #include "schemes/row_sum.hpp"
 #include "schemes/section_rows.hpp"
 
 namespace delf {
 
-/// The field equations of one slab, evaluated for whole rows: y_{n+1} = y_n + v_n + w is the unknown row.
+/// The field equations of one slab, evaluated for whole rows: y_{n+1} = y_n + v_n + w is the unknown row. All of it is laid
+/// out at set-up: which rows, at which shifts, with which coefficients; a step only looks up where rows lie.
 class RowEquations {
  public:
-  /// `history`: how many rows the equations of a slab read before the unknown one. Throws NoConvergence if the constant
-  /// part of the equations is singular.
-  RowEquations(const LatticeSystem&, const SolvePlan&, SectionRows&, int history);
+  /// `history`: how many rows the equations of a slab read before the unknown one; `turn`: φ(x + L) − φ(x). Throws
+  /// NoConvergence if the constant part of the equations is singular.
+  RowEquations(const LatticeSystem&, const SolvePlan&, SectionRows&, int history, double turn);
 
-  /// Which terms of the equations: those of rows up to n, outputs that read row n+1, and w itself.
-  enum Part { known = 1, fresh = 2, unknown = 4 };
+  /// Finds the rows for the step from row n. What follows is about this step.
+  void begin(std::int64_t n);
 
-  /// Evaluates the nonlinear outputs that read row n+1, or those that do not.
-  void evaluate_outputs(std::int64_t n, bool reading_unknown_row);
+  /// A step is one loop: no outputs, no matrix.
+  bool is_one_loop() const { return one_loop_ != nullptr; }
+  /// Makes ready for the loop in so many parts of the row; `in_place`: the new row and its increment are written over the
+  /// old ones.
+  void begin_loop(int parts, bool in_place);
+  /// A part of the new row by that loop; returns its √Σy².
+  double loop(int part, int parts) const;
+  void close_loop();
 
+  /// The candidate for y_{n+1}: kept apart from the row itself, so that a step can tell how far apart they are.
+  double* candidate(int a) { return candidate_.row(a); }
+  void make_row_the_candidate();
+  /// Evaluates the nonlinear outputs that do not read row n+1; those that do, of the candidate or of the row.
+  void evaluate_outputs();
+  enum class At { candidate, row };
+  void evaluate_unknown_outputs(At);
   /// Evaluates the outputs that read rows up to n only and that no earlier step had to evaluate.
-  void evaluate_known_outputs(std::int64_t n);
+  void evaluate_known_outputs();
+  /// Whether there are outputs that read row n+1.
+  bool reads_unknown_row() const;
 
-  void clear();
-  /// E += the given parts.
-  void add(std::int64_t n, int parts) { add(n, parts, false); }
-  /// Remembers E, and starts from it again.
-  void keep();
-  void restore();
-  /// w = −A₊⁻¹ E
-  void solve(std::int64_t n);
+  /// Solves for w with the outputs as they are, and makes v_{n+1} and y_{n+1} of it, halos too. Returns the largest |y|.
+  double advance();
+  /// The largest difference between the candidate and y_{n+1} in what the nonlinear outputs look at.
+  double change() const { return largest_change(looks_); }
+  /// The same of y_{n+1} itself.
+  double whole_change() const { return largest_change(whole_); }
+  /// What outputs look at, at the unknown row: mixtures of values whose weights sum to at least this.
+  double least_weight() const;
+  const std::vector<Argument>& looks() const { return looks_; }
+  /// The largest change of y_{n+1} for a change of 1 in what the outputs look at, if ∂E/∂(y_{n+1}) of the nonlinear part sums
+  /// to 1: an exact ∞-norm, by the response to an impulse. 0 where it is not known: several components, walls.
+  double gain();
+  /// Overlaps and halos of v_{n+1}, y_{n+1}.
+  void close_new_row();
 
-  double* w(int a) { return w_.row(a); }
-  /// max |E| / max Σ |terms| over the sites, for the rows as they are (row n+1 included). Leaves nothing changed that a
-  /// step reads.
+  /// max |E| / max Σ |terms| over the sites for row n+1 as it is. Leaves nothing changed that a step reads.
   double residual(std::int64_t n);
   /// Outputs are the whole residual: w must be corrected by −A₊⁻¹E instead of set to it.
   bool correction_form() const { return equations_.correction_form; }
@@ -54,37 +75,65 @@ class RowEquations {
     const StencilFamily* family;
     const RowKernel* kernel;
     RowBuffer ring;
-    int oldest = 0, newest = 0;         ///< anchors' rows that equations use, from n
+    RingSlots slots;
+    int oldest = 0, newest = -1;        ///< anchors' rows that equations use, from n
     int first_time = 0, last_time = 0;  ///< of the pattern
-    std::vector<int> absent;            ///< slots whose stencil leaves the lattice
+    int lowest = 0, highest = 0;        ///< shifts at which equations read
+    int base = 0;                       ///< where its rows stand among bases_
 
+    int rows() const { return newest - oldest + 1; }
     bool reads_unknown_row(int age) const { return age + kernel->outputs_read_until() >= 1; }
-    double* row(std::int64_t anchor_row, int c);
   };
 
-  void add(std::int64_t n, int parts, bool measure);
   void build_outputs();
   void build_solvers();
   void build_marks();
-  void evaluate(Outputs&, std::int64_t anchor_row, std::int64_t oldest, std::int64_t newest);
-  bool belongs(const Term&, int parts) const;
-  const double* row_of(const Term&, std::int64_t n);
-  void add_at_exceptional_sites(std::int64_t n, int parts, bool measure);
-  int slot_beside(int site, int shift) const;
+  void build_sums();
+  void build_loop();
+  void build_looks();
+  double largest_change(const std::vector<Argument>& looks) const;
+  int index_of(const Term&) const;
+  void add_term(RowSum&, const Term&, double coefficient) const;
+  bool brick_exists(const Term&, int equation_shift, int parity) const;
+  void evaluate(const Outputs&, int age, double* const* out, At = At::row);
+  void evaluate_in_ring(Outputs&, int age, At);
+  int first_of_part(int part, int parts) const;
+  const double* edge(int part, int parts, int side, int a) const;
+  void set_exceptional_sites();
+  double value_at(const SiteEquation&, bool unknown_too, double* absolute) const;
 
   const LatticeSystem& system_;
   SectionRows& rows_;
   const RowLayout& layout_;
   int d_, history_;
+  double turn_, time_step_, space_step_;
   bool bricks_;
   AssembledEquations equations_;
   std::vector<Outputs> outputs_;
   std::unique_ptr<LinearSolver> solver_[2];  ///< of even and odd unknown rows; the second only if bricks differ
-  RowBuffer w_, E_, kept_, absolute_, positions_, signs_;
-  std::vector<double> exceptional_, kept_exceptional_;  ///< E at exceptional sites: passes over rows overwrite it there
-  RowSum sum_;
-  std::vector<const double*> slab_rows_, solver_in_;
-  std::vector<double*> slab_out_, solver_out_;
+
+  // Rows of the step from n: y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E and w, d rows each.
+  std::int64_t n_ = -1;
+  RingSlots y_slots_, v_slots_;
+  int ages_ = 1;
+  std::vector<const double*> bases_;
+  int y_base_ = 0, v_base_ = 0, E_base_ = 0, w_base_ = 0;
+
+  /// −E times the solver's scale, for each component; of bricks for each parity of the equation's row and of the packs.
+  std::vector<RowSum> sums_, stored_, measured_;
+  bool is_stored_ = false;  ///< right sides are summed to rows first: bricks, and walls
+  RowBuffer w_, E_, candidate_, scratch_, positions_;
+  std::vector<Argument> whole_{{{{Site{}, 1.0}}}},
+      looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
+  std::vector<double*> w_rows_, slab_out_;
+  std::vector<const double*> slab_rows_;
+  std::vector<RowIncrement> increments_;
+
+  const RowKernel* one_loop_ = nullptr;
+  std::vector<double> loop_linear_, loop_nonlinear_;
+  int loop_reach_ = 0;
+  std::vector<const double*> loop_now_, loop_v_before_;
+  RowBuffer edges_;  ///< of the parts: what lies beside them, before it is written over
 };
 
 }  // namespace delf

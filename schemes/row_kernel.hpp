@@ -18,6 +18,26 @@ struct SlabRows {
   double time_step, space_step;
 };
 
+/// The rows that an explicit step goes from and to, d of each, and its coefficients. y and v may take the place of what
+/// they are made from.
+struct ExplicitRows {
+  SlabRows now;                                ///< y_n
+  const double *const *before, *const *after;  ///< y_n beside the packs of this pass, as many packs as neighbours reach
+  const double* const* v_before;
+  double *const *v, *const *y;  ///< of row n + 1
+  const double* linear;         ///< [a·neighbours + s]
+  const double* nonlinear;      ///< [a]
+};
+
+/// What a nonlinear part looks at: Σ weight · y(vertex).
+struct Argument {
+  struct Part {
+    Site vertex;
+    double weight;
+  };
+  std::vector<Part> parts;
+};
+
 /// A stencil family evaluated for whole rows: d components at every vertex, i = l·d + a, and the residual split
 ///
 ///     r(y) = r(0) + J y + Σ_c weight(c, ·) out_c(y)
@@ -26,20 +46,34 @@ struct SlabRows {
 /// needs.
 class RowKernel {
  public:
+  static constexpr int most_components = 10;  ///< as many as Abstract numbers can tell apart
   virtual ~RowKernel() = default;
 
   Nonlinearity nonlinearity() const { return nonlinearity_; }
   int outputs() const { return outputs_; }
   /// The latest vertex time that outputs depend on: below the pattern's latest, they are known before a step.
   int outputs_read_until() const { return outputs_read_until_; }
+  /// What the outputs are functions of, the same mixture for every component; empty where it is more than mixtures of
+  /// values.
+  const std::vector<Argument>& arguments() const { return arguments_; }
   /// What one unit of out_c adds to the residual r[i] of vertex and component i = l·d + a.
   double weight(int output, int i) const { return weights_[static_cast<std::size_t>(output * row_size_ + i)]; }
 
   /// The constant J and r(0) of the split.
   virtual void linear_part(const Cell&, std::span<double> J, std::span<double> r0) const = 0;
-  /// The rows out_c[0 … M−1] for the stencils anchored at each site of a row; halos and stencils that do not exist are
-  /// the caller's business.
-  virtual void evaluate(const SlabRows&, double* const* out) const = 0;
+  /// The rows out_c for the stencils anchored at each site of some packs of a row; which stencils exist is the caller's
+  /// business.
+  virtual void evaluate(const SlabRows&, double* const* out, PackRange) const = 0;
+  void evaluate(const SlabRows& rows, double* const* out) const { evaluate(rows, out, rows.layout->all()); }
+
+  /// Where the nonlinear part of the equation at a site is that of its own value alone, a step is one loop:
+  ///
+  ///     w = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)),    v += w,    y += v
+  ///
+  /// with the neighbours s listed here; no neighbours where a family has no such loop.
+  virtual std::span<const int> explicit_neighbours() const { return {}; }
+  /// Returns √Σy² of the packs' new values: infinite or NaN where squares overflow.
+  virtual double explicit_step(const ExplicitRows&, PackRange) const { return 0; }
 
  protected:
   explicit RowKernel(int row_size) : row_size_(row_size) {}
@@ -48,6 +82,7 @@ class RowKernel {
   Nonlinearity nonlinearity_ = Nonlinearity::all;
   int outputs_ = 0, outputs_read_until_ = 0;
   std::vector<double> weights_;
+  std::vector<Argument> arguments_;
 };
 
 }  // namespace delf

@@ -6,10 +6,11 @@
 
 namespace delf {
 
-RowLayout::RowLayout(const Lattice& lattice, int halo)
-    : sites_(lattice.sites()), packs_((lattice.sites() + lanes - 1) / lanes), halo_(halo) {
+RowLayout::RowLayout(const Lattice& lattice, int halo, int aligned)
+    : sites_(lattice.sites()), packs_((sites_ / aligned + lanes - 1) / lanes * aligned), halo_(halo) {
   for (int l = 0; l < lanes; ++l)
-    start_.push_back(std::min(static_cast<int>(static_cast<long long>(l) * sites_ / lanes), sites_ - packs_));
+    start_.push_back(
+        std::min(static_cast<int>(static_cast<long long>(l) * (sites_ / aligned) / lanes) * aligned, sites_ - packs_));
   for (int l = 0; l < lanes; ++l)
     for (int v = -halo_; v < packs_ + halo_; ++v) {
       const int i = start(l) + v, to = static_cast<int>(at(v)) + l;
@@ -43,7 +44,9 @@ void RowLayout::gather(const double* row, std::span<double> sites) const {
     for (int v = 0; v < packs_; ++v) sites[static_cast<std::size_t>(start(l) + v)] = row[at(v) + l];
 }
 
-RowBuffer::RowBuffer(const RowLayout& layout, int rows) : stride_(layout.doubles()), rows_(rows) {
+RowBuffer::RowBuffer(const RowLayout& layout, int rows) : RowBuffer(layout.doubles(), rows) {}
+
+RowBuffer::RowBuffer(std::size_t stride, int rows) : stride_(stride), rows_(rows) {
   constexpr std::size_t line = 64;
   stride_ = (stride_ + 7) / 8 * 8;
   if (rows == 0) return;

@@ -11,6 +11,11 @@
 
 namespace delf {
 
+/// The packs first, first + stride, … before last.
+struct PackRange {
+  int first, last, stride = 1;
+};
+
 /// How a row of N sites lies in memory: lane l of every pack owns the contiguous arc of sites start(l) … start(l)+M−1,
 /// so that the neighbours of a pack of sites are the packs before and after it, aligned, without shuffles. Arcs may
 /// overlap by one site or more when N is no multiple of the lanes; such slots hold the same value. `halo` packs on
@@ -18,11 +23,14 @@ namespace delf {
 ///
 ///     pack −halo … −1 | 0 … M−1 | M … M+halo−1        slot(v, l) = (v + halo)·lanes + l
 ///
+/// With `aligned` = 2 every arc starts at an even site (N even), so that a pack holds even sites only or odd sites only:
+/// a brick wall then needs no more than every second pack.
 class RowLayout {
  public:
-  RowLayout(const Lattice&, int halo);
+  RowLayout(const Lattice&, int halo, int aligned = 1);
 
-  int packs() const { return packs_; }        ///< M
+  int packs() const { return packs_; }  ///< M
+  PackRange all() const { return {0, packs_}; }
   int halo() const { return halo_; }
   int sites() const { return sites_; }
   std::size_t doubles() const { return static_cast<std::size_t>(packs_ + 2 * halo_) * lanes; }
@@ -40,7 +48,10 @@ class RowLayout {
   /// Fills halo slots from the sites they repeat, adding `turn` for every time round the circle; on an interval the
   /// slots beyond a wall repeat the wall, so that they stay finite.
   void fill_halo(double* row, double turn = 0) const {
-    for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * turn;
+    if (turn == 0)
+      for (const Copy& c : halo_copies_) row[c.to] = row[c.from];
+    else
+      for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * turn;
   }
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {
@@ -68,12 +79,15 @@ class RowBuffer {
  public:
   RowBuffer() = default;
   RowBuffer(const RowLayout& layout, int rows);
+  /// One row of so many doubles.
+  explicit RowBuffer(std::size_t doubles) : RowBuffer(doubles, 1) {}
   double* row(int r) { return data_.get() + static_cast<std::size_t>(r) * stride_; }
   const double* row(int r) const { return data_.get() + static_cast<std::size_t>(r) * stride_; }
   int rows() const { return rows_; }
   std::size_t bytes() const { return stride_ * static_cast<std::size_t>(rows_) * sizeof(double); }
 
  private:
+  RowBuffer(std::size_t stride, int rows);
   struct Free {
     void operator()(double* p) const { std::free(p); }
   };

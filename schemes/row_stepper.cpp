@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "lattice/error.hpp"
+#include "schemes/contraction.hpp"
 #include "schemes/flush_denormals.hpp"
 #include "schemes/newton.hpp"
 #include "schemes/row_equations.hpp"
+#include "schemes/row_seed.hpp"
+#include "schemes/row_team.hpp"
 
 namespace delf {
 
@@ -18,15 +22,24 @@ struct RowStepper::Impl {
   const LatticeSystem& system;
   const SolvePlan& plan;
   const StepOptions options;
-  const int d, history, seed_rows;
-  const bool iterative, stiff;
+  const int d, history;
+  const bool iterative;
+  std::optional<Contraction> contraction;  ///< of an iteration
+  const bool stiff;
   SectionRows rows;
   RowEquations equations;
-  RowSum sum;
+  RowSeed seed;
+  std::optional<RowTeam> team;
+  std::vector<double*> candidates;
+  double gain = 0, weight = 1;  ///< of the equations, for contraction
 
   std::int64_t n = -1;         ///< newest row
   double largest[2] = {0, 0};  ///< |y| of the newest two rows
   int iterations = 0;
+  int rows_known = 0;  ///< newest rows that have not been written over
+  std::vector<double> values_of_parts;
+  RowBuffer saved;
+  std::int64_t saved_row = -1;
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
       : system(s),
@@ -34,108 +47,157 @@ struct RowStepper::Impl {
         options(o),
         d(s.components()),
         history(std::max(p.forward + p.backward, 2)),
-        seed_rows(std::clamp(o.seed_order, 1, 12)),
         iterative(!solved_at_once(s, p)),
-        stiff(iterative && is_stiff(s, p)),
-        rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, iterative ? seed_rows - 1 : 1) + 1, o.turn),
-        equations(s, p, rows, history) {}
+        contraction(iterative ? std::optional(Contraction(s, p)) : std::nullopt),
+        stiff(iterative && contraction->is_stiff()),
+        rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, seed_rows()) + 1, o.turn),
+        equations(s, p, rows, history, o.turn),
+        seed(rows, seed_rows(), equations.looks()) {
+    for (int a = 0; a < d && equations.reads_unknown_row(); ++a) candidates.push_back(equations.candidate(a));
+    if (iterative) gain = equations.gain(), weight = equations.least_weight();
+    if (o.threads > 1 && equations.is_one_loop())
+      team.emplace(o.threads), values_of_parts.resize(static_cast<std::size_t>(o.threads));
+  }
 
+  int seed_rows() const { return iterative ? RowSeed::rows_for(options.seed_order, system.lattice().sites()) : 1; }
   const RowLayout& layout() const { return rows.layout(); }
 
-  struct Change {
-    double change = 0;  ///< largest |change of v_{n+1}| against the candidate before
-    double value = 0;   ///< largest |y_{n+1}|
-  };
-
-  /// v_{n+1} and y_{n+1} from w.
-  Change take_increment() {
-    const bool correct = equations.correction_form();
-    Pack change(0.0), value(0.0);
-    for (int a = 0; a < d; ++a) {
-      double *v_new = rows.v(n + 1, a), *y_new = rows.y(n + 1, a);
-      const double *w = equations.w(a), *v_old = rows.v(n, a), *y_old = rows.y(n, a);
-      const double* from = correct ? v_new : v_old;
-      for (int p = 0; p < layout().packs(); ++p) {
-        const auto at = layout().at(p);
-        const Pack before = Pack::load(v_new + at);
-        const Pack next = Pack::load(w + at) + Pack::load(from + at);
-        const Pack y_next = Pack::load(y_old + at) + next;
-        next.store(v_new + at);
-        y_next.store(y_new + at);
-        change = max_or_nan(abs(next - before), change);
-        value = max_or_nan(abs(y_next), value);
-      }
-      layout().fill_halo(v_new);
-      layout().fill_halo(y_new, options.turn);
-    }
-    return {max_or_nan(change), max_or_nan(value)};
-  }
-
-  /// The candidate y_{n+1} from past increments: v_{n+1} ≈ Σ_{m=1}^{order} (−1)^{m+1} C(order, m) v_{n+1−m}, the polynomial
-  /// through the last order + 1 rows.
-  void seed(int order) {
-    order = std::min({order, static_cast<int>(n), rows.increments_held() - 1});
-    for (int a = 0; a < d; ++a) {
-      sum.clear();
-      double coefficient = -1;
-      for (int m = 1; m <= order; ++m) {
-        coefficient *= -static_cast<double>(order - m + 1) / m;
-        sum.add(rows.v(n + 1 - m, a), 0, coefficient, 0, false);
-      }
-      std::fill_n(rows.v(n + 1, a), layout().doubles(), 0.0);
-      sum.evaluate(layout(), 0, 0, nullptr, rows.v(n + 1, a), nullptr);
-    }
-    rows.add_increment(n + 1);
-  }
-
-  /// One pass: E at the candidate, w, and from it the next candidate.
-  Change improve() {
-    equations.evaluate_outputs(n, true);
-    equations.restore();
-    equations.add(n, RowEquations::fresh);
-    equations.solve(n);
-    return take_increment();
-  }
-
-  void step() {
+  void step(bool looked_at) {
     const FlushDenormals guard;
     iterations = 0;
-    equations.evaluate_known_outputs(n);
-    equations.clear();
-    equations.add(n, RowEquations::known);
-    equations.keep();
-    Change last;
-    if (!iterative) {
-      // The unknown row enters linearly, with known coefficients: one solve, from any candidate. Outputs that were read
-      // from the candidate are part of what the next step knows: take them again.
-      seed(1);
-      last = improve();
-      equations.evaluate_outputs(n, true);
+    equations.begin(n);
+    double value = 0;
+    if (equations.is_one_loop()) {
+      value = loop(looked_at || options.fibre == Fibre::circle);  // whose rows are compared
     } else {
-      if (stiff || !iterate(last)) last.value = follow_root();
+      equations.evaluate_known_outputs();
+      if (!iterative) value = solve_once();
+      else if (stiff || !iterate(value)) value = follow_root();
     }
-    if (overflowed(last.value)) report_not_finite();
+    if (overflowed(value)) report_not_finite();
     if (options.fibre == Fibre::circle) check_wrapped_differences();
     largest[1] = largest[0];
-    largest[0] = last.value;
+    largest[0] = value;
+    rows_known = std::min(rows_known + 1, rows.rows_held());
     ++n;
   }
 
+  /// An explicit step of one loop; in place if no one looks at the row. Returns √Σy².
+  double loop(bool looked_at) {
+    if (!looked_at && (saved_row < 0 || n >= saved_row + steps_between_saves)) save();
+    rows_known = looked_at ? rows_known : 0;
+    const double value = loop_in_parts(!looked_at);
+    return looked_at || !overflowed(value) ? value : loop_again();
+  }
+
+  /// By as many threads as there are rows enough for.
+  double loop_in_parts(bool in_place) {
+    constexpr int worth_a_thread = 1024;  // packs: below, waiting for each other costs more than it saves
+    const int parts = team ? std::clamp(layout().packs() / worth_a_thread, 1, team->size()) : 1;
+    equations.begin_loop(parts, in_place);
+    double value = 0;
+    if (parts == 1) {
+      value = equations.loop(0, 1);
+    } else {
+      team->run(parts,
+                [&](int part) { values_of_parts[static_cast<std::size_t>(part)] = equations.loop(part, parts); });
+      for (int part = 0; part < parts; ++part)
+        value = larger_or_nan(values_of_parts[static_cast<std::size_t>(part)], value);
+    }
+    equations.close_loop();
+    return value;
+  }
+
+  // A row that is written over is gone; should the new one overflow, the last good row is found again from here.
+  static constexpr int steps_between_saves = 1024;
+  void save() {
+    if (!saved.rows()) saved = RowBuffer(layout(), 2 * d);
+    for (int a = 0; a < d; ++a) {
+      std::copy_n(rows.y(n, a), layout().doubles(), saved.row(2 * a));
+      std::copy_n(rows.v(n, a), layout().doubles(), saved.row(2 * a + 1));
+    }
+    saved_row = n;
+  }
+
+  /// The steps from the saved row on once more, each beside the row before.
+  double loop_again() {
+    const std::int64_t last = n;
+    n = saved_row;
+    for (int a = 0; a < d; ++a) {
+      std::copy_n(saved.row(2 * a), layout().doubles(), rows.y(n, a));
+      std::copy_n(saved.row(2 * a + 1), layout().doubles(), rows.v(n, a));
+    }
+    rows_known = 1;
+    double value = 0;
+    for (;; ++n) {
+      equations.begin(n);
+      value = loop_in_parts(false);
+      if (n == last) return value;
+      ++rows_known;
+    }
+  }
+
+  /// The unknown row enters linearly, with known coefficients: one solve, from any candidate. Outputs that were read from
+  /// the candidate are part of what the next step knows: take them again.
+  double solve_once() {
+    const bool reads_candidate = equations.reads_unknown_row();
+    if (reads_candidate) {
+      take_seed(1);
+      equations.evaluate_unknown_outputs(RowEquations::At::candidate);
+    }
+    const double value = equations.advance();
+    if (reads_candidate) equations.evaluate_unknown_outputs(RowEquations::At::row);
+    return value;
+  }
+
+  void take_seed(int order) {
+    seed.find(n, order, candidates.data());
+    if (equations.correction_form()) take_increment_of_candidate();
+  }
+  /// What w corrects.
+  void take_increment_of_candidate() {
+    for (int a = 0; a < d; ++a) {
+      double* const v = rows.v(n + 1, a);
+      const double *y = candidates[static_cast<std::size_t>(a)], *before = rows.y(n, a);
+      for (std::size_t s = 0; s < layout().doubles(); ++s) v[s] = y[s] - before[s];
+    }
+  }
+
+  static constexpr double smallest_estimated = 0.99e-13;
+
+  /// What the tolerance allows: relative to what the field spans, for where it has drifted to says nothing, but not below
+  /// what rounding leaves at its size.
+  double within(double tolerance, double size) const {
+    const double span = seed.span() > 0 ? std::min(seed.span(), size) : size;
+    return std::max(tolerance * span, 4 * std::numeric_limits<double>::epsilon() * size);
+  }
+
   /// Simplified Newton with the constant part. False when it does not contract, or not fast enough.
-  bool iterate(Change& last) {
-    seed(seed_rows - 1);
+  bool iterate(double& value) {
+    const double tolerance = std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon());
+    double next_change = contraction->next_change(largest[0], weight, gain);
+    // The smallest tolerances ask for all that rounding allows: there nothing is left to an estimate.
+    const bool estimates = options.tolerance >= smallest_estimated;
+    seed.choose(n, tolerance, next_change, estimates ? next_change : 1 / weight);
+    take_seed(seed.order());
     double before = std::numeric_limits<double>::infinity();
     while (iterations < options.max_iterations) {
       ++iterations;
-      last = improve();
+      equations.evaluate_unknown_outputs(RowEquations::At::candidate);
+      value = equations.advance();
       // A field that overflowed has no root to look for.
-      if (overflowed(last.value)) report_not_finite();
-      const double scale = std::max({last.value, largest[0], largest[1]});
-      if (last.change <= std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()) * scale) return true;
+      if (overflowed(value)) report_not_finite();
+      const double scale = std::max({value, largest[0], largest[1]}), change = equations.change();
+      const double enough = within(tolerance, scale);
+      // One more iteration would change the row by no more than what it makes of the last change.
+      if (change / weight <= enough || (estimates && next_change * change <= enough)) return true;
+      if (estimates && iterations > 1) next_change = std::min(next_change, 2 * equations.whole_change() / before);
+      if (estimates && next_change * change <= enough) return true;
       // Changes that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
-      if (iterations >= 3 && last.change > 0.25 * before)
-        return last.change <= 64 * std::numeric_limits<double>::epsilon() * scale;
-      before = last.change;
+      if (iterations >= 3 && change > 0.25 * before)
+        return change <= 64 * std::numeric_limits<double>::epsilon() * scale;
+      before = change;
+      equations.make_row_the_candidate();
     }
     return false;
   }
@@ -153,7 +215,7 @@ struct RowStepper::Impl {
           n + 1, static_cast<double>(n + 1) * system.time_step()));
     rows.set_row(n + 1, result.row);
     rows.find_increment(n + 1);
-    equations.evaluate_outputs(n, true);
+    equations.evaluate_unknown_outputs(RowEquations::At::row);
     double value = 0;
     for (double x : result.row) value = std::max(value, std::abs(x));
     return value;
@@ -203,9 +265,15 @@ struct RowStepper::Impl {
         n + 1, static_cast<double>(n + 1) * system.time_step(), site));
   }
 
+  void require_rows(int count) const {
+    if (count > rows_known)
+      throw std::logic_error("delf: rows before the newest were written over by step(false), or not stepped yet");
+  }
+
   double residual() {
     const std::int64_t base = n - 1;
     if (base < history - 1) return 0;
+    if (rows_known < 2) return std::numeric_limits<double>::quiet_NaN();
     return equations.residual(base);
   }
 };
@@ -218,6 +286,9 @@ int RowStepper::starting_rows() const { return impl_->history; }
 
 void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   Impl& s = *impl_;
+  s.rows.restart();
+  s.rows_known = static_cast<int>(rows.size());
+  s.saved_row = -1;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (double x : rows[r])
       if (overflowed(std::abs(x))) throw NotFinite(fmt::format("row {} of the start is not finite", r));
@@ -228,7 +299,9 @@ void RowStepper::start(const std::vector<std::vector<double>>& rows) {
     for (double x : rows[r]) s.largest[0] = std::max(s.largest[0], std::abs(x));
   }
   s.n = static_cast<std::int64_t>(rows.size()) - 1;
-  s.equations.evaluate_outputs(s.n, false);
+  s.equations.begin(s.n);
+  s.equations.evaluate_outputs();
+  s.seed.restart();
 }
 
 void RowStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
@@ -246,15 +319,28 @@ void RowStepper::start_centred(const std::vector<double>& row0, const std::vecto
   start({row0, result.row});
 }
 
-void RowStepper::step() { impl_->step(); }
+void RowStepper::step(bool looked_at) { impl_->step(looked_at); }
 std::int64_t RowStepper::newest() const { return impl_->n; }
-std::vector<double> RowStepper::row(int back) const { return impl_->rows.row(impl_->n - back); }
+std::vector<double> RowStepper::row(int back) const {
+  impl_->require_rows(back + 1);
+  return impl_->rows.row(impl_->n - back);
+}
 double RowStepper::residual() const { return impl_->residual(); }
 int RowStepper::iterations() const { return impl_->iterations; }
 const RowLayout* RowStepper::layout() const { return &impl_->layout(); }
-Window RowStepper::window(int rows) const { return impl_->rows.window(impl_->n - rows + 1, impl_->n); }
-const double* RowStepper::row_data(int back, int a) const { return impl_->rows.y(impl_->n - back, a); }
-const double* RowStepper::newest_increment(int a) const { return impl_->rows.v(impl_->n, a); }
+Window RowStepper::window(int rows) const {
+  impl_->require_rows(rows);
+  return impl_->rows.window(impl_->n - rows + 1, impl_->n);
+}
+const double* RowStepper::row_data(int back, int a) const {
+  impl_->require_rows(back + 1);
+  return impl_->rows.y(impl_->n - back, a);
+}
+const double* RowStepper::newest_increment(int a) const {
+  double* const v = impl_->rows.v(impl_->n, a);
+  impl_->layout().fill_halo(v);  // a loop leaves it
+  return v;
+}
 std::string RowStepper::solver_name() const { return impl_->equations.solver().name(); }
 bool RowStepper::iterates() const { return impl_->iterative; }
 bool RowStepper::matrix_free() const { return impl_->equations.matrix_free(); }
@@ -262,14 +348,14 @@ bool RowStepper::matrix_free() const { return impl_->equations.matrix_free(); }
 std::size_t RowStepper::bytes() const {
   const Impl& s = *impl_;
   return s.rows.row_bytes() + s.rows.increment_bytes() + s.equations.output_bytes() + s.equations.matrix_bytes() +
-         s.equations.work_bytes();
+         s.equations.work_bytes() + s.saved.bytes();
 }
 
 std::string RowStepper::memory_report() const {
   const Impl& s = *impl_;
   return fmt::format("rows of the field {} B, increments {} B, nonlinear terms {} B, matrix {} B, work space {} B",
                      s.rows.row_bytes(), s.rows.increment_bytes(), s.equations.output_bytes(),
-                     s.equations.matrix_bytes(), s.equations.work_bytes());
+                     s.equations.matrix_bytes(), s.equations.work_bytes() + s.saved.bytes());
 }
 
 }  // namespace delf

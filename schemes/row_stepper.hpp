@@ -22,7 +22,7 @@ class RowStepper final : public StepMethod {
   int starting_rows() const override;
   void start(const std::vector<std::vector<double>>& rows) override;
   void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) override;
-  void step() override;
+  void step(bool looked_at) override;
 
   std::int64_t newest() const override;
   std::vector<double> row(int back) const override;

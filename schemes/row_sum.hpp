@@ -1,37 +1,132 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <array>
 #include <cstddef>
+#include <vector>
 
 #include "schemes/row_layout.hpp"
 
 namespace delf {
 
-/// out += constant + Σ coefficient · row(shifted): many rows summed in one pass, a pack of sites at a time.
+/// A sum over shifted rows, with coefficients and shifts that are known at set-up and rows that change from step to step:
+///
+///     constant + Σ coefficient · (row(shifted) − row) + Σ coefficient · row(shifted)
+///
+/// A pass hands every pack's sum to `consume(at, sum)`, so that what is done with it needs no pass of its own. Like
+/// std::for_each it works with a copy of `consume` and returns it: what that carries along stays in registers.
 class RowSum {
  public:
-  void clear() { plain_ = differences_ = alternating_ = 0; }
-  /// `shift` in doubles; `alternating` multiplies the signs of sites; `difference`: the row's own site is subtracted.
-  void add(const double* row, std::ptrdiff_t shift, double coefficient, double alternating, bool difference);
-  /// With `absolute`, also absolute += Σ |coefficient · row|.
-  void evaluate(const RowLayout&, double constant, double constant_alternating, const double* signs, double* out,
-                double* absolute) const;
+  /// `row` is an index into the rows that bind() is given; `shift` in sites.
+  void add_difference(int row, int shift, double coefficient) { differences_.push_back({row, shift, coefficient}); }
+  void add(int row, int shift, double coefficient) { plain_.push_back({row, shift, coefficient}); }
+  void add_constant(double c) { constant_ += c; }
+  /// Multiplies every coefficient.
+  void scale(double factor);
+
+  void bind(const double* const* rows);
+
+  template <class Consume>
+  Consume pass(const RowLayout& layout, PackRange packs, Consume consume) const;
+  /// The same with the sum of the terms' absolute values: `consume(at, sum, absolute)`.
+  template <class Consume>
+  void measure(const RowLayout& layout, PackRange packs, Consume&& consume) const;
 
  private:
-  static constexpr std::size_t most = 96;
-  struct Entry {
-    const double* row;
-    std::ptrdiff_t shift;
-    double coefficient, alternating;
-    bool difference;
+  struct Term {
+    int row, shift;
+    double coefficient;
+    const double* shifted = nullptr;
+    const double* own = nullptr;
   };
-  template <int count>
-  static void plain_pass(const RowLayout&, const Entry*, double constant, double* out);
-  template <int count>
-  static void difference_pass(const RowLayout&, const Entry*, double* out);
+  template <int differences, int plain, class Consume>
+  Consume counted_pass(const RowLayout&, PackRange, Consume) const;
+  template <class Consume>
+  Consume general_pass(const RowLayout&, PackRange, Consume) const;
 
-  std::array<Entry, most> plain_entries_, difference_entries_, alternating_entries_;
-  std::size_t plain_ = 0, differences_ = 0, alternating_ = 0;
+  std::vector<Term> differences_, plain_;
+  double constant_ = 0;
 };
+
+template <int differences, int plain, class Consume>
+Consume RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume consume) const {
+  const double *shifted[differences + 1], *own[differences + 1], *row[plain + 1];
+  double difference_coefficient[differences + 1], coefficient[plain + 1];
+  for (int i = 0; i < differences; ++i) {
+    const Term& t = differences_[static_cast<std::size_t>(i)];
+    shifted[i] = t.shifted, own[i] = t.own, difference_coefficient[i] = t.coefficient;
+  }
+  for (int i = 0; i < plain; ++i) {
+    const Term& t = plain_[static_cast<std::size_t>(i)];
+    row[i] = t.shifted, coefficient[i] = t.coefficient;
+  }
+  const Pack constant(constant_);
+  for (int v = packs.first; v < packs.last; v += packs.stride) {
+    const std::ptrdiff_t at = layout.at(v);
+    Pack sum = constant;
+    for (int i = 0; i < differences; ++i)
+      sum += difference_coefficient[i] * (Pack::load(shifted[i] + at) - Pack::load(own[i] + at));
+    for (int i = 0; i < plain; ++i) sum += coefficient[i] * Pack::load(row[i] + at);
+    consume(at, sum);
+  }
+  return consume;
+}
+
+template <class Consume>
+Consume RowSum::general_pass(const RowLayout& layout, PackRange packs, Consume consume) const {
+  for (int v = packs.first; v < packs.last; v += packs.stride) {
+    const std::ptrdiff_t at = layout.at(v);
+    Pack sum = constant_;
+    for (const Term& t : differences_) sum += t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.own + at));
+    for (const Term& t : plain_) sum += t.coefficient * Pack::load(t.shifted + at);
+    consume(at, sum);
+  }
+  return consume;
+}
+
+template <class Consume>
+void RowSum::measure(const RowLayout& layout, PackRange packs, Consume&& consume) const {
+  for (int v = packs.first; v < packs.last; v += packs.stride) {
+    const std::ptrdiff_t at = layout.at(v);
+    Pack sum = constant_, absolute(0.0);
+    const auto add = [&](Pack term) {
+      sum += term;
+      absolute += abs(term);
+    };
+    for (const Term& t : differences_) add(t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.own + at)));
+    for (const Term& t : plain_) add(t.coefficient * Pack::load(t.shifted + at));
+    consume(at, sum, absolute);
+  }
+}
+
+/// The numbers of terms of the usual schemes are compiled: rows then stay in registers.
+template <class Consume>
+Consume RowSum::pass(const RowLayout& layout, PackRange packs, Consume consume) const {
+  const auto counted = [&]<int differences>() {
+    switch (plain_.size()) {
+      case 0:
+        return counted_pass<differences, 0>(layout, packs, consume);
+      case 1:
+        return counted_pass<differences, 1>(layout, packs, consume);
+      case 2:
+        return counted_pass<differences, 2>(layout, packs, consume);
+      case 3:
+        return counted_pass<differences, 3>(layout, packs, consume);
+      case 4:
+        return counted_pass<differences, 4>(layout, packs, consume);
+      case 5:
+        return counted_pass<differences, 5>(layout, packs, consume);
+      case 6:
+        return counted_pass<differences, 6>(layout, packs, consume);
+      case 7:
+        return counted_pass<differences, 7>(layout, packs, consume);
+      case 8:
+        return counted_pass<differences, 8>(layout, packs, consume);
+      default:
+        return general_pass(layout, packs, consume);
+    }
+  };
+  if (differences_.empty()) return counted.template operator()<0>();
+  if (differences_.size() == 2) return counted.template operator()<2>();
+  return general_pass(layout, packs, consume);
+}
 
 }  // namespace delf

@@ -7,7 +7,7 @@ SectionRows::SectionRows(const LatticeSystem& system, int halo, int rows, int in
     : lattice_(&system.lattice()),
       d_(system.components()),
       turn_(turn),
-      layout_(system.lattice(), halo),
+      layout_(system.lattice(), halo, system.placement() == Placement::brick_wall ? 2 : 1),
       y_(layout_, rows * d_),
       v_(layout_, increments * d_) {}
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "schemes/lattice_system.hpp"
@@ -19,10 +20,19 @@ class SectionRows {
   int sites() const { return layout_.sites(); }
   int components() const { return d_; }
   double turn() const { return turn_; }
+  int rows_held() const { return y_.rows() / d_; }
   int increments_held() const { return v_.rows() / d_; }
 
-  double* y(std::int64_t row, int a) { return y_.row(slot(row, y_.rows() / d_) * d_ + a); }
-  double* v(std::int64_t row, int a) { return v_.row(slot(row, v_.rows() / d_) * d_ + a); }
+  double* y(std::int64_t row, int a) { return y_at(slot(row, rows_held()), a); }
+  double* v(std::int64_t row, int a) { return v_at(slot(row, increments_held()), a); }
+  /// Lets the next row and its increment take the place of the newest instead of the oldest: the one before it is then
+  /// gone.
+  void overwrite_newest() { ++overwritten_; }
+  /// Before rows are set anew.
+  void restart() { overwritten_ = 0; }
+  /// By their slots in the rings, for those who keep count of them.
+  double* y_at(int slot, int a) { return y_.row(slot * d_ + a); }
+  double* v_at(int slot, int a) { return v_.row(slot * d_ + a); }
 
   /// y_{row} = y_{row−1} + v_{row}, halo too.
   void add_increment(std::int64_t row);
@@ -38,12 +48,19 @@ class SectionRows {
   std::size_t increment_bytes() const { return v_.bytes(); }
 
  private:
-  static int slot(std::int64_t row, int held) { return static_cast<int>(row % held); }
+  int slot(std::int64_t row, int held) const {
+    const std::int64_t r = row - overwritten_;
+    // A division of 64 bits takes several times as long.
+    if (r < std::numeric_limits<std::uint32_t>::max())
+      return static_cast<int>(static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(held));
+    return static_cast<int>(r % held);
+  }
   const Lattice* lattice_;
   int d_;
   double turn_;
   RowLayout layout_;
   RowBuffer y_, v_;
+  std::int64_t overwritten_ = 0;  ///< rows that took the place of the one before
 };
 
 }  // namespace delf

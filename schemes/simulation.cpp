@@ -48,7 +48,7 @@ SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
 Evolution make_evolution(SchemeParts parts, const Problem& p) {
   return {p.lattice, std::move(parts.families), p.time_step,
           {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
-           2 * std::numbers::pi * p.winding},
+           2 * std::numbers::pi * p.winding, p.threads},
           std::move(parts.components)};
 }
 
@@ -156,7 +156,7 @@ void Simulation::start_centred(std::span<const double> row0, std::span<const dou
   impl_->stepper.start_centred(rows[0], {velocity.begin(), velocity.end()});
 }
 
-void Simulation::step() { impl_->stepper.step(); }
+void Simulation::step(bool looked_at) { impl_->stepper.step(looked_at); }
 std::int64_t Simulation::newest() const { return impl_->stepper.newest(); }
 
 void Simulation::start_legendre(std::span<const double> row0, std::span<const double> velocity) {

@@ -33,6 +33,7 @@ struct Problem {
   int degree_time = 2, degree_space = 2;         ///< scheme.degree_time, scheme.degree_space: of an element
   std::string quadrature = "gauss";              ///< scheme.quadrature: in time, gauss or lobatto
   double alpha = 1;                              ///< scheme.alpha: of the arclength constraint
+  int threads = 1;                               ///< run.threads: that explicit steps are shared by
 };
 
 /// A scheme on a lattice, stepping. Rows are in the order of sites, row[i·C + c], values as they are (not reduced modulo
@@ -64,7 +65,9 @@ class Simulation {
   void start_legendre(std::span<const double> row0, std::span<const double> velocity);
 
   /// One step. Throws NoConvergence or NotFinite; the rows held are then still the last good ones.
-  void step();
+  /// A row that is not to be `looked_at` costs an explicit step less memory traffic: the row before it is written over, and
+  /// residual() and monitors() are not to be had.
+  void step(bool looked_at = true);
 
   /// Index of the newest row.
   std::int64_t newest() const;

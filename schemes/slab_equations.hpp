@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "jets/pack.hpp"
 #include "lattice/solve_plan.hpp"
 #include "schemes/lattice_system.hpp"
 
@@ -69,34 +71,73 @@ class SlabEquations {
                   std::vector<std::vector<double>>& E, std::vector<double>& values,
                   const std::vector<double>* momenta = nullptr) const;
 
+  /// The part of E that contains no unknown of the slab, and E from it.
+  void known(const SectionRing&, std::int64_t J, std::vector<double>& E) const;
+  void residual_from(const std::vector<double>& known, const SectionRing&, std::int64_t J,
+                     std::vector<double>& E) const;
+  /// The values of places() without the terms that depend on the field. False if some family cannot tell.
+  bool constant_jacobian(std::vector<double>& values) const;
+
   std::size_t bytes() const;
 
  private:
-  struct Read {
-    int row, place;  ///< from J; site·C + component
-    double add;      ///< for having gone round the circle
-    int equation;    ///< that the value's residual belongs to, or −1
-    int unknown;     ///< that the value is, or −1
-  };
-  struct Member {
+  /// Stencils of one family whose anchors are in one row, as many lanes as fill whole packs: the last is repeated, and
+  /// what it repeats goes to an equation that nobody reads. Value i of stencil s is at i·padded + s.
+  struct Batch {
     const StencilFamily* family;
-    int first, anchor_row, lowest_row;
-    double x;
-    int first_entry;  ///< into entry_: for each (i, m) with an equation and an unknown
+    int size;             ///< values of a stencil
+    int row, lowest_row;  ///< of the anchors and of the lowest value, from J
+    int stencils = 0, padded = 0;
+    std::size_t first_value;       ///< into value_row_, written_
+    std::size_t first_read = 0;    ///< into place_, equation_, unknown_, add_
+    std::size_t first_anchor = 0;  ///< into x_
+    std::size_t first_entry = 0;   ///< into entry_: for each (stencil, i, m) with an equation and an unknown
+    bool has_unknown = false;
+    bool linear = false;                        ///< r = r(0) + J y with the same J in every cell
+    std::size_t first_term = 0, last_term = 0;  ///< into terms_, of J, if it is
   };
-  void gather(const Member&, const SectionRing&, std::int64_t J) const;
+  /// An entry of J that is not zero.
+  struct Term {
+    int i, m;
+    double value;
+  };
+  using Numbers = std::vector<double>;
+
+  void list_stencils(const LatticeSystem&, int parity);
+  void list_reads(const LatticeSystem&, int past, int future, double turn);
+  void list_places();
+  void take_linear_part(Batch&);
+  void evaluate_linear(const Batch&, const Pack* y, Pack* r) const;
+
+  bool below_start(const Batch& b, std::int64_t J, bool legendre) const { return legendre && J + b.lowest_row < 0; }
+  Cell cell(const Batch& b, std::int64_t J, double x) const;
+  void add_residual(const Batch&, const SectionRing&, std::int64_t J, double* E, double* absolute) const;
+  void evaluate(const Batch&, const SectionRing&, std::int64_t J, int first) const;
+  void gather(const Batch&, const SectionRing&, std::int64_t J, int stencil) const;
+  template <class Visit>
+  void for_each_entry(const Batch&, const Visit&) const;
+  void add_jacobian(const Batch&, std::span<const double> J, int stencil, const int*& entry, Numbers& values) const;
   std::vector<char> present() const;
-  Cell cell(const Member&, std::int64_t J) const;
 
   double time_step_, space_step_;
   int components_, depth_;
   std::size_t row_size_;
   Slab slab_;
-  std::vector<Member> members_;
-  std::vector<Read> reads_;
+  std::vector<Batch> batches_;
+  std::vector<int> value_row_;  ///< of value i, from J
+  std::vector<char> written_;   ///< some stencil's value i has an equation
+  std::vector<int> place_;      ///< site·C + component
+  std::vector<int> equation_;   ///< that the value's residual belongs to, or size()
+  std::vector<int> unknown_;    ///< that the value is, or −1
+  Numbers add_;                 ///< for having gone round the circle; empty if nothing is added
+  std::vector<Pack> x_;         ///< of the anchors
   std::vector<Place> places_;
   std::vector<int> entry_;
-  mutable std::vector<double> y_, r_, J_;
+  Numbers fixed_;  ///< the values of places() that linear batches give
+  std::vector<Term> terms_;
+  Numbers at_zero_;                  ///< r(0) of value i
+  mutable std::vector<Pack> y_, r_;  ///< of a pack of stencils
+  mutable Numbers y_one_, r_one_, J_one_;
 };
 
 }  // namespace delf

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "schemes/flush_denormals.hpp"
 #include "schemes/slab_extent.hpp"
@@ -17,19 +18,56 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
   future_ = extent.above;
   lag_ = extent.field_lag;
   back_ = std::move(extent.behind);
-  seed_order_ = std::clamp(options.seed_order, 1, 3);
-  past_ = std::max(plan.history, seed_order_ + 1 + extent.below);
+  seed_order_ = std::clamp(options.seed_order, 1, 12) - 1;
+  newton_seed_order_ = std::clamp(options.seed_order, 1, 3);
+  past_ = std::max(plan.history, std::max(seed_order_, newton_seed_order_) + 1 + extent.below);
   starting_rows_ = std::max(plan.history, 1) + future_;
   const std::size_t row = static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_);
   ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row);
   for (int p = 0; p < plan.table.parities; ++p) {
     SlabEquations equations(system, plan, p, past_, future_, options.turn);
     BlockSolver solver = equations.solver();
-    parities_.push_back({std::move(equations), std::move(solver)});
+    std::vector<Unknowns> unknowns = list_unknowns(equations);
+    parities_.push_back({std::move(equations), std::move(solver), std::move(unknowns)});
+    parities_.back().has_constant = factor_constant(parities_.back());
   }
+  seed_.resize(row);
+}
+
+std::vector<SlabStepper::Unknowns> SlabStepper::list_unknowns(const SlabEquations& equations) const {
+  std::vector<Unknowns> lists;
+  for (int n = 0; n < equations.size(); ++n) {
+    const Node& u = equations.unknown(n);
+    const bool field = system_.component(u.component).role == Role::field;
+    auto list =
+        std::ranges::find_if(lists, [&](const Unknowns& l) { return l.time == u.site.time && l.field == field; });
+    if (list == lists.end()) list = lists.insert(list, {u.site.time, field, {}, {}});
+    list->numbers.push_back(n);
+    list->places.push_back(u.site.space * components_ + u.component);
+  }
+  // Inner nodes that have no past take the value of their cell's vertex: fields come first.
+  std::ranges::stable_partition(lists, &Unknowns::field);
+  return lists;
+}
+
+/// Where the equations are linear in the slab, or nearly, the matrix that stands for all Jacobians.
+bool SlabStepper::factor_constant(Parity& p) {
+  const bool there = p.equations.constant_jacobian(jacobian_) && p.solver.factor(jacobian_);
+  p.factored = there ? Matrix::constant : Matrix::none;
+  return there;
+}
+
+/// The largest |y| of the fields in a row: starting rows need not hold anything else.
+double SlabStepper::largest_of(const double* row) const {
+  double largest = 0;
+  for (std::size_t at = 0; at < seed_.size(); ++at)
+    if (system_.component(static_cast<int>(at) % components_).role == Role::field)
+      largest = std::max(largest, std::abs(row[at]));
+  return largest;
 }
 
 void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
+  std::ranges::fill(largest_, 0.0);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (std::ranges::any_of(rows[r], [](double x) { return overflowed(std::abs(x)); }))
       throw NotFinite(fmt::format("row {} of the start is not finite", r));
@@ -38,9 +76,14 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
                                                  "which the positions grow",
                                                  *i, *i + 1, r));
     std::ranges::copy(rows[r], ring_->row(static_cast<std::int64_t>(r)));
+    largest_[1] = std::exchange(largest_[0], largest_of(rows[r].data()));
   }
   J_ = static_cast<std::int64_t>(rows.size()) - 1 - future_;
   known_ = 0;
+  // Nothing of an earlier run is left: starting again gives the same bits.
+  for (Parity& p : parities_)
+    if (p.factored == Matrix::jacobian) p.factored = Matrix::none;
+  wait_ = 1, waiting_ = 0;
 }
 
 void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
@@ -51,28 +94,39 @@ void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vec
   J_ = 1;
 }
 
-/// The polynomial through the values that the last slabs gave.
-void SlabStepper::seed(Parity& p, std::int64_t J) {
+/// The polynomial of degree `most_order`, or as much as there are slabs for, through the values that the last slabs gave.
+void SlabStepper::seed(Parity& p, std::int64_t J, int most_order) {
   // What has no equation keeps its value: fixed walls.
-  const std::size_t size = static_cast<std::size_t>(system_.lattice().sites() * components_);
+  const std::size_t size = seed_.size();
   std::copy_n(ring_->row(J + future_ - 1), size, ring_->row(J + future_));
-  for (int n = 0; n < p.equations.size(); ++n) {
-    const Node& u = p.equations.unknown(n);
-    const bool field = system_.component(u.component).role == Role::field;
+  for (const Unknowns& unknowns : p.unknowns) {
     // Starting rows hold the fields; multipliers and inner nodes are known from the slabs that were solved.
-    const std::int64_t available = field ? J + u.site.time : known_;
-    const int order = static_cast<int>(std::min<std::int64_t>(seed_order_, available - 1));
-    double sum = 0, coefficient = -1;
+    const std::int64_t available = unknowns.field ? J + unknowns.time : known_;
+    const int order = static_cast<int>(std::min<std::int64_t>(most_order, available - 1));
+    if (order < 0) {
+      seed_without_past(unknowns, J);
+      continue;
+    }
+    // Whole rows at once: what else lies in them costs less than to leave it out.
+    std::ranges::fill(seed_, 0.0);
+    double coefficient = -1;
     for (int m = 1; m <= order + 1; ++m) {
       coefficient *= -static_cast<double>(order + 2 - m) / m;
-      sum += coefficient * ring_->row(J + u.site.time - m)[u.site.space * components_ + u.component];
+      const double* const row = ring_->row(J + unknowns.time - m);
+      for (std::size_t at = 0; at < size; ++at) seed_[at] += coefficient * row[at];
     }
-    if (order < 0) {
-      // An inner node with no past: the value of its cell's vertex. A multiplier: zero.
-      const bool inner = system_.component(u.component).role == Role::inner;
-      sum = inner ? ring_->row(J + u.site.time)[u.site.space * components_ + u.component % system_.fields()] : 0;
-    }
-    p.equations.value(*ring_, J, n) = sum;
+    double* const row = ring_->row(J + unknowns.time);
+    for (const int place : unknowns.places) row[place] = seed_[static_cast<std::size_t>(place)];
+  }
+}
+
+/// An inner node: the value of its cell's vertex. A multiplier: zero.
+void SlabStepper::seed_without_past(const Unknowns& unknowns, std::int64_t J) {
+  double* const row = ring_->row(J + unknowns.time);
+  for (const int place : unknowns.places) {
+    const int component = place % components_;
+    const bool inner = system_.component(component).role == Role::inner;
+    row[place] = inner ? row[place - component + component % system_.fields()] : 0.0;
   }
 }
 
@@ -92,60 +146,115 @@ std::optional<int> SlabStepper::crossing(const double* row) const {
   return std::nullopt;
 }
 
+/// y −= change
+SlabStepper::Change SlabStepper::take_change(const Parity& p, std::int64_t J) {
+  // A field that passes through zero has the scale that it had before.
+  Change result{.value = std::max(largest_[0], largest_[1])};
+  for (const Unknowns& unknowns : p.unknowns) {
+    double* const row = ring_->row(J + unknowns.time);
+    for (std::size_t i = 0; i < unknowns.places.size(); ++i) {
+      double& y = row[unknowns.places[i]];
+      const double by = change_[static_cast<std::size_t>(unknowns.numbers[i])];
+      y -= by;
+      result.finite = result.finite && !overflowed(std::abs(y));
+      // Multipliers are not asked: they have no scale of their own, and converge with what they act on.
+      if (!unknowns.field && system_.component(unknowns.places[i] % components_).role == Role::multiplier) continue;
+      result.change = std::max(result.change, std::abs(by));
+      result.value = std::max(result.value, std::abs(y));
+    }
+  }
+  return result;
+}
+
+bool SlabStepper::small(const Change& c) const {
+  return c.change <= std::max(options_.tolerance, 4 * std::numeric_limits<double>::epsilon()) * c.value;
+}
+
+/// Simplified Newton with the constant part. False where it does not contract, or not fast enough.
+bool SlabStepper::iterate(Parity& p, std::int64_t J) {
+  if (p.factored != Matrix::constant && !factor_constant(p)) return false;
+  seed(p, J, seed_order_);
+  p.equations.known(*ring_, J, known_E_);
+  double before = std::numeric_limits<double>::infinity();
+  while (iterations_ < options_.max_iterations) {
+    ++iterations_;
+    p.equations.residual_from(known_E_, *ring_, J, E_);
+    p.solver.solve(E_, change_);
+    const Change c = take_change(p, J);
+    if (!c.finite) return false;
+    if (small(c)) return true;
+    // Changes that no longer shrink are rounding, if they are small.
+    if (c.change > 0.25 * before) return c.change <= 512 * std::numeric_limits<double>::epsilon() * c.value;
+    before = c.change;
+  }
+  return false;
+}
+
+/// Where the constant part has failed it is tried again after one step, then three, seven and so on up to 63.
+bool SlabStepper::may_iterate(const Parity& p) {
+  if (!p.has_constant) return false;
+  if (waiting_ == 0) return true;
+  --waiting_;
+  return false;
+}
+
+void SlabStepper::newton(Parity& p, std::int64_t J, const std::vector<double>* momenta) {
+  seed(p, J, newton_seed_order_);
+  if (!momenta) p.equations.known(*ring_, J, known_E_);
+  bool fresh = false, refactor = p.factored != Matrix::jacobian || momenta;
+  double before = std::numeric_limits<double>::infinity();
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  for (int iteration = 1;; ++iteration) {
+    ++iterations_;
+    if (iteration > options_.max_iterations) fail(J, "Newton's method does not converge");
+    if (refactor) {
+      p.equations.jacobian(*ring_, J, jacobian_, momenta);
+      p.factored = p.solver.factor(jacobian_) ? Matrix::jacobian : Matrix::none;
+      if (p.factored == Matrix::none) fail(J, "their Jacobian is singular");
+      fresh = true;
+    }
+    if (momenta) p.equations.residual(*ring_, J, E_, nullptr, momenta);
+    else p.equations.residual_from(known_E_, *ring_, J, E_);
+    p.solver.solve(E_, change_);
+    const Change c = take_change(p, J);
+    if (!c.finite) {
+      p.factored = Matrix::none;
+      fail(J, "Newton's method diverges");
+    }
+    if (small(c)) break;
+    const bool slow = c.change > 0.1 * before;
+    // Changes that no longer shrink are rounding, if they are small.
+    if (slow && c.change > 0.25 * before && c.change <= 512 * epsilon * c.value) break;
+    if (slow && fresh && iteration > 8 && c.change > before) fail(J, "Newton's method diverges");
+    // Small blocks cost less to factor than an iteration more.
+    refactor = slow || p.solver.largest_block() <= 24 || (iteration == 1 && !fresh && c.change > 1e-3 * c.value);
+    fresh = fresh && !slow;
+    before = c.change;
+  }
+  if (momenta) p.factored = Matrix::none;
+}
+
 void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
   const FlushDenormals guard;
   Parity& p = parity(J);
-  const int size = p.equations.size();
-  seed(p, J);
   iterations_ = 0;
-  bool fresh = false, refactor = !p.factored || momenta;
-  double before = std::numeric_limits<double>::infinity();
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  for (;;) {
-    if (++iterations_ > options_.max_iterations) fail(J, "Newton's method does not converge");
-    if (refactor) {
-      p.equations.jacobian(*ring_, J, jacobian_, momenta);
-      p.factored = p.solver.factor(jacobian_);
-      if (!p.factored) fail(J, "their Jacobian is singular");
-      fresh = true;
-    }
-    p.equations.residual(*ring_, J, E_, nullptr, momenta);
-    p.solver.solve(E_, change_);
-    // Multipliers are not asked: they have no scale of their own, and converge with what they act on.
-    double change = 0, value = 0;
-    bool finite = true;
-    for (int n = 0; n < size; ++n) {
-      double& y = p.equations.value(*ring_, J, n);
-      const double by = change_[static_cast<std::size_t>(n)];
-      y -= by;
-      finite = finite && !overflowed(std::abs(y));
-      if (system_.component(p.equations.unknown(n).component).role == Role::multiplier) continue;
-      change = std::max(change, std::abs(by));
-      value = std::max(value, std::abs(y));
-    }
-    if (!finite) {
-      p.factored = false;
-      fail(J, "Newton's method diverges");
-    }
-    if (change <= std::max(options_.tolerance, 4 * epsilon) * value) break;
-    const bool slow = change > 0.1 * before;
-    // Changes that no longer shrink are rounding, if they are small.
-    if (slow && change > 0.25 * before && change <= 512 * epsilon * value) break;
-    if (slow && fresh && iterations_ > 8 && change > before) fail(J, "Newton's method diverges");
-    // Small blocks cost less to factor than an iteration more.
-    refactor = slow || p.solver.largest_block() <= 24 || (iterations_ == 1 && !fresh && change > 1e-3 * value);
-    fresh = fresh && !slow;
-    before = change;
+  if (!momenta && may_iterate(p)) {
+    const bool solved = iterate(p, J);
+    waiting_ = solved ? 0 : wait_;
+    wait_ = solved ? 1 : std::min(2 * wait_ + 1, 63);
+    if (!solved) newton(p, J, nullptr);
+  } else {
+    newton(p, J, momenta);
   }
-  if (momenta) p.factored = false;
   if (const auto i = crossing(ring_->row(J - lag_)))
     throw MeshCrossing(fmt::format(
         "step {}, t = {:.6g}: sites {} and {} of the mesh pass each other; reduce lattice.time_step or scheme.alpha", J,
         static_cast<double>(J) * system_.time_step(), *i, *i + 1));
   ++known_;
+  largest_[1] = std::exchange(largest_[0], largest_of(ring_->row(J - lag_)));
 }
 
-void SlabStepper::step() {
+void SlabStepper::step(bool /*looked_at*/) {
   solve(J_ + 1, nullptr);
   ++J_;
 }

@@ -18,6 +18,7 @@ struct StepOptions {
   int max_iterations = 50;
   Fibre fibre = Fibre::real;
   double turn = 0;           ///< φ(x + L) − φ(x)
+  int threads = 1;           ///< that explicit steps are shared by; the bits are the same for any number
 };
 
 /// Beyond this squares overflow, and with them every energy: nothing that could be reported is a number any more.
@@ -37,7 +38,7 @@ class StepMethod {
   virtual void start_legendre(const std::vector<double>&, const std::vector<double>&) {
     throw BadInput("initial.start", "initial.start = legendre: only for elements; use exact or centred");
   }
-  virtual void step() = 0;
+  virtual void step(bool looked_at) = 0;
 
   virtual std::int64_t newest() const = 0;
   virtual std::vector<double> row(int back) const = 0;

@@ -30,6 +30,36 @@ constexpr DistinctValues<Q> distinct_values(const JetTable<n, Q>& map) {
   return result;
 }
 
+/// At every quadrature point φ is the value at one vertex: the nonlinear part meets no neighbours.
+template <int n, int Q>
+constexpr bool is_nodal(const JetTable<n, Q>& map) {
+  for (int q = 0; q < Q; ++q) {
+    int vertices = 0;
+    for (int l = 0; l < n; ++l) vertices += map.point(q).phi[l] != 0;
+    if (vertices != 1) return false;
+  }
+  return true;
+}
+
+/// The space offsets between different sites of a stencil.
+struct Neighbours {
+  int count = 0, reach = 0;
+  std::array<int, 16> offsets{};
+};
+template <int n, int Q>
+constexpr Neighbours neighbours_of(const JetTable<n, Q>& map) {
+  Neighbours result;
+  for (int l = 0; l < n; ++l)
+    for (int m = 0; m < n; ++m) {
+      const int offset = map.shape.vertex(m).space - map.shape.vertex(l).space;
+      bool known = offset == 0;
+      for (int i = 0; i < result.count; ++i) known = known || result.offsets[static_cast<std::size_t>(i)] == offset;
+      if (!known) result.offsets[static_cast<std::size_t>(result.count++)] = offset;
+      result.reach = std::max(result.reach, offset);
+    }
+  return result;
+}
+
 /// A discrete Lagrangian on every stencil of the lattice. The jet map is known at compile time, so that a row of
 /// stencils is a loop over packs with all weights constants.
 template <JetMap Map, Density D>
@@ -39,16 +69,23 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   static constexpr int n = map.vertices, d = components_of<D>();
   static constexpr int vertices_size = n * d;
   static constexpr auto distinct = distinct_values(map);
+  static constexpr auto neighbours = neighbours_of(map);
   static constexpr int first_time = [] {
     int t = map.shape.vertex(0).time;
     for (int l = 1; l < n; ++l) t = std::min(t, map.shape.vertex(l).time);
     return t;
   }();
+  static constexpr int slab_rows = [] {
+    int t = first_time;
+    for (int l = 0; l < n; ++l) t = std::max(t, map.shape.vertex(l).time);
+    return t - first_time + 1;
+  }();
 
  public:
   explicit VariationalFamily(D density, double time_step, double space_step)
       : StencilFamily(StencilPattern(map.shape), values_at_every_vertex(StencilPattern(map.shape), d), true),
-        RowKernel(vertices_size), lagrangian_{std::move(density)} {
+        RowKernel(vertices_size),
+        lagrangian_{std::move(density)} {
     placed_ = delf::is_placed<D>();
     nonlinearity_ = structure_of(lagrangian_.density).nonlinearity;
     const double area = map.measure * time_step * space_step;
@@ -60,6 +97,13 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     if (nonlinearity_ == Nonlinearity::values) {
       // ∂L/∂y_l = Σ_q |Δ| w_q (∂ℓ/∂φ)(φ_q) ∂φ_q/∂y_l
       outputs_ = distinct.count * d;
+      for (int c = 0; c < distinct.count; ++c) {
+        Argument argument;
+        for (int l = 0; l < n; ++l)
+          if (const double weight = map.point(distinct.representative[c]).phi[l]; weight != 0)
+            argument.parts.push_back({map.shape.vertex(l), weight});
+        arguments_.push_back(std::move(argument));
+      }
       weights_.assign(static_cast<std::size_t>(outputs_ * size()), 0.0);
       for (int q = 0; q < map.points; ++q)
         for (int l = 0; l < n; ++l)
@@ -80,7 +124,9 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     std::ranges::copy(lagrangian_.hessian(array(y), cell), J.begin());
   }
   const RowKernel* row_kernel() const override { return this; }
-  std::optional<double> lagrangian(const Cell& cell, std::span<const double> y) const override { return lagrangian_(array(y), cell); }
+  std::optional<double> lagrangian(const Cell& cell, std::span<const double> y) const override {
+    return lagrangian_(array(y), cell);
+  }
 
   void linear_part(const Cell& cell, std::span<double> J, std::span<double> r0) const override {
     std::ranges::fill(J, 0.0);
@@ -111,9 +157,19 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
       if (y[0] != 0 && std::abs(x) < 1e-13 * std::abs(scale)) x = 0;
   }
 
-  void evaluate(const SlabRows& rows, double* const* out) const override {
-    if (nonlinearity_ == Nonlinearity::values) evaluate_values(rows, out);
-    if (nonlinearity_ == Nonlinearity::all) evaluate_all(rows, out);
+  using RowKernel::evaluate;
+  void evaluate(const SlabRows& rows, double* const* out, PackRange packs) const override {
+    if (nonlinearity_ == Nonlinearity::values) evaluate_values(rows, out, packs);
+    if (nonlinearity_ == Nonlinearity::all) evaluate_all(rows, out, packs);
+  }
+
+  std::span<const int> explicit_neighbours() const override {
+    if constexpr (is_nodal(map)) return {neighbours.offsets.data(), static_cast<std::size_t>(neighbours.count)};
+    else return {};
+  }
+  double explicit_step(const ExplicitRows& rows, PackRange packs) const override {
+    if constexpr (is_nodal(map)) return explicit_loop(rows, packs);
+    else return 0;
   }
 
  private:
@@ -138,9 +194,30 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     return values;
   }
 
+  /// A copy of pointers, of this function alone: what is stored through others cannot change them, so that they stay in
+  /// registers.
+  template <int count, class Pointer>
+  [[gnu::always_inline]] static auto local(Pointer const* given) {
+    std::array<Pointer, static_cast<std::size_t>(count)> copy;
+    for (int i = 0; i < count; ++i) copy[i] = given[i];
+    return copy;
+  }
+  /// The same of SlabRows.
+  struct LocalRows {
+    [[gnu::always_inline]] explicit LocalRows(const SlabRows& r, int times = slab_rows)
+        : positions(r.positions), t(r.t), time_step(r.time_step), space_step(r.space_step), origin(r.layout->at(0)) {
+      for (int i = 0; i < times * d; ++i) values[i] = r.values[i];
+    }
+    std::ptrdiff_t at(int v) const { return origin + static_cast<std::ptrdiff_t>(v) * lanes; }
+    std::array<const double*, static_cast<std::size_t>(slab_rows* d)> values;
+    const double* positions;
+    double t, time_step, space_step;
+    std::ptrdiff_t origin;
+  };
+
   /// Σ_l weights[l] y_l for the pack v of stencils and component a.
   template <std::size_t... l>
-  [[gnu::always_inline]] static Pack weighted(const std::array<double, n>& weights, const SlabRows& rows, int a,
+  [[gnu::always_inline]] static Pack weighted(const std::array<double, n>& weights, const LocalRows& rows, int a,
                                               std::ptrdiff_t at, std::index_sequence<l...>) {
     Pack sum(0.0);
     ((weights[l] != 0
@@ -152,7 +229,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   template <class Number>
-  [[gnu::always_inline]] static void place(JetFor<Number, D>& jet, const SlabRows& rows, int q, std::ptrdiff_t at) {
+  [[gnu::always_inline]] static void place(JetFor<Number, D>& jet, const LocalRows& rows, int q, std::ptrdiff_t at) {
     if constexpr (delf::is_placed<D>()) {
       jet.t = Number(rows.t + time_offset(map.shape, map.point(q)) * rows.time_step);
       jet.x = Number(Pack::load(rows.positions + at) + space_offset(map.shape, map.point(q)) * rows.space_step);
@@ -160,11 +237,13 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   /// out_c = ∂ℓ/∂φ at the distinct values of φ
-  [[gnu::flatten]] void evaluate_values(const SlabRows& rows, double* const* out) const {
+  [[gnu::flatten]] void evaluate_values(const SlabRows& given, double* const* given_out, PackRange packs) const {
     using Number = Dual<Pack, d>;
-    const int packs = rows.layout->packs();
-    for (int v = 0; v < packs; ++v) {
-      const std::ptrdiff_t at = rows.layout->at(v);
+    const LocalRows rows(given);
+    const auto out = local<distinct.count * d>(given_out);
+    const D density = lagrangian_.density;
+    for (int v = packs.first; v < packs.last; v += packs.stride) {
+      const std::ptrdiff_t at = rows.at(v);
       for_each_index<distinct.count>([&]<int c>() __attribute__((always_inline, flatten)) {
         constexpr int q = distinct.representative[c];
         JetFor<Number, D> jet;
@@ -175,20 +254,22 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
           component(jet.phi_x, a) = Number(0.0);
         }
         place<Number>(jet, rows, q, at);
-        const Number l = lagrangian_.density(jet);
+        const Number l = density(jet);
         for (int a = 0; a < d; ++a) l.derivative(a).store(out[c * d + a] + at);
       });
     }
   }
 
   /// out_i = rⁱ = ∂L/∂yⁱ
-  [[gnu::flatten]] void evaluate_all(const SlabRows& rows, double* const* out) const {
+  [[gnu::flatten]] void evaluate_all(const SlabRows& given, double* const* given_out, PackRange packs) const {
     using Number = Dual<Pack, 3 * d>;
-    const int packs = rows.layout->packs();
+    const LocalRows rows(given);
+    const auto out = local<vertices_size>(given_out);
+    const D density = lagrangian_.density;
     const double per_h = 1 / rows.time_step, per_k = 1 / rows.space_step;
     const double area = map.measure * rows.time_step * rows.space_step;
-    for (int v = 0; v < packs; ++v) {
-      const std::ptrdiff_t at = rows.layout->at(v);
+    for (int v = packs.first; v < packs.last; v += packs.stride) {
+      const std::ptrdiff_t at = rows.at(v);
       std::array<Pack, static_cast<std::size_t>(vertices_size)> r;
       r.fill(Pack(0.0));
       for_each_index<map.points>([&]<int q>() __attribute__((always_inline, flatten)) {
@@ -201,7 +282,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
           component(jet.phi_x, a) = Number::variable(per_k * weighted(p.phi_x, rows, a, at, all), 2 * d + a);
         }
         place<Number>(jet, rows, q, at);
-        const Number l = lagrangian_.density(jet);
+        const Number l = density(jet);
         for (int a = 0; a < d; ++a)
           for (int i = 0; i < n; ++i)
             r[i * d + a] +=
@@ -210,6 +291,59 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
       });
       for (int i = 0; i < vertices_size; ++i) r[i].store(out[i] + at);
     }
+  }
+
+  /// w = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)),  v += w,  y += v
+  ///
+  /// What neighbours were is carried along in registers, so that the new row may be written over the old one.
+  [[gnu::flatten]] double explicit_loop(const ExplicitRows& given, PackRange packs) const {
+    using Number = Dual<Pack, d>;
+    constexpr int count = neighbours.count, reach = neighbours.reach;
+    const LocalRows rows(given.now, 1);
+    const auto v_before = local<d>(given.v_before);
+    const auto v_new = local<d>(given.v), y_new = local<d>(given.y);
+    const auto linear = local<d * count>(given.linear), nonlinear = local<d>(given.nonlinear);
+    const D density = lagrangian_.density;
+    std::array<std::array<Pack, static_cast<std::size_t>(2 * reach + 1)>, static_cast<std::size_t>(d)> y;
+    for (int a = 0; a < d; ++a)
+      for (int s = 0; s < 2 * reach; ++s)
+        y[a][s + 1] =
+            Pack::load(s < reach ? given.before[a] + s * lanes : beyond(given, packs, a, packs.first + s - reach));
+    Pack squares(0.0);
+    const auto advance = [&](int v, const auto& incoming) __attribute__((always_inline)) {
+      const std::ptrdiff_t at = rows.at(v);
+      JetFor<Number, D> jet;
+      for (int a = 0; a < d; ++a) {
+        for (int s = 0; s < 2 * reach; ++s) y[a][s] = y[a][s + 1];
+        y[a][2 * reach] = Pack::load(incoming(a));
+        component(jet.phi, a) = Number::variable(y[a][reach], a);
+        component(jet.phi_t, a) = Number(0.0);
+        component(jet.phi_x, a) = Number(0.0);
+      }
+      if constexpr (delf::is_placed<D>()) {
+        jet.t = Number(Pack(rows.t));
+        jet.x = Number(Pack::load(rows.positions + at));
+      }
+      const Number l = density(jet);
+      for (int a = 0; a < d; ++a) {
+        const Pack here = y[a][reach];
+        Pack w = nonlinear[a] * l.derivative(a);
+        for (int s = 0; s < count; ++s) w += linear[a * count + s] * (y[a][reach + neighbours.offsets[s]] - here);
+        const Pack v_next = Pack::load(v_before[a] + at) + w, y_next = here + v_next;
+        squares += y_next * y_next;
+        v_next.store(v_new[a] + at);
+        y_next.store(y_new[a] + at);
+      }
+    };
+    int v = packs.first;
+    for (; v < packs.last - reach; ++v) advance(v, [&](int a) { return rows.values[a] + rows.at(v + reach); });
+    for (; v < packs.last; ++v) advance(v, [&](int a) { return beyond(given, packs, a, v + reach); });
+    return std::sqrt(sum(squares));
+  }
+  /// Where the old value of a pack at or after the first one is, be it beyond the last.
+  static const double* beyond(const ExplicitRows& given, PackRange packs, int a, int v) {
+    return v < packs.last ? given.now.values[a] + given.now.layout->at(v)
+                          : given.after[a] + static_cast<std::ptrdiff_t>(v - packs.last) * lanes;
   }
 
   template <int count, class Body>

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+
+namespace delf {
+
+/// In which slot of a ring of `held` rows a row lies: row modulo held, without a division when rows come one after the
+/// other, as they do in steps.
+class RingSlots {
+ public:
+  explicit RingSlots(int held = 1) : held_(held) {}
+
+  void at(std::int64_t row) {
+    if (row == row_ + 1) {
+      slot_ = slot_ + 1 == held_ ? 0 : slot_ + 1;
+    } else if (row != row_) {
+      slot_ = static_cast<int>((row % held_ + held_) % held_);
+    }
+    row_ = row;
+  }
+  /// Of the row `back` before; −held < back < held.
+  int operator()(int back) const {
+    const int slot = slot_ - back;
+    return slot < 0 ? slot + held_ : slot >= held_ ? slot - held_ : slot;
+  }
+
+ private:
+  int held_, slot_ = 0;
+  std::int64_t row_ = 0;
+};
+
+}  // namespace delf

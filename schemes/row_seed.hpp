@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "schemes/ring_slots.hpp"
+#include "schemes/row_kernel.hpp"
+#include "schemes/row_sum.hpp"
+#include "schemes/section_rows.hpp"
+
+namespace delf {
+
+/// The candidate that an implicit step starts from: the polynomial through the last rows, by their increments,
+///
+///     y_{n+1} ≈ y_n + Σ_{m=1}^{order} (−1)^{m+1} C(order, m) v_{n+1−m},
+///
+/// of the order that costs least: a row read costs little where rows are in the cache, an iteration spared is worth many.
+class RowSeed {
+ public:
+  /// Increments up to this many rows back are read; what matters of a candidate is what the nonlinear part looks at.
+  RowSeed(SectionRows&, int most_order, const std::vector<Argument>& looks);
+  /// How many increments to hold for a seed from `seed_order` rows: fewer where rows outgrow the cache.
+  static int rows_for(int seed_order, int sites);
+
+  /// Forgets the order: rows have been set anew.
+  void restart() { looked_at_ = -1; }
+  int order() const { return order_; }
+  /// Chooses the order for the step from row n, now and then, by how well each would have foretold the newest increment:
+  /// each change is `contraction` times the last, until `weight` times it is below tolerance · span().
+  void choose(std::int64_t n, double tolerance, double contraction, double weight);
+  void choose(std::int64_t n, double tolerance, double contraction) { choose(n, tolerance, contraction, contraction); }
+  /// max y − min y over all components when last looked at.
+  double span() const { return span_; }
+  /// Puts the candidate of this order, or the highest there are rows for, into d rows, halos too.
+  void find(std::int64_t n, int order, double* const* candidate);
+
+ private:
+  void find_span();
+  template <int most>
+  void measure(const Argument& look, double* errors);
+
+  SectionRows& rows_;
+  RingSlots y_slots_, v_slots_;
+  int most_order_, order_ = 1;
+  std::int64_t looked_at_ = -1;
+  double span_ = 0;
+  std::vector<RowSum> sums_;  ///< by order
+  std::vector<Argument> looks_;
+  std::vector<const double*> bases_;
+};
+
+}  // namespace delf

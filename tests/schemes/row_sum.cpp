@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/row_sum.hpp"
+
+#include <set>
+
+#include "tests/catch.hpp"
+#include "tests/schemes/support.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+constexpr int N = 37, halo = 3, rows_given = 5;
+
+struct TestTerm {
+  int row, shift;
+  double coefficient;
+};
+
+/// Random rows on a circle, and sums over them by plain loops over the sites.
+struct Sums {
+  RowLayout layout{Lattice::circle(N, 1), halo};
+  std::vector<Row> values;
+  RowBuffer rows{layout, rows_given};
+  std::vector<const double*> bases;
+  std::vector<TestTerm> differences, plain;
+  double constant = 0;
+  Random random{5};
+
+  Sums() {
+    for (int r = 0; r < rows_given; ++r) {
+      values.push_back(random_row(random, N, 1));
+      layout.scatter(values.back(), rows.row(r));
+      bases.push_back(rows.row(r));
+    }
+  }
+  /// So many random terms of either kind.
+  void choose(int of_differences, int of_plain) {
+    const auto some = [&](int count) {
+      std::vector<TestTerm> terms;
+      for (int n = 0; n < count; ++n)
+        terms.push_back({static_cast<int>(random(0, rows_given - 0.001)), static_cast<int>(random(-halo, halo + 0.999)),
+                         random(-2, 2)});
+      return terms;
+    };
+    differences = some(of_differences), plain = some(of_plain);
+    constant = random(-1, 1);
+  }
+  RowSum sum() const {
+    RowSum result;
+    for (const TestTerm& t : differences) result.add_difference(t.row, t.shift, t.coefficient);
+    for (const TestTerm& t : plain) result.add(t.row, t.shift, t.coefficient);
+    result.add_constant(constant / 4);
+    result.add_constant(3 * constant / 4);
+    return result;
+  }
+  double at(int row, int i) const { return values[static_cast<std::size_t>(row)][static_cast<std::size_t>((i + N) % N)]; }
+  double expected(int i) const {
+    double total = constant;
+    for (const TestTerm& t : differences) total += t.coefficient * (at(t.row, i + t.shift) - at(t.row, i));
+    for (const TestTerm& t : plain) total += t.coefficient * at(t.row, i + t.shift);
+    return total;
+  }
+  double expected_absolute(int i) const {
+    double total = 0;
+    for (const TestTerm& t : differences) total += std::abs(t.coefficient * (at(t.row, i + t.shift) - at(t.row, i)));
+    for (const TestTerm& t : plain) total += std::abs(t.coefficient * at(t.row, i + t.shift));
+    return total;
+  }
+};
+
+/// What a pass hands out, checked pack by pack: each pack of the range once and in order, and how far sums are off.
+struct Collect {
+  const Sums* sums;
+  PackRange range;
+  int next, packs = 0;
+  bool in_order = true;
+  double worst = 0;
+  Collect(const Sums& s, PackRange r) : sums(&s), range(r), next(r.first) {}
+  void operator()(std::ptrdiff_t at, Pack sum) { look(at, sum, [&](int i) { return sums->expected(i); }); }
+  void look(std::ptrdiff_t at, Pack sum, const auto& expected) {
+    in_order = in_order && at == sums->layout.at(next);
+    for (int l = 0; l < lanes; ++l) {
+      const int i = ((sums->layout.start(l) + next) % N + N) % N;
+      const double off = std::abs(sum[l] - expected(i));
+      if (!(off <= worst)) worst = off;
+    }
+    next += range.stride, ++packs;
+  }
+};
+
+std::vector<PackRange> ranges(const RowLayout& layout) {
+  const int M = layout.packs();
+  return {layout.all(), {0, M, 2}, {1, M, 2}, {1, M - 1}, {2, 3}, {2, 2}};
+}
+int count(PackRange r) { return r.first >= r.last ? 0 : (r.last - r.first + r.stride - 1) / r.stride; }
+
+constexpr double rounding = 2e-15 * 14;  // so many terms of size 4
+
+}  // namespace
+
+TEST_CASE("a pass over shifted rows is the plain sum, for every number of terms, over any packs") {
+  Sums sums;
+  for (int differences : {0, 1, 2, 3, 4})
+    for (int plain = 0; plain <= 9; ++plain) {
+      sums.choose(differences, plain);
+      RowSum sum = sums.sum();
+      sum.bind(sums.bases.data());
+      for (const PackRange range : ranges(sums.layout)) {
+        CAPTURE(differences, plain, range.first, range.last, range.stride);
+        const Collect seen = sum.pass(sums.layout, range, Collect(sums, range));
+        CHECK(seen.packs == count(range));
+        CHECK(seen.in_order);
+        CHECK(seen.worst < rounding);
+      }
+    }
+}
+
+TEST_CASE("a pass whose number of terms is compiled agrees with one whose number is not") {
+  // Terms with the coefficient 0 make the numbers 4 and 9, which are not compiled.
+  Sums sums;
+  for (int differences : {0, 2})
+    for (int plain = 0; plain <= 8; ++plain) {
+      sums.choose(differences, plain);
+      std::vector<Pack> compiled, counted;
+      const auto into = [](std::vector<Pack>& packs) { return [&packs](std::ptrdiff_t, Pack p) { packs.push_back(p); }; };
+      RowSum sum = sums.sum();
+      sum.bind(sums.bases.data());
+      sum.pass(sums.layout, sums.layout.all(), into(compiled));
+      for (int n = plain; n < 9; ++n) sum.add(0, 0, 0);
+      for (int n = differences; n < 4; ++n) sum.add_difference(0, 1, 0);
+      sum.bind(sums.bases.data());
+      sum.pass(sums.layout, sums.layout.all(), into(counted));
+      CAPTURE(differences, plain);
+      REQUIRE(compiled.size() == counted.size());
+      double worst = 0;
+      for (std::size_t v = 0; v < compiled.size(); ++v) worst = std::max(worst, max_or_nan(abs(compiled[v] - counted[v])));
+      CHECK(worst < rounding);
+    }
+}
+
+TEST_CASE("measure gives the sum and the sum of absolute values") {
+  Sums sums;
+  for (int differences : {0, 1, 2, 3, 4})
+    for (int plain = 0; plain <= 9; ++plain) {
+      sums.choose(differences, plain);
+      RowSum sum = sums.sum();
+      sum.bind(sums.bases.data());
+      for (const PackRange range : ranges(sums.layout)) {
+        CAPTURE(differences, plain, range.first, range.stride);
+        Collect seen(sums, range), sizes(sums, range);
+        sum.measure(sums.layout, range, [&](std::ptrdiff_t at, Pack value, Pack absolute) {
+          seen(at, value);
+          sizes.look(at, absolute, [&](int i) { return sums.expected_absolute(i); });
+        });
+        CHECK(seen.packs == count(range));
+        CHECK(seen.in_order);
+        CHECK(seen.worst < rounding);
+        CHECK(sizes.worst < rounding);
+      }
+    }
+}
+
+TEST_CASE("a scaled sum is scaled with its constant, and rows may be bound anew") {
+  Sums sums;
+  for (int differences : {0, 2, 3}) {
+    sums.choose(differences, 3);
+    RowSum sum = sums.sum();
+    sum.scale(-2.5);
+    for (auto* terms : {&sums.differences, &sums.plain})
+      for (TestTerm& t : *terms) t.coefficient *= -2.5;
+    sums.constant *= -2.5;
+    sum.bind(sums.bases.data());
+    CHECK(sum.pass(sums.layout, sums.layout.all(), Collect(sums, sums.layout.all())).worst < rounding * 2.5);
+    std::vector<const double*> turned(sums.bases);
+    std::ranges::rotate(turned, turned.begin() + 1);
+    std::vector<Row> kept = sums.values;
+    std::ranges::rotate(sums.values, sums.values.begin() + 1);
+    sum.bind(turned.data());
+    CHECK(sum.pass(sums.layout, sums.layout.all(), Collect(sums, sums.layout.all())).worst < rounding * 2.5);
+    sums.values = kept;
+    CHECK(sum.pass(sums.layout, sums.layout.all(), Collect(sums, sums.layout.all())).worst > 0.01);  // of other rows
+  }
+}
+
+TEST_CASE("the comparison of sums can fail: each term matters, and so do its shift and the constant") {
+  Sums sums;
+  const auto off = [&](RowSum sum) {
+    sum.bind(sums.bases.data());
+    return sum.pass(sums.layout, sums.layout.all(), Collect(sums, sums.layout.all())).worst;
+  };
+  for (int differences : {0, 1, 2, 4})
+    for (int plain : {1, 8, 9}) {
+      sums.choose(differences, plain);
+      const RowSum right = sums.sum();
+      CHECK(off(right) < rounding);
+      for (auto* terms : {&sums.differences, &sums.plain})
+        for (TestTerm& t : *terms) {
+          const TestTerm kept = t;
+          t.coefficient += 1e-9;
+          if (terms == &sums.plain || t.shift != 0) CHECK(off(right) > rounding);
+          t = kept;
+          t.shift += t.shift < halo ? 1 : -1;
+          CHECK(off(right) > rounding);
+          t = kept;
+        }
+      sums.constant += 1e-9;
+      CHECK(off(right) > rounding);
+    }
+}
