@@ -49,6 +49,7 @@ constexpr Limits one_or_more{1, largest_int};
 constexpr Limits two_or_more{2, largest_int};
 constexpr Limits up_to_eight{0, 8};
 constexpr Limits degrees{1, 12};
+constexpr Limits threads{1, 1024};
 constexpr auto own = "the state's own";
 constexpr auto real = KeyType::real;
 constexpr auto integer = KeyType::integer;
@@ -113,7 +114,7 @@ const std::array table{
         not_negative},
     Key{"run.steps", integer, "", "this or run.until", "steps after row 0", "", count},
     Key{"run.seed", integer, "1", "", "seed of whatever is random", "", count},
-    Key{"run.threads", integer, "1", "", "threads; the results do not depend on it", "", one_or_more},
+    Key{"run.threads", integer, "1", "", "threads that long rows of explicit schemes are shared by; the bits are the same for any number", "", threads},
 
     Key{"output.every", integer, "", "about 400 records",
         "record rows 0, every, 2 every, ... and the last; 0: the last", "", count},

@@ -23,6 +23,7 @@ struct Outcome {
   std::string status = "done";  ///< done, interrupted, no-convergence, not-finite, mesh-crossing or system-failure
   std::string failure;          ///< in words, if it failed
   std::string state, solve, solve_kind;
+  std::string threads;  ///< in words, if the scene asks for more than one
   StartRule start = StartRule::exact;
   int winding = 0;
   std::size_t bytes = 0;

@@ -3,10 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
 #include "tools/engine.hpp"
 #include "tools/in_words.hpp"
 #include "tools/initial_rows.hpp"
 #include "tools/outcome.hpp"
+#include "tools/stepping.hpp"
 
 namespace delf {
 
@@ -31,12 +36,55 @@ std::string output(const Scene& scene, std::size_t components) {
   return fmt::format("  written    {}\n{}", kept, left_out);
 }
 
+struct Trial {
+  std::int64_t steps = 0;
+  double seconds = 0;
+};
+
+// Steps until so many are taken or so much time has passed, whichever is first. The clock is read between batches: a look
+// at it costs as much as a small step.
+Trial step_for(double limit, std::int64_t most, Simulation& simulation) {
+  using Clock = std::chrono::steady_clock;
+  Trial trial;
+  std::int64_t batch = 1;
+  while (trial.steps < most && trial.seconds < limit) {
+    const std::int64_t last = std::min(trial.steps + batch, most);
+    const auto begin = Clock::now();
+    for (; trial.steps < last; ++trial.steps) simulation.step(false);
+    trial.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+    const double fitting = (limit - trial.seconds) / trial.seconds * static_cast<double>(trial.steps);
+    batch = std::max<std::int64_t>(1, fitting < 2. * static_cast<double>(batch) ? std::llround(fitting) : 2 * batch);
+  }
+  return trial;
+}
+
+// What the steps of a run will cost, from the first of them.
+std::string cost(const Scene& scene, const InitialRows& initial, Simulation& simulation) {
+  constexpr std::int64_t warming_steps = 16;  // seeds have reached their order, caches and pages are there
+  constexpr double limit = 0.05;
+  try {
+    initial.start(simulation);
+    const std::int64_t steps = scene.steps - simulation.newest();
+    if (steps <= 0) return "none: no step is taken";
+    const Trial first = step_for(limit / 2, std::min(steps, warming_steps), simulation);
+    const Trial then = step_for(limit - first.seconds, steps - first.steps, simulation);
+    const Trial& counted = then.steps < first.steps ? first : then;
+    const std::int64_t trials = first.steps + then.steps;
+    const double of_a_step = counted.seconds / static_cast<double>(counted.steps);
+    return fmt::format("{} on this machine ({} trial step{}); {} steps: {}, without output",
+                       cost_in_words(1e9 * of_a_step / scene.problem.lattice.sites()), trials, trials == 1 ? "" : "s",
+                       scene.steps, duration_in_words(of_a_step * static_cast<double>(steps)));
+  } catch (const NumericalFailure& failure) {
+    return fmt::format("not predicted: {}", failure.what());
+  }
+}
+
 }  // namespace
 
 ExitCode plan(const Scene& scene) {
   return with_memory_for(scene, [&] {
     const InitialRows initial(scene);
-    const Simulation simulation = build(scene, initial.winding());
+    Simulation simulation = build(scene, initial.winding());
     initial.check(simulation);
     fmt::print("{}: {}, {}, {} steps to t = {:.6g}\n", scene.name, scene.problem.theory, scheme_in_words(scene.problem),
                scene.steps, static_cast<double>(scene.steps) * scene.problem.time_step);
@@ -46,6 +94,9 @@ ExitCode plan(const Scene& scene) {
                                                       : "solved for, by the discrete Legendre transform");
     fmt::print("  recorded   {}\n{}\n{}", recording(scene), output(scene, simulation.components().size()),
                simulation.plan_report());
+    if (const std::string threads = threads_in_words(simulation, scene.problem.threads); !threads.empty())
+      fmt::print("threads      {}\n", threads);
+    fmt::print("cost         {}\n", cost(scene, initial, simulation));
     return ExitCode::done;
   });
 }

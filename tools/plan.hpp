@@ -5,7 +5,8 @@
 
 namespace delf {
 
-/// `delf plan`: what a run of the scene would solve, how, at what cost, what it would write, and what it leaves out.
+/// `delf plan`: what a run of the scene would solve, how, what it would write, what it leaves out, and what it would
+/// cost, by trial steps.
 ExitCode plan(const Scene&);
 
 }  // namespace delf

@@ -34,8 +34,9 @@ std::string report(const Scene& scene, const Outcome& o) {
   line("solve", o.solve);
   line("steps", fmt::format("{} to t = {:.6g}", o.steps, o.time));
   if (o.steps_taken > 0)
-    line("speed", fmt::format("{} for the steps, {:.3g} ns per site and step", duration_in_words(o.seconds),
-                              o.ns_per_site_step(p.lattice.sites())));
+    line("speed", fmt::format("{} for the steps, {}", duration_in_words(o.seconds),
+                              cost_in_words(o.ns_per_site_step(p.lattice.sites()))));
+  if (!o.threads.empty()) line("threads", o.threads);
   const std::string iterations =
       o.iterations_max == 0 ? "none" : fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max);
   line("iterations", iterations + fmt::format("; residual {:.2g} at most", o.residual_max));

@@ -58,6 +58,7 @@ Problem read_problem(const Settings& settings, const Values& values) {
   p.degree_space = static_cast<int>(values.integer("scheme.degree_space"));
   p.quadrature = values.choice("scheme.quadrature");
   p.alpha = values.real("scheme.alpha");
+  p.threads = static_cast<int>(values.integer("run.threads"));
   const bool by_courant = values.given("lattice.courant");
   p.time_step = by_courant ? values.real("lattice.courant") * p.lattice.space_step() : values.real("lattice.time_step");
   if (!std::isnormal(p.time_step))
@@ -140,7 +141,6 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   scene.initial_frame = static_cast<int>(values.integer("initial.frame"));
   scene.start = read_start(settings, values, scene.problem);
   scene.steps = read_steps(settings, values, scene.problem.time_step);
-  scene.threads = static_cast<int>(values.integer("run.threads"));
   const auto every_default = std::llround(static_cast<double>(scene.steps) / usual_records);
   scene.every = values.maybe_integer("output.every").value_or(std::max(1LL, every_default));
   scene.figures = values.toggle("output.figures");
@@ -184,7 +184,6 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
     return read ? "" : "the state " + scene.initial.name + " does not read it";
   }
   if (key.starts_with("verify.")) return "";
-  if (key == "run.threads" && scene.threads > 1) return "this version steps on one thread";
   return "";
 }
 

@@ -24,14 +24,13 @@ struct Scene {
   std::string name;                   ///< of its file, without the ending
   std::vector<std::string> warnings;  ///< lines for stderr: keys that have no effect
 
-  Problem problem;                     ///< [theory] [lattice] [scheme]; the winding is still to come from the state
-  StateRequest initial;                ///< [initial]; its name is "file" if the rows come from `initial_file`
+  Problem problem;       ///< [theory] [lattice] [scheme] run.threads; the winding is still to come from the state
+  StateRequest initial;  ///< [initial]; its name is "file" if the rows come from `initial_file`
   std::filesystem::path initial_file;  ///< absolute
   int initial_frame = 0;
   std::optional<StartRule> start;  ///< if the scene gives it
   std::int64_t steps = 0;          ///< after row 0
-  int threads = 1;
-  std::int64_t every = 1;  ///< 0: the last row only
+  std::int64_t every = 1;          ///< 0: the last row only
   bool figures = true, fields = true;
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread
 };

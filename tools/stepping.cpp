@@ -7,6 +7,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "schemes/evolution.hpp"
+#include "schemes/row_kernel.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/progress.hpp"
 
@@ -28,7 +30,26 @@ class Stopwatch {
   Clock::time_point begin_ = Clock::now();
 };
 
+// Whether a step is one explicit loop over the row, its nonlinear part at a site being that of the site's own value.
+bool is_one_loop(const Simulation& simulation) {
+  const Stepper& stepper = simulation.evolution().stepper();
+  const LatticeSystem& system = simulation.evolution().system();
+  if (!stepper.layout() || stepper.iterates() || !stepper.matrix_free()) return false;
+  if (!system.lattice().is_circle() || system.families().size() != 1) return false;
+  const RowKernel* kernel = system.families()[0]->row_kernel();
+  return kernel && kernel->nonlinearity() == Nonlinearity::values && !kernel->explicit_neighbours().empty();
+}
+
 }  // namespace
+
+std::string threads_in_words(const Simulation& simulation, int asked) {
+  constexpr int packs_for_each = 1024;  // as RowStepper shares them
+  if (asked == 1) return {};
+  if (!is_one_loop(simulation)) return fmt::format("1 of {}: only explicit steps of one loop are shared", asked);
+  const int used = std::clamp(simulation.evolution().stepper().layout()->packs() / packs_for_each, 1, asked);
+  if (used == asked) return fmt::to_string(asked);
+  return fmt::format("{} of {}: each takes {} sites or more", used, asked, packs_for_each * lanes);
+}
 
 Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,
                    Outcome& outcome)
@@ -39,6 +60,7 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
   multiplier_.resize(sites * names.multiplier.size());
   for (const std::string& name : simulation.conserved_names())
     outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+  outcome.threads = threads_in_words(simulation, scene.problem.threads);
 }
 
 void Stepping::start() {
@@ -100,8 +122,10 @@ void Stepping::fail(const NumericalFailure& error) {
 
 void Stepping::step_until(std::int64_t row, Progress& progress) {
   const Stopwatch watch(outcome_.seconds);
-  while (newest_ < row && !Interrupt::asked()) {
-    simulation_.step();
+  bool looked_at = true;  // as the row that an interruption leaves must be: it is recorded
+  while (newest_ < row && !(looked_at && Interrupt::asked())) {
+    looked_at = newest_ + 1 == row || Interrupt::asked();
+    simulation_.step(looked_at);
     ++newest_;
     count_step();
     progress.at(newest_);

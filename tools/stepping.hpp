@@ -7,6 +7,9 @@
 
 namespace delf {
 
+/// "2", or how many of the threads that are asked for share a step, and why not more; empty if one is asked for.
+std::string threads_in_words(const Simulation&, int asked);
+
 /// Steps a simulation through its scene, and records: rows 0, every, 2·every, … and the last one, whichever becomes the
 /// last. What the steps cost and gave is told to the outcome, also when they fail.
 class Stepping {

@@ -51,6 +51,7 @@ TEST_CASE("what is wrong in a scene is told by file, line, key, value, reason an
       {"[output]\ntimes = 1, x", "output.times = 1, x", "not a number"},
       {"[output]\nevery = -1", "output.every = -1", "at least 0"},
       {"[run]\nthreads = 0", "run.threads = 0", "at least 1"},
+      {"[run]\nthreads = 1025", "run.threads = 1025", "at most 1024"},
       {"[run]\nwhat is this", "what is this", "neither a [section] nor key = value"},
   }));
   const Folder folder;

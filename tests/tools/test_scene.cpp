@@ -38,6 +38,7 @@ TEST_CASE("a scene gives its keys, and the table of keys what it leaves out") {
   CHECK_FALSE(scene.figures);
   CHECK_FALSE(scene.fields);
   CHECK(scene.times == std::vector<double>{0, 1.5, 2});
+  CHECK(scene.problem.threads == 1);
   CHECK(scene.warnings.empty());
 }
 
@@ -90,7 +91,6 @@ TEST_CASE("keys that have no effect are warned of, with their line, and stop not
   CHECK(contains(warning("[theory]\nlambda = 2\n"), file + ":14: theory.lambda = 2: warning: the theory sine-gordon"));
   CHECK(contains(warning("[initial]\nseparation = 2\n"), "the state breather does not read it"));
   CHECK(contains(warning("[boundary]\nleft = natural\n"), "a circle has no walls"));
-  CHECK(contains(warning("[run]\nthreads = 2\n"), "one thread"));
   CHECK(scene_of(folder, small_scene("[theory]\nmass = 2\n[initial]\nspeed = 0.1\n")).warnings.empty());
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("the resolved scene reads back as the same scene, and resolves to the 
   const Folder folder;
   const Scene scene =
       scene_of(folder, small_scene("[lattice]\nstencil = triangle\n[theory]\nmass = 1.25\nlambda = 3\n"),
-               {{"run.until", "4.7"}, {"lattice.courant", "0.3"}});
+               {{"run.until", "4.7"}, {"lattice.courant", "0.3"}, {"run.threads", "3"}});
   const std::string text = resolved_text(scene, StartRule::centred, "words");
   const Scene again = read_scene(folder.write("again.ini", text), {});
   CHECK(again.problem.time_step == scene.problem.time_step);
@@ -115,6 +115,7 @@ TEST_CASE("the resolved scene reads back as the same scene, and resolves to the 
   CHECK(again.steps == scene.steps);
   CHECK(again.every == scene.every);
   CHECK(again.start == StartRule::centred);
+  CHECK(again.problem.threads == 3);
   CHECK(again.warnings.empty());
   CHECK(resolved_text(again, StartRule::centred, "words") == text);
 }

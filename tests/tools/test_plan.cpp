@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <sstream>
+
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+#include "tools/in_words.hpp"
+#include "tools/stepping.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+/// What stands beside a name in the plan of a scene; empty if the name is not there.
+std::string planned(const std::string& arguments, const std::string& name) {
+  const Folder folder;
+  const Ran ran = delf_program(folder, "plan " + arguments);
+  INFO(ran.err);
+  CHECK(ran.code == 0);
+  CHECK_FALSE(std::filesystem::exists(folder / "results"));
+  for (const std::string& line : lines(ran.out))
+    if (line.starts_with(name + " ")) return line.substr(line.find_first_not_of(' ', name.size()));
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("the plan predicts what steps cost, by taking some") {
+  for (const char* scene : {"collision", "collision --lattice.stencil=triangle-vertex", "kepler", "r-adaptive",
+                            "spacetime-element", "interval --run.steps=2"}) {
+    const std::string cost = planned(scene, "cost");
+    CAPTURE(scene, cost);
+    double ns = 0;
+    std::string words;
+    std::istringstream in(cost);
+    CHECK(in >> ns);
+    CHECK(std::isfinite(ns));
+    CHECK(ns > 0);
+    std::getline(in, words, '(');
+    CHECK(words == " ns per site and step on this machine ");
+    long steps = 0;
+    CHECK(in >> steps);
+    CHECK(steps > 0);
+    CHECK(contains(cost, ", without output"));
+  }
+  CHECK(contains(planned("collision --run.steps=1000000", "cost"), "; 1000000 steps: "));
+}
+
+TEST_CASE("the plan predicts nothing where no step is taken, or the steps fail") {
+  CHECK(planned("collision --run.steps=0", "cost") == "none: no step is taken");
+  CHECK(planned("collision --run.steps=1", "cost") == "none: no step is taken");
+  for (const char* stencil : {"triangle", "triangle-vertex"}) {
+    const std::string cost =
+        planned(std::string("collision --lattice.courant=1.2 --run.until=400 --lattice.stencil=") + stencil, "cost");
+    INFO(cost);
+    CHECK(cost.starts_with("not predicted: step "));
+    CHECK(contains(cost, "no longer finite"));
+  }
+}
+
+TEST_CASE("threads that steps cannot use are told by the plan and by the report of a run") {
+  CHECK(planned("collision", "threads").empty());
+  CHECK(planned("collision --run.threads=2", "threads") == "1 of 2: only explicit steps of one loop are shared");
+  const std::string loop = " --lattice.stencil=triangle-vertex --run.steps=3 --output.figures=off --run.threads=2";
+  CHECK(planned("collision" + loop, "threads").starts_with("1 of 2: each takes "));
+  CHECK(planned("collision --lattice.sites=100000" + loop, "threads") == "2");
+
+  const Folder folder;
+  const Ran ran = delf_program(folder, "run collision" + loop);
+  CHECK(ran.err.empty());
+  CHECK(contains(ran.out, "  threads    1 of 2: each takes "));
+}
+
+TEST_CASE("the steps that are said to be shared are those of one loop, which write rows over") {
+  struct Case {
+    const char *theory, *stencil, *method;
+    bool on_circle = true;
+  };
+  for (const auto& [theory, stencil, method, on_circle] :
+       {Case{"sine-gordon", "triangle-vertex", "multisymplectic"}, Case{"phi4", "triangle-vertex", "multisymplectic"},
+        Case{"klein-gordon", "triangle-vertex", "multisymplectic"}, Case{"wave", "triangle-vertex", "multisymplectic"},
+        Case{"coupled-sine-gordon", "triangle-vertex", "multisymplectic"},
+        Case{"complex-klein-gordon", "triangle-vertex", "multisymplectic"},
+        Case{"wave-map", "triangle-vertex", "multisymplectic"},
+        Case{"sine-gordon-impurity", "triangle-vertex", "multisymplectic"},
+        Case{"sine-gordon", "triangle-vertex", "multisymplectic", false},
+        Case{"sine-gordon", "triangle", "multisymplectic"}, Case{"sine-gordon", "rectangle", "multisymplectic"},
+        Case{"sine-gordon", "rectangle", "damped"}, Case{"sine-gordon", "rectangle", "guo"}}) {
+    CAPTURE(theory, stencil, method, on_circle);
+    Problem problem;
+    problem.theory = theory;
+    problem.stencil = stencil;
+    problem.method = method;
+    problem.lattice = on_circle ? Lattice::circle(20, 20) : Lattice::interval(20, 20);
+    problem.time_step = 0.1;
+    Simulation simulation(problem);
+    std::vector<double> row;
+    for (int i = 0; i < 20; ++i)
+      for (const Component& c : simulation.components()) row.push_back(c.name == "u1" ? 1 : 0);
+    simulation.start(std::vector(static_cast<std::size_t>(simulation.starting_rows()), row));
+    simulation.step(false);
+    CHECK(contains(threads_in_words(simulation, 2), "each takes") == std::isnan(simulation.residual()));
+  }
+}
+
+TEST_CASE("costs and durations are said with three digits or whole") {
+  CHECK(cost_in_words(1.9444) == "1.94 ns per site and step");
+  CHECK(cost_in_words(12345.6) == "12346 ns per site and step");
+  CHECK(duration_in_words(0.0996) == "0.1 s");
+  CHECK(duration_in_words(0.0123) == "12 ms");
+}

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "jets/pack_math.hpp"
+#include "jets/rectangle_jet.hpp"
+#include "jets/triangle_jet.hpp"
+#include "schemes/scheme.hpp"
+#include "tools/bench/commands.hpp"
+#include "tools/bench/sides.hpp"
+#include "tools/bench/table.hpp"
+
+namespace delf::bench {
+
+namespace {
+
+/// A user's density, compiled here and nowhere else: ℓ = ½φ_t² − ½φ_x² + m²(cos φ − 1), as schemes/theories/sine_gordon.hpp
+/// has it.
+struct UserDensity {
+  double mass = 1;
+  auto operator()(const auto& j) const {
+    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + (mass * mass) * (cos(j.phi) - 1.0);
+  }
+};
+
+template <class Map>
+Side user_side(Map map, const Collision& collision) {
+  const auto evolution = std::make_shared<Evolution>(
+      Scheme{map, UserDensity{}}.on(collision.lattice(), collision.time_step(), {.tolerance = collision.tolerance}));
+  return side_of(std::shared_ptr<Stepper>(evolution, &evolution->stepper()), collision);
+}
+
+}  // namespace
+
+void time_density(const Request& request) {
+  const double tolerance = request.tolerances_or({6e-8}).front();
+  fmt::print(
+      "A density of this program's own source through delf::Scheme, against delf::Simulation; ns per site and "
+      "step\n\n");
+  const Table table({{"scheme", 20}, {"N", 8}, {"user's", 8}, {"built in", 8}, {"ratio", 24}});
+  const auto compare = [&](const char* scheme, auto map) {
+    for (const int sites : request.sites_or({255, 4095})) {
+      const Collision collision{scheme, suited_sites(scheme, sites), tolerance};
+      const Pairing times = pair(user_side(map, collision), engine_side(collision), request.repeats);
+      table.row({scheme, fmt::to_string(collision.sites), number(times.a / collision.sites),
+                 number(times.b / collision.sites), in_words(times.ratio)});
+    }
+  };
+  compare("triangle-vertex", triangle_vertex);
+  compare("triangle", triangle);
+  compare("rectangle-symmetric", rectangle_symmetric);
+}
+
+}  // namespace delf::bench

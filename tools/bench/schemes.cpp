@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "tools/bench/commands.hpp"
+#include "tools/bench/sides.hpp"
+#include "tools/bench/table.hpp"
+
+namespace delf::bench {
+
+namespace {
+
+/// The engine, which tells the mean of its iterations, of the last steps that it took.
+Side counting_side(const Collision& collision, double& mean) {
+  const auto simulation = engine(collision);
+  Side side = side_of(simulation, collision);
+  side.advance = [simulation, &mean](long steps) {
+    long iterations = 0;
+    for (long n = 0; n < steps; ++n) {
+      simulation->step(false);
+      iterations += simulation->iterations();
+    }
+    mean = static_cast<double>(iterations) / static_cast<double>(steps);
+  };
+  return side;
+}
+
+}  // namespace
+
+void time_schemes(const Request& request) {
+  fmt::print(
+      "The collision, h = k/8; ns per site and step; ratio: textbook/engine, the median of paired repetitions\n\n");
+  const Table table(
+      {{"scheme", 20}, {"N", 8}, {"tolerance", 9}, {"textbook", 9}, {"engine", 8}, {"ratio", 24}, {"iterations", 10}});
+  for (const std::string& scheme : request.schemes_or(textbook_schemes()))
+    for (const int sites : request.sites_or({255, 4095})) {
+      for (const double tolerance : request.tolerances_or({6e-8, 1e-13})) {
+        const Collision collision{scheme, suited_sites(scheme, sites), tolerance};
+        double iterations = 0;
+        const Pairing times = pair(textbook_side(collision), counting_side(collision, iterations), request.repeats);
+        const double N = collision.sites;
+        const bool iterates = iterations > 0;
+        table.row({scheme, fmt::to_string(collision.sites), iterates ? fmt::format("{:.0e}", tolerance) : "-",
+                   number(times.a / N), number(times.b / N), in_words(times.ratio),
+                   iterates ? number(iterations) : "explicit"});
+        if (!iterates) break;  // no tolerance to vary
+      }
+    }
+}
+
+}  // namespace delf::bench

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <memory>
+
+#include "tools/bench/collision.hpp"
+#include "tools/bench/pairing.hpp"
+
+namespace delf::bench {
+
+/// Anything that starts from two rows and steps.
+template <class Stepped>
+Side side_of(std::shared_ptr<Stepped> stepped, const Collision& collision) {
+  return {[stepped, rows = collision.rows()] {
+            if constexpr (requires { stepped->start(rows); }) stepped->start(rows);
+            else stepped->start(rows[0], rows[1]);
+          },
+          [stepped](long steps) {
+            if constexpr (requires { stepped->step(false); })
+              for (long n = 0; n < steps; ++n) stepped->step(false);  // a row that no one looks at
+            else
+              for (long n = 0; n < steps; ++n) stepped->step();
+          }};
+}
+
+inline Side textbook_side(const Collision& collision) {
+  return side_of(std::shared_ptr<Textbook>(collision.textbook()), collision);
+}
+
+inline std::shared_ptr<Simulation> engine(const Collision& collision) {
+  return std::make_shared<Simulation>(collision.problem());
+}
+inline Side engine_side(const Collision& collision) { return side_of(engine(collision), collision); }
+
+}  // namespace delf::bench
