@@ -87,18 +87,22 @@ CirculantSolver::Entering CirculantSolver::forward(const RowSum& right_side, dou
   const RowLayout& layout = *layout_;
   const SummedRecurrence near = right_side.pass(layout, {0, near_}, SummedRecurrence{{q_, u}, backward_.row(0)});
   right_side.pass(layout, {near_, layout.packs()}, near.recurrence);
-  const Pack sums = near.sums;
-  Entering entering{Pack(0.0), Pack(0.0)};
+  return entering(u, near.sums);
+}
+
+CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) const {
+  const RowLayout& layout = *layout_;
+  Entering result{Pack(0.0), Pack(0.0)};
   Pack x_by_ends(0.0);
   for (int m = 0; m < lanes; ++m) {
     const auto at = static_cast<std::size_t>(m);
     const Pack end(u[layout.at(gap_[m]) + (m + lanes - 1) % lanes]);
-    entering.u += u_from_ends_[at] * end;
+    result.u += u_from_ends_[at] * end;
     x_by_ends += x_from_ends_[at] * end;
-    entering.x += x_from_sums_[at] * Pack(sums[m]);
+    result.x += x_from_sums_[at] * Pack(sums[m]);
   }
-  entering.x += x_by_ends;
-  return entering;
+  result.x += x_by_ends;
+  return result;
 }
 
 template <class Sink>
@@ -132,7 +136,77 @@ void CirculantSolver::solve(const double* const* rhs, double* const* w) const {
 
 double CirculantSolver::advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
                                 double* const* w) const {
-  return backward(forward(*right_sides[0], w[0]), w[0], IncrementPass(rows[0])).largest();
+  // u stands where the new increment will, unless that is made from itself.
+  double* const u = rows[0].v == rows[0].v_before ? w[0] : rows[0].v;
+  return backward(forward(*right_sides[0], u), u, IncrementPass(rows[0])).largest();
+}
+
+/// u stands in the new increment's row until it is replaced.
+class CirculantSolver::Stream final : public RowStream {
+ public:
+  Stream(const CirculantSolver& solver, const RowSum& right_side, const RowIncrement& rows)
+      : solver_(solver), right_side_(right_side), u_(rows.v), increment_(rows) {}
+  PackRange last_packs() const override;
+  void begin() override;
+  int advance(int end) override;
+  double largest() const override { return increment_.largest(); }
+
+ private:
+  const CirculantSolver& solver_;
+  const RowSum& right_side_;
+  double* u_;
+  IncrementPass increment_;
+  Pack last_ = 0.0, sums_ = 0.0, after_ = 0.0;
+  int forward_ = 0, done_ = 0;
+};
+
+/// The ends of arcs must be far apart against what is felt of them.
+std::unique_ptr<RowStream> CirculantSolver::stream(const RowLayout& layout, const RowSum& right_side,
+                                                   const RowIncrement& rows) const {
+  if (layout.packs() < 4 * near_) return nullptr;
+  return std::make_unique<Stream>(*this, right_side, rows);
+}
+
+/// By the last packs the arcs know what enters from the one before.
+PackRange CirculantSolver::Stream::last_packs() const {
+  const int packs = solver_.layout_->packs();
+  return {packs - solver_.near_, packs};
+}
+
+void CirculantSolver::Stream::begin() {
+  right_side_.pass(*solver_.layout_, last_packs(), Recurrence{solver_.q_, u_});
+  last_ = solver_.entering(u_, Pack(0.0)).u;
+}
+
+int CirculantSolver::Stream::advance(int end) {
+  const RowLayout& layout = *solver_.layout_;
+  const int near = solver_.near_, packs = layout.packs();
+  SummedRecurrence summed{{solver_.q_, u_, last_}, solver_.backward_.row(0), sums_};
+  if (forward_ < near) {
+    summed = right_side_.pass(layout, {forward_, std::min(end, near)}, summed);
+    forward_ = std::min(end, near);
+    sums_ = summed.sums;
+    // What the arc before needs is in the first packs; round the circle nothing is left of it.
+    if (forward_ == near)
+      for (int l = 0; l < lanes; ++l) after_.v[l] = sums_[(l + 1) % lanes];
+  }
+  last_ = right_side_.pass(layout, {forward_, end}, summed.recurrence).last;
+  forward_ = end;
+
+  // x from `near` packs further on, where it starts from nothing
+  const int ready = end == packs ? packs : std::max(done_, end - near);
+  if (ready == done_) return done_;
+  Pack x = end == packs ? after_ : Pack(0.0);
+  const double q = solver_.q_;
+  int v = end - 1;
+  for (; v >= ready; --v) x = Pack::load(u_ + layout.at(v)) + q * x;
+  IncrementPass increment = increment_;
+  for (; v >= done_; --v) {
+    x = Pack::load(u_ + layout.at(v)) + q * x;
+    increment(layout.at(v), x);
+  }
+  increment_ = increment;
+  return done_ = ready;
 }
 
 }  // namespace delf

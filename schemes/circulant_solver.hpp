@@ -21,16 +21,21 @@ class CirculantSolver final : public LinearSolver {
   double advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
                  double* const* w) const override;
   double right_side_scale(int) const override { return scale_; }
+  bool needs_work_rows() const override { return false; }
+
+  std::unique_ptr<RowStream> stream(const RowLayout&, const RowSum&, const RowIncrement&) const override;
   std::size_t bytes() const override { return forward_.size() * sizeof(double) + backward_.bytes(); }
   std::string name() const override { return "two recurrences (symmetric circulant of width 1)"; }
 
  private:
+  class Stream;
   using Matrix = std::array<Pack, lanes>;  ///< by columns
 
   /// u = the recurrence from nothing in w, and what enters the arcs.
   struct Entering {
     Pack u, x;  ///< u at the site before each arc, x at the site after it
   };
+  Entering entering(const double* u, Pack sums) const;
   Entering forward(const RowSum& right_side, double* u) const;
   template <class Sink>
   Sink backward(const Entering&, const double* u, Sink) const;

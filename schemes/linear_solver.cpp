@@ -43,6 +43,23 @@ class DiagonalSolver final : public LinearSolver {
 
 /// Division by one number.
 class ScalarSolver final : public LinearSolver {
+  class Stream final : public RowStream {
+   public:
+    Stream(const RowLayout& layout, const RowSum& right_side, const RowIncrement& rows)
+        : layout_(layout), right_side_(right_side), increment_(rows) {}
+    int advance(int end) override {
+      increment_ = right_side_.pass(layout_, {done_, end}, increment_);
+      return done_ = end;
+    }
+    double largest() const override { return increment_.largest(); }
+
+   private:
+    const RowLayout& layout_;
+    const RowSum& right_side_;
+    IncrementPass increment_;
+    int done_ = 0;
+  };
+
  public:
   ScalarSolver(const RowLayout& layout, double diagonal) : layout_(&layout), inverse_(1 / diagonal) {}
   void solve(const double* const* rhs, double* const* w) const override {
@@ -54,6 +71,10 @@ class ScalarSolver final : public LinearSolver {
   double advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
                  double* const*) const override {
     return right_sides[0]->pass(layout, layout.all(), IncrementPass(rows[0])).largest();
+  }
+  std::unique_ptr<RowStream> stream(const RowLayout& layout, const RowSum& right_side,
+                                    const RowIncrement& rows) const override {
+    return std::make_unique<Stream>(layout, right_side, rows);
   }
   double right_side_scale(int) const override { return inverse_; }
   bool needs_work_rows() const override { return false; }

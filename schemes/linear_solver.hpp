@@ -13,6 +13,19 @@
 
 namespace delf {
 
+/// A step strip by strip, from the first pack to the last, for rows that outgrow the cache: what comes before and after
+/// finds a strip in the cache.
+class RowStream {
+ public:
+  virtual ~RowStream() = default;
+  /// Packs whose right side must be ready before begin().
+  virtual PackRange last_packs() const { return {0, 0}; }
+  virtual void begin() {}
+  /// The right side is ready up to pack `end`. Returns up to where the new row is done.
+  virtual int advance(int end) = 0;
+  virtual double largest() const = 0;
+};
+
 /// A factored matrix over the unknowns of a slab: solves A w = rhs for whole rows, d rows each. In words: `name()`.
 class LinearSolver {
  public:
@@ -24,8 +37,12 @@ class LinearSolver {
   virtual double advance(const RowLayout&, int components, const RowSum* const* right_sides, const RowIncrement* rows,
                          double* const* w) const;
   virtual double right_side_scale(int /*component*/) const { return 1; }
-  /// Whether advance() needs the rows w.
+  /// Whether advance() needs the rows w where the new increment is not made from itself.
   virtual bool needs_work_rows() const { return true; }
+  /// The same as advance() strip by strip, for one component; nothing where that is not worth while.
+  virtual std::unique_ptr<RowStream> stream(const RowLayout&, const RowSum&, const RowIncrement&) const {
+    return nullptr;
+  }
   virtual std::size_t bytes() const = 0;
   virtual std::string name() const = 0;
 };

@@ -189,7 +189,7 @@ void RowEquations::build_sums() {
   }
   if (is_one_loop()) return;
   if (is_stored_) E_ = RowBuffer(layout_, d_);
-  if (solver_[0]->needs_work_rows()) w_ = RowBuffer(layout_, d_);
+  if (solver_[0]->needs_work_rows() || equations_.correction_form) w_ = RowBuffer(layout_, d_);
   for (int a = 0; a < d_; ++a) w_rows_.push_back(w_.rows() ? w_.row(a) : nullptr);
   increments_.resize(static_cast<std::size_t>(d_));
 }
@@ -198,6 +198,11 @@ void RowEquations::build_sums() {
 void RowEquations::build_looks() {
   if (!reads_unknown_row()) return;
   candidate_ = RowBuffer(layout_, d_);
+  constexpr int packs_in_cache = 4096;
+  const bool one_age = outputs_.size() == 1 && outputs_[0].reads_unknown_row(outputs_[0].newest) &&
+                       !outputs_[0].reads_unknown_row(outputs_[0].newest - 1);
+  if (d_ == 1 && !is_stored_ && !equations_.correction_form && turn_ == 0 && one_age && layout_.packs() >= packs_in_cache)
+    is_streamed_ = solver_[0]->stream(layout_, sums_[0], {}) != nullptr;
   for (const Outputs& o : outputs_) {
     const Argument whole{{{Site{}, 1.0}}};
     const auto& arguments = o.kernel->arguments();
@@ -394,9 +399,14 @@ void RowEquations::close_new_row() {
   }
 }
 
-/// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others, wherever
-/// the equations of a pack read them: beyond the ends of arcs too.
-void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which) {
+/// Wherever the equations of a pack read outputs: beyond the ends of arcs too.
+PackRange RowEquations::where_read(const Outputs& o) const {
+  if (turn_ != 0) return layout_.all();  // what is read across the seam is the site's own output, whatever the density
+  return {o.lowest, layout_.packs() + o.highest};
+}
+
+/// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others.
+void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, PackRange packs) {
   const std::int64_t anchor_row = n_ + age;
   const int newest = o.reads_unknown_row(age) ? 1 : 0;
   for (int t = o.first_time; t <= o.last_time; ++t)
@@ -407,8 +417,6 @@ void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At wh
           : is_one_loop()                    ? rows_.y(n_ + row, a)
                                              : rows_.y_at(y_slots_(-row), a);
     }
-  const bool turns = turn_ != 0;  // what is read across the seam is the site's own output, whatever the density
-  PackRange packs{turns ? 0 : o.lowest, layout_.packs() + (turns ? 0 : o.highest)};
   if (o.family->pattern().placement == Placement::brick_wall) {
     packs.stride = 2;
     if ((packs.first + anchor_row) % 2 != 0) ++packs.first;
@@ -416,7 +424,7 @@ void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At wh
   o.kernel->evaluate({&layout_, slab_rows_.data(), positions_.rows() ? positions_.row(0) : nullptr,
                       static_cast<double>(anchor_row) * time_step_, time_step_, space_step_},
                      out, packs);
-  if (turns)
+  if (turn_ != 0)
     for (int c = 0; c < o.kernel->outputs(); ++c) layout_.fill_halo(out[c]);
 }
 
@@ -433,10 +441,10 @@ void RowEquations::evaluate_unknown_outputs(At at) {
       if (o.reads_unknown_row(age)) evaluate_in_ring(o, age, at);
 }
 
-void RowEquations::evaluate_in_ring(Outputs& o, int age, At at) {
+void RowEquations::evaluate_in_ring(Outputs& o, int age, At at, PackRange packs) {
   const int count = o.kernel->outputs(), slot = o.slots(-age);
   for (int c = 0; c < count; ++c) slab_out_[static_cast<std::size_t>(c)] = o.ring.row(slot * count + c);
-  evaluate(o, age, slab_out_.data(), at);
+  evaluate(o, age, slab_out_.data(), at, packs);
 }
 
 void RowEquations::evaluate_known_outputs() {
@@ -470,6 +478,43 @@ double RowEquations::advance() {
   return largest;
 }
 
+RowEquations::Streamed RowEquations::advance_streamed(const std::function<void(PackRange)>& find) {
+  // Some ten rows of a strip fit into the second level of the cache, and are long against what solving overlaps.
+  constexpr int strip = 1024;
+  Outputs& o = outputs_[0];
+  const int packs = layout_.packs(), halo = layout_.halo();
+  const PackRange read = where_read(o);
+  int reach = 0;
+  for (const Argument& look : looks_)
+    for (const Argument::Part& part : look.parts) reach = std::max(reach, part.vertex.space);
+
+  const auto stream = solver_[0]->stream(layout_, sums_[0], increments_[0]);
+  const PackRange last = stream->last_packs();
+  if (last.first < last.last) {
+    if (find) find({last.first - halo, packs + halo});
+    evaluate_in_ring(o, o.newest, At::candidate, {last.first + o.lowest, read.last});
+  }
+  stream->begin();
+  if (find) find({-halo, halo});
+  int found = halo, evaluated = read.first, changed = 0;
+  double change = 0;
+  for (int end = 0; end < packs;) {
+    end = packs - end < 2 * strip ? packs : end + strip;
+    const bool all = end == packs;
+    if (find) find({found, all ? packs + halo : end + halo});
+    found = end + halo;
+    evaluate_in_ring(o, o.newest, At::candidate, {evaluated, all ? read.last : end + o.highest});
+    evaluated = end + o.highest;
+    const int done = stream->advance(end);
+    if (!all && done - reach > changed) {
+      change = larger_or_nan(largest_change(looks_, {changed, done - reach}), change);
+      changed = done - reach;
+    }
+  }
+  close_new_row();
+  return {stream->largest(), larger_or_nan(largest_change(looks_, {changed, packs}), change)};
+}
+
 void RowEquations::make_row_the_candidate() {
   for (int a = 0; a < d_; ++a) std::copy_n(rows_.y_at(y_slots_(-1), a), layout_.doubles(), candidate_.row(a));
 }
@@ -478,7 +523,8 @@ namespace {
 
 /// max |Σ_p weight_p (y − z)(shifted by p)| for a number of parts that is known.
 template <int count>
-Pack largest_difference(const RowLayout& layout, const Argument& look, const double* y, const double* z) {
+Pack largest_difference(const RowLayout& layout, PackRange packs, const Argument& look, const double* y,
+                        const double* z) {
   const double *above[count], *below[count];
   double weight[count];
   for (int p = 0; p < count; ++p) {
@@ -494,31 +540,31 @@ Pack largest_difference(const RowLayout& layout, const Argument& look, const dou
   };
   // Two at a time: a maximum waits for the one before it.
   Pack largest(0.0), other(0.0);
-  int v = 0;
-  for (; v + 1 < layout.packs(); v += 2) {
+  int v = packs.first;
+  for (; v + 1 < packs.last; v += 2) {
     largest = max_or_nan(difference(v), largest);
     other = max_or_nan(difference(v + 1), other);
   }
-  if (v < layout.packs()) largest = max_or_nan(difference(v), largest);
+  if (v < packs.last) largest = max_or_nan(difference(v), largest);
   return max_or_nan(other, largest);
 }
 
 }  // namespace
 
-double RowEquations::largest_change(const std::vector<Argument>& looks) const {
+double RowEquations::largest_change(const std::vector<Argument>& looks, PackRange packs) const {
   Pack largest(0.0);
   for (const Argument& look : looks)
     for (int a = 0; a < d_; ++a) {
       const double *y = rows_.y_at(y_slots_(-1), a), *z = candidate_.row(a);
       switch (look.parts.size()) {
         case 1:
-          largest = max_or_nan(largest_difference<1>(layout_, look, y, z), largest);
+          largest = max_or_nan(largest_difference<1>(layout_, packs, look, y, z), largest);
           break;
         case 2:
-          largest = max_or_nan(largest_difference<2>(layout_, look, y, z), largest);
+          largest = max_or_nan(largest_difference<2>(layout_, packs, look, y, z), largest);
           break;
         default:
-          largest = max_or_nan(largest_difference<3>(layout_, look, y, z), largest);
+          largest = max_or_nan(largest_difference<3>(layout_, packs, look, y, z), largest);
           break;
       }
     }
@@ -584,7 +630,7 @@ double RowEquations::residual(std::int64_t n) {
         bases_[static_cast<std::size_t>(o.base + (age - o.oldest) * count + c)] =
             slab_out_[static_cast<std::size_t>(c)];
       }
-      evaluate(o, age, slab_out_.data());
+      evaluate(o, age, slab_out_.data(), At::row, where_read(o));
     }
 
   const std::int64_t equation_row = n_ + 1 - equations_.bulk[0].shift;

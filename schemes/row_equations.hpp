@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -47,6 +48,14 @@ class RowEquations {
 
   /// Solves for w with the outputs as they are, and makes v_{n+1} and y_{n+1} of it, halos too. Returns the largest |y|.
   double advance();
+  /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
+  bool is_streamed() const { return is_streamed_; }
+  /// The same as finding the candidate by `find`, if there is such a function, evaluating, advance() and change(), in one
+  /// stream through the rows.
+  struct Streamed {
+    double largest, change;
+  };
+  Streamed advance_streamed(const std::function<void(PackRange)>& find);
   /// The largest difference between the candidate and y_{n+1} in what the nonlinear outputs look at.
   double change() const { return largest_change(looks_); }
   /// The same of y_{n+1} itself.
@@ -91,12 +100,15 @@ class RowEquations {
   void build_sums();
   void build_loop();
   void build_looks();
-  double largest_change(const std::vector<Argument>& looks) const;
+  double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
+  double largest_change(const std::vector<Argument>& looks, PackRange) const;
   int index_of(const Term&) const;
   void add_term(RowSum&, const Term&, double coefficient) const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
-  void evaluate(const Outputs&, int age, double* const* out, At = At::row);
-  void evaluate_in_ring(Outputs&, int age, At);
+  PackRange where_read(const Outputs&) const;
+  void evaluate(const Outputs&, int age, double* const* out, At, PackRange);
+  void evaluate_in_ring(Outputs& o, int age, At at) { evaluate_in_ring(o, age, at, where_read(o)); }
+  void evaluate_in_ring(Outputs&, int age, At, PackRange);
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
   void set_exceptional_sites();
@@ -128,6 +140,7 @@ class RowEquations {
   std::vector<double*> w_rows_, slab_out_;
   std::vector<const double*> slab_rows_;
   std::vector<RowIncrement> increments_;
+  bool is_streamed_ = false;
 
   const RowKernel* one_loop_ = nullptr;
   std::vector<double> loop_linear_, loop_nonlinear_;

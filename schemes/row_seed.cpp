@@ -10,7 +10,7 @@
 namespace delf {
 namespace {
 
-constexpr int steps_between_looks = 64;
+constexpr int steps_between_looks = 128;
 constexpr int highest_order = 11;
 // A seed of order p misses (1 − e^{−iωh})^{p+1} of a wave e^{iωt}. What an accepted iteration leaves of that is in phase
 // with the wave's velocity, and damps it or feeds it step after step. Over 5000 collisions (N = 255, h = k/8, tolerance
@@ -46,7 +46,7 @@ RowSeed::RowSeed(SectionRows& rows, int most_order, const std::vector<Argument>&
   }
 }
 
-void RowSeed::find(std::int64_t n, int order, double* const* candidate) {
+void RowSeed::find(std::int64_t n, int order, double* const* candidate, PackRange packs) {
   order = static_cast<int>(std::min<std::int64_t>({order, n, most_order_}));
   const RowLayout& layout = rows_.layout();
   RowSum& sum = sums_[static_cast<std::size_t>(order)];
@@ -57,9 +57,7 @@ void RowSeed::find(std::int64_t n, int order, double* const* candidate) {
     for (int m = 1; m <= order; ++m) bases_[static_cast<std::size_t>(m)] = rows_.v_at(v_slots_(m - 1), a);
     sum.bind(bases_.data());
     double* const to = candidate[a];
-    sum.pass(
-        layout, {-layout.halo(), layout.packs() + layout.halo()},
-        [to](std::ptrdiff_t at, Pack y) __attribute__((always_inline)) { y.store(to + at); });
+    sum.pass(layout, packs, [to](std::ptrdiff_t at, Pack y) __attribute__((always_inline)) { y.store(to + at); });
   }
 }
 
@@ -123,7 +121,8 @@ void RowSeed::choose(std::int64_t n, double tolerance, double contraction, doubl
     }
   (std::make_integer_sequence<int, highest_order>{});
   double cheapest = std::numeric_limits<double>::infinity();
-  for (int p = std::min(lowest_order, most); p <= most; ++p) {
+  // Where rows are long, steps are so small that this takes longer than anyone steps.
+  for (int p = most_order_ < lowest_order ? 1 : std::min(lowest_order, most); p <= most; ++p) {
     // A seed goes astray twice as fast as it did where the field gets steeper.
     double change = 2 * errors[p];
     int iterations = 1;

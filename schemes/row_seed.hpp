@@ -32,7 +32,10 @@ class RowSeed {
   /// max y − min y over all components when last looked at.
   double span() const { return span_; }
   /// Puts the candidate of this order, or the highest there are rows for, into d rows, halos too.
-  void find(std::int64_t n, int order, double* const* candidate);
+  void find(std::int64_t n, int order, double* const* candidate) {
+    find(n, order, candidate, {-rows_.layout().halo(), rows_.layout().packs() + rows_.layout().halo()});
+  }
+  void find(std::int64_t n, int order, double* const* candidate, PackRange);
 
  private:
   void find_span();

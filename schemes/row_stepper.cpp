@@ -40,6 +40,7 @@ struct RowStepper::Impl {
   std::vector<double> values_of_parts;
   RowBuffer saved;
   std::int64_t saved_row = -1;
+  bool failed = false;  ///< the last loop: nothing is written over then
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
       : system(s),
@@ -59,7 +60,7 @@ struct RowStepper::Impl {
       team.emplace(o.threads), values_of_parts.resize(static_cast<std::size_t>(o.threads));
   }
 
-  int seed_rows() const { return iterative ? RowSeed::rows_for(options.seed_order, system.lattice().sites()) : 1; }
+  int seed_rows() const { return iterative ? RowSeed::rows_for(options.seed_order, system.lattice().sites()) : 2; }
   const RowLayout& layout() const { return rows.layout(); }
 
   void step(bool looked_at) {
@@ -84,10 +85,21 @@ struct RowStepper::Impl {
 
   /// An explicit step of one loop; in place if no one looks at the row. Returns √Σy².
   double loop(bool looked_at) {
-    if (!looked_at && (saved_row < 0 || n >= saved_row + steps_between_saves)) save();
-    rows_known = looked_at ? rows_known : 0;
-    const double value = loop_in_parts(!looked_at);
-    return looked_at || !overflowed(value) ? value : loop_again();
+    const bool in_place = !looked_at && !failed && !saves();
+    if (in_place) rows_known = 0;
+    const double value = loop_in_parts(in_place);
+    failed = overflowed(value);
+    // The last good row and the one before it are kept, or found again.
+    return failed && rows_known < 2 ? loop_again() : value;
+  }
+
+  /// Now and then a row is saved, for rows that are written over are gone. Such a step, and the one before it, are not in
+  /// place, so that at every time two good rows are there or follow from the saved one.
+  bool saves() {
+    constexpr std::int64_t steps_between = 1024;
+    if (saved_row >= 0 && n <= saved_row + steps_between) return n == saved_row + steps_between;
+    save();
+    return true;
   }
 
   /// By as many threads as there are rows enough for.
@@ -108,8 +120,6 @@ struct RowStepper::Impl {
     return value;
   }
 
-  // A row that is written over is gone; should the new one overflow, the last good row is found again from here.
-  static constexpr int steps_between_saves = 1024;
   void save() {
     if (!saved.rows()) saved = RowBuffer(layout(), 2 * d);
     for (int a = 0; a < d; ++a) {
@@ -133,7 +143,7 @@ struct RowStepper::Impl {
       equations.begin(n);
       value = loop_in_parts(false);
       if (n == last) return value;
-      ++rows_known;
+      rows_known = std::min(rows_known + 1, rows.rows_held());
     }
   }
 
@@ -179,15 +189,25 @@ struct RowStepper::Impl {
     // The smallest tolerances ask for all that rounding allows: there nothing is left to an estimate.
     const bool estimates = options.tolerance >= smallest_estimated;
     seed.choose(n, tolerance, next_change, estimates ? next_change : 1 / weight);
-    take_seed(seed.order());
+    const int order = seed.order();
+    if (!equations.is_streamed()) take_seed(order);
     double before = std::numeric_limits<double>::infinity();
     while (iterations < options.max_iterations) {
       ++iterations;
-      equations.evaluate_unknown_outputs(RowEquations::At::candidate);
-      value = equations.advance();
+      double change = 0;
+      if (equations.is_streamed()) {
+        const auto find = [&](PackRange packs) { seed.find(n, order, candidates.data(), packs); };
+        const auto streamed = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)
+                                                                         : std::function<void(PackRange)>());
+        value = streamed.largest, change = streamed.change;
+      } else {
+        equations.evaluate_unknown_outputs(RowEquations::At::candidate);
+        value = equations.advance();
+        change = equations.change();
+      }
       // A field that overflowed has no root to look for.
       if (overflowed(value)) report_not_finite();
-      const double scale = std::max({value, largest[0], largest[1]}), change = equations.change();
+      const double scale = std::max({value, largest[0], largest[1]});
       const double enough = within(tolerance, scale);
       // One more iteration would change the row by no more than what it makes of the last change.
       if (change / weight <= enough || (estimates && next_change * change <= enough)) return true;
@@ -289,6 +309,7 @@ void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   s.rows.restart();
   s.rows_known = static_cast<int>(rows.size());
   s.saved_row = -1;
+  s.failed = false;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (double x : rows[r])
       if (overflowed(std::abs(x))) throw NotFinite(fmt::format("row {} of the start is not finite", r));

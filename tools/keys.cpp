@@ -77,7 +77,7 @@ const std::array table{
 
     Key{"scheme.method", choice, "multisymplectic", "", "the scheme; see `delf list schemes`", "", any, method_names},
     Key{"scheme.tolerance", real, "1e-14", "",
-        "an implicit step ends when its last change is below this times the largest |y|", "", positive},
+        "an implicit step ends when its next change is below this times what the field spans", "", positive},
     Key{"scheme.seed_order", integer, "8", "", "rows that the first guess of an implicit step is extrapolated from", "",
         up_to_eight},
     Key{"scheme.max_iterations", integer, "50", "", "iterations of an implicit step before it has failed", "",
@@ -114,7 +114,8 @@ const std::array table{
         not_negative},
     Key{"run.steps", integer, "", "this or run.until", "steps after row 0", "", count},
     Key{"run.seed", integer, "1", "", "seed of whatever is random", "", count},
-    Key{"run.threads", integer, "1", "", "threads that long rows of explicit schemes are shared by; the bits are the same for any number", "", threads},
+    Key{"run.threads", integer, "1", "",
+        "threads that long rows of explicit schemes are shared by; the bits are the same for any number", "", threads},
 
     Key{"output.every", integer, "", "about 400 records",
         "record rows 0, every, 2 every, ... and the last; 0: the last", "", count},
@@ -124,7 +125,8 @@ const std::array table{
         not_negative},
 
     Key{"verify.regions", KeyType::text, "", "rectangle staircase hole wall slab random",
-        "kinds of regions, drawn from run.seed; or ROWSxSITES, such as 0:8x10:30-3:5x18:22, rows from each moment's first"},
+        "kinds of regions, drawn from run.seed; or ROWSxSITES, such as 0:8x10:30-3:5x18:22, rows from each moment's "
+        "first"},
     Key{"verify.variations", integer, "2", "", "pairs of first variations V, W of either sort for each region", "",
         one_or_more},
     Key{"verify.moments", integer, "8", "", "moments of the run, evenly spread, at which regions are drawn", "",

@@ -41,8 +41,8 @@ struct Trial {
   double seconds = 0;
 };
 
-// Steps until so many are taken or so much time has passed, whichever is first. The clock is read between batches: a look
-// at it costs as much as a small step.
+// Steps until so many are taken or so much time has passed, whichever is first. The clock is read between batches: a
+// look at it costs as much as a small step.
 Trial step_for(double limit, std::int64_t most, Simulation& simulation) {
   using Clock = std::chrono::steady_clock;
   Trial trial;

@@ -158,8 +158,9 @@ TEST_CASE("advancing is solving and adding, to rounding, and v may be made from 
         const int slot = advance.layout.slot(i);
         const double w = row.row(0)[slot], v = advance.v_before[0][static_cast<std::size_t>(i)] + w;
         size = std::max(size, std::abs(w));
-        worst = std::max({worst, std::abs(advance.after.row(0)[slot] - v),
-                          std::abs(advance.after.row(1)[slot] - (advance.y_before[0][static_cast<std::size_t>(i)] + v))});
+        worst =
+            std::max({worst, std::abs(advance.after.row(0)[slot] - v),
+                      std::abs(advance.after.row(1)[slot] - (advance.y_before[0][static_cast<std::size_t>(i)] + v))});
         CHECK(again.before.row(0)[slot] == advance.after.row(0)[slot]);
         CHECK(again.after.row(1)[slot] == advance.after.row(1)[slot]);
       }

@@ -99,7 +99,8 @@ TEST_CASE("the next change of a row is below what Contraction says, on random se
         }
 }
 
-TEST_CASE("the bound is no idle one: uniform candidates come within a factor of some ten, and another mass exceeds it") {
+TEST_CASE(
+    "the bound is no idle one: uniform candidates come within a factor of some ten, and another mass exceeds it") {
   for (const std::string& stencil : implicit_stencils) {
     CAPTURE(stencil);
     Iterations step("sine-gordon", stencil, 1.2, 1e-3, 7);
@@ -152,7 +153,7 @@ TEST_CASE("a step that was accepted early is as near the root as the tolerance s
           often = often || iterations > 1;
         }
         CAPTURE(theory, stencil, amplitude);
-        CHECK(once);   // some steps stopped at once, and were not the root
+        CHECK(once);  // some steps stopped at once, and were not the root
         CHECK(often);
       }
 }
@@ -160,7 +161,8 @@ TEST_CASE("a step that was accepted early is as near the root as the tolerance s
 TEST_CASE("the comparison with a root can fail: of another amplitude's tolerance") {
   StepOptions loose;
   loose.tolerance = 1e-2;
-  Evolution early = evolution("phi4", "rectangle-symmetric", 1.2, loose), exact = evolution("phi4", "rectangle-symmetric", 1.2);
+  Evolution early = evolution("phi4", "rectangle-symmetric", 1.2, loose),
+            exact = evolution("phi4", "rectangle-symmetric", 1.2);
   Random random(11);
   const auto start = random_rows(random, 2, sites, 3);
   for (Evolution* e : {&early, &exact}) e->stepper().start(start), e->stepper().step();

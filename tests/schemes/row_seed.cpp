@@ -156,7 +156,8 @@ TEST_CASE("the span is that of the component that spans most") {
     double span = 0;
     for (int a = 0; a < components; ++a) {
       double least = field(12, 0, a), largest = least;
-      for (int i = 0; i < N; ++i) least = std::min(least, field(12, i, a)), largest = std::max(largest, field(12, i, a));
+      for (int i = 0; i < N; ++i)
+        least = std::min(least, field(12, i, a)), largest = std::max(largest, field(12, i, a));
       span = std::max(span, largest - least);
     }
     CHECK(seeded.seed.span() == span);

@@ -55,7 +55,9 @@ struct Sums {
     result.add_constant(3 * constant / 4);
     return result;
   }
-  double at(int row, int i) const { return values[static_cast<std::size_t>(row)][static_cast<std::size_t>((i + N) % N)]; }
+  double at(int row, int i) const {
+    return values[static_cast<std::size_t>(row)][static_cast<std::size_t>((i + N) % N)];
+  }
   double expected(int i) const {
     double total = constant;
     for (const TestTerm& t : differences) total += t.coefficient * (at(t.row, i + t.shift) - at(t.row, i));
@@ -78,7 +80,9 @@ struct Collect {
   bool in_order = true;
   double worst = 0;
   Collect(const Sums& s, PackRange r) : sums(&s), range(r), next(r.first) {}
-  void operator()(std::ptrdiff_t at, Pack sum) { look(at, sum, [&](int i) { return sums->expected(i); }); }
+  void operator()(std::ptrdiff_t at, Pack sum) {
+    look(at, sum, [&](int i) { return sums->expected(i); });
+  }
   void look(std::ptrdiff_t at, Pack sum, const auto& expected) {
     in_order = in_order && at == sums->layout.at(next);
     for (int l = 0; l < lanes; ++l) {
@@ -124,7 +128,9 @@ TEST_CASE("a pass whose number of terms is compiled agrees with one whose number
     for (int plain = 0; plain <= 8; ++plain) {
       sums.choose(differences, plain);
       std::vector<Pack> compiled, counted;
-      const auto into = [](std::vector<Pack>& packs) { return [&packs](std::ptrdiff_t, Pack p) { packs.push_back(p); }; };
+      const auto into = [](std::vector<Pack>& packs) {
+        return [&packs](std::ptrdiff_t, Pack p) { packs.push_back(p); };
+      };
       RowSum sum = sums.sum();
       sum.bind(sums.bases.data());
       sum.pass(sums.layout, sums.layout.all(), into(compiled));
@@ -135,7 +141,8 @@ TEST_CASE("a pass whose number of terms is compiled agrees with one whose number
       CAPTURE(differences, plain);
       REQUIRE(compiled.size() == counted.size());
       double worst = 0;
-      for (std::size_t v = 0; v < compiled.size(); ++v) worst = std::max(worst, max_or_nan(abs(compiled[v] - counted[v])));
+      for (std::size_t v = 0; v < compiled.size(); ++v)
+        worst = std::max(worst, max_or_nan(abs(compiled[v] - counted[v])));
       CHECK(worst < rounding);
     }
 }

@@ -82,7 +82,6 @@ TEST_CASE("the steps that are said to be shared are those of one loop, which wri
         Case{"klein-gordon", "triangle-vertex", "multisymplectic"}, Case{"wave", "triangle-vertex", "multisymplectic"},
         Case{"coupled-sine-gordon", "triangle-vertex", "multisymplectic"},
         Case{"complex-klein-gordon", "triangle-vertex", "multisymplectic"},
-        Case{"wave-map", "triangle-vertex", "multisymplectic"},
         Case{"sine-gordon-impurity", "triangle-vertex", "multisymplectic"},
         Case{"sine-gordon", "triangle-vertex", "multisymplectic", false},
         Case{"sine-gordon", "triangle", "multisymplectic"}, Case{"sine-gordon", "rectangle", "multisymplectic"},
@@ -95,11 +94,10 @@ TEST_CASE("the steps that are said to be shared are those of one loop, which wri
     problem.lattice = on_circle ? Lattice::circle(20, 20) : Lattice::interval(20, 20);
     problem.time_step = 0.1;
     Simulation simulation(problem);
-    std::vector<double> row;
-    for (int i = 0; i < 20; ++i)
-      for (const Component& c : simulation.components()) row.push_back(c.name == "u1" ? 1 : 0);
-    simulation.start(std::vector(static_cast<std::size_t>(simulation.starting_rows()), row));
+    const std::vector<double> vacuum(20 * simulation.components().size());
+    simulation.start(std::vector(static_cast<std::size_t>(simulation.starting_rows()), vacuum));
     simulation.step(false);
+    simulation.step(false);  // the first keeps the rows of the start
     CHECK(contains(threads_in_words(simulation, 2), "each takes") == std::isnan(simulation.residual()));
   }
 }

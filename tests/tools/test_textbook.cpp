@@ -29,8 +29,8 @@ double difference(std::span<const double> a, std::span<const double> b) {
   return most;
 }
 
-/// From the engine, when the textbook's circle is longer and its step larger by these factors: with the first alone φ_xx
-/// has a wrong coefficient, with the second alone φ_tt, with both the same sin φ.
+/// From the engine, when the textbook's circle is longer and its step larger by these factors: with the first alone
+/// φ_xx has a wrong coefficient, with the second alone φ_tt, with both the same sin φ.
 double textbook_error(const Collision& collision, double longer = 1, double slower = 1) {
   const auto textbook = delf::bench::make_textbook(collision.scheme, collision.sites, longer * Collision::length,
                                                    slower * collision.time_step(), collision.tolerance);

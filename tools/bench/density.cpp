@@ -13,8 +13,8 @@ namespace delf::bench {
 
 namespace {
 
-/// A user's density, compiled here and nowhere else: ℓ = ½φ_t² − ½φ_x² + m²(cos φ − 1), as schemes/theories/sine_gordon.hpp
-/// has it.
+/// A user's density, compiled here and nowhere else: ℓ = ½φ_t² − ½φ_x² + m²(cos φ − 1), as
+/// schemes/theories/sine_gordon.hpp has it.
 struct UserDensity {
   double mass = 1;
   auto operator()(const auto& j) const {

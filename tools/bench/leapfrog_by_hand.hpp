@@ -6,8 +6,8 @@
 
 namespace delf::bench {
 
-/// What the explicit scheme cannot be faster than, short of several steps at a time: the least a step must do, written by
-/// hand for it alone, with the engine's packs, sine and layout of rows.
+/// What the explicit scheme cannot be faster than, short of several steps at a time: the least a step must do, written
+/// by hand for it alone, with the engine's packs, sine and layout of rows.
 ///
 ///     v += (h/k)² ∂²_k y − h² sin y,   y += v
 class LeapfrogByHand {

@@ -12,8 +12,8 @@ namespace delf::bench {
 
 namespace {
 
-// What is said of a scheme in the end: how far apart its costs are, small circles (which do not fill the lanes) and rows
-// far beyond every cache set aside.
+// What is said of a scheme in the end: how far apart its costs are, small circles (which do not fill the lanes) and
+// rows far beyond every cache set aside.
 constexpr int least_compared = 255, most_compared = 1'000'000;
 
 }  // namespace

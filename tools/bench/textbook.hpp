@@ -7,9 +7,9 @@
 
 namespace delf::bench {
 
-/// What the engine is held against: φ_tt − φ_xx + sin φ = 0 on a circle, the equations of one scheme written out by hand
-/// as scalar loops over plain arrays with the library's sine. tools/bench/README.md says what was done in them and what
-/// was not.
+/// What the engine is held against: φ_tt − φ_xx + sin φ = 0 on a circle, the equations of one scheme written out by
+/// hand as scalar loops over plain arrays with the library's sine. tools/bench/README.md says what was done in them and
+/// what was not.
 class Textbook {
  public:
   virtual ~Textbook() = default;

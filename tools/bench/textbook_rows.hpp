@@ -33,7 +33,8 @@ class PastRows {
   const double* row(int back) const { return ring_[slot(back)].data(); }  ///< 0 is the newest
   double* next() { return ring_[slot(-1)].data(); }
   void close_next() { ring_[slot(-1)].close(); }
-  /// y_{n+1} = Σ_{m=1}^{p} (−1)^{m+1} C(p, m) y_{n+1−m}, the polynomial through the last p = 8 rows, or as many as there are.
+  /// y_{n+1} = Σ_{m=1}^{p} (−1)^{m+1} C(p, m) y_{n+1−m}, the polynomial through the last p = 8 rows, or as many as
+  /// there are.
   void seed_next();
   void advance() {
     newest_ = slot(-1);

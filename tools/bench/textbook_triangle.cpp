@@ -24,8 +24,8 @@ void TextbookTriangle::start(std::span<const double> row0, std::span<const doubl
   below_.close();
 }
 
-// y_{n+1} = 2y_n − y_{n−1} + (h/k)² ∂²_k y_n − ⅓h² (s_{i−1} + s_i) below − ⅓h² s_i above. Both loops fused: y[i+1] is still
-// that of the pass before when site i is improved.
+// y_{n+1} = 2y_n − y_{n−1} + (h/k)² ∂²_k y_n − ⅓h² (s_{i−1} + s_i) below − ⅓h² s_i above. Both loops fused: y[i+1] is
+// still that of the pass before when site i is improved.
 void TextbookTriangle::step() {
   const int N = rows_.sites();
   const double *y = rows_.row(0), *older = rows_.row(1), *below = below_.data();

@@ -3,8 +3,8 @@
 
 namespace delf::bench {
 
-/// The linear part of the implicit schemes, A y_{n+1} − B y_n + A y_{n−1}, with A = (a₁, a₀, a₁) and B = (b₁, b₀, b₁) across
-/// space.
+/// The linear part of the implicit schemes, A y_{n+1} − B y_n + A y_{n−1}, with A = (a₁, a₀, a₁) and B = (b₁, b₀, b₁)
+/// across space.
 struct WavePart {
   double a0, a1, b0, b1;
 

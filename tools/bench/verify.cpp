@@ -52,8 +52,8 @@ Window first_rows(const Collision& collision, Simulation& simulation) {
   return system.window(0, std::move(rows), 0);
 }
 
-/// The form formula (5.6) on all of space, between the rows that have equations, with one pair of first variations. They
-/// may be any numbers: the sum takes as long.
+/// The form formula (5.6) on all of space, between the rows that have equations, with one pair of first variations.
+/// They may be any numbers: the sum takes as long.
 class FormFormula {
  public:
   FormFormula(const Evolution& evolution, const Window& rows, std::mt19937_64& random)
