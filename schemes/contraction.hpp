@@ -20,7 +20,7 @@ class Contraction {
   bool is_stiff() const { return bound_ && bound_->nonlinear > 0.9 * bound_->dominance; }
 
   /// The next change of y_{n+1} over the last change of what the nonlinear part looks at, whose weights at the unknown row
-  /// sum to `weight`; twice the worst case, and infinite where nothing is known. `gain` is the row equations' own sharper
+  /// sum to `weight`; four times the worst case, and infinite where nothing is known. `gain` is the row equations' own sharper
   /// 1/dominance, if it is not zero.
   double next_change(double largest, double weight, double gain) {
     if (!bound_) return std::numeric_limits<double>::infinity();
@@ -31,7 +31,7 @@ class Contraction {
     }
     const double crude =
         bound_->dominance > 0 ? 1 / (bound_->dominance * weight) : std::numeric_limits<double>::infinity();
-    return 2 * bound_->nonlinear * (gain > 0 ? std::min(gain, crude) : crude);
+    return 4 * bound_->nonlinear * (gain > 0 ? std::min(gain, crude) : crude);
   }
 
  private:

@@ -201,7 +201,8 @@ void RowEquations::build_looks() {
   constexpr int packs_in_cache = 4096;
   const bool one_age = outputs_.size() == 1 && outputs_[0].reads_unknown_row(outputs_[0].newest) &&
                        !outputs_[0].reads_unknown_row(outputs_[0].newest - 1);
-  if (d_ == 1 && !is_stored_ && !equations_.correction_form && turn_ == 0 && one_age && layout_.packs() >= packs_in_cache)
+  if (d_ == 1 && !is_stored_ && !equations_.correction_form && turn_ == 0 && one_age &&
+      layout_.packs() >= packs_in_cache)
     is_streamed_ = solver_[0]->stream(layout_, sums_[0], {}) != nullptr;
   for (const Outputs& o : outputs_) {
     const Argument whole{{{Site{}, 1.0}}};
@@ -602,6 +603,18 @@ double RowEquations::value_at(const SiteEquation& special, bool unknown_too, dou
   return value;
 }
 
+namespace {
+
+struct LargestTerms {
+  Pack sum = 0.0, absolute = 0.0;
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t, Pack s, Pack a) {
+    sum = max_or_nan(abs(s), sum);
+    absolute = max_or_nan(a, absolute);
+  }
+};
+
+}  // namespace
+
 double RowEquations::residual(std::int64_t n) {
   begin(n);
   for (int a = 0; a < d_; ++a) {
@@ -634,34 +647,36 @@ double RowEquations::residual(std::int64_t n) {
     }
 
   const std::int64_t equation_row = n_ + 1 - equations_.bulk[0].shift;
-  for (int a = 0; a < d_; ++a) {
-    double *const E = scratch_.row(d_ + a), *const size = scratch_.row(2 * d_ + a);
-    for (int pack = 0; pack < (bricks_ ? 2 : 1); ++pack) {
+  const auto measure = [&](int a, const auto& consume) {
+    const auto pass = [&](int pack, const auto& with) {
       const auto at = static_cast<std::size_t>(bricks_ ? 2 * a + ((equation_row + pack) % 2 != 0 ? 1 : 0) : a);
       measured_[at].bind(bases_.data());
-      measured_[at].measure(layout_, {pack, layout_.packs(), bricks_ ? 2 : 1},
-                            [E, size](std::ptrdiff_t to, Pack sum, Pack absolute) {
-                              sum.store(E + to);
-                              absolute.store(size + to);
-                            });
+      return measured_[at].measure(layout_, {pack, layout_.packs(), bricks_ ? 2 : 1}, with);
+    };
+    return bricks_ ? pass(1, pass(0, consume)) : pass(0, consume);
+  };
+  LargestTerms all;
+  for (int a = 0; a < d_; ++a) {
+    if (equations_.exceptional.empty()) {
+      all = measure(a, all);
+      continue;
     }
+    // Sites near walls have their own sums, in the place of the bulk's.
+    double *const E = scratch_.row(d_ + a), *const size = scratch_.row(2 * d_ + a);
+    measure(a, [E, size](std::ptrdiff_t to, Pack sum, Pack absolute) {
+      sum.store(E + to);
+      absolute.store(size + to);
+    });
+    for (const SiteEquation& special : equations_.exceptional) {
+      if (special.component != a) continue;
+      double absolute = 0;
+      const double value = value_at(special, true, &absolute);
+      for (int slot : layout_.slots_of(special.site)) E[slot] = value, size[slot] = absolute;
+    }
+    for (int v = 0; v < layout_.packs(); ++v) all(0, Pack::load(E + layout_.at(v)), Pack::load(size + layout_.at(v)));
   }
-  for (const SiteEquation& special : equations_.exceptional) {
-    double absolute = 0;
-    const double E = value_at(special, true, &absolute);
-    for (int slot : layout_.slots_of(special.site)) {
-      scratch_.row(d_ + special.component)[slot] = E;
-      scratch_.row(2 * d_ + special.component)[slot] = absolute;
-    }
-  }
-  Pack worst(0.0), largest_term(0.0);
-  for (int a = 0; a < d_; ++a)
-    for (int v = 0; v < layout_.packs(); ++v) {
-      worst = max_or_nan(abs(Pack::load(scratch_.row(d_ + a) + layout_.at(v))), worst);
-      largest_term = max_or_nan(Pack::load(scratch_.row(2 * d_ + a) + layout_.at(v)), largest_term);
-    }
-  const double size = max_or_nan(largest_term);
-  return size != 0 ? max_or_nan(worst) / size : 0;
+  const double size = max_or_nan(all.absolute);
+  return size != 0 ? max_or_nan(all.sum) / size : 0;
 }
 
 std::size_t RowEquations::output_bytes() const {

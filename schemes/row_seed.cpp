@@ -10,7 +10,7 @@
 namespace delf {
 namespace {
 
-constexpr int steps_between_looks = 128;
+constexpr int steps_between_looks = 64;
 constexpr int highest_order = 11;
 // A seed of order p misses (1 − e^{−iωh})^{p+1} of a wave e^{iωt}. What an accepted iteration leaves of that is in phase
 // with the wave's velocity, and damps it or feeds it step after step. Over 5000 collisions (N = 255, h = k/8, tolerance
@@ -57,7 +57,8 @@ void RowSeed::find(std::int64_t n, int order, double* const* candidate, PackRang
     for (int m = 1; m <= order; ++m) bases_[static_cast<std::size_t>(m)] = rows_.v_at(v_slots_(m - 1), a);
     sum.bind(bases_.data());
     double* const to = candidate[a];
-    sum.pass(layout, packs, [to](std::ptrdiff_t at, Pack y) __attribute__((always_inline)) { y.store(to + at); });
+    sum.pass(
+        layout, packs, [to](std::ptrdiff_t at, Pack y) __attribute__((always_inline)) { y.store(to + at); });
   }
 }
 

@@ -307,7 +307,7 @@ int RowStepper::starting_rows() const { return impl_->history; }
 void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   Impl& s = *impl_;
   s.rows.restart();
-  s.rows_known = static_cast<int>(rows.size());
+  s.rows_known = std::min(static_cast<int>(rows.size()), s.rows.rows_held());
   s.saved_row = -1;
   s.failed = false;
   for (std::size_t r = 0; r < rows.size(); ++r) {

@@ -28,7 +28,7 @@ class RowSum {
   Consume pass(const RowLayout& layout, PackRange packs, Consume consume) const;
   /// The same with the sum of the terms' absolute values: `consume(at, sum, absolute)`.
   template <class Consume>
-  void measure(const RowLayout& layout, PackRange packs, Consume&& consume) const;
+  Consume measure(const RowLayout& layout, PackRange packs, Consume consume) const;
 
  private:
   struct Term {
@@ -37,16 +37,18 @@ class RowSum {
     const double* shifted = nullptr;
     const double* own = nullptr;
   };
-  template <int differences, int plain, class Consume>
+  template <bool measured, class Consume>
+  Consume dispatch(const RowLayout&, PackRange, Consume) const;
+  template <bool measured, int differences, int plain, class Consume>
   Consume counted_pass(const RowLayout&, PackRange, Consume) const;
-  template <class Consume>
+  template <bool measured, class Consume>
   Consume general_pass(const RowLayout&, PackRange, Consume) const;
 
   std::vector<Term> differences_, plain_;
   double constant_ = 0;
 };
 
-template <int differences, int plain, class Consume>
+template <bool measured, int differences, int plain, class Consume>
 Consume RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume consume) const {
   const double *shifted[differences + 1], *own[differences + 1], *row[plain + 1];
   double difference_coefficient[differences + 1], coefficient[plain + 1];
@@ -61,72 +63,78 @@ Consume RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume c
   const Pack constant(constant_);
   for (int v = packs.first; v < packs.last; v += packs.stride) {
     const std::ptrdiff_t at = layout.at(v);
-    Pack sum = constant;
-    for (int i = 0; i < differences; ++i)
-      sum += difference_coefficient[i] * (Pack::load(shifted[i] + at) - Pack::load(own[i] + at));
-    for (int i = 0; i < plain; ++i) sum += coefficient[i] * Pack::load(row[i] + at);
-    consume(at, sum);
+    Pack sum = constant, absolute(0.0);
+    for (int i = 0; i < differences; ++i) {
+      const Pack difference = Pack::load(shifted[i] + at) - Pack::load(own[i] + at);
+      sum += difference_coefficient[i] * difference;
+      if constexpr (measured) absolute += abs(difference_coefficient[i] * difference);
+    }
+    for (int i = 0; i < plain; ++i) {
+      sum += coefficient[i] * Pack::load(row[i] + at);
+      if constexpr (measured) absolute += abs(coefficient[i] * Pack::load(row[i] + at));
+    }
+    if constexpr (measured) consume(at, sum, absolute);
+    else consume(at, sum);
   }
   return consume;
 }
 
-template <class Consume>
+template <bool measured, class Consume>
 Consume RowSum::general_pass(const RowLayout& layout, PackRange packs, Consume consume) const {
-  for (int v = packs.first; v < packs.last; v += packs.stride) {
-    const std::ptrdiff_t at = layout.at(v);
-    Pack sum = constant_;
-    for (const Term& t : differences_) sum += t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.own + at));
-    for (const Term& t : plain_) sum += t.coefficient * Pack::load(t.shifted + at);
-    consume(at, sum);
-  }
-  return consume;
-}
-
-template <class Consume>
-void RowSum::measure(const RowLayout& layout, PackRange packs, Consume&& consume) const {
   for (int v = packs.first; v < packs.last; v += packs.stride) {
     const std::ptrdiff_t at = layout.at(v);
     Pack sum = constant_, absolute(0.0);
     const auto add = [&](Pack term) {
       sum += term;
-      absolute += abs(term);
+      if constexpr (measured) absolute += abs(term);
     };
     for (const Term& t : differences_) add(t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.own + at)));
     for (const Term& t : plain_) add(t.coefficient * Pack::load(t.shifted + at));
-    consume(at, sum, absolute);
+    if constexpr (measured) consume(at, sum, absolute);
+    else consume(at, sum);
   }
+  return consume;
 }
 
 /// The numbers of terms of the usual schemes are compiled: rows then stay in registers.
-template <class Consume>
-Consume RowSum::pass(const RowLayout& layout, PackRange packs, Consume consume) const {
+template <bool measured, class Consume>
+Consume RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume consume) const {
   const auto counted = [&]<int differences>() {
     switch (plain_.size()) {
       case 0:
-        return counted_pass<differences, 0>(layout, packs, consume);
+        return counted_pass<measured, differences, 0>(layout, packs, consume);
       case 1:
-        return counted_pass<differences, 1>(layout, packs, consume);
+        return counted_pass<measured, differences, 1>(layout, packs, consume);
       case 2:
-        return counted_pass<differences, 2>(layout, packs, consume);
+        return counted_pass<measured, differences, 2>(layout, packs, consume);
       case 3:
-        return counted_pass<differences, 3>(layout, packs, consume);
+        return counted_pass<measured, differences, 3>(layout, packs, consume);
       case 4:
-        return counted_pass<differences, 4>(layout, packs, consume);
+        return counted_pass<measured, differences, 4>(layout, packs, consume);
       case 5:
-        return counted_pass<differences, 5>(layout, packs, consume);
+        return counted_pass<measured, differences, 5>(layout, packs, consume);
       case 6:
-        return counted_pass<differences, 6>(layout, packs, consume);
+        return counted_pass<measured, differences, 6>(layout, packs, consume);
       case 7:
-        return counted_pass<differences, 7>(layout, packs, consume);
+        return counted_pass<measured, differences, 7>(layout, packs, consume);
       case 8:
-        return counted_pass<differences, 8>(layout, packs, consume);
+        return counted_pass<measured, differences, 8>(layout, packs, consume);
       default:
-        return general_pass(layout, packs, consume);
+        return general_pass<measured>(layout, packs, consume);
     }
   };
   if (differences_.empty()) return counted.template operator()<0>();
   if (differences_.size() == 2) return counted.template operator()<2>();
-  return general_pass(layout, packs, consume);
+  return general_pass<measured>(layout, packs, consume);
+}
+
+template <class Consume>
+Consume RowSum::pass(const RowLayout& layout, PackRange packs, Consume consume) const {
+  return dispatch<false>(layout, packs, consume);
+}
+template <class Consume>
+Consume RowSum::measure(const RowLayout& layout, PackRange packs, Consume consume) const {
+  return dispatch<true>(layout, packs, consume);
 }
 
 }  // namespace delf

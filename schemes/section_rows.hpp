@@ -51,9 +51,9 @@ class SectionRows {
   int slot(std::int64_t row, int held) const {
     const std::int64_t r = row - overwritten_;
     // A division of 64 bits takes several times as long.
-    if (r < std::numeric_limits<std::uint32_t>::max())
+    if (r >= 0 && r < std::numeric_limits<std::uint32_t>::max())
       return static_cast<int>(static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(held));
-    return static_cast<int>(r % held);
+    return static_cast<int>((r % held + held) % held);
   }
   const Lattice* lattice_;
   int d_;

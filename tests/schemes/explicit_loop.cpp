@@ -47,6 +47,9 @@ Row newest(const Simulation& simulation, int back = 0) {
   return row;
 }
 
+/// Not to be printed.
+bool same(const Row& a, const Row& b) { return a == b; }
+
 /// Whether step number n is looked at.
 using Looks = bool (*)(int n);
 bool always(int) { return true; }
@@ -130,7 +133,7 @@ TEST_CASE("the loop agrees with the equations, one stencil at a time") {
       Window window = evolution.stepper().window(2);
       simulation.step();
       window.rows.push_back(evolution.stepper().row(0));
-      CHECK(evolution.stepper().row(1) == window.rows[1]);
+      CHECK(same(evolution.stepper().row(1), window.rows[1]));
       CHECK(equation_defect(evolution, window) < 2e-15);
       window.rows[2][0] += 1e-10;
       CHECK(equation_defect(evolution, window) > 1e-13);
@@ -146,7 +149,7 @@ TEST_CASE("the comparison of bits can fail: rows that differ in the last bit of 
   Simulation simulation(p);
   simulation.start(rows);
   for (int n = 0; n < 30; ++n) simulation.step(n == 29);
-  CHECK(newest(simulation) != right.newest);
+  CHECK_FALSE(same(newest(simulation), right.newest));
 }
 
 TEST_CASE("after a row that was not looked at, the row before it is refused, not invented") {
@@ -171,7 +174,7 @@ TEST_CASE("after a row that was not looked at, the row before it is refused, not
     simulation.step(false);
     simulation.start(begin(problem(theory, 64)));  // forgets it
     CHECK_NOTHROW(simulation.monitors());
-    CHECK(stepper.row(1) == begin(problem(theory, 64))[0]);
+    CHECK(same(stepper.row(1), begin(problem(theory, 64))[0]));
   }
 }
 
@@ -182,8 +185,8 @@ TEST_CASE("schemes that are not one loop keep their rows, looked at or not") {
     p.stencil = stencil;
     Simulation simulation = started(p), looked_at = started(p);
     for (int n = 0; n < 10; ++n) simulation.step(false), looked_at.step(true);
-    CHECK(newest(simulation) == newest(looked_at));
-    CHECK(newest(simulation, 1) == newest(looked_at, 1));
+    CHECK(same(newest(simulation), newest(looked_at)));
+    CHECK(same(newest(simulation, 1), newest(looked_at, 1)));
     CHECK(simulation.residual() == looked_at.residual());
     CHECK(simulation.monitors().energy == looked_at.monitors().energy);
   }
@@ -258,7 +261,7 @@ TEST_CASE("after an overflow the last good row is still held if steps were looke
     }
   } catch (const NotFinite&) {
   }
-  CHECK(newest(simulation) == last);
+  CHECK(same(newest(simulation), last));
   CHECK(std::ranges::all_of(last, [](double y) { return std::isfinite(y); }));
 }
 
@@ -287,7 +290,7 @@ bool holds_good_rows(const Problem& p, const std::vector<Row>& start, Looks look
   for (int attempt = 0; attempt < 4; ++attempt) {
     CHECK_THROWS_AS(simulation.step(attempt % 2 != 0), NotFinite);
     good = good && stepper.newest() == right.newest();
-    for (int back : {0, 1}) {
+    for (int back : {0, 1, 2}) {
       try {
         good = good && stepper.row(back) == right.row(back);
       } catch (const std::logic_error&) {
@@ -345,7 +348,7 @@ TEST_CASE("what a run kept for the case of an overflow is forgotten when it is s
         NotFinite);
   }
   CHECK(simulation.newest() == fresh.newest());
-  CHECK(newest(simulation) == newest(fresh));
+  CHECK(same(newest(simulation), newest(fresh)));
 }
 
 TEST_CASE("after a jump on the fibre S1 the rows before it are held, looked at or not") {
