@@ -63,7 +63,7 @@ void for_each_stencil(Function&& f) {
 template <Density D>
 class TheoryOf final : public FieldTheory {
  public:
-  explicit TheoryOf(D density) : density_(std::move(density)) {}
+  explicit TheoryOf(D density) : density_(std::move(density)), momenta_(affine_momenta(density_)) {}
 
   int components() const override { return components_of<D>(); }
   bool is_placed() const override { return delf::is_placed<D>(); }
@@ -101,7 +101,7 @@ class TheoryOf final : public FieldTheory {
   }
 
   EnergyMomentum energy_momentum(const SlabRows& rows, const double* weights) const override {
-    return delf::energy_momentum(density_, rows, weights);
+    return delf::energy_momentum(density_, momenta_ ? &*momenta_ : nullptr, rows, weights);
   }
 
   StressEnergy stress_energy(const double* phi, const double* phi_t, const double* phi_x, double t,
@@ -111,6 +111,7 @@ class TheoryOf final : public FieldTheory {
 
  private:
   D density_;
+  std::optional<AffineMomenta<components_of<D>()>> momenta_;
 };
 
 }  // namespace delf

@@ -110,6 +110,8 @@ void RowEquations::build_loop() {
   loop_reach_ = std::ranges::max(neighbours);
   loop_now_.resize(static_cast<std::size_t>(d_));
   loop_v_before_.resize(static_cast<std::size_t>(d_));
+  loop_y_.resize(static_cast<std::size_t>(d_));
+  loop_v_.resize(static_cast<std::size_t>(d_));
 }
 
 void RowEquations::build_outputs() {
@@ -345,11 +347,19 @@ const double* RowEquations::edge(int part, int parts, int side, int a) const {
 }
 
 void RowEquations::begin_loop(int parts, bool in_place) {
-  for (int a = 0; a < d_; ++a) {
-    loop_now_[static_cast<std::size_t>(a)] = rows_.y(n_, a);
-    loop_v_before_[static_cast<std::size_t>(a)] = rows_.v(n_, a);
-  }
+  const bool known = loop_row_ == n_;
   if (in_place) rows_.overwrite_newest();
+  for (int c = 0; c < d_; ++c) {
+    const auto a = static_cast<std::size_t>(c);
+    // Where rows lie takes divisions to find: a step in place after another goes on where that one was.
+    if (known) loop_now_[a] = loop_y_[a], loop_v_before_[a] = loop_v_[a];
+    if (known && in_place) continue;
+    loop_y_[a] = rows_.y(n_ + 1, c), loop_v_[a] = rows_.v(n_ + 1, c);
+    if (known) continue;
+    loop_now_[a] = in_place ? loop_y_[a] : rows_.y(n_, c);
+    loop_v_before_[a] = in_place ? loop_v_[a] : rows_.v(n_, c);
+  }
+  loop_row_ = n_ + 1;
   if (parts == 1) return;
   const auto doubles = static_cast<std::size_t>(2 * parts * d_ * loop_reach_ * lanes);
   if (edges_.bytes() < doubles * sizeof(double)) edges_ = RowBuffer(doubles);
@@ -369,8 +379,8 @@ double RowEquations::loop(int part, int parts) const {
   for (int a = 0; a < d_; ++a) {
     now[a] = loop_now_[static_cast<std::size_t>(a)];
     v_before[a] = loop_v_before_[static_cast<std::size_t>(a)];
-    v[a] = rows_.v(n_ + 1, a);
-    y[a] = rows_.y(n_ + 1, a);
+    v[a] = loop_v_[static_cast<std::size_t>(a)];
+    y[a] = loop_y_[static_cast<std::size_t>(a)];
     before[a] = edge(part, parts, 0, a);
     after[a] = edge(part, parts, 1, a);
   }
@@ -387,7 +397,7 @@ double RowEquations::loop(int part, int parts) const {
 }
 
 void RowEquations::close_loop() {
-  for (int a = 0; a < d_; ++a) layout_.fill_halo(rows_.y(n_ + 1, a), turn_);
+  for (int a = 0; a < d_; ++a) layout_.fill_halo(loop_y_[static_cast<std::size_t>(a)], turn_);
 }
 
 void RowEquations::close_new_row() {

@@ -30,6 +30,8 @@ class RowEquations {
   /// Makes ready for the loop in so many parts of the row; `in_place`: the new row and its increment are written over the
   /// old ones.
   void begin_loop(int parts, bool in_place);
+  /// Rows have been set anew.
+  void forget_rows() { loop_row_ = -1; }
   /// A part of the new row by that loop; returns its √Σy².
   double loop(int part, int parts) const;
   void close_loop();
@@ -146,6 +148,8 @@ class RowEquations {
   std::vector<double> loop_linear_, loop_nonlinear_;
   int loop_reach_ = 0;
   std::vector<const double*> loop_now_, loop_v_before_;
+  std::vector<double*> loop_y_, loop_v_;
+  std::int64_t loop_row_ = -1;  ///< the row that loop_y_ is
   RowBuffer edges_;  ///< of the parts: what lies beside them, before it is written over
 };
 

@@ -133,6 +133,7 @@ struct RowStepper::Impl {
   double loop_again() {
     const std::int64_t last = n;
     n = saved_row;
+    equations.forget_rows();
     for (int a = 0; a < d; ++a) {
       std::copy_n(saved.row(2 * a), layout().doubles(), rows.y(n, a));
       std::copy_n(saved.row(2 * a + 1), layout().doubles(), rows.v(n, a));
@@ -307,6 +308,7 @@ int RowStepper::starting_rows() const { return impl_->history; }
 void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   Impl& s = *impl_;
   s.rows.restart();
+  s.equations.forget_rows();
   s.rows_known = std::min(static_cast<int>(rows.size()), s.rows.rows_held());
   s.saved_row = -1;
   s.failed = false;
