@@ -8,14 +8,13 @@
 
 namespace delf {
 
-RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, SectionRows& rows, int history,
-                           double turn)
+RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, SectionRows& rows, int history)
     : system_(system),
       rows_(rows),
       layout_(rows.layout()),
       d_(system.components()),
       history_(history),
-      turn_(turn),
+      turn_(rows.turn()),
       time_step_(system.time_step()),
       space_step_(system.lattice().space_step()),
       bricks_(system.placement() == Placement::brick_wall),

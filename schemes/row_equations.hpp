@@ -18,9 +18,9 @@ namespace delf {
 /// out at set-up: which rows, at which shifts, with which coefficients; a step only looks up where rows lie.
 class RowEquations {
  public:
-  /// `history`: how many rows the equations of a slab read before the unknown one; `turn`: φ(x + L) − φ(x). Throws
-  /// NoConvergence if the constant part of the equations is singular.
-  RowEquations(const LatticeSystem&, const SolvePlan&, SectionRows&, int history, double turn);
+  /// `history`: how many rows the equations of a slab read before the unknown one. Throws NoConvergence if the constant
+  /// part of the equations is singular.
+  RowEquations(const LatticeSystem&, const SolvePlan&, SectionRows&, int history);
 
   /// Finds the rows for the step from row n. What follows is about this step.
   void begin(std::int64_t n);

@@ -52,7 +52,7 @@ struct RowStepper::Impl {
         contraction(iterative ? std::optional(Contraction(s, p)) : std::nullopt),
         stiff(iterative && contraction->is_stiff()),
         rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, seed_rows()) + 1, o.turn),
-        equations(s, p, rows, history, o.turn),
+        equations(s, p, rows, history),
         seed(rows, seed_rows(), equations.looks()) {
     for (int a = 0; a < d && equations.reads_unknown_row(); ++a) candidates.push_back(equations.candidate(a));
     if (iterative) gain = equations.gain(), weight = equations.least_weight();

@@ -11,18 +11,6 @@ SectionRows::SectionRows(const LatticeSystem& system, int halo, int rows, int in
       y_(layout_, rows * d_),
       v_(layout_, increments * d_) {}
 
-void SectionRows::add_increment(std::int64_t row) {
-  for (int a = 0; a < d_; ++a) {
-    double* above = y(row, a);
-    const double *below = y(row - 1, a), *increment = v(row, a);
-    for (int p = 0; p < layout_.packs(); ++p) {
-      const auto at = layout_.at(p);
-      (Pack::load(below + at) + Pack::load(increment + at)).store(above + at);
-    }
-    layout_.fill_halo(above, turn_);
-  }
-}
-
 void SectionRows::find_increment(std::int64_t row) {
   for (int a = 0; a < d_; ++a) {
     double* increment = v(row, a);

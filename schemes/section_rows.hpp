@@ -34,8 +34,6 @@ class SectionRows {
   double* y_at(int slot, int a) { return y_.row(slot * d_ + a); }
   double* v_at(int slot, int a) { return v_.row(slot * d_ + a); }
 
-  /// y_{row} = y_{row−1} + v_{row}, halo too.
-  void add_increment(std::int64_t row);
   /// v_{row} = y_{row} − y_{row−1}, halo too.
   void find_increment(std::int64_t row);
 

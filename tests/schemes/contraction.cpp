@@ -34,7 +34,7 @@ struct Iterations {
       : made(evolution(theory, stencil, mass)),
         history(std::max(made.plan().forward + made.plan().backward, 2)),
         rows(made.system(), std::max(1, made.system().width()), history + 1, history, 0),
-        equations(made.system(), made.plan(), rows, history, 0) {
+        equations(made.system(), made.plan(), rows, history) {
     Random random(static_cast<std::uint64_t>(seed));
     start = random_rows(random, history, sites, amplitude);
     for (std::size_t n = 0; n < start.size(); ++n) {
