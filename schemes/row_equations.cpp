@@ -20,7 +20,8 @@ RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, S
       bricks_(system.placement() == Placement::brick_wall),
       equations_(assemble(system, plan)),
       y_slots_(rows.rows_held()),
-      v_slots_(rows.increments_held()) {
+      v_slots_(rows.increments_held()),
+      candidate_(layout_, d_) {
   build_solvers();
   build_loop();
   build_outputs();
@@ -189,7 +190,6 @@ void RowEquations::build_sums() {
     stored_.push_back(std::move(stored));
   }
   if (is_one_loop()) return;
-  if (is_stored_) E_ = RowBuffer(layout_, d_);
   if (solver_[0]->needs_work_rows() || equations_.correction_form) w_ = RowBuffer(layout_, d_);
   for (int a = 0; a < d_; ++a) w_rows_.push_back(w_.rows() ? w_.row(a) : nullptr);
   increments_.resize(static_cast<std::size_t>(d_));
@@ -198,13 +198,12 @@ void RowEquations::build_sums() {
 /// What outputs look at, at the unknown row, from the first of its vertices on; each alike but for a shift counts once.
 void RowEquations::build_looks() {
   if (!reads_unknown_row()) return;
-  candidate_ = RowBuffer(layout_, d_);
   constexpr int packs_in_cache = 4096;
   const bool one_age = outputs_.size() == 1 && outputs_[0].reads_unknown_row(outputs_[0].newest) &&
                        !outputs_[0].reads_unknown_row(outputs_[0].newest - 1);
-  if (d_ == 1 && !is_stored_ && !equations_.correction_form && turn_ == 0 && one_age &&
-      layout_.packs() >= packs_in_cache)
-    is_streamed_ = solver_[0]->stream(layout_, sums_[0], {}) != nullptr;
+  if (d_ == 1 && equations_.exceptional.empty() && !solver_[1] && !equations_.correction_form && turn_ == 0 &&
+      one_age && layout_.packs() >= packs_in_cache)
+    is_streamed_ = solver_[0]->stream(layout_, right_side(0), {}) != nullptr;
   for (const Outputs& o : outputs_) {
     const Argument whole{{{Site{}, 1.0}}};
     const auto& arguments = o.kernel->arguments();
@@ -326,7 +325,7 @@ void RowEquations::begin(std::int64_t n) {
     const auto at = static_cast<std::size_t>(a);
     double *const v = rows_.v_at(v_slots_(-1), a), *const y = rows_.y_at(y_slots_(-1), a);
     increments_[at] = {equations_.correction_form ? v : rows_.v_at(v_slots_(0), a), rows_.y_at(y_slots_(0), a), v, y};
-    if (is_stored_) bases_[static_cast<std::size_t>(E_base_ + a)] = E_.row(a);
+    bases_[static_cast<std::size_t>(E_base_ + a)] = y;
   }
   for (RowSum& sum : sums_) sum.bind(bases_.data());
   for (RowSum& sum : stored_) sum.bind(bases_.data());
@@ -466,21 +465,25 @@ bool RowEquations::reads_unknown_row() const {
   return std::ranges::any_of(outputs_, [](const Outputs& o) { return o.rows() > 0 && o.reads_unknown_row(o.newest); });
 }
 
-double RowEquations::advance() {
-  const RowSum* right_sides[RowKernel::most_components];
+/// −E of some packs: bricks differ by the parity of row + site.
+void RowEquations::store_right_sides(PackRange packs) {
   const std::int64_t equation_row = n_ + 1 - equations_.bulk[0].shift;
   for (int a = 0; a < d_; ++a) {
     const auto at = static_cast<std::size_t>(a);
-    right_sides[a] = is_stored_ ? &stored_[at] : &sums_[at];
-    if (!is_stored_) continue;
-    double* const E = E_.row(a);
+    double* const E = stored_right_side(a);
     const auto store = [E](std::ptrdiff_t to, Pack sum) __attribute__((always_inline)) { sum.store(E + to); };
-    if (bricks_)
-      for (int pack = 0; pack < 2; ++pack)
-        sums_[2 * at + static_cast<std::size_t>((equation_row + pack) % 2 != 0)].pass(
-            layout_, {pack, layout_.packs(), 2}, store);
-    else sums_[at].pass(layout_, layout_.all(), store);
+    if (!bricks_) sums_[at].pass(layout_, packs, store);
+    else
+      for (int first = packs.first; first < packs.first + 2; ++first)
+        sums_[2 * at + static_cast<std::size_t>((equation_row + first) % 2 != 0)].pass(layout_, {first, packs.last, 2},
+                                                                                       store);
   }
+}
+
+double RowEquations::advance() {
+  const RowSum* right_sides[RowKernel::most_components];
+  for (int a = 0; a < d_; ++a) right_sides[a] = &right_side(a);
+  if (is_stored_) store_right_sides(layout_.all());
   if (!equations_.exceptional.empty()) set_exceptional_sites();
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
   const double largest = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides, increments_.data(), w_rows_.data());
@@ -498,23 +501,36 @@ RowEquations::Streamed RowEquations::advance_streamed(const std::function<void(P
   for (const Argument& look : looks_)
     for (const Argument::Part& part : look.parts) reach = std::max(reach, part.vertex.space);
 
-  const auto stream = solver_[0]->stream(layout_, sums_[0], increments_[0]);
+  const auto stream = solver_[0]->stream(layout_, right_side(0), increments_[0]);
   const PackRange last = stream->last_packs();
+  const int window = last.last - last.first + 2 * strip + 8 * halo;
   if (last.first < last.last) {
-    if (find) find({last.first - halo, packs + halo});
+    if (find) {
+      candidate_.hold_window(window, last.first - halo, 0);
+      find({last.first - halo, packs + halo});
+    }
     evaluate_in_ring(o, o.newest, At::candidate, {last.first + o.lowest, read.last});
+    if (is_stored_) store_right_sides(last);
   }
   stream->begin();
-  if (find) find({-halo, halo});
-  int found = halo, evaluated = read.first, changed = 0;
+  if (find) {
+    candidate_.hold_window(window, -halo, 0);
+    find({-halo, halo});
+  }
+  int found = halo, evaluated = read.first, stored = 0, changed = 0;
   double change = 0;
   for (int end = 0; end < packs;) {
     end = packs - end < 2 * strip ? packs : end + strip;
     const bool all = end == packs;
-    if (find) find({found, all ? packs + halo : end + halo});
+    if (find) {
+      candidate_.hold_window(window, std::max(-halo, changed - 2 * halo), found);
+      find({found, all ? packs + halo : end + halo});
+    }
     found = end + halo;
     evaluate_in_ring(o, o.newest, At::candidate, {evaluated, all ? read.last : end + o.highest});
     evaluated = end + o.highest;
+    if (is_stored_) store_right_sides({stored, end});
+    stored = end;
     const int done = stream->advance(end);
     if (!all && done - reach > changed) {
       change = larger_or_nan(largest_change(looks_, {changed, done - reach}), change);
@@ -526,6 +542,7 @@ RowEquations::Streamed RowEquations::advance_streamed(const std::function<void(P
 }
 
 void RowEquations::make_row_the_candidate() {
+  candidate_.hold_whole();
   for (int a = 0; a < d_; ++a) std::copy_n(rows_.y_at(y_slots_(-1), a), layout_.doubles(), candidate_.row(a));
 }
 
@@ -585,7 +602,7 @@ double RowEquations::largest_change(const std::vector<Argument>& looks, PackRang
 void RowEquations::set_exceptional_sites() {
   for (const SiteEquation& special : equations_.exceptional) {
     const double E = value_at(special, false, nullptr);
-    for (int slot : layout_.slots_of(special.site)) E_.row(special.component)[slot] = -E;
+    for (int slot : layout_.slots_of(special.site)) stored_right_side(special.component)[slot] = -E;
   }
 }
 
@@ -696,8 +713,8 @@ std::size_t RowEquations::output_bytes() const {
 std::size_t RowEquations::matrix_bytes() const { return solver_[0]->bytes() + (solver_[1] ? solver_[1]->bytes() : 0); }
 std::size_t RowEquations::work_bytes() const {
   std::size_t total = layout_.bytes();
-  for (const RowBuffer* b : {&w_, &E_, &candidate_, &scratch_, &positions_}) total += b->bytes();
-  return total;
+  for (const RowBuffer* b : {&w_, &scratch_, &positions_}) total += b->bytes();
+  return total + candidate_.bytes();
 }
 
 }  // namespace delf

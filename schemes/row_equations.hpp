@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "schemes/candidate_rows.hpp"
 #include "schemes/equation_terms.hpp"
 #include "schemes/linear_solver.hpp"
 #include "schemes/ring_slots.hpp"
@@ -36,8 +37,7 @@ class RowEquations {
   double loop(int part, int parts) const;
   void close_loop();
 
-  /// The candidate for y_{n+1}: kept apart from the row itself, so that a step can tell how far apart they are.
-  double* candidate(int a) { return candidate_.row(a); }
+  CandidateRows& candidate() { return candidate_; }
   void make_row_the_candidate();
   /// Evaluates the nonlinear outputs that do not read row n+1; those that do, of the candidate or of the row.
   void evaluate_outputs();
@@ -52,8 +52,8 @@ class RowEquations {
   double advance();
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
-  /// The same as finding the candidate by `find`, if there is such a function, evaluating, advance() and change(), in one
-  /// stream through the rows.
+  /// The same as finding the candidate by `find`, or taking the one there is, evaluating, advance() and change(), in one
+  /// stream through the rows. A candidate that is found on the way is not kept.
   struct Streamed {
     double largest, change;
   };
@@ -113,6 +113,10 @@ class RowEquations {
   void evaluate_in_ring(Outputs&, int age, At, PackRange);
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
+  const RowSum& right_side(int a) const { return (is_stored_ ? stored_ : sums_)[static_cast<std::size_t>(a)]; }
+  /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
+  double* stored_right_side(int a) { return rows_.y_at(y_slots_(-1), a); }
+  void store_right_sides(PackRange);
   void set_exceptional_sites();
   double value_at(const SiteEquation&, bool unknown_too, double* absolute) const;
 
@@ -135,8 +139,9 @@ class RowEquations {
 
   /// −E times the solver's scale, for each component; of bricks for each parity of the equation's row and of the packs.
   std::vector<RowSum> sums_, stored_, measured_;
-  bool is_stored_ = false;  ///< right sides are summed to rows first: bricks, and walls
-  RowBuffer w_, E_, candidate_, scratch_, positions_;
+  bool is_stored_ = false;  ///< right sides are summed to a row first: bricks, and walls
+  RowBuffer w_, scratch_, positions_;
+  CandidateRows candidate_;
   std::vector<Argument> whole_{{{{Site{}, 1.0}}}},
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;
@@ -150,7 +155,7 @@ class RowEquations {
   std::vector<const double*> loop_now_, loop_v_before_;
   std::vector<double*> loop_y_, loop_v_;
   std::int64_t loop_row_ = -1;  ///< the row that loop_y_ is
-  RowBuffer edges_;  ///< of the parts: what lies beside them, before it is written over
+  RowBuffer edges_;             ///< of the parts: what lies beside them, before it is written over
 };
 
 }  // namespace delf

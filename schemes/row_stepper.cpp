@@ -30,7 +30,6 @@ struct RowStepper::Impl {
   RowEquations equations;
   RowSeed seed;
   std::optional<RowTeam> team;
-  std::vector<double*> candidates;
   double gain = 0, weight = 1;  ///< of the equations, for contraction
 
   std::int64_t n = -1;         ///< newest row
@@ -54,7 +53,8 @@ struct RowStepper::Impl {
         rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, seed_rows()) + 1, o.turn),
         equations(s, p, rows, history),
         seed(rows, seed_rows(), equations.looks()) {
-    for (int a = 0; a < d && equations.reads_unknown_row(); ++a) candidates.push_back(equations.candidate(a));
+    // Made now, so that memory that is short is told at the start.
+    if (equations.reads_unknown_row() && !(iterative && equations.is_streamed())) equations.candidate().hold_whole();
     if (iterative) gain = equations.gain(), weight = equations.least_weight();
     if (o.threads > 1 && equations.is_one_loop())
       team.emplace(o.threads), values_of_parts.resize(static_cast<std::size_t>(o.threads));
@@ -162,14 +162,14 @@ struct RowStepper::Impl {
   }
 
   void take_seed(int order) {
-    seed.find(n, order, candidates.data());
+    seed.find(n, order, equations.candidate().rows());
     if (equations.correction_form()) take_increment_of_candidate();
   }
   /// What w corrects.
   void take_increment_of_candidate() {
     for (int a = 0; a < d; ++a) {
       double* const v = rows.v(n + 1, a);
-      const double *y = candidates[static_cast<std::size_t>(a)], *before = rows.y(n, a);
+      const double *y = equations.candidate().row(a), *before = rows.y(n, a);
       for (std::size_t s = 0; s < layout().doubles(); ++s) v[s] = y[s] - before[s];
     }
   }
@@ -197,7 +197,7 @@ struct RowStepper::Impl {
       ++iterations;
       double change = 0;
       if (equations.is_streamed()) {
-        const auto find = [&](PackRange packs) { seed.find(n, order, candidates.data(), packs); };
+        const auto find = [&](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); };
         const auto streamed = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)
                                                                          : std::function<void(PackRange)>());
         value = streamed.largest, change = streamed.change;

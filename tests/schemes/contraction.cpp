@@ -55,7 +55,8 @@ struct Iterations {
     Random random(static_cast<std::uint64_t>(seed));
     Row candidate = start.back();
     for (double& y : candidate) y += random(-off, off);
-    rows.layout().scatter(candidate, equations.candidate(0));
+    equations.candidate().hold_whole();
+    rows.layout().scatter(candidate, equations.candidate().row(0));
     double worst = 0, before = 0;
     for (int n = 0; n < 4; ++n) {
       equations.evaluate_unknown_outputs(RowEquations::At::candidate);

@@ -50,12 +50,13 @@ TEST_CASE("the plan predicts what steps cost, by taking some") {
 TEST_CASE("the plan predicts nothing where no step is taken, or the steps fail") {
   CHECK(planned("collision --run.steps=0", "cost") == "none: no step is taken");
   CHECK(planned("collision --run.steps=1", "cost") == "none: no step is taken");
-  for (const char* stencil : {"triangle", "triangle-vertex"}) {
-    const std::string cost =
-        planned(std::string("collision --lattice.courant=1.2 --run.until=400 --lattice.stencil=") + stencil, "cost");
+  // Few sites and steps far too long: they fail within the first few, however slow the machine.
+  const std::string failing = "collision --lattice.sites=16 --lattice.courant=1e5 --run.steps=100 --lattice.stencil=";
+  for (const auto& [stencil, why] : {std::pair{"triangle-vertex", "no longer finite"}, {"triangle", "not solved"}}) {
+    const std::string cost = planned(failing + stencil, "cost");
     INFO(cost);
     CHECK(cost.starts_with("not predicted: step "));
-    CHECK(contains(cost, "no longer finite"));
+    CHECK(contains(cost, why));
   }
 }
 
