@@ -85,6 +85,7 @@ struct Dual {
 
   friend Dual sin(const Dual& u) { return chain(u, sin(u.value), cos(u.value)); }
   friend Dual cos(const Dual& u) { return chain(u, cos(u.value), -sin(u.value)); }
+  friend Dual cosm1(const Dual& u) { return chain(u, cosm1(u.value), -sin(u.value)); }
   friend Dual tan(const Dual& u) {
     const T t = tan(u.value);
     return chain(u, t, T(1.0) + t * t);

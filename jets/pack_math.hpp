@@ -119,6 +119,16 @@ inline Pack cos(Pack x) {
   return near;
 }
 
+/// cos x − 1 = −2 sin²(x/2): where cos x is all but 1, its difference from 1 is rounding.
+inline double cosm1(double x) {
+  const double s = std::sin(0.5 * x);
+  return -2 * (s * s);
+}
+inline Pack cosm1(Pack x) {
+  const Pack s = sin(0.5 * x);
+  return -2.0 * (s * s);
+}
+
 namespace detail {
 
 // log 2 = a part of 42 bits, whose products with |n| < 2¹¹ are exact, and a rest (and 2e-31).

@@ -126,8 +126,7 @@ inline Element spacetime_element(int degree_time, int degree_space, TimeQuadratu
 
   Element element;
   for (int a = 0; a < degree_time; ++a)
-    for (int b = 0; b < degree_space; ++b)
-      element.nodes.push_back({at(time_nodes.points, a), at(space.points, b)});
+    for (int b = 0; b < degree_space; ++b) element.nodes.push_back({at(time_nodes.points, a), at(space.points, b)});
   for (int a = 0; a <= degree_time; ++a)
     for (int b = 0; b <= degree_space; ++b)
       element.pattern.vertices.push_back({.time = a / degree_time,
@@ -147,6 +146,14 @@ inline Element spacetime_element(int degree_time, int degree_space, TimeQuadratu
         }
       element.points.push_back(std::move(point));
     }
+  // Lobatto points, where ψ_b(x_q) = δ_bq
+  for (int q = 0; q < space.size(); ++q)
+    element.lower_side.push_back({at(space.weights, q),
+                                  0,
+                                  at(space.points, q),
+                                  in_space.values(at(space.points, q)),
+                                  {},
+                                  in_space.slopes(at(space.points, q))});
   return element;
 }
 

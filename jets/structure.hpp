@@ -86,6 +86,9 @@ struct Abstract {
 
   friend Abstract sin(const Abstract& u) { return u.constant ? Abstract(std::sin(*u.constant)) : unknown_function(u); }
   friend Abstract cos(const Abstract& u) { return u.constant ? Abstract(std::cos(*u.constant)) : unknown_function(u); }
+  friend Abstract cosm1(const Abstract& u) {
+    return u.constant ? Abstract(delf::cosm1(*u.constant)) : unknown_function(u);
+  }
   friend Abstract tan(const Abstract& u) { return u.constant ? Abstract(std::tan(*u.constant)) : unknown_function(u); }
   friend Abstract exp(const Abstract& u) { return u.constant ? Abstract(std::exp(*u.constant)) : unknown_function(u); }
   friend Abstract log(const Abstract& u) { return u.constant ? Abstract(std::log(*u.constant)) : unknown_function(u); }

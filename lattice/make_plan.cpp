@@ -184,7 +184,9 @@ void list_exceptions(const Quotient& quotient, SolvePlan& plan) {
 
 SolveKind classify(const SolvePlan& plan, const SlabGraph& slab, long long places) {
   if (!plan.table.regular || !plan.table.matched) return SolveKind::sparse;
-  if (slab.edges.empty()) return SolveKind::explicit_;
+  // Round a circle no unknown of a row can wait for its neighbours in turn: where all are on their own, rows of them
+  // follow each other at most.
+  if (slab.edges.empty() || (plan.cyclic && plan.blocks == plan.unknowns)) return SolveKind::explicit_;
   if (plan.cyclic && places <= 2LL * std::max(plan.lower, plan.upper) + 1) return SolveKind::sparse;
   const bool one_way = plan.lower == 0 || plan.upper == 0;
   return !plan.cyclic && one_way ? SolveKind::chain : SolveKind::cyclic_band;

@@ -9,9 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "jets/element.hpp"
 #include "jets/pack.hpp"
-#include "jets/spacetime_element.hpp"
 #include "jets/structure.hpp"
+#include "schemes/nodal_kernel.hpp"
 #include "schemes/stencil_family.hpp"
 
 namespace delf {
@@ -22,7 +23,7 @@ namespace delf {
 ///     ∂L/∂y_l = hk Σ_q w_q Jᵀ_ql ∂ℓ/∂j(j_q),    J_ql = ∂j_q/∂y_l = (phi[l], phi_t[l]/h, phi_x[l]/k)
 ///
 template <Density D>
-class ElementFamily final : public StencilFamily {
+class ElementFamily final : public StencilFamily, public NodalKernel {
   static constexpr int d = components_of<D>();
   static constexpr int m = 3 * d;  ///< numbers in a jet: φ¹ … φᵈ, φ_t¹ …, φ_x¹ …
   using Number = Dual<double, m>;
@@ -39,10 +40,8 @@ class ElementFamily final : public StencilFamily {
     placed_ = delf::is_placed<D>();
     for (const Site& v : pattern_.vertices)
       bottom_ += v.time == 0 && element_.nodes[static_cast<std::size_t>(v.node)].time == 0;
-    space_ = lobatto_rule(bottom_ - 1);
-    const LagrangeBasis basis(space_.points);
-    for (const double x : space_.points) std::ranges::copy(basis.slopes(x), std::back_inserter(space_slopes_));
     list_weights();
+    find_nodal_weights();
   }
 
   const Element& element() const { return element_; }
@@ -108,20 +107,21 @@ class ElementFamily final : public StencilFamily {
 
   /// With the entries of ∂²ℓ/∂j∂j alone that are proved to be the same for every jet.
   bool constant_jacobian(const Cell& cell, std::span<double> J) const override {
-    const Abstract proved = structure_of(density_).of_density;
-    Numbers j{};
-    // Constant entries are the same wherever they are taken: at zero, or where the density has a value if not there.
-    if (!std::isfinite(density_(jet<double>(j, cell, 0, 0))))
-      for (int i = 0; i < m; ++i) j[index(i)] = 1 + 0.25 * i;
-    add_up(J, cell, [&](const ElementPoint& p) {
-      Hessian H = hessian(j, cell, p);
-      for (int a = 0; a < m; ++a)
-        for (int b = 0; b < m; ++b)
-          if (proved.varying[index(a)] >> b & 1u) H[index(a)][index(b)] = 0;
-      return H;
-    });
+    add_up_constant(J, cell, [](int, int) { return true; });
     return std::ranges::all_of(J, [](double x) { return std::isfinite(x); });
   }
+
+  const NodalKernel* nodal_kernel() const override {
+    return nodal_weights_.empty() || structure_of(density_).nonlinearity == Nonlinearity::all ? nullptr : this;
+  }
+  int reach() const override { return reach_; }
+  double weight(const Cell& cell, int i) const override {
+    return cell.time_step * cell.space_step * nodal_weights_[index(i / d)];
+  }
+  void linear_part(const Cell& cell, std::span<double> J) const override {
+    add_up_constant(J, cell, [](int a, int b) { return a >= d || b >= d; });
+  }
+  double step(const SubStepRows& rows) const override { return sub_step_within<most_reach>(reach_, density_, rows); }
 
  private:
   using Hessian = std::array<Numbers, static_cast<std::size_t>(m)>;
@@ -133,18 +133,50 @@ class ElementFamily final : public StencilFamily {
     return H;
   }
 
+  /// Where at every point φ is the value at one vertex: what the points weigh there, in cells hk.
+  void find_nodal_weights() {
+    const auto [least, most] = std::ranges::minmax(pattern_.vertices, {}, &Site::space);
+    reach_ = most.space - least.space;
+    std::vector<double> weights(index(pattern_.size()), 0.0);
+    for (const ElementPoint& p : element_.points) {
+      const auto one = std::ranges::find(p.phi, 1.0);
+      if (one == p.phi.end() || std::ranges::count(p.phi, 0.0) != pattern_.size() - 1) return;
+      weights[static_cast<std::size_t>(one - p.phi.begin())] += p.weight;
+    }
+    if (reach_ >= 1 && reach_ <= most_reach) nodal_weights_ = std::move(weights);
+  }
+
+  /// With the entries of ∂²ℓ/∂jᵃ∂jᵇ that are proved to be the same for every jet, and are asked for.
+  void add_up_constant(std::span<double> J, const Cell& cell, const auto& asked) const {
+    const Abstract proved = structure_of(density_).of_density;
+    Numbers j{};
+    // Constant entries are the same wherever they are taken: at zero, or where the density has a value if not there.
+    if (!std::isfinite(density_(jet<double>(j, cell, 0, 0))))
+      for (int i = 0; i < m; ++i) j[index(i)] = 1 + 0.25 * i;
+    add_up(J, cell, [&](const ElementPoint& p) {
+      Hessian H = hessian(j, cell, p);
+      for (int a = 0; a < m; ++a)
+        for (int b = 0; b < m; ++b)
+          if (proved.varying[index(a)] >> b & 1u || !asked(a, b)) H[index(a)][index(b)] = 0;
+      return H;
+    });
+  }
+
   /// J = hk Σ_q w_q Jᵀ_q H_q J_q, with H_q = ∂²ℓ/∂j∂j at the point q
   template <class HessianAt>
   void add_up(std::span<double> J, const Cell& cell, const HessianAt& hessian_at) const {
     std::ranges::fill(J, 0.0);
     const double h = cell.time_step, k = cell.space_step;
     const std::size_t n = index(size());
+    std::vector<int> read;  // the vertices that a point reads: few of those of a large element
     for (const ElementPoint& p : element_.points) {
       const Hessian H = hessian_at(p);
       const double area = h * k * p.weight;
-      for (int v = 0; v < pattern_.size(); ++v) {
+      read.clear();
+      for (int v = 0; v < pattern_.size(); ++v)
+        if (p.phi[index(v)] != 0 || p.phi_t[index(v)] != 0 || p.phi_x[index(v)] != 0) read.push_back(v);
+      for (const int v : read) {
         const auto [phi, phi_t, phi_x] = row(p, cell, v);
-        if (phi == 0 && phi_t == 0 && phi_x == 0) continue;
         for (int a = 0; a < d; ++a) {
           // hk w_q Jᵀ_qv ∂²ℓ/∂j∂j
           Numbers left;
@@ -152,7 +184,7 @@ class ElementFamily final : public StencilFamily {
             left[index(c)] = area * (phi * H[index(a)][index(c)] + phi_t * H[index(d + a)][index(c)] +
                                      phi_x * H[index(2 * d + a)][index(c)]);
           double* const out = J.data() + index(v, a) * n;
-          for (int u = 0; u < pattern_.size(); ++u) {
+          for (const int u : read) {
             const auto [by_phi, by_t, by_x] = row(p, cell, u);
             for (int b = 0; b < d; ++b)
               out[index(u, b)] += left[index(b)] * by_phi + left[index(d + b)] * by_t + left[index(2 * d + b)] * by_x;
@@ -168,20 +200,23 @@ class ElementFamily final : public StencilFamily {
 
   /// One cell's part of the semi-discrete momenta at its lower side, from φ and φ_t at the nodes there:
   ///
-  ///     p_b = k Σ_q w_q ψ_b(x_q) ∂ℓ/∂φ_t(x_q)     with the Lobatto points x_q, where ψ_b(x_q) = δ_bq
+  ///     p_b = k Σ_q w_q φ_q,b ∂ℓ/∂φ_t(j_q)     with φ_q = Σ_b φ_q,b y_b
   ///
   bool momentum(const Cell& cell, std::span<const double> bottom_phi, std::span<const double> bottom_velocity,
                 std::span<double> p) const override {
-    for (int q = 0; q < bottom_; ++q) {
+    std::ranges::fill(p, 0.0);
+    for (const ElementPoint& point : element_.lower_side) {
       Numbers j{};
-      for (int a = 0; a < d; ++a) {
-        j[index(a)] = bottom_phi[index(q, a)];
-        j[index(d + a)] = bottom_velocity[index(q, a)];
-        for (int b = 0; b < bottom_; ++b)
-          j[index(2 * d + a)] += space_slopes_[index(q * bottom_ + b)] * bottom_phi[index(b, a)] / cell.space_step;
-      }
-      const Number l = density_(jet<Number>(j, cell, 0, space_.points[index(q)]));
-      for (int a = 0; a < d; ++a) p[index(q, a)] = cell.space_step * space_.weights[index(q)] * l.d[index(d + a)];
+      for (int b = 0; b < bottom_; ++b)
+        for (int a = 0; a < d; ++a) {
+          j[index(a)] += point.phi[index(b)] * bottom_phi[index(b, a)];
+          j[index(d + a)] += point.phi[index(b)] * bottom_velocity[index(b, a)];
+          j[index(2 * d + a)] += point.phi_x[index(b)] * bottom_phi[index(b, a)] / cell.space_step;
+        }
+      const Number l = density_(jet<Number>(j, cell, 0, point.space));
+      for (int b = 0; b < bottom_; ++b)
+        for (int a = 0; a < d; ++a)
+          p[index(b, a)] += cell.space_step * point.weight * point.phi[index(b)] * l.d[index(d + a)];
     }
     return true;
   }
@@ -282,9 +317,8 @@ class ElementFamily final : public StencilFamily {
   Element element_;
   D density_;
   std::vector<PointWeights> weights_;
-  int bottom_ = 0;
-  LineRule space_;
-  std::vector<double> space_slopes_;  ///< ψ′_b(x_q) at q (p_x + 1) + b
+  int bottom_ = 0, reach_ = 0;
+  std::vector<double> nodal_weights_;  ///< of each vertex; none where points are not nodal
 };
 
 }  // namespace delf

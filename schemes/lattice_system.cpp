@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <random>
 #include <tuple>
+#include <utility>
 
 #include "lattice/error.hpp"
 #include "lattice/stencil.hpp"
@@ -152,11 +154,20 @@ SystemPattern LatticeSystem::pattern() const {
   pattern.width = std::max(width_, 1);
   pattern.placement = placement_;
   for (const Component& component : names_) pattern.names.push_back(component.name);
-  pattern.equations = [this](const Lattice& lattice, Site site, int component) {
-    std::vector<Coupling> couplings;
-    for (const Coefficient& c : linearised(lattice, site, component))
-      couplings.push_back({c.offset, c.component, c.dependence});
-    return couplings;
+  // Round a circle the sites are alike, but for their parity in a brick wall.
+  using Known = std::map<std::pair<int, int>, std::vector<Coupling>>;
+  pattern.equations = [this, known = std::make_shared<Known>()](const Lattice& lattice, Site site, int component) {
+    const auto find = [&] {
+      std::vector<Coupling> couplings;
+      for (const Coefficient& c : linearised(lattice, site, component))
+        couplings.push_back({c.offset, c.component, c.dependence});
+      return couplings;
+    };
+    if (!lattice.is_circle()) return find();
+    const bool bricks = placement_ == Placement::brick_wall;
+    const auto [at, fresh] = known->try_emplace({component, bricks ? (site.time + site.space) & 1 : 0});
+    if (fresh) at->second = find();
+    return at->second;
   };
   return pattern;
 }

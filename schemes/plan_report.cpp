@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace delf {
 namespace {
@@ -44,6 +45,7 @@ void append_table(std::string& out, const LatticeSystem& system, Site site, cons
 std::string solve_in_words(const SolvePlan& plan, const Stepper& stepper) {
   std::string words = plan.describe();
   if (plan.kind == SolveKind::explicit_ && !stepper.iterates()) return words + "; solved at once, no iteration";
+  if (!stepper.iterates() && !stepper.layout()) return words + "; " + stepper.solver_name();
   if (!stepper.layout()) return words + "; Newton's method: " + stepper.solver_name();
   words += stepper.iterates() ? "; iterated with the constant part: " : "; solved at once, no iteration: ";
   return words + stepper.solver_name();
@@ -69,7 +71,10 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   }
   for (const auto& family : system.families()) {
     out += "stencil      ";
-    for (const Site& v : family->pattern().vertices) out += fmt::format("({:+d},{:+d}) ", v.time, v.space);
+    std::vector<std::pair<int, int>> sites;  // each once, however many nodes of its cell there are
+    for (const Site& v : family->pattern().vertices)
+      if (std::ranges::find(sites, std::pair(v.time, v.space)) == sites.end()) sites.emplace_back(v.time, v.space);
+    for (const auto& [time, space] : sites) out += fmt::format("({:+d},{:+d}) ", time, space);
     out += family->pattern().placement == Placement::brick_wall ? " in a brick wall" : "";
     out += family->is_variational() ? "\nresidual     dL/dy of a discrete Lagrangian\n"
                                     : "\nresidual     given directly: no Lagrangian, not multisymplectic\n";
@@ -77,7 +82,8 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   out += fmt::format("solve        {}\n", to_string(plan.kind));
   std::istringstream lines(plan.report());
   for (std::string line; std::getline(lines, line);) out += "             " + line + '\n';
-  if (!stepper.layout())
+  if (!stepper.iterates() && !stepper.layout()) out += "step         " + stepper.solver_name() + '\n';
+  else if (!stepper.layout())
     out +=
         "step         extrapolated seed; Newton's method slab by slab, block after block; a factored Jacobian is kept\n"
         "             while it contracts by ten; else exit 3\n";

@@ -27,6 +27,7 @@ struct ExplicitRows {
   double *const *v, *const *y;  ///< of row n + 1
   const double* linear;         ///< [a·neighbours + s]
   const double* nonlinear;      ///< [a]
+  double stride = 1;            ///< of y += stride v
 };
 
 /// What a nonlinear part looks at: Σ weight · y(vertex).
@@ -68,7 +69,7 @@ class RowKernel {
 
   /// Where the nonlinear part of the equation at a site is that of its own value alone, a step is one loop:
   ///
-  ///     w = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)),    v += w,    y += v
+  ///     w = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)),    v += w,    y += stride v
   ///
   /// with the neighbours s listed here; no neighbours where a family has no such loop.
   virtual std::span<const int> explicit_neighbours() const { return {}; }

@@ -79,15 +79,14 @@ class RowBuffer {
  public:
   RowBuffer() = default;
   RowBuffer(const RowLayout& layout, int rows);
-  /// One row of so many doubles.
-  explicit RowBuffer(std::size_t doubles) : RowBuffer(doubles, 1) {}
+  /// Rows of so many doubles.
+  explicit RowBuffer(std::size_t doubles, int rows = 1);
   double* row(int r) { return data_.get() + static_cast<std::size_t>(r) * stride_; }
   const double* row(int r) const { return data_.get() + static_cast<std::size_t>(r) * stride_; }
   int rows() const { return rows_; }
   std::size_t bytes() const { return stride_ * static_cast<std::size_t>(rows_) * sizeof(double); }
 
  private:
-  RowBuffer(std::size_t stride, int rows);
   struct Free {
     void operator()(double* p) const { std::free(p); }
   };

@@ -299,4 +299,16 @@ const std::vector<NamedFormula>& methods() {
   return list;
 }
 
+std::vector<NamedScheme> named_schemes(const Problem& base) {
+  std::vector<NamedScheme> result;
+  for (const MethodEntry* entry : method_entries()) {
+    Problem problem = base;
+    problem.method = entry->name;
+    if (!entry->variants) result.push_back({entry->name, std::move(problem)});
+    else
+      for (NamedScheme& scheme : entry->variants(problem)) result.push_back(std::move(scheme));
+  }
+  return result;
+}
+
 }  // namespace delf

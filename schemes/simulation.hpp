@@ -32,9 +32,19 @@ struct Problem {
   int max_iterations = 50;                       ///< scheme.max_iterations
   int degree_time = 2, degree_space = 2;         ///< scheme.degree_time, scheme.degree_space: of an element
   std::string quadrature = "gauss";              ///< scheme.quadrature: in time, gauss or lobatto
+  int order = 4, space_order = 4;                ///< scheme.order, lattice.space_order: of a composition, even
   double alpha = 1;                              ///< scheme.alpha: of the arclength constraint
   int threads = 1;                               ///< run.threads: that explicit steps are shared by
 };
+
+/// A scheme as a scene would name it: `problem` is what was asked for, with the keys that this scheme is made of.
+struct NamedScheme {
+  std::string name;
+  Problem problem;
+};
+/// Every scheme of every method, for the lattice, the theory and the other keys of `base`; what cannot be built for them
+/// says so when it is built.
+std::vector<NamedScheme> named_schemes(const Problem& base);
 
 /// A scheme on a lattice, stepping. Rows are in the order of sites, row[i·C + c], values as they are (not reduced modulo
 /// 2π). Of the C components the first are the fields at the vertices; nodes inside cells and multipliers follow.

@@ -9,6 +9,7 @@
 
 namespace delf {
 
+class NodalKernel;
 class RowKernel;
 
 /// One kind of stencil all over the lattice. A stencil carries one residual rⁱ for each value that it reads, ∂L/∂yⁱ
@@ -48,6 +49,8 @@ class StencilFamily {
   virtual bool constant_jacobian(const Cell&, std::span<double> /*J*/) const { return false; }
   /// The same for whole rows of stencils at once; null for a family that has only the two above.
   virtual const RowKernel* row_kernel() const { return nullptr; }
+  /// For rows of nodes inside an element that follow each other explicitly; null where they do not.
+  virtual const NodalKernel* nodal_kernel() const { return nullptr; }
 
  protected:
   StencilFamily(StencilPattern pattern, std::vector<VertexValue> values, bool variational)

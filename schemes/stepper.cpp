@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/stepper.hpp"
 
+#include "schemes/composition_stepper.hpp"
 #include "schemes/equation_terms.hpp"
 #include "schemes/row_stepper.hpp"
 #include "schemes/slab_stepper.hpp"
@@ -16,6 +17,7 @@ std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan&
       // No constant part to iterate with: Newton's method takes the Jacobian where the field is.
     }
   }
+  if (auto stepper = CompositionStepper::make(system, options)) return stepper;
   return std::make_unique<SlabStepper>(system, plan, options);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "schemes/explicit_loop.hpp"
 #include "schemes/row_kernel.hpp"
 #include "schemes/stencil_family.hpp"
 
@@ -41,23 +42,13 @@ constexpr bool is_nodal(const JetTable<n, Q>& map) {
   return true;
 }
 
-/// The space offsets between different sites of a stencil.
-struct Neighbours {
-  int count = 0, reach = 0;
-  std::array<int, 16> offsets{};
-};
+/// The largest space offset between two sites of a stencil.
 template <int n, int Q>
-constexpr Neighbours neighbours_of(const JetTable<n, Q>& map) {
-  Neighbours result;
+constexpr int reach_of(const JetTable<n, Q>& map) {
+  int reach = 0;
   for (int l = 0; l < n; ++l)
-    for (int m = 0; m < n; ++m) {
-      const int offset = map.shape.vertex(m).space - map.shape.vertex(l).space;
-      bool known = offset == 0;
-      for (int i = 0; i < result.count; ++i) known = known || result.offsets[static_cast<std::size_t>(i)] == offset;
-      if (!known) result.offsets[static_cast<std::size_t>(result.count++)] = offset;
-      result.reach = std::max(result.reach, offset);
-    }
-  return result;
+    for (int m = 0; m < n; ++m) reach = std::max(reach, map.shape.vertex(m).space - map.shape.vertex(l).space);
+  return reach;
 }
 
 /// A discrete Lagrangian on every stencil of the lattice. The jet map is known at compile time, so that a row of
@@ -69,7 +60,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   static constexpr int n = map.vertices, d = components_of<D>();
   static constexpr int vertices_size = n * d;
   static constexpr auto distinct = distinct_values(map);
-  static constexpr auto neighbours = neighbours_of(map);
+  static constexpr int reach = reach_of(map);
   static constexpr int first_time = [] {
     int t = map.shape.vertex(0).time;
     for (int l = 1; l < n; ++l) t = std::min(t, map.shape.vertex(l).time);
@@ -164,11 +155,11 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   std::span<const int> explicit_neighbours() const override {
-    if constexpr (is_nodal(map)) return {neighbours.offsets.data(), static_cast<std::size_t>(neighbours.count)};
+    if constexpr (is_nodal(map)) return neighbours_within<reach>;
     else return {};
   }
   double explicit_step(const ExplicitRows& rows, PackRange packs) const override {
-    if constexpr (is_nodal(map)) return explicit_loop(rows, packs);
+    if constexpr (is_nodal(map)) return explicit_loop<reach>(lagrangian_.density, rows, packs);
     else return 0;
   }
 
@@ -204,9 +195,9 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
   /// The same of SlabRows.
   struct LocalRows {
-    [[gnu::always_inline]] explicit LocalRows(const SlabRows& r, int times = slab_rows)
+    [[gnu::always_inline]] explicit LocalRows(const SlabRows& r)
         : positions(r.positions), t(r.t), time_step(r.time_step), space_step(r.space_step), origin(r.layout->at(0)) {
-      for (int i = 0; i < times * d; ++i) values[i] = r.values[i];
+      for (int i = 0; i < slab_rows * d; ++i) values[i] = r.values[i];
     }
     std::ptrdiff_t at(int v) const { return origin + static_cast<std::ptrdiff_t>(v) * lanes; }
     std::array<const double*, static_cast<std::size_t>(slab_rows* d)> values;
@@ -291,59 +282,6 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
       });
       for (int i = 0; i < vertices_size; ++i) r[i].store(out[i] + at);
     }
-  }
-
-  /// w = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)),  v += w,  y += v
-  ///
-  /// What neighbours were is carried along in registers, so that the new row may be written over the old one.
-  [[gnu::flatten]] double explicit_loop(const ExplicitRows& given, PackRange packs) const {
-    using Number = Dual<Pack, d>;
-    constexpr int count = neighbours.count, reach = neighbours.reach;
-    const LocalRows rows(given.now, 1);
-    const auto v_before = local<d>(given.v_before);
-    const auto v_new = local<d>(given.v), y_new = local<d>(given.y);
-    const auto linear = local<d * count>(given.linear), nonlinear = local<d>(given.nonlinear);
-    const D density = lagrangian_.density;
-    std::array<std::array<Pack, static_cast<std::size_t>(2 * reach + 1)>, static_cast<std::size_t>(d)> y;
-    for (int a = 0; a < d; ++a)
-      for (int s = 0; s < 2 * reach; ++s)
-        y[a][s + 1] =
-            Pack::load(s < reach ? given.before[a] + s * lanes : beyond(given, packs, a, packs.first + s - reach));
-    Pack squares(0.0);
-    const auto advance = [&](int v, const auto& incoming) __attribute__((always_inline)) {
-      const std::ptrdiff_t at = rows.at(v);
-      JetFor<Number, D> jet;
-      for (int a = 0; a < d; ++a) {
-        for (int s = 0; s < 2 * reach; ++s) y[a][s] = y[a][s + 1];
-        y[a][2 * reach] = Pack::load(incoming(a));
-        component(jet.phi, a) = Number::variable(y[a][reach], a);
-        component(jet.phi_t, a) = Number(0.0);
-        component(jet.phi_x, a) = Number(0.0);
-      }
-      if constexpr (delf::is_placed<D>()) {
-        jet.t = Number(Pack(rows.t));
-        jet.x = Number(Pack::load(rows.positions + at));
-      }
-      const Number l = density(jet);
-      for (int a = 0; a < d; ++a) {
-        const Pack here = y[a][reach];
-        Pack w = nonlinear[a] * l.derivative(a);
-        for (int s = 0; s < count; ++s) w += linear[a * count + s] * (y[a][reach + neighbours.offsets[s]] - here);
-        const Pack v_next = Pack::load(v_before[a] + at) + w, y_next = here + v_next;
-        squares += y_next * y_next;
-        v_next.store(v_new[a] + at);
-        y_next.store(y_new[a] + at);
-      }
-    };
-    int v = packs.first;
-    for (; v < packs.last - reach; ++v) advance(v, [&](int a) { return rows.values[a] + rows.at(v + reach); });
-    for (; v < packs.last; ++v) advance(v, [&](int a) { return beyond(given, packs, a, v + reach); });
-    return std::sqrt(sum(squares));
-  }
-  /// Where the old value of a pack at or after the first one is, be it beyond the last.
-  static const double* beyond(const ExplicitRows& given, PackRange packs, int a, int v) {
-    return v < packs.last ? given.now.values[a] + given.now.layout->at(v)
-                          : given.after[a] + static_cast<std::ptrdiff_t>(v - packs.last) * lanes;
   }
 
   template <int count, class Body>

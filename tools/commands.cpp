@@ -8,12 +8,14 @@
 
 #include "tools/help.hpp"
 #include "tools/list.hpp"
-#include "tools/suggestion.hpp"
 #include "tools/plan.hpp"
 #include "tools/run.hpp"
 #include "tools/scene.hpp"
 #include "tools/shipped_scenes.hpp"
+#include "tools/stability.hpp"
+#include "tools/suggestion.hpp"
 #include "tools/verify.hpp"
+#include "tools/workprecision.hpp"
 
 namespace delf {
 
@@ -61,6 +63,16 @@ ExitCode carry_out_verify(const Arguments& arguments) {
   return verify(scene, arguments.out.value_or("results/" + scene.name), arguments.fields, arguments.nearby);
 }
 
+ExitCode carry_out_workprecision(const Arguments& arguments) {
+  const Scene scene = scene_of(arguments);
+  return workprecision(scene, arguments.out.value_or("results/" + scene.name));
+}
+
+ExitCode carry_out_stability(const Arguments& arguments) {
+  const Scene scene = scene_of(arguments);
+  return stability(scene, arguments.out.value_or("results/" + scene.name));
+}
+
 ExitCode carry_out_list(const Arguments& arguments) {
   refuse(arguments, true);
   return list(only_word(arguments, ""));
@@ -94,6 +106,22 @@ const std::vector<Command>& table() {
        "                     first variations; further pairs of other sizes are extrapolated to size zero\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_verify, "verify", true},
+      {"workprecision", "delf workprecision SCENE [--out DIR] [--KEY=VALUE ...]",
+       "error against run time, for many schemes and resolutions",
+       "Runs a scene with every scheme that can, and with other programs (peers) where they have its equation, over a\n"
+       "ladder of resolutions; times the steps in turn, and prints what each accuracy costs. Errors are those of the last\n"
+       "row against the exact solution, or without one against a much finer run. h is until/steps, so that the end is\n"
+       "met exactly. Into DIR (results/NAME of the scene, if not given) go workprecision.json, workprecision.csv and a\n"
+       "figure. Ctrl-C leaves what is done.\n\n"
+       "The keys of its own section; all others are those of `delf help run`:",
+       true, carry_out_workprecision, "workprecision"},
+      {"stability", "delf stability SCENE [--out DIR] [--KEY=VALUE ...]",
+       "where schemes are stable, by theory and by running",
+       "Stability limits from the symbol of each scheme and from runs, compared; runs at stiff and extreme corners, each\n"
+       "with a verdict. Into DIR (results/NAME of the scene, if not given) go stability.json and figures. Exit code 1 if\n"
+       "runs disagree with theory, or a corner crashes, hangs or lies.\n\n"
+       "The keys of its own section; all others are those of `delf help run`:",
+       true, carry_out_stability, "stability"},
       {"list", "delf list [theories|stencils|schemes|states|scenes]", "what there is",
        "Lists what a scene can name, with formulas; everything if no kind is given.", false, carry_out_list},
       {"help", "delf help [COMMAND]", "this, or the details of a command", "Explains a command.", false,
@@ -111,10 +139,6 @@ const Command& find_command(const std::string& name) {
     if (c.name == name) return c;
     names.push_back(c.name);
   }
-  for (const char* later : {"workprecision", "stability"})
-    if (name == later)
-      throw BadScene(
-          fmt::format("command line: {}: comes in a later version; this one has {}", name, fmt::join(names, ", ")));
   for (const ShippedScene& scene : shipped_scenes())
     if (name == scene.name)
       throw BadScene(

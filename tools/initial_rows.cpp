@@ -38,7 +38,8 @@ int InitialRows::winding() const {
 
 StartRule InitialRows::rule() const {
   if (file_) return StartRule::exact;
-  if (!scene_.start && scene_.problem.method == "spacetime") return StartRule::legendre;
+  if (!scene_.start && (scene_.problem.method == "spacetime" || scene_.problem.method == "composition"))
+    return StartRule::legendre;
   return scene_.start.value_or(state_->knows_second_row() ? StartRule::exact : StartRule::centred);
 }
 

@@ -7,6 +7,7 @@
 #include "schemes/nearest_name.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
+#include "tools/stability_request.hpp"
 #include "tools/verify_request.hpp"
 
 namespace delf {
@@ -35,6 +36,7 @@ Names spaces() { return {"circle", "interval", "point"}; }
 Names walls() { return {"fixed", "natural"}; }
 Names quadratures() { return {"gauss", "lobatto"}; }
 Names faults() { return verify_faults(); }
+Names stability_fault_names() { return stability_faults(); }
 Names starts() { return {"exact", "centred", "legendre"}; }
 
 constexpr double largest_int = std::numeric_limits<int>::max();
@@ -49,6 +51,8 @@ constexpr Limits one_or_more{1, largest_int};
 constexpr Limits two_or_more{2, largest_int};
 constexpr Limits up_to_eight{0, 8};
 constexpr Limits degrees{1, 12};
+constexpr Limits orders_in_time{2, 8};
+constexpr Limits orders_in_space{2, 12};
 constexpr Limits threads{1, 1024};
 constexpr auto own = "the state's own";
 constexpr auto real = KeyType::real;
@@ -72,6 +76,8 @@ const std::array table{
     Key{"lattice.length", real, "", "must be given, but for a point", "L", "length", positive},
     Key{"lattice.sites", integer, "", "must be given, but for a point", "N; on an interval both walls are counted", "",
         two_or_more},
+    Key{"lattice.space_order", integer, "4", "", "method = composition: order in space: 2, 4, ..., 12", "",
+        orders_in_space},
     Key{"lattice.courant", real, "", "this or lattice.time_step", "h/k", "", positive},
     Key{"lattice.time_step", real, "", "this or lattice.courant", "h", "time", positive},
 
@@ -85,6 +91,7 @@ const std::array table{
     Key{"scheme.degree_time", integer, "2", "", "method = spacetime: degree of an element in time", "", degrees},
     Key{"scheme.degree_space", integer, "2", "", "method = spacetime: degree of an element in space", "", degrees},
     Key{"scheme.quadrature", choice, "gauss", "", "method = spacetime: the quadrature in time", "", any, quadratures},
+    Key{"scheme.order", integer, "4", "", "method = composition: order in time: 2, 4, 6, 8", "", orders_in_time},
     Key{"scheme.alpha", real, "1", "", "method = r-adaptive: how much the mesh follows the field", "", positive},
 
     Key{"initial.state", choice, "", "must be given", "the state to start from; see `delf list states`", "", any,
@@ -141,6 +148,29 @@ const std::array table{
     Key{"verify.fault", choice, "none", "",
         "plants a fault that must be found: variation, sign (of one derivative of L) or field (at one site)", "", any,
         faults},
+
+    Key{"stability.schemes", KeyType::text, "", "eight, one of each sort", "schemes, separated by commas, or all"},
+    Key{"stability.mass_steps", KeyType::text, "", "0.5, 1, 2.3", "values of mh at which limits are found"},
+    Key{"stability.most_courant", real, "3", "", "Courant numbers are looked at up to this", "", positive},
+    Key{"stability.steps", integer, "2000", "", "steps of a run from noise", "", Limits{100, 1e7}},
+    Key{"stability.agreement", real, "0.01", "", "theory and runs may differ by this, relative", "", positive},
+    Key{"stability.corners", KeyType::text, "", "all",
+        "some of stiff, courant, fast-kink, amplitude, size, long, second-term, wave-map, resonance, angle; or none"},
+    Key{"stability.budget", real, "1", "", "seconds for a corner before it is cut", "seconds", positive},
+    Key{"stability.map", toggle, "on", "", "the map of Courant number and mh"},
+    Key{"stability.fault", choice, "none", "", "plants a fault that must be found: limit", "", any,
+        stability_fault_names},
+
+    Key{"workprecision.schemes", KeyType::text, "", "all",
+        "names of schemes, of methods or of peers, separated by commas; peers: all of those"},
+    Key{"workprecision.sites", KeyType::text, "", "chosen, as far as the budget goes", "the ladder: N, N, ..."},
+    Key{"workprecision.courants", KeyType::text, "", "chosen; with workprecision.sites the scene's own",
+        "h/k, h/k, ..."},
+    Key{"workprecision.accuracies", KeyType::text, "", "1e-2, 1e-3, ..., 1e-10", "errors whose cost is asked for"},
+    Key{"workprecision.repeats", integer, "5", "", "how often each run is timed", "", one_or_more},
+    Key{"workprecision.budget", real, "300", "", "what all of it may take, nearly", "seconds", positive},
+    Key{"workprecision.peers", toggle, "on", "",
+        "other programs in the same run, where they have the scene's equation"},
 };
 
 }  // namespace

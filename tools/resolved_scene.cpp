@@ -12,7 +12,9 @@ namespace {
 // The text that a key must have for the run to be repeated; empty if the key is better left out.
 std::string resolved(const Scene& scene, const Key& key, StartRule start) {
   if (!why_without_effect(scene, key.name).empty()) return {};
-  if (key.name.starts_with("verify.") && !scene.settings.find(key.name)) return {};
+  // keys that a run does not read
+  for (const char* section : {"verify.", "workprecision.", "stability."})
+    if (key.name.starts_with(section) && !scene.settings.find(key.name)) return {};
   if (key.name == "lattice.courant" || key.name == "run.until") return {};
   if (key.name == "lattice.time_step") return fmt::format("{}", scene.problem.time_step);
   if (key.name == "run.steps") return fmt::format("{}", scene.steps);

@@ -57,6 +57,8 @@ Problem read_problem(const Settings& settings, const Values& values) {
   p.degree_time = static_cast<int>(values.integer("scheme.degree_time"));
   p.degree_space = static_cast<int>(values.integer("scheme.degree_space"));
   p.quadrature = values.choice("scheme.quadrature");
+  p.order = static_cast<int>(values.integer("scheme.order"));
+  p.space_order = static_cast<int>(values.integer("lattice.space_order"));
   p.alpha = values.real("scheme.alpha");
   p.threads = static_cast<int>(values.integer("run.threads"));
   const bool by_courant = values.given("lattice.courant");
@@ -106,8 +108,8 @@ fs::path find_initial_file(const Settings& settings, const Values& values) {
 std::optional<StartRule> read_start(const Settings& settings, const Values& values, const Problem& problem) {
   if (!values.given("initial.start")) return std::nullopt;
   const std::string rule = values.choice("initial.start");
-  if (rule == "legendre" && problem.method != "spacetime")
-    throw settings.error("initial.start", "needs scheme.method = spacetime; use exact or centred");
+  if (rule == "legendre" && problem.method != "spacetime" && problem.method != "composition")
+    throw settings.error("initial.start", "needs scheme.method = spacetime or composition; use exact or centred");
   if (rule == "legendre") return StartRule::legendre;
   return rule == "exact" ? StartRule::exact : StartRule::centred;
 }
@@ -169,6 +171,8 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
   if ((key == "scheme.degree_time" || key == "scheme.degree_space" || key == "scheme.quadrature") &&
       scene.problem.method != "spacetime")
     return "only scheme.method = spacetime reads it";
+  if ((key == "scheme.order" || key == "lattice.space_order") && scene.problem.method != "composition")
+    return "only scheme.method = composition reads it";
   if (key == "scheme.alpha" && scene.problem.method != "r-adaptive") return "only scheme.method = r-adaptive reads it";
   if (key == "boundary.winding" && point) return "a point has no winding";
   if (key == "boundary.winding" && !circle) return "an interval has no winding";
@@ -183,7 +187,6 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
     const bool read = state != all.end() && state->parameters.find(key.substr(8)) != std::string::npos;
     return read ? "" : "the state " + scene.initial.name + " does not read it";
   }
-  if (key.starts_with("verify.")) return "";
   return "";
 }
 

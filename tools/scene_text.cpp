@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -37,8 +38,12 @@ std::string read_scene_text(const std::filesystem::path& file) {
     throw BadScene(fmt::format("{}: is a directory, not a scene; name the file in it", name));
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(name.c_str(), "rb"), std::fclose);
   if (!in) throw BadScene(fmt::format("{}: {}; check the name and the rights", name, std::strerror(errno)));
-  std::string text(most_bytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), in.get()));
+  std::string text;
+  std::array<char, 4096> block;  // a scene is small: no room for the largest is kept
+  for (std::size_t count = block.size(); count == block.size() && text.size() <= most_bytes;) {
+    count = std::fread(block.data(), 1, block.size(), in.get());
+    text.append(block.data(), count);
+  }
   if (std::ferror(in.get())) throw BadScene(fmt::format("{}: cannot be read; check the file", name));
   if (text.size() > most_bytes)
     throw BadScene(fmt::format("{}: is too large for a scene; is it the right file?", name));

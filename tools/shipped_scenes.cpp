@@ -7,14 +7,16 @@
 #include <fstream>
 
 #include "tools/failure.hpp"
-#include "tools/suggestion.hpp"
 #include "tools/scene_text.hpp"
+#include "tools/suggestion.hpp"
 
 namespace delf {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* folders[] = {DELF_SCENES_SOURCE, DELF_SCENES_INSTALLED};
 
 std::string title_of(const fs::path& file) {
   std::ifstream in(file);
@@ -27,7 +29,7 @@ std::string title_of(const fs::path& file) {
 
 std::vector<ShippedScene> shipped_scenes() {
   std::vector<ShippedScene> scenes;
-  for (const char* folder : {DELF_SCENES_SOURCE, DELF_SCENES_INSTALLED}) {
+  for (const char* folder : folders) {
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(folder, none))
       if (entry.path().extension() == ".ini")
@@ -44,6 +46,10 @@ fs::path find_scene(const std::string& scene) {
   const bool exists = fs::exists(path, none);
   if (exists && !fs::is_directory(path, none)) return path;
   const bool name_only = !scene.empty() && !path.has_parent_path();
+  for (const char* folder : folders) {  // without a look into the other scenes
+    const fs::path file = fs::path(folder) / (scene + ".ini");
+    if (name_only && fs::is_regular_file(file, none)) return file;
+  }
   const auto shipped = name_only ? shipped_scenes() : std::vector<ShippedScene>();
   for (const ShippedScene& s : shipped)
     if (s.name == scene) return s.file;

@@ -50,10 +50,19 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   return parts;
 }
 
+std::vector<NamedScheme> variants(const Problem& base) {
+  std::vector<NamedScheme> schemes;
+  for (const NamedFormula& stencil : stencils()) {
+    schemes.push_back({stencil.name, base});
+    schemes.back().problem.stencil = stencil.name;
+  }
+  return schemes;
+}
+
 }  // namespace
 
 extern const MethodEntry multisymplectic_method;
 const MethodEntry multisymplectic_method{
-    "multisymplectic", "discrete Euler-Lagrange field equations of lattice.stencil (5.2)", build};
+    "multisymplectic", "discrete Euler-Lagrange field equations of lattice.stencil (5.2)", build, variants};
 
 }  // namespace delf

@@ -18,8 +18,8 @@ struct CoupledSineGordon {
   auto operator()(const auto& j) const {
     const auto& [first, second] = j.phi;
     return 0.5 * (j.phi_t[0] * j.phi_t[0] - j.phi_x[0] * j.phi_x[0]) +
-           0.5 * (j.phi_t[1] * j.phi_t[1] - j.phi_x[1] * j.phi_x[1]) +
-           (mass * mass) * ((cos(first) - 1.0) + (cos(second) - 1.0)) + lambda * (cos(first - second) - 1.0);
+           0.5 * (j.phi_t[1] * j.phi_t[1] - j.phi_x[1] * j.phi_x[1]) + (mass * mass) * (cosm1(first) + cosm1(second)) +
+           lambda * cosm1(first - second);
   }
 };
 

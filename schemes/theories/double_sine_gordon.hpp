@@ -9,8 +9,8 @@ struct DoubleSineGordon {
   double mass = 1, lambda = 1;
 
   auto operator()(const auto& j) const {
-    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + (mass * mass) * (cos(j.phi) - 1.0) +
-           (0.5 * lambda) * (cos(2.0 * j.phi) - 1.0);
+    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + (mass * mass) * cosm1(j.phi) +
+           (0.5 * lambda) * cosm1(2.0 * j.phi);
   }
 
   /// (cos a − cos b)/(a − b) = −sin((a+b)/2) sinc((a−b)/2), and the same with 2a, 2b

@@ -10,7 +10,7 @@ namespace delf {
 struct Pendulum {
   double mass = 1;
 
-  auto operator()(const auto& j) const { return 0.5 * (j.phi_t * j.phi_t) + (mass * mass) * (cos(j.phi) - 1.0); }
+  auto operator()(const auto& j) const { return 0.5 * (j.phi_t * j.phi_t) + (mass * mass) * cosm1(j.phi); }
 
   /// (cos a − cos b)/(a − b) = −sin((a+b)/2) sinc((a−b)/2)
   template <class T>

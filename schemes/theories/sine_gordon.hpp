@@ -9,7 +9,7 @@ struct SineGordon {
   double mass = 1;
 
   auto operator()(const auto& j) const {
-    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + (mass * mass) * (cos(j.phi) - 1.0);
+    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + (mass * mass) * cosm1(j.phi);
   }
 
   /// (cos a − cos b)/(a − b) = −sin((a+b)/2) sinc((a−b)/2): the quotient itself loses everything when a ≈ b.

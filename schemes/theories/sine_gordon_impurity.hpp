@@ -15,7 +15,7 @@ struct SineGordonImpurity {
   auto operator()(const auto& j) const {
     const auto s = (1.0 / width) * (j.x - position);
     const auto depth = (mass * mass) * (1.0 + strength * exp(-(s * s)));
-    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + depth * (cos(j.phi) - 1.0);
+    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + depth * cosm1(j.phi);
   }
 };
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "jets/dual.hpp"
 #include "tests/catch.hpp"
 #include "tests/jets/random.hpp"
 
@@ -247,4 +248,18 @@ TEST_CASE("the other functions of packs are the library's, lane by lane") {
     CHECK(pow(x, 2.3)[l] == std::pow(x[l], 2.3));
   }
   CHECK(std::isnan(sqrt(Pack(-1.0))[lanes - 1]));
+}
+
+TEST_CASE("cos x - 1 is as good as its size where x is small, and cos x - 1 itself is not") {
+  for (const double x : {1e-150, 1e-9, 1e-4, 0.3, 3.0, 1e5}) {
+    const long double half = std::sin(0.5L * x), exact = -2 * half * half;
+    const double scalar = cosm1(x), packed = cosm1(Pack(x))[0];
+    CAPTURE(x);
+    CHECK(std::abs(scalar - exact) <= 4e-16L * std::abs(exact));
+    CHECK(std::abs(packed - exact) <= 1e-15L * std::abs(exact) + 1e-15L * std::abs(half));
+  }
+  CHECK(std::cos(1e-9) - 1 == 0);
+  const auto d = cosm1(Dual<Dual<double, 1>, 1>::variable(Dual<double, 1>::variable(0.7, 0), 0));
+  CHECK(std::abs(d.d[0].value + std::sin(0.7)) < 1e-15);
+  CHECK(std::abs(d.d[0].d[0] + std::cos(0.7)) < 1e-15);
 }

@@ -180,7 +180,8 @@ TEST_CASE("the plan of a short quotient is a plan of the whole lattice: complete
     if (!plan.table.matched) continue;
     CHECK(plan.blocks == blocks);
     if (plan.kind == SolveKind::sparse) continue;
-    CHECK(coupled == (plan.kind != SolveKind::explicit_));
+    // On a circle unknowns that are all on their own wait for other rows at most, never for their neighbours in turn.
+    CHECK((coupled && !(e.lattice.is_circle() && blocks == unknowns)) == (plan.kind != SolveKind::explicit_));
     CHECK(plan.lower == lower);
     CHECK(plan.upper == upper);
   }

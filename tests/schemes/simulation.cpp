@@ -319,7 +319,7 @@ TEST_CASE("a simulation may be moved while it runs") {
 TEST_CASE("every theory, stencil and method that is listed can be made") {
   CHECK(theories().size() == 11);
   CHECK(stencils().size() == 10);
-  CHECK(methods().size() == 6);
+  CHECK(methods().size() == 7);
   for (const TheoryInfo& theory : theories()) {
     CHECK_FALSE(theory.formula.empty());
     for (const NamedFormula& stencil : stencils()) {

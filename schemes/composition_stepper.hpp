@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "schemes/lattice_system.hpp"
+#include "schemes/nodal_kernel.hpp"
+#include "schemes/step_method.hpp"
+
+namespace delf {
+
+/// Steps an element whose nodes form rows above each other, each determined explicitly by the two before: a composition of
+/// sub-steps over pairs of sites. With P_s = −c_s (y_{s+1} − y_s), the momenta that a sub-step hands on,
+///
+///     P_s = P_{s−1} + Σ_m g_m (y_s(i + m) − 2y_s(i) + y_s(i − m)) + b_s ∂ℓ/∂φ(y_s),     y_{s+1} = y_s − P_s/c_s,
+///
+/// where all numbers come from the constant part of the element's Jacobian. A step that no one looks at writes rows over
+/// each other; one that is looked at keeps those between its sub-steps.
+class CompositionStepper final : public StepMethod {
+ public:
+  /// Nothing if the equations are not of this kind.
+  static std::unique_ptr<CompositionStepper> make(const LatticeSystem&, const StepOptions&);
+
+  int starting_rows() const override { return 2; }
+  /// Throws BadInput: the rows between the sub-steps follow from momenta alone.
+  void start(const std::vector<std::vector<double>>& rows) override;
+  void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
+  void step(bool looked_at) override;
+
+  std::int64_t newest() const override { return n_; }
+  std::vector<double> row(int back) const override;
+  Window window(int rows) const override;
+  double residual() const override;
+  int iterations() const override { return 0; }
+
+  bool iterates() const override { return false; }
+  std::string solver_name() const override { return "explicit sub-steps, row by row"; }
+  bool matrix_free() const override { return true; }
+  std::size_t bytes() const override;
+  std::string memory_report() const override;
+
+ private:
+  /// One sub-step from the row of a node.
+  struct SubStep {
+    std::vector<double> linear;     ///< g_m / K at [a · reach + m − 1]
+    std::vector<double> nonlinear;  ///< b / K
+    double stride = 0;              ///< −K / c
+    double time = 0;                ///< of the row, from that of the step
+  };
+
+  CompositionStepper(const LatticeSystem&, const StepOptions&, const NodalKernel&);
+  /// False where an equation is not of the form above.
+  bool assemble();
+  SubStep read_sub_step(int s, bool from_below, bool& fits) const;
+  double sub_step(std::int64_t n, const SubStep&, const double* from, double* to, double* velocity) const;
+  double* newest_row() { return rows_.row(at_); }
+  const double* newest_row() const { return rows_.row(at_); }
+  double advance(const SubStep& first, bool looked_at);
+  double* node(std::int64_t row, int s) { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
+  const double* node(std::int64_t row, int s) const { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
+  void copy_components(const double* rows, int first_component, std::vector<double>& section) const;
+  void save();
+  [[noreturn]] void fail();
+  void require(int slabs) const;
+
+  static constexpr int slabs_held = 4;
+  const LatticeSystem& system_;
+  StepOptions options_;
+  const NodalKernel& kernel_;
+  int d_, S_, reach_;
+  double scale_ = 1;  ///< K: velocities are P/K
+  RowLayout layout_;
+  std::size_t size_;  ///< of a row of d components
+  std::vector<SubStep> steps_;
+  SubStep first_;  ///< from row 0, with nothing below
+  RowBuffer positions_;
+  // Each "row" has the rows of its d components one after the other.
+  RowBuffer rows_, velocity_;  ///< y_n and another, by turns; P/K of the sub-step before it
+  int at_ = 0;                 ///< which is y_n
+  RowBuffer slabs_;            ///< of the newest steps: S nodes each, made when a step is first looked at
+  RowBuffer saved_;            ///< y and P/K, now and then: a row that overflows is found again from there
+  mutable RowBuffer scratch_;
+  std::int64_t n_ = 0, saved_row_ = -1;
+  int known_ = 0;  ///< newest slabs that are held
+};
+
+}  // namespace delf

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "jets/density.hpp"
+#include "schemes/row_kernel.hpp"
+
+namespace delf {
+
+/// The offsets −reach … −1, 1 … reach.
+template <int reach>
+inline constexpr auto neighbours_within = [] {
+  std::array<int, static_cast<std::size_t>(2 * reach)> offsets{};
+  for (int s = 0; s < reach; ++s)
+    offsets[static_cast<std::size_t>(s)] = s - reach, offsets[static_cast<std::size_t>(reach + s)] = s + 1;
+  return offsets;
+}();
+
+/// An explicit step of the packs of a row, in one loop:
+///
+///     w = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)),    v += w,    y += stride v
+///
+/// over the neighbours s within `reach`. What they were is carried along in registers, so that the new row may be written
+/// over the old one. Returns √Σy² of the new values: infinite or NaN where squares overflow.
+template <int reach, Density D>
+[[gnu::flatten]] double explicit_loop(const D& given_density, const ExplicitRows& given, PackRange packs) {
+  constexpr int d = components_of<D>(), count = 2 * reach;
+  using Number = Dual<Pack, d>;
+  // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
+  const D density = given_density;
+  const double stride = given.stride;
+  const double* const positions = given.now.positions;
+  const Pack t(given.now.t);
+  const std::ptrdiff_t origin = given.now.layout->at(0);
+  std::array<const double*, d> now, v_before;
+  std::array<double*, d> v_new, y_new;
+  std::array<double, static_cast<std::size_t>(d * count)> linear;
+  std::array<double, d> nonlinear;
+  for (int a = 0; a < d; ++a) {
+    now[a] = given.now.values[a], v_before[a] = given.v_before[a];
+    v_new[a] = given.v[a], y_new[a] = given.y[a];
+    nonlinear[a] = given.nonlinear[a];
+    for (int s = 0; s < count; ++s) linear[a * count + s] = given.linear[a * count + s];
+  }
+  // Where the old value of a pack at or after the first one is, be it beyond the last.
+  const auto old_value = [&](int a, int v) {
+    return v < packs.last ? given.now.values[a] + given.now.layout->at(v)
+                          : given.after[a] + static_cast<std::ptrdiff_t>(v - packs.last) * lanes;
+  };
+  std::array<std::array<Pack, static_cast<std::size_t>(2 * reach + 1)>, d> y;
+  for (int a = 0; a < d; ++a)
+    for (int s = 0; s < 2 * reach; ++s)
+      y[a][s + 1] = Pack::load(s < reach ? given.before[a] + s * lanes : old_value(a, packs.first + s - reach));
+  Pack squares(0.0);
+  const auto advance = [&](int v, const auto& incoming) __attribute__((always_inline)) {
+    const std::ptrdiff_t at = origin + static_cast<std::ptrdiff_t>(v) * lanes;
+    JetFor<Number, D> jet;
+    for (int a = 0; a < d; ++a) {
+      for (int s = 0; s < 2 * reach; ++s) y[a][s] = y[a][s + 1];
+      y[a][2 * reach] = Pack::load(incoming(a));
+      component(jet.phi, a) = Number::variable(y[a][reach], a);
+      component(jet.phi_t, a) = Number(0.0);
+      component(jet.phi_x, a) = Number(0.0);
+    }
+    if constexpr (delf::is_placed<D>()) {
+      jet.t = Number(t);
+      jet.x = Number(Pack::load(positions + at));
+    }
+    const Number l = density(jet);
+    for (int a = 0; a < d; ++a) {
+      const Pack here = y[a][reach];
+      Pack w = nonlinear[a] * l.derivative(a);
+      for (int s = 0; s < count; ++s)
+        w += linear[a * count + s] * (y[a][reach + neighbours_within<reach>[static_cast<std::size_t>(s)]] - here);
+      const Pack v_next = Pack::load(v_before[a] + at) + w, y_next = here + stride * v_next;
+      squares += y_next * y_next;
+      v_next.store(v_new[a] + at);
+      y_next.store(y_new[a] + at);
+    }
+  };
+  int v = packs.first;
+  for (; v < packs.last - reach; ++v)
+    advance(v, [&](int a) { return now[a] + origin + static_cast<std::ptrdiff_t>(v + reach) * lanes; });
+  for (; v < packs.last; ++v) advance(v, [&](int a) { return old_value(a, v + reach); });
+  return std::sqrt(sum(squares));
+}
+
+}  // namespace delf

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "jets/density.hpp"
+#include "jets/discrete_lagrangian.hpp"
+#include "schemes/row_layout.hpp"
+
+namespace delf {
+
+/// The rows of one sub-step, d of each, and its coefficients.
+struct SubStepRows {
+  const RowLayout* layout;
+  const double* const* now;  ///< halos filled as far as pairs reach
+  const double* positions;   ///< x of each slot's site; null unless the density is placed
+  double t;                  ///< of the row `now`
+  double* const* velocity;   ///< replaced by the new one
+  double* const* next;       ///< another row than `now`
+  const double* linear;      ///< [a·reach + m − 1], of the sites i ± m
+  const double* nonlinear;   ///< [a]
+  double stride;
+};
+
+/// What an element has whose φ at every quadrature point is the value at one of its nodes, for a density that is nonlinear
+/// in φ alone: the nonlinear part of the equation at a node is that of its own value, and rows of nodes can follow each
+/// other by one loop each.
+class NodalKernel {
+ public:
+  static constexpr int most_reach = 6;  ///< that loops are compiled for
+  virtual ~NodalKernel() = default;
+  /// How far the sites of a pair are apart at most.
+  virtual int reach() const = 0;
+  /// What one unit of ∂ℓ/∂φ(φ, 0, 0) at the node of value i adds to the residual r[i].
+  virtual double weight(const Cell&, int i) const = 0;
+  /// The constant Jacobian of all but that part of r.
+  virtual void linear_part(const Cell&, std::span<double> J) const = 0;
+  /// sub_step_loop() for this reach.
+  virtual double step(const SubStepRows&) const = 0;
+};
+
+/// One sub-step of a row:
+///
+///     u += Σ_m linear(m) (y(i + m) − 2y(i) + y(i − m)) + nonlinear ∂ℓ/∂φ(y(i)),    next = y + stride u
+///
+/// Returns √Σ next²: infinite or NaN where squares overflow.
+template <int reach, Density D>
+[[gnu::flatten]] double sub_step_loop(const D& given_density, const SubStepRows& given) {
+  constexpr int d = components_of<D>();
+  using Number = Dual<Pack, d>;
+  // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
+  const D density = given_density;
+  const double stride = given.stride;
+  const double* const positions = given.positions;
+  const Pack t(given.t);
+  std::array<const double*, d> now;
+  std::array<double*, d> velocity, next;
+  std::array<double, static_cast<std::size_t>(d * reach)> linear;
+  std::array<double, d> nonlinear;
+  for (int a = 0; a < d; ++a) {
+    now[a] = given.now[a], velocity[a] = given.velocity[a], next[a] = given.next[a], nonlinear[a] = given.nonlinear[a];
+    for (int m = 0; m < reach; ++m) linear[a * reach + m] = given.linear[a * reach + m];
+  }
+  const std::ptrdiff_t begin = given.layout->at(0), end = given.layout->at(given.layout->packs());
+  Pack squares(0.0);
+  for (std::ptrdiff_t at = begin; at < end; at += lanes) {
+    JetFor<Number, D> jet;
+    for (int a = 0; a < d; ++a) {
+      component(jet.phi, a) = Number::variable(Pack::load(now[a] + at), a);
+      component(jet.phi_t, a) = Number(0.0);
+      component(jet.phi_x, a) = Number(0.0);
+    }
+    if constexpr (delf::is_placed<D>()) {
+      jet.t = Number(t);
+      jet.x = Number(Pack::load(positions + at));
+    }
+    const Number l = density(jet);
+    for (int a = 0; a < d; ++a) {
+      const Pack here = Pack::load(now[a] + at);
+      // Two sums: one would wait for itself.
+      Pack odd = Pack::load(velocity[a] + at), even(0.0);
+      for (int m = 1; m <= reach; ++m) {
+        const Pack second = (Pack::load(now[a] + at + m * lanes) - here) - (here - Pack::load(now[a] + at - m * lanes));
+        (m % 2 == 1 ? odd : even) += linear[a * reach + m - 1] * second;
+      }
+      const Pack u = (odd + nonlinear[a] * l.derivative(a)) + even, y = here + stride * u;
+      squares += y * y;
+      u.store(velocity[a] + at);
+      y.store(next[a] + at);
+    }
+  }
+  return std::sqrt(sum(squares));
+}
+
+/// The loop for a reach from 1 to most.
+template <int most, Density D>
+double sub_step_within(int reach, const D& density, const SubStepRows& rows) {
+  if constexpr (most == 0) return 0;
+  else return reach == most ? sub_step_loop<most>(density, rows) : sub_step_within<most - 1>(reach, density, rows);
+}
+
+}  // namespace delf

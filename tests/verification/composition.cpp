@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "jets/pair_element.hpp"
+#include "jets/splitting.hpp"
+#include "schemes/element_family.hpp"
+#include "schemes/theories/phi4.hpp"
+#include "schemes/theories/sine_gordon.hpp"
+#include "tests/catch.hpp"
+#include "tests/verification/patch.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+/// A moving breather on a circle of length 80, its tails below rounding there, at T = 4.
+Row breather(int order, int space_order, int sites, int steps, double* error = nullptr) {
+  constexpr double until = 4;
+  Problem p;
+  p.method = "composition", p.order = order, p.space_order = space_order;
+  p.lattice = Lattice::circle(sites, 80), p.time_step = until / steps;
+  StateRequest request;
+  request.name = "breather", request.theory = p.theory, request.frequency = 0.5, request.speed = 0.3;
+  const auto state = make_state(request, p.lattice);
+  Simulation simulation(p);
+  const auto C = simulation.components().size();
+  std::vector<double> row(static_cast<std::size_t>(sites) * C), rate(row.size());
+  const Row phi = values(*state, 0, p.lattice), phi_t = velocities(*state, 0, p.lattice);
+  for (std::size_t i = 0; i < phi.size(); ++i) row[i * C] = phi[i], rate[i * C] = phi_t[i];
+  simulation.start_legendre(row, rate);
+  while (simulation.newest() < steps) simulation.step(false);
+  const Row last = newest(simulation, p.lattice);
+  if (error) *error = distance(last, values(*state, until, p.lattice));
+  return last;
+}
+double breather_error(int order, int space_order, int sites, int steps) {
+  double error = 0;
+  breather(order, space_order, sites, steps, &error);
+  return error;
+}
+
+constexpr double k = 0.6, h = 0.3;
+
+FamilyList pairs(int order, int p) {
+  return {std::make_shared<ElementFamily<SineGordon>>(pair_element(splitting_of_order(order), p), SineGordon{})};
+}
+
+}  // namespace
+
+TEST_CASE("time is of the order of the composition, on a nonlinear problem") {
+  // Against small steps over the same lattice: what space leaves is the same in both.
+  const Row exact = breather(8, 12, 320, 640);
+  for (const auto& [order, steps] : {std::pair{2, 100}, {4, 20}, {6, 14}, {8, 20}}) {
+    const double coarse = distance(breather(order, 12, 320, steps), exact),
+                 fine = distance(breather(order, 12, 320, 2 * steps), exact);
+    const double found = testing::order(coarse, fine, 2);
+    CAPTURE(order, coarse, fine, found);
+    CHECK(found > order - 0.5);
+    CHECK(found < order + 0.6);
+  }
+}
+
+TEST_CASE("space is of twice the order of the widest pair, on a nonlinear problem") {
+  for (int p = 1; p <= widest_pair; ++p) {
+    const double found =
+        testing::order(breather_error(8, 2 * p, 640, 200), breather_error(8, 2 * p, 800, 200), 1.25);
+    CAPTURE(p, found);
+    // The higher the order, the later it is reached.
+    CHECK(found > 2 * p - 0.05 - 0.2 * p);
+    CHECK(found < 2 * p + 0.1);
+  }
+}
+
+TEST_CASE("time and space together are of order 2p with h as k to the power p over 2") {
+  // order 4 in time with h as k^(p/2): p = 2 and 4
+  for (const int p : {2, 4}) {
+    const double found = testing::order(breather_error(4, 2 * p, 480, 48),
+                                        breather_error(4, 2 * p, 640, p == 2 ? 64 : 85), 4. / 3);
+    CAPTURE(p, found);
+    CHECK(found > 2 * p - 0.9);
+    CHECK(found < 2 * p + 0.6);
+  }
+}
+
+TEST_CASE("compositions satisfy the form formula on random unions of steps, sub-steps and all") {
+  std::mt19937_64 random(71);
+  for (const auto& [order, p] : {std::array{2, 1}, {4, 1}, {4, 2}, {6, 3}}) {
+    const FamilyList families = pairs(order, p);
+    const int S = static_cast<int>(splitting_of_order(order).drifts.size());
+    for (int trial = 0; trial < 3; ++trial) {
+      Patch patch(Lattice::circle(14, 14 * k), families, h, random_centres(random, 11, S));
+      REQUIRE(patch.U().regular());
+      REQUIRE(!patch.on.equations().empty());
+      patch.y = random_values(random, patch.on.nodes());
+      auto pair = patch.variations(random);
+      CAPTURE(order, p, patch.on.equations().size());
+      CHECK(patch.form_formula(pair).relative() < 1e-13);
+      // V is no first variation any more
+      const auto node = patch.on.coupling_node(patch.y);
+      REQUIRE(node);
+      pair.V[*node] += 0.01;
+      CHECK(patch.form_formula(pair).relative() > 1e-8);
+    }
+  }
+}

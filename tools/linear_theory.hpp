@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "schemes/simulation.hpp"
+
+namespace delf {
+
+struct CourantInterval {
+  double from = 0, to = 0;
+};
+
+/// A mode of the scheme that grows without an amplification factor outside the unit circle.
+struct GhostMode {
+  double theta = 0;
+  std::complex<double> z;
+  std::string words;
+};
+
+/// What the symbol of a scheme says about φ = 0.
+struct LinearTheory {
+  std::vector<CourantInterval> stable;  ///< Courant numbers, in order, up to the most that was asked for
+  std::vector<GhostMode> ghosts;        ///< in the middle of the first of them
+
+  /// Where the first instability from below begins: 0 if nothing is stable, infinity if everything is up to `most`.
+  double first_limit(double most) const;
+  bool is_stable(double courant) const;
+  /// No end of an interval is nearer than `relative` of it.
+  bool is_clear(double courant, double relative) const;
+};
+
+/// A scheme on a circle of `sites` with h = 1, k = 1/courant and m = mass_step, so that mh stays as the Courant number
+/// changes and the theory klein-gordon.
+Problem linear_problem(const Problem& scheme, double mass_step, double courant, int sites);
+
+/// The stable Courant numbers in (0, most], at `samples` of which it is looked, and the ghosts in the middle of the first
+/// interval. Throws BadInput for a scheme that cannot be built, or has no symbol.
+LinearTheory linear_theory(const Problem& scheme, double mass_step, double most, int samples = 120);
+
+/// The wave that grows most at one Courant number: its θ, and |z|.
+struct WorstWave {
+  double theta, amplification;
+};
+WorstWave worst_wave(const Problem& scheme, double mass_step, double courant);
+
+struct FrequencyPoint {
+  double wave_number;  ///< qk
+  double numerical;    ///< ωk of the scheme
+  double exact;        ///< √((qk)² + (mk)²)
+};
+/// The dispersion relation of a scheme of klein-gordon, at `count` wave numbers from 0 to the largest that its nodes tell
+/// apart. Throws as linear_theory.
+std::vector<FrequencyPoint> frequencies(const Problem& scheme, double courant, double mass_space_step, int count);
+
+}  // namespace delf
