@@ -100,6 +100,9 @@ inline Pack rotated(Pack a, std::integer_sequence<int, l...>) {
   return {__builtin_shufflevector(a.v, a.v, ((l + by) % lanes)...)};
 }
 }  // namespace detail
+/// Lane l of what lane l + 1, or l − 1, was; round the end.
+inline Pack from_lane_above(Pack a) { return detail::rotated<1>(a, std::make_integer_sequence<int, lanes>()); }
+inline Pack from_lane_below(Pack a) { return detail::rotated<lanes - 1>(a, std::make_integer_sequence<int, lanes>()); }
 inline double max_or_nan(Pack a) {
   constexpr auto all = std::make_integer_sequence<int, lanes>();
   if constexpr (lanes > 4) a = max_or_nan(a, detail::rotated<4>(a, all));

@@ -77,6 +77,9 @@ CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_b
   for (std::size_t m = 0; m < left.size(); ++m) fits = fits && std::abs(left[m] - step.linear[m]) <= 1e-12 * largest;
   for (const auto& [where, entry] : stray) fits = fits && std::abs(entry) <= 1e-12 * largest;
   if (fits) step.stride = -1 / above[0];
+  const auto reach = static_cast<std::size_t>(reach_);
+  for (std::size_t a = 0; a < d; ++a)
+    for (std::size_t j = reach - 1; j-- > 0;) step.linear[a * reach + j] += step.linear[a * reach + j + 1];
   return step;
 }
 
@@ -102,7 +105,8 @@ bool CompositionStepper::assemble() {
     for (double& b : step->nonlinear) b /= scale_;
     step->stride *= scale_;
   }
-  rows_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
+  newest_ = RowBuffer(static_cast<std::size_t>(d_) * size_);
+  differences_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
   velocity_ = RowBuffer(static_cast<std::size_t>(d_) * size_);
   if (system_.families()[0]->is_placed()) {
     std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
@@ -113,37 +117,53 @@ bool CompositionStepper::assemble() {
   return true;
 }
 
-double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const double* from, double* to,
-                                    double* velocity) const {
+double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const double* from, const double* differences,
+                                    double* to, double* next_differences, double* velocity) const {
   constexpr int most = RowKernel::most_components;
-  const double* now[most];
-  double *u[most], *y[most];
+  const double *now[most], *D[most];
+  double *u[most], *y[most], *next_D[most];
   for (int a = 0; a < d_; ++a) {
     const std::size_t at = static_cast<std::size_t>(a) * size_;
-    now[a] = from + at, u[a] = velocity + at, y[a] = to + at;
+    now[a] = from + at, D[a] = differences + at, u[a] = velocity + at, y[a] = to + at,
+    next_D[a] = next_differences + at;
   }
-  const double largest = kernel_.step({&layout_, now, positions_.rows() ? positions_.row(0) : nullptr,
-                                       static_cast<double>(n) * system_.time_step() + step.time, u, y,
-                                       step.linear.data(), step.nonlinear.data(), step.stride});
-  for (int a = 0; a < d_; ++a) layout_.fill_halo(y[a], options_.turn);
+  const double largest = kernel_.step({&layout_, now, y, D, next_D, u, positions_.rows() ? positions_.row(0) : nullptr,
+                                       static_cast<double>(n) * system_.time_step() + step.time, step.linear.data(),
+                                       step.nonlinear.data(), step.stride});
+  const std::ptrdiff_t last = layout_.at(layout_.packs() - 1);
+  for (int a = 0; a < d_; ++a) {
+    layout_.fill_halo(y[a], options_.turn);
+    (Pack::load(y[a] + last + lanes) - Pack::load(y[a] + last)).store(next_D[a] + last);
+    layout_.fill_halo(next_D[a]);
+  }
   return largest;
 }
 
-/// The sub-steps from row n on; n itself stays. Returns √Σy² of the new row.
-double CompositionStepper::advance(const SubStep& first, bool looked_at) {
-  double largest = 0;
-  if (!looked_at) {
-    for (int s = 0; s < S_; ++s, at_ = 1 - at_)
-      largest = sub_step(n_, s == 0 ? first : steps_[static_cast<std::size_t>(s)], rows_.row(at_), rows_.row(1 - at_),
-                         velocity_.row(0));
-    return largest;
+void CompositionStepper::find_differences(const double* row, double* differences) const {
+  for (int a = 0; a < d_; ++a) {
+    const double* const y = row + static_cast<std::size_t>(a) * size_;
+    double* const D = differences + static_cast<std::size_t>(a) * size_;
+    for (int v = 0; v < layout_.packs(); ++v)
+      (Pack::load(y + layout_.at(v + 1)) - Pack::load(y + layout_.at(v))).store(D + layout_.at(v));
+    layout_.fill_halo(D);
   }
+}
+
+/// The sub-steps from row n on; in place if no one looks. Returns √Σy² of the new row.
+double CompositionStepper::advance(const SubStep& first, bool looked_at) {
   const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
-  if (!slabs_.rows()) slabs_ = RowBuffer(doubles, slabs_held * S_);
-  std::copy_n(newest_row(), doubles, node(n_, 0));
-  for (int s = 0; s < S_; ++s)
-    largest = sub_step(n_, s == 0 ? first : steps_[static_cast<std::size_t>(s)], node(n_, s),
-                       s + 1 < S_ ? node(n_, s + 1) : newest_row(), velocity_.row(0));
+  double* const newest = newest_row();
+  if (looked_at) {
+    if (!slabs_.rows()) slabs_ = RowBuffer(doubles, slabs_held * S_);
+    std::copy_n(newest, doubles, node(n_, 0));
+  }
+  double largest = 0;
+  for (int s = 0; s < S_; ++s, at_ = 1 - at_) {
+    const double* const from = looked_at ? node(n_, s) : newest;
+    double* const to = looked_at && s + 1 < S_ ? node(n_, s + 1) : newest;
+    largest = sub_step(n_, s == 0 ? first : steps_[static_cast<std::size_t>(s)], from, differences_.row(at_), to,
+                       differences_.row(1 - at_), velocity_.row(0));
+  }
   return largest;
 }
 
@@ -170,6 +190,7 @@ void CompositionStepper::start_legendre(const std::vector<double>& row0, const s
   n_ = 0;
   known_ = 0;
   const FlushDenormals guard;
+  find_differences(newest_row(), differences_.row(at_));
   if (overflowed(advance(first_, true)))
     throw NotFinite(
         "step 1: the field is no longer finite: the scheme is unstable here; reduce lattice.courant or "
@@ -202,6 +223,7 @@ void CompositionStepper::fail() {
   const std::int64_t last = n_;
   std::copy_n(saved_.row(0), doubles, newest_row());
   std::copy_n(saved_.row(1), doubles, velocity_.row(0));
+  find_differences(newest_row(), differences_.row(at_));
   // The row saved is itself good, and so is all that follows up to the last one. A slab is held of it where there is one.
   for (n_ = saved_row_; n_ < last; ++n_) {
     advance(steps_[0], n_ + 1 >= last - 1);
@@ -262,14 +284,15 @@ double CompositionStepper::residual() const {
   const int first = known_ >= 2 ? 0 : 1;
   if (known_ == 0) return std::numeric_limits<double>::quiet_NaN();
   const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
-  if (!scratch_.rows()) scratch_ = RowBuffer(doubles, 2);
+  if (!scratch_.rows()) scratch_ = RowBuffer(doubles, 4);
   double worst = 0, size = 0;
   for (int s = first; s < S_; ++s) {
     const double* const before = s > 0 ? node(n_ - 1, s - 1) : node(n_ - 2, S_ - 1);
     const double *const here = node(n_ - 1, s), *const next = s + 1 < S_ ? node(n_ - 1, s + 1) : newest_row();
     double* const w = scratch_.row(0);
     std::fill_n(w, doubles, 0.0);
-    sub_step(n_ - 1, steps_[static_cast<std::size_t>(s)], here, scratch_.row(1), w);
+    find_differences(here, scratch_.row(1));
+    sub_step(n_ - 1, steps_[static_cast<std::size_t>(s)], here, scratch_.row(1), scratch_.row(2), scratch_.row(3), w);
     const double below = steps_[static_cast<std::size_t>(s > 0 ? s - 1 : S_ - 1)].stride,
                  above = steps_[static_cast<std::size_t>(s)].stride;
     for (int a = 0; a < d_; ++a)
@@ -285,13 +308,14 @@ double CompositionStepper::residual() const {
 }
 
 std::size_t CompositionStepper::bytes() const {
-  return rows_.bytes() + velocity_.bytes() + slabs_.bytes() + saved_.bytes() + scratch_.bytes() + positions_.bytes() +
-         layout_.bytes();
+  return newest_.bytes() + velocity_.bytes() + differences_.bytes() + slabs_.bytes() + saved_.bytes() +
+         scratch_.bytes() + positions_.bytes() + layout_.bytes();
 }
 std::string CompositionStepper::memory_report() const {
-  return fmt::format("rows of the field {} B, momenta {} B, rows between sub-steps {} B, work space {} B",
-                     rows_.bytes(), velocity_.bytes(), slabs_.bytes(),
-                     saved_.bytes() + scratch_.bytes() + positions_.bytes() + layout_.bytes());
+  return fmt::format(
+      "rows of the field {} B, differences {} B, momenta {} B, rows between sub-steps {} B, work space {} B",
+      newest_.bytes(), differences_.bytes(), velocity_.bytes(), slabs_.bytes(),
+      saved_.bytes() + scratch_.bytes() + positions_.bytes() + layout_.bytes());
 }
 
 }  // namespace delf

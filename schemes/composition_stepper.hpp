@@ -44,7 +44,7 @@ class CompositionStepper final : public StepMethod {
  private:
   /// One sub-step from the row of a node.
   struct SubStep {
-    std::vector<double> linear;     ///< g_m / K at [a · reach + m − 1]
+    std::vector<double> linear;     ///< Σ_{m > j} g_m / K at [a · reach + j]
     std::vector<double> nonlinear;  ///< b / K
     double stride = 0;              ///< −K / c
     double time = 0;                ///< of the row, from that of the step
@@ -54,9 +54,11 @@ class CompositionStepper final : public StepMethod {
   /// False where an equation is not of the form above.
   bool assemble();
   SubStep read_sub_step(int s, bool from_below, bool& fits) const;
-  double sub_step(std::int64_t n, const SubStep&, const double* from, double* to, double* velocity) const;
-  double* newest_row() { return rows_.row(at_); }
-  const double* newest_row() const { return rows_.row(at_); }
+  double sub_step(std::int64_t n, const SubStep&, const double* from, const double* differences, double* to,
+                  double* next_differences, double* velocity) const;
+  void find_differences(const double* row, double* differences) const;
+  double* newest_row() { return newest_.row(0); }
+  const double* newest_row() const { return newest_.row(0); }
   double advance(const SubStep& first, bool looked_at);
   double* node(std::int64_t row, int s) { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
   const double* node(std::int64_t row, int s) const { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
@@ -77,10 +79,11 @@ class CompositionStepper final : public StepMethod {
   SubStep first_;  ///< from row 0, with nothing below
   RowBuffer positions_;
   // Each "row" has the rows of its d components one after the other.
-  RowBuffer rows_, velocity_;  ///< y_n and another, by turns; P/K of the sub-step before it
-  int at_ = 0;                 ///< which is y_n
-  RowBuffer slabs_;            ///< of the newest steps: S nodes each, made when a step is first looked at
-  RowBuffer saved_;            ///< y and P/K, now and then: a row that overflows is found again from there
+  RowBuffer newest_, velocity_;  ///< y_n; P/K of the sub-step before it
+  RowBuffer differences_;        ///< of y_n to its neighbours, and others, by turns
+  int at_ = 0;                   ///< which are those of y_n
+  RowBuffer slabs_;              ///< of the newest steps: S nodes each, made when a step is first looked at
+  RowBuffer saved_;              ///< y and P/K, now and then: a row that overflows is found again from there
   mutable RowBuffer scratch_;
   std::int64_t n_ = 0, saved_row_ = -1;
   int known_ = 0;  ///< newest slabs that are held

@@ -13,13 +13,15 @@ namespace delf {
 /// The rows of one sub-step, d of each, and its coefficients.
 struct SubStepRows {
   const RowLayout* layout;
-  const double* const* now;  ///< halos filled as far as pairs reach
-  const double* positions;   ///< x of each slot's site; null unless the density is placed
-  double t;                  ///< of the row `now`
-  double* const* velocity;   ///< replaced by the new one
-  double* const* next;       ///< another row than `now`
-  const double* linear;      ///< [a·reach + m − 1], of the sites i ± m
-  const double* nonlinear;   ///< [a]
+  const double* const* now;          ///< y
+  double* const* next;               ///< may be `now`
+  const double* const* differences;  ///< y(i + 1) − y(i), halos filled as far as pairs reach
+  double* const* next_differences;   ///< other rows than those; all but that of the last pack are found
+  double* const* velocity;           ///< replaced by the new one
+  const double* positions;           ///< x of each slot's site; null unless the density is placed
+  double t;                          ///< of the row `now`
+  const double* linear;              ///< [a·reach + j]: Σ_{m > j} of the coefficients g_m of the sites i ± m
+  const double* nonlinear;           ///< [a]
   double stride;
 };
 
@@ -40,10 +42,11 @@ class NodalKernel {
   virtual double step(const SubStepRows&) const = 0;
 };
 
-/// One sub-step of a row:
+/// One sub-step of a row, with D(i) = y(i + 1) − y(i):
 ///
-///     u += Σ_m linear(m) (y(i + m) − 2y(i) + y(i − m)) + nonlinear ∂ℓ/∂φ(y(i)),    next = y + stride u
+///     u += Σ_m g_m (y(i + m) − 2y(i) + y(i − m)) + nonlinear ∂ℓ/∂φ(y(i)),    next = y + stride u
 ///
+/// where the sum is Σ_j linear(j) (D(i + j) − D(i − 1 − j)): half the operations, and still differences only.
 /// Returns √Σ next²: infinite or NaN where squares overflow.
 template <int reach, Density D>
 [[gnu::flatten]] double sub_step_loop(const D& given_density, const SubStepRows& given) {
@@ -54,13 +57,16 @@ template <int reach, Density D>
   const double stride = given.stride;
   const double* const positions = given.positions;
   const Pack t(given.t);
-  std::array<const double*, d> now;
-  std::array<double*, d> velocity, next;
+  std::array<const double*, d> now, differences;
+  std::array<double*, d> next, velocity, next_differences;
   std::array<double, static_cast<std::size_t>(d * reach)> linear;
   std::array<double, d> nonlinear;
+  std::array<Pack, d> before;
   for (int a = 0; a < d; ++a) {
-    now[a] = given.now[a], velocity[a] = given.velocity[a], next[a] = given.next[a], nonlinear[a] = given.nonlinear[a];
-    for (int m = 0; m < reach; ++m) linear[a * reach + m] = given.linear[a * reach + m];
+    now[a] = given.now[a], next[a] = given.next[a], velocity[a] = given.velocity[a], nonlinear[a] = given.nonlinear[a];
+    differences[a] = given.differences[a], next_differences[a] = given.next_differences[a];
+    for (int j = 0; j < reach; ++j) linear[a * reach + j] = given.linear[a * reach + j];
+    before[a] = Pack(0.0);
   }
   const std::ptrdiff_t begin = given.layout->at(0), end = given.layout->at(given.layout->packs());
   Pack squares(0.0);
@@ -77,17 +83,18 @@ template <int reach, Density D>
     }
     const Number l = density(jet);
     for (int a = 0; a < d; ++a) {
-      const Pack here = Pack::load(now[a] + at);
       // Two sums: one would wait for itself.
-      Pack odd = Pack::load(velocity[a] + at), even(0.0);
-      for (int m = 1; m <= reach; ++m) {
-        const Pack second = (Pack::load(now[a] + at + m * lanes) - here) - (here - Pack::load(now[a] + at - m * lanes));
-        (m % 2 == 1 ? odd : even) += linear[a * reach + m - 1] * second;
-      }
-      const Pack u = (odd + nonlinear[a] * l.derivative(a)) + even, y = here + stride * u;
+      Pack even = Pack::load(velocity[a] + at), odd(0.0);
+      for (int j = 0; j < reach; ++j)
+        (j % 2 == 0 ? even : odd) += linear[a * reach + j] * (Pack::load(differences[a] + at + j * lanes) -
+                                                              Pack::load(differences[a] + at - (j + 1) * lanes));
+      const Pack u = (even + nonlinear[a] * l.derivative(a)) + odd, y = Pack::load(now[a] + at) + stride * u;
       squares += y * y;
       u.store(velocity[a] + at);
       y.store(next[a] + at);
+      // The first of these lies in the halo, which is filled afterwards.
+      (y - before[a]).store(next_differences[a] + at - lanes);
+      before[a] = y;
     }
   }
   return std::sqrt(sum(squares));

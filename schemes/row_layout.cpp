@@ -24,6 +24,29 @@ RowLayout::RowLayout(const Lattice& lattice, int halo, int aligned)
         halo_copies_.push_back({to, slot(std::clamp(i, 0, sites_ - 1)), 0});
       }
     }
+  if (lattice.is_circle()) find_halo_packs();
+}
+
+/// Arc l overlaps the one before it by b_l sites: beside its first pack stands pack M − b_l − 1 of that arc, beside its last
+/// one pack b_{l+1} of the next. Where more than two b_l occur, or arcs are shorter than halos, slots are copied one by one.
+void RowLayout::find_halo_packs() {
+  int overlap[lanes];
+  for (int l = 0; l < lanes; ++l)
+    overlap[l] = packs_ - (start(l) - (l == 0 ? start(lanes - 1) - sites_ : start(l - 1)));
+  const auto [least, most] = std::ranges::minmax(overlap);
+  by_packs_ = std::ranges::all_of(overlap, [&](int b) { return b == least || b == most; }) && least >= 0 &&
+              most + halo_ <= packs_;
+  if (!by_packs_) return;
+  const auto offset = [this](int v) { return static_cast<int>(at(v)); };
+  for (int e = 1; e <= halo_; ++e)
+    before_.push_back({offset(-e), offset(packs_ - least - e), offset(packs_ - most - e)});
+  for (int e = 0; e < halo_; ++e) after_.push_back({offset(packs_ + e), offset(least + e), offset(most + e)});
+  for (int l = 0; l < lanes; ++l) {
+    far_before_.v[l] = overlap[(l + 1) % lanes] == most ? 1 : 0;
+    far_after_.v[l] = overlap[l] == most ? 1 : 0;
+  }
+  turns_before_.v[0] = -1;
+  turns_after_.v[lanes - 1] = 1;
 }
 
 std::vector<int> RowLayout::slots_of(int i) const {

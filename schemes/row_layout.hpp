@@ -48,10 +48,16 @@ class RowLayout {
   /// Fills halo slots from the sites they repeat, adding `turn` for every time round the circle; on an interval the
   /// slots beyond a wall repeat the wall, so that they stay finite.
   void fill_halo(double* row, double turn = 0) const {
-    if (turn == 0)
+    if (by_packs_) {
+      for (const HaloPack& h : before_)
+        turned(from_lane_below(either(row, h, far_before_)), turn, turns_before_).store(row + h.to);
+      for (const HaloPack& h : after_)
+        turned(from_lane_above(either(row, h, far_after_)), turn, turns_after_).store(row + h.to);
+    } else if (turn == 0) {
       for (const Copy& c : halo_copies_) row[c.to] = row[c.from];
-    else
+    } else {
       for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * turn;
+    }
   }
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {
@@ -69,9 +75,24 @@ class RowLayout {
   struct Copy {
     int to, from, turns;
   };
+  /// A pack of a halo is a pack of the row, moved by a lane: the packs differ where arcs overlap by one site more.
+  struct HaloPack {
+    int to, near, far;
+  };
+  static Pack either(const double* row, const HaloPack& h, Pack is_far) {
+    const Pack near = Pack::load(row + h.near);
+    return h.far == h.near ? near : Pack{is_far.v != 0 ? Pack::load(row + h.far).v : near.v};
+  }
+  static Pack turned(Pack y, double turn, Pack turns) { return turn == 0 ? y : y + turn * turns; }
+  void find_halo_packs();
+
   int sites_, packs_, halo_;
   std::vector<int> start_;
   std::vector<Copy> halo_copies_, overlap_copies_;
+  bool by_packs_ = false;
+  std::vector<HaloPack> before_, after_;
+  Pack far_before_ = 0.0, far_after_ = 0.0;  ///< 1 in the lanes that read `far`, before they are moved
+  Pack turns_before_ = 0.0, turns_after_ = 0.0;
 };
 
 /// Zeroed memory for rows, aligned to whole packs.
