@@ -167,26 +167,47 @@ double CompositionStepper::advance(const SubStep& first, bool looked_at) {
   return largest;
 }
 
-void CompositionStepper::start(const std::vector<std::vector<double>>&) {
-  throw BadInput("initial.start",
-                 "the rows between the sub-steps of a composition follow from row 0 and its momenta alone; use "
-                 "initial.start = legendre and a state that knows its velocity");
+std::vector<int> CompositionStepper::behind() const {
+  std::vector<int> rows(static_cast<std::size_t>(S_ * d_), 1);
+  std::fill_n(rows.begin(), d_, 0);
+  return rows;
+}
+
+/// The fields of a section, by lanes.
+void CompositionStepper::set(RowBuffer& rows, const std::vector<double>& section, double turn) {
+  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
+  for (int a = 0; a < d_; ++a) {
+    for (std::size_t i = 0; i < site.size(); ++i)
+      site[i] = section[i * static_cast<std::size_t>(system_.components()) + static_cast<std::size_t>(a)];
+    if (std::ranges::any_of(site, [](double x) { return overflowed(std::abs(x)); }))
+      throw NotFinite("the rows of the start are not finite");
+    layout_.scatter(site, rows.row(0) + static_cast<std::size_t>(a) * size_, turn);
+  }
+}
+
+void CompositionStepper::start(const std::vector<std::vector<double>>& rows) {
+  if (S_ > 1)
+    throw BadInput("initial.start",
+                   "the rows between the sub-steps of a composition follow from row 0 and its momenta alone; use "
+                   "initial.start = legendre and a state that knows its velocity");
+  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  if (!slabs_.rows()) slabs_ = RowBuffer(doubles, slabs_held * S_);
+  n_ = static_cast<std::int64_t>(rows.size()) - 1;
+  set(newest_, rows[rows.size() - 2], options_.turn);
+  std::copy_n(newest_row(), doubles, node(n_ - 1, 0));
+  set(newest_, rows.back(), options_.turn);
+  // u = (y₁ − y₀)/stride
+  for (std::size_t at = 0; at < doubles; ++at)
+    velocity_.row(0)[at] = (newest_row()[at] - node(n_ - 1, 0)[at]) / steps_[0].stride;
+  find_differences(newest_row(), differences_.row(at_));
+  known_ = 1;
+  save();
 }
 
 void CompositionStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
-  const int C = system_.components();
-  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
-  for (const auto* given : {&row0, &momenta})
-    for (int a = 0; a < d_; ++a) {
-      for (std::size_t i = 0; i < site.size(); ++i)
-        site[i] = (*given)[i * static_cast<std::size_t>(C) + static_cast<std::size_t>(a)];
-      if (std::ranges::any_of(site, [](double x) { return overflowed(std::abs(x)); }))
-        throw NotFinite("row 0 of the start is not finite");
-      if (given == &momenta)
-        for (double& p : site) p /= scale_;
-      layout_.scatter(site, (given == &row0 ? newest_row() : velocity_.row(0)) + static_cast<std::size_t>(a) * size_,
-                      given == &row0 ? options_.turn : 0.0);
-    }
+  set(newest_, row0, options_.turn);
+  set(velocity_, momenta, 0);
+  for (std::size_t at = 0; at < static_cast<std::size_t>(d_) * size_; ++at) velocity_.row(0)[at] /= scale_;
   n_ = 0;
   known_ = 0;
   const FlushDenormals guard;

@@ -24,12 +24,13 @@ class CompositionStepper final : public StepMethod {
   static std::unique_ptr<CompositionStepper> make(const LatticeSystem&, const StepOptions&);
 
   int starting_rows() const override { return 2; }
-  /// Throws BadInput: the rows between the sub-steps follow from momenta alone.
+  /// Throws BadInput where there are rows between the sub-steps: they follow from momenta alone.
   void start(const std::vector<std::vector<double>>& rows) override;
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool looked_at) override;
 
   std::int64_t newest() const override { return n_; }
+  std::vector<int> behind() const override;
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   double residual() const override;
@@ -63,6 +64,7 @@ class CompositionStepper final : public StepMethod {
   double* node(std::int64_t row, int s) { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
   const double* node(std::int64_t row, int s) const { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
   void copy_components(const double* rows, int first_component, std::vector<double>& section) const;
+  void set(RowBuffer& rows, const std::vector<double>& section, double turn);
   void save();
   [[noreturn]] void fail();
   void require(int slabs) const;

@@ -27,6 +27,7 @@ class SlabStepper final : public StepMethod {
   void step(bool looked_at) override;
 
   std::int64_t newest() const override { return J_ - lag_; }
+  std::vector<int> behind() const override { return back_; }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   double residual() const override;

@@ -41,6 +41,7 @@ class StepMethod {
   virtual void step(bool looked_at) = 0;
 
   virtual std::int64_t newest() const = 0;
+  virtual std::vector<int> behind() const { return {}; }  ///< none: every component is known
   virtual std::vector<double> row(int back) const = 0;
   virtual Window window(int rows) const = 0;
   virtual double residual() const = 0;

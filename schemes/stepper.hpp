@@ -35,6 +35,12 @@ class Stepper {
   void step(bool looked_at = true) { method_->step(looked_at); }
 
   std::int64_t newest() const { return method_->newest(); }
+  /// Of each component, so many rows before the newest row of fields is its newest that is known.
+  std::vector<int> behind() const {
+    std::vector<int> rows = method_->behind();
+    rows.resize(components_, 0);
+    return rows;
+  }
   /// The newest row, or one before it: fields at that row, multipliers and inner nodes as they were found with it.
   std::vector<double> row(int back) const { return method_->row(back); }
   /// The newest rows, every component at its own row: for checks.
@@ -58,7 +64,7 @@ class Stepper {
 
  private:
   std::unique_ptr<StepMethod> method_;
-  std::size_t row_size_;
+  std::size_t components_, row_size_;
 };
 
 }  // namespace delf

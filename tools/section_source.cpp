@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "schemes/evolution.hpp"
-#include "schemes/slab_extent.hpp"
 
 namespace delf {
 
@@ -16,10 +15,8 @@ std::vector<double> fields_of(const LatticeSystem& system, const std::vector<dou
   return fields;
 }
 
-ComputedRows::ComputedRows(Simulation& simulation, std::int64_t rows) : simulation_(simulation), rows_(rows) {
-  const Evolution& evolution = simulation.evolution();
-  behind_ = std::ranges::max(slab_extent(evolution.system(), evolution.plan()).behind);
-}
+ComputedRows::ComputedRows(Simulation& simulation, std::int64_t rows)
+    : simulation_(simulation), rows_(rows), behind_(std::ranges::max(simulation.evolution().stepper().behind())) {}
 
 std::optional<std::vector<double>> ComputedRows::next() {
   if (next_ == rows_) return std::nullopt;

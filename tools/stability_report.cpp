@@ -45,13 +45,13 @@ std::string limits(const StabilityFindings& f) {
                     : !l.left_out.empty() ? "left out"
                                           : "ok",
                     remark(l)});
-  return "\n" + text_table({{"stability limit of"},
-                            {"mh", true},
-                            {"h/k, theory", true},
-                            {"by running", true},
-                            {"verdict"},
-                            {"ghosts and remarks", false, 0, true}},
-                           rows, widest_line);
+  return fmt::format("\n{}", text_table({{"stability limit of"},
+                                         {"mh", true},
+                                         {"h/k, theory", true},
+                                         {"by running", true},
+                                         {"verdict"},
+                                         {"ghosts and remarks", false, 0, true}},
+                                        rows, widest_line));
 }
 
 std::string cell(const CornerResult& r) {

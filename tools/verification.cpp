@@ -11,7 +11,6 @@
 #include <set>
 
 #include "schemes/field_theory.hpp"
-#include "schemes/slab_extent.hpp"
 #include "schemes/verify/derivatives.hpp"
 #include "schemes/verify/newton_order.hpp"
 #include "schemes/verify/wrong_sign.hpp"
@@ -78,7 +77,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
 }
 
 void Verification::open_files(const std::string& fields, const std::vector<std::string>& nearby) {
-  const auto behind = slab_extent(system_, plan_).behind;
+  const auto behind = simulation_.evolution().stepper().behind();
   fields_ = std::make_unique<RecordedSection>(fields, system_, behind, scene_.problem.time_step, "--fields");
   if (const auto winding = fields_->winding(); winding && system_.lattice().is_circle())
     turn_ = 2 * std::numbers::pi * *winding;
@@ -145,7 +144,7 @@ std::vector<LinearSymmetry> Verification::symmetries() const {
 
 // Read beside the rows themselves; how many of them are held is known by now.
 void Verification::open_nearby(const std::string& fields, const std::vector<std::string>& nearby) {
-  const auto behind = slab_extent(system_, plan_).behind;
+  const auto behind = simulation_.evolution().stepper().behind();
   for (const std::string& file : nearby) {
     // A difference that is zero, or the same twice, keeps the form whatever the rows are.
     for (std::size_t n = 0; n <= nearby_.size(); ++n)

@@ -137,7 +137,9 @@ TEST_CASE("verify passes on intervals, points, elements, moving meshes and const
                "kink --theory.fibre=S1 --lattice.sites=65 --run.steps=20",
                "kink-train --lattice.length=30 --lattice.sites=60 --boundary.winding=3 --run.steps=20",
                "kepler --run.until=2", "pendulum --run.until=3 --lattice.stencil=vertex", "r-adaptive --run.steps=20",
-               "spacetime-element --lattice.sites=20 --run.steps=10", "wave-map --lattice.sites=12 --run.steps=12");
+               "spacetime-element --lattice.sites=20 --run.steps=10",
+               "breather --scheme.method=composition --lattice.sites=40 --run.steps=12",
+               "kink --scheme.method=composition --scheme.order=2 --lattice.sites=40 --run.steps=12", "wave-map --lattice.sites=12 --run.steps=12");
   CHECK(verified(folder, arguments, 0).failed().empty());
 }
 
@@ -192,6 +194,15 @@ TEST_CASE("schemes that come from no Lagrangian fail the form formula on every k
   CHECK_FALSE(v.has("local identity of the forms"));
   // What damps knows the direction of time; the two that conserve an energy do not.
   CHECK(v.check("time reversal")["passed"] == (method != "damped"));
+}
+
+TEST_CASE("faults planted in a composition are found, between its sub-steps too") {
+  const Folder folder;
+  const std::string composition = "breather --scheme.method=composition --lattice.sites=40 --run.steps=12 ";
+  CHECK(all_forms(verified(folder, composition + "--verify.fault=variation", 1).failed()));
+  CHECK(verified(folder, composition + "--verify.fault=field", 1).failed() ==
+        std::vector<std::string>{"field equations"});
+  CHECK(verified(folder, composition + "--verify.fault=sign", 1).check("derivatives: gradient")["passed"] == false);
 }
 
 TEST_CASE("a planted wrong variation fails the form formula alone, and is located") {
@@ -265,6 +276,7 @@ TEST_CASE("recorded runs of all kinds of schemes are verified from their files")
   const auto scene = GENERATE(as<std::string>(), "collision --lattice.sites=51",
                               "collision --lattice.sites=50 --lattice.stencil=hexagon", "wave-map --lattice.sites=12",
                               "r-adaptive", "spacetime-element --lattice.sites=20", "kepler",
+                              "breather --scheme.method=composition --lattice.sites=40",
                               "kink --theory.fibre=S1 --lattice.sites=51", "interval --lattice.sites=33");
   const std::string arguments = scene + " --run.steps=20";
   const Ran ran = delf_program(folder, "run " + arguments + " --output.every=1 --output.figures=off --out run");

@@ -131,7 +131,7 @@ TEST_CASE("without an exact solution runs are compared with a finer one, and com
   const Json json = compared(folder,
                              "collision --run.until=4 --output.figures=off "
                              "--workprecision.schemes=triangle-vertex --workprecision.courants=0.5 "
-                             "--workprecision.sites=64,128 --workprecision.repeats=1 --workprecision.budget=2");
+                             "--workprecision.sites=64,128 --workprecision.repeats=1 --workprecision.budget=100");
   CHECK(json["reference"] != "the exact solution");
   CHECK(json["reference_error"] > 0);
   REQUIRE(json["runs"].size() == 2);
@@ -148,7 +148,7 @@ TEST_CASE("a ladder that workprecision chooses ends at the accuracy that is aske
   folder.write("small.ini", scene());
   const Json json = compared(folder,
                              "small.ini --workprecision.schemes=triangle-vertex --workprecision.repeats=1 "
-                             "--workprecision.accuracies=1e-2,1e-4 --workprecision.budget=5");
+                             "--workprecision.accuracies=1e-2,1e-4 --workprecision.budget=100");
   REQUIRE(json["cheapest"].size() == 2);
   REQUIRE_FALSE(json["runs"].empty());
   CHECK(json["cheapest"][1]["accuracy"] == 1e-4);
@@ -259,7 +259,7 @@ TEST_CASE("peers are in the same run as the engine, and the tables compare them"
   const Ran other = delf_program(folder,
                                  "workprecision interval --run.until=1 --workprecision.repeats=1 --out other "
                                  "--workprecision.schemes=rectangle-symmetric,peers --workprecision.sites=65 "
-                                 "--workprecision.budget=2 --output.figures=off");
+                                 "--workprecision.budget=100 --output.figures=off");
   INFO(other.err);
   CHECK(other.code == 0);
   CHECK(Json::parse(read(folder / "other/workprecision.json"))["runs"].size() == 1);
