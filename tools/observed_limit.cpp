@@ -141,6 +141,19 @@ void compare(Limit& limit, const LimitRequest& request) {
   }
 }
 
+/// From random rows; where rows are not enough (a composition), from the first and the rates that lead to the second.
+void start_from_noise(Simulation& simulation, const Problem& problem, std::uint64_t seed) {
+  const auto rows = random_rows(simulation, problem.lattice.sites(), seed);
+  try {
+    simulation.start(rows);
+  } catch (const BadInput& refused) {
+    if (refused.key() != "initial.start" || rows.size() < 2) throw;
+    std::vector<double> rates(rows[1]);
+    for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = (rates[i] - rows[0][i]) / problem.time_step;
+    simulation.start_legendre(rows[0], rates);
+  }
+}
+
 }  // namespace
 
 const char* to_string(Growth growth) {
@@ -161,7 +174,7 @@ ObservedGrowth observe_growth(const Problem& problem, int steps, std::uint64_t s
   const double infinite = std::numeric_limits<double>::infinity();
   try {
     Simulation simulation(problem);
-    simulation.start(random_rows(simulation, problem.lattice.sites(), seed));
+    start_from_noise(simulation, problem, seed);
     std::vector<double> row(static_cast<std::size_t>(problem.lattice.sites() * simulation.count(Role::field)));
     const int stride = std::max(1, steps / 256);
     double second = 0, fourth = 0;

@@ -78,7 +78,7 @@ TEST_CASE("limits found by the symbol are those that are known, to 1e-6") {
 }
 
 TEST_CASE("limits found by running are those of the symbol, to one in a hundred") {
-  const std::string name = GENERATE("triangle", "triangle-vertex", "guo", "hexagon", "rectangle");
+  const std::string name = GENERATE("triangle", "triangle-vertex", "guo", "hexagon", "rectangle", "composition (4,4)");
   INFO(name);
   const Limit limit = find_limit(name, scheme(name), 1, quick());
   INFO(limit.theory << " " << limit.observed << " " << limit.left_out);
