@@ -37,7 +37,8 @@ using JetFor = std::conditional_t<is_placed<D>(), PlacedJet<T, components_of<D>(
 ///
 /// If this concept fails: the operator must be const, take `const auto& j`, use only j.phi, j.phi_t, j.phi_x (arrays
 /// if it declares `static constexpr int components = n`; also j.t, j.x if it declares `placed = true`), arithmetic and
-/// sin, cos, cosm1 (cos x − 1), tan, exp, log, sqrt, sinh, cosh, tanh, pow(x, double), and return a number of the kind that it was given.
+/// sin, cos, cosm1 (cos x − 1), tan, exp, log, sqrt, sinh, cosh, tanh, pow(x, double), and return a number of the kind
+/// that it was given.
 template <class D>
 concept Density = requires(const D& density, const JetFor<double, D>& numbers, const JetFor<Dual<double, 3>, D>& duals,
                            const JetFor<Dual<Pack, 1>, D>& packs) {

@@ -27,8 +27,8 @@ struct Element {
   StencilPattern pattern;
   std::vector<ElementPoint> points;
   std::vector<NodePosition> nodes;  ///< of the unit cell
-  /// The quadrature of the lower side, where a step starts: weights and φ, φ_x of the vertices there (time and node's time
-  /// 0), in their order. φ_t has the weights of φ.
+  /// The quadrature of the lower side, where a step starts: weights and φ, φ_x of the vertices there (time and node's
+  /// time 0), in their order. φ_t has the weights of φ.
   std::vector<ElementPoint> lower_side = {};
 };
 

@@ -43,9 +43,10 @@ inline bool any_above(Pack x, double bound) {
 }
 
 /// f in the lanes beyond ±bound (or NaN); the others keep the bits of `near`, whatever their neighbours are. Out of
-/// line: it is rarely wanted, and a library call inlined into a kernel makes that spill registers.
+/// line: it is rarely wanted, and a library call inlined into a kernel makes that spill registers. Const, so that it goes
+/// where its value is not wanted.
 template <class Function>
-[[gnu::noinline]] Pack with_far_lanes(Pack x, Pack near, double bound, Function f) {
+[[gnu::noinline, gnu::const]] Pack with_far_lanes(Pack x, Pack near, double bound, Function f) {
   for (int l = 0; l < lanes; ++l)
     if (!(std::abs(x[l]) <= bound)) near.v[l] = f(x[l]);
   return near;
@@ -124,9 +125,16 @@ inline double cosm1(double x) {
   const double s = std::sin(0.5 * x);
   return -2 * (s * s);
 }
+/// Asks whether lanes are too far of x, not of x/2, as sin x does: a density's value and derivative ask once, and where
+/// the value is not wanted nothing of it is left.
 inline Pack cosm1(Pack x) {
-  const Pack s = sin(0.5 * x);
-  return -2.0 * (s * s);
+  const Pack half = 0.5 * x;
+  const Pack n = (half * detail::over_pi + detail::round_magic) - detail::round_magic;
+  const Pack s = detail::sine_near_zero((half - n * detail::pi_1) - n * detail::pi_2);
+  const Pack near = -2.0 * (s * s);
+  if (detail::any_above(abs(x), detail::largest_reduced)) [[unlikely]]
+    return detail::with_far_lanes(x, near, detail::largest_reduced, [](double y) { return cosm1(y); });
+  return near;
 }
 
 namespace detail {

@@ -25,15 +25,15 @@ inline std::vector<double> pair_weights(int p) {
   return weights;
 }
 
-/// One step of a splitting over wide stencils, anchored at a site i: nodes are the rows between the sub-steps. In sub-step s,
-/// of the length a_s h, with D_m = (y_{i+m} − y_i)/(mk),
+/// One step of a splitting over wide stencils, anchored at a site i: nodes are the rows between the sub-steps. In
+/// sub-step s, of the length a_s h, with D_m = (y_{i+m} − y_i)/(mk),
 ///
 ///     L = Σ_m m² β_m Σ ½ w ℓ(φ, φ_t, D_m)       over both ends of a pair and both rows of the sub-step,
 ///
 /// where φ, and φ_t = (y_above − y)/(a_s h), are those of the end and D_m that of the row: explicit where ℓ is
-/// ½φ_t² plus a function of φ and φ_x. The rows' weights w sum to a_s in a sub-step, and to the kick b at a row: leapfrog with
-/// its halves where both are alike. Weights may be negative: a sub-step goes back then, and its measure is negative.
-/// Any density: each of the pairs alone is the average of ℓ over its two ends.
+/// ½φ_t² plus a function of φ and φ_x. The rows' weights w sum to a_s in a sub-step, and to the kick b at a row:
+/// leapfrog with its halves where both are alike. Weights may be negative: a sub-step goes back then, and its measure
+/// is negative. Any density: each of the pairs alone is the average of ℓ over its two ends.
 ///
 ///     row 1      ○ ○ ○      p = 2. The unit cell has S nodes, one above the other: ● the vertex, ∘ between sub-steps.
 ///     nodes      ∘ ○ ○

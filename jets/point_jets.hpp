@@ -6,7 +6,7 @@
 namespace delf {
 
 // Mechanics: φ = q and φ_t = (q₂ − q₁)/h on two sites of a time lattice, φ_x = 0. Veselov's map is the scheme of any of
-// these: p = −∂L/∂q₁(q₁, q₂), and p′ = ∂L/∂q₂.                                     Marsden–Patrick–Shkoller, §1; Veselov
+// these: p = −∂L/∂q₁(q₁, q₂), and p′ = ∂L/∂q₂.                                    Marsden–Patrick–Shkoller, §1; Veselov
 
 /// q at the middle: the midpoint rule.
 inline constexpr struct Midpoint {

@@ -5,21 +5,21 @@
 
 namespace delf {
 
-/// One time step of length 1 in sub-steps: a sub-step s goes on by drifts[s], and between sub-steps, at its beginning and
-/// at its end the potential part of the action acts with the weights kicks[0 … S]. Palindromes; both sum to 1, and some
-/// weights go back in time. The kicks of two steps that meet are one.
+/// One time step of length 1 in sub-steps: a sub-step s goes on by drifts[s], and between sub-steps, at its beginning
+/// and at its end the potential part of the action acts with the weights kicks[0 … S]. Palindromes; both sum to 1, and
+/// some weights go back in time. The kicks of two steps that meet are one.
 struct Splitting {
   std::vector<double> kicks, drifts;
 };
 
 inline constexpr int highest_splitting_order = 8;
 
-/// The Splitting of order 2, 4, 6 or 8; without weights for an order that there is none for. Orders 4 and 6 count on an action
-/// whose φ_t enters as ½φ_t² alone.
+/// The Splitting of order 2, 4, 6 or 8; without weights for an order that there is none for. Orders 4 and 6 count on an
+/// action whose φ_t enters as ½φ_t² alone.
 ///
-/// Sources: 4 and 6, of 6 and 11 sub-steps: S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, Table 3, "SRKN b"
-/// (at the same cost their errors are some ten and thirty times smaller than those of compositions of leapfrog);
-/// 8, the composition of leapfrog steps of s17odr8a: W. Kahan, R.-C. Li, Math. Comp. 66 (1997) 1089.
+/// Sources: 4 and 6, of 6 and 11 sub-steps: S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, Table 3,
+/// "SRKN b" (at the same cost their errors are some ten and thirty times smaller than those of compositions of
+/// leapfrog); 8, the composition of leapfrog steps of s17odr8a: W. Kahan, R.-C. Li, Math. Comp. 66 (1997) 1089.
 inline Splitting splitting_of_order(int order) {
   // w_1 … w_n and a last one that brings the sum to 1, mirrored at it or after it
   const auto mirrored = [](std::vector<double> half, bool at_last) {

@@ -17,7 +17,9 @@ Lattice::Lattice(Space space, int sites, double length, Wall left, Wall right)
     throw BadInput("lattice.length", "lattice.length must be a positive, finite number");
 }
 
-Lattice Lattice::circle(int sites, double length) { return {Space::circle, sites, length, Wall::natural, Wall::natural}; }
+Lattice Lattice::circle(int sites, double length) {
+  return {Space::circle, sites, length, Wall::natural, Wall::natural};
+}
 
 Lattice Lattice::point() { return {Space::point, 1, 1, Wall::natural, Wall::natural}; }
 

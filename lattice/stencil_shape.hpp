@@ -57,8 +57,8 @@ struct StencilPattern {
   }
 };
 
-/// One of the numbers that a stencil reads: the component `component` of the section at a vertex of its pattern. Fields,
-/// the nodes inside an element and multipliers are all components.
+/// One of the numbers that a stencil reads: the component `component` of the section at a vertex of its pattern.
+/// Fields, the nodes inside an element and multipliers are all components.
 struct VertexValue {
   int vertex = 0, component = 0;
 

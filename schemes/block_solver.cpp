@@ -67,8 +67,8 @@ std::optional<Groups> grouped(const std::vector<int>& row_sites, const std::vect
   return groups;
 }
 
-/// A matrix of groups that are coupled with their neighbours alone, round a circle. It is cut into as many arcs as there
-/// are lanes by separators of a group or more; lane l eliminates arc l from its left end to its right one,
+/// A matrix of groups that are coupled with their neighbours alone, round a circle. It is cut into as many arcs as
+/// there are lanes by separators of a group or more; lane l eliminates arc l from its left end to its right one,
 ///
 ///     D_t ← D_t − L_t W_{t−1},    W_t = D_t⁻¹ U_t,    z_t = D_t⁻¹ (r_t − L_t z_{t−1}),    x_t = z_t − W_t x_{t+1},
 ///

@@ -8,9 +8,9 @@
 
 namespace delf {
 
-/// A square matrix of fixed structure, solved block by block: the strongly connected components of its graph, each after
-/// those that it needs. Small blocks are dense. Large ones are block tridiagonal by sites where they can be, round the
-/// circle or not, and sparse where not.
+/// A square matrix of fixed structure, solved block by block: the strongly connected components of its graph, each
+/// after those that it needs. Small blocks are dense. Large ones are block tridiagonal by sites where they can be,
+/// round the circle or not, and sparse where not.
 class BlockSolver {
  public:
   /// Where rows and columns belong on a line or a circle; nothing if that is not known.

@@ -106,39 +106,57 @@ CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) 
 }
 
 template <class Sink>
-Sink CirculantSolver::backward(const Entering& entering, const double* u, Sink sink) const {
+Sink CirculantSolver::backward(const Entering& entering, const double* u, Sink sink, int unseen) const {
   const RowLayout& layout = *layout_;
   Pack x = entering.x;
   const Pack entering_u = entering.u;
   const double q = q_;
-  int v = layout.packs() - 1;
-  for (; v >= near_; --v) {
+  const double* const powers = forward_.data();
+  const int near = near_;
+  const auto far_pack = [&](int v) __attribute__((always_inline)) {
     const std::ptrdiff_t at = layout.at(v);
     x = Pack::load(u + at) + q * x;
     sink(at, x);
-  }
-  const double* const powers = forward_.data();
-  for (; v >= 0; --v) {
+  };
+  const auto near_pack = [&](int v) __attribute__((always_inline)) {
     const std::ptrdiff_t at = layout.at(v);
     x = (Pack::load(u + at) + powers[v] * entering_u) + q * x;
     sink(at, x);
-  }
+  };
+  int v = layout.packs() - 1;
+  for (; unseen > 0; --unseen, --v) v < near ? near_pack(v) : far_pack(v);
+  sink.begin_looking();
+  for (; v >= near; --v) far_pack(v);
+  for (; v >= 0; --v) near_pack(v);
   return sink;
 }
+
+namespace {
+
+/// Stores x.
+struct Storing {
+  double* x;
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack value) const { value.store(x + at); }
+  void begin_looking() const {}
+};
+
+}  // namespace
 
 void CirculantSolver::solve(const double* const* rhs, double* const* w) const {
   RowSum scaled;
   scaled.add(0, 0, scale_);
   scaled.bind(rhs);
   double* const x = w[0];
-  backward(forward(scaled, x), x, [x](std::ptrdiff_t at, Pack value) { value.store(x + at); });
+  backward(forward(scaled, x), x, Storing{x}, 0);
 }
 
-double CirculantSolver::advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
-                                double* const* w) const {
+RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
+                                   double* const* w) const {
   // u stands where the new increment will, unless that is made from itself.
   double* const u = rows[0].v == rows[0].v_before ? w[0] : rows[0].v;
-  return backward(forward(*right_sides[0], u), u, IncrementPass(rows[0])).largest();
+  const Entering entering = forward(*right_sides[0], u);
+  return with_increment_pass<Order::descending>(
+      rows[0], [&](auto pass, int unseen) { return backward(entering, u, pass, unseen).result(); });
 }
 
 /// u stands in the new increment's row until it is replaced.
@@ -149,13 +167,13 @@ class CirculantSolver::Stream final : public RowStream {
   PackRange last_packs() const override;
   void begin() override;
   int advance(int end) override;
-  double largest() const override { return increment_.largest(); }
+  double largest() const override { return increment_.result().largest; }
 
  private:
   const CirculantSolver& solver_;
   const RowSum& right_side_;
   double* u_;
-  IncrementPass increment_;
+  IncrementPass<0, Order::descending> increment_;
   Pack last_ = 0.0, sums_ = 0.0, after_ = 0.0;
   int forward_ = 0, done_ = 0;
 };
@@ -200,7 +218,7 @@ int CirculantSolver::Stream::advance(int end) {
   const double q = solver_.q_;
   int v = end - 1;
   for (; v >= ready; --v) x = Pack::load(u_ + layout.at(v)) + q * x;
-  IncrementPass increment = increment_;
+  auto increment = increment_;
   for (; v >= done_; --v) {
     x = Pack::load(u_ + layout.at(v)) + q * x;
     increment(layout.at(v), x);

@@ -18,8 +18,8 @@ class CirculantSolver final : public LinearSolver {
  public:
   CirculantSolver(const RowLayout&, double centre, double side);
   void solve(const double* const* rhs, double* const* w) const override;
-  double advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
-                 double* const* w) const override;
+  RowChange advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
+                    double* const* w) const override;
   double right_side_scale(int) const override { return scale_; }
   bool needs_work_rows() const override { return false; }
 
@@ -37,8 +37,9 @@ class CirculantSolver final : public LinearSolver {
   };
   Entering entering(const double* u, Pack sums) const;
   Entering forward(const RowSum& right_side, double* u) const;
+  /// `unseen`: after so many packs, sink.begin_looking().
   template <class Sink>
-  Sink backward(const Entering&, const double* u, Sink) const;
+  Sink backward(const Entering&, const double* u, Sink, int unseen) const;
   void build_closure();
 
   const RowLayout* layout_;

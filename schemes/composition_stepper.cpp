@@ -108,6 +108,8 @@ bool CompositionStepper::assemble() {
   newest_ = RowBuffer(static_cast<std::size_t>(d_) * size_);
   differences_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
   velocity_ = RowBuffer(static_cast<std::size_t>(d_) * size_);
+  slabs_ = RowBuffer(static_cast<std::size_t>(d_) * size_, slabs_held * S_);
+  saved_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
   if (system_.families()[0]->is_placed()) {
     std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
     for (int i = 0; i < layout_.sites(); ++i) site[static_cast<std::size_t>(i)] = system_.lattice().position(i);
@@ -153,10 +155,7 @@ void CompositionStepper::find_differences(const double* row, double* differences
 double CompositionStepper::advance(const SubStep& first, bool looked_at) {
   const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
   double* const newest = newest_row();
-  if (looked_at) {
-    if (!slabs_.rows()) slabs_ = RowBuffer(doubles, slabs_held * S_);
-    std::copy_n(newest, doubles, node(n_, 0));
-  }
+  if (looked_at) std::copy_n(newest, doubles, node(n_, 0));
   double largest = 0;
   for (int s = 0; s < S_; ++s, at_ = 1 - at_) {
     const double* const from = looked_at ? node(n_, s) : newest;
@@ -191,7 +190,6 @@ void CompositionStepper::start(const std::vector<std::vector<double>>& rows) {
                    "the rows between the sub-steps of a composition follow from row 0 and its momenta alone; use "
                    "initial.start = legendre and a state that knows its velocity");
   const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
-  if (!slabs_.rows()) slabs_ = RowBuffer(doubles, slabs_held * S_);
   n_ = static_cast<std::int64_t>(rows.size()) - 1;
   set(newest_, rows[rows.size() - 2], options_.turn);
   std::copy_n(newest_row(), doubles, node(n_ - 1, 0));
@@ -231,7 +229,6 @@ void CompositionStepper::step(bool looked_at) {
 
 void CompositionStepper::save() {
   const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
-  if (!saved_.rows()) saved_ = RowBuffer(doubles, 2);
   std::copy_n(newest_row(), doubles, saved_.row(0));
   std::copy_n(velocity_.row(0), doubles, saved_.row(1));
   saved_row_ = n_;
@@ -305,15 +302,19 @@ double CompositionStepper::residual() const {
   const int first = known_ >= 2 ? 0 : 1;
   if (known_ == 0) return std::numeric_limits<double>::quiet_NaN();
   const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
-  if (!scratch_.rows()) scratch_ = RowBuffer(doubles, 4);
+  if (!scratch_.rows() && scratch_rows() > 0) scratch_ = RowBuffer(doubles, scratch_rows());
+  // The next step that is looked at writes over these.
+  const auto room = [&](int r) {
+    return r < S_ ? slabs_.row(static_cast<int>(n_ % slabs_held) * S_ + r) : scratch_.row(r - S_);
+  };
+  double *const w = room(0), *const differences = room(1), *const to = room(2);
   double worst = 0, size = 0;
   for (int s = first; s < S_; ++s) {
     const double* const before = s > 0 ? node(n_ - 1, s - 1) : node(n_ - 2, S_ - 1);
     const double *const here = node(n_ - 1, s), *const next = s + 1 < S_ ? node(n_ - 1, s + 1) : newest_row();
-    double* const w = scratch_.row(0);
     std::fill_n(w, doubles, 0.0);
-    find_differences(here, scratch_.row(1));
-    sub_step(n_ - 1, steps_[static_cast<std::size_t>(s)], here, scratch_.row(1), scratch_.row(2), scratch_.row(3), w);
+    find_differences(here, differences);
+    sub_step(n_ - 1, steps_[static_cast<std::size_t>(s)], here, differences, to, differences_.row(1 - at_), w);
     const double below = steps_[static_cast<std::size_t>(s > 0 ? s - 1 : S_ - 1)].stride,
                  above = steps_[static_cast<std::size_t>(s)].stride;
     for (int a = 0; a < d_; ++a)
@@ -332,11 +333,15 @@ std::size_t CompositionStepper::bytes() const {
   return newest_.bytes() + velocity_.bytes() + differences_.bytes() + slabs_.bytes() + saved_.bytes() +
          scratch_.bytes() + positions_.bytes() + layout_.bytes();
 }
-std::string CompositionStepper::memory_report() const {
+std::size_t CompositionStepper::bytes_to_come(bool residual) const {
+  if (!residual || scratch_.rows()) return 0;
+  return static_cast<std::size_t>(scratch_rows() * d_) * size_ * sizeof(double);
+}
+std::string CompositionStepper::memory_report(bool residual) const {
   return fmt::format(
       "rows of the field {} B, differences {} B, momenta {} B, rows between sub-steps {} B, work space {} B",
       newest_.bytes(), differences_.bytes(), velocity_.bytes(), slabs_.bytes(),
-      saved_.bytes() + scratch_.bytes() + positions_.bytes() + layout_.bytes());
+      saved_.bytes() + scratch_.bytes() + positions_.bytes() + layout_.bytes() + bytes_to_come(residual));
 }
 
 }  // namespace delf

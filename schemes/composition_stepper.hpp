@@ -40,7 +40,8 @@ class CompositionStepper final : public StepMethod {
   std::string solver_name() const override { return "explicit sub-steps, row by row"; }
   bool matrix_free() const override { return true; }
   std::size_t bytes() const override;
-  std::string memory_report() const override;
+  std::size_t bytes_to_come(bool residual) const override;
+  std::string memory_report(bool residual) const override;
 
  private:
   /// One sub-step from the row of a node.
@@ -67,6 +68,8 @@ class CompositionStepper final : public StepMethod {
   void set(RowBuffer& rows, const std::vector<double>& section, double turn);
   void save();
   [[noreturn]] void fail();
+  /// Of the rows that the residual is worked out in: the others are those of a slab that is not held any more.
+  int scratch_rows() const { return S_ < 3 ? 3 - S_ : 0; }
   void require(int slabs) const;
 
   static constexpr int slabs_held = 4;
@@ -82,11 +85,11 @@ class CompositionStepper final : public StepMethod {
   RowBuffer positions_;
   // Each "row" has the rows of its d components one after the other.
   RowBuffer newest_, velocity_;  ///< y_n; P/K of the sub-step before it
-  RowBuffer differences_;        ///< of y_n to its neighbours, and others, by turns
+  mutable RowBuffer differences_;  ///< of y_n to its neighbours, and others, by turns
   int at_ = 0;                   ///< which are those of y_n
-  RowBuffer slabs_;              ///< of the newest steps: S nodes each, made when a step is first looked at
+  mutable RowBuffer slabs_;      ///< of the newest steps: S nodes each; the oldest is room to work in
   RowBuffer saved_;              ///< y and P/K, now and then: a row that overflows is found again from there
-  mutable RowBuffer scratch_;
+  mutable RowBuffer scratch_;    ///< of the residual, where S nodes are too few
   std::int64_t n_ = 0, saved_row_ = -1;
   int known_ = 0;  ///< newest slabs that are held
 };

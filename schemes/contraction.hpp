@@ -9,8 +9,8 @@
 
 namespace delf {
 
-/// What one more iteration of a step's fixed point would change, at most, for fields up to a size: found anew when fields
-/// outgrow the last one.
+/// What one more iteration of a step's fixed point would change, at most, for fields up to a size: found anew when
+/// fields outgrow the last one.
 class Contraction {
  public:
   Contraction(const LatticeSystem& system, const SolvePlan& plan)
@@ -19,9 +19,9 @@ class Contraction {
   /// From here on a step may have several roots.
   bool is_stiff() const { return bound_ && bound_->nonlinear > 0.9 * bound_->dominance; }
 
-  /// The next change of y_{n+1} over the last change of what the nonlinear part looks at, whose weights at the unknown row
-  /// sum to `weight`; four times the worst case, and infinite where nothing is known. `gain` is the row equations' own sharper
-  /// 1/dominance, if it is not zero.
+  /// The next change of y_{n+1} over the last change of what the nonlinear part looks at, whose weights at the unknown
+  /// row sum to `weight`; four times the worst case, and infinite where nothing is known. `gain` is the row equations'
+  /// own sharper 1/dominance, if it is not zero.
   double next_change(double largest, double weight, double gain) {
     if (!bound_) return std::numeric_limits<double>::infinity();
     if (largest > amplitude_ && largest < 1e100) {

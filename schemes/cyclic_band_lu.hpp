@@ -8,8 +8,8 @@
 
 namespace delf {
 
-/// LU of a band matrix, with corners when space is a circle: the last m unknowns are a border, so that what is left is a
-/// plain band, factored without pivoting.
+/// LU of a band matrix, with corners when space is a circle: the last m unknowns are a border, so that what is left is
+/// a plain band, factored without pivoting.
 ///
 ///     ( B  F ) (x)   (r)          Z = B⁻¹F,  S = H − G Z
 ///     ( G  H ) (z) = (s)          z = S⁻¹(s − G B⁻¹r),  x = B⁻¹r − Z z

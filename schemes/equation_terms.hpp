@@ -55,8 +55,8 @@ struct AssembledEquations {
   bool correction_form = false;  ///< no linear part: `output` is the whole residual, and w is corrected by A⁻¹E
 };
 
-/// The unknown row enters linearly, with coefficients that the matrix holds: one solve is a step. Coefficients that depend
-/// on x and t are not held, and are iterated on.
+/// The unknown row enters linearly, with coefficients that the matrix holds: one solve is a step. Coefficients that
+/// depend on x and t are not held, and are iterated on.
 bool solved_at_once(const LatticeSystem&, const SolvePlan&);
 
 /// Whole rows can be stepped: every unknown of a slab lies in its row, and every family reads d fields at each of its

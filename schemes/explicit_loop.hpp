@@ -6,6 +6,7 @@
 
 #include "jets/density.hpp"
 #include "schemes/row_kernel.hpp"
+#include "schemes/value_jet.hpp"
 
 namespace delf {
 
@@ -22,12 +23,11 @@ inline constexpr auto neighbours_within = [] {
 ///
 ///     w = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)),    v += w,    y += stride v
 ///
-/// over the neighbours s within `reach`. What they were is carried along in registers, so that the new row may be written
-/// over the old one. Returns √Σy² of the new values: infinite or NaN where squares overflow.
+/// over the neighbours s within `reach`. What they were is carried along in registers, so that the new row may be
+/// written over the old one. Returns √Σy² of the new values: infinite or NaN where squares overflow.
 template <int reach, Density D>
 [[gnu::flatten]] double explicit_loop(const D& given_density, const ExplicitRows& given, PackRange packs) {
   constexpr int d = components_of<D>(), count = 2 * reach;
-  using Number = Dual<Pack, d>;
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
   const D density = given_density;
   const double stride = given.stride;
@@ -56,19 +56,12 @@ template <int reach, Density D>
   Pack squares(0.0);
   const auto advance = [&](int v, const auto& incoming) __attribute__((always_inline)) {
     const std::ptrdiff_t at = origin + static_cast<std::ptrdiff_t>(v) * lanes;
-    JetFor<Number, D> jet;
-    for (int a = 0; a < d; ++a) {
+    const auto shifted = [&](int a) __attribute__((always_inline)) {
       for (int s = 0; s < 2 * reach; ++s) y[a][s] = y[a][s + 1];
       y[a][2 * reach] = Pack::load(incoming(a));
-      component(jet.phi, a) = Number::variable(y[a][reach], a);
-      component(jet.phi_t, a) = Number(0.0);
-      component(jet.phi_x, a) = Number(0.0);
-    }
-    if constexpr (delf::is_placed<D>()) {
-      jet.t = Number(t);
-      jet.x = Number(Pack::load(positions + at));
-    }
-    const Number l = density(jet);
+      return y[a][reach];
+    };
+    const Dual<Pack, d> l = density(value_jet<D>(shifted, t, positions + at));
     for (int a = 0; a < d; ++a) {
       const Pack here = y[a][reach];
       Pack w = nonlinear[a] * l.derivative(a);

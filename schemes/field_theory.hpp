@@ -56,7 +56,8 @@ void for_each_stencil(Function&& f) {
   f("six-tuple", "6 sites, φ on the middle edge, φ_x left and right of it; circle", six_tuple);
   f("nine-tuple", "9 sites, the symmetric rectangle in each of four cells; circle", nine_tuple);
   f("midpoint", "2 sites of a time lattice, q in the middle; lattice.space = point", midpoint);
-  f("trapezoidal", "2 sites of a time lattice, half at either end (Störmer–Verlet); lattice.space = point", trapezoidal);
+  f("trapezoidal", "2 sites of a time lattice, half at either end (Störmer–Verlet); lattice.space = point",
+    trapezoidal);
   f("vertex", "2 sites of a time lattice, q at the first (symplectic Euler); lattice.space = point", vertex);
 }
 
@@ -81,7 +82,8 @@ class TheoryOf final : public FieldTheory {
   }
 
   std::shared_ptr<const StencilFamily> constraint() const override {
-    if constexpr (Constrained<D>) return std::make_shared<LagrangianFamily<VertexConstraint<D>>>(VertexConstraint<D>{density_});
+    if constexpr (Constrained<D>)
+      return std::make_shared<LagrangianFamily<VertexConstraint<D>>>(VertexConstraint<D>{density_});
     else return nullptr;
   }
 

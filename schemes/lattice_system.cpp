@@ -57,8 +57,8 @@ LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr
   }
   if (names_.empty()) names_ = delf::fields(read);
   if (read > this->components())
-    throw BadInput("lattice.stencil", "lattice.stencil: a stencil reads component " + std::to_string(read - 1) + " of " +
-                                          std::to_string(this->components()) + "; name every component");
+    throw BadInput("lattice.stencil", "lattice.stencil: a stencil reads component " + std::to_string(read - 1) +
+                                          " of " + std::to_string(this->components()) + "; name every component");
   require_closing(lattice_, placement_);
 }
 

@@ -51,12 +51,12 @@ class ScalarSolver final : public LinearSolver {
       increment_ = right_side_.pass(layout_, {done_, end}, increment_);
       return done_ = end;
     }
-    double largest() const override { return increment_.largest(); }
+    double largest() const override { return increment_.result().largest; }
 
    private:
     const RowLayout& layout_;
     const RowSum& right_side_;
-    IncrementPass increment_;
+    IncrementPass<0, Order::ascending> increment_;
     int done_ = 0;
   };
 
@@ -68,9 +68,15 @@ class ScalarSolver final : public LinearSolver {
       (inverse_ * Pack::load(rhs[0] + at)).store(w[0] + at);
     }
   }
-  double advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
-                 double* const*) const override {
-    return right_sides[0]->pass(layout, layout.all(), IncrementPass(rows[0])).largest();
+  RowChange advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
+                    double* const*) const override {
+    return with_increment_pass<Order::ascending>(rows[0], [&](auto pass, int unseen) {
+      if (unseen > 0) {
+        pass = right_sides[0]->pass(layout, {0, unseen}, pass);
+        pass.begin_looking();
+      }
+      return right_sides[0]->pass(layout, {unseen, layout.packs()}, pass).result();
+    });
   }
   std::unique_ptr<RowStream> stream(const RowLayout& layout, const RowSum& right_side,
                                     const RowIncrement& rows) const override {
@@ -143,12 +149,12 @@ class ByComponent final : public LinearSolver {
   void solve(const double* const* rhs, double* const* w) const override {
     for (std::size_t a = 0; a < solvers_.size(); ++a) solvers_[a]->solve(rhs + a, w + a);
   }
-  double advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
-                 double* const* w) const override {
-    double largest = 0;
+  RowChange advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
+                    double* const* w) const override {
+    RowChange all;
     for (std::size_t a = 0; a < solvers_.size(); ++a)
-      largest = larger_or_nan(solvers_[a]->advance(layout, 1, right_sides + a, rows + a, w + a), largest);
-    return largest;
+      all.take(solvers_[a]->advance(layout, 1, right_sides + a, rows + a, w + a));
+    return all;
   }
   bool needs_work_rows() const override {
     return std::ranges::any_of(solvers_, [](const auto& s) { return s->needs_work_rows(); });
@@ -167,21 +173,26 @@ class ByComponent final : public LinearSolver {
 
 }  // namespace
 
-double LinearSolver::advance(const RowLayout& layout, int components, const RowSum* const* right_sides,
-                             const RowIncrement* rows, double* const* w) const {
+RowChange LinearSolver::advance(const RowLayout& layout, int components, const RowSum* const* right_sides,
+                                const RowIncrement* rows, double* const* w) const {
   for (int a = 0; a < components; ++a) {
     double* const to = w[a];
     right_sides[a]->pass(layout, layout.all(), [to](std::ptrdiff_t at, Pack sum) { sum.store(to + at); });
   }
   solve(w, w);
-  double largest = 0;
+  RowChange all;
   for (int a = 0; a < components; ++a) {
+    const double* const from = w[a];
     layout.copy_overlaps(w[a]);  // solvers need not fill them
-    IncrementPass pass(rows[a]);
-    for (int v = 0; v < layout.packs(); ++v) pass(layout.at(v), Pack::load(w[a] + layout.at(v)));
-    largest = larger_or_nan(pass.largest(), largest);
+    all.take(with_increment_pass<Order::ascending>(rows[a], [&layout, from](auto pass, int unseen) {
+      int v = 0;
+      for (; v < unseen; ++v) pass(layout.at(v), Pack::load(from + layout.at(v)));
+      pass.begin_looking();
+      for (; v < layout.packs(); ++v) pass(layout.at(v), Pack::load(from + layout.at(v)));
+      return pass.result();
+    }));
   }
-  return largest;
+  return all;
 }
 
 std::unique_ptr<LinearSolver> by_component(std::vector<std::unique_ptr<LinearSolver>> solvers) {

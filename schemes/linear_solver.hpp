@@ -33,9 +33,9 @@ class LinearSolver {
   /// w may be rhs. Halos of w are not filled.
   virtual void solve(const double* const* rhs, double* const* w) const = 0;
   /// The step itself: w from right sides that are summed on the way, and with it the new row. The right sides are those
-  /// of A w times right_side_scale(); `w` is work space. Returns the largest |y|. Overlaps and halos of the new row are the caller's business.
-  virtual double advance(const RowLayout&, int components, const RowSum* const* right_sides, const RowIncrement* rows,
-                         double* const* w) const;
+  /// of A w times right_side_scale(); `w` is work space. Overlaps and halos of the new row are the caller's business.
+  virtual RowChange advance(const RowLayout&, int components, const RowSum* const* right_sides,
+                            const RowIncrement* rows, double* const* w) const;
   virtual double right_side_scale(int /*component*/) const { return 1; }
   /// Whether advance() needs the rows w where the new increment is not made from itself.
   virtual bool needs_work_rows() const { return true; }

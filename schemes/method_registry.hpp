@@ -27,7 +27,8 @@ struct MethodEntry {
   const char* formula;
   /// Throws BadInput for what the method cannot be built for.
   SchemeParts (*build)(const FieldTheory&, const Problem&);
-  /// The schemes that its keys tell apart; null where there is one, of the method's name. `base.method` is the method's.
+  /// The schemes that its keys tell apart; null where there is one, of the method's name. `base.method` is the
+  /// method's.
   std::vector<NamedScheme> (*variants)(const Problem& base) = nullptr;
 };
 

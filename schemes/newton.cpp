@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "schemes/cyclic_band_lu.hpp"
 #include "schemes/row_kernel.hpp"
 
 namespace delf {
@@ -17,6 +18,11 @@ using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 
 double largest(const Vector& v) { return v.size() ? v.lpNorm<Eigen::Infinity>() : 0; }
+
+Vector as_vector(const std::vector<double>& row) {
+  return Eigen::Map<const Vector>(row.data(), static_cast<Eigen::Index>(row.size()));
+}
+std::vector<double> as_row(const Vector& v) { return {v.data(), v.data() + v.size()}; }
 
 /// The equations of one slab as a function of its unknown row.
 class SlabEquations {
@@ -37,55 +43,117 @@ class SlabEquations {
   Vector residual(const Vector& y) const {
     const Window window = make_(y);
     const int d = system_.components();
-    Vector E(y.size());
+    Vector E = Vector::Zero(y.size());
+    // A fixed wall keeps its value: y_wall − y = 0, of the sign that the equations' ∂E/∂y_{j+1} has.
     for (int i = 0; i < system_.lattice().sites(); ++i)
-      for (int a = 0; a < d; ++a) {
-        // A fixed wall keeps its value: y_wall − y = 0, of the sign that the equations' ∂E/∂y_{j+1} has.
-        if (!solved(i, a)) {
-          E[i * d + a] = window(unknown_row_ - 1, i, a) - y[i * d + a];
-          continue;
-        }
-        E[i * d + a] = system_.equation(window, row_of(i, a), i, a, h_).sum;
-      }
+      for (int a = 0; a < d; ++a)
+        if (!solved(i, a)) E[i * d + a] = window(unknown_row_ - 1, i, a) - y[i * d + a];
+    std::vector<double> values, r;
+    for_each_stencil([&](const StencilFamily& family, std::int64_t row, int site) {
+      const Cell cell = system_.gather(family, window, row, site, h_, values);
+      r.resize(values.size());
+      family.residual(cell, values, r);
+      for (int m = 0; m < family.size(); ++m)
+        if (const int at = equations_[static_cast<std::size_t>(m)]; at >= 0) E[at] += r[static_cast<std::size_t>(m)];
+    });
     return E;
   }
 
-  Matrix jacobian(const Vector& y) const {
+  /// ∂E/∂(unknown row), entry by entry; those of one place are to be added.
+  std::vector<LatticeSystem::Entry> jacobian_entries(const Vector& y) const {
     const Window window = make_(y);
     const int d = system_.components();
     std::vector<LatticeSystem::Entry> entries;
-    std::vector<Eigen::Triplet<double>> triplets;
     for (int i = 0; i < system_.lattice().sites(); ++i)
       for (int a = 0; a < d; ++a)
-        if (!solved(i, a)) triplets.emplace_back(i * d + a, i * d + a, -1.0);
-    for (const Dependent& dependent : dependents_)
-      for (int i = 0; i < system_.lattice().sites(); ++i) {
-        entries.clear();
-        for (int a = 0; a < d; ++a)
-          if (solved(i, a)) system_.jacobian(window, row_of(i, a), i, a, dependent.row, h_, entries);
-        for (const auto& e : entries) triplets.emplace_back(e.row, e.column, dependent.factor * e.value);
-      }
+        if (!solved(i, a)) entries.push_back({i * d + a, i * d + a, -1.0});
+    std::vector<double> values, J;
+    for_each_stencil([&](const StencilFamily& family, std::int64_t row, int site) {
+      if (std::ranges::none_of(factors_, [](double f) { return f != 0; })) return;
+      const Cell cell = system_.gather(family, window, row, site, h_, values);
+      const auto size = static_cast<std::size_t>(family.size());
+      J.resize(size * size);
+      family.jacobian(cell, values, J);
+      for (std::size_t m = 0; m < size; ++m)
+        for (std::size_t n = 0; n < size && equations_[m] >= 0; ++n)
+          if (factors_[n] != 0 && J[m * size + n] != 0)
+            entries.push_back({equations_[m], places_[n], factors_[n] * J[m * size + n]});
+    });
+    return entries;
+  }
+
+  Matrix jacobian(const Vector& y) const {
+    std::vector<Eigen::Triplet<double>> triplets;
+    for (const auto& e : jacobian_entries(y)) triplets.emplace_back(e.row, e.column, e.value);
     Matrix J(y.size(), y.size());
     J.setFromTriplets(triplets.begin(), triplets.end());
     return J;
   }
+
+  const Lattice& lattice() const { return system_.lattice(); }
 
  private:
   bool solved(int i, int a) const { return plan_.solved(i, a); }
   std::int64_t row_of(int i, int a) const {
     return unknown_row_ - plan_.shift(i, a, static_cast<int>(unknown_row_ & 1));
   }
+
+  /// Every stencil that has an equation of the slab, once: it costs the same whichever of its equations is asked for.
+  /// Of its values: their places in a row, the equations that are theirs (−1: none), and how much they change with the
+  /// unknown row.
+  template <class Visit>
+  void for_each_stencil(const Visit& visit) const {
+    const Lattice& lattice = system_.lattice();
+    const int d = system_.components(), N = lattice.sites();
+    constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
+    std::vector<std::int64_t> rows;  // of the equations, by place
+    std::int64_t lowest = unknown_row_, highest = lowest;
+    for (int i = 0; i < N; ++i)
+      for (int a = 0; a < d; ++a) {
+        rows.push_back(solved(i, a) ? row_of(i, a) : none);
+        if (rows.back() != none) lowest = std::min(lowest, rows.back()), highest = std::max(highest, rows.back());
+      }
+    for (const auto& family : system_.families()) {
+      const auto [first, last] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+      const auto size = static_cast<std::size_t>(family->size());
+      places_.resize(size), equations_.resize(size), factors_.resize(size);
+      for (std::int64_t anchor = lowest - last.time; anchor <= highest - first.time; ++anchor) {
+        for (std::size_t m = 0; m < size; ++m) {
+          factors_[m] = 0;
+          for (const Dependent& dependent : dependents_)
+            if (anchor + family->site(static_cast<int>(m)).time == dependent.row) factors_[m] += dependent.factor;
+        }
+        for (int i = 0; i < N; ++i) {
+          if (!system_.has_stencil(*family, anchor, i)) continue;
+          bool any = false;
+          for (std::size_t m = 0; m < size; ++m) {
+            const Site vertex = family->site(static_cast<int>(m));
+            const int x = i + vertex.space, home = lattice.is_circle() ? lattice.wrapped(x) : x;
+            places_[m] = home * d + family->values()[m].component;
+            const bool there = rows[static_cast<std::size_t>(places_[m])] == anchor + vertex.time;
+            equations_[m] = there ? places_[m] : -1;
+            any = any || there;
+          }
+          if (any) visit(*family, anchor, i);
+        }
+      }
+    }
+  }
+
   const LatticeSystem& system_;
   const SolvePlan& plan_;
   std::int64_t unknown_row_;
   double h_;
   MakeWindow make_;
   std::vector<Dependent> dependents_;
+  mutable std::vector<int> places_, equations_;
+  mutable std::vector<double> factors_;
 };
 
 struct Newton {
   bool converged = false;
-  bool tame = true;  ///< every correction is at most a share `tame_ratio` of the one before, the determinant keeps its sign
+  /// Every correction is at most a share `tame_ratio` of the one before, and the determinant keeps its sign.
+  bool tame = true;
   int iterations = 0;
   Vector y;
   int sign = 0;  ///< of the determinant at the root
@@ -119,6 +187,47 @@ Newton newton(const SlabEquations& equations, Vector y, double absolute_toleranc
       break;
     }
     if (size > tame_ratio * last && size > 64 * round_off) result.tame = false;
+    last = size;
+  }
+  result.y = std::move(y);
+  return result;
+}
+
+/// LU of a band; nothing where there is no band, or it is not safe without pivoting.
+std::optional<CyclicBandLU> factor_band(const Lattice& lattice, int size,
+                                        const std::vector<LatticeSystem::Entry>& entries) {
+  int lower = 0, upper = 0;
+  for (const auto& e : entries) {
+    int offset = e.column - e.row;
+    if (lattice.is_circle() && offset > size / 2) offset -= size;
+    if (lattice.is_circle() && offset < -(size / 2)) offset += size;
+    lower = std::max(lower, -offset), upper = std::max(upper, offset);
+  }
+  // What joins the ends of a circle must stay narrow, or the border is no border.
+  if (size <= 2 * (lower + upper) + 2 || lower + upper > 64) return std::nullopt;
+  return CyclicBandLU::factor(size, lower, upper, lattice.is_circle(), entries);
+}
+
+/// y ← y − J⁻¹E(y) with the Jacobian where it begins, while each correction is at most a tenth of the one before: then
+/// no other root is near. Not converged where it does not contract like that, or the matrix is no band.
+Newton chord(const SlabEquations& equations, Vector y, double absolute_tolerance, int max_iterations) {
+  Newton result;
+  const auto lu = factor_band(equations.lattice(), static_cast<int>(y.size()), equations.jacobian_entries(y));
+  double last = std::numeric_limits<double>::infinity();
+  std::vector<double> change;
+  for (int it = 1; lu && it <= max_iterations; ++it) {
+    result.iterations = it;
+    change = as_row(equations.residual(y));
+    lu->solve(change);
+    const Vector by = as_vector(change);
+    if (!by.allFinite()) return result;
+    y -= by;
+    const double size = largest(by), round_off = 8 * std::numeric_limits<double>::epsilon() * largest(y);
+    if (size <= absolute_tolerance || size <= round_off || (size > 0.5 * last && size <= 64 * round_off)) {
+      result.converged = true;
+      break;
+    }
+    if (size > 0.1 * last && size > 64 * round_off) return result;
     last = size;
   }
   result.y = std::move(y);
@@ -168,11 +277,6 @@ Newton follow(const std::function<SlabEquations(double)>& equations_at, const st
   at.iterations = iterations;
   return at;
 }
-
-Vector as_vector(const std::vector<double>& row) {
-  return Eigen::Map<const Vector>(row.data(), static_cast<Eigen::Index>(row.size()));
-}
-std::vector<double> as_row(const Vector& v) { return {v.data(), v.data() + v.size()}; }
 
 NewtonResult as_result(const Newton& found, int iterations) {
   NewtonResult result{found.converged, iterations, {}};
@@ -227,8 +331,10 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
   const double absolute = tolerance * std::max(largest(y0), largest(predict(1)));
   int iterations = 0;
   if (!stiff) {
+    const Newton quick = chord(equations_at(1), predict(1), absolute, max_iterations);
+    if (quick.converged) return as_result(quick, quick.iterations);
     const Newton direct = newton(equations_at(1), predict(1), absolute, max_iterations);
-    iterations = direct.iterations;
+    iterations = quick.iterations + direct.iterations;
     if (direct.converged && direct.tame) return as_result(direct, iterations);
   }
   const Newton followed = follow(equations_at, predict, absolute, max_iterations);

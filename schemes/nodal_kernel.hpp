@@ -7,6 +7,7 @@
 #include "jets/density.hpp"
 #include "jets/discrete_lagrangian.hpp"
 #include "schemes/row_layout.hpp"
+#include "schemes/value_jet.hpp"
 
 namespace delf {
 
@@ -25,9 +26,9 @@ struct SubStepRows {
   double stride;
 };
 
-/// What an element has whose φ at every quadrature point is the value at one of its nodes, for a density that is nonlinear
-/// in φ alone: the nonlinear part of the equation at a node is that of its own value, and rows of nodes can follow each
-/// other by one loop each.
+/// What an element has whose φ at every quadrature point is the value at one of its nodes, for a density that is
+/// nonlinear in φ alone: the nonlinear part of the equation at a node is that of its own value, and rows of nodes can
+/// follow each other by one loop each.
 class NodalKernel {
  public:
   static constexpr int most_reach = 6;  ///< that loops are compiled for
@@ -51,7 +52,6 @@ class NodalKernel {
 template <int reach, Density D>
 [[gnu::flatten]] double sub_step_loop(const D& given_density, const SubStepRows& given) {
   constexpr int d = components_of<D>();
-  using Number = Dual<Pack, d>;
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
   const D density = given_density;
   const double stride = given.stride;
@@ -71,17 +71,7 @@ template <int reach, Density D>
   const std::ptrdiff_t begin = given.layout->at(0), end = given.layout->at(given.layout->packs());
   Pack squares(0.0);
   for (std::ptrdiff_t at = begin; at < end; at += lanes) {
-    JetFor<Number, D> jet;
-    for (int a = 0; a < d; ++a) {
-      component(jet.phi, a) = Number::variable(Pack::load(now[a] + at), a);
-      component(jet.phi_t, a) = Number(0.0);
-      component(jet.phi_x, a) = Number(0.0);
-    }
-    if constexpr (delf::is_placed<D>()) {
-      jet.t = Number(t);
-      jet.x = Number(Pack::load(positions + at));
-    }
-    const Number l = density(jet);
+    const Dual<Pack, d> l = density(value_jet<D>([&](int a) { return Pack::load(now[a] + at); }, t, positions + at));
     for (int a = 0; a < d; ++a) {
       // Two sums: one would wait for itself.
       Pack even = Pack::load(velocity[a] + at), odd(0.0);

@@ -51,7 +51,8 @@ std::string solve_in_words(const SolvePlan& plan, const Stepper& stepper) {
   return words + stepper.solver_name();
 }
 
-std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, const Stepper& stepper) {
+std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, const Stepper& stepper,
+                        std::size_t monitor_bytes) {
   std::string out;
   const Lattice& lattice = system.lattice();
   out += fmt::format("lattice      {} {} on {}, k = {:.10g}, h = {:.10g}, h/k = {:.6g}\n", lattice.sites(),
@@ -103,7 +104,11 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   if (!lattice.is_circle())
     for (int i : {0, lattice.sites() - 1})
       append_table(out, system, {0, i}, i == 0 ? " at the left wall" : " at the right wall");
-  out += fmt::format("\nmemory       {} bytes: {}\n", stepper.bytes(), stepper.memory_report());
+  out += fmt::format("\nmemory       {} bytes: {}, monitors {} B\n",
+                     stepper.bytes() + stepper.bytes_to_come(true) + monitor_bytes, stepper.memory_report(true),
+                     monitor_bytes);
+  if (!stepper.layout() && stepper.bytes_to_come(false) > 0 && stepper.solver_name().find("sparse") != std::string::npos)
+    out += "             besides the sparse LU, whose size is known when it is there\n";
   out += "left out     ";
   std::vector<std::string> absent;
   if (!stepper.iterates()) absent.push_back("iterations and seeds");

@@ -225,6 +225,13 @@ void RowEquations::build_looks() {
       if (std::ranges::none_of(looks_, same)) looks_.push_back(std::move(look));
     }
   }
+  // One look at neighbours that follow each other can be taken while the row is made.
+  if (looks_.size() != 1 || static_cast<int>(looks_[0].parts.size()) > layout_.packs()) return;
+  for (std::size_t p = 0; p < looks_[0].parts.size(); ++p)
+    if (looks_[0].parts[p].vertex.space != static_cast<int>(p)) return;
+  looks_on_the_way_ = true;
+  for (RowIncrement& increment : increments_)
+    for (std::size_t p = 0; p < looks_[0].parts.size(); ++p) increment.look.weights[p] = looks_[0].parts[p].weight;
 }
 
 double RowEquations::least_weight() const {
@@ -324,7 +331,10 @@ void RowEquations::begin(std::int64_t n) {
   for (int a = 0; a < d_; ++a) {
     const auto at = static_cast<std::size_t>(a);
     double *const v = rows_.v_at(v_slots_(-1), a), *const y = rows_.y_at(y_slots_(-1), a);
-    increments_[at] = {equations_.correction_form ? v : rows_.v_at(v_slots_(0), a), rows_.y_at(y_slots_(0), a), v, y};
+    RowIncrement& increment = increments_[at];
+    increment.v_before = equations_.correction_form ? v : rows_.v_at(v_slots_(0), a);
+    increment.y_before = rows_.y_at(y_slots_(0), a);
+    increment.v = v, increment.y = y;
     bases_[static_cast<std::size_t>(E_base_ + a)] = y;
   }
   for (RowSum& sum : sums_) sum.bind(bases_.data());
@@ -359,8 +369,7 @@ void RowEquations::begin_loop(int parts, bool in_place) {
   }
   loop_row_ = n_ + 1;
   if (parts == 1) return;
-  const auto doubles = static_cast<std::size_t>(2 * parts * d_ * loop_reach_ * lanes);
-  if (edges_.bytes() < doubles * sizeof(double)) edges_ = RowBuffer(doubles);
+  if (edges_.bytes() < edge_doubles(parts) * sizeof(double)) edges_ = RowBuffer(edge_doubles(parts));
   for (int boundary = 1; boundary < parts; ++boundary)
     for (int a = 0; a < d_; ++a) {
       const double* const y = loop_now_[static_cast<std::size_t>(a)] + layout_.at(first_of_part(boundary, parts));
@@ -480,20 +489,28 @@ void RowEquations::store_right_sides(PackRange packs) {
   }
 }
 
-double RowEquations::advance() {
+RowChange RowEquations::advance(bool compared) {
   const RowSum* right_sides[RowKernel::most_components];
-  for (int a = 0; a < d_; ++a) right_sides[a] = &right_side(a);
+  for (int a = 0; a < d_; ++a) {
+    right_sides[a] = &right_side(a);
+    RowLook& look = increments_[static_cast<std::size_t>(a)].look;
+    look.parts = compared && looks_on_the_way_ ? static_cast<int>(looks_[0].parts.size()) : 0;
+    look.expected = candidate_.row(a);
+  }
   if (is_stored_) store_right_sides(layout_.all());
   if (!equations_.exceptional.empty()) set_exceptional_sites();
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
-  const double largest = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides, increments_.data(), w_rows_.data());
+  RowChange all = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides, increments_.data(), w_rows_.data());
   close_new_row();
-  return largest;
+  if (!compared) return all;
+  // What was not looked at on the way.
+  const int packs = layout_.packs();
+  const int seen = looks_on_the_way_ ? packs + 1 - static_cast<int>(looks_[0].parts.size()) : 0;
+  if (seen < packs) all.change = larger_or_nan(largest_change(looks_, {seen, packs}), all.change);
+  return all;
 }
 
-RowEquations::Streamed RowEquations::advance_streamed(const std::function<void(PackRange)>& find) {
-  // Some ten rows of a strip fit into the second level of the cache, and are long against what solving overlaps.
-  constexpr int strip = 1024;
+RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& find) {
   Outputs& o = outputs_[0];
   const int packs = layout_.packs(), halo = layout_.halo();
   const PackRange read = where_read(o);
@@ -503,7 +520,7 @@ RowEquations::Streamed RowEquations::advance_streamed(const std::function<void(P
 
   const auto stream = solver_[0]->stream(layout_, right_side(0), increments_[0]);
   const PackRange last = stream->last_packs();
-  const int window = last.last - last.first + 2 * strip + 8 * halo;
+  const int window = window_packs(last);
   if (last.first < last.last) {
     if (find) {
       candidate_.hold_window(window, last.first - halo, 0);
@@ -649,23 +666,24 @@ double RowEquations::residual(std::int64_t n) {
       bases_[static_cast<std::size_t>(v_base_ + age * d_ + a)] = rows_.v(n - age, a);
   }
   // A step goes on from the outputs of its last iterate: what is taken here from the accepted row goes elsewhere, or a
-  // run would depend on when it was looked at.
-  int next = 3 * d_;
-  for (const Outputs& o : outputs_) next += o.rows() * o.kernel->outputs();
-  if (!scratch_.rows()) scratch_ = RowBuffer(layout_, next);
+  // run would depend on when it was looked at. The oldest rows, which the next step writes over, are room where nothing
+  // reads them: the increment unless there are seeds, y in one loop.
+  if (!scratch_.rows() && residual_rows() > 0) scratch_ = RowBuffer(layout_, residual_rows());
   for (int a = 0; a < d_; ++a) {
-    double* const w = scratch_.row(a);
+    double* const w = has_spare_increment() ? rows_.v(n + 2 - rows_.increments_held(), a) : scratch_.row(a);
     const double *v_new = rows_.v(n + 1, a), *v = rows_.v(n, a);
     for (std::size_t s = 0; s < layout_.doubles(); ++s) w[s] = v_new[s] - v[s];
     bases_[static_cast<std::size_t>(w_base_ + a)] = w;
   }
-  next = 3 * d_;
+  const int first = scratch_rows_of_sums();
+  int next = first - (is_one_loop() ? d_ : 0);
   for (const Outputs& o : outputs_)
     for (int age = o.oldest; age <= o.newest; ++age) {
       if (!o.reads_unknown_row(age) && !is_one_loop()) continue;
       const int count = o.kernel->outputs();
-      for (int c = 0; c < count; ++c) {
-        slab_out_[static_cast<std::size_t>(c)] = scratch_.row(next++);
+      for (int c = 0; c < count; ++c, ++next) {
+        slab_out_[static_cast<std::size_t>(c)] =
+            next < first ? rows_.y(n + 2 - rows_.rows_held(), next - first + d_) : scratch_.row(next);
         bases_[static_cast<std::size_t>(o.base + (age - o.oldest) * count + c)] =
             slab_out_[static_cast<std::size_t>(c)];
       }
@@ -688,7 +706,8 @@ double RowEquations::residual(std::int64_t n) {
       continue;
     }
     // Sites near walls have their own sums, in the place of the bulk's.
-    double *const E = scratch_.row(d_ + a), *const size = scratch_.row(2 * d_ + a);
+    const int of_w = has_spare_increment() ? 0 : d_;
+    double *const E = scratch_.row(of_w + a), *const size = scratch_.row(of_w + d_ + a);
     measure(a, [E, size](std::ptrdiff_t to, Pack sum, Pack absolute) {
       sum.store(E + to);
       absolute.store(size + to);
@@ -705,6 +724,34 @@ double RowEquations::residual(std::int64_t n) {
   return size != 0 ? max_or_nan(all.sum) / size : 0;
 }
 
+/// w; near walls E and Σ|terms| too.
+int RowEquations::scratch_rows_of_sums() const {
+  return (has_spare_increment() ? 0 : d_) + (equations_.exceptional.empty() ? 0 : 2 * d_);
+}
+
+/// And outputs, the first of which stand where one loop has a y to spare.
+int RowEquations::residual_rows() const {
+  int rows = scratch_rows_of_sums() - (is_one_loop() ? d_ : 0);
+  for (const Outputs& o : outputs_)
+    for (int age = o.oldest; age <= o.newest; ++age)
+      if (o.reads_unknown_row(age) || is_one_loop()) rows += o.kernel->outputs();
+  return std::max(rows, 0);
+}
+
+std::size_t RowEquations::bytes_to_come(int parts, bool residual) const {
+  const auto missing = [](std::size_t doubles, std::size_t there) {
+    return doubles * sizeof(double) > there ? doubles * sizeof(double) - there : 0;
+  };
+  std::size_t total = missing(edge_doubles(parts), edges_.bytes());
+  if (residual) total += missing(static_cast<std::size_t>(residual_rows()) * layout_.doubles(), scratch_.bytes());
+  if (is_streamed_) {
+    // First steps, whose seeds are of low order, iterate: their candidate is whole.
+    const PackRange last = solver_[0]->stream(layout_, right_side(0), {})->last_packs();
+    total += missing(static_cast<std::size_t>(window_packs(last)) * lanes + layout_.doubles(), candidate_.bytes());
+  }
+  return total;
+}
+
 std::size_t RowEquations::output_bytes() const {
   std::size_t total = 0;
   for (const Outputs& o : outputs_) total += o.ring.bytes();
@@ -713,7 +760,7 @@ std::size_t RowEquations::output_bytes() const {
 std::size_t RowEquations::matrix_bytes() const { return solver_[0]->bytes() + (solver_[1] ? solver_[1]->bytes() : 0); }
 std::size_t RowEquations::work_bytes() const {
   std::size_t total = layout_.bytes();
-  for (const RowBuffer* b : {&w_, &scratch_, &positions_}) total += b->bytes();
+  for (const RowBuffer* b : {&w_, &scratch_, &positions_, &edges_}) total += b->bytes();
   return total + candidate_.bytes();
 }
 

@@ -48,19 +48,15 @@ class RowEquations {
   /// Whether there are outputs that read row n+1.
   bool reads_unknown_row() const;
 
-  /// Solves for w with the outputs as they are, and makes v_{n+1} and y_{n+1} of it, halos too. Returns the largest |y|.
-  double advance();
+  /// Solves for w with the outputs as they are, and makes v_{n+1} and y_{n+1} of it, halos too. `compared`: with the
+  /// candidate, in what the nonlinear outputs look at; otherwise the change is zero.
+  RowChange advance(bool compared);
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
-  /// The same as finding the candidate by `find`, or taking the one there is, evaluating, advance() and change(), in one
+  /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
   /// stream through the rows. A candidate that is found on the way is not kept.
-  struct Streamed {
-    double largest, change;
-  };
-  Streamed advance_streamed(const std::function<void(PackRange)>& find);
-  /// The largest difference between the candidate and y_{n+1} in what the nonlinear outputs look at.
-  double change() const { return largest_change(looks_); }
-  /// The same of y_{n+1} itself.
+  RowChange advance_streamed(const std::function<void(PackRange)>& find);
+  /// The largest difference between the candidate and y_{n+1}.
   double whole_change() const { return largest_change(whole_); }
   /// What outputs look at, at the unknown row: mixtures of values whose weights sum to at least this.
   double least_weight() const;
@@ -79,6 +75,8 @@ class RowEquations {
   const LinearSolver& solver() const { return *solver_[0]; }
   bool matrix_free() const { return !solver_[1] && solver_[0]->bytes() == 0; }
   std::size_t output_bytes() const, matrix_bytes() const, work_bytes() const;
+  /// What is not allocated yet, but will be: by loops in so many parts, by a stream's candidates, by residual().
+  std::size_t bytes_to_come(int parts, bool residual) const;
 
  private:
   /// The rows out_c of one family: a ring over the anchors' rows.
@@ -104,6 +102,17 @@ class RowEquations {
   void build_looks();
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
+  int scratch_rows_of_sums() const, residual_rows() const;
+  /// An increment is held that neither the residual nor a seed reads.
+  bool has_spare_increment() const { return !reads_unknown_row() && rows_.increments_held() >= ages_ + 2; }
+  /// Packs of a strip: some ten rows of it fit into the second level of the cache, and it is long against what solving
+  /// overlaps.
+  static constexpr int strip = 1024;
+  /// That a candidate needs room for where a stream goes by strips.
+  int window_packs(PackRange last) const { return last.last - last.first + 2 * strip + 8 * layout_.halo(); }
+  std::size_t edge_doubles(int parts) const {
+    return parts == 1 ? 0 : static_cast<std::size_t>(2 * parts * d_ * loop_reach_ * lanes);
+  }
   int index_of(const Term&) const;
   void add_term(RowSum&, const Term&, double coefficient) const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
@@ -148,6 +157,7 @@ class RowEquations {
   std::vector<const double*> slab_rows_;
   std::vector<RowIncrement> increments_;
   bool is_streamed_ = false;
+  bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row
 
   const RowKernel* one_loop_ = nullptr;
   std::vector<double> loop_linear_, loop_nonlinear_;

@@ -4,31 +4,83 @@
 
 namespace delf {
 
+/// What of the difference between a new row and the one that it was expected to be is looked at:
+/// Σ_p weights[p] (y − expected)(i + p), p = 0 … parts − 1.
+struct RowLook {
+  static constexpr int most_parts = 3;
+  const double* expected = nullptr;
+  int parts = 0;  ///< 0: nothing is
+  double weights[most_parts] = {};
+};
+
 /// One component of the new row, made from w pack by pack:  v = v_before + w,  y = y_before + v.
 struct RowIncrement {
   const double *v_before, *y_before;
   double *v, *y;
-};
-
-/// A pass over the packs of a RowIncrement; the largest |y| stays in a register.
-class IncrementPass {
- public:
-  explicit IncrementPass(const RowIncrement &rows) : rows_(rows) {}
-  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) {
-    const Pack v = Pack::load(rows_.v_before + at) + w;
-    const Pack y = Pack::load(rows_.y_before + at) + v;
-    largest_ = max_or_nan(abs(y), largest_);
-    v.store(rows_.v + at);
-    y.store(rows_.y + at);
-  }
-  double largest() const { return max_or_nan(largest_); }
-
- private:
-  RowIncrement rows_;
-  Pack largest_ = 0.0;
+  RowLook look = {};
 };
 
 /// The larger of two; a NaN stays one.
 inline double larger_or_nan(double a, double b) { return a > b || a != a ? a : b; }
+
+/// The largest |y| of a new row, and the largest |look|. The last parts − 1 packs look beyond the end, which is not there
+/// yet: these are left out.
+struct RowChange {
+  double largest = 0, change = 0;
+
+  void take(const RowChange& other) {
+    largest = larger_or_nan(other.largest, largest);
+    change = larger_or_nan(other.change, change);
+  }
+};
+
+enum class Order { ascending, descending };
+
+/// A pass over all packs of a RowIncrement, one after the other; what it measures stays in registers. The first
+/// `parts` − 1 of them have nothing to be looked at with: after these, begin_looking().
+template <int parts, Order order>
+class IncrementPass {
+ public:
+  explicit IncrementPass(const RowIncrement& rows) : rows_(rows) {
+    for (Pack& d : differences_) d = Pack(0.0);
+  }
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) {
+    const Pack v = Pack::load(rows_.v_before + at) + w;
+    const Pack y = Pack::load(rows_.y_before + at) + v;
+    largest_ = max_or_nan(abs(y), largest_);
+    if constexpr (parts > 0) {
+      for (int p = 0; p + 1 < parts; ++p) differences_[p] = differences_[p + 1];
+      differences_[parts - 1] = y - Pack::load(rows_.look.expected + at);
+      Pack look(0.0);
+      for (int p = 0; p < parts; ++p)
+        look += rows_.look.weights[order == Order::ascending ? p : parts - 1 - p] * differences_[p];
+      change_ = max_or_nan(abs(look), change_);
+    }
+    v.store(rows_.v + at);
+    y.store(rows_.y + at);
+  }
+  void begin_looking() { change_ = Pack(0.0); }
+  RowChange result() const { return {max_or_nan(largest_), parts > 0 ? max_or_nan(change_) : 0}; }
+
+ private:
+  RowIncrement rows_;
+  Pack largest_ = 0.0, change_ = 0.0;
+  Pack differences_[parts > 0 ? parts : 1];  ///< y − expected of the last packs
+};
+
+/// `run` with the IncrementPass that the rows ask for.
+template <Order order, class Run>
+RowChange with_increment_pass(const RowIncrement& rows, Run run) {
+  switch (rows.look.parts) {
+    case 0:
+      return run(IncrementPass<0, order>(rows), 0);
+    case 1:
+      return run(IncrementPass<1, order>(rows), 0);
+    case 2:
+      return run(IncrementPass<2, order>(rows), 1);
+    default:
+      return run(IncrementPass<3, order>(rows), 2);
+  }
+}
 
 }  // namespace delf

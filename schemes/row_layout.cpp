@@ -27,8 +27,9 @@ RowLayout::RowLayout(const Lattice& lattice, int halo, int aligned)
   if (lattice.is_circle()) find_halo_packs();
 }
 
-/// Arc l overlaps the one before it by b_l sites: beside its first pack stands pack M − b_l − 1 of that arc, beside its last
-/// one pack b_{l+1} of the next. Where more than two b_l occur, or arcs are shorter than halos, slots are copied one by one.
+/// Arc l overlaps the one before it by b_l sites: beside its first pack stands pack M − b_l − 1 of that arc, beside its
+/// last one pack b_{l+1} of the next. Where more than two b_l occur, or arcs are shorter than halos, slots are copied
+/// one by one.
 void RowLayout::find_halo_packs() {
   int overlap[lanes];
   for (int l = 0; l < lanes; ++l)

@@ -23,8 +23,8 @@ struct PackRange {
 ///
 ///     pack −halo … −1 | 0 … M−1 | M … M+halo−1        slot(v, l) = (v + halo)·lanes + l
 ///
-/// With `aligned` = 2 every arc starts at an even site (N even), so that a pack holds even sites only or odd sites only:
-/// a brick wall then needs no more than every second pack.
+/// With `aligned` = 2 every arc starts at an even site (N even), so that a pack holds even sites only or odd sites
+/// only: a brick wall then needs no more than every second pack.
 class RowLayout {
  public:
   RowLayout(const Lattice&, int halo, int aligned = 1);

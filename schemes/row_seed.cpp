@@ -12,10 +12,10 @@ namespace {
 
 constexpr int steps_between_looks = 64;
 constexpr int highest_order = 11;
-// A seed of order p misses (1 − e^{−iωh})^{p+1} of a wave e^{iωt}. What an accepted iteration leaves of that is in phase
-// with the wave's velocity, and damps it or feeds it step after step. Over 5000 collisions (N = 255, h = k/8, tolerance
-// 6e-8) the energy 161.9 rose by 0.6, 0.0032 and 0.0010 with p = 2, 3 and 4; with 4 that is as much as the exact root's
-// energy varies by.
+// A seed of order p misses (1 − e^{−iωh})^{p+1} of a wave e^{iωt}. What an accepted iteration leaves of that is in
+// phase with the wave's velocity, and damps it or feeds it step after step. Over 5000 collisions (N = 255, h = k/8,
+// tolerance 6e-8) the energy 161.9 rose by 0.6, 0.0032 and 0.0010 with p = 2, 3 and 4; with 4 that is as much as the
+// exact root's energy varies by.
 constexpr int lowest_order = 4;
 // What an iteration costs, in rows read: an evaluation of the density and two passes over several rows.
 constexpr double rows_per_iteration = 24;

@@ -14,7 +14,8 @@ namespace delf {
 ///
 ///     y_{n+1} ≈ y_n + Σ_{m=1}^{order} (−1)^{m+1} C(order, m) v_{n+1−m},
 ///
-/// of the order that costs least: a row read costs little where rows are in the cache, an iteration spared is worth many.
+/// of the order that costs least: a row read costs little where rows are in the cache, an iteration spared is worth
+/// many.
 class RowSeed {
  public:
   /// Increments up to this many rows back are read; what matters of a candidate is what the nonlinear part looks at.
@@ -25,8 +26,8 @@ class RowSeed {
   /// Forgets the order: rows have been set anew.
   void restart() { looked_at_ = -1; }
   int order() const { return order_; }
-  /// Chooses the order for the step from row n, now and then, by how well each would have foretold the newest increment:
-  /// each change is `contraction` times the last, until `weight` times it is below tolerance · span().
+  /// Chooses the order for the step from row n, now and then, by how well each would have foretold the newest
+  /// increment: each change is `contraction` times the last, until `weight` times it is below tolerance · span().
   void choose(std::int64_t n, double tolerance, double contraction, double weight);
   void choose(std::int64_t n, double tolerance, double contraction) { choose(n, tolerance, contraction, contraction); }
   /// max y − min y over all components when last looked at.

@@ -37,9 +37,9 @@ struct RowStepper::Impl {
   int iterations = 0;
   int rows_known = 0;  ///< newest rows that have not been written over
   std::vector<double> values_of_parts;
-  RowBuffer saved;
-  std::int64_t saved_row = -1;
-  bool failed = false;  ///< the last loop: nothing is written over then
+  /// A row that lies beside the one that loops write over, with its increment; −1: none.
+  std::int64_t kept_row = -1;
+  std::vector<const double*> kept_y, kept_v;
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
       : system(s),
@@ -84,28 +84,29 @@ struct RowStepper::Impl {
   }
 
   /// An explicit step of one loop; in place if no one looks at the row. Returns √Σy².
+  /// Rows that are written over are gone. But a step that is not in place leaves the row before it where it is, until
+  /// two more of its kind have been taken: at every time two good rows are there, or follow from that one.
   double loop(bool looked_at) {
-    const bool in_place = !looked_at && !failed && !saves();
+    constexpr std::int64_t steps_between = 1024;  // that are in place: as many may have to be taken again
+    const bool in_place = !looked_at && kept_row >= 0 && n > kept_row && n < kept_row + steps_between;
     if (in_place) rows_known = 0;
-    const double value = loop_in_parts(in_place);
-    failed = overflowed(value);
-    // The last good row and the one before it are kept, or found again.
-    return failed && rows_known < 2 ? loop_again() : value;
+    double value = loop_in_parts(in_place);
+    if (overflowed(value)) {
+      if (rows_known < 2) value = loop_again();
+      kept_row = -1;  // from here on nothing is written over
+    } else if (!in_place) {
+      keep();
+    }
+    return value;
   }
 
-  /// Now and then a row is saved, for rows that are written over are gone. Such a step, and the one before it, are not in
-  /// place, so that at every time two good rows are there or follow from the saved one.
-  bool saves() {
-    constexpr std::int64_t steps_between = 1024;
-    if (saved_row >= 0 && n <= saved_row + steps_between) return n == saved_row + steps_between;
-    save();
-    return true;
-  }
-
-  /// By as many threads as there are rows enough for.
-  double loop_in_parts(bool in_place) {
+  /// As many threads as there are rows enough for.
+  int loop_parts() const {
     constexpr int worth_a_thread = 1024;  // packs: below, waiting for each other costs more than it saves
-    const int parts = team ? std::clamp(layout().packs() / worth_a_thread, 1, team->size()) : 1;
+    return team ? std::clamp(layout().packs() / worth_a_thread, 1, team->size()) : 1;
+  }
+  double loop_in_parts(bool in_place) {
+    const int parts = loop_parts();
     equations.begin_loop(parts, in_place);
     double value = 0;
     if (parts == 1) {
@@ -120,23 +121,26 @@ struct RowStepper::Impl {
     return value;
   }
 
-  void save() {
-    if (!saved.rows()) saved = RowBuffer(layout(), 2 * d);
+  void keep() {
+    kept_y.resize(static_cast<std::size_t>(d)), kept_v.resize(static_cast<std::size_t>(d));
     for (int a = 0; a < d; ++a) {
-      std::copy_n(rows.y(n, a), layout().doubles(), saved.row(2 * a));
-      std::copy_n(rows.v(n, a), layout().doubles(), saved.row(2 * a + 1));
+      kept_y[static_cast<std::size_t>(a)] = rows.y(n, a);
+      kept_v[static_cast<std::size_t>(a)] = rows.v(n, a);
     }
-    saved_row = n;
+    kept_row = n;
   }
 
-  /// The steps from the saved row on once more, each beside the row before.
+  /// The steps from the kept row on once more, each beside the row before.
   double loop_again() {
     const std::int64_t last = n;
-    n = saved_row;
+    n = kept_row;
     equations.forget_rows();
+    const auto put = [&](const double* kept, double* row) {
+      if (row != kept) std::copy_n(kept, layout().doubles(), row);
+    };
     for (int a = 0; a < d; ++a) {
-      std::copy_n(saved.row(2 * a), layout().doubles(), rows.y(n, a));
-      std::copy_n(saved.row(2 * a + 1), layout().doubles(), rows.v(n, a));
+      put(kept_y[static_cast<std::size_t>(a)], rows.y(n, a));
+      put(kept_v[static_cast<std::size_t>(a)], rows.v(n, a));
     }
     rows_known = 1;
     double value = 0;
@@ -156,7 +160,7 @@ struct RowStepper::Impl {
       take_seed(1);
       equations.evaluate_unknown_outputs(RowEquations::At::candidate);
     }
-    const double value = equations.advance();
+    const double value = equations.advance(false).largest;
     if (reads_candidate) equations.evaluate_unknown_outputs(RowEquations::At::row);
     return value;
   }
@@ -195,17 +199,17 @@ struct RowStepper::Impl {
     double before = std::numeric_limits<double>::infinity();
     while (iterations < options.max_iterations) {
       ++iterations;
-      double change = 0;
+      RowChange moved;
       if (equations.is_streamed()) {
         const auto find = [&](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); };
-        const auto streamed = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)
-                                                                         : std::function<void(PackRange)>());
-        value = streamed.largest, change = streamed.change;
+        moved = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)
+                                                           : std::function<void(PackRange)>());
       } else {
         equations.evaluate_unknown_outputs(RowEquations::At::candidate);
-        value = equations.advance();
-        change = equations.change();
+        moved = equations.advance(true);
       }
+      value = moved.largest;
+      const double change = moved.change;
       // A field that overflowed has no root to look for.
       if (overflowed(value)) report_not_finite();
       const double scale = std::max({value, largest[0], largest[1]});
@@ -295,6 +299,7 @@ struct RowStepper::Impl {
     const std::int64_t base = n - 1;
     if (base < history - 1) return 0;
     if (rows_known < 2) return std::numeric_limits<double>::quiet_NaN();
+    if (equations.is_one_loop()) rows_known = 2;  // it is worked out where the oldest row is, which the next step takes
     return equations.residual(base);
   }
 };
@@ -310,8 +315,7 @@ void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   s.rows.restart();
   s.equations.forget_rows();
   s.rows_known = std::min(static_cast<int>(rows.size()), s.rows.rows_held());
-  s.saved_row = -1;
-  s.failed = false;
+  s.kept_row = -1;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (double x : rows[r])
       if (overflowed(std::abs(x))) throw NotFinite(fmt::format("row {} of the start is not finite", r));
@@ -371,14 +375,18 @@ bool RowStepper::matrix_free() const { return impl_->equations.matrix_free(); }
 std::size_t RowStepper::bytes() const {
   const Impl& s = *impl_;
   return s.rows.row_bytes() + s.rows.increment_bytes() + s.equations.output_bytes() + s.equations.matrix_bytes() +
-         s.equations.work_bytes() + s.saved.bytes();
+         s.equations.work_bytes();
 }
 
-std::string RowStepper::memory_report() const {
+std::size_t RowStepper::bytes_to_come(bool residual) const {
+  return impl_->equations.bytes_to_come(impl_->loop_parts(), residual);
+}
+
+std::string RowStepper::memory_report(bool residual) const {
   const Impl& s = *impl_;
   return fmt::format("rows of the field {} B, increments {} B, nonlinear terms {} B, matrix {} B, work space {} B",
                      s.rows.row_bytes(), s.rows.increment_bytes(), s.equations.output_bytes(),
-                     s.equations.matrix_bytes(), s.equations.work_bytes() + s.saved.bytes());
+                     s.equations.matrix_bytes(), s.equations.work_bytes() + bytes_to_come(residual));
 }
 
 }  // namespace delf

@@ -38,7 +38,8 @@ class RowStepper final : public StepMethod {
   std::string solver_name() const override;
   bool matrix_free() const override;
   std::size_t bytes() const override;
-  std::string memory_report() const override;
+  std::size_t bytes_to_come(bool residual) const override;
+  std::string memory_report(bool residual) const override;
 
  private:
   struct Impl;

@@ -7,7 +7,8 @@
 
 namespace delf {
 
-/// A sum over shifted rows, with coefficients and shifts that are known at set-up and rows that change from step to step:
+/// A sum over shifted rows, with coefficients and shifts that are known at set-up and rows that change from step to
+/// step:
 ///
 ///     constant + Σ coefficient · (row(shifted) − row) + Σ coefficient · row(shifted)
 ///

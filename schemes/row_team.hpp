@@ -8,7 +8,8 @@
 
 namespace delf {
 
-/// Threads that work on parts of the same rows, step after step. Between two steps they wait a moment awake, then asleep.
+/// Threads that work on parts of the same rows, step after step. Between two steps they wait a moment awake, then
+/// asleep.
 class RowTeam {
  public:
   /// The calling thread is one of the `threads`.
@@ -18,8 +19,8 @@ class RowTeam {
   RowTeam& operator=(const RowTeam&) = delete;
 
   int size() const { return static_cast<int>(workers_.size()) + 1; }
-  /// Calls part(0) … part(parts − 1) at the same time, parts ≤ size(), part(0) here; returns when all are done. Parts do not
-  /// throw, and treat denormal numbers as zero.
+  /// Calls part(0) … part(parts − 1) at the same time, parts ≤ size(), part(0) here; returns when all are done. Parts
+  /// do not throw, and treat denormal numbers as zero.
   void run(int parts, const std::function<void(int)>& part);
 
  private:

@@ -120,6 +120,19 @@ struct Simulation::Impl {
     return rows;
   }
 
+  std::size_t monitor_bytes() const {
+    return cell_weights.bytes() + positions.bytes() + last_rows.bytes() + (own_layout ? own_layout->bytes() : 0);
+  }
+  std::size_t monitor_bytes_of_run() const {
+    if (cell_weights.rows()) return monitor_bytes();
+    const auto bytes = [&](const RowLayout& layout, int own_rows) {
+      return static_cast<std::size_t>(1 + (theory->is_placed() ? 1 : 0) + own_rows) * layout.doubles() * sizeof(double);
+    };
+    if (stepper.layout()) return bytes(*stepper.layout(), 0);
+    const RowLayout own(problem.lattice, 1);
+    return bytes(own, 2 * theory->components()) + own.bytes();
+  }
+
   void prepare_monitors() {
     if (cell_weights.rows()) return;
     if (!stepper.layout()) own_layout = std::make_unique<RowLayout>(problem.lattice, 1);
@@ -267,9 +280,15 @@ double Simulation::residual() const { return impl_->stepper.residual(); }
 const char* Simulation::solve_kind() const { return to_string(impl_->evolution.plan().kind); }
 std::string Simulation::solve_summary() const { return solve_in_words(impl_->evolution.plan(), impl_->stepper); }
 std::string Simulation::plan_report() const {
-  return delf::plan_report(impl_->evolution.system(), impl_->evolution.plan(), impl_->stepper);
+  return delf::plan_report(impl_->evolution.system(), impl_->evolution.plan(), impl_->stepper,
+                           impl_->monitor_bytes_of_run());
 }
-std::size_t Simulation::bytes() const { return impl_->stepper.bytes(); }
+std::size_t Simulation::bytes() const { return impl_->stepper.bytes() + impl_->monitor_bytes(); }
+std::size_t Simulation::bytes_of_run(Looks looks) const {
+  const Stepper& stepper = impl_->stepper;
+  return stepper.bytes() + stepper.bytes_to_come(looks.residual) +
+         (looks.monitors ? impl_->monitor_bytes_of_run() : impl_->monitor_bytes());
+}
 
 const std::vector<TheoryInfo>& theories() {
   static const std::vector<TheoryInfo> list = [] {

@@ -102,7 +102,16 @@ class Simulation {
   const char* solve_kind() const;      ///< explicit, chain, cyclic-band or sparse
   std::string solve_summary() const;   ///< the plan in words, one line
   std::string plan_report() const;     ///< what `delf plan` prints
-  std::size_t bytes() const;           ///< allocated for rows, matrices, and work space
+  /// Allocated now for rows, matrices, work space, and monitors once they are asked for.
+  std::size_t bytes() const;
+  /// What is asked of rows while a run goes on: monitors() and residual().
+  struct Looks {
+    bool monitors = true, residual = true;
+  };
+  /// What bytes() will be at the end of a run that starts, takes some twenty steps or more, and looks at its rows like
+  /// that. What depends on the data is not foreseen: the sparse LU of a slab that nothing else solves, and full Newton
+  /// steps, which keep nothing.
+  std::size_t bytes_of_run(Looks) const;
 
  private:
   struct Impl;

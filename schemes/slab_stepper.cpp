@@ -32,6 +32,15 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
     parities_.back().has_constant = factor_constant(parities_.back());
   }
   seed_.resize(row);
+  // Made now, so that memory that is short is told at the start.
+  for (std::vector<double>* numbers : {&E_, &known_E_, &change_}) numbers->reserve(unknowns() + 1);
+  for (const Parity& p : parities_) jacobian_.reserve(p.equations.places().size());
+}
+
+std::size_t SlabStepper::unknowns() const {
+  std::size_t most = 0;
+  for (const Parity& p : parities_) most = std::max(most, static_cast<std::size_t>(p.equations.size()));
+  return most;
 }
 
 std::vector<SlabStepper::Unknowns> SlabStepper::list_unknowns(const SlabEquations& equations) const {
@@ -52,7 +61,8 @@ std::vector<SlabStepper::Unknowns> SlabStepper::list_unknowns(const SlabEquation
 
 /// Where the equations are linear in the slab, or nearly, the matrix that stands for all Jacobians.
 bool SlabStepper::factor_constant(Parity& p) {
-  const bool there = p.equations.constant_jacobian(jacobian_) && p.solver.factor(jacobian_);
+  bool there = p.equations.constant_jacobian(jacobian_);
+  if (there) p.has_values = true, there = p.solver.factor(jacobian_);
   p.factored = there ? Matrix::constant : Matrix::none;
   return there;
 }
@@ -209,6 +219,7 @@ void SlabStepper::newton(Parity& p, std::int64_t J, const std::vector<double>* m
     if (iteration > options_.max_iterations) fail(J, "Newton's method does not converge");
     if (refactor) {
       p.equations.jacobian(*ring_, J, jacobian_, momenta);
+      p.has_values = true;
       p.factored = p.solver.factor(jacobian_) ? Matrix::jacobian : Matrix::none;
       if (p.factored == Matrix::none) fail(J, "their Jacobian is singular");
       fresh = true;
@@ -282,6 +293,7 @@ double SlabStepper::residual() const {
   const Parity& p = parity(J_);
   // After a Legendre start slab 1 has no stencils below row 0.
   if (J_ == 1 && plan_.history > 1) return 0;
+  for (std::vector<double>* numbers : {&residual_, &absolute_}) numbers->reserve(unknowns() + 1);
   p.equations.residual(*ring_, J_, residual_, &absolute_);
   // The equation of a multiplier is a constraint, whose terms cancel within one stencil: it is measured on its own.
   double worst = 0, size = 0;
@@ -295,17 +307,47 @@ double SlabStepper::residual() const {
 
 std::string SlabStepper::solver_name() const { return parities_[0].solver.name(); }
 
-std::size_t SlabStepper::bytes() const {
-  std::size_t total = ring_->bytes();
-  for (const Parity& p : parities_) total += p.equations.bytes() + p.solver.bytes();
+std::size_t SlabStepper::equation_bytes() const {
+  std::size_t total = 0;
+  for (const Parity& p : parities_) total += p.equations.bytes();
+  return total;
+}
+std::size_t SlabStepper::matrix_bytes() const {
+  std::size_t total = jacobian_.capacity() * sizeof(double);
+  for (const Parity& p : parities_) total += p.solver.bytes();
+  return total;
+}
+std::size_t SlabStepper::work_bytes() const {
+  std::size_t total = 0;
+  const std::vector<double>* const all[] = {&E_, &known_E_, &change_, &seed_, &residual_, &absolute_};
+  for (const std::vector<double>* numbers : all)
+    total += numbers->capacity() * sizeof(double);
+  for (const Parity& p : parities_)
+    for (const Unknowns& list : p.unknowns) total += (list.numbers.capacity() + list.places.capacity()) * sizeof(int);
   return total;
 }
 
-std::string SlabStepper::memory_report() const {
-  std::size_t equations = 0, matrix = 0;
-  for (const Parity& p : parities_) equations += p.equations.bytes(), matrix += p.solver.bytes();
-  return fmt::format("rows of the section {} B, stencils {} B, Jacobian and factors {} B", ring_->bytes(), equations,
-                     matrix);
+std::size_t SlabStepper::bytes() const { return ring_->bytes() + equation_bytes() + matrix_bytes() + work_bytes(); }
+
+/// A solver's own copy of the values. Where a block is too large to be dense and does not go by arcs, its sparse LU is
+/// not foreseen: how much it fills in is known when it is there.
+std::size_t SlabStepper::matrix_bytes_to_come() const {
+  std::size_t total = 0;
+  for (const Parity& p : parities_)
+    if (!p.has_values) total += p.equations.places().size() * sizeof(double);
+  return total;
+}
+std::size_t SlabStepper::residual_bytes_to_come() const {
+  return residual_.capacity() > 0 ? 0 : 2 * (unknowns() + 1) * sizeof(double);
+}
+std::size_t SlabStepper::bytes_to_come(bool residual) const {
+  return matrix_bytes_to_come() + (residual ? residual_bytes_to_come() : 0);
+}
+
+std::string SlabStepper::memory_report(bool residual) const {
+  return fmt::format("rows of the section {} B, stencils {} B, Jacobian and factors {} B, work space {} B",
+                     ring_->bytes(), equation_bytes(), matrix_bytes() + matrix_bytes_to_come(),
+                     work_bytes() + (residual ? residual_bytes_to_come() : 0));
 }
 
 }  // namespace delf

@@ -37,7 +37,8 @@ class SlabStepper final : public StepMethod {
   std::string solver_name() const override;
   bool matrix_free() const override { return false; }
   std::size_t bytes() const override;
-  std::string memory_report() const override;
+  std::size_t bytes_to_come(bool residual) const override;
+  std::string memory_report(bool residual) const override;
 
  private:
   /// Unknowns whose pasts are as long: those in one row of which as many slabs are known.
@@ -53,6 +54,7 @@ class SlabStepper final : public StepMethod {
     BlockSolver solver;
     std::vector<Unknowns> unknowns;
     bool has_constant = false;       ///< there is a constant part, and it has an inverse
+    bool has_values = false;         ///< the solver has had the values of a matrix, and keeps them
     Matrix factored = Matrix::none;  ///< what the solver holds
   };
   struct Change {
@@ -75,6 +77,9 @@ class SlabStepper final : public StepMethod {
   void solve(std::int64_t J, const std::vector<double>* momenta);
   std::optional<int> crossing(const double* row) const;
   [[noreturn]] void fail(std::int64_t J, const char* why) const;
+  std::size_t unknowns() const;  ///< of a slab, the larger one
+  std::size_t equation_bytes() const, matrix_bytes() const, matrix_bytes_to_come() const, work_bytes() const,
+      residual_bytes_to_come() const;
 
   const LatticeSystem& system_;
   const SolvePlan& plan_;

@@ -25,7 +25,8 @@ struct StateRequest {
 };
 
 /// A field φ(t, x) and its velocity φ_t(t, x) to start from and, where it solves the field equation, to compare with.
-/// A field of d components is written site by site: out[i·d + a]. Values are unwrapped: on a circle φ(t, x + L) = φ(t, x) + 2π·winding, and a pulse that goes round keeps counting.
+/// A field of d components is written site by site: out[i·d + a]. Values are unwrapped: on a circle
+/// φ(t, x + L) = φ(t, x) + 2π·winding, and a pulse that goes round keeps counting.
 class State {
  public:
   virtual ~State() = default;
@@ -49,8 +50,9 @@ class State {
 };
 
 /// Throws BadInput naming the key: an unknown state (with the nearest known name), a state that the theory does not
-/// have or the space does not allow, |v| ≥ 1, a frequency outside (0, m), an eccentricity outside [0, 1), a winding that is not the state's own, a
-/// wave that the sites do not resolve. Throws std::logic_error for `file`, which is read elsewhere.
+/// have or the space does not allow, |v| ≥ 1, a frequency outside (0, m), an eccentricity outside [0, 1), a winding
+/// that is not the state's own, a wave that the sites do not resolve. Throws std::logic_error for `file`, which is read
+/// elsewhere.
 std::unique_ptr<State> make_state(const StateRequest&, const Lattice&);
 
 struct StateInfo {

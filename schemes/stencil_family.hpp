@@ -41,8 +41,8 @@ class StencilFamily {
                         std::span<double> /*p*/) const {
     return false;
   }
-  /// r of `lanes` stencils at once whose cells differ in x alone, lane by lane: y[i·lanes + l], r[i·lanes + l] and x[l],
-  /// aligned to packs. False for a family that has only the one above.
+  /// r of `lanes` stencils at once whose cells differ in x alone, lane by lane: y[i·lanes + l], r[i·lanes + l] and
+  /// x[l], aligned to packs. False for a family that has only the one above.
   virtual bool residuals(const Cell&, const double* /*x*/, const double* /*y*/, double* /*r*/) const { return false; }
   /// ∂r/∂y without the terms that depend on y, t or x: what an iteration with a fixed matrix takes for it. False for a
   /// family that cannot tell which those are.

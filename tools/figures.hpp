@@ -24,8 +24,8 @@ struct FigureSource {
   RowNames names = {};
 };
 
-/// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into `folder`/figures, each as PNG and as SVG.
-/// Returns what is missing, in one line, or an empty string.
+/// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into
+/// `folder`/figures, each as PNG and as SVG. Returns what is missing, in one line, or an empty string.
 std::string draw_figures(const FigureSource&, const std::filesystem::path& folder);
 
 /// The positions that are drawn: those of the film, and on a circle the first site once more, at x = L; where the mesh

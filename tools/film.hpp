@@ -8,8 +8,8 @@
 
 namespace delf {
 
-/// The recorded rows, thinned to what a figure can show: at most about 600 frames of at most 600 sites, or 6000 of one site, always with
-/// the first row and the last one. Independent of fields.h5.
+/// The recorded rows, thinned to what a figure can show: at most about 600 frames of at most 600 sites, or 6000 of one
+/// site, always with the first row and the last one. Independent of fields.h5.
 class Film {
  public:
   Film(const Lattice&, std::int64_t expected_frames, std::size_t components = 1);

@@ -8,16 +8,9 @@
 #include "tools/initial_rows.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/resolution_search.hpp"
+#include "tools/seconds_since.hpp"
 
 namespace delf {
-
-namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-}  // namespace
 
 TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants, std::size_t which,
                   const Resolution& r, double until, const ComparedSolution& solution) {

@@ -45,15 +45,16 @@ def scene_names(listing):
 
 
 def planned(plan):
-    """Bytes of the rows (fields and increments), bytes of all other arrays, and what is left out, as `delf plan` says.
+    """Bytes of the rows (fields and increments) and of all other arrays, at the end of a run that records rows, and
+    what is left out, as `delf plan` says.
 
     >>> text = '''  left out   fields.h5: HDF5 is not touched
-    ... memory       33100 bytes: rows of the field 6528 B, increments 17408 B, nonlinear terms 4352 B, matrix 2432 B, \
-work space 2380 B
+    ... memory       39628 bytes: rows of the field 6528 B, increments 17408 B, nonlinear terms 4352 B, matrix 2432 B, \
+work space 6732 B, monitors 2176 B
     ... left out     any matrix, Jacobians of the full Newton method, until a step needs one, nodes inside cells
     ... '''
     >>> planned(text)[:2]
-    (23936, 9164)
+    (23936, 15692)
     >>> for what in planned(text)[2]: print(what)
     fields.h5: HDF5 is not touched
     any matrix
@@ -323,8 +324,9 @@ def measured(program, scenes, repeats):
         row[3:7] = [kilobytes(heap - bare_heap), "?" if files is None else str(files), str(libraries),
                     spread(times[scene])]
     note = (f"Made by `tools/lean.py --update README.md` on {processor()}. Scenes run with `{' '.join(QUIET)}`. "
-            f"Rows and other arrays are those that `delf plan` counts; what recorded rows are looked at with comes on "
-            f"top, in the heap. Heap is the most that {FEW[12:]} recorded steps and their files need, in whole pages, "
+            f"Rows and other arrays are those that a run has at its end, as `delf plan` foretells them: those of "
+            f"monitors and of the residual of recorded rows too. Heap is the most that {FEW[12:]} recorded steps and "
+            f"their files need, in whole pages, "
             f"over the {kilobytes(bare_heap)} kB of `delf --version`, which takes {spread(bare_times)} ms with its "
             f"{bare_libraries} shared libraries, the loader among them. Start-up is a run of no steps, from starting "
             f"the program to its end: the median of {repeats}, and the quartiles.")

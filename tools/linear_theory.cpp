@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "schemes/evolution.hpp"
 #include "schemes/stability/dispersion.hpp"
@@ -32,9 +33,37 @@ LinearTheory linear_theory(const Problem& scheme, double mass_step, double most,
   return theory;
 }
 
-WorstWave worst_wave(const Problem& scheme, double mass_step, double courant) {
-  const StabilityVerdict v = linear_stability(system_of(linear_problem(scheme, mass_step, courant, sites)));
-  return {v.worst_theta, v.amplification};
+WaveGrowth::WaveGrowth(const Problem& scheme, double mass_step, double courant)
+    : symbol_(system_of(linear_problem(scheme, mass_step, courant, sites))) {
+  const StabilityVerdict v = linear_stability(symbol_);
+  worst_ = {v.worst_theta, v.amplification};
+}
+
+WorstWave WaveGrowth::nearest(int n) const {
+  const double theta = 2 * std::numbers::pi * std::round(worst_.theta * n / (2 * std::numbers::pi)) / n;
+  return {theta, symbol_.amplification(theta)};
+}
+
+WorstWave WaveGrowth::on_circle(int n) const {
+  WorstWave worst;
+  for (int j = 0; 2 * j <= n; ++j) {
+    const double theta = 2 * std::numbers::pi * j / n, amplification = symbol_.amplification(theta);
+    if (amplification > worst.amplification) worst = {theta, amplification};
+  }
+  return worst;
+}
+
+int WaveGrowth::best_circle(int least, int most, int stride) const {
+  int best = least;
+  double fewest = std::numeric_limits<double>::infinity(), nearest_yet = fewest;
+  for (int n = least; n <= most; n += stride) {
+    const WorstWave wave = nearest(n);
+    const double off = std::abs(wave.theta - worst_.theta);
+    if (off >= nearest_yet) continue;  // more sites, and no nearer
+    nearest_yet = off;
+    if (const double updates = n / wave.rate(); updates < fewest) fewest = updates, best = n;
+  }
+  return best;
 }
 
 std::vector<FrequencyPoint> frequencies(const Problem& scheme, double courant, double mass_space_step, int count) {

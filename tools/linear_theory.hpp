@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cmath>
 #include <complex>
 #include <string>
 #include <vector>
 
 #include "schemes/simulation.hpp"
+#include "schemes/stability/symbol.hpp"
 
 namespace delf {
 
@@ -41,9 +43,29 @@ LinearTheory linear_theory(const Problem& scheme, double mass_step, double most,
 
 /// The wave that grows most at one Courant number: its θ, and |z|.
 struct WorstWave {
-  double theta, amplification;
+  double theta = 0, amplification = 1;
+  /// log |z|: what a step adds to log |φ|. 0 if nothing grows, infinite where a step has no solution.
+  double rate() const { return amplification > 1 ? std::log(amplification) : 0; }
 };
-WorstWave worst_wave(const Problem& scheme, double mass_step, double courant);
+
+/// How the waves of a scheme grow at one Courant number: of any length, and those of a circle of N sites, θ = 2πj/N.
+/// Throws as linear_theory.
+class WaveGrowth {
+ public:
+  WaveGrowth(const Problem& scheme, double mass_step, double courant);
+
+  const WorstWave& of_all() const { return worst_; }
+  WorstWave on_circle(int sites) const;
+  /// The number of sites, of least, least + stride, … most, whose circle has a wave so near to the worst of all that this
+  /// one is seen to grow with the fewest updates of a site (steps × sites).
+  int best_circle(int least, int most, int stride) const;
+
+ private:
+  WorstWave nearest(int sites) const;  ///< of a circle's waves to the worst of all
+
+  Symbol symbol_;
+  WorstWave worst_;
+};
 
 struct FrequencyPoint {
   double wave_number;  ///< qk

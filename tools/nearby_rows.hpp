@@ -10,8 +10,8 @@
 
 namespace delf {
 
-/// The rows of a solution near to another one, read beside it row by row. It has to be a solution too: its equations are
-/// checked as they come.
+/// The rows of a solution near to another one, read beside it row by row. It has to be a solution too: its equations
+/// are checked as they come.
 class NearbyRows {
  public:
   /// Holds `held` rows at once. `equations`: if its equations are to be checked.

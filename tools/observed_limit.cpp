@@ -39,63 +39,104 @@ std::vector<std::vector<double>> random_rows(const Simulation& simulation, int s
   return rows;
 }
 
-// The even number of sites near `sites` that best has the wave number θ among its own.
-int sites_for(double theta, int sites) {
-  int best = sites;
-  double least = 1;
-  for (int n = sites; n <= 4 * sites; n += 2) {
-    const double waves = theta * n / (2 * std::numbers::pi), off = std::abs(waves - std::round(waves)) / n;
-    if (off < 0.99 * least) least = off, best = n;
-  }
-  return best;
-}
+// A wave that grows |z|-fold a step is seen to grow for certain when it has grown faster⁴-fold: by `faster` from one
+// quarter to the next, whatever else there is.
+double steps_for(double growth) { return 4 * std::log(faster) / growth; }
 
-// Stable on N and on N − 1 sites, or not stable; and where theory knows of a narrow band of waves that grow, which fall
-// between those that N sites have, on a circle that has them, for as long as it takes.
+// Runs at one Courant number, as far as was needed to see whether it is stable.
+struct Look {
+  ObservedGrowth seen;
+  int sites = 0, steps = 0;
+  double growth = 0;  // theory, of this circle
+  std::optional<Unresolved> unresolved;
+  std::string contradiction;  // of a run, and theory on its circle
+};
+
+// On N and on N − 1 sites; if both are stable, and theory knows of waves that grow, on a circle that has them, for as
+// long as it takes.
 class Runs {
  public:
   Runs(const Problem& scheme, double mass_step, const LimitRequest& request)
-      : scheme_(scheme), mass_step_(mass_step), request_(request) {}
+      : scheme_(scheme), mass_step_(mass_step), request_(request) {
+    try {  // bricks close on an even number of sites only
+      Simulation(linear_problem(scheme, mass_step, 0.5, request.sites - 1));
+    } catch (const BadInput&) {
+      odd_ = false;
+    }
+  }
 
-  const ObservedGrowth& on(int sites, double courant, int steps = 0) {
-    const auto [at, made] = done_.try_emplace({sites, courant});
-    if (made)
-      at->second = observe_growth(linear_problem(scheme_, mass_step_, courant, sites), std::max(steps, request_.steps),
-                                  request_.seed);
-    return at->second;
+  bool has_odd() const { return odd_; }
+  Growth on(int sites, double courant) const { return grown(sites, courant, request_.steps).kind; }
+  const Look& at(double courant) {
+    const auto [known, made] = done_.try_emplace(courant);
+    if (made) look(courant, known->second);
+    return known->second;
   }
-  const ObservedGrowth& worst(double courant) {
-    const ObservedGrowth* worst = &on(request_.sites, courant);
-    if (worst->stable() && odd_)
-      if (const ObservedGrowth& other = on(request_.sites - 1, courant); other.kind > worst->kind) worst = &other;
-    if (!worst->stable()) return *worst;
-    const WorstWave wave = worst_wave(scheme_, mass_step_, courant);
-    if (!(wave.amplification > 1)) return *worst;
-    const double needed = 4 * std::log(faster) / std::log(wave.amplification);
-    const ObservedGrowth& other =
-        on(sites_for(wave.theta, request_.sites), courant, static_cast<int>(std::min(needed, 200.0 * request_.steps)));
-    return other.kind > worst->kind ? other : *worst;
-  }
-  void even_only() { odd_ = false; }
 
  private:
+  ObservedGrowth grown(int sites, double courant, int steps) const {
+    return observe_growth(linear_problem(scheme_, mass_step_, courant, sites), steps, request_.seed);
+  }
+
+  void look(double courant, Look& look) const {
+    const WaveGrowth waves(scheme_, mass_step_, courant / request_.waves_factor);
+    const bool some_grow = waves.of_all().amplification > 1;
+    run(courant, request_.sites, request_.steps, some_grow ? waves.on_circle(request_.sites) : WorstWave{}, look);
+    if (odd_ && look.seen.stable())
+      run(courant, request_.sites - 1, request_.steps, some_grow ? waves.on_circle(request_.sites - 1) : WorstWave{},
+          look);
+    if (!some_grow || !look.seen.stable()) return;
+
+    const int sites = waves.best_circle(request_.sites, 16 * request_.sites, odd_ ? 1 : 2);
+    const WorstWave wave = waves.on_circle(sites);
+    const double steps = std::ceil(steps_for(wave.rate()));
+    if (!(steps * sites <= request_.work * request_.steps * request_.sites)) {
+      look.unresolved = {courant, waves.of_all().theta, waves.of_all().rate(), sites, steps};
+      return;
+    }
+    run(courant, sites, std::max(static_cast<int>(steps), request_.steps), wave, look);
+  }
+
+  // Keeps what has grown most.
+  void run(double courant, int sites, int steps, const WorstWave& wave, Look& look) const {
+    const ObservedGrowth seen = grown(sites, courant, steps);
+    const bool must_grow = steps >= steps_for(wave.rate()), cannot = steps * wave.rate() < 1;
+    if (seen.kind != Growth::refused && (seen.stable() ? must_grow : cannot))
+      look.contradiction = fmt::format(
+          "{} sites, {} steps: {} by theory of these sites, {} when run", sites, steps,
+          cannot ? "nothing grows"
+                 : fmt::format("theta = {:.6g} grows, |z| - 1 = {:.3g},", wave.theta, wave.amplification - 1),
+          to_string(seen.kind));
+    if (look.sites == 0 || seen.kind >= look.seen.kind)
+      look.seen = seen, look.sites = sites, look.steps = steps, look.growth = wave.rate();
+  }
+
   const Problem& scheme_;
   double mass_step_;
   const LimitRequest& request_;
-  std::map<std::pair<int, double>, ObservedGrowth> done_;
+  std::map<double, Look> done_;
   bool odd_ = true;
 };
 
 double middle(const CourantInterval& i) { return 0.5 * (i.from + i.to); }
 
-// Courant numbers to run at: a grid that knows nothing, and the middles of what theory calls stable and unstable.
-std::vector<double> places(const LinearTheory& theory, const LimitRequest& request) {
-  constexpr int grid = 24;
-  std::vector<double> all;
-  for (int i = 1; i <= grid; ++i) all.push_back(request.most * (i - 0.37) / grid);  // on no round number
+// A Courant number to run at; clear: not so near to an end of an interval that theory and runs may differ.
+struct Place {
+  double courant;
+  bool clear;
+};
+
+// A grid that knows nothing, and the middles of what theory calls stable and unstable, however narrow.
+std::vector<Place> places(const LinearTheory& theory, const LimitRequest& request) {
+  constexpr double rounding = 1e-6;  // ends are known to 1e-8
+  std::vector<Place> all;
+  for (int i = 1; i <= request.grid; ++i) {
+    const double courant = request.most * (i - 0.37) / request.grid;  // on no round number
+    all.push_back({courant, theory.is_clear(courant, request.agreement)});
+  }
   double end = 0;
   const auto add = [&](CourantInterval i) {
-    if (i.to - i.from > 2 * request.agreement * i.to) all.push_back(middle(i));
+    if (i.to - i.from > rounding * i.to) all.push_back({middle(i), true});
   };
   for (const CourantInterval& i : theory.stable) {
     add({end, i.from});
@@ -103,7 +144,7 @@ std::vector<double> places(const LinearTheory& theory, const LimitRequest& reque
     end = i.to;
   }
   add({end, request.most});
-  std::ranges::sort(all);
+  std::ranges::sort(all, {}, &Place::courant);
   return all;
 }
 
@@ -111,11 +152,11 @@ std::vector<double> places(const LinearTheory& theory, const LimitRequest& reque
 double bisected(Runs& runs, double stable, double unstable) {
   if (stable == 0) {
     stable = unstable / 1000;
-    if (!runs.worst(stable).stable()) return 0;
+    if (!runs.at(stable).seen.stable()) return 0;
   }
   while (unstable - stable > 0.003 * unstable && !Interrupt::asked()) {
     const double half = 0.5 * (stable + unstable);
-    (runs.worst(half).stable() ? stable : unstable) = half;
+    (runs.at(half).seen.stable() ? stable : unstable) = half;
   }
   return 0.5 * (stable + unstable);
 }
@@ -124,21 +165,51 @@ void scale(LinearTheory& theory, double factor) {
   for (CourantInterval& i : theory.stable) i.from *= factor, i.to *= factor;
 }
 
-void compare(Limit& limit, const LimitRequest& request) {
+// Whether runs find a limit above theory's because nothing that is unstable between them grows so that a run could tell.
+bool unresolved_between(Runs& runs, const Limit& limit, const LimitRequest& request) {
+  constexpr int points = 4;  // of each unstable interval
+  const double most = std::min(limit.observed * (1 - request.agreement), request.most);
+  if (!(limit.theory < most)) return false;
+  double from = 0;
+  const auto unresolved = [&](double to) {
+    to = std::min(to, most);
+    for (int i = 0; i < points && from < to; ++i)
+      if (!runs.at(from + (to - from) * (i + 0.5) / points).unresolved) return false;
+    return true;
+  };
+  for (const CourantInterval& i : limit.symbol.stable) {
+    if (!unresolved(i.from)) return false;
+    from = i.to;
+  }
+  return unresolved(most);
+}
+
+void compare_limits(Runs& runs, Limit& limit, const LimitRequest& request) {
   const auto told = [](double courant) { return std::isfinite(courant) ? fmt::format("{:.6g}", courant) : "none"; };
-  const double difference = std::abs(limit.observed - limit.theory);
-  const bool same =
-      limit.observed == limit.theory || difference <= request.agreement * std::max(limit.observed, limit.theory);
-  if (!same)
+  const double observed = std::min(limit.observed, request.most), theory = std::min(limit.theory, request.most);
+  if (std::abs(observed - theory) <= request.agreement * std::max(observed, theory)) return;
+  limit.limit_unresolved = unresolved_between(runs, limit, request);
+  if (!limit.limit_unresolved)
     limit.disagreements.push_back(fmt::format("{}, mh = {:g}: theory's limit is {}, and runs find {}", limit.scheme,
                                               limit.mass_step, told(limit.theory), told(limit.observed)));
-  for (const Probe& p : limit.probes) {
-    const bool stable = p.observed == Growth::bounded || p.observed == Growth::linear;
-    if (p.observed != Growth::refused && stable != p.theory_stable)
-      limit.disagreements.push_back(fmt::format("{}, mh = {:g}, h/k = {:.4g}: {} by theory, {} when run", limit.scheme,
-                                                limit.mass_step, p.courant, p.theory_stable ? "stable" : "unstable",
-                                                to_string(p.observed)));
-  }
+}
+
+void compare(Runs& runs, Limit& limit, const Place& place) {
+  const Look& look = runs.at(place.courant);
+  const bool stable = limit.symbol.is_stable(place.courant);
+  if (look.unresolved) limit.unresolved.push_back(*look.unresolved);
+  if (place.clear)
+    limit.probes.push_back(
+        {place.courant, stable, look.seen.kind, look.sites, look.steps, look.growth, !look.unresolved});
+  if (look.seen.kind == Growth::refused) return;
+  const auto where = [&] {
+    return fmt::format("{}, mh = {:g}, h/k = {:.6g}", limit.scheme, limit.mass_step, place.courant);
+  };
+  if (place.clear && look.seen.stable() != stable && !look.unresolved)
+    limit.disagreements.push_back(fmt::format("{}: {} by theory, {} when run, {} sites, {} steps", where(),
+                                              stable ? "stable" : "unstable", to_string(look.seen.kind), look.sites,
+                                              look.steps));
+  else if (!look.contradiction.empty()) limit.disagreements.push_back(where() + ", " + look.contradiction);
 }
 
 /// From random rows; where rows are not enough (a composition), from the first and the rates that lead to the second.
@@ -199,54 +270,56 @@ ObservedGrowth observe_growth(const Problem& problem, int steps, std::uint64_t s
   }
 }
 
+double LimitRequest::least_growth() const { return steps_for(1) / (work * steps); }
+
 Limit find_limit(const std::string& name, const Problem& scheme, double mass_step, const LimitRequest& request) {
-  Limit limit;
-  limit.scheme = name;
-  limit.mass_step = mass_step;
-  const double infinite = std::numeric_limits<double>::infinity();
+  LinearTheory theory;
   try {
-    limit.symbol = linear_theory(scheme, mass_step, request.most);
+    theory = linear_theory(scheme, mass_step, request.most, request.samples);
   } catch (const BadInput& error) {
+    Limit limit;
+    limit.scheme = name;
+    limit.mass_step = mass_step;
     limit.left_out = error.what();
     return limit;
   }
-  scale(limit.symbol, request.theory_factor);
-  limit.theory = limit.symbol.first_limit(request.most);
+  scale(theory, request.theory_factor);
+  return compare_with_runs(name, scheme, mass_step, theory, request);
+}
 
+Limit compare_with_runs(const std::string& name, const Problem& scheme, double mass_step, const LinearTheory& intervals,
+                        const LimitRequest& request) {
+  Limit limit;
+  limit.scheme = name;
+  limit.mass_step = mass_step;
+  limit.symbol = intervals;
+  limit.theory = intervals.first_limit(request.most);
   Runs runs(scheme, mass_step, request);
-  bool odd = true;
-  try {  // bricks close on an even number of sites only
-    Simulation(linear_problem(scheme, mass_step, 0.5, request.sites - 1));
-  } catch (const BadInput&) {
-    odd = false;
-    runs.even_only();
-  }
   double below = 0;
   bool found = false;
-  for (const double courant : places(limit.symbol, request)) {
+  for (const Place& place : places(limit.symbol, request)) {
     if (Interrupt::asked()) return limit;
-    const Growth observed = runs.worst(courant).kind;
-    if (limit.symbol.is_clear(courant, request.agreement))
-      limit.probes.push_back({courant, limit.symbol.is_stable(courant), observed});
-    if (observed == Growth::refused) {
-      limit.left_out = runs.worst(courant).reason;
+    compare(runs, limit, place);
+    const ObservedGrowth& seen = runs.at(place.courant).seen;
+    if (seen.kind == Growth::refused) {
+      limit.left_out = seen.reason;
       if (!found && below == 0) return limit;
     }
-    if (found || observed == Growth::refused) continue;
-    if (observed == Growth::exponential) {
-      limit.observed = bisected(runs, below, courant);
+    if (found || seen.kind == Growth::refused) continue;
+    if (seen.kind == Growth::exponential) {
+      limit.observed = bisected(runs, below, place.courant);
       found = true;
     } else {
-      below = courant;
+      below = place.courant;
     }
   }
-  if (!found) limit.observed = infinite;
+  if (!found) limit.observed = std::numeric_limits<double>::infinity();
   if (!limit.symbol.stable.empty()) {
     const double inside = middle(limit.symbol.stable.front());
-    limit.even = runs.on(request.sites, inside).kind;
-    if (odd) limit.odd = runs.on(request.sites - 1, inside).kind;
+    limit.even = runs.on(request.sites, inside);
+    if (runs.has_odd()) limit.odd = runs.on(request.sites - 1, inside);
   }
-  compare(limit, request);
+  compare_limits(runs, limit, request);
   return limit;
 }
 

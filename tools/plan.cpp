@@ -11,6 +11,7 @@
 #include "tools/in_words.hpp"
 #include "tools/initial_rows.hpp"
 #include "tools/outcome.hpp"
+#include "tools/seconds_since.hpp"
 #include "tools/stepping.hpp"
 
 namespace delf {
@@ -51,7 +52,7 @@ Trial step_for(double limit, std::int64_t most, Simulation& simulation) {
     const std::int64_t last = std::min(trial.steps + batch, most);
     const auto begin = Clock::now();
     for (; trial.steps < last; ++trial.steps) simulation.step(false);
-    trial.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+    trial.seconds += seconds_since(begin);
     const double fitting = (limit - trial.seconds) / trial.seconds * static_cast<double>(trial.steps);
     batch = std::max<std::int64_t>(1, fitting < 2. * static_cast<double>(batch) ? std::llround(fitting) : 2 * batch);
   }

@@ -9,12 +9,9 @@
 #include <string>
 
 #include "tools/in_words.hpp"
+#include "tools/seconds_since.hpp"
 
 namespace delf {
-
-namespace {
-double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
-}  // namespace
 
 Progress::Progress(std::int64_t steps)
     : steps_(std::max<std::int64_t>(1, steps)),
@@ -29,15 +26,15 @@ Progress::~Progress() {
 
 void Progress::look(std::int64_t step) {
   const auto now = Clock::now();
-  const double since = seconds(now - last_look_);
+  const double since = seconds_of(now - last_look_);
   last_look_ = now;
   if (since < 0.025) stride_ *= 2;
   if (since > 0.1) stride_ = std::max<std::int64_t>(1, stride_ / 2);
   next_look_ = step + stride_;
 
-  const double elapsed = seconds(now - begin_);
+  const double elapsed = seconds_of(now - begin_);
   const double left = elapsed * static_cast<double>(steps_ - step) / static_cast<double>(step);
-  const double since_shown = seconds(now - last_shown_);
+  const double since_shown = seconds_of(now - last_shown_);
   if (terminal_) {
     if (elapsed < 0.5 || (!shown_ && elapsed + left < 2) || since_shown < 0.1) return;
     draw_bar(step, left);

@@ -12,14 +12,13 @@
 #include "schemes/state.hpp"
 #include "tools/initial_rows.hpp"
 #include "tools/interrupt.hpp"
+#include "tools/seconds_since.hpp"
 
 namespace delf {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 // The last row, or nothing if the scheme cannot give it at this Courant number.
 std::optional<std::vector<double>> last_row(const Contestant& scheme, const Scene& scene, int sites, double courant,

@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the rooms, their files and which includes which: tools/rooms.py > tools/images/rooms.svg (from the top folder)."""
+"""Draws the rooms, their files and which includes which, from the top folder:
+
+    tools/rooms.py > tools/images/rooms.svg
+"""
 import pathlib
 import re
 

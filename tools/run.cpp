@@ -39,7 +39,8 @@ std::string drawn(const Scene& scene, int winding, const RowNames& names, const 
                   const fs::path& folder) {
   if (!recorder.film()) return {};
   const std::string& theory = scene.problem.theory;
-  const bool angle = scene.problem.circle_valued || theory == "pendulum" || theory.find("sine-gordon") != std::string::npos;
+  const bool angle =
+      scene.problem.circle_valued || theory == "pendulum" || theory.find("sine-gordon") != std::string::npos;
   try {
     return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding,
                          *recorder.film(), recorder.energy_errors(), scene.times, names},
@@ -66,7 +67,6 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
   outcome.start = initial.rule();
   outcome.solve = simulation.solve_summary();
   outcome.solve_kind = simulation.solve_kind();
-  outcome.bytes = simulation.bytes();
 
   const RowNames names(simulation);
   Stepping stepping(scene, initial, simulation, names, outcome);
@@ -91,6 +91,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
     }
   };
   attempt([&] { stepping.run(recorder); });
+  outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
   attempt([&] { recorder.close(); });
   std::string missing;
   if (outcome.status != "system-failure") missing = drawn(scene, outcome.winding, names, recorder, folder);

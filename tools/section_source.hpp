@@ -20,8 +20,8 @@ class SectionSource {
   virtual std::optional<std::vector<double>> next() = 0;
 };
 
-/// The rows that a simulation makes, `rows` of them: it is stepped when one is asked for. What is found with a later row
-/// (multipliers, nodes inside cells) is waited for.
+/// The rows that a simulation makes, `rows` of them: it is stepped when one is asked for. What is found with a later
+/// row (multipliers, nodes inside cells) is waited for.
 class ComputedRows final : public SectionSource {
  public:
   /// The simulation has been started.

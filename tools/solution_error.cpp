@@ -79,16 +79,6 @@ std::vector<double> ComparedSolution::at(const Lattice& lattice, double t) const
   return out;
 }
 
-FieldError field_error(std::span<const double> field, std::span<const double> solution, double space_step) {
-  double largest = 0, squares = 0;
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    const double e = std::abs(field[i] - solution[i]);
-    if (!(e <= largest)) largest = e;
-    squares += e * e;
-  }
-  return {largest, std::sqrt(space_step * squares)};
-}
-
 double gradient_centre(const Lattice& lattice, std::span<const double> field, int components, double turn) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   if (lattice.space() == Space::point) return unknown;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/contestant.hpp"
+#include "tools/field_error.hpp"
 
 namespace delf {
 
@@ -31,12 +32,6 @@ class ComparedSolution {
 
 /// Whether the scene's state knows the solution up to that time. Throws BadScene for states that cannot be.
 bool has_exact(const Scene&, double until);
-
-struct FieldError {
-  double linf, l2;
-};
-/// L∞ and √(k Σ e²) over all fields.
-FieldError field_error(std::span<const double> field, std::span<const double> solution, double space_step);
 
 /// The centre of the first field's φ_x²; around a circle, the angle of its first Fourier coefficient. Not a number
 /// where it has none to speak of: it is the same all over, or all gone.

@@ -33,6 +33,8 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
   StabilityFindings f;
   f.most_courant = request.limit.most;
   f.agreement = request.limit.agreement;
+  f.least_growth = request.limit.least_growth();
+  f.limit_sites = request.limit.sites;
   f.seed = request.limit.seed;
   f.dispersion_courant = base.time_step / base.lattice.space_step();
   f.dispersion_mass = base.mass * base.lattice.space_step();

@@ -38,11 +38,14 @@ struct StabilityFindings {
   std::vector<DispersionCurve> dispersion;
   double dispersion_courant = 0, dispersion_mass = 0;  ///< of the dispersion curves: h/k and mk
   double most_courant = 0, agreement = 0;
+  double least_growth = 0;  ///< LimitRequest::least_growth(), on a circle of
+  int limit_sites = 0;
   std::uint64_t seed = 0;
   double seconds = 0;
   std::string status = "done";  ///< or interrupted
 
   std::int64_t disagreements() const;
+  std::int64_t unresolved() const;   ///< Courant numbers of limits
   std::int64_t must_not_be() const;  ///< corners of which that can be said
   bool passed() const { return status == "done" && disagreements() == 0 && must_not_be() == 0; }
 };

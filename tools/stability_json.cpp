@@ -1,41 +1,47 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
-#include <nlohmann/json.hpp>
-
+#include "tools/findings_json.hpp"
 #include "tools/stability_findings.hpp"
 
 namespace delf {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(); }
-Json text(const std::string& t) { return t.empty() ? Json() : Json(t); }
-
 Json json_of(const GhostMode& g) {
-  return {{"theta", number(g.theta)}, {"z", {number(g.z.real()), number(g.z.imag())}}, {"what", g.words}};
+  return {{"theta", number_or_null(g.theta)},
+          {"z", {number_or_null(g.z.real()), number_or_null(g.z.imag())}},
+          {"what", g.words}};
 }
 
 Json json_of(const Limit& l) {
-  Json ghosts = Json::array(), stable = Json::array(), probes = Json::array();
+  Json ghosts = Json::array(), stable = Json::array(), probes = Json::array(), unresolved = Json::array();
   for (const GhostMode& g : l.symbol.ghosts) ghosts.push_back(json_of(g));
-  for (const CourantInterval& i : l.symbol.stable) stable.push_back({number(i.from), number(i.to)});
+  for (const CourantInterval& i : l.symbol.stable) stable.push_back({number_or_null(i.from), number_or_null(i.to)});
   for (const Probe& p : l.probes)
     probes.push_back({{"courant", p.courant},
                       {"theory", p.theory_stable ? "stable" : "unstable"},
-                      {"observed", to_string(p.observed)}});
+                      {"observed", to_string(p.observed)},
+                      {"sites", p.sites},
+                      {"steps", p.steps},
+                      {"growth_theory", number_or_null(p.growth)},
+                      {"resolved", p.resolved}});
+  for (const Unresolved& u : l.unresolved)
+    unresolved.push_back({{"courant", u.courant},
+                          {"theta", u.theta},
+                          {"growth_theory", number_or_null(u.growth)},
+                          {"sites", u.sites},
+                          {"steps_needed", number_or_null(u.steps)}});
   return {{"scheme", l.scheme},
           {"mass_step", l.mass_step},
-          {"courant_theory", number(l.theory)},
-          {"courant_observed", number(l.observed)},
-          {"agrees", l.left_out.empty() ? Json(l.agrees()) : Json()},
-          {"left_out", text(l.left_out)},
+          {"courant_theory", number_or_null(l.theory)},
+          {"courant_observed", number_or_null(l.observed)},
+          {"agrees", l.left_out.empty() && !(l.agrees() && l.limit_unresolved) ? Json(l.agrees()) : Json()},
+          {"left_out", text_or_null(l.left_out)},
           {"stable_courants", stable},
           {"ghosts", ghosts},
           {"observed_even", l.even ? Json(to_string(*l.even)) : Json()},
           {"observed_odd", l.odd ? Json(to_string(*l.odd)) : Json()},
           {"probes", probes},
+          {"unresolved", unresolved},
           {"disagreements", l.disagreements}};
 }
 
@@ -48,12 +54,12 @@ Json json_of(const CornerFinding& f) {
           {"scheme", f.corner.scheme},
           {"parameters", parameters},
           {"verdict", to_string(r.verdict)},
-          {"reason", text(r.reason)},
-          {"error_linf", number(r.error_linf)},
-          {"energy_error_max", number(r.energy_error_max)},
-          {"residual_max", number(r.residual_max)},
-          {"diverged_at", number(r.diverged_at)},
-          {"cut_at", number(r.cut_at)},
+          {"reason", text_or_null(r.reason)},
+          {"error_linf", number_or_null(r.error_linf)},
+          {"energy_error_max", number_or_null(r.energy_error_max)},
+          {"residual_max", number_or_null(r.residual_max)},
+          {"diverged_at", number_or_null(r.diverged_at)},
+          {"cut_at", number_or_null(r.cut_at)},
           {"steps", r.steps},
           {"seconds", r.seconds}};
 }
@@ -77,23 +83,16 @@ Json json_of(const StabilityMap& m) {
 Json json_of(const DispersionCurve& c) {
   Json points = Json::array();
   for (const FrequencyPoint& p : c.points)
-    points.push_back({number(p.wave_number), number(p.numerical), number(p.exact)});
+    points.push_back({number_or_null(p.wave_number), number_or_null(p.numerical), number_or_null(p.exact)});
   return {{"scheme", c.scheme}, {"qk_omegak_exact", points}};
 }
 
-template <class List>
-Json list_of(const List& all) {
-  Json list = Json::array();
-  for (const auto& one : all) list.push_back(json_of(one));
-  return list;
-}
+constexpr auto of_each = [](const auto& one) { return json_of(one); };
 
 }  // namespace
 
 std::string stability_json(const Scene& scene, const StabilityFindings& f) {
-  Json json;
-  json["version"] = DELF_VERSION;
-  json["scene"] = scene.name;
+  Json json = json_head(scene);
   json["status"] = f.status;
   json["passed"] = f.passed();
   json["seconds"] = f.seconds;
@@ -101,13 +100,15 @@ std::string stability_json(const Scene& scene, const StabilityFindings& f) {
   json["limits_theory"] = "klein-gordon";
   json["courant_most"] = f.most_courant;
   json["agreement"] = f.agreement;
-  json["limits"] = list_of(f.limits);
-  json["corners"] = list_of(f.corners);
-  json["maps"] = list_of(f.maps);
-  json["dispersion"] = {{"courant", number(f.dispersion_courant)},
-                        {"mass_space_step", number(f.dispersion_mass)},
-                        {"curves", list_of(f.dispersion)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  json["growth_least"] = f.least_growth;
+  json["unresolved"] = f.unresolved();
+  json["limits"] = json_list(f.limits, of_each);
+  json["corners"] = json_list(f.corners, of_each);
+  json["maps"] = json_list(f.maps, of_each);
+  json["dispersion"] = {{"courant", number_or_null(f.dispersion_courant)},
+                        {"mass_space_step", number_or_null(f.dispersion_mass)},
+                        {"curves", json_list(f.dispersion, of_each)}};
+  return json_text(json);
 }
 
 }  // namespace delf

@@ -31,6 +31,11 @@ std::string remark(const Limit& l) {
     add("stable in" + sets);
   }
   for (const GhostMode& g : l.symbol.ghosts) add(g.words);
+  if (!l.unresolved.empty()) {
+    const Unresolved& first = l.unresolved.front();
+    add(fmt::format("{} h/k unresolved, as {:.4g}: theta = {:.4g}, |z| - 1 = {:.2g}", l.unresolved.size(),
+                    first.courant, first.theta, std::expm1(first.growth)));
+  }
   if (l.even == Growth::linear && l.odd == Growth::bounded) add("runs: even N grows linearly, odd N does not");
   return text;
 }
@@ -43,15 +48,24 @@ std::string limits(const StabilityFindings& f) {
                     courant(l, l.observed, f.most_courant),
                     !l.agrees()           ? "FAILED"
                     : !l.left_out.empty() ? "left out"
+                    : l.limit_unresolved  ? "unresolved"
                                           : "ok",
                     remark(l)});
+  std::string unresolved;
+  if (f.unresolved() > 0)
+    unresolved = fmt::format(
+        "\n  unresolved: waves that grow by theory, but too slowly, or too few of them, for a run of bearable length "
+        "to\n"
+        "  tell (on {} sites it needs |z| - 1 > {:.2g}). This is neither for nor against theory.\n",
+        f.limit_sites, std::expm1(f.least_growth));
   return fmt::format("\n{}", text_table({{"stability limit of"},
                                          {"mh", true},
                                          {"h/k, theory", true},
                                          {"by running", true},
                                          {"verdict"},
                                          {"ghosts and remarks", false, 0, true}},
-                                        rows, widest_line));
+                                        rows, widest_line)) +
+         unresolved;
 }
 
 std::string cell(const CornerResult& r) {
@@ -135,8 +149,10 @@ std::string conclusion(const StabilityFindings& f) {
     refused += c.result.verdict == CornerVerdict::refused;
     wrong += c.result.verdict == CornerVerdict::wrong;
   }
-  const std::string counts = fmt::format("{} limits compared, {} corners ({} refused, {} bounded but wrong), in {}",
-                                         compared, f.corners.size(), refused, wrong, duration_in_words(f.seconds));
+  const std::string counts =
+      fmt::format("{} limits compared{}, {} corners ({} refused, {} bounded but wrong), in {}", compared,
+                  f.unresolved() > 0 ? fmt::format(" ({} h/k unresolved)", f.unresolved()) : "", f.corners.size(),
+                  refused, wrong, duration_in_words(f.seconds));
   if (f.status != "done") return fmt::format("not finished ({}): {}\n", f.status, counts);
   if (f.passed()) return fmt::format("passed: {}\n", counts);
   return fmt::format("FAILED: {} disagreements with theory, {} corners that must not be; {}\n", f.disagreements(),
@@ -148,6 +164,12 @@ std::string conclusion(const StabilityFindings& f) {
 std::int64_t StabilityFindings::disagreements() const {
   std::int64_t all = 0;
   for (const Limit& l : limits) all += static_cast<std::int64_t>(l.disagreements.size());
+  return all;
+}
+
+std::int64_t StabilityFindings::unresolved() const {
+  std::int64_t all = 0;
+  for (const Limit& l : limits) all += static_cast<std::int64_t>(l.unresolved.size());
   return all;
 }
 

@@ -9,8 +9,10 @@
 
 #include "schemes/evolution.hpp"
 #include "schemes/row_kernel.hpp"
+#include "tools/field_error.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/progress.hpp"
+#include "tools/seconds_since.hpp"
 
 namespace delf {
 
@@ -20,7 +22,7 @@ namespace {
 class Stopwatch {
  public:
   explicit Stopwatch(double& total) : total_(total) {}
-  ~Stopwatch() { total_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  ~Stopwatch() { total_ += seconds_since(begin_); }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
@@ -209,14 +211,9 @@ void Stepping::measure_error() {
   if (!exact || recorded_ < 0 || outcome_.time > exact->exact_until()) return;
   std::vector<double> solution(row_.size());
   exact->values(outcome_.time, scene_.problem.lattice, solution);
-  double largest = 0, squares = 0;
-  for (std::size_t i = 0; i < row_.size(); ++i) {
-    const double e = std::abs(row_[i] - solution[i]);
-    if (!(e <= largest)) largest = e;
-    squares += e * e;
-  }
-  outcome_.error_linf = largest;
-  outcome_.error_l2 = std::sqrt(scene_.problem.lattice.space_step() * squares);
+  const FieldError error = field_error(row_, solution, scene_.problem.lattice.space_step());
+  outcome_.error_linf = error.linf;
+  outcome_.error_l2 = error.l2;
 }
 
 }  // namespace delf

@@ -8,6 +8,7 @@
 
 #include "lattice/error.hpp"
 #include "tools/interrupt.hpp"
+#include "tools/seconds_since.hpp"
 
 namespace delf {
 
@@ -45,7 +46,6 @@ std::vector<int> shared_repeats(const std::vector<double>& cost, int repeats, do
 void time_in_turn(std::vector<TriedRun>& runs, const std::vector<int>& repeats, std::uint64_t seed,
                   std::chrono::steady_clock::time_point until, const std::function<void()>& at) {
   using Clock = std::chrono::steady_clock;
-  const auto seconds_of = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
   std::vector<std::vector<double>> seconds(runs.size());
   std::mt19937_64 random(seed);
   const int rounds = repeats.empty() ? 0 : std::ranges::max(repeats);

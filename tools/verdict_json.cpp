@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
+#include "tools/findings_json.hpp"
 #include "tools/verdict.hpp"
 
 namespace delf {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 Json json_of(const Check& c) {
   return {{"name", c.name},           {"region", c.region},         {"value", c.value},
@@ -32,20 +27,13 @@ Json json_of(const RegionPoint& p) {
       {"kind", p.kind}, {"stencils", p.stencils}, {"value", p.value}, {"variations", p.local ? "local" : "evolved"}};
 }
 
-template <class List>
-Json list_of(const List& all) {
-  Json list = Json::array();
-  for (const auto& one : all) list.push_back(json_of(one));
-  return list;
-}
+constexpr auto of_each = [](const auto& one) { return json_of(one); };
 
 }  // namespace
 
 std::string verdict_json(const Scene& scene, const Verdict& v) {
   const Problem& p = scene.problem;
-  Json json;
-  json["version"] = DELF_VERSION;
-  json["scene"] = scene.name;
+  Json json = json_head(scene);
   json["theory"] = p.theory;
   json["stencil"] = p.stencil;
   json["method"] = p.method;
@@ -57,12 +45,12 @@ std::string verdict_json(const Scene& scene, const Verdict& v) {
   json["seconds"] = v.seconds;
   json["stencils"] = v.stencils;
   json["passed"] = v.passed();
-  json["checks"] = list_of(v.checks);
-  json["measured"] = list_of(v.measured);
+  json["checks"] = json_list(v.checks, of_each);
+  json["measured"] = json_list(v.measured, of_each);
   json["left_out"] = v.left_out;
-  json["regions"] = list_of(v.points);
+  json["regions"] = json_list(v.points, of_each);
   json["reversal"] = {{"steps", v.reversal.steps}, {"distance", v.reversal.distance}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace delf

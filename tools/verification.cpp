@@ -19,6 +19,7 @@
 #include "tools/generator_text.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/progress.hpp"
+#include "tools/seconds_since.hpp"
 
 namespace delf {
 
@@ -184,7 +185,7 @@ Verdict Verification::run() {
   }
   if (Interrupt::asked()) verdict_.status = "interrupted";
   collect();
-  verdict_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  verdict_.seconds = seconds_since(begin);
   return std::move(verdict_);
 }
 

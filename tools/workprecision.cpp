@@ -12,6 +12,7 @@
 #include "tools/lower_envelope.hpp"
 #include "tools/progress.hpp"
 #include "tools/reference_run.hpp"
+#include "tools/seconds_since.hpp"
 #include "tools/text_file.hpp"
 #include "tools/timed_rounds.hpp"
 
@@ -26,7 +27,6 @@ using Clock = std::chrono::steady_clock;
 // Shares of the budget: of the reference, and of all first runs.
 constexpr double reference_share = 0.1, search_share = 0.6;
 
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 Clock::time_point after(Clock::time_point begin, double seconds) {
   return begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
@@ -70,8 +70,8 @@ WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequ
   constexpr double milli = 1e-3;
   Progress progress(static_cast<std::int64_t>(request.budget / milli));
   const auto tell = [&] {
-    progress.at(
-        std::min(static_cast<std::int64_t>(since(begin) / milli), static_cast<std::int64_t>(request.budget / milli)));
+    progress.at(std::min(static_cast<std::int64_t>(seconds_since(begin) / milli),
+                         static_cast<std::int64_t>(request.budget / milli)));
   };
   ResolutionSearch search(scene, request, schemes, reference.solution);
   search.run(after(Clock::now(), search_share * request.budget), tell);
@@ -81,7 +81,7 @@ WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequ
   std::vector<TriedRun> runs = search.worth_timing();
   std::vector<double> costs;
   for (const TriedRun& run : runs) costs.push_back(run.result.seconds);
-  const std::vector<int> repeats = shared_repeats(costs, request.repeats, request.budget - since(begin));
+  const std::vector<int> repeats = shared_repeats(costs, request.repeats, request.budget - seconds_since(begin));
   time_in_turn(runs, repeats, request.seed, after(begin, request.budget), tell);
 
   outcome.fewer_repeats =
@@ -93,7 +93,7 @@ WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequ
   });
   compare(outcome, request.accuracies);
   if (Interrupt::asked()) outcome.status = "interrupted";
-  outcome.seconds = since(begin);
+  outcome.seconds = seconds_since(begin);
   return outcome;
 }
 

@@ -25,6 +25,7 @@ SchemeParts build(const FieldTheory&, const Problem& p) {
 
 extern const MethodEntry r_adaptive_method;
 const MethodEntry r_adaptive_method{
-    "r-adaptive", "moving mesh, arclength constraint by multipliers, trapezoidal: Tyranowski-Desbrun (154)-(160)", build};
+    "r-adaptive", "moving mesh, arclength constraint by multipliers, trapezoidal: Tyranowski-Desbrun (154)-(160)",
+    build};
 
 }  // namespace delf

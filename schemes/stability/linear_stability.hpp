@@ -22,8 +22,8 @@ struct Ghost {
 
 struct StabilityVerdict {
   bool stable;  ///< no root lies outside the unit circle, for any wave number
-  double
-      amplification;  ///< max |z|, 1 for roots that are on the circle but for rounding; infinite: a step has no solution
+  /// max |z|, 1 for roots that are on the circle but for rounding; infinite: a step has no solution.
+  double amplification;
   double worst_theta;  ///< where that is, 0 … π
   std::vector<Ghost> ghosts;
   bool drift = false;  ///< y = a + b j solves the equations, as it does those of the massless field: no ghost
@@ -32,11 +32,12 @@ struct StabilityVerdict {
   bool bounded() const { return stable && ghosts.empty(); }
 };
 
-/// von Neumann's analysis of a scheme about a constant state, over all wave numbers: `wave_numbers` of them between 0 and
-/// π, both included, and between them wherever two roots on the circle come nearest to one another, since it is there
-/// that a pair of them leaves it. Walls, and which wave numbers a circle of N sites has, play no part. Throws as Symbol.
-/// Where four and more roots meet at one point of the circle, rounding parts them by more than its square root, and a
-/// scheme may be called unstable that is not: the massless element (4, 4) with Gauss at h = k to nine digits is one.
+/// von Neumann's analysis of a scheme about a constant state, over all wave numbers: `wave_numbers` of them between 0
+/// and π, both included, and between them wherever two roots on the circle come nearest to one another, since it is
+/// there that a pair of them leaves it. Walls, and which wave numbers a circle of N sites has, play no part. Throws as
+/// Symbol. Where four and more roots meet at one point of the circle, rounding parts them by more than its square root,
+/// and a scheme may be called unstable that is not: the massless element (4, 4) with Gauss at h = k to nine
+/// digits is one.
 StabilityVerdict linear_stability(const Symbol&, int wave_numbers = 201);
 StabilityVerdict linear_stability(const LatticeSystem&, double constant = 0, int wave_numbers = 201);
 

@@ -342,7 +342,8 @@ double Symbol::amplification(double theta, const std::vector<Complex>& roots) co
   double largest = 0;
   for (const Complex& z : roots) {
     double size = std::abs(z);
-    // A double root is known to the square root of what P is known to: what tells is whether there is one on the circle.
+    // A double root is known to the square root of what P is known to: what tells is whether there is one on
+    // the circle.
     if (size > 1 && (size < 1 + 1e-12 || (size < 1.1 && is_root(z / size, theta)))) size = 1;
     largest = std::max(largest, size);
   }

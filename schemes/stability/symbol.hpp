@@ -11,8 +11,8 @@ namespace delf {
 ///
 ///     P(z, θ) v = 0,        P_ab(z, θ) = Σ_{t,s} A_ab(t, s) zᵗ e^{iθs},
 ///
-/// with A_ab(t, s) the derivative of equation a by the component b, t rows later and s sites to the right: sums of entries
-/// of the Hessians. Its roots z are the amplification factors of a step, for all space: walls are not seen.
+/// with A_ab(t, s) the derivative of equation a by the component b, t rows later and s sites to the right: sums of
+/// entries of the Hessians. Its roots z are the amplification factors of a step, for all space: walls are not seen.
 ///
 /// On a brick wall the equations of even and of odd sites (row + site) differ, and v has the values of both, first all
 /// components of the even ones. As (−1)^(row + site) is a wave too, (z, θ) and (−z, θ + π) are then the same mode.
@@ -46,8 +46,8 @@ class Symbol {
 
   /// P, row by row.
   std::vector<Complex> matrix(Complex z, double theta) const;
-  /// The singular values of P with its rows and columns scaled, relative to the size of its terms; smallest last. One of
-  /// them is zero if z is a root.
+  /// The singular values of P with its rows and columns scaled, relative to the size of its terms; smallest last. One
+  /// of them is zero if z is a root.
   std::vector<double> singular_values(Complex z, double theta) const;
   /// Whether z is a root but for rounding.
   bool is_root(Complex z, double theta) const;

@@ -6,8 +6,8 @@
 
 namespace delf::initial {
 
-// One for each row of the table in make_state.cpp; make_state has already seen to it that the theory has the state, in this kind
-// of space.
+// One for each row of the table in make_state.cpp; make_state has already seen to it that the theory has the state, in
+// this kind of space.
 
 std::unique_ptr<State> mps_collision(const StateRequest&, const Lattice&);
 std::unique_ptr<State> kink(const StateRequest&, const Lattice&);

@@ -26,8 +26,8 @@ struct Balance {
 /// Whether a value is the worst so far, than which nothing is worse if it is not a number.
 inline bool worse(double value, double than) { return !(value <= than) && !std::isnan(than); }
 
-/// Adds Ωⁱ(V, W) = −Σ_m ∂rⁱ/∂yᵐ (Vᵐ Wⁱ − Wᵐ Vⁱ) of one stencil, every product a term of its own: where V and W have grown
-/// nearly parallel their differences are rounding, and only the products tell how large that may be.
+/// Adds Ωⁱ(V, W) = −Σ_m ∂rⁱ/∂yᵐ (Vᵐ Wⁱ − Wᵐ Vⁱ) of one stencil, every product a term of its own: where V and W have
+/// grown nearly parallel their differences are rounding, and only the products tell how large that may be.
 inline void add_form(Balance& balance, std::size_t i, std::span<const double> jacobian, std::span<const double> V,
                      std::span<const double> W) {
   const std::size_t size = V.size();

@@ -59,8 +59,8 @@ std::optional<Region> RegionDrawer::draw(const RegionRequest& request, std::mt19
   return within(region_around(lattice, patterns_, centres));
 }
 
-/// cl U, with nothing interior outside the rows on which equations hold: at natural walls few stencils touch a site, and
-/// one at the edge of U may be interior to it.
+/// cl U, with nothing interior outside the rows on which equations hold: at natural walls few stencils touch a site,
+/// and one at the edge of U may be interior to it.
 std::optional<Region> RegionDrawer::within(Region region) const {
   const Lattice& lattice = system_.lattice();
   const auto outside = [&](const Site& site) { return site.time < frame_.rows.first || site.time > frame_.rows.last; };

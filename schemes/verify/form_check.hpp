@@ -12,10 +12,11 @@
 
 namespace delf {
 
-/// The discrete multisymplectic form formula (5.6) on regions of a section, the local identity Σ_l Ωˡ = 0 behind it, and
-/// the symplectic form from slab to slab, which is (5.6) on all of space between two rows. First variations V, W are
-/// evolved from random values on the first rows of a window, and, on regions of up to `most_local` nodes, drawn from the
-/// null space of the region's own linearised equations. It is an identity of the linearised equations at any section.
+/// The discrete multisymplectic form formula (5.6) on regions of a section, the local identity Σ_l Ωˡ = 0 behind it,
+/// and the symplectic form from slab to slab, which is (5.6) on all of space between two rows. First variations V, W
+/// are evolved from random values on the first rows of a window, and, on regions of up to `most_local` nodes, drawn
+/// from the null space of the region's own linearised equations. It is an identity of the linearised equations at any
+/// section.
 class FormCheck {
  public:
   struct Options {

@@ -45,7 +45,8 @@ void NearbyCheck::at(const std::string& kind, const RegionSystem& region, const 
     q.push_back(balances[p].sum / balances[p].absolute);
     normaliser = balances[p].absolute, count = balances[p].count;
   }
-  // What is left of the next power, and rounding: the values whose differences these are were rounded when they were made.
+  // What is left of the next power, and rounding: the values whose differences these are were rounded when they were
+  // made.
   const double delta = 8 * std::numeric_limits<double>::epsilon() * largest(F);
   double next_power = 10, rounding = 0;
   for (std::size_t p = 0; p < differences.size(); ++p) {

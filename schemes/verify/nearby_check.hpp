@@ -9,8 +9,8 @@
 
 namespace delf {
 
-/// The form formula on solutions made elsewhere: V and W are differences to nearby solutions A and B of the same program,
-/// and first variations of it up to the size ε of the differences,
+/// The form formula on solutions made elsewhere: V and W are differences to nearby solutions A and B of the same
+/// program, and first variations of it up to the size ε of the differences,
 ///
 ///     Σ_∂U Ω(A − F, B − F) / Σ |terms| = q + c₁ ε + c₂ ε² + …
 ///

@@ -17,8 +17,8 @@ namespace delf {
 /// The patterns of a system's families, as regions want them.
 std::vector<StencilPattern> patterns_of(const LatticeSystem&);
 
-/// A system on a region U alone: its equations at int U, their linearisation, and the sums over ∂U that the form formula
-/// and Noether's theorem are about. Sections and variations are vectors over the nodes of U: node number
+/// A system on a region U alone: its equations at int U, their linearisation, and the sums over ∂U that the form
+/// formula and Noether's theorem are about. Sections and variations are vectors over the nodes of U: node number
 /// place of its site · C + component.
 class RegionSystem {
  public:

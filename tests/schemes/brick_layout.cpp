@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <numbers>
-#include <numeric>
-#include <set>
 
 #include "schemes/row_layout.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/site_slots.hpp"
 #include "tests/schemes/support.hpp"
 
 using namespace delf;
@@ -13,11 +12,6 @@ using namespace delf::testing;
 
 namespace {
 
-Row numbered(int sites) {
-  Row values(static_cast<std::size_t>(sites));
-  std::iota(values.begin(), values.end(), 0.0);
-  return values;
-}
 bool starts_even(const RowLayout& layout) {
   for (int l = 0; l < lanes; ++l)
     if (layout.start(l) % 2 != 0) return false;
@@ -55,19 +49,7 @@ TEST_CASE("every site of a brick wall has its slot, and all of its slots are kno
   for (int N = 2; N <= 140; N += 2) {
     CAPTURE(N);
     const RowLayout layout(Lattice::circle(N, 1), 2, 2);
-    std::set<int> slots, all;
-    bool right = true;
-    for (int i = 0; i < N; ++i) {
-      const int slot = layout.slot(i), lane = slot % lanes, v = slot / lanes - layout.halo();
-      right = right && v >= 0 && v < layout.packs() && layout.start(lane) + v == i;
-      slots.insert(slot);
-      const std::vector<int> every = layout.slots_of(i);
-      right = right && std::ranges::count(every, slot) == 1;
-      all.insert(every.begin(), every.end());
-    }
-    CHECK(right);
-    CHECK(slots.size() == static_cast<std::size_t>(N));
-    CHECK(all.size() == static_cast<std::size_t>(layout.packs() * lanes));
+    check_site_slots(layout, N);
 
     RowBuffer row(layout, 1);
     Row back(static_cast<std::size_t>(N), -1);

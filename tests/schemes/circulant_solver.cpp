@@ -38,7 +38,8 @@ struct Advance {
   int d;
   std::vector<Row> r, v_before, y_before;
   RowBuffer right{layout, d}, before{layout, 2 * d}, after{layout, 2 * d}, work{layout, d};
-  double largest = 0;
+  double largest = 0, change = 0;
+  RowLook look;           ///< of every component
   bool in_place = false;  ///< v is made from itself
 
   Advance(int N, int components) : layout(Lattice::circle(N, 1), 2), d(components) {
@@ -62,7 +63,7 @@ struct Advance {
       layout.scatter(v_before[at], before.row(2 * a));
       layout.scatter(y_before[at], before.row(2 * a + 1));
       double* const v = in_place ? before.row(2 * a) : after.row(2 * a);
-      rows.push_back({before.row(2 * a), before.row(2 * a + 1), v, after.row(2 * a + 1)});
+      rows.push_back({before.row(2 * a), before.row(2 * a + 1), v, after.row(2 * a + 1), look});
       w.push_back(work.row(a));
       bases.push_back(right.row(a));
     }
@@ -75,7 +76,24 @@ struct Advance {
       sum.bind(bases.data());
       right_sides.push_back(&sum);
     }
-    largest = solver.advance(layout, d, right_sides.data(), rows.data(), w.data());
+    const RowChange all = solver.advance(layout, d, right_sides.data(), rows.data(), w.data());
+    largest = all.largest;
+    change = all.change;
+  }
+  /// The largest look by hand, at all packs whose neighbours are none of the halo.
+  double largest_look(const RowLook& at_what) const {
+    double most = 0;
+    for (int a = 0; a < d; ++a)
+      for (int v = 0; v + at_what.parts <= layout.packs(); ++v)
+        for (int l = 0; l < lanes; ++l) {
+          double sum = 0;
+          for (int p = 0; p < at_what.parts; ++p) {
+            const auto slot = layout.at(v + p) + l;
+            sum += at_what.weights[p] * (after.row(2 * a + 1)[slot] - at_what.expected[slot]);
+          }
+          most = std::max(most, std::abs(sum));
+        }
+    return most;
   }
   /// The largest difference from v + w and y + v + w, relative to the largest w, and of the largest |y| reported.
   double off(const std::vector<Circulant>& matrices) {
@@ -166,6 +184,38 @@ TEST_CASE("advancing is solving and adding, to rounding, and v may be made from 
       }
       CHECK(worst < size * 1e-15 * (20 + 1 / (1 - std::abs(q))));
     }
+}
+
+TEST_CASE("what a row turned out to be is compared with what was expected while it is made") {
+  const std::vector<RowLook> looks{{nullptr, 1, {1}}, {nullptr, 2, {0.75, -0.25}}, {nullptr, 3, {0.5, -2, 0.125}}};
+  for (int N : {16, 17, 24, 64, 255, 256})
+    for (int parts = 1; parts <= 3; ++parts)
+      for (int d : {1, 2}) {
+        CAPTURE(N, parts, d);
+        if (parts > RowLayout(Lattice::circle(N, 1), 2).packs()) continue;
+        Advance advance(N, d);
+        Random random(3);
+        RowBuffer expected(advance.layout, 1);
+        advance.layout.scatter(random_row(random, N, 10), expected.row(0));
+        advance.look = looks[static_cast<std::size_t>(parts - 1)];
+        advance.look.expected = expected.row(0);
+        const Circulant A = with_root(-0.6, 1.7);
+        const std::vector<BandEntry> band{{-1, A.side}, {0, A.centre}, {1, A.side}}, number{{0, -4.5}},
+            lopsided{{-1, 0.2}, {0, 1.7}, {1, 0.3}};
+        for (const auto& stencil : {band, number, lopsided}) {
+          std::vector<std::unique_ptr<LinearSolver>> solvers;
+          for (int a = 0; a < d; ++a)
+            solvers.push_back(factor_uniform(Lattice::circle(N, 1), advance.layout, stencil));
+          const auto solver = by_component(std::move(solvers));
+          CAPTURE(solver->name());
+          advance.run(*solver);
+          CHECK(advance.change == Approx(advance.largest_look(advance.look)).epsilon(1e-13));
+          if (parts == 1) continue;
+          RowLook reversed = advance.look;
+          std::reverse(reversed.weights, reversed.weights + parts);
+          CHECK(std::abs(advance.change - advance.largest_look(reversed)) > 1e-3 * advance.change);
+        }
+      }
 }
 
 TEST_CASE("two components with matrices of their own are advanced together, each with its scale") {

@@ -60,9 +60,9 @@ struct Iterations {
     double worst = 0, before = 0;
     for (int n = 0; n < 4; ++n) {
       equations.evaluate_unknown_outputs(RowEquations::At::candidate);
-      equations.advance();
+      const double change = equations.advance(true).change;
       if (n > 0 && before > 1e-9) worst = std::max(worst, equations.whole_change() / before);
-      before = equations.change();
+      before = change;
       equations.make_row_the_candidate();
     }
     return worst;

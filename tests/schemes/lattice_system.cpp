@@ -18,7 +18,8 @@ constexpr int N = 12;
 constexpr double h = 0.3, k = 0.5, m = 1.2;
 const Lattice ring = Lattice::circle(N, N* k);
 
-// ---- the paper's equations, (5.15) with the divisions it lacks, of y(j, i) relative to a site; N = m²(cos φ − 1), or 0
+// ---- the paper's equations, (5.15) with the divisions it lacks, of y(j, i) relative to a site;
+// N = m²(cos φ − 1), or 0
 
 using Field = std::function<double(int j, int i)>;
 using Equation = std::function<double(const Field&)>;

@@ -168,3 +168,70 @@ TEST_CASE("too few iterations are said so") {
   CHECK_FALSE(solve_slab(evolution.system(), evolution.plan(), past, 1e-14, 1).converged);
   CHECK(solve_slab(evolution.system(), evolution.plan(), past, 1e-14, 50).converged);
 }
+
+namespace {
+
+/// Counts how often a stencil's Jacobian is asked for.
+class Counting final : public StencilFamily {
+ public:
+  explicit Counting(std::shared_ptr<const StencilFamily> family)
+      : StencilFamily(family->pattern(), family->values(), family->is_variational()), family_(std::move(family)) {}
+  void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override {
+    family_->residual(cell, y, r);
+  }
+  void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override {
+    ++jacobians;
+    family_->jacobian(cell, y, J);
+  }
+  mutable int jacobians = 0;
+
+ private:
+  std::shared_ptr<const StencilFamily> family_;
+};
+
+}  // namespace
+
+TEST_CASE("a centred start asks for the Jacobian of each stencil once, and is the root of the equations") {
+  constexpr int N = 60;
+  const double k = 0.4, h = 0.2;
+  for (const char* theory : {"sine-gordon", "coupled-sine-gordon", "complex-klein-gordon"})
+    for (const char* stencil : {"rectangle-symmetric", "rectangle", "triangle", "triangle-vertex", "hexagon"}) {
+      CAPTURE(theory, stencil);
+      const auto counting = std::make_shared<Counting>(family_of(problem_of(theory), stencil, h, k));
+      const LatticeSystem system(Lattice::circle(N, N * k), {counting}, h);
+      const SolvePlan plan = make_plan(system.lattice(), system.pattern());
+      if (plan.history != 2) continue;
+      const int d = system.components();
+      Random random(11);
+      Row y0, velocity;
+      for (int i = 0; i < N * d; ++i) {
+        y0.push_back(std::sin(2 * std::numbers::pi * (i / d) / N) + i % d);
+        velocity.push_back(random(-0.1, 0.1));
+      }
+      const Window first{&system.lattice(), d, 0, 0, {y0}};
+      counting->jacobians = 0;
+      const NewtonResult quick = solve_centred_start(system, plan, first, velocity, false, 1e-14, 50);
+      // Stencils below row 0 and above it; those of a brick wall stand at every second site.
+      const int rows = stencil == std::string("hexagon") ? 3 : 2;
+      CHECK(counting->jacobians <= rows * N);
+      REQUIRE(quick.converged);
+      counting->jacobians = 0;
+      const NewtonResult followed = solve_centred_start(system, plan, first, velocity, true, 1e-14, 50);
+      CHECK(counting->jacobians > 10 * rows * N);  // the count can be more
+      REQUIRE(followed.converged);
+      CHECK(distance(quick.row, followed.row) < 1e-13);
+      Row before;
+      for (std::size_t i = 0; i < y0.size(); ++i) before.push_back(quick.row[i] - 2 * h * velocity[i]);
+      const auto largest = [&](const Row& row1) {
+        std::vector<LatticeSystem::Value> values;
+        system.equations(system.window(-1, {before, y0, row1}, 0), 0, values);
+        double defect = 0;
+        for (const auto& value : values) defect = std::max(defect, std::abs(value.sum) / value.absolute);
+        return defect;
+      };
+      CHECK(largest(quick.row) < 1e-13);
+      Row other = quick.row;
+      other[7] += 1e-9;
+      CHECK(largest(other) > 1e-12);
+    }
+}

@@ -3,20 +3,14 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
-#include <set>
 
 #include "tests/catch.hpp"
+#include "tests/schemes/site_slots.hpp"
 
 using namespace delf;
+using namespace delf::testing;
 
 namespace {
-
-std::vector<double> numbered(int sites) {
-  std::vector<double> values(static_cast<std::size_t>(sites));
-  std::iota(values.begin(), values.end(), 0.0);
-  return values;
-}
 
 /// Checks every slot of a row: lane l, pack v holds site start(l) + v, 1000 higher for every time round the circle, or
 /// the nearest wall beyond an interval.
@@ -46,19 +40,7 @@ TEST_CASE("every site has its slot, alone in the arc of a lane, and arcs cover t
       CAPTURE(N);
       CHECK(layout.packs() == (N + lanes - 1) / lanes);
       CHECK(layout.doubles() == static_cast<std::size_t>((layout.packs() + 4) * lanes));
-      std::set<int> slots, all;
-      bool right = true;
-      for (int i = 0; i < N; ++i) {
-        const int slot = layout.slot(i), lane = slot % lanes, v = slot / lanes - layout.halo();
-        right = right && v >= 0 && v < layout.packs() && layout.start(lane) + v == i;
-        slots.insert(slot);
-        const std::vector<int> every = layout.slots_of(i);
-        right = right && std::ranges::count(every, slot) == 1;
-        all.insert(every.begin(), every.end());
-      }
-      CHECK(right);
-      CHECK(slots.size() == static_cast<std::size_t>(N));
-      CHECK(all.size() == static_cast<std::size_t>(layout.packs() * lanes));  // nothing but sites in the arcs
+      check_site_slots(layout, N);
     }
 }
 

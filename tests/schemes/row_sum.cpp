@@ -102,9 +102,8 @@ int count(PackRange r) { return r.first >= r.last ? 0 : (r.last - r.first + r.st
 
 constexpr double rounding = 2e-15 * 14;  // so many terms of size 4
 
-}  // namespace
-
-TEST_CASE("a pass over shifted rows is the plain sum, for every number of terms, over any packs") {
+/// Random sums with every number of terms, over every range of packs.
+void for_each_sum(const auto& check) {
   Sums sums;
   for (int differences : {0, 1, 2, 3, 4})
     for (int plain = 0; plain <= 9; ++plain) {
@@ -113,12 +112,20 @@ TEST_CASE("a pass over shifted rows is the plain sum, for every number of terms,
       sum.bind(sums.bases.data());
       for (const PackRange range : ranges(sums.layout)) {
         CAPTURE(differences, plain, range.first, range.last, range.stride);
-        const Collect seen = sum.pass(sums.layout, range, Collect(sums, range));
-        CHECK(seen.packs == count(range));
-        CHECK(seen.in_order);
-        CHECK(seen.worst < rounding);
+        check(sums, sum, range);
       }
     }
+}
+
+}  // namespace
+
+TEST_CASE("a pass over shifted rows is the plain sum, for every number of terms, over any packs") {
+  for_each_sum([](const Sums& sums, const RowSum& sum, PackRange range) {
+    const Collect seen = sum.pass(sums.layout, range, Collect(sums, range));
+    CHECK(seen.packs == count(range));
+    CHECK(seen.in_order);
+    CHECK(seen.worst < rounding);
+  });
 }
 
 TEST_CASE("a pass whose number of terms is compiled agrees with one whose number is not") {
@@ -148,25 +155,17 @@ TEST_CASE("a pass whose number of terms is compiled agrees with one whose number
 }
 
 TEST_CASE("measure gives the sum and the sum of absolute values") {
-  Sums sums;
-  for (int differences : {0, 1, 2, 3, 4})
-    for (int plain = 0; plain <= 9; ++plain) {
-      sums.choose(differences, plain);
-      RowSum sum = sums.sum();
-      sum.bind(sums.bases.data());
-      for (const PackRange range : ranges(sums.layout)) {
-        CAPTURE(differences, plain, range.first, range.stride);
-        Collect seen(sums, range), sizes(sums, range);
-        sum.measure(sums.layout, range, [&](std::ptrdiff_t at, Pack value, Pack absolute) {
-          seen(at, value);
-          sizes.look(at, absolute, [&](int i) { return sums.expected_absolute(i); });
-        });
-        CHECK(seen.packs == count(range));
-        CHECK(seen.in_order);
-        CHECK(seen.worst < rounding);
-        CHECK(sizes.worst < rounding);
-      }
-    }
+  for_each_sum([](const Sums& sums, const RowSum& sum, PackRange range) {
+    Collect seen(sums, range), sizes(sums, range);
+    sum.measure(sums.layout, range, [&](std::ptrdiff_t at, Pack value, Pack absolute) {
+      seen(at, value);
+      sizes.look(at, absolute, [&](int i) { return sums.expected_absolute(i); });
+    });
+    CHECK(seen.packs == count(range));
+    CHECK(seen.in_order);
+    CHECK(seen.worst < rounding);
+    CHECK(sizes.worst < rounding);
+  });
 }
 
 TEST_CASE("a scaled sum is scaled with its constant, and rows may be bound anew") {

@@ -15,11 +15,11 @@
 #include "schemes/simulation.hpp"
 #include "schemes/theory_registry.hpp"
 #include "tests/jets/random.hpp"
+#include "tests/row_distance.hpp"
 
 /// What the tests of this folder share.
 namespace delf::testing {
 
-using Row = std::vector<double>;
 using Families = std::vector<std::shared_ptr<const StencilFamily>>;
 
 inline Row random_row(Random& random, int sites, double amplitude) {
@@ -36,12 +36,6 @@ inline std::vector<Row> random_rows(Random& random, int count, int sites, double
     for (std::size_t i = 0; i < step.size(); ++i) rows.back()[i] += step[i];
   }
   return rows;
-}
-
-inline double distance(const Row& a, const Row& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
 }
 
 /// Parameters away from special values, so that no term of a theory is missing.

@@ -1,24 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 
 using namespace delf::testing;
-
-namespace {
-
-// Exit code 2, nothing on stdout, and one line on stderr that holds all the parts.
-void check_refused(const Ran& ran, const std::vector<std::string>& parts) {
-  INFO(ran.err);
-  CHECK(ran.code == 2);
-  CHECK(ran.out.empty());
-  CHECK(lines(ran.err).size() == 1);
-  for (const std::string& part : parts) {
-    INFO(part);
-    CHECK(contains(ran.err, part));
-  }
-}
-
-}  // namespace
 
 TEST_CASE("what is wrong in a scene is told by file, line, key, value, reason and remedy") {
   struct Bad {

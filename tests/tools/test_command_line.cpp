@@ -2,6 +2,7 @@
 #include "schemes/nearest_name.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 #include "tools/failure.hpp"
 #include "tools/keys.hpp"
 
@@ -42,12 +43,7 @@ TEST_CASE("without a command the usage is shown, and that is not success") {
 TEST_CASE("a command that is not there is refused in one line") {
   const Folder folder;
   const auto refused = [&](const char* arguments, const char* reason) {
-    const Ran ran = delf_program(folder, arguments);
-    INFO(ran.err);
-    CHECK(ran.code == 2);
-    CHECK(ran.out.empty());
-    CHECK(lines(ran.err).size() == 1);
-    CHECK(contains(ran.err, reason));
+    check_refused(delf_program(folder, arguments), {reason});
   };
   refused("rnu collision", "did you mean run?");
   refused("collision", "did you mean `delf run collision`?");

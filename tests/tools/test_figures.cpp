@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <cstdlib>
-
 #include "tests/catch.hpp"
+#include "tests/tools/has_gnuplot.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/figure_style.hpp"
 #include "tools/film.hpp"
@@ -12,10 +11,7 @@ using delf::Film;
 using delf::Trace;
 
 TEST_CASE("figures are drawn as PNG and as SVG, and nothing else is left beside them") {
-  if (std::system("command -v gnuplot > /dev/null") != 0) {
-    WARN("gnuplot is not installed: no figures are tested");
-    return;
-  }
+  if (!has_gnuplot()) return;
   const Folder folder;
   const auto scene = GENERATE(as<std::string>(), "collision --run.until=30", "phi4-kink --run.until=5",
                               "kink --run.until=2 --output.times=0,1,1.7 --output.every=3",

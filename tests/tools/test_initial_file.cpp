@@ -3,6 +3,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 #include "tools/fields_reader.hpp"
 
 using namespace delf::testing;
@@ -52,10 +53,7 @@ TEST_CASE("a file that cannot give the rows is refused, and says why") {
   folder.write("text.h5", "this is no HDF5\n");
   const auto refused = [&](const std::string& arguments, const std::string& reason) {
     const Ran ran = delf_program(folder, "run small.ini --initial.state=file " + arguments);
-    INFO(ran.err);
-    CHECK(ran.code == 2);
-    CHECK(lines(ran.err).size() == 1);
-    CHECK(contains(ran.err, reason));
+    check_refused(ran, {reason});
     CHECK_FALSE(std::filesystem::exists(folder / "results"));
   };
   refused("", "needs initial.file");

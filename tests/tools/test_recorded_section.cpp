@@ -6,6 +6,7 @@
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/python.hpp"
+#include "tests/tools/refused.hpp"
 #include "tools/engine.hpp"
 #include "tools/fields_file.hpp"
 #include "tools/recorded_section.hpp"
@@ -292,12 +293,7 @@ TEST_CASE("the NumPy example solves the equations of its scene, and by Runge and
 TEST_CASE("files of recorded rows are given by options, and only to what reads them") {
   const Folder folder;
   const auto refused = [&](const std::string& arguments, const std::string& part) {
-    const Ran ran = delf_program(folder, arguments);
-    INFO(ran.err);
-    CHECK(ran.code == 2);
-    CHECK(ran.out.empty());
-    CHECK(lines(ran.err).size() == 1);
-    CHECK(contains(ran.err, part));
+    check_refused(delf_program(folder, arguments), {part});
   };
   refused("run breather --fields a.h5", "--fields: `run` looks at no recorded rows");
   refused("plan breather --nearby=a.h5", "--nearby: `plan` looks at no recorded rows");

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "tests/catch.hpp"
+#include "tests/tools/has_gnuplot.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 #include "tools/fields_reader.hpp"
 #include "tools/hdf5_handle.hpp"
 #include "tools/rows_table.hpp"
@@ -41,15 +42,6 @@ std::string components(const std::filesystem::path& file, const char* name) {
 }
 
 nlohmann::json summary(const Folder& folder) { return nlohmann::json::parse(read(folder / "out/summary.json")); }
-
-// Exit code 2, and one line on stderr that holds the part.
-void check_refused(const Ran& ran, const std::string& part) {
-  INFO(ran.err);
-  INFO(part);
-  CHECK(ran.code == 2);
-  CHECK(lines(ran.err).size() == 1);
-  CHECK(contains(ran.err, part));
-}
 
 using Shape = std::vector<hsize_t>;
 
@@ -169,7 +161,7 @@ TEST_CASE("what does not go together is refused in one line") {
   const Folder folder;
   const auto refused = [&](const std::string& arguments, const std::string& part) {
     INFO(arguments);
-    check_refused(delf_program(folder, "run " + arguments + " --run.steps=2"), part);
+    check_refused(delf_program(folder, "run " + arguments + " --run.steps=2"), {part});
     CHECK_FALSE(std::filesystem::exists(folder / "results"));
   };
   refused("coupled-sine-gordon --lattice.stencil=midpoint", "lattice.stencil = midpoint");
@@ -217,8 +209,8 @@ TEST_CASE("a table of rows is read in any order, and what is wrong with it is to
     folder.write("scene.ini",
                  "[lattice]\nspace = interval\nlength = 1\nsites = 3\ntime_step = 0.1\n[scheme]\nmethod = r-adaptive\n"
                  "[initial]\nstate = file\nfile = bad.csv\n[run]\nsteps = 2\n");
-    check_refused(delf_program(folder, "run scene.ini"), part);
-    check_refused(delf_program(folder, "run scene.ini"), "scene.ini:10: initial.file = bad.csv: ");
+    check_refused(delf_program(folder, "run scene.ini"), {part});
+    check_refused(delf_program(folder, "run scene.ini"), {"scene.ini:10: initial.file = bad.csv: "});
   };
   refused("", "holds no rows");
   refused("row,site,phi,X\n", "holds no rows");
@@ -237,10 +229,7 @@ TEST_CASE("a table of rows is read in any order, and what is wrong with it is to
 }
 
 TEST_CASE("figures of a point are a trajectory, and of two coordinates an orbit") {
-  if (std::system("command -v gnuplot > /dev/null") != 0) {
-    WARN("gnuplot is not installed: no figures are tested");
-    return;
-  }
+  if (!has_gnuplot()) return;
   struct Case {
     const char* scene;
     std::vector<std::string> drawn, not_drawn;

@@ -96,6 +96,107 @@ TEST_CASE("a limit that is not the scheme's is found out") {
   CHECK_FALSE(limit.disagreements.empty());
 }
 
+TEST_CASE("narrow tongues of slow waves are seen on the circle that suits them: composition (6,12)") {
+  // Beyond 1.166 all that grows are waves of some 1e-4 of all θ, by 4.4e-4 a step: those of 64 sites do not.
+  LimitRequest request;
+  request.most = 1.8;
+  request.samples = 9;
+  request.grid = 4;
+  const Problem p = scheme("composition (6,12)");
+  const Limit limit = find_limit("composition (6,12)", p, 0.5, request);
+  INFO(limit.theory << " " << limit.observed << " " << limit.left_out);
+  for (const std::string& d : limit.disagreements) INFO(d);
+  CHECK(limit.agrees());
+  CHECK(limit.unresolved.empty());
+  CHECK(std::abs(limit.observed / limit.theory - 1) < 0.003);
+  int on_their_circle = 0;
+  for (const Probe& probe : limit.probes) on_their_circle += !probe.theory_stable && probe.sites != request.sites;
+  CHECK(on_their_circle > 0);
+
+  // Theory that has no tongue there, and theory whose waves are not the scheme's, are found out by the same runs.
+  LinearTheory denied = limit.symbol;
+  denied.stable.push_back({1.5, 1.7});
+  request.grid = 1;
+  const Limit wrong = compare_with_runs("composition (6,12)", p, 0.5, denied, request);
+  REQUIRE_FALSE(wrong.agrees());
+  CHECK(wrong.disagreements.front().find("h/k = 1.6: stable by theory, grows exponentially") != std::string::npos);
+  request.waves_factor = 1.05;
+  CHECK_FALSE(compare_with_runs("composition (6,12)", p, 0.5, limit.symbol, request).agrees());
+}
+
+TEST_CASE("a tongue that theory invents or denies is found out, however narrow") {
+  const Problem leapfrog = scheme("triangle-vertex");
+  LinearTheory invented = linear_theory(leapfrog, 1, 1.6, 20);
+  REQUIRE(invented.stable.size() == 1);
+  CHECK(compare_with_runs("triangle-vertex", leapfrog, 1, invented, quick()).agrees());
+  invented.stable = {{0, 0.5}, {0.501, invented.stable[0].to}};
+  const Limit limit = compare_with_runs("triangle-vertex", leapfrog, 1, invented, quick());
+  REQUIRE_FALSE(limit.agrees());
+  CHECK(limit.disagreements.front().find("h/k = 0.5005: unstable by theory, bounded") != std::string::npos);
+  CHECK_FALSE(limit.limit_unresolved);
+
+  // Limits that are right, and waves that are not
+  LimitRequest wrong_waves = quick();
+  wrong_waves.waves_factor = 1.05;
+  const Limit waves = find_limit("hexagon", scheme("hexagon"), 1, wrong_waves);
+  CHECK_FALSE(waves.agrees());
+}
+
+TEST_CASE("a wave that grows too slowly to be seen is told as unresolved, and settles nothing") {
+  LimitRequest request = quick();
+  request.most = 2;
+  request.steps = 300;
+  request.work = 1;
+  const Limit limit = find_limit("hexagon", scheme("hexagon"), 0.5, request);
+  CHECK(limit.agrees());
+  CHECK(limit.theory == Approx(1.40436).epsilon(1e-5));
+  CHECK(limit.observed == infinite);
+  CHECK(limit.limit_unresolved);
+  REQUIRE(limit.unresolved.size() >= 5);
+  for (const Unresolved& u : limit.unresolved) {
+    CHECK(u.courant > limit.theory);
+    CHECK(u.growth > 0);
+    CHECK(u.growth < request.least_growth());
+    CHECK(u.steps * u.sites > request.work * request.steps * request.sites);
+  }
+  StabilityFindings f;
+  f.limits = {limit};
+  CHECK(f.passed());
+  CHECK(f.unresolved() == static_cast<std::int64_t>(limit.unresolved.size()));
+  const Scene scene(Settings("test.ini", {}, {}));
+  const Json json = Json::parse(stability_json(scene, f));
+  CHECK(json["limits"][0]["agrees"].is_null());
+  CHECK(json["limits"][0]["unresolved"].size() == limit.unresolved.size());
+  CHECK(stability_report(scene, f).find("neither for nor against theory") != std::string::npos);
+  // With all the work that a run may be the same limit is found.
+  request.work = LimitRequest{}.work;
+  request.steps = LimitRequest{}.steps;
+  CHECK(find_limit("hexagon", scheme("hexagon"), 0.5, request).unresolved.empty());
+  // And what is not so slow is not excused, be it a limit that is none.
+  LinearTheory none = limit.symbol;
+  none.stable = {{0, request.most}};
+  CHECK_FALSE(compare_with_runs("hexagon", scheme("hexagon"), 0.5, none, request).agrees());
+  request.theory_factor = 0.9;
+  request.work = 1;
+  request.steps = 300;
+  CHECK_FALSE(find_limit("triangle-vertex", scheme("triangle-vertex"), 0.5, request).agrees());
+}
+
+TEST_CASE("the circle that suits a wave best has a wave where theory wants it") {
+  const WaveGrowth waves(scheme("composition (4,4)"), 0.5, 1.4);
+  REQUIRE(waves.of_all().rate() > 0);
+  const int sites = waves.best_circle(64, 1024, 1), even = waves.best_circle(64, 1024, 2);
+  CHECK(even % 2 == 0);
+  for (const int n : {sites, even}) {
+    const WorstWave wave = waves.on_circle(n);
+    const double number = wave.theta * n / (2 * std::numbers::pi);
+    CHECK(std::abs(number - std::round(number)) < 1e-9);
+    CHECK(wave.amplification <= waves.of_all().amplification * (1 + 1e-9));
+    CHECK(n / wave.rate() <= 64 / waves.on_circle(64).rate());
+  }
+  CHECK(WaveGrowth(scheme("composition (4,4)"), 0.5, 1.3).on_circle(64).rate() == 0);
+}
+
 TEST_CASE("above its limit noise grows exponentially, below it does not") {
   CHECK(growth("triangle-vertex", 0.9) == Growth::bounded);
   CHECK(growth("triangle-vertex", 1.05) == Growth::exponential);

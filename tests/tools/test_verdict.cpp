@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "tests/catch.hpp"
+#include "tests/tools/has_gnuplot.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/text_columns.hpp"
 #include "tools/verdict.hpp"
@@ -142,10 +142,7 @@ TEST_CASE("text is wrapped at blanks, by columns and not by bytes, and words tha
 }
 
 TEST_CASE("the figures of a verdict are drawn as PNG and as SVG, and those without data are not") {
-  if (std::system("command -v gnuplot > /dev/null") != 0) {
-    WARN("gnuplot is not installed: no figures are tested");
-    return;
-  }
+  if (!has_gnuplot()) return;
   const Folder folder;
   CHECK(draw_verdict(verdict(), "the user's", "hexagon, N = 254", folder.path()).empty());
   CHECK(verdict_figure_names().size() == 4);

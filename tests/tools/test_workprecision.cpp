@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/catch.hpp"
+#include "tests/tools/has_gnuplot.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 #include "tools/keys.hpp"
 
 using namespace delf::testing;
@@ -12,12 +14,14 @@ using Json = nlohmann::json;
 
 namespace {
 
-// A breather on 64 sites for two time units, exact; its steps take microseconds.
-std::string scene(const std::string& more = "") {
-  return "[theory]\nname = sine-gordon\n[lattice]\nlength = 40\nsites = 64\ncourant = 0.5\n"
-         "[initial]\nstate = breather\n[run]\nuntil = 2\n[output]\nfigures = off\n" +
-         more;
-}
+// A folder with a scene: a breather on 64 sites for two time units, exact; its steps take microseconds.
+struct WithScene : Folder {
+  WithScene() {
+    write("small.ini",
+          "[theory]\nname = sine-gordon\n[lattice]\nlength = 40\nsites = 64\ncourant = 0.5\n"
+          "[initial]\nstate = breather\n[run]\nuntil = 2\n[output]\nfigures = off\n");
+  }
+};
 
 Json compared(const Folder& folder, const std::string& arguments, int code = 0) {
   std::filesystem::remove_all(folder / "out");
@@ -36,8 +40,7 @@ const std::string two =
 }  // namespace
 
 TEST_CASE("workprecision runs a ladder of two schemes, and writes every field of every run") {
-  const Folder folder;
-  folder.write("small.ini", scene());
+  const WithScene folder;
   const Json json = compared(folder, "small.ini" + two);
   CHECK(json["status"] == "done");
   CHECK(json["reference"] == "the exact solution");
@@ -67,8 +70,7 @@ TEST_CASE("workprecision runs a ladder of two schemes, and writes every field of
 }
 
 TEST_CASE("errors of workprecision are those of a run, to the last bit") {
-  const Folder folder;
-  folder.write("small.ini", scene());
+  const WithScene folder;
   const auto stencil = GENERATE(as<std::string>(), "rectangle-symmetric", "triangle-vertex", "hexagon");
   const Json json = compared(folder,
                              "small.ini --workprecision.repeats=2 --workprecision.sites=64 "
@@ -107,8 +109,7 @@ TEST_CASE("a kink's position and velocity errors fall with the square of the ste
 }
 
 TEST_CASE("a scheme that cannot be built or run is left out with its reason, and the others are there") {
-  const Folder folder;
-  folder.write("small.ini", scene());
+  const WithScene folder;
   const Json json = compared(folder,
                              "small.ini --workprecision.schemes=triangle-vertex,midpoint,hexagon "
                              "--workprecision.sites=63 --workprecision.repeats=1");
@@ -144,8 +145,7 @@ TEST_CASE("without an exact solution runs are compared with a finer one, and com
 }
 
 TEST_CASE("a ladder that workprecision chooses ends at the accuracy that is asked for") {
-  const Folder folder;
-  folder.write("small.ini", scene());
+  const WithScene folder;
   const Json json = compared(folder,
                              "small.ini --workprecision.schemes=triangle-vertex --workprecision.repeats=1 "
                              "--workprecision.accuracies=1e-2,1e-4 --workprecision.budget=100");
@@ -162,8 +162,7 @@ TEST_CASE("a ladder that workprecision chooses ends at the accuracy that is aske
 }
 
 TEST_CASE("an interrupted comparison writes what it has, and ends with exit code 130") {
-  const Folder folder;
-  folder.write("small.ini", scene());
+  const WithScene folder;
   const Ran ran =
       shell(folder, "'" DELF_PROGRAM
                     "' workprecision small.ini --run.until=50 --workprecision.budget=1e9 --out cut "
@@ -181,14 +180,11 @@ TEST_CASE("an interrupted comparison writes what it has, and ends with exit code
 }
 
 TEST_CASE("keys of workprecision that say nothing are refused in one line") {
-  const Folder folder;
-  folder.write("small.ini", scene());
+  const WithScene folder;
   const auto refused = [&](const std::string& arguments, const std::string& reason) {
     const Ran ran = delf_program(folder, "workprecision " + arguments + " --out refused");
-    INFO(arguments << "\n" << ran.err);
-    CHECK(ran.code == 2);
-    CHECK(lines(ran.err).size() == 1);
-    CHECK(contains(ran.err, reason));
+    INFO(arguments);
+    check_refused(ran, {reason});
     CHECK_FALSE(std::filesystem::exists(folder / "refused"));
   };
   refused("small.ini --workprecision.schemes=triangle-vertx", "triangle-vertx is no scheme here; did you mean");
@@ -214,12 +210,8 @@ TEST_CASE("help workprecision tells every key of its section") {
 }
 
 TEST_CASE("workprecision draws its figure, with a line for each scheme and its slope") {
-  if (std::system("command -v gnuplot > /dev/null") != 0) {
-    WARN("gnuplot is not installed: no figures are tested");
-    return;
-  }
-  const Folder folder;
-  folder.write("small.ini", scene());
+  if (!has_gnuplot()) return;
+  const WithScene folder;
   const Ran ran = delf_program(folder, "workprecision small.ini" + two + "--output.figures=on --out out");
   INFO(ran.err);
   REQUIRE(ran.code == 0);
@@ -237,8 +229,7 @@ TEST_CASE("workprecision draws its figure, with a line for each scheme and its s
 
 #ifdef DELF_HAS_PEERS
 TEST_CASE("peers are in the same run as the engine, and the tables compare them") {
-  const Folder folder;
-  folder.write("small.ini", scene());
+  const WithScene folder;
   const Ran ran = delf_program(folder,
                                "workprecision small.ini --workprecision.schemes=triangle-vertex,peers "
                                "--workprecision.sites=256 --workprecision.courants=0.1 "

@@ -8,10 +8,9 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
+#include "tests/row_distance.hpp"
 
 namespace delf::testing {
-
-using Row = std::vector<double>;
 
 /// A stencil or, where the method is a comparator, the scheme that has no Lagrangian.
 struct SchemeName {
@@ -55,13 +54,6 @@ inline Row newest(const Simulation& simulation, const Lattice& lattice, int back
   Row row(static_cast<std::size_t>(lattice.sites()));
   simulation.copy_row(back, row);
   return row;
-}
-
-/// max |a_i − b_i|
-inline double distance(const Row& a, const Row& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
 }
 
 /// How row 1 comes from row 0: φ(h); the field equation at row 0 with y₋₁ = y₁ − 2hφ_t; or y₁ = y₀ + hφ_t, Euler's,

@@ -58,6 +58,15 @@ Family random_lagrangian(int seed) {
   return std::make_shared<LagrangianFamily<RandomStencil>>(RandomStencil(static_cast<std::uint64_t>(seed)));
 }
 
+/// Nothing where the stencils cannot be stepped on this lattice.
+std::optional<SolvePlan> plan_if_any(const LatticeSystem& system) {
+  try {
+    return make_plan(system.lattice(), system.pattern());
+  } catch (const BadInput&) {
+    return std::nullopt;
+  }
+}
+
 /// A residual that is no gradient, on the same stencils: rⁱ = Σ_j a_ij yʲ + c_i (yⁱ⁺¹)² yⁱ, and a is not symmetric.
 class RandomResidual final : public StencilFamily {
  public:
@@ -159,12 +168,8 @@ TEST_CASE("verify: first variations that are evolved by a random stencil's plan 
   int planned = 0, evolved = 0;
   for (int seed = 0; seed < 45; ++seed) {
     const LatticeSystem system(lattice_of(seed), {random_lagrangian(seed)}, h);
-    std::optional<SolvePlan> plan;
-    try {
-      plan.emplace(make_plan(system.lattice(), system.pattern()));
-    } catch (const BadInput&) {
-      continue;
-    }
+    const std::optional<SolvePlan> plan = plan_if_any(system);
+    if (!plan) continue;
     ++planned;
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const int rows = FormCheck::rows_wanted(system, *plan, every_kind());
@@ -191,12 +196,8 @@ TEST_CASE(
   for (int seed = 0; seed < 45; ++seed) {
     const Lattice lattice = lattice_of(seed);
     const LatticeSystem system(lattice, {random_lagrangian(seed)}, h);
-    std::optional<SolvePlan> plan;
-    try {
-      plan.emplace(make_plan(system.lattice(), system.pattern()));
-    } catch (const BadInput&) {
-      continue;
-    }
+    const std::optional<SolvePlan> plan = plan_if_any(system);
+    if (!plan) continue;
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const int rows = Tangent::least_rows(system, *plan) + 4, N = lattice.sites();
     Tangent tangent(system, *plan, rows, 0);
@@ -292,12 +293,8 @@ TEST_CASE("verify: the words of a failed form formula name a row and a site next
   Extremes value;
   for (int seed = 0; seed < 12; ++seed) {
     const LatticeSystem system(lattice_of(seed), {random_lagrangian(seed)}, h);
-    std::optional<SolvePlan> plan;
-    try {
-      plan.emplace(make_plan(system.lattice(), system.pattern()));
-    } catch (const BadInput&) {
-      continue;
-    }
+    const std::optional<SolvePlan> plan = plan_if_any(system);
+    if (!plan) continue;
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const int N = system.lattice().sites();
     for (const RegionKind kind : region_kinds()) {
@@ -411,7 +408,8 @@ std::vector<std::vector<double>> rows_of_run(const Problem& problem, const std::
   return rows;
 }
 
-/// Smooth rows to start from: the angle θ(t, x), or the point of the unit sphere at that angle on a tilted great circle.
+/// Smooth rows to start from: the angle θ(t, x), or the point of the unit sphere at that angle on a tilted great
+/// circle.
 std::vector<std::vector<double>> smooth_start(const Problem& problem) {
   const Simulation simulation(problem);
   const auto& components = simulation.components();

@@ -73,8 +73,8 @@ TEST_CASE("a wave map stays on its sphere and keeps its three momenta over 10000
   stays("rectangle", 10000);
 }
 
-// On the symmetric rectangle, h = k/2, this run ends at step 416 (N = 32), 848 (64), 937 (31): Newton's method diverges.
-// At h = k/4 it goes on.
+// On the symmetric rectangle, h = k/2, this run ends at step 416 (N = 32), 848 (64), 937 (31): Newton's method
+// diverges. At h = k/4 it goes on.
 TEST_CASE("a wave map stays on its sphere and keeps its three momenta on every stencil") {
   stays("triangle-vertex", 1000);
   stays("rectangle", 1000);
@@ -117,7 +117,8 @@ TEST_CASE("the momenta stay because turns leave the density as it is: pulled alo
     for (const int r : {0, 1}) {
       rows.emplace_back();
       const std::vector<double> u = wave.exact_row(r);
-      for (std::size_t i = 0; i < u.size(); i += 3) rows.back().insert(rows.back().end(), {u[i], u[i + 1], u[i + 2], 0});
+      for (std::size_t i = 0; i < u.size(); i += 3)
+        rows.back().insert(rows.back().end(), {u[i], u[i + 1], u[i + 2], 0});
     }
     evolution.stepper().start(rows);
     const auto momentum = [&](const LinearSymmetry& s) {

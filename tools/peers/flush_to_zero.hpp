@@ -6,7 +6,8 @@
 
 namespace delf::peers {
 
-/// While it lives, denormal numbers of this thread count as zero, as they do in the engine's steps.
+/// While it lives, denormal numbers of this thread count as zero, as they do in the engine's steps: FlushDenormals of
+/// schemes/ written again, since peers include nothing of that room.
 class FlushToZero {
  public:
 #if defined(__SSE2__)

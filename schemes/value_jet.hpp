@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "jets/density.hpp"
+
+namespace delf {
+
+/// The jet (φ, 0, 0) of a pack of sites, with ∂/∂φ: all that is asked of a density that is nonlinear in φ alone.
+/// `value(a)` is the component a of φ, called once for each; `positions` is x of the pack's sites, read if the density
+/// is placed.
+template <Density D>
+[[gnu::always_inline]] inline auto value_jet(const auto& value, const Pack& t, const double* positions) {
+  constexpr int d = components_of<D>();
+  using Number = Dual<Pack, d>;
+  JetFor<Number, D> jet;
+  for (int a = 0; a < d; ++a) {
+    component(jet.phi, a) = Number::variable(value(a), a);
+    component(jet.phi_t, a) = Number(0.0);
+    component(jet.phi_x, a) = Number(0.0);
+  }
+  if constexpr (is_placed<D>()) {
+    jet.t = Number(t);
+    jet.x = Number(Pack::load(positions));
+  }
+  return jet;
+}
+
+}  // namespace delf
