@@ -106,7 +106,7 @@ CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) 
 }
 
 template <class Sink>
-Sink CirculantSolver::backward(const Entering& entering, const double* u, Sink sink, int unseen) const {
+[[gnu::always_inline]] inline Sink CirculantSolver::backward(const Entering& entering, const double* u, Sink sink, int unseen) const {
   const RowLayout& layout = *layout_;
   Pack x = entering.x;
   const Pack entering_u = entering.u;
@@ -156,7 +156,9 @@ RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* r
   double* const u = rows[0].v == rows[0].v_before ? w[0] : rows[0].v;
   const Entering entering = forward(*right_sides[0], u);
   return with_increment_pass<Order::descending>(
-      rows[0], [&](auto pass, int unseen) { return backward(entering, u, pass, unseen).result(); });
+      rows[0], [&](auto pass, int unseen) __attribute__((always_inline)) {
+        return backward(entering, u, pass, unseen).result();
+      });
 }
 
 /// u stands in the new increment's row until it is replaced.
@@ -167,7 +169,7 @@ class CirculantSolver::Stream final : public RowStream {
   PackRange last_packs() const override;
   void begin() override;
   int advance(int end) override;
-  double largest() const override { return increment_.result().largest; }
+  double largest() const override { return max_or_nan(increment_.result().largest); }
 
  private:
   const CirculantSolver& solver_;

@@ -26,7 +26,8 @@ inline constexpr auto neighbours_within = [] {
 /// over the neighbours s within `reach`. What they were is carried along in registers, so that the new row may be
 /// written over the old one. Returns √Σy² of the new values: infinite or NaN where squares overflow.
 template <int reach, Density D>
-[[gnu::flatten]] double explicit_loop(const D& given_density, const ExplicitRows& given, PackRange packs) {
+[[gnu::flatten]] double explicit_loop(const D& given_density, const ExplicitRows& given, const PackRange& given_packs) {
+  const PackRange packs = given_packs;
   constexpr int d = components_of<D>(), count = 2 * reach;
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
   const D density = given_density;

@@ -51,7 +51,7 @@ class ScalarSolver final : public LinearSolver {
       increment_ = right_side_.pass(layout_, {done_, end}, increment_);
       return done_ = end;
     }
-    double largest() const override { return increment_.result().largest; }
+    double largest() const override { return max_or_nan(increment_.result().largest); }
 
    private:
     const RowLayout& layout_;
@@ -70,7 +70,7 @@ class ScalarSolver final : public LinearSolver {
   }
   RowChange advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
                     double* const*) const override {
-    return with_increment_pass<Order::ascending>(rows[0], [&](auto pass, int unseen) {
+    return with_increment_pass<Order::ascending>(rows[0], [&](auto pass, int unseen) __attribute__((always_inline)) {
       if (unseen > 0) {
         pass = right_sides[0]->pass(layout, {0, unseen}, pass);
         pass.begin_looking();
@@ -184,7 +184,7 @@ RowChange LinearSolver::advance(const RowLayout& layout, int components, const R
   for (int a = 0; a < components; ++a) {
     const double* const from = w[a];
     layout.copy_overlaps(w[a]);  // solvers need not fill them
-    all.take(with_increment_pass<Order::ascending>(rows[a], [&layout, from](auto pass, int unseen) {
+    all.take(with_increment_pass<Order::ascending>(rows[a], [&layout, from](auto pass, int unseen) __attribute__((always_inline)) {
       int v = 0;
       for (; v < unseen; ++v) pass(layout.at(v), Pack::load(from + layout.at(v)));
       pass.begin_looking();

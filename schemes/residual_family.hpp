@@ -70,7 +70,7 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
   }
 
   using RowKernel::evaluate;
-  [[gnu::flatten]] void evaluate(const SlabRows& rows, double* const* out, PackRange packs) const override {
+  [[gnu::flatten]] void evaluate(const SlabRows& rows, double* const* out, const PackRange& packs) const override {
     for (int v = packs.first; v < packs.last; v += packs.stride) {
       const std::ptrdiff_t at = rows.layout->at(v);
       std::array<Pack, n> y{};

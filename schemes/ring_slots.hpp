@@ -23,6 +23,8 @@ class RingSlots {
     const int slot = slot_ - back;
     return slot < 0 ? slot + held_ : slot >= held_ ? slot - held_ : slot;
   }
+  /// The slot of the row before the one in `slot`.
+  int before(int slot) const { return slot == 0 ? held_ - 1 : slot - 1; }
 
  private:
   int held_, slot_ = 0;

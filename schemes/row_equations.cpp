@@ -424,7 +424,8 @@ PackRange RowEquations::where_read(const Outputs& o) const {
 }
 
 /// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others.
-void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, PackRange packs) {
+void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& given) {
+  PackRange packs = given;
   const std::int64_t anchor_row = n_ + age;
   const int newest = o.reads_unknown_row(age) ? 1 : 0;
   for (int t = o.first_time; t <= o.last_time; ++t)
@@ -459,7 +460,7 @@ void RowEquations::evaluate_unknown_outputs(At at) {
       if (o.reads_unknown_row(age)) evaluate_in_ring(o, age, at);
 }
 
-void RowEquations::evaluate_in_ring(Outputs& o, int age, At at, PackRange packs) {
+void RowEquations::evaluate_in_ring(Outputs& o, int age, At at, const PackRange& packs) {
   const int count = o.kernel->outputs(), slot = o.slots(-age);
   for (int c = 0; c < count; ++c) slab_out_[static_cast<std::size_t>(c)] = o.ring.row(slot * count + c);
   evaluate(o, age, slab_out_.data(), at, packs);
@@ -475,7 +476,7 @@ bool RowEquations::reads_unknown_row() const {
 }
 
 /// −E of some packs: bricks differ by the parity of row + site.
-void RowEquations::store_right_sides(PackRange packs) {
+void RowEquations::store_right_sides(const PackRange& packs) {
   const std::int64_t equation_row = n_ + 1 - equations_.bulk[0].shift;
   for (int a = 0; a < d_; ++a) {
     const auto at = static_cast<std::size_t>(a);
@@ -489,7 +490,7 @@ void RowEquations::store_right_sides(PackRange packs) {
   }
 }
 
-RowChange RowEquations::advance(bool compared) {
+RowEquations::Advance RowEquations::advance(bool compared) {
   const RowSum* right_sides[RowKernel::most_components];
   for (int a = 0; a < d_; ++a) {
     right_sides[a] = &right_side(a);
@@ -502,15 +503,22 @@ RowChange RowEquations::advance(bool compared) {
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
   RowChange all = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides, increments_.data(), w_rows_.data());
   close_new_row();
-  if (!compared) return all;
-  // What was not looked at on the way.
-  const int packs = layout_.packs();
-  const int seen = looks_on_the_way_ ? packs + 1 - static_cast<int>(looks_[0].parts.size()) : 0;
-  if (seen < packs) all.change = larger_or_nan(largest_change(looks_, {seen, packs}), all.change);
-  return all;
+  if (!compared) return {max_or_nan(all.largest), 0};
+  if (!looks_on_the_way_) return {max_or_nan(all.largest), largest_change(looks_)};
+  // What looks beyond the end.
+  for (const RowIncrement& increment : increments_)
+    for (int v = layout_.packs() + 1 - increment.look.parts; v < layout_.packs(); ++v) {
+      Pack look(0.0);
+      for (int p = 0; p < increment.look.parts; ++p) {
+        const std::ptrdiff_t at = layout_.at(v + p);
+        look += increment.look.weights[p] * (Pack::load(increment.y + at) - Pack::load(increment.look.expected + at));
+      }
+      all.change = max_or_nan(abs(look), all.change);
+    }
+  return {max_or_nan(all.largest), max_or_nan(all.change)};
 }
 
-RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& find) {
+RowEquations::Advance RowEquations::advance_streamed(const std::function<void(PackRange)>& find) {
   Outputs& o = outputs_[0];
   const int packs = layout_.packs(), halo = layout_.halo();
   const PackRange read = where_read(o);

@@ -50,12 +50,15 @@ class RowEquations {
 
   /// Solves for w with the outputs as they are, and makes v_{n+1} and y_{n+1} of it, halos too. `compared`: with the
   /// candidate, in what the nonlinear outputs look at; otherwise the change is zero.
-  RowChange advance(bool compared);
+  struct Advance {
+    double largest, change;  ///< |y|, |look|
+  };
+  Advance advance(bool compared);
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
   /// stream through the rows. A candidate that is found on the way is not kept.
-  RowChange advance_streamed(const std::function<void(PackRange)>& find);
+  Advance advance_streamed(const std::function<void(PackRange)>& find);
   /// The largest difference between the candidate and y_{n+1}.
   double whole_change() const { return largest_change(whole_); }
   /// What outputs look at, at the unknown row: mixtures of values whose weights sum to at least this.
@@ -117,15 +120,15 @@ class RowEquations {
   void add_term(RowSum&, const Term&, double coefficient) const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
   PackRange where_read(const Outputs&) const;
-  void evaluate(const Outputs&, int age, double* const* out, At, PackRange);
+  void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&);
   void evaluate_in_ring(Outputs& o, int age, At at) { evaluate_in_ring(o, age, at, where_read(o)); }
-  void evaluate_in_ring(Outputs&, int age, At, PackRange);
+  void evaluate_in_ring(Outputs&, int age, At, const PackRange&);
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
   const RowSum& right_side(int a) const { return (is_stored_ ? stored_ : sums_)[static_cast<std::size_t>(a)]; }
   /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
   double* stored_right_side(int a) { return rows_.y_at(y_slots_(-1), a); }
-  void store_right_sides(PackRange);
+  void store_right_sides(const PackRange&);
   void set_exceptional_sites();
   double value_at(const SiteEquation&, bool unknown_too, double* absolute) const;
 

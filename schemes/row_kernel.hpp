@@ -64,7 +64,7 @@ class RowKernel {
   virtual void linear_part(const Cell&, std::span<double> J, std::span<double> r0) const = 0;
   /// The rows out_c for the stencils anchored at each site of some packs of a row; which stencils exist is the caller's
   /// business.
-  virtual void evaluate(const SlabRows&, double* const* out, PackRange) const = 0;
+  virtual void evaluate(const SlabRows&, double* const* out, const PackRange&) const = 0;
   void evaluate(const SlabRows& rows, double* const* out) const { evaluate(rows, out, rows.layout->all()); }
 
   /// Where the nonlinear part of the equation at a site is that of its own value alone, a step is one loop:
@@ -74,7 +74,7 @@ class RowKernel {
   /// with the neighbours s listed here; no neighbours where a family has no such loop.
   virtual std::span<const int> explicit_neighbours() const { return {}; }
   /// Returns √Σy² of the packs' new values: infinite or NaN where squares overflow.
-  virtual double explicit_step(const ExplicitRows&, PackRange) const { return 0; }
+  virtual double explicit_step(const ExplicitRows&, const PackRange&) const { return 0; }
 
  protected:
   explicit RowKernel(int row_size) : row_size_(row_size) {}

@@ -46,7 +46,7 @@ RowSeed::RowSeed(SectionRows& rows, int most_order, const std::vector<Argument>&
   }
 }
 
-void RowSeed::find(std::int64_t n, int order, double* const* candidate, PackRange packs) {
+void RowSeed::find(std::int64_t n, int order, double* const* candidate, const PackRange& packs) {
   order = static_cast<int>(std::min<std::int64_t>({order, n, most_order_}));
   const RowLayout& layout = rows_.layout();
   RowSum& sum = sums_[static_cast<std::size_t>(order)];
@@ -54,7 +54,9 @@ void RowSeed::find(std::int64_t n, int order, double* const* candidate, PackRang
   v_slots_.at(n);
   for (int a = 0; a < rows_.components(); ++a) {
     bases_[0] = rows_.y_at(y_slots_(0), a);
-    for (int m = 1; m <= order; ++m) bases_[static_cast<std::size_t>(m)] = rows_.v_at(v_slots_(m - 1), a);
+    int slot = v_slots_(0);
+    for (int m = 1; m <= order; ++m, slot = v_slots_.before(slot))
+      bases_[static_cast<std::size_t>(m)] = rows_.v_at(slot, a);
     sum.bind(bases_.data());
     double* const to = candidate[a];
     sum.pass(

@@ -36,7 +36,7 @@ class RowSeed {
   void find(std::int64_t n, int order, double* const* candidate) {
     find(n, order, candidate, {-rows_.layout().halo(), rows_.layout().packs() + rows_.layout().halo()});
   }
-  void find(std::int64_t n, int order, double* const* candidate, PackRange);
+  void find(std::int64_t n, int order, double* const* candidate, const PackRange&);
 
  private:
   void find_span();

@@ -199,7 +199,7 @@ struct RowStepper::Impl {
     double before = std::numeric_limits<double>::infinity();
     while (iterations < options.max_iterations) {
       ++iterations;
-      RowChange moved;
+      RowEquations::Advance moved;
       if (equations.is_streamed()) {
         const auto find = [&](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); };
         moved = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)

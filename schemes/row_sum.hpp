@@ -26,7 +26,7 @@ class RowSum {
   void bind(const double* const* rows);
 
   template <class Consume>
-  Consume pass(const RowLayout& layout, PackRange packs, Consume consume) const;
+  [[gnu::always_inline]] Consume pass(const RowLayout& layout, PackRange packs, Consume consume) const;
   /// The same with the sum of the terms' absolute values: `consume(at, sum, absolute)`.
   template <class Consume>
   Consume measure(const RowLayout& layout, PackRange packs, Consume consume) const;
@@ -38,35 +38,38 @@ class RowSum {
     const double* shifted = nullptr;
     const double* own = nullptr;
   };
+  // Inlined where they are used: what `consume` carries would else be copied through memory.
   template <bool measured, class Consume>
-  Consume dispatch(const RowLayout&, PackRange, Consume) const;
+  [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, int differences, int plain, class Consume>
-  Consume counted_pass(const RowLayout&, PackRange, Consume) const;
+  [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, class Consume>
-  Consume general_pass(const RowLayout&, PackRange, Consume) const;
+  [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
 
   std::vector<Term> differences_, plain_;
   double constant_ = 0;
 };
 
 template <bool measured, int differences, int plain, class Consume>
-Consume RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume consume) const {
-  const double *shifted[differences + 1], *own[differences + 1], *row[plain + 1];
+inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
+  const double *shifted[differences + 1], *row[plain + 1];
+  const double* const own = differences > 0 ? differences_[0].own : nullptr;
   double difference_coefficient[differences + 1], coefficient[plain + 1];
   for (int i = 0; i < differences; ++i) {
     const Term& t = differences_[static_cast<std::size_t>(i)];
-    shifted[i] = t.shifted, own[i] = t.own, difference_coefficient[i] = t.coefficient;
+    shifted[i] = t.shifted, difference_coefficient[i] = t.coefficient;
   }
   for (int i = 0; i < plain; ++i) {
     const Term& t = plain_[static_cast<std::size_t>(i)];
     row[i] = t.shifted, coefficient[i] = t.coefficient;
   }
   const Pack constant(constant_);
-  for (int v = packs.first; v < packs.last; v += packs.stride) {
-    const std::ptrdiff_t at = layout.at(v);
+  const std::ptrdiff_t end = layout.at(packs.last), by = static_cast<std::ptrdiff_t>(packs.stride) * lanes;
+  for (std::ptrdiff_t at = layout.at(packs.first); at < end; at += by) {
     Pack sum = constant, absolute(0.0);
+    const Pack here = differences > 0 ? Pack::load(own + at) : constant;
     for (int i = 0; i < differences; ++i) {
-      const Pack difference = Pack::load(shifted[i] + at) - Pack::load(own[i] + at);
+      const Pack difference = Pack::load(shifted[i] + at) - here;
       sum += difference_coefficient[i] * difference;
       if constexpr (measured) absolute += abs(difference_coefficient[i] * difference);
     }
@@ -77,11 +80,10 @@ Consume RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume c
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
   }
-  return consume;
 }
 
 template <bool measured, class Consume>
-Consume RowSum::general_pass(const RowLayout& layout, PackRange packs, Consume consume) const {
+inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
   for (int v = packs.first; v < packs.last; v += packs.stride) {
     const std::ptrdiff_t at = layout.at(v);
     Pack sum = constant_, absolute(0.0);
@@ -94,13 +96,13 @@ Consume RowSum::general_pass(const RowLayout& layout, PackRange packs, Consume c
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
   }
-  return consume;
 }
 
-/// The numbers of terms of the usual schemes are compiled: rows then stay in registers.
+/// The numbers of terms of the usual schemes are compiled, differences being those of one row: rows then stay in
+/// registers.
 template <bool measured, class Consume>
-Consume RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume consume) const {
-  const auto counted = [&]<int differences>() {
+inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
+  const auto counted = [&]<int differences>() __attribute__((always_inline)) {
     switch (plain_.size()) {
       case 0:
         return counted_pass<measured, differences, 0>(layout, packs, consume);
@@ -118,24 +120,26 @@ Consume RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume consu
         return counted_pass<measured, differences, 6>(layout, packs, consume);
       case 7:
         return counted_pass<measured, differences, 7>(layout, packs, consume);
-      case 8:
-        return counted_pass<measured, differences, 8>(layout, packs, consume);
       default:
-        return general_pass<measured>(layout, packs, consume);
+        return counted_pass<measured, differences, 8>(layout, packs, consume);
     }
   };
-  if (differences_.empty()) return counted.template operator()<0>();
-  if (differences_.size() == 2) return counted.template operator()<2>();
-  return general_pass<measured>(layout, packs, consume);
+  constexpr std::size_t most_plain = 8;
+  if (differences_.empty() && plain_.size() <= most_plain) counted.template operator()<0>();
+  else if (differences_.size() == 2 && differences_[0].own == differences_[1].own && plain_.size() <= most_plain)
+    counted.template operator()<2>();
+  else general_pass<measured>(layout, packs, consume);
 }
 
 template <class Consume>
-Consume RowSum::pass(const RowLayout& layout, PackRange packs, Consume consume) const {
-  return dispatch<false>(layout, packs, consume);
+inline Consume RowSum::pass(const RowLayout& layout, PackRange packs, Consume consume) const {
+  dispatch<false>(layout, packs, consume);
+  return consume;
 }
 template <class Consume>
 Consume RowSum::measure(const RowLayout& layout, PackRange packs, Consume consume) const {
-  return dispatch<true>(layout, packs, consume);
+  dispatch<true>(layout, packs, consume);
+  return consume;
 }
 
 }  // namespace delf

@@ -149,7 +149,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   using RowKernel::evaluate;
-  void evaluate(const SlabRows& rows, double* const* out, PackRange packs) const override {
+  void evaluate(const SlabRows& rows, double* const* out, const PackRange& packs) const override {
     if (nonlinearity_ == Nonlinearity::values) evaluate_values(rows, out, packs);
     if (nonlinearity_ == Nonlinearity::all) evaluate_all(rows, out, packs);
   }
@@ -158,7 +158,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     if constexpr (is_nodal(map)) return neighbours_within<reach>;
     else return {};
   }
-  double explicit_step(const ExplicitRows& rows, PackRange packs) const override {
+  double explicit_step(const ExplicitRows& rows, const PackRange& packs) const override {
     if constexpr (is_nodal(map)) return explicit_loop<reach>(lagrangian_.density, rows, packs);
     else return 0;
   }
@@ -228,7 +228,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   /// out_c = ∂ℓ/∂φ at the distinct values of φ
-  [[gnu::flatten]] void evaluate_values(const SlabRows& given, double* const* given_out, PackRange packs) const {
+  [[gnu::flatten]] void evaluate_values(const SlabRows& given, double* const* given_out, const PackRange& packs) const {
     using Number = Dual<Pack, d>;
     const LocalRows rows(given);
     const auto out = local<distinct.count * d>(given_out);
@@ -257,7 +257,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   /// out_i = rⁱ = ∂L/∂yⁱ
-  [[gnu::flatten]] void evaluate_all(const SlabRows& given, double* const* given_out, PackRange packs) const {
+  [[gnu::flatten]] void evaluate_all(const SlabRows& given, double* const* given_out, const PackRange& packs) const {
     using Number = Dual<Pack, 3 * d>;
     const LocalRows rows(given);
     const auto out = local<vertices_size>(given_out);

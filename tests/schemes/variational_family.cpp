@@ -114,7 +114,7 @@ TEST_CASE("the comparison can fail: outputs of another step") {
     void linear_part(const Cell& cell, std::span<double> J, std::span<double> r0) const override {
       wrong_.linear_part(cell, J, r0);
     }
-    void evaluate(const SlabRows& rows, double* const* out, PackRange packs) const override {
+    void evaluate(const SlabRows& rows, double* const* out, const PackRange& packs) const override {
       right_.evaluate(rows, out, packs);
     }
 
