@@ -91,7 +91,7 @@ std::string figure(const Scene& scene, const WorkPrecisionOutcome& o, const std:
     const std::string slope = std::isfinite(line.slope) ? fmt::format("  {:.1f}", line.slope) : "";
     named += fmt::format(", \\\n  'runs' index {} using 1:2 with linespoints lw 1.5 pt {} ps {} lc rgb '{}'{} title {}",
                          at, line.peer ? 5 : 7, size, colour, line.peer ? " dt 2" : "",
-                         gnuplot_quoted(shortened(line.scheme, 38) + slope));
+                         gnuplot_quoted(shortened(line.scheme, 40) + slope));
   }
   if (plots.empty()) named.erase(0, named.find('\''));
   write_text_file(scratch / "runs", table);
