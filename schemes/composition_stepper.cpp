@@ -335,7 +335,7 @@ std::size_t CompositionStepper::bytes() const {
 }
 std::size_t CompositionStepper::bytes_to_come(bool residual) const {
   if (!residual || scratch_.rows()) return 0;
-  return static_cast<std::size_t>(scratch_rows() * d_) * size_ * sizeof(double);
+  return RowBuffer::bytes_of(static_cast<std::size_t>(d_) * size_, scratch_rows());
 }
 std::string CompositionStepper::memory_report(bool residual) const {
   return fmt::format(

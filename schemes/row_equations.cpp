@@ -249,15 +249,15 @@ double RowEquations::value_at(const SiteEquation& special, bool unknown_too, dou
 }
 
 std::size_t RowEquations::bytes_to_come(int parts, bool residual) const {
-  const auto missing = [](std::size_t doubles, std::size_t there) {
-    return doubles * sizeof(double) > there ? doubles * sizeof(double) - there : 0;
-  };
-  std::size_t total = missing(edge_doubles(parts), edges_.bytes());
-  if (residual) total += missing(static_cast<std::size_t>(residual_rows()) * layout_.doubles(), scratch_.bytes());
+  const auto missing = [](std::size_t bytes, std::size_t there) { return bytes > there ? bytes - there : 0; };
+  const std::size_t row = layout_.doubles();
+  std::size_t total = missing(RowBuffer::bytes_of(edge_doubles(parts)), edges_.bytes());
+  if (residual) total += missing(RowBuffer::bytes_of(row, residual_rows()), scratch_.bytes());
   if (is_streamed_) {
     // First steps, whose seeds are of low order, iterate: their candidate is whole.
     const PackRange last = solver_[0]->stream(layout_, right_side(0), {})->last_packs();
-    total += missing(static_cast<std::size_t>(window_packs(last)) * lanes + layout_.doubles(), candidate_.bytes());
+    const std::size_t window = static_cast<std::size_t>(window_packs(last)) * lanes;
+    total += missing(RowBuffer::bytes_of(window) + RowBuffer::bytes_of(row), candidate_.bytes());
   }
   return total;
 }

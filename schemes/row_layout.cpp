@@ -70,9 +70,8 @@ void RowLayout::gather(const double* row, std::span<double> sites) const {
 
 RowBuffer::RowBuffer(const RowLayout& layout, int rows) : RowBuffer(layout.doubles(), rows) {}
 
-RowBuffer::RowBuffer(std::size_t stride, int rows) : stride_(stride), rows_(rows) {
+RowBuffer::RowBuffer(std::size_t doubles, int rows) : stride_(stride_of(doubles)), rows_(rows) {
   constexpr std::size_t line = 64;
-  stride_ = (stride_ + 7) / 8 * 8;
   if (rows == 0) return;
   const std::size_t bytes = stride_ * sizeof(double) * static_cast<std::size_t>(rows);
   auto* p = static_cast<double*>(std::aligned_alloc(line, (bytes + line - 1) / line * line));

@@ -102,12 +102,17 @@ class RowBuffer {
   RowBuffer(const RowLayout& layout, int rows);
   /// Rows of so many doubles.
   explicit RowBuffer(std::size_t doubles, int rows = 1);
+  /// What that would take: rows begin at cache lines.
+  static std::size_t bytes_of(std::size_t doubles, int rows = 1) {
+    return stride_of(doubles) * static_cast<std::size_t>(rows) * sizeof(double);
+  }
   double* row(int r) { return data_.get() + static_cast<std::size_t>(r) * stride_; }
   const double* row(int r) const { return data_.get() + static_cast<std::size_t>(r) * stride_; }
   int rows() const { return rows_; }
   std::size_t bytes() const { return stride_ * static_cast<std::size_t>(rows_) * sizeof(double); }
 
  private:
+  static std::size_t stride_of(std::size_t doubles) { return (doubles + 7) / 8 * 8; }
   struct Free {
     void operator()(double* p) const { std::free(p); }
   };

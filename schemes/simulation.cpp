@@ -126,7 +126,7 @@ struct Simulation::Impl {
   std::size_t monitor_bytes_of_run() const {
     if (cell_weights.rows()) return monitor_bytes();
     const auto bytes = [&](const RowLayout& layout, int own_rows) {
-      return static_cast<std::size_t>(1 + (theory->is_placed() ? 1 : 0) + own_rows) * layout.doubles() * sizeof(double);
+      return RowBuffer::bytes_of(layout.doubles(), 1 + (theory->is_placed() ? 1 : 0) + own_rows);
     };
     if (stepper.layout()) return bytes(*stepper.layout(), 0);
     const RowLayout own(problem.lattice, 1);

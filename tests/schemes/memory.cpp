@@ -132,7 +132,7 @@ TEST_CASE("one loop takes its six rows and nothing more, with the residual too, 
     const Problem p = of_stencil(N, "triangle-vertex");
     const Simulation simulation(p);
     const RowLayout& layout = *simulation.evolution().stepper().layout();
-    const std::size_t row = layout.doubles() * sizeof(double), rows = 6 * row + layout.bytes();
+    const std::size_t row = RowBuffer::bytes_of(layout.doubles()), rows = 6 * row + layout.bytes();
     CAPTURE(N);
     CHECK(simulation.bytes() == rows);
     // Long enough for rows to be kept anew, in case one overflows.
