@@ -43,8 +43,8 @@ inline bool any_above(Pack x, double bound) {
 }
 
 /// f in the lanes beyond ±bound (or NaN); the others keep the bits of `near`, whatever their neighbours are. Out of
-/// line: it is rarely wanted, and a library call inlined into a kernel makes that spill registers. Const, so that it goes
-/// where its value is not wanted.
+/// line: it is rarely wanted, and a library call inlined into a kernel makes that spill registers. Const, so that it
+/// goes where its value is not wanted.
 template <class Function>
 [[gnu::noinline, gnu::const]] Pack with_far_lanes(Pack x, Pack near, double bound, Function f) {
   for (int l = 0; l < lanes; ++l)

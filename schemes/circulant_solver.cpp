@@ -106,7 +106,8 @@ CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) 
 }
 
 template <class Sink>
-[[gnu::always_inline]] inline Sink CirculantSolver::backward(const Entering& entering, const double* u, Sink sink, int unseen) const {
+[[gnu::always_inline]] inline Sink CirculantSolver::backward(const Entering& entering, const double* u, Sink sink,
+                                                             int unseen) const {
   const RowLayout& layout = *layout_;
   Pack x = entering.x;
   const Pack entering_u = entering.u;
@@ -155,10 +156,9 @@ RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* r
   // u stands where the new increment will, unless that is made from itself.
   double* const u = rows[0].v == rows[0].v_before ? w[0] : rows[0].v;
   const Entering entering = forward(*right_sides[0], u);
-  return with_increment_pass<Order::descending>(
-      rows[0], [&](auto pass, int unseen) __attribute__((always_inline)) {
-        return backward(entering, u, pass, unseen).result();
-      });
+  return with_increment_pass<Order::descending>(rows[0], [&](auto pass, int unseen) __attribute__((always_inline)) {
+    return backward(entering, u, pass, unseen).result();
+  });
 }
 
 /// u stands in the new increment's row until it is replaced.

@@ -6,8 +6,22 @@
 
 namespace delf {
 
-std::optional<CyclicBandLU> CyclicBandLU::factor(int size, int lower, int upper, bool cyclic,
+Bandwidth bandwidth(const Lattice& lattice, int size, const std::vector<LatticeSystem::Entry>& entries) {
+  Bandwidth band;
+  for (const auto& e : entries) {
+    int offset = e.column - e.row;
+    if (lattice.is_circle() && offset > size / 2) offset -= size;
+    if (lattice.is_circle() && offset < -(size / 2)) offset += size;
+    band.lower = std::max(band.lower, -offset);
+    band.upper = std::max(band.upper, offset);
+  }
+  return band;
+}
+
+std::optional<CyclicBandLU> CyclicBandLU::factor(int size, Bandwidth width, bool cyclic,
                                                  const std::vector<LatticeSystem::Entry>& entries) {
+  const auto [lower, upper] = width;
+  if (size <= 2 * (lower + upper) + 2) return std::nullopt;
   CyclicBandLU f;
   f.lower_ = lower;
   f.upper_ = upper;

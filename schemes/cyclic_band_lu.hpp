@@ -8,6 +8,12 @@
 
 namespace delf {
 
+/// How far entries lie from the diagonal, the shorter way round where space is a circle.
+struct Bandwidth {
+  int lower = 0, upper = 0;
+};
+Bandwidth bandwidth(const Lattice&, int size, const std::vector<LatticeSystem::Entry>& entries);
+
 /// LU of a band matrix, with corners when space is a circle: the last m unknowns are a border, so that what is left is
 /// a plain band, factored without pivoting.
 ///
@@ -16,8 +22,8 @@ namespace delf {
 ///
 class CyclicBandLU {
  public:
-  /// Nothing if a pivot is so small that pivoting would be needed.
-  static std::optional<CyclicBandLU> factor(int size, int lower, int upper, bool cyclic,
+  /// Nothing if the band would wrap onto itself, or a pivot is so small that pivoting would be needed.
+  static std::optional<CyclicBandLU> factor(int size, Bandwidth, bool cyclic,
                                             const std::vector<LatticeSystem::Entry>& entries);
   void solve(std::vector<double>& x) const;
   std::size_t bytes() const {

@@ -203,30 +203,20 @@ std::unique_ptr<LinearSolver> by_component(std::vector<std::unique_ptr<LinearSol
 std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& layout, int d,
                                      const std::vector<LatticeSystem::Entry>& entries) {
   const int size = lattice.sites() * d;
-  int lower = 0, upper = 0;
-  std::vector<double> diagonal(static_cast<std::size_t>(size), 0.0);
-  for (const auto& e : entries) {
-    int offset = e.column - e.row;
-    if (lattice.is_circle() && offset > size / 2) offset -= size;
-    if (lattice.is_circle() && offset < -(size / 2)) offset += size;
-    lower = std::max(lower, -offset);
-    upper = std::max(upper, offset);
-    if (offset == 0) diagonal[static_cast<std::size_t>(e.row)] += e.value;
-  }
-  if (lower == 0 && upper == 0) {
+  const Bandwidth band = bandwidth(lattice, size, entries);
+  if (band.lower == 0 && band.upper == 0) {
+    std::vector<double> diagonal(static_cast<std::size_t>(size), 0.0);
+    for (const auto& e : entries) diagonal[static_cast<std::size_t>(e.row)] += e.value;
     if (std::ranges::any_of(diagonal, [](double x) { return x == 0 || !std::isfinite(x); }))
       throw NoConvergence("the constant part of the equations is singular");
     return std::make_unique<DiagonalSolver>(layout, d, diagonal);
   }
   if (auto by_lanes = LaneBandSolver::factor(lattice, layout, d, entries)) return by_lanes;
-  if (size > 2 * (lower + upper) + 2) {
-    auto band = CyclicBandLU::factor(size, lower, upper, lattice.is_circle(), entries);
-    if (band)
-      return std::make_unique<OrderedSolver<CyclicBandLU>>(
-          layout, d, std::move(*band),
-          "LU of a " + std::string(lattice.is_circle() ? "cyclic " : "") + "band of width " + std::to_string(lower) +
-              "+" + std::to_string(upper));
-  }
+  if (auto lu = CyclicBandLU::factor(size, band, lattice.is_circle(), entries))
+    return std::make_unique<OrderedSolver<CyclicBandLU>>(
+        layout, d, std::move(*lu),
+        "LU of a " + std::string(lattice.is_circle() ? "cyclic " : "") + "band of width " +
+            std::to_string(band.lower) + "+" + std::to_string(band.upper));
   std::vector<Eigen::Triplet<double>> triplets;
   for (const auto& e : entries) triplets.emplace_back(e.row, e.column, e.value);
   Eigen::SparseMatrix<double> matrix(size, size);

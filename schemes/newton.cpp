@@ -196,16 +196,10 @@ Newton newton(const SlabEquations& equations, Vector y, double absolute_toleranc
 /// LU of a band; nothing where there is no band, or it is not safe without pivoting.
 std::optional<CyclicBandLU> factor_band(const Lattice& lattice, int size,
                                         const std::vector<LatticeSystem::Entry>& entries) {
-  int lower = 0, upper = 0;
-  for (const auto& e : entries) {
-    int offset = e.column - e.row;
-    if (lattice.is_circle() && offset > size / 2) offset -= size;
-    if (lattice.is_circle() && offset < -(size / 2)) offset += size;
-    lower = std::max(lower, -offset), upper = std::max(upper, offset);
-  }
+  const Bandwidth band = bandwidth(lattice, size, entries);
   // What joins the ends of a circle must stay narrow, or the border is no border.
-  if (size <= 2 * (lower + upper) + 2 || lower + upper > 64) return std::nullopt;
-  return CyclicBandLU::factor(size, lower, upper, lattice.is_circle(), entries);
+  if (band.lower + band.upper > 64) return std::nullopt;
+  return CyclicBandLU::factor(size, band, lattice.is_circle(), entries);
 }
 
 /// y ← y − J⁻¹E(y) with the Jacobian where it begins, while each correction is at most a tenth of the one before: then

@@ -23,8 +23,8 @@ struct RowIncrement {
 /// The larger of two; a NaN stays one.
 inline double larger_or_nan(double a, double b) { return a > b || a != a ? a : b; }
 
-/// The largest |y| of a new row, and the largest |look|. The last parts − 1 packs look beyond the end, which is not there
-/// yet: these are left out.
+/// The largest |y| of a new row, and the largest |look|. The last parts − 1 packs look beyond the end, which is not
+/// there yet: these are left out.
 struct RowChange {
   Pack largest = 0.0, change = 0.0;  ///< over each lane's sites
 

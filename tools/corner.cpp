@@ -9,6 +9,7 @@
 
 #include "tools/engine.hpp"
 #include "tools/initial_rows.hpp"
+#include "tools/seconds_since.hpp"
 
 namespace delf {
 
@@ -91,9 +92,6 @@ class Watched {
   }
 
  private:
-  static double seconds_since(std::chrono::steady_clock::time_point begin) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  }
   // some hundred looks a second
   static std::int64_t clock_stride(double elapsed, std::int64_t steps) {
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(0.01 * static_cast<double>(steps) / (elapsed + 1e-9)), 1,
@@ -257,7 +255,7 @@ CornerResult run_corner(const Corner& corner, double budget, const std::function
   } catch (const std::exception& error) {
     end(result, CornerVerdict::failed, error.what());
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.seconds = seconds_since(begin);
   return result;
 }
 

@@ -12,6 +12,7 @@
 
 #include "tools/corner.hpp"
 #include "tools/interrupt.hpp"
+#include "tools/seconds_since.hpp"
 
 namespace delf {
 
@@ -89,7 +90,7 @@ CornerResult run_corner_apart(const Corner& corner, double budget) {
   }
   close(pipe_ends[1]);
   const auto begin = std::chrono::steady_clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  const auto elapsed = [&] { return seconds_since(begin); };
   std::string text;
   bool hung = false, late = false;
   while (true) {

@@ -10,6 +10,7 @@
 #include "tools/corner_list.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/progress.hpp"
+#include "tools/seconds_since.hpp"
 #include "tools/stability_figures.hpp"
 #include "tools/stability_map.hpp"
 #include "tools/text_file.hpp"
@@ -76,7 +77,7 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
     advance(1);
   }
   if (Interrupt::asked()) f.status = "interrupted";
-  f.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  f.seconds = seconds_since(begin);
   return f;
 }
 

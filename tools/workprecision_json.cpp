@@ -2,15 +2,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "tools/findings_json.hpp"
 #include "tools/workprecision_outcome.hpp"
 
 namespace delf {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const WorkPrecisionRun& r) {
   return {{"scheme", r.scheme},
@@ -50,9 +48,7 @@ std::string quoted(const std::string& text) {
 }  // namespace
 
 std::string workprecision_json(const Scene& scene, const WorkPrecisionRequest& request, const WorkPrecisionOutcome& o) {
-  Json json;
-  json["version"] = DELF_VERSION;
-  json["scene"] = scene.name;
+  Json json = json_head(scene);
   json["status"] = o.status;
   json["theory"] = scene.problem.theory;
   json["length"] = scene.problem.lattice.length();
@@ -64,23 +60,19 @@ std::string workprecision_json(const Scene& scene, const WorkPrecisionRequest& r
   json["reference_error"] = o.reference_error;
   json["seconds"] = o.seconds;
   json["tried"] = o.tried;
-  auto& runs = json["runs"] = Json::array();
-  for (const WorkPrecisionRun& run : o.runs) runs.push_back(json_of(run));
-  auto& schemes = json["schemes"] = Json::array();
-  for (const WorkPrecisionLine& line : o.lines) {
-    Json front = Json::array();
-    for (const std::size_t i : line.front) front.push_back(i);
-    schemes.push_back({{"scheme", line.scheme}, {"peer", line.peer}, {"slope", line.slope}, {"front", front}});
-  }
-  auto& costs = json["cheapest"] = Json::array();
-  for (const WorkPrecisionCost& cost : o.costs)
-    costs.push_back({{"accuracy", cost.accuracy},
-                     {"engine", winner(o, cost.engine)},
-                     {"peer", winner(o, cost.peer)},
-                     {"ratio", cost.ratio}});
-  auto& left_out = json["left_out"] = Json::array();
-  for (const auto& one : o.left_out) left_out.push_back({{"scheme", one.scheme}, {"reason", one.reason}});
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  json["runs"] = json_list(o.runs, [](const WorkPrecisionRun& run) { return json_of(run); });
+  json["schemes"] = json_list(o.lines, [](const WorkPrecisionLine& line) {
+    return Json{{"scheme", line.scheme}, {"peer", line.peer}, {"slope", line.slope}, {"front", line.front}};
+  });
+  json["cheapest"] = json_list(o.costs, [&](const WorkPrecisionCost& cost) {
+    return Json{{"accuracy", cost.accuracy},
+                {"engine", winner(o, cost.engine)},
+                {"peer", winner(o, cost.peer)},
+                {"ratio", cost.ratio}};
+  });
+  json["left_out"] =
+      json_list(o.left_out, [](const auto& one) { return Json{{"scheme", one.scheme}, {"reason", one.reason}}; });
+  return json_text(json);
 }
 
 std::string workprecision_csv(const WorkPrecisionOutcome& o) {

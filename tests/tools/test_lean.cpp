@@ -78,7 +78,7 @@ TEST_CASE("the table of tools/lean.py says what the plan says, and a page that s
 
   const Simulation explicit_one(problem("sine-gordon", "triangle-vertex", 255));
   const RowLayout& layout = *explicit_one.evolution().stepper().layout();
-  const std::size_t index = layout.bytes(), weights = layout.doubles() * sizeof(double);
+  const std::size_t index = layout.bytes(), weights = RowBuffer::bytes_of(layout.doubles());
   CHECK(explicit_one.bytes_of_run({}) == explicit_one.bytes() + weights);
   CHECK(contains(page, fmt::format("| `collision --lattice.stencil=triangle-vertex` | {} | {} |",
                                    explicit_one.bytes() - index, index + weights)));
@@ -120,9 +120,10 @@ TEST_CASE("an explicit step on a circle has no arrays but its rows") {
     for (int sites : {255, 256, 1023, 4095}) {
       CAPTURE(theory, sites);
       Simulation simulation(problem(theory, "triangle-vertex", sites));
-      // A row is N sites filled up to whole packs, and a pack beyond either end; three rows of y and of v each.
+      // A row is N sites filled up to whole packs, and a pack beyond either end, in whole cache lines; three rows of y and
+      // of v each.
       const int packs = (sites + lanes - 1) / lanes;
-      const std::size_t row = sizeof(double) * static_cast<std::size_t>((packs + 2) * lanes);
+      const std::size_t row = sizeof(double) * static_cast<std::size_t>(((packs + 2) * lanes + 7) / 8 * 8);
       // What does not grow with N: for each slot that repeats a site, where it is, which it repeats, and turns.
       const std::size_t index = 3 * sizeof(int) * static_cast<std::size_t>(2 * lanes + packs * lanes - sites);
       CHECK(simulation.bytes() == 6 * row + index);
