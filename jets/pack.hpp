@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <utility>
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -78,6 +79,20 @@ inline Pack smaller(Pack a, Pack b) {
   return {a.v < b.v ? a.v : b.v};
 #endif
 }
+/// Is any lane above the bound, or NaN?
+inline bool any_above(Pack x, double bound) {
+#if defined(__AVX512F__)
+  return _mm512_cmp_pd_mask(x.v, Pack(bound).v, _CMP_NLE_UQ) != 0;
+#elif defined(__AVX__)
+  return _mm256_movemask_pd(_mm256_cmp_pd(x.v, Pack(bound).v, _CMP_NLE_UQ)) != 0;
+#elif defined(__SSE2__)
+  return _mm_movemask_pd(_mm_cmpnle_pd(x.v, Pack(bound).v)) != 0;
+#else
+  bool any = false;
+  for (int l = 0; l < lanes; ++l) any |= !(x[l] <= bound);
+  return any;
+#endif
+}
 }  // namespace detail
 
 /// The larger of two; a NaN in either stays a NaN, so that a maximum over a row shows it.
@@ -105,9 +120,11 @@ inline Pack from_lane_above(Pack a) { return detail::rotated<1>(a, std::make_int
 inline Pack from_lane_below(Pack a) { return detail::rotated<lanes - 1>(a, std::make_integer_sequence<int, lanes>()); }
 inline double max_or_nan(Pack a) {
   constexpr auto all = std::make_integer_sequence<int, lanes>();
-  if constexpr (lanes > 4) a = max_or_nan(a, detail::rotated<4>(a, all));
-  if constexpr (lanes > 2) a = max_or_nan(a, detail::rotated<2>(a, all));
-  return max_or_nan(a, detail::rotated<1>(a, all))[0];
+  if (detail::any_above(a, std::numeric_limits<double>::infinity())) [[unlikely]]
+    return sum(a);
+  if constexpr (lanes > 4) a = detail::larger(a, detail::rotated<4>(a, all));
+  if constexpr (lanes > 2) a = detail::larger(a, detail::rotated<2>(a, all));
+  return detail::larger(a, detail::rotated<1>(a, all))[0];
 }
 
 }  // namespace delf

@@ -27,21 +27,6 @@ inline Pack by_lane(Pack x, Function f) {
   return x;
 }
 
-/// Is any lane above the bound, or NaN?
-inline bool any_above(Pack x, double bound) {
-#if defined(__AVX512F__)
-  return _mm512_cmp_pd_mask(x.v, Pack(bound).v, _CMP_NLE_UQ) != 0;
-#elif defined(__AVX__)
-  return _mm256_movemask_pd(_mm256_cmp_pd(x.v, Pack(bound).v, _CMP_NLE_UQ)) != 0;
-#elif defined(__SSE2__)
-  return _mm_movemask_pd(_mm_cmpnle_pd(x.v, Pack(bound).v)) != 0;
-#else
-  bool any = false;
-  for (int l = 0; l < lanes; ++l) any |= !(x[l] <= bound);
-  return any;
-#endif
-}
-
 /// f in the lanes beyond ±bound (or NaN); the others keep the bits of `near`, whatever their neighbours are. Out of
 /// line: it is rarely wanted, and a library call inlined into a kernel makes that spill registers. Const, so that it
 /// goes where its value is not wanted.

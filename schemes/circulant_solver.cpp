@@ -85,28 +85,29 @@ struct SummedRecurrence {
 
 CirculantSolver::Entering CirculantSolver::forward(const RowSum& right_side, double* u) const {
   const RowLayout& layout = *layout_;
-  const SummedRecurrence near = right_side.pass(layout, {0, near_}, SummedRecurrence{{q_, u}, backward_.row(0)});
-  right_side.pass(layout, {near_, layout.packs()}, near.recurrence);
+  SummedRecurrence near{{q_, u}, backward_.row(0)};
+  right_side.pass_on(layout, {0, near_}, near);
+  if (near_ < layout.packs()) right_side.pass_on(layout, {near_, layout.packs()}, near.recurrence);
   return entering(u, near.sums);
 }
 
 CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) const {
   const RowLayout& layout = *layout_;
-  Entering result{Pack(0.0), Pack(0.0)};
-  Pack x_by_ends(0.0);
+  // Two sums of each: a sum waits for itself.
+  Entering part[2] = {{Pack(0.0), Pack(0.0)}, {Pack(0.0), Pack(0.0)}};
+  Pack x_by_ends[2] = {Pack(0.0), Pack(0.0)};
   for (int m = 0; m < lanes; ++m) {
     const auto at = static_cast<std::size_t>(m);
     const Pack end(u[layout.at(gap_[m]) + (m + lanes - 1) % lanes]);
-    result.u += u_from_ends_[at] * end;
-    x_by_ends += x_from_ends_[at] * end;
-    result.x += x_from_sums_[at] * Pack(sums[m]);
+    part[m % 2].u += u_from_ends_[at] * end;
+    x_by_ends[m % 2] += x_from_ends_[at] * end;
+    part[m % 2].x += x_from_sums_[at] * Pack(sums[m]);
   }
-  result.x += x_by_ends;
-  return result;
+  return {part[0].u + part[1].u, (part[0].x + part[1].x) + (x_by_ends[0] + x_by_ends[1])};
 }
 
 template <class Sink>
-[[gnu::always_inline]] inline Sink CirculantSolver::backward(const Entering& entering, const double* u, Sink sink,
+[[gnu::always_inline]] inline void CirculantSolver::backward(const Entering& entering, const double* u, Sink& sink,
                                                              int unseen) const {
   const RowLayout& layout = *layout_;
   Pack x = entering.x;
@@ -114,22 +115,16 @@ template <class Sink>
   const double q = q_;
   const double* const powers = forward_.data();
   const int near = near_;
-  const auto far_pack = [&](int v) __attribute__((always_inline)) {
-    const std::ptrdiff_t at = layout.at(v);
-    x = Pack::load(u + at) + q * x;
-    sink(at, x);
+  const auto far = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
+    return x = Pack::load(u + at) + q * x;
   };
-  const auto near_pack = [&](int v) __attribute__((always_inline)) {
-    const std::ptrdiff_t at = layout.at(v);
-    x = (Pack::load(u + at) + powers[v] * entering_u) + q * x;
-    sink(at, x);
+  const auto close = [&](std::ptrdiff_t at, int v) __attribute__((always_inline)) {
+    return x = (Pack::load(u + at) + powers[v] * entering_u) + q * x;
   };
   int v = layout.packs() - 1;
-  for (; unseen > 0; --unseen, --v) v < near ? near_pack(v) : far_pack(v);
-  sink.begin_looking();
-  for (; v >= near; --v) far_pack(v);
-  for (; v >= 0; --v) near_pack(v);
-  return sink;
+  for (; unseen > 0; --unseen, --v) sink.unseen(layout.at(v), v < near ? close(layout.at(v), v) : far(layout.at(v)));
+  for (; v >= near; --v) sink(layout.at(v), far(layout.at(v)));
+  for (; v >= 0; --v) sink(layout.at(v), close(layout.at(v), v));
 }
 
 namespace {
@@ -138,7 +133,7 @@ namespace {
 struct Storing {
   double* x;
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack value) const { value.store(x + at); }
-  void begin_looking() const {}
+  void unseen(std::ptrdiff_t at, Pack value) const { (*this)(at, value); }
 };
 
 }  // namespace
@@ -148,7 +143,8 @@ void CirculantSolver::solve(const double* const* rhs, double* const* w) const {
   scaled.add(0, 0, scale_);
   scaled.bind(rhs);
   double* const x = w[0];
-  backward(forward(scaled, x), x, Storing{x}, 0);
+  Storing storing{x};
+  backward(forward(scaled, x), x, storing, 0);
 }
 
 RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
@@ -157,7 +153,8 @@ RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* r
   double* const u = rows[0].v == rows[0].v_before ? w[0] : rows[0].v;
   const Entering entering = forward(*right_sides[0], u);
   return with_increment_pass<Order::descending>(rows[0], [&](auto pass, int unseen) __attribute__((always_inline)) {
-    return backward(entering, u, pass, unseen).result();
+    backward(entering, u, pass, unseen);
+    return pass.result();
   });
 }
 
@@ -175,7 +172,7 @@ class CirculantSolver::Stream final : public RowStream {
   const CirculantSolver& solver_;
   const RowSum& right_side_;
   double* u_;
-  IncrementPass<0, Order::descending> increment_;
+  IncrementPass<0, Order::descending, Look::row> increment_;
   Pack last_ = 0.0, sums_ = 0.0, after_ = 0.0;
   int forward_ = 0, done_ = 0;
 };

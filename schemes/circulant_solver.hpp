@@ -37,9 +37,9 @@ class CirculantSolver final : public LinearSolver {
   };
   Entering entering(const double* u, Pack sums) const;
   Entering forward(const RowSum& right_side, double* u) const;
-  /// `unseen`: after so many packs, sink.begin_looking().
+  /// So many packs go to sink.unseen().
   template <class Sink>
-  Sink backward(const Entering&, const double* u, Sink, int unseen) const;
+  void backward(const Entering&, const double* u, Sink&, int unseen) const;
   void build_closure();
 
   const RowLayout* layout_;

@@ -19,12 +19,15 @@ class Contraction {
   /// From here on a step may have several roots.
   bool is_stiff() const { return bound_ && bound_->nonlinear > 0.9 * bound_->dominance; }
 
+  /// Whether next_change() must be asked anew for fields of this size.
+  bool is_outgrown(double largest) const { return largest > amplitude_ && largest < 1e100; }
+
   /// The next change of y_{n+1} over the last change of what the nonlinear part looks at, whose weights at the unknown
   /// row sum to `weight`; four times the worst case, and infinite where nothing is known. `gain` is the row equations'
   /// own sharper 1/dominance, if it is not zero.
   double next_change(double largest, double weight, double gain) {
     if (!bound_) return std::numeric_limits<double>::infinity();
-    if (largest > amplitude_ && largest < 1e100) {
+    if (is_outgrown(largest)) {
       amplitude_ = 2 * largest;
       if (const auto wider = fixed_point_bound(*system_, *plan_, amplitude_))
         bound_->nonlinear = std::max(bound_->nonlinear, wider->nonlinear);

@@ -11,10 +11,16 @@ namespace delf {
 class FlushDenormals {
  public:
 #if defined(__SSE2__)
-  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
-  ~FlushDenormals() { _mm_setcsr(before_); }
+  FlushDenormals() : before_(_mm_getcsr()) {
+    if (!are_flushed()) _mm_setcsr(before_ | both);
+  }
+  ~FlushDenormals() {
+    if (!are_flushed()) _mm_setcsr(before_);
+  }
 
  private:
+  static constexpr unsigned both = 0x8040u;  // of results and of operands
+  bool are_flushed() const { return (before_ & both) == both; }
   unsigned before_;
 #else
   FlushDenormals() {}

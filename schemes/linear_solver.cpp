@@ -56,7 +56,7 @@ class ScalarSolver final : public LinearSolver {
    private:
     const RowLayout& layout_;
     const RowSum& right_side_;
-    IncrementPass<0, Order::ascending> increment_;
+    IncrementPass<0, Order::ascending, Look::row> increment_;
     int done_ = 0;
   };
 
@@ -71,11 +71,9 @@ class ScalarSolver final : public LinearSolver {
   RowChange advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
                     double* const*) const override {
     return with_increment_pass<Order::ascending>(rows[0], [&](auto pass, int unseen) __attribute__((always_inline)) {
-      if (unseen > 0) {
-        pass = right_sides[0]->pass(layout, {0, unseen}, pass);
-        pass.begin_looking();
-      }
-      return right_sides[0]->pass(layout, {unseen, layout.packs()}, pass).result();
+      if (unseen > 0) right_sides[0]->pass(layout, {0, unseen}, Unseen<decltype(pass)>{pass});
+      right_sides[0]->pass_on(layout, {unseen, layout.packs()}, pass);
+      return pass.result();
     });
   }
   std::unique_ptr<RowStream> stream(const RowLayout& layout, const RowSum& right_side,
@@ -186,8 +184,7 @@ RowChange LinearSolver::advance(const RowLayout& layout, int components, const R
     layout.copy_overlaps(w[a]);  // solvers need not fill them
     all.take(with_increment_pass<Order::ascending>(rows[a], [&layout, from](auto pass, int unseen) __attribute__((always_inline)) {
       int v = 0;
-      for (; v < unseen; ++v) pass(layout.at(v), Pack::load(from + layout.at(v)));
-      pass.begin_looking();
+      for (; v < unseen; ++v) pass.unseen(layout.at(v), Pack::load(from + layout.at(v)));
       for (; v < layout.packs(); ++v) pass(layout.at(v), Pack::load(from + layout.at(v)));
       return pass.result();
     }));

@@ -6,7 +6,8 @@
 
 namespace delf {
 
-RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, SectionRows& rows, int history)
+RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, SectionRows& rows, int history,
+                           const std::optional<Mixture>& mixture, int most_order)
     : system_(system),
       rows_(rows),
       layout_(rows.layout()),
@@ -25,6 +26,7 @@ RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, S
   build_outputs();
   build_marks();
   build_sums();
+  if (mixture) build_arguments(*mixture, most_order);
   build_looks();
 }
 
@@ -54,18 +56,27 @@ void RowEquations::begin(std::int64_t n) {
     increment.v = v, increment.y = y;
     bases_[static_cast<std::size_t>(E_base_ + a)] = y;
   }
+  if (arguments_) {
+    arguments_->begin(n);
+    increments_[0].look.argument = arguments_->row(0);
+  }
   for (RowSum& sum : sums_) sum.bind(bases_.data());
   for (RowSum& sum : stored_) sum.bind(bases_.data());
 }
 
-void RowEquations::close_new_row() {
-  for (int a = 0; a < d_; ++a) {
-    double *const v = rows_.v_at(v_slots_(-1), a), *const y = rows_.y_at(y_slots_(-1), a);
-    layout_.copy_overlaps(v);
-    layout_.copy_overlaps(y);
-    layout_.fill_halo(v);
-    layout_.fill_halo(y, turn_);
+Pack RowEquations::close_new_row() {
+  const auto copy_overlaps = [&] {
+    for (const RowIncrement& rows : increments_) layout_.copy_overlaps(rows.v), layout_.copy_overlaps(rows.y);
+  };
+  if (!layout_.halos_come_first()) copy_overlaps();
+  for (const RowIncrement& rows : increments_) layout_.fill_halo(rows.v), layout_.fill_halo(rows.y, turn_);
+  Pack change(0.0);
+  if (arguments_) {  // of the last packs, which look beyond the end
+    const RowIncrement& rows = increments_[0];
+    change = arguments_->find(rows.y, {layout_.packs() + 1 - rows.look.parts, layout_.packs()});
   }
+  if (layout_.halos_come_first()) copy_overlaps();
+  return change;
 }
 
 /// Wherever the equations of a pack read outputs: beyond the ends of arcs too.
@@ -76,7 +87,7 @@ PackRange RowEquations::where_read(const Outputs& o) const {
 
 /// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others.
 void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& given) {
-  PackRange packs = given;
+  const PackRange packs = packs_of(o, age, given);
   const std::int64_t anchor_row = n_ + age;
   const int newest = o.reads_unknown_row(age) ? 1 : 0;
   for (int t = o.first_time; t <= o.last_time; ++t)
@@ -87,10 +98,6 @@ void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At wh
           : is_one_loop()                    ? rows_.y(n_ + row, a)
                                              : rows_.y_at(y_slots_(-row), a);
     }
-  if (o.family->pattern().placement == Placement::brick_wall) {
-    packs.stride = 2;
-    if ((packs.first + anchor_row) % 2 != 0) ++packs.first;
-  }
   o.kernel->evaluate({&layout_, slab_rows_.data(), positions_.rows() ? positions_.row(0) : nullptr,
                       static_cast<double>(anchor_row) * time_step_, time_step_, space_step_},
                      out, packs);
@@ -145,6 +152,7 @@ RowEquations::Advance RowEquations::advance(bool compared) {
   const RowSum* right_sides[RowKernel::most_components];
   for (int a = 0; a < d_; ++a) {
     right_sides[a] = &right_side(a);
+    if (arguments_) continue;
     RowLook& look = increments_[static_cast<std::size_t>(a)].look;
     look.parts = compared && looks_on_the_way_ ? static_cast<int>(looks_[0].parts.size()) : 0;
     look.expected = candidate_.row(a);
@@ -153,7 +161,8 @@ RowEquations::Advance RowEquations::advance(bool compared) {
   if (!equations_.exceptional.empty()) set_exceptional_sites();
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
   RowChange all = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides, increments_.data(), w_rows_.data());
-  close_new_row();
+  const Pack beyond = close_new_row();
+  if (arguments_) return {max_or_nan(all.largest), max_or_nan(max_or_nan(beyond, all.change))};
   if (!compared) return {max_or_nan(all.largest), 0};
   if (!looks_on_the_way_) return {max_or_nan(all.largest), largest_change(looks_)};
   // What looks beyond the end.
@@ -272,7 +281,7 @@ std::size_t RowEquations::matrix_bytes() const { return solver_[0]->bytes() + (s
 std::size_t RowEquations::work_bytes() const {
   std::size_t total = layout_.bytes();
   for (const RowBuffer* b : {&w_, &scratch_, &positions_, &edges_}) total += b->bytes();
-  return total + candidate_.bytes();
+  return total + candidate_.bytes() + (arguments_ ? arguments_->bytes() : 0);
 }
 
 }  // namespace delf

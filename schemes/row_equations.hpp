@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "schemes/argument_rows.hpp"
 #include "schemes/candidate_rows.hpp"
 #include "schemes/equation_terms.hpp"
 #include "schemes/linear_solver.hpp"
@@ -20,8 +22,10 @@ namespace delf {
 class RowEquations {
  public:
   /// `history`: how many rows the equations of a slab read before the unknown one. Throws NoConvergence if the constant
-  /// part of the equations is singular.
-  RowEquations(const LatticeSystem&, const SolvePlan&, SectionRows&, int history);
+  /// part of the equations is singular. With a mixture the nonlinear part is evaluated at rows of that argument, which
+  /// steps extrapolate by polynomials up to `most_order`.
+  RowEquations(const LatticeSystem&, const SolvePlan&, SectionRows&, int history,
+               const std::optional<Mixture>& = std::nullopt, int most_order = 0);
 
   /// Finds the rows for the step from row n. What follows is about this step.
   void begin(std::int64_t n);
@@ -37,11 +41,18 @@ class RowEquations {
   double loop(int part, int parts) const;
   void close_loop();
 
+  enum class At { candidate, row };
+  ArgumentRows* arguments() { return arguments_ ? &*arguments_ : nullptr; }
+  /// Of all rows up to the newest.
+  void find_arguments();
+  /// Evaluates at those of the unknown row: extrapolated; as they are since the last advance(), or of the row.
+  void evaluate_extrapolated(int order);
+  void evaluate_arguments(At);
+
   CandidateRows& candidate() { return candidate_; }
   void make_row_the_candidate();
   /// Evaluates the nonlinear outputs that do not read row n+1; those that do, of the candidate or of the row.
   void evaluate_outputs();
-  enum class At { candidate, row };
   void evaluate_unknown_outputs(At);
   /// Evaluates the outputs that read rows up to n only and that no earlier step had to evaluate.
   void evaluate_known_outputs();
@@ -67,8 +78,8 @@ class RowEquations {
   /// The largest change of y_{n+1} for a change of 1 in what the outputs look at, if ∂E/∂(y_{n+1}) of the nonlinear part sums
   /// to 1: an exact ∞-norm, by the response to an impulse. 0 where it is not known: several components, walls.
   double gain();
-  /// Overlaps and halos of v_{n+1}, y_{n+1}.
-  void close_new_row();
+  /// Overlaps and halos of v_{n+1}, y_{n+1}; and the arguments that could not be found before. Returns their change.
+  Pack close_new_row();
 
   /// max |E| / max Σ |terms| over the sites for row n+1 as it is. Leaves nothing changed that a step reads.
   double residual(std::int64_t n);
@@ -102,6 +113,7 @@ class RowEquations {
   void build_marks();
   void build_sums();
   void build_loop();
+  void build_arguments(const Mixture&, int most_order);
   void build_looks();
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
@@ -123,6 +135,13 @@ class RowEquations {
   void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&);
   void evaluate_in_ring(Outputs& o, int age, At at) { evaluate_in_ring(o, age, at, where_read(o)); }
   void evaluate_in_ring(Outputs&, int age, At, const PackRange&);
+  /// Those at which stencils anchored `age` rows after row n exist.
+  PackRange packs_of(const Outputs& o, int age, PackRange packs) const {
+    if (o.family->pattern().placement != Placement::brick_wall) return packs;
+    return {packs.first + static_cast<int>((packs.first + n_ + age) % 2 != 0), packs.last, 2};
+  }
+  ArgumentRow argument_row();
+  void evaluate_at(const ArgumentRow&);
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
   const RowSum& right_side(int a) const { return (is_stored_ ? stored_ : sums_)[static_cast<std::size_t>(a)]; }
@@ -154,6 +173,7 @@ class RowEquations {
   bool is_stored_ = false;  ///< right sides are summed to a row first: bricks, and walls
   RowBuffer w_, scratch_, positions_;
   CandidateRows candidate_;
+  std::optional<ArgumentRows> arguments_;
   std::vector<Argument> whole_{{{{Site{}, 1.0}}}},
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;

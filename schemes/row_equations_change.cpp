@@ -13,7 +13,7 @@ void RowEquations::build_looks() {
   const bool one_age = outputs_.size() == 1 && outputs_[0].reads_unknown_row(outputs_[0].newest) &&
                        !outputs_[0].reads_unknown_row(outputs_[0].newest - 1);
   if (d_ == 1 && equations_.exceptional.empty() && !solver_[1] && !equations_.correction_form && turn_ == 0 &&
-      one_age && layout_.packs() >= packs_in_cache)
+      one_age && !arguments_ && layout_.packs() >= packs_in_cache)
     is_streamed_ = solver_[0]->stream(layout_, right_side(0), {}) != nullptr;
   for (const Outputs& o : outputs_) {
     const Argument whole{{{Site{}, 1.0}}};
@@ -37,7 +37,7 @@ void RowEquations::build_looks() {
     }
   }
   // One look at neighbours that follow each other can be taken while the row is made.
-  if (looks_.size() != 1 || static_cast<int>(looks_[0].parts.size()) > layout_.packs()) return;
+  if (arguments_ || looks_.size() != 1 || static_cast<int>(looks_[0].parts.size()) > layout_.packs()) return;
   for (std::size_t p = 0; p < looks_[0].parts.size(); ++p)
     if (looks_[0].parts[p].vertex.space != static_cast<int>(p)) return;
   looks_on_the_way_ = true;

@@ -4,13 +4,18 @@
 
 namespace delf {
 
-/// What of the difference between a new row and the one that it was expected to be is looked at:
-/// Σ_p weights[p] (y − expected)(i + p), p = 0 … parts − 1.
+/// What of a new row is looked at, at neighbours that follow each other, and held against what was expected:
+///
+///     of the row         Σ_p weights[p] (y − expected)(i + p)
+///     of an argument     u(i) − argument(i),      u(i) = Σ_p weights[p] y(i + p)
+///
+/// where u takes the place of what stood in `argument`. p = 0 … parts − 1.
 struct RowLook {
   static constexpr int most_parts = 3;
   const double* expected = nullptr;
   int parts = 0;  ///< 0: nothing is
   double weights[most_parts] = {};
+  double* argument = nullptr;  ///< if there is one
 };
 
 /// One component of the new row, made from w pack by pack:  v = v_before + w,  y = y_before + v.
@@ -36,54 +41,114 @@ struct RowChange {
 
 enum class Order { ascending, descending };
 
-/// A pass over all packs of a RowIncrement, one after the other; what it measures stays in registers. The first
-/// `parts` − 1 of them have nothing to be looked at with: after these, begin_looking().
-template <int parts, Order order>
+/// What a pass has seen of the last `count` packs, the newest last. One member each: arrays would go through memory.
+template <int count>
+struct LastPacks {
+  LastPacks<count - 1> older;
+  Pack newest = 0.0;
+  [[gnu::always_inline]] void take(Pack next) {
+    older.take(newest);
+    newest = next;
+  }
+};
+template <>
+struct LastPacks<0> {
+  [[gnu::always_inline]] void take(Pack) {}
+};
+
+/// Their weights: Σ_p weight_p · pack_p is added to a sum.
+template <int count>
+struct PackWeights {
+  PackWeights<count - 1> older;
+  double newest;
+  /// In the order of the packs.
+  explicit PackWeights(const double* weights, int by) : older(weights, by), newest(weights[(count - 1) * by]) {}
+  [[gnu::always_inline]] Pack added(Pack sum, const LastPacks<count>& packs) const {
+    return older.added(sum + newest * packs.newest, packs.older);
+  }
+};
+template <>
+struct PackWeights<0> {
+  explicit PackWeights(const double*, int) {}
+  [[gnu::always_inline]] Pack added(Pack sum, const LastPacks<0>&) const { return sum; }
+};
+
+enum class Look { row, argument };
+
+/// A pass over all packs of a RowIncrement, one after the other; what it measures stays in registers. What was expected
+/// is finite, so that where a change is NaN the largest |y| shows it. The first
+/// `parts` − 1 of them have nothing to be looked at with: they are handed to unseen().
+template <int parts, Order order, Look look>
 class IncrementPass {
  public:
   explicit IncrementPass(const RowIncrement& rows)
-      : v_before_(rows.v_before), y_before_(rows.y_before), expected_(rows.look.expected), v_(rows.v), y_(rows.y) {
-    for (int p = 0; p < parts; ++p) weights_[p] = rows.look.weights[order == Order::ascending ? p : parts - 1 - p];
-    for (Pack& d : differences_) d = Pack(0.0);
-  }
+      : v_before_(rows.v_before),
+        y_before_(rows.y_before),
+        expected_(rows.look.expected),
+        v_(rows.v),
+        y_(rows.y),
+        argument_(rows.look.argument),
+        weights_(rows.look.weights + (order == Order::ascending || parts == 0 ? 0 : parts - 1),
+                 order == Order::ascending ? 1 : -1) {}
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) {
-    const Pack v = Pack::load(v_before_ + at) + w;
-    const Pack y = Pack::load(y_before_ + at) + v;
-    largest_ = max_or_nan(abs(y), largest_);
+    unseen(at, w);
     if constexpr (parts > 0) {
-      for (int p = 0; p + 1 < parts; ++p) differences_[p] = differences_[p + 1];
-      differences_[parts - 1] = y - Pack::load(expected_ + at);
-      Pack look = weights_[0] * differences_[0];
-      for (int p = 1; p < parts; ++p) look += weights_[p] * differences_[p];
-      change_ = max_or_nan(abs(look), change_);
+      const Pack u = weights_.added(Pack(0.0), seen_);
+      if constexpr (look == Look::row) {
+        change_ = detail::larger(abs(u), change_);
+      } else {
+        double* const here = argument_ + at - (order == Order::ascending ? (parts - 1) * lanes : 0);
+        change_ = detail::larger(abs(u - Pack::load(here)), change_);
+        u.store(here);
+      }
     }
+  }
+  [[gnu::always_inline]] void unseen(std::ptrdiff_t at, Pack w) {
+    const Pack v = Pack::load(v_before_ + at) + w, y = Pack::load(y_before_ + at) + v;
+    largest_ = max_or_nan(abs(y), largest_);
+    if constexpr (parts > 0) seen_.take(look == Look::row ? y - Pack::load(expected_ + at) : y);
     v.store(v_ + at);
     y.store(y_ + at);
   }
-  void begin_looking() { change_ = Pack(0.0); }
   RowChange result() const { return {largest_, change_}; }
 
  private:
-  static constexpr int held = parts > 0 ? parts : 1;
   const double *v_before_, *y_before_, *expected_;
-  double *v_, *y_;
-  double weights_[held];
+  double *v_, *y_, *argument_;
+  PackWeights<parts> weights_;
   Pack largest_ = 0.0, change_ = 0.0;
-  Pack differences_[held];  ///< y − expected of the last packs
+  LastPacks<parts> seen_;  ///< y, less what was expected of it where the row is looked at
+};
+
+/// A pass whose packs are not looked at.
+template <class Pass>
+struct Unseen {
+  Pass& pass;
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) { pass.unseen(at, w); }
 };
 
 /// `run` with the IncrementPass that the rows ask for. Inlined, as passes are: what they carry stays in registers.
 template <Order order, class Run>
 [[gnu::always_inline]] inline RowChange with_increment_pass(const RowIncrement& rows, Run run) {
+  if (rows.look.argument) {
+    switch (rows.look.parts) {
+      case 1:
+        return run(IncrementPass<1, order, Look::argument>(rows), 0);
+      case 2:
+        return run(IncrementPass<2, order, Look::argument>(rows), 1);
+      default:
+        return run(IncrementPass<3, order, Look::argument>(rows), 2);
+    }
+  }
   switch (rows.look.parts) {
     case 0:
-      return run(IncrementPass<0, order>(rows), 0);
+      return run(IncrementPass<0, order, Look::row>(rows), 0);
     case 1:
-      return run(IncrementPass<1, order>(rows), 0);
+      return run(IncrementPass<1, order, Look::row>(rows), 0);
     case 2:
-      return run(IncrementPass<2, order>(rows), 1);
+      return run(IncrementPass<2, order, Look::row>(rows), 1);
     default:
-      return run(IncrementPass<3, order>(rows), 2);
+      return run(IncrementPass<3, order, Look::row>(rows), 2);
   }
 }
 

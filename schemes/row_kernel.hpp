@@ -39,6 +39,27 @@ struct Argument {
   std::vector<Part> parts;
 };
 
+/// A row of arguments m = u + known_weight · known: what is known of it, and u, which stands in `unknown`, or is
+/// extrapolated to there from a ring of rows before it,
+///
+///     u = Σ_j coefficients[j] (the row in `slot` − j),      j = 0 … past_rows − 1.
+///
+struct ArgumentRow {
+  static constexpr int most_past_rows = 12;
+  const RowLayout* layout;
+  double* unknown;
+  const double* known;
+  double known_weight;
+  const double* positions;  ///< x of each slot's site; null unless the family is placed
+  double t;                 ///< of the anchors' row
+  double time_step, space_step;
+  int past_rows = 0;  ///< 2 … most_past_rows; none: u stands
+  const double* coefficients = nullptr;
+  const double* ring = nullptr;
+  std::ptrdiff_t stride = 0;  ///< from slot to slot, in doubles
+  int slots = 0, slot = 0;
+};
+
 /// A stencil family evaluated for whole rows: d components at every vertex, i = l·d + a, and the residual split
 ///
 ///     r(y) = r(0) + J y + Σ_c weight(c, ·) out_c(y)
@@ -66,6 +87,10 @@ class RowKernel {
   /// business.
   virtual void evaluate(const SlabRows&, double* const* out, const PackRange&) const = 0;
   void evaluate(const SlabRows& rows, double* const* out) const { evaluate(rows, out, rows.layout->all()); }
+
+  /// Whether there is one output, a function of one argument; and that output for a row of arguments.
+  virtual bool evaluates_arguments() const { return false; }
+  virtual void evaluate_arguments(const ArgumentRow&, double* /*out*/, const PackRange&) const {}
 
   /// Where the nonlinear part of the equation at a site is that of its own value alone, a step is one loop:
   ///

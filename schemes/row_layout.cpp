@@ -38,6 +38,8 @@ void RowLayout::find_halo_packs() {
   by_packs_ = std::ranges::all_of(overlap, [&](int b) { return b == least || b == most; }) && least >= 0 &&
               most + halo_ <= packs_;
   if (!by_packs_) return;
+  // Set by copy_overlaps() are the last b_{l+1} packs of arc l: no halo is taken from these where arcs are long enough.
+  halos_come_first_ = 2 * most + halo_ <= packs_;
   const auto offset = [this](int v) { return static_cast<int>(at(v)); };
   for (int e = 1; e <= halo_; ++e)
     before_.push_back({offset(-e), offset(packs_ - least - e), offset(packs_ - most - e)});

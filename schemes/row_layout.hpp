@@ -63,6 +63,9 @@ class RowLayout {
   void copy_overlaps(double* row) const {
     for (const Copy& c : overlap_copies_) row[c.to] = row[c.from];
   }
+  /// Halos repeat no slot that copy_overlaps() sets. They are then better filled first, where a row has just been made: a
+  /// pack cannot be loaded without waiting right after one of its slots was stored.
+  bool halos_come_first() const { return halos_come_first_; }
   /// Every slot (overlaps too, halo not) that holds site i.
   std::vector<int> slots_of(int i) const;
 
@@ -89,7 +92,7 @@ class RowLayout {
   int sites_, packs_, halo_;
   std::vector<int> start_;
   std::vector<Copy> halo_copies_, overlap_copies_;
-  bool by_packs_ = false;
+  bool by_packs_ = false, halos_come_first_ = false;
   std::vector<HaloPack> before_, after_;
   Pack far_before_ = 0.0, far_after_ = 0.0;  ///< 1 in the lanes that read `far`, before they are moved
   Pack turns_before_ = 0.0, turns_after_ = 0.0;
@@ -109,6 +112,7 @@ class RowBuffer {
   double* row(int r) { return data_.get() + static_cast<std::size_t>(r) * stride_; }
   const double* row(int r) const { return data_.get() + static_cast<std::size_t>(r) * stride_; }
   int rows() const { return rows_; }
+  std::ptrdiff_t stride() const { return static_cast<std::ptrdiff_t>(stride_); }  ///< from row to row, in doubles
   std::size_t bytes() const { return stride_ * static_cast<std::size_t>(rows_) * sizeof(double); }
 
  private:

@@ -22,24 +22,26 @@ constexpr double rows_per_iteration = 24;
 
 }  // namespace
 
+bool RowSeed::fits_cache(int sites) { return sites <= 1 << 15; }
+
 int RowSeed::rows_for(int seed_order, int sites) {
-  constexpr int sites_in_cache = 1 << 15;  // beyond, some twenty rows leave the second level
-  return std::clamp(seed_order - 1, 1, sites > sites_in_cache ? 3 : highest_order);
+  return std::clamp(seed_order - 1, 1, fits_cache(sites) ? highest_order : 3);
 }
 
-RowSeed::RowSeed(SectionRows& rows, int most_order, const std::vector<Argument>& looks)
+RowSeed::RowSeed(SectionRows& rows, int most_order, const std::vector<Argument>& looks, ArgumentRows* arguments)
     : rows_(rows),
       y_slots_(rows.rows_held()),
       v_slots_(rows.increments_held()),
       most_order_(most_order),
       looks_(looks),
-      bases_(static_cast<std::size_t>(most_order) + 1) {
+      bases_(static_cast<std::size_t>(most_order) + 1),
+      arguments_(arguments) {
   for (int order = 0; order <= most_order; ++order) {
     RowSum sum;
     sum.add(0, 0, 1);
     double coefficient = -1;
     for (int m = 1; m <= order; ++m) {
-      coefficient *= -static_cast<double>(order - m + 1) / m;
+      coefficient = -coefficient * (order - m + 1) / m;  // whole numbers
       sum.add(m, 0, coefficient);
     }
     sums_.push_back(std::move(sum));
@@ -80,29 +82,52 @@ void RowSeed::find_span() {
   }
 }
 
-/// The backward differences ∇^p v_n are what a seed of order p would have missed of v_n.
+/// The backward differences ∇^p v_n are what a seed of order p would have missed of v_n. `load(m, pack)` is what is looked
+/// at of v_{n−m}.
 template <int most>
-void RowSeed::measure(const Argument& look, double* errors) {
-  const RowLayout& layout = rows_.layout();
+void RowSeed::measure(const auto& load, double* errors) {
   std::array<Pack, most + 1> worst;
   worst.fill(Pack(0.0));
-  for (int a = 0; a < rows_.components(); ++a) {
-    std::array<const double*, most + 1> v;
-    for (int m = 0; m <= most; ++m) v[m] = rows_.v_at(v_slots_(m), a);
-    for (int pack = 0; pack < layout.packs(); ++pack) {
-      std::array<Pack, most + 1> difference;
-      difference.fill(Pack(0.0));
-      for (const Argument::Part& part : look.parts) {
-        const std::ptrdiff_t at = layout.at(pack + part.vertex.space);
-        for (int m = 0; m <= most; ++m) difference[m] += part.weight * Pack::load(v[m] + at);
-      }
-      for (int p = 1; p <= most; ++p) {
-        for (int m = 0; m <= most - p; ++m) difference[m] = difference[m] - difference[m + 1];
-        worst[p] = max_or_nan(abs(difference[0]), worst[p]);
-      }
+  for (int pack = 0; pack < rows_.layout().packs(); ++pack) {
+    std::array<Pack, most + 1> difference;
+    [&]<int... m>(std::integer_sequence<int, m...>) __attribute__((always_inline)) {
+      ((difference[m] = load(m, pack)), ...);
+    }
+    (std::make_integer_sequence<int, most + 1>{});
+    for (int p = 1; p <= most; ++p) {
+      for (int m = 0; m <= most - p; ++m) difference[m] = difference[m] - difference[m + 1];
+      worst[p] = max_or_nan(abs(difference[0]), worst[p]);
     }
   }
   for (int p = 1; p <= most; ++p) errors[p] = std::max(errors[p], max_or_nan(worst[p]));
+}
+
+template <int most>
+void RowSeed::measure(double* errors) {
+  const RowLayout& layout = rows_.layout();
+  if (arguments_) {
+    std::array<const double*, most + 2> rows;
+    for (int m = 0; m < most + 2; ++m) rows[m] = arguments_->row(m + 1);
+    measure<most>(
+        [&](int m, int pack) __attribute__((always_inline)) {
+          return Pack::load(rows[m] + layout.at(pack)) - Pack::load(rows[m + 1] + layout.at(pack));
+        },
+        errors);
+    return;
+  }
+  for (int a = 0; a < rows_.components(); ++a) {
+    std::array<const double*, most + 1> v;
+    for (int m = 0; m <= most; ++m) v[m] = rows_.v_at(v_slots_(m), a);
+    for (const Argument& look : looks_)
+      measure<most>(
+          [&](int m, int pack) __attribute__((always_inline)) {
+            Pack sum(0.0);
+            for (const Argument::Part& part : look.parts)
+              sum += part.weight * Pack::load(v[m] + layout.at(pack + part.vertex.space));
+            return sum;
+          },
+          errors);
+  }
 }
 
 void RowSeed::choose(std::int64_t n, double tolerance, double contraction, double weight) {
@@ -119,9 +144,9 @@ void RowSeed::choose(std::int64_t n, double tolerance, double contraction, doubl
     return;
   }
   double errors[highest_order + 1] = {};
-  for (const Argument& look : looks_) [&]<int... m>(std::integer_sequence<int, m...>) {
-      ((most == m + 1 ? measure<m + 1>(look, errors) : void()), ...);
-    }
+  [&]<int... m>(std::integer_sequence<int, m...>) {
+    ((most == m + 1 ? measure<m + 1>(errors) : void()), ...);
+  }
   (std::make_integer_sequence<int, highest_order>{});
   double cheapest = std::numeric_limits<double>::infinity();
   // Where rows are long, steps are so small that this takes longer than anyone steps.

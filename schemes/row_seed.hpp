@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "schemes/argument_rows.hpp"
 #include "schemes/ring_slots.hpp"
 #include "schemes/row_kernel.hpp"
 #include "schemes/row_sum.hpp"
@@ -19,15 +20,17 @@ namespace delf {
 class RowSeed {
  public:
   /// Increments up to this many rows back are read; what matters of a candidate is what the nonlinear part looks at.
-  RowSeed(SectionRows&, int most_order, const std::vector<Argument>& looks);
+  /// Where steps extrapolate `arguments`, these are read in the place of increments.
+  RowSeed(SectionRows&, int most_order, const std::vector<Argument>& looks, ArgumentRows* arguments = nullptr);
   /// How many increments to hold for a seed from `seed_order` rows: fewer where rows outgrow the cache.
   static int rows_for(int seed_order, int sites);
+  static bool fits_cache(int sites);  ///< some twenty rows do
 
   /// Forgets the order: rows have been set anew.
   void restart() { looked_at_ = -1; }
   int order() const { return order_; }
-  /// Chooses the order for the step from row n, now and then, by how well each would have foretold the newest
-  /// increment: each change is `contraction` times the last, until `weight` times it is below tolerance · span().
+  /// Chooses the order for the step from row n, now and then, by how well each would have foretold the newest row:
+  /// each change is `contraction` times the last, until `weight` times it is below tolerance · span().
   void choose(std::int64_t n, double tolerance, double contraction, double weight);
   void choose(std::int64_t n, double tolerance, double contraction) { choose(n, tolerance, contraction, contraction); }
   /// max y − min y over all components when last looked at.
@@ -41,7 +44,9 @@ class RowSeed {
  private:
   void find_span();
   template <int most>
-  void measure(const Argument& look, double* errors);
+  void measure(double* errors);
+  template <int most>
+  void measure(const auto& load, double* errors);
 
   SectionRows& rows_;
   RingSlots y_slots_, v_slots_;
@@ -51,6 +56,7 @@ class RowSeed {
   std::vector<RowSum> sums_;  ///< by order
   std::vector<Argument> looks_;
   std::vector<const double*> bases_;
+  ArgumentRows* arguments_;
 };
 
 }  // namespace delf

@@ -26,11 +26,13 @@ struct RowStepper::Impl {
   const bool iterative;
   std::optional<Contraction> contraction;  ///< of an iteration
   const bool stiff;
+  const std::optional<Mixture> mixture;  ///< that is extrapolated in the place of y
   SectionRows rows;
   RowEquations equations;
   RowSeed seed;
   std::optional<RowTeam> team;
   double gain = 0, weight = 1;  ///< of the equations, for contraction
+  double contracted = -1;       ///< by which one more iteration's change would be less; negative: not known yet
 
   std::int64_t n = -1;         ///< newest row
   double largest[2] = {0, 0};  ///< |y| of the newest two rows
@@ -50,9 +52,10 @@ struct RowStepper::Impl {
         iterative(!solved_at_once(s, p)),
         contraction(iterative ? std::optional(Contraction(s, p)) : std::nullopt),
         stiff(iterative && contraction->is_stiff()),
-        rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, seed_rows()) + 1, o.turn),
-        equations(s, p, rows, history),
-        seed(rows, seed_rows(), equations.looks()) {
+        mixture(iterative && RowSeed::fits_cache(s.lattice().sites()) ? Mixture::of(s) : std::nullopt),
+        rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, mixture ? 1 : seed_rows()) + 1, o.turn),
+        equations(s, p, rows, history, mixture, seed_rows()),
+        seed(rows, seed_rows(), equations.looks(), equations.arguments()) {
     // Made now, so that memory that is short is told at the start.
     if (equations.reads_unknown_row() && !(iterative && equations.is_streamed())) equations.candidate().hold_whole();
     if (iterative) gain = equations.gain(), weight = equations.least_weight();
@@ -190,12 +193,14 @@ struct RowStepper::Impl {
   /// Simplified Newton with the constant part. False when it does not contract, or not fast enough.
   bool iterate(double& value) {
     const double tolerance = std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon());
-    double next_change = contraction->next_change(largest[0], weight, gain);
+    if (contracted < 0 || contraction->is_outgrown(largest[0]))
+      contracted = contraction->next_change(largest[0], weight, gain);
+    double next_change = contracted;
     // The smallest tolerances ask for all that rounding allows: there nothing is left to an estimate.
     const bool estimates = options.tolerance >= smallest_estimated;
     seed.choose(n, tolerance, next_change, estimates ? next_change : 1 / weight);
     const int order = seed.order();
-    if (!equations.is_streamed()) take_seed(order);
+    if (!mixture && !equations.is_streamed()) take_seed(order);
     double before = std::numeric_limits<double>::infinity();
     while (iterations < options.max_iterations) {
       ++iterations;
@@ -205,7 +210,9 @@ struct RowStepper::Impl {
         moved = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)
                                                            : std::function<void(PackRange)>());
       } else {
-        equations.evaluate_unknown_outputs(RowEquations::At::candidate);
+        if (!mixture) equations.evaluate_unknown_outputs(RowEquations::At::candidate);
+        else if (iterations == 1) equations.evaluate_extrapolated(order);
+        else equations.evaluate_arguments(RowEquations::At::candidate);
         moved = equations.advance(true);
       }
       value = moved.largest;
@@ -215,7 +222,7 @@ struct RowStepper::Impl {
       const double scale = std::max({value, largest[0], largest[1]});
       const double enough = within(tolerance, scale);
       // One more iteration would change the row by no more than what it makes of the last change.
-      if (change / weight <= enough || (estimates && next_change * change <= enough)) return true;
+      if (change <= weight * enough || (estimates && next_change * change <= enough)) return true;
       if (estimates && iterations > 1) next_change = std::min(next_change, 2 * equations.whole_change() / before);
       if (estimates && next_change * change <= enough) return true;
       // Changes that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
@@ -240,7 +247,8 @@ struct RowStepper::Impl {
           n + 1, static_cast<double>(n + 1) * system.time_step()));
     rows.set_row(n + 1, result.row);
     rows.find_increment(n + 1);
-    equations.evaluate_unknown_outputs(RowEquations::At::row);
+    if (mixture) equations.evaluate_arguments(RowEquations::At::row);
+    else equations.evaluate_unknown_outputs(RowEquations::At::row);
     double value = 0;
     for (double x : result.row) value = std::max(value, std::abs(x));
     return value;
@@ -328,6 +336,7 @@ void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   s.n = static_cast<std::int64_t>(rows.size()) - 1;
   s.equations.begin(s.n);
   s.equations.evaluate_outputs();
+  if (s.mixture) s.equations.find_arguments();
   s.seed.restart();
 }
 

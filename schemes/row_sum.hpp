@@ -27,6 +27,11 @@ class RowSum {
 
   template <class Consume>
   [[gnu::always_inline]] Consume pass(const RowLayout& layout, PackRange packs, Consume consume) const;
+  /// The same with `consume` itself: where one goes on with what another pass left, a copy would go through memory.
+  template <class Consume>
+  [[gnu::always_inline]] void pass_on(const RowLayout& layout, PackRange packs, Consume& consume) const {
+    dispatch<false>(layout, packs, consume);
+  }
   /// The same with the sum of the terms' absolute values: `consume(at, sum, absolute)`.
   template <class Consume>
   Consume measure(const RowLayout& layout, PackRange packs, Consume consume) const;

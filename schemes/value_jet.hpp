@@ -6,9 +6,10 @@ namespace delf {
 
 /// The jet (φ, 0, 0) of a pack of sites, with ∂/∂φ: all that is asked of a density that is nonlinear in φ alone.
 /// `value(a)` is the component a of φ, called once for each; `positions` is x of the pack's sites, read if the density
-/// is placed.
+/// is placed, to which `x_offset` is added.
 template <Density D>
-[[gnu::always_inline]] inline auto value_jet(const auto& value, const Pack& t, const double* positions) {
+[[gnu::always_inline]] inline auto value_jet(const auto& value, const Pack& t, const double* positions,
+                                             double x_offset = 0) {
   constexpr int d = components_of<D>();
   using Number = Dual<Pack, d>;
   JetFor<Number, D> jet;
@@ -19,7 +20,7 @@ template <Density D>
   }
   if constexpr (is_placed<D>()) {
     jet.t = Number(t);
-    jet.x = Number(Pack::load(positions));
+    jet.x = Number(Pack::load(positions) + x_offset);
   }
   return jet;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "schemes/argument_loop.hpp"
 #include "schemes/explicit_loop.hpp"
 #include "schemes/row_kernel.hpp"
 #include "schemes/stencil_family.hpp"
@@ -152,6 +153,15 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   void evaluate(const SlabRows& rows, double* const* out, const PackRange& packs) const override {
     if (nonlinearity_ == Nonlinearity::values) evaluate_values(rows, out, packs);
     if (nonlinearity_ == Nonlinearity::all) evaluate_all(rows, out, packs);
+  }
+
+  bool evaluates_arguments() const override { return d == 1 && outputs_ == 1 && nonlinearity_ == Nonlinearity::values; }
+  void evaluate_arguments(const ArgumentRow& row, double* out, const PackRange& packs) const override {
+    constexpr auto& point = map.quadrature[distinct.representative[0]];
+    const double t = row.t + time_offset(map.shape, point) * row.time_step;
+    const double x_offset = space_offset(map.shape, point) * row.space_step;
+    constexpr int stride = map.shape.placement == Placement::every_site ? 1 : 2;
+    if constexpr (d == 1) argument_loop_for<stride>(lagrangian_.density, row, t, x_offset, out, packs);
   }
 
   std::span<const int> explicit_neighbours() const override {

@@ -218,6 +218,45 @@ TEST_CASE("what a row turned out to be is compared with what was expected while 
       }
 }
 
+TEST_CASE("what the next step looks at is found while a row is made, and compared with what was expected of it") {
+  const std::vector<RowLook> looks{{nullptr, 1, {0.5}}, {nullptr, 2, {0.75, -0.25}}, {nullptr, 3, {0.5, -2, 0.125}}};
+  for (int N : {24, 25, 64, 255, 256})
+    for (const RowLook& look : looks) {
+      Advance advance(N, 1);
+      const RowLayout& layout = advance.layout;
+      CAPTURE(N, look.parts);
+      Random random(3);
+      RowBuffer expected(layout, 1), found(layout, 1);
+      const Circulant A = with_root(-0.6, 1.7);
+      const std::vector<BandEntry> band{{-1, A.side}, {0, A.centre}, {1, A.side}}, number{{0, -4.5}},
+          lopsided{{-1, 0.2}, {0, 1.7}, {1, 0.3}};
+      for (const auto& stencil : {band, number, lopsided}) {
+        const auto solver = factor_uniform(Lattice::circle(N, 1), layout, stencil);
+        CAPTURE(solver->name());
+        layout.scatter(random_row(random, N, 10), expected.row(0));
+        std::copy_n(expected.row(0), layout.doubles(), found.row(0));
+        advance.look = look;
+        advance.look.argument = found.row(0);
+        advance.run(*solver);
+        const double* const y = advance.after.row(1);
+        double worst = 0, change = 0;
+        for (int v = 0; v < layout.packs(); ++v)
+          for (int l = 0; l < lanes; ++l) {
+            const auto slot = layout.at(v) + l;
+            double m = 0;
+            for (int p = 0; p < look.parts; ++p) m += look.weights[p] * y[slot + p * lanes];
+            const bool is_seen = v + look.parts <= layout.packs();
+            if (!is_seen) m = expected.row(0)[slot];  // it stays
+            worst = std::max(worst, std::abs(found.row(0)[slot] - m));
+            if (is_seen) change = std::max(change, std::abs(m - expected.row(0)[slot]));
+          }
+        CHECK(worst < 1e-13);
+        CHECK(advance.change == Approx(change).epsilon(1e-13));
+        CHECK(change > 1);
+      }
+    }
+}
+
 TEST_CASE("two components with matrices of their own are advanced together, each with its scale") {
   for (int N : {16, 19, 64, 255})
     for (double q : {-7.0 / 9, 0.4}) {

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "schemes/ring_slots.hpp"
+#include "schemes/row_increment.hpp"
+#include "schemes/row_kernel.hpp"
+
+namespace delf {
+
+class LatticeSystem;
+
+/// What the nonlinear part looks at, if that is one argument, of neighbours that follow each other in the unknown row and
+/// in the one before it:
+///
+///     m(i) = u_{n+1}(i) + what is known,      u_r(i) = Σ_p weights[p] y_r(i + p),      p = 0 … parts − 1.
+///
+/// Known is u_n again, or known_weight · y_n(i + known_site).
+struct Mixture {
+  int parts = 0;
+  double weights[RowLook::most_parts] = {};
+  bool is_known_alike = false;
+  int known_site = 0;
+  double known_weight = 0;
+
+  /// Of one field on a circle; nothing where what is looked at is more, or not seen by a kernel of its own.
+  static std::optional<Mixture> of(const LatticeSystem&);
+};
+
+/// The newest rows u_r. A step extrapolates these instead of y: it reads as many past rows, but has no candidate for y to
+/// write, to read at several sites and to compare the new row with.
+class ArgumentRows {
+ public:
+  ArgumentRows(const RowLayout&, const Mixture&, int most_order);
+
+  const Mixture& mixture() const { return mixture_; }
+  /// The step from row n; what follows is about it.
+  void begin(std::int64_t n) {
+    slots_.at(n);
+    n_ = n;
+  }
+  /// u_{n+1−back}: 0 is the one that is looked for.
+  double* row(int back) { return ring_.row(slots_(back - 1)); }
+  /// u_{n+1} and what is known, with y_n; positions, t and steps are the caller's.
+  ArgumentRow argument(const double* y);
+  /// Lets u_{n+1} be extrapolated by a polynomial of this order, or the highest that there are rows for, from row 0 on:
+  ///
+  ///     u_{n+1} ≈ Σ_{j=0}^{order} (−1)^j C(order + 1, j + 1) u_{n−j}
+  ///
+  void extrapolate(int order, ArgumentRow&) const;
+  /// u_{n+1} of the row itself, whose halos are filled; returns the largest change.
+  Pack find(const double* y, const PackRange&);
+  std::size_t bytes() const { return ring_.bytes(); }
+
+ private:
+  const RowLayout* layout_;
+  Mixture mixture_;
+  RowBuffer ring_;
+  RingSlots slots_;
+  std::int64_t n_ = 0;
+  std::vector<std::vector<double>> coefficients_;  ///< by order
+};
+
+}  // namespace delf

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/argument_rows.hpp"
+
+#include "tests/catch.hpp"
+#include "tests/schemes/support.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+constexpr double h = 0.2, k = 0.3, t = 1.4;
+constexpr int N = 43, halo = 2;
+
+std::optional<Mixture> mixture_of(const std::string& theory, const std::string& scheme, const Lattice& lattice) {
+  return Mixture::of(evolution_of(problem_of(theory), scheme, lattice, h).system());
+}
+std::optional<Mixture> mixture_of(const std::string& scheme) {
+  return mixture_of("sine-gordon", scheme, Lattice::circle(N, N * k));
+}
+
+/// Rows that are polynomials in time, another at each site, all of them whole numbers.
+struct Polynomials {
+  Lattice lattice = Lattice::circle(N, N * k);
+  RowLayout layout{lattice, halo};
+  ArgumentRows rows;
+  RowBuffer known{layout, 1}, out{layout, 1};
+  std::shared_ptr<const StencilFamily> family = family_of(problem_of("sine-gordon"), "rectangle", h, k);
+  int degree;
+  std::int64_t newest;
+
+  /// Known are half the numbers 0, 1, 2 in turn, one site further.
+  Polynomials(int of_degree, std::int64_t last, int most)
+      : rows(layout, {1, {1}, false, 1, 0.5}, most), degree(of_degree), newest(last) {
+    for (std::int64_t n = -1; n <= newest; ++n) {
+      rows.begin(n);
+      if (n < newest) scatter(rows.row(0), [&](int i) { return value(n + 1, i); });
+    }
+    scatter(known.row(0), [](int i) { return i % 3; });
+  }
+  double value(std::int64_t n, int i) const {
+    double sum = 0, power = 1;
+    for (int p = 0; p <= degree; ++p, power *= static_cast<double>(n)) sum += power * (1 + (i + p) % 3);
+    return sum;
+  }
+  void scatter(double* row, const std::function<double(int)>& at) const {
+    Row sites;
+    for (int i = 0; i < N; ++i) sites.push_back(at(i));
+    layout.scatter(sites, row);
+  }
+  /// The largest difference between the row that an extrapolation of this order finds and the next one.
+  double miss(int order) {
+    ArgumentRow row = rows.argument(known.row(0));
+    rows.extrapolate(order, row);
+    family->row_kernel()->evaluate_arguments(row, out.row(0), layout.all());
+    double worst = 0;
+    for (int i = 0; i < N; ++i)
+      worst = std::max(worst, std::abs(rows.row(0)[layout.slot(i)] - value(newest + 1, i)));
+    return worst;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what a stencil looks at in the unknown row, and what is known of it") {
+  const auto weights = [](const Mixture& m) { return std::vector<double>(m.weights, m.weights + m.parts); };
+  const Lattice even = Lattice::circle(44, 44 * k);
+  const std::vector<std::pair<std::string, std::vector<double>>> expected{{"rectangle", {.25, .25}},
+                                                                          {"rectangle-symmetric", {.25, .25}},
+                                                                          {"triangle", {1. / 3, 1. / 3}},
+                                                                          {"hexagon", {1. / 6, 1. / 6, 1. / 6}}};
+  for (const auto& [scheme, of_row] : expected) {
+    CAPTURE(scheme);
+    const auto mixture = mixture_of("sine-gordon", scheme, even);
+    REQUIRE(mixture);
+    CHECK(weights(*mixture) == of_row);
+    CHECK(mixture->is_known_alike == (scheme != "triangle"));
+    if (scheme != "triangle") continue;
+    CHECK(mixture->known_site == 0);
+    CHECK(mixture->known_weight == 1. / 3);
+  }
+  CHECK_FALSE(mixture_of("guo"));
+  CHECK_FALSE(mixture_of("vu-quoc-li"));
+  CHECK_FALSE(mixture_of("klein-gordon", "rectangle", even));  // linear
+  CHECK_FALSE(mixture_of("coupled-sine-gordon", "rectangle", even));
+  CHECK_FALSE(mixture_of("sine-gordon", "rectangle", Lattice::interval(N, N * k)));
+  CHECK_FALSE(mixture_of("sine-gordon", "rectangle", Lattice::circle(RowLook::most_parts * lanes - 1, 4)));
+  CHECK(mixture_of("sine-gordon", "rectangle", Lattice::circle(RowLook::most_parts * lanes, 4)));
+}
+
+TEST_CASE("arguments of order p foretell polynomials of degree p and none above, and the density is taken there") {
+  const double m2 = problem_of("sine-gordon").mass * problem_of("sine-gordon").mass;
+  for (int degree = 1; degree <= 8; ++degree)
+    for (int order = 1; order <= 11; ++order) {
+      CAPTURE(degree, order);
+      Polynomials rows(degree, 12, 11);
+      const double miss = rows.miss(order);
+      if (order >= degree) CHECK(miss == 0);
+      else CHECK(miss >= 1);
+      double worst = 0;
+      for (int i = 0; i < N; ++i) {
+        const int slot = rows.layout.slot(i);
+        const double m = rows.rows.row(0)[slot] + 0.5 * ((i + 1) % N % 3);
+        worst = std::max(worst, std::abs(rows.out.row(0)[slot] + m2 * std::sin(m)));
+      }
+      CHECK(worst < 1e-14);
+    }
+}
+
+TEST_CASE("near the start the order of an extrapolation is what there are rows for") {
+  for (int newest : {1, 2, 3, 6}) {
+    CAPTURE(newest);
+    CHECK(Polynomials(newest, newest, 7).miss(7) == 0);
+    CHECK(Polynomials(newest + 1, newest, 7).miss(7) >= 1);
+  }
+}
+
+TEST_CASE("arguments found from rows give the outputs that the rows themselves give, for every theory and stencil") {
+  int seen = 0;
+  for (const std::string& theory : theory_names())
+    for (const std::string& scheme : stencil_names()) {
+      const auto family = family_of(problem_of(theory), scheme, h, k);
+      const Lattice ring = Lattice::circle(44, 44 * k);
+      const auto mixture = family ? mixture_of(theory, scheme, ring) : std::nullopt;
+      // Where nothing is read of the unknown row, steps hold no arguments.
+      if (!mixture || family->row_kernel()->outputs_read_until() == 0) continue;
+      CAPTURE(theory, scheme);
+      ++seen;
+      const bool bricks = family->pattern().placement == Placement::brick_wall;
+      const RowLayout layout(ring, halo, bricks ? 2 : 1);
+      Random random(5);
+      const std::vector<Row> y = random_rows(random, 2, ring.sites(), 2);
+      RowBuffer rows(layout, 2), positions(layout, 1), expected(layout, 1), found(layout, 1);
+      for (int r = 0; r < 2; ++r) layout.scatter(y[static_cast<std::size_t>(r)], rows.row(r));
+      Row x;
+      for (int i = 0; i < ring.sites(); ++i) x.push_back(ring.position(i));
+      layout.scatter(x, positions.row(0));
+      const double* const both[] = {rows.row(0), rows.row(1)};
+      double* const out[] = {expected.row(0)};
+      ArgumentRows arguments(layout, *mixture, 3);
+      for (int r = 0; r < 2; ++r) {
+        arguments.begin(r - 1);
+        CHECK(max_or_nan(arguments.find(rows.row(r), layout.all())) > 0.1);
+        CHECK(max_or_nan(arguments.find(rows.row(r), layout.all())) == 0);
+      }
+      arguments.begin(0);
+      ArgumentRow row = arguments.argument(rows.row(0));
+      row.positions = positions.row(0), row.t = t, row.time_step = h, row.space_step = k;
+      for (int first : {0, 1}) {
+        if (first == 1 && !bricks) continue;
+        const PackRange packs{first, layout.packs(), bricks ? 2 : 1};
+        const RowKernel& kernel = *family->row_kernel();
+        kernel.evaluate({&layout, both, positions.row(0), t, h, k}, out, packs);
+        kernel.evaluate_arguments(row, found.row(0), packs);
+        double worst = 0, most = 0;
+        for (int v = packs.first; v < packs.last; v += packs.stride)
+          for (int l = 0; l < lanes; ++l) {
+            const auto slot = layout.at(v) + l;
+            worst = std::max(worst, std::abs(found.row(0)[slot] - expected.row(0)[slot]));
+            most = std::max(most, std::abs(expected.row(0)[slot]));
+          }
+        CHECK(worst < 4e-15 * most);
+        CHECK(most > 0.1);
+      }
+    }
+  CHECK(seen > 10);
+}
+
+TEST_CASE("steps that extrapolate arguments take one iteration where the field is smooth, bricks or not") {
+  for (const std::string scheme : {"rectangle", "triangle", "hexagon"})
+    for (int sites : {62, 64, 254}) {
+      CAPTURE(scheme, sites);
+      Problem p = problem_of("sine-gordon");
+      p.stencil = scheme, p.lattice = Lattice::circle(sites, 20), p.time_step = 20. / sites / 16, p.tolerance = 1e-7;
+      std::vector<Row> rows(2);
+      for (int n = 0; n < 2; ++n)
+        for (int i = 0; i < sites; ++i)
+          rows[static_cast<std::size_t>(n)].push_back(
+              0.3 * std::sin(2 * M_PI * i / sites - 1.24 * n * p.time_step));
+      Simulation simulation(p);
+      simulation.start(rows);
+      int iterations = 0;
+      for (int n = 0; n < 120; ++n) {
+        simulation.step();
+        if (n >= 20) iterations += simulation.iterations();
+      }
+      CHECK(iterations <= 105);
+      CHECK(simulation.residual() < 1e-6);
+    }
+}
