@@ -7,7 +7,8 @@
 namespace delf {
 
 /// While it lives, denormal numbers of this thread count as zero: fields decay into their vacua through them, and every
-/// operation on one costs a hundred ordinary ones.
+/// operation on one costs a hundred ordinary ones. Nothing is set, and nothing to wait for, where they do already: who
+/// takes many steps may hold one for all of them.
 class FlushDenormals {
  public:
 #if defined(__SSE2__)

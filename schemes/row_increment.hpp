@@ -75,9 +75,9 @@ struct PackWeights<0> {
 
 enum class Look { row, argument };
 
-/// A pass over all packs of a RowIncrement, one after the other; what it measures stays in registers. What was expected
-/// is finite, so that where a change is NaN the largest |y| shows it. The first
-/// `parts` − 1 of them have nothing to be looked at with: they are handed to unseen().
+/// A pass over all packs of a RowIncrement, one after the other; what it measures stays in registers. The first
+/// `parts` − 1 of them have nothing to be looked at with: they are handed to unseen(). What was expected is finite: where
+/// a change is NaN, the largest |y| shows it.
 template <int parts, Order order, Look look>
 class IncrementPass {
  public:

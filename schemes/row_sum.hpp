@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -76,11 +77,12 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
     for (int i = 0; i < differences; ++i) {
       const Pack difference = Pack::load(shifted[i] + at) - here;
       sum += difference_coefficient[i] * difference;
-      if constexpr (measured) absolute += abs(difference_coefficient[i] * difference);
+      if constexpr (measured) absolute += std::abs(difference_coefficient[i]) * abs(difference);
     }
     for (int i = 0; i < plain; ++i) {
-      sum += coefficient[i] * Pack::load(row[i] + at);
-      if constexpr (measured) absolute += abs(coefficient[i] * Pack::load(row[i] + at));
+      const Pack value = Pack::load(row[i] + at);
+      sum += coefficient[i] * value;
+      if constexpr (measured) absolute += std::abs(coefficient[i]) * abs(value);
     }
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
@@ -125,11 +127,16 @@ inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& 
         return counted_pass<measured, differences, 6>(layout, packs, consume);
       case 7:
         return counted_pass<measured, differences, 7>(layout, packs, consume);
-      default:
+      case 8:
         return counted_pass<measured, differences, 8>(layout, packs, consume);
     }
+    if constexpr (measured) {  // the unknown row's terms too
+      if (plain_.size() == 9) counted_pass<true, differences, 9>(layout, packs, consume);
+      if (plain_.size() == 10) counted_pass<true, differences, 10>(layout, packs, consume);
+      if (plain_.size() == 11) counted_pass<true, differences, 11>(layout, packs, consume);
+    }
   };
-  constexpr std::size_t most_plain = 8;
+  constexpr std::size_t most_plain = measured ? 11 : 8;
   if (differences_.empty() && plain_.size() <= most_plain) counted.template operator()<0>();
   else if (differences_.size() == 2 && differences_[0].own == differences_[1].own && plain_.size() <= most_plain)
     counted.template operator()<2>();

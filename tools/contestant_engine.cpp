@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "schemes/flush_denormals.hpp"
 #include "schemes/simulation.hpp"
 #include "tools/contestant.hpp"
 #include "tools/engine.hpp"
@@ -18,6 +19,7 @@ class EngineRacer final : public Racer {
   void restart() override { initial_.start(simulation_); }
   std::int64_t newest() const override { return simulation_.newest(); }
   void advance(std::int64_t steps) override {
+    const FlushDenormals for_all_steps;
     for (; steps > 1 && !Interrupt::asked(); --steps) simulation_.step(false);
     if (steps > 0) simulation_.step(true);
   }

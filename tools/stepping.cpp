@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "schemes/evolution.hpp"
+#include "schemes/flush_denormals.hpp"
 #include "schemes/row_kernel.hpp"
 #include "tools/field_error.hpp"
 #include "tools/interrupt.hpp"
@@ -124,6 +125,7 @@ void Stepping::fail(const NumericalFailure& error) {
 
 void Stepping::step_until(std::int64_t row, Progress& progress) {
   const Stopwatch watch(outcome_.seconds);
+  const FlushDenormals for_all_steps;  // each would set and restore it
   bool looked_at = true;  // as the row that an interruption leaves must be: it is recorded
   while (newest_ < row && !(looked_at && Interrupt::asked())) {
     looked_at = newest_ + 1 == row || Interrupt::asked();

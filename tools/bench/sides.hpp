@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "schemes/flush_denormals.hpp"
 #include "tools/bench/collision.hpp"
 #include "tools/bench/pairing.hpp"
 
@@ -15,10 +16,12 @@ Side side_of(std::shared_ptr<Stepped> stepped, const Collision& collision) {
             else stepped->start(rows[0], rows[1]);
           },
           [stepped](long steps) {
-            if constexpr (requires { stepped->step(false); })
+            if constexpr (requires { stepped->step(false); }) {
+              const FlushDenormals for_all_steps;  // as in `delf run`
               for (long n = 0; n < steps; ++n) stepped->step(false);  // a row that no one looks at
-            else
+            } else {
               for (long n = 0; n < steps; ++n) stepped->step();
+            }
           }};
 }
 
