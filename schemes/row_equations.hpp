@@ -43,9 +43,9 @@ class RowEquations {
 
   enum class At { candidate, row };
   ArgumentRows* arguments() { return arguments_ ? &*arguments_ : nullptr; }
-  /// Of all rows up to the newest.
+  /// Finds the arguments of all rows that are held.
   void find_arguments();
-  /// Evaluates at those of the unknown row: extrapolated; as they are since the last advance(), or of the row.
+  /// Evaluates the outputs at arguments that are extrapolated; at those of the last candidate, or of the row.
   void evaluate_extrapolated(int order);
   void evaluate_arguments(At);
 
