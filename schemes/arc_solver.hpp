@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "jets/pack.hpp"
@@ -24,7 +23,7 @@ namespace delf {
 /// Rows are exchanged within groups only, alike in all lanes: a factorisation is looked at before it is trusted.
 class ArcSolver {
  public:
-  using Entries = std::span<const BlockSolver::Entry>;
+  using Entries = BlockSolver::Entries;
 
   /// Nothing if groups are too large or too few, or too much of them would be separators.
   static std::unique_ptr<ArcSolver> make(const SiteGroups&, Entries);

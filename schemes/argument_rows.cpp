@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "schemes/extrapolation.hpp"
 #include "schemes/lattice_system.hpp"
 
 namespace delf {
@@ -21,7 +22,10 @@ std::optional<Mixture> Mixture::of(const LatticeSystem& system) {
     if (row == 0) mixture.parts = std::max(mixture.parts, p + 1);
   }
   mixture.is_known_alike = std::ranges::equal(known, mixture.weights);
-  if (mixture.is_known_alike) return mixture;
+  if (mixture.is_known_alike) {
+    mixture.known_weight = 1;
+    return mixture;
+  }
   if (std::ranges::count(known, 0) < RowLook::most_parts - 1) return {};
   mixture.known_site = static_cast<int>(std::ranges::find_if(known, [](double w) { return w != 0; }) - known);
   if (mixture.known_site == RowLook::most_parts) mixture.known_site = 0;  // nothing is known
@@ -37,21 +41,16 @@ ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int 
       slots_(most_order + 2) {
   for (int order = 0; order <= most_order; ++order) {
     std::vector<double> of_rows;
-    double coefficient = -1;
-    for (int j = 1; j <= order + 1; ++j) {
-      coefficient = -coefficient * (order + 2 - j) / j;  // whole numbers
-      of_rows.push_back(coefficient);
-    }
+    for (int j = 1; j <= order + 1; ++j) of_rows.push_back(extrapolation_weight(order + 1, j));
     coefficients_.push_back(std::move(of_rows));
   }
 }
 
 ArgumentRow ArgumentRows::argument(const double* y) {
-  const bool alike = mixture_.is_known_alike;
   return {.layout = layout_,
           .unknown = row(0),
-          .known = alike ? row(1) : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes,
-          .known_weight = alike ? 1 : mixture_.known_weight,
+          .known = mixture_.is_known_alike ? row(1) : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes,
+          .known_weight = mixture_.known_weight,
           .positions = nullptr,
           .t = 0,
           .time_step = 0,

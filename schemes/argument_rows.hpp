@@ -17,7 +17,7 @@ class LatticeSystem;
 ///
 ///     m(i) = u_{n+1}(i) + what is known,      u_r(i) = Σ_p weights[p] y_r(i + p),      p = 0 … parts − 1.
 ///
-/// Known is u_n again, or known_weight · y_n(i + known_site).
+/// Known is known_weight · y_n(i + known_site), or u_n again with the weight 1.
 struct Mixture {
   int parts = 0;
   double weights[RowLook::most_parts] = {};

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <span>
 
 #include "lattice/block_order.hpp"
 #include "schemes/arc_solver.hpp"
@@ -15,7 +14,6 @@ namespace delf {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-using Entries = std::span<const BlockSolver::Entry>;
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +41,7 @@ class BlockSolver {
   struct Entry {
     int row, column, place;  ///< row and column within the block, or column of the whole
   };
+  using Entries = std::span<const Entry>;
 
  private:
   struct Large;

@@ -110,9 +110,11 @@ void RowEquations::evaluate_outputs() {
   for (Outputs& o : outputs_)
     for (int age = o.oldest; age <= o.newest; ++age)
       if (!o.reads_unknown_row(age)) evaluate_in_ring(o, age, At::row);
+  if (arguments_) find_arguments();
 }
 
 void RowEquations::evaluate_unknown_outputs(At at) {
+  if (arguments_) return evaluate_arguments(at);
   for (Outputs& o : outputs_)
     for (int age = o.oldest; age <= o.newest; ++age)
       if (o.reads_unknown_row(age)) evaluate_in_ring(o, age, at);

@@ -41,18 +41,16 @@ class RowEquations {
   double loop(int part, int parts) const;
   void close_loop();
 
-  enum class At { candidate, row };
   ArgumentRows* arguments() { return arguments_ ? &*arguments_ : nullptr; }
-  /// Finds the arguments of all rows that are held.
-  void find_arguments();
-  /// Evaluates the outputs at arguments that are extrapolated; at those of the last candidate, or of the row.
+  /// Evaluates the outputs that read row n+1 at arguments that are extrapolated.
   void evaluate_extrapolated(int order);
-  void evaluate_arguments(At);
 
   CandidateRows& candidate() { return candidate_; }
   void make_row_the_candidate();
-  /// Evaluates the nonlinear outputs that do not read row n+1; those that do, of the candidate or of the row.
+  /// Evaluates the nonlinear outputs that do not read row n+1, and finds the arguments of the rows that are held; those
+  /// outputs that do, of the candidate or of the row.
   void evaluate_outputs();
+  enum class At { candidate, row };
   void evaluate_unknown_outputs(At);
   /// Evaluates the outputs that read rows up to n only and that no earlier step had to evaluate.
   void evaluate_known_outputs();
@@ -140,6 +138,8 @@ class RowEquations {
     if (o.family->pattern().placement != Placement::brick_wall) return packs;
     return {packs.first + static_cast<int>((packs.first + n_ + age) % 2 != 0), packs.last, 2};
   }
+  void find_arguments();
+  void evaluate_arguments(At);
   ArgumentRow argument_row();
   void evaluate_at(const ArgumentRow&);
   int first_of_part(int part, int parts) const;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "schemes/extrapolation.hpp"
+
 namespace delf {
 namespace {
 
@@ -39,11 +41,7 @@ RowSeed::RowSeed(SectionRows& rows, int most_order, const std::vector<Argument>&
   for (int order = 0; order <= most_order; ++order) {
     RowSum sum;
     sum.add(0, 0, 1);
-    double coefficient = -1;
-    for (int m = 1; m <= order; ++m) {
-      coefficient = -coefficient * (order - m + 1) / m;  // whole numbers
-      sum.add(m, 0, coefficient);
-    }
+    for (int m = 1; m <= order; ++m) sum.add(m, 0, extrapolation_weight(order, m));
     sums_.push_back(std::move(sum));
   }
 }

@@ -210,9 +210,8 @@ struct RowStepper::Impl {
         moved = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)
                                                            : std::function<void(PackRange)>());
       } else {
-        if (!mixture) equations.evaluate_unknown_outputs(RowEquations::At::candidate);
-        else if (iterations == 1) equations.evaluate_extrapolated(order);
-        else equations.evaluate_arguments(RowEquations::At::candidate);
+        if (mixture && iterations == 1) equations.evaluate_extrapolated(order);
+        else equations.evaluate_unknown_outputs(RowEquations::At::candidate);
         moved = equations.advance(true);
       }
       value = moved.largest;
@@ -247,8 +246,7 @@ struct RowStepper::Impl {
           n + 1, static_cast<double>(n + 1) * system.time_step()));
     rows.set_row(n + 1, result.row);
     rows.find_increment(n + 1);
-    if (mixture) equations.evaluate_arguments(RowEquations::At::row);
-    else equations.evaluate_unknown_outputs(RowEquations::At::row);
+    equations.evaluate_unknown_outputs(RowEquations::At::row);
     double value = 0;
     for (double x : result.row) value = std::max(value, std::abs(x));
     return value;
@@ -336,7 +334,6 @@ void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   s.n = static_cast<std::int64_t>(rows.size()) - 1;
   s.equations.begin(s.n);
   s.equations.evaluate_outputs();
-  if (s.mixture) s.equations.find_arguments();
   s.seed.restart();
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "schemes/block_solver.hpp"
@@ -11,7 +10,7 @@ namespace delf {
 /// Rows and columns of a matrix in groups round a circle, as many of each in every group, such that an entry lies in one
 /// group or between neighbours.
 struct SiteGroups {
-  using Entries = std::span<const BlockSolver::Entry>;
+  using Entries = BlockSolver::Entries;
   std::vector<int> of_row, of_column;
   std::vector<int> sizes;
 

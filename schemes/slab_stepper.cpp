@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "schemes/extrapolation.hpp"
 #include "schemes/flush_denormals.hpp"
 #include "schemes/slab_extent.hpp"
 
@@ -119,9 +120,8 @@ void SlabStepper::seed(Parity& p, std::int64_t J, int most_order) {
     }
     // Whole rows at once: what else lies in them costs less than to leave it out.
     std::ranges::fill(seed_, 0.0);
-    double coefficient = -1;
     for (int m = 1; m <= order + 1; ++m) {
-      coefficient *= -static_cast<double>(order + 2 - m) / m;
+      const double coefficient = extrapolation_weight(order + 1, m);
       const double* const row = ring_->row(J + unknowns.time - m);
       for (std::size_t at = 0; at < size; ++at) seed_[at] += coefficient * row[at];
     }

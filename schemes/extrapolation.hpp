@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace delf {
+
+/// The polynomial through the last `rows` rows, one step on: x_{n+1} = Σ_{j=1}^{rows} weight(rows, j) x_{n+1−j} with
+/// weight(rows, j) = (−1)^{j+1} C(rows, j).
+double extrapolation_weight(int rows, int j);
+
+}  // namespace delf
