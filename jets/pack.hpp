@@ -79,6 +79,15 @@ inline Pack smaller(Pack a, Pack b) {
   return {a.v < b.v ? a.v : b.v};
 #endif
 }
+/// The larger of a ≥ 0 and |b|, and a where b is NaN.
+inline Pack larger_magnitude(Pack a, Pack b) {
+#if defined(__AVX512DQ__)
+  constexpr int of_magnitudes = 0b0011, without_sign = 0b1000;
+  return {_mm512_maskz_range_pd(0xff, a.v, b.v, of_magnitudes | without_sign)};
+#else
+  return larger(abs(b), a);
+#endif
+}
 /// Is any lane above the bound, or NaN?
 inline bool any_above(Pack x, double bound) {
 #if defined(__AVX512F__)

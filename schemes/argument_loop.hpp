@@ -8,18 +8,15 @@
 
 namespace delf {
 
-/// out = ∂ℓ/∂φ(m) at a row of arguments, whose unknown part is extrapolated from so many rows first, if any: they are read
-/// while the density is worked out. t, and x from the anchor's, are those of the arguments.
-template <int past_rows, int stride, Density D>
-[[gnu::flatten]] void argument_loop(const D& given_density, const ArgumentRow& given, double given_t,
-                                    double x_offset, double* out, const PackRange& packs) {
+/// out = output(u, known, at) for the packs of a row of arguments, whose unknown part u is extrapolated from so many rows
+/// first, if any: they are read while the output is worked out.
+template <int past_rows, int stride, class Output>
+[[gnu::flatten]] void argument_loop(const Output& given_output, const ArgumentRow& given, double* out,
+                                    const PackRange& packs) {
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
-  const D density = given_density;
+  const Output output = given_output;
   double* const unknown = given.unknown;
   const double* const known = given.known;
-  const double known_weight = given.known_weight;
-  const double* const positions = given.positions;
-  const Pack t(given_t);
   std::array<const double*, past_rows + 1> past;
   std::array<double, past_rows + 1> coefficients;
   int slot = given.slot;
@@ -40,21 +37,33 @@ template <int past_rows, int stride, Density D>
   const std::ptrdiff_t end = given.layout->at(packs.last);
   for (std::ptrdiff_t at = given.layout->at(packs.first); at < end; at += stride * lanes) {
     if constexpr (stride == 2 && past_rows > 0) found(at + between);
-    const Pack m = found(at) + known_weight * Pack::load(known + at);
-    const auto l = density(value_jet<D>([m](int) { return m; }, t, positions + at, x_offset));
-    l.derivative(0).store(out + at);
+    output(found(at), Pack::load(known + at), at).store(out + at);
   }
 }
 
 /// The loop for so many past rows, none or 2 … most.
-template <int stride, Density D>
-void argument_loop_for(const D& density, const ArgumentRow& row, double t, double x_offset, double* out,
-                       const PackRange& packs) {
+template <int stride, class Output>
+void argument_loop_for(const Output& output, const ArgumentRow& row, double* out, const PackRange& packs) {
   [&]<int... j>(std::integer_sequence<int, j...>) {
     constexpr auto rows = [](int i) { return i == 0 ? 0 : i + 1; };
-    ((row.past_rows == rows(j) ? argument_loop<rows(j), stride>(density, row, t, x_offset, out, packs) : void()), ...);
+    ((row.past_rows == rows(j) ? argument_loop<rows(j), stride>(output, row, out, packs) : void()), ...);
   }
   (std::make_integer_sequence<int, ArgumentRow::most_past_rows>{});
 }
+
+/// ∂ℓ/∂φ at the mixture m = u + known_weight · known; t, and x from the anchor's, are those of the arguments.
+template <Density D>
+struct MixtureSlope {
+  D density;
+  double known_weight;
+  Pack t;
+  const double* positions;
+  double x_offset;
+
+  [[gnu::always_inline]] Pack operator()(Pack u, Pack known, std::ptrdiff_t at) const {
+    const Pack m = u + known_weight * known;
+    return density(value_jet<D>([m](int) { return m; }, t, positions + at, x_offset)).derivative(0);
+  }
+};
 
 }  // namespace delf

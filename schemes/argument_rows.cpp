@@ -12,7 +12,8 @@ std::optional<Mixture> Mixture::of(const LatticeSystem& system) {
   if (system.lattice().sites() < RowLook::most_parts * lanes) return {};  // a stencil is no longer than an arc
   if (system.components() != 1 || system.families().size() != 1 || !system.lattice().is_circle()) return {};
   const RowKernel* const kernel = system.families()[0]->row_kernel();
-  if (!kernel || !kernel->evaluates_arguments() || kernel->arguments().size() != 1) return {};
+  if (!kernel || !kernel->evaluates_arguments()) return {};
+  if (kernel->arguments().size() != 1) return of_pair(*kernel);
   Mixture mixture;
   double known[RowLook::most_parts] = {};
   for (const Argument::Part& part : kernel->arguments()[0].parts) {
@@ -33,6 +34,14 @@ std::optional<Mixture> Mixture::of(const LatticeSystem& system) {
   return mixture;
 }
 
+/// Of the values in the latest row and in one of the two before it, in this order.
+std::optional<Mixture> Mixture::of_pair(const RowKernel& kernel) {
+  Mixture mixture;
+  mixture.parts = 1, mixture.weights[0] = 1, mixture.known_weight = 1;
+  mixture.known_row = kernel.outputs_read_until() - kernel.arguments()[1].parts[0].vertex.time;
+  return mixture;
+}
+
 ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int most_order)
     : layout_(&layout),
       mixture_(mixture),
@@ -44,25 +53,6 @@ ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int 
     for (int j = 1; j <= order + 1; ++j) of_rows.push_back(extrapolation_weight(order + 1, j));
     coefficients_.push_back(std::move(of_rows));
   }
-}
-
-ArgumentRow ArgumentRows::argument(const double* y) {
-  return {.layout = layout_,
-          .unknown = row(0),
-          .known = mixture_.is_known_alike ? row(1) : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes,
-          .known_weight = mixture_.known_weight,
-          .positions = nullptr,
-          .t = 0,
-          .time_step = 0,
-          .space_step = 0};
-}
-
-void ArgumentRows::extrapolate(int order, ArgumentRow& row) const {
-  const int highest = static_cast<int>(std::min<std::int64_t>(n_, static_cast<std::int64_t>(coefficients_.size()) - 1));
-  order = std::clamp(order, 1, highest);
-  row.past_rows = order + 1;
-  row.coefficients = coefficients_[static_cast<std::size_t>(order)].data();
-  row.ring = ring_.row(0), row.stride = ring_.stride(), row.slots = ring_.rows(), row.slot = slots_(0);
 }
 
 Pack ArgumentRows::find(const double* y, const PackRange& packs) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -17,16 +19,21 @@ class LatticeSystem;
 ///
 ///     m(i) = u_{n+1}(i) + what is known,      u_r(i) = Σ_p weights[p] y_r(i + p),      p = 0 … parts − 1.
 ///
-/// Known is known_weight · y_n(i + known_site), or u_n again with the weight 1.
+/// Known is known_weight · y(i + known_site) in the row below the unknown one, or u_n again with the weight 1. What looks at
+/// a pair of values at one site is served by the same rows: u is then y_{n+1}, and known is y, known_row rows below it.
 struct Mixture {
   int parts = 0;
   double weights[RowLook::most_parts] = {};
   bool is_known_alike = false;
   int known_site = 0;
   double known_weight = 0;
+  int known_row = 1;  ///< below the unknown one
 
   /// Of one field on a circle; nothing where what is looked at is more, or not seen by a kernel of its own.
   static std::optional<Mixture> of(const LatticeSystem&);
+
+ private:
+  static std::optional<Mixture> of_pair(const RowKernel&);
 };
 
 /// The newest rows u_r. A step extrapolates these instead of y: it reads as many past rows, but has no candidate for y to
@@ -43,13 +50,24 @@ class ArgumentRows {
   }
   /// u_{n+1−back}: 0 is the one that is looked for.
   double* row(int back) { return ring_.row(slots_(back - 1)); }
-  /// u_{n+1} and what is known, with y_n; positions, t and steps are the caller's.
-  ArgumentRow argument(const double* y);
+  /// u_{n+1} and what is known, with the row y of known_row; positions, t and steps are the caller's.
+  ArgumentRow argument(const double* y) {
+    return {.layout = layout_,
+            .unknown = row(0),
+            .known = mixture_.is_known_alike ? row(1) : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes,
+            .known_weight = mixture_.known_weight};
+  }
   /// Lets u_{n+1} be extrapolated by a polynomial of this order, or the highest that there are rows for, from row 0 on:
   ///
   ///     u_{n+1} ≈ Σ_{j=0}^{order} (−1)^j C(order + 1, j + 1) u_{n−j}
   ///
-  void extrapolate(int order, ArgumentRow&) const;
+  void extrapolate(int order, ArgumentRow& row) const {
+    const int highest = static_cast<int>(std::min<std::int64_t>(n_, static_cast<std::int64_t>(coefficients_.size()) - 1));
+    order = std::clamp(order, 1, highest);
+    row.past_rows = order + 1;
+    row.coefficients = coefficients_[static_cast<std::size_t>(order)].data();
+    row.ring = ring_.row(0), row.stride = ring_.stride(), row.slots = ring_.rows(), row.slot = slots_(0);
+  }
   /// u_{n+1} of the row itself, whose halos are filled; returns the largest change.
   Pack find(const double* y, const PackRange&);
   std::size_t bytes() const { return ring_.bytes(); }

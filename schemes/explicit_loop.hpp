@@ -54,6 +54,9 @@ template <int reach, Density D>
   for (int a = 0; a < d; ++a)
     for (int s = 0; s < 2 * reach; ++s)
       y[a][s + 1] = Pack::load(s < reach ? given.before[a] + s * lanes : old_value(a, packs.first + s - reach));
+  // y(i) − y(i − 1), where neighbours reach no further: the pack before has worked it out as y(i + 1) − y(i).
+  std::array<Pack, d> last;
+  for (int a = 0; a < d; ++a) last[a] = y[a][2 * reach] - y[a][2 * reach - 1];
   Pack squares(0.0);
   const auto advance = [&](int v, const auto& incoming) __attribute__((always_inline)) {
     const std::ptrdiff_t at = origin + static_cast<std::ptrdiff_t>(v) * lanes;
@@ -66,8 +69,15 @@ template <int reach, Density D>
     for (int a = 0; a < d; ++a) {
       const Pack here = y[a][reach];
       Pack w = nonlinear[a] * l.derivative(a);
-      for (int s = 0; s < count; ++s)
-        w += linear[a * count + s] * (y[a][reach + neighbours_within<reach>[static_cast<std::size_t>(s)]] - here);
+      if constexpr (reach == 1) {
+        const Pack next = y[a][2] - here;
+        w -= linear[a * count] * last[a];
+        w += linear[a * count + 1] * next;
+        last[a] = next;
+      } else {
+        for (int s = 0; s < count; ++s)
+          w += linear[a * count + s] * (y[a][reach + neighbours_within<reach>[static_cast<std::size_t>(s)]] - here);
+      }
       const Pack v_next = Pack::load(v_before[a] + at) + w, y_next = here + stride * v_next;
       squares += y_next * y_next;
       v_next.store(v_new[a] + at);

@@ -76,6 +76,20 @@ class ScalarSolver final : public LinearSolver {
       return pass.result();
     });
   }
+  bool can_prepare() const override { return true; }
+  RowChange advance_preparing(const RowLayout& layout, const RowSum& right_side, const RowIncrement& rows,
+                              const Prepare& prepare) const override {
+    constexpr int strip = 64;  // packs: some six rows of it stay in the first level of the cache
+    return with_increment_pass<Order::ascending>(rows, [&](auto pass, int unseen) __attribute__((always_inline)) {
+      for (int first = 0, last; first < layout.packs(); first = last) {
+        last = std::min(first + strip, layout.packs());
+        prepare({first, last});
+        if (first == 0 && unseen > 0) right_side.pass(layout, {0, unseen}, Unseen<decltype(pass)>{pass});
+        right_side.pass_on(layout, {first == 0 ? unseen : first, last}, pass);
+      }
+      return pass.result();
+    });
+  }
   std::unique_ptr<RowStream> stream(const RowLayout& layout, const RowSum& right_side,
                                     const RowIncrement& rows) const override {
     return std::make_unique<Stream>(layout, right_side, rows);

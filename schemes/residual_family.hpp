@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "schemes/argument_loop.hpp"
 #include "schemes/row_kernel.hpp"
 #include "schemes/stencil_family.hpp"
 
@@ -16,6 +17,13 @@ namespace delf {
 ///     static constexpr std::array<double, n> by_tt, by_xx;     E = −φ_tt + φ_xx + nonlinear(y), with h = k = 1
 ///     static constexpr std::array<bool, n> nonlinear_in;       vertices that nonlinear() looks at
 ///     T nonlinear(const std::array<T, n>& y) const;
+///
+/// Where nonlinear() is a sum of the same part of several stencils, it may say so: rows of the part are then evaluated
+/// once and kept from step to step.
+///
+///     static constexpr std::array<double, n> shares;      of a stencil's part in nonlinear() at its vertices
+///     static constexpr std::array<bool, n> part_in;       vertices that part() looks at
+///     T part(const std::array<T, n>& y) const;
 template <class R>
 concept ResidualStencil = requires(const R& r) {
   requires StencilShape<decltype(R::shape)>;
@@ -32,6 +40,38 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     for (int l = 1; l < n; ++l) t = std::min(t, R::shape.vertex(l).time);
     return t;
   }();
+  static constexpr bool is_shared = requires { R::shares; };
+  static constexpr std::array<bool, n> looked_at = [] {
+    if constexpr (is_shared) return R::part_in;
+    else return R::nonlinear_in;
+  }();
+  static constexpr std::array<double, n> shares = [] {
+    if constexpr (is_shared) return R::shares;
+    std::array<double, n> all_at_the_centre{};
+    all_at_the_centre[R::centre] = 1;
+    return all_at_the_centre;
+  }();
+  static constexpr int newest_time = [] {
+    int t = first_time;
+    for (int l = 0; l < n; ++l)
+      if (looked_at[l]) t = std::max(t, R::shape.vertex(l).time);
+    return t;
+  }();
+  /// The latest vertex that is looked at, and the other one if there are two, at the same site.
+  struct Pair {
+    int latest = -1, other = -1;
+  };
+  static constexpr Pair pair = [] {
+    Pair found;
+    for (int l = 0; l < n; ++l) {
+      if (!looked_at[l]) continue;
+      int& place = R::shape.vertex(l).time == newest_time ? found.latest : found.other;
+      if (place >= 0) return Pair{};
+      place = l;
+    }
+    if (found.latest < 0 || found.other < 0) return Pair{};
+    return R::shape.vertex(found.latest).space == R::shape.vertex(found.other).space ? found : Pair{};
+  }();
 
  public:
   ResidualFamily(R stencil, double time_step, double space_step)
@@ -40,13 +80,14 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
         stencil_(std::move(stencil)) {
     nonlinearity_ = Nonlinearity::values;
     outputs_ = 1;
-    outputs_read_until_ = first_time;
-    for (int l = 0; l < n; ++l)
-      if (R::nonlinear_in[l]) outputs_read_until_ = std::max(outputs_read_until_, R::shape.vertex(l).time);
-    for (int l = 0; l < n; ++l)
-      if (R::nonlinear_in[l]) arguments_.push_back({{{R::shape.vertex(l), 1.0}}});
+    outputs_read_until_ = newest_time;
+    // Those of the latest row first.
+    for (const bool latest : {true, false})
+      for (int l = 0; l < n; ++l)
+        if (looked_at[l] && (R::shape.vertex(l).time == newest_time) == latest)
+          arguments_.push_back({{{R::shape.vertex(l), 1.0}}});
     weights_.assign(n, 0.0);
-    weights_[R::centre] = time_step * space_step;
+    for (int l = 0; l < n; ++l) weights_[static_cast<std::size_t>(l)] = shares[l] * time_step * space_step;
   }
 
   void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override {
@@ -75,13 +116,31 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
       const std::ptrdiff_t at = rows.layout->at(v);
       std::array<Pack, n> y{};
       for (int l = 0; l < n; ++l)
-        if (R::nonlinear_in[l])
+        if (looked_at[l])
           y[l] = Pack::load(rows.values[R::shape.vertex(l).time - first_time] + at + R::shape.vertex(l).space * lanes);
-      stencil_.nonlinear(y).store(out[0] + at);
+      part(stencil_, y).store(out[0] + at);
     }
   }
 
+  bool evaluates_arguments() const override { return pair.latest >= 0; }
+  void evaluate_arguments(const ArgumentRow& row, double* out, const PackRange& packs) const override {
+    if constexpr (pair.latest >= 0) argument_loop_for<1>(PartOfPair{stencil_}, row, out, packs);
+  }
+
  private:
+  template <class T>
+  static T part(const R& stencil, const std::array<T, n>& y) {
+    if constexpr (is_shared) return stencil.part(y);
+    else return stencil.nonlinear(y);
+  }
+  struct PartOfPair {
+    R stencil;
+    [[gnu::always_inline]] Pack operator()(Pack u, Pack known, std::ptrdiff_t) const {
+      std::array<Pack, n> y{};
+      y[pair.latest] = u, y[pair.other] = known;
+      return part(stencil, y);
+    }
+  };
   template <class T>
   static std::array<T, n> array(std::span<const double> y) {
     std::array<T, n> values;

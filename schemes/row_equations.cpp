@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace delf {
 
@@ -28,6 +29,7 @@ RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, S
   build_sums();
   if (mixture) build_arguments(*mixture, most_order);
   build_looks();
+  build_places();
 }
 
 void RowEquations::begin(std::int64_t n) {
@@ -35,17 +37,12 @@ void RowEquations::begin(std::int64_t n) {
   if (is_one_loop()) return;
   y_slots_.at(n);
   v_slots_.at(n);
-  for (int a = 0; a < d_; ++a) {
-    bases_[static_cast<std::size_t>(y_base_ + a)] = rows_.y_at(y_slots_(0), a);
-    for (int age = 0; age < ages_; ++age)
-      bases_[static_cast<std::size_t>(v_base_ + age * d_ + a)] = rows_.v_at(v_slots_(age), a);
-  }
-  for (Outputs& o : outputs_) {
-    o.slots.at(n);
-    const int count = o.kernel->outputs();
-    for (int age = o.oldest; age <= o.newest; ++age)
-      for (int c = 0; c < count; ++c)
-        bases_[static_cast<std::size_t>(o.base + (age - o.oldest) * count + c)] = o.ring.row(o.slots(-age) * count + c);
+  for (Outputs& o : outputs_) o.slots.at(n);
+  if (places_.empty()) {
+    find_bases();
+  } else {
+    period_.at(n);
+    std::copy_n(places_.data() + static_cast<std::size_t>(period_(0)) * bases_.size(), bases_.size(), bases_.data());
   }
   for (int a = 0; a < d_; ++a) {
     const auto at = static_cast<std::size_t>(a);
@@ -54,14 +51,45 @@ void RowEquations::begin(std::int64_t n) {
     increment.v_before = equations_.correction_form ? v : rows_.v_at(v_slots_(0), a);
     increment.y_before = rows_.y_at(y_slots_(0), a);
     increment.v = v, increment.y = y;
-    bases_[static_cast<std::size_t>(E_base_ + a)] = y;
   }
   if (arguments_) {
     arguments_->begin(n);
     increments_[0].look.argument = arguments_->row(0);
   }
+}
+
+void RowEquations::find_bases() {
+  const auto base = [&](int at) -> const double*& { return bases_[static_cast<std::size_t>(at)]; };
+  for (int a = 0; a < d_; ++a) {
+    base(y_base_ + a) = rows_.y_at(y_slots_(0), a);
+    base(E_base_ + a) = rows_.y_at(y_slots_(-1), a);
+    for (int age = 0; age < ages_; ++age) base(v_base_ + age * d_ + a) = rows_.v_at(v_slots_(age), a);
+  }
+  for (Outputs& o : outputs_) {
+    const int count = o.kernel->outputs();
+    for (int age = o.oldest; age <= o.newest; ++age)
+      for (int c = 0; c < count; ++c)
+        base(o.base + (age - o.oldest) * count + c) = o.ring.row(o.slots(-age) * count + c);
+  }
+}
+
+/// The rings come round together after as many steps as their common multiple: where rows lie can be looked up then. To
+/// find it out takes a twentieth of an implicit step of a few hundred sites.
+void RowEquations::build_places() {
+  if (is_one_loop()) return;
+  int period = std::lcm(rows_.rows_held(), rows_.increments_held());
+  for (const Outputs& o : outputs_) period = std::lcm(period, std::max(1, o.rows()));
   for (RowSum& sum : sums_) sum.bind(bases_.data());
   for (RowSum& sum : stored_) sum.bind(bases_.data());
+  constexpr int longest = 32;
+  if (!reads_unknown_row() || period > longest) return;
+  period_ = RingSlots(period);
+  std::vector<const double*> places;
+  for (int n = 0; n < period; ++n) {
+    begin(n);
+    places.insert(places.end(), bases_.begin(), bases_.end());
+  }
+  places_ = std::move(places);
 }
 
 Pack RowEquations::close_new_row() {
@@ -163,8 +191,8 @@ RowEquations::Advance RowEquations::advance(bool compared) {
   if (!equations_.exceptional.empty()) set_exceptional_sites();
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
   RowChange all = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides, increments_.data(), w_rows_.data());
-  const Pack beyond = close_new_row();
-  if (arguments_) return {max_or_nan(all.largest), max_or_nan(max_or_nan(beyond, all.change))};
+  if (arguments_) return advanced(all);
+  close_new_row();
   if (!compared) return {max_or_nan(all.largest), 0};
   if (!looks_on_the_way_) return {max_or_nan(all.largest), largest_change(looks_)};
   // What looks beyond the end.
@@ -190,7 +218,7 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
 
   const auto stream = solver_[0]->stream(layout_, right_side(0), increments_[0]);
   const PackRange last = stream->last_packs();
-  const int window = window_packs(last);
+  const int window = window_packs(last), strip = strip_packs(last);
   if (last.first < last.last) {
     if (find) {
       candidate_.hold_window(window, last.first - halo, 0);
@@ -282,6 +310,7 @@ std::size_t RowEquations::output_bytes() const {
 std::size_t RowEquations::matrix_bytes() const { return solver_[0]->bytes() + (solver_[1] ? solver_[1]->bytes() : 0); }
 std::size_t RowEquations::work_bytes() const {
   std::size_t total = layout_.bytes();
+  total += places_.size() * sizeof(const double*);
   for (const RowBuffer* b : {&w_, &scratch_, &positions_, &edges_}) total += b->bytes();
   return total + candidate_.bytes() + (arguments_ ? arguments_->bytes() : 0);
 }

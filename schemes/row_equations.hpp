@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -42,9 +43,6 @@ class RowEquations {
   void close_loop();
 
   ArgumentRows* arguments() { return arguments_ ? &*arguments_ : nullptr; }
-  /// Evaluates the outputs that read row n+1 at arguments that are extrapolated.
-  void evaluate_extrapolated(int order);
-
   CandidateRows& candidate() { return candidate_; }
   void make_row_the_candidate();
   /// Evaluates the nonlinear outputs that do not read row n+1, and finds the arguments of the rows that are held; those
@@ -63,6 +61,8 @@ class RowEquations {
     double largest, change;  ///< |y|, |look|
   };
   Advance advance(bool compared);
+  /// The same after outputs that read row n+1 were evaluated at arguments, which are extrapolated.
+  Advance advance_extrapolated(int order);
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
@@ -113,16 +113,20 @@ class RowEquations {
   void build_loop();
   void build_arguments(const Mixture&, int most_order);
   void build_looks();
+  void build_places();
+  void find_bases();
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
   int scratch_rows_of_sums() const, residual_rows() const;
   /// An increment is held that neither the residual nor a seed reads.
   bool has_spare_increment() const { return !reads_unknown_row() && rows_.increments_held() >= ages_ + 2; }
-  /// Packs of a strip: some ten rows of it fit into the second level of the cache, and it is long against what solving
-  /// overlaps.
-  static constexpr int strip = 1024;
+  /// Packs of a strip: long against what solving overlaps; rows of it fit into the first level of the cache if that is
+  /// little, or else ten of them into the second.
+  static int strip_packs(PackRange last) { return std::clamp(6 * (last.last - last.first), 96, 1024); }
   /// That a candidate needs room for where a stream goes by strips.
-  int window_packs(PackRange last) const { return last.last - last.first + 2 * strip + 8 * layout_.halo(); }
+  int window_packs(PackRange last) const {
+    return last.last - last.first + 2 * strip_packs(last) + 8 * layout_.halo();
+  }
   std::size_t edge_doubles(int parts) const {
     return parts == 1 ? 0 : static_cast<std::size_t>(2 * parts * d_ * loop_reach_ * lanes);
   }
@@ -141,7 +145,9 @@ class RowEquations {
   void find_arguments();
   void evaluate_arguments(At);
   ArgumentRow argument_row();
+  double* newest_output() { return outputs_[0].ring.row(outputs_[0].slots(-outputs_[0].newest)); }
   void evaluate_at(const ArgumentRow&);
+  Advance advanced(RowChange);
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
   const RowSum& right_side(int a) const { return (is_stored_ ? stored_ : sums_)[static_cast<std::size_t>(a)]; }
@@ -166,6 +172,8 @@ class RowEquations {
   RingSlots y_slots_, v_slots_;
   int ages_ = 1;
   std::vector<const double*> bases_;
+  std::vector<const double*> places_;  ///< bases_ of one step after the other, until they are the first again
+  RingSlots period_;
   int y_base_ = 0, v_base_ = 0, E_base_ = 0, w_base_ = 0;
 
   /// −E times the solver's scale, for each component; of bricks for each parity of the equation's row and of the packs.
@@ -181,6 +189,7 @@ class RowEquations {
   std::vector<RowIncrement> increments_;
   bool is_streamed_ = false;
   bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row
+  bool goes_by_strips_ = false;    ///< advance_extrapolated() evaluates while it makes the row
 
   const RowKernel* one_loop_ = nullptr;
   std::vector<double> loop_linear_, loop_nonlinear_;

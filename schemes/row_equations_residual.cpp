@@ -10,9 +10,16 @@ namespace {
 
 struct LargestTerms {
   Pack sum = 0.0, absolute = 0.0;
+  Pack total = 0.0;  ///< of the absolute values: a NaN goes by in a maximum, and stays in a sum
   [[gnu::always_inline]] void operator()(std::ptrdiff_t, Pack s, Pack a) {
-    sum = max_or_nan(abs(s), sum);
-    absolute = max_or_nan(a, absolute);
+    sum = detail::larger_magnitude(sum, s);
+    absolute = detail::larger_magnitude(absolute, a);
+    total += a;
+  }
+  /// max |E| / max Σ |terms|
+  double ratio() const {
+    const double size = max_or_nan(absolute + 0.0 * total);
+    return size != 0 ? max_or_nan(sum) / size : 0;
   }
 };
 
@@ -80,8 +87,7 @@ double RowEquations::residual(std::int64_t n) {
     }
     for (int v = 0; v < layout_.packs(); ++v) all(0, Pack::load(E + layout_.at(v)), Pack::load(size + layout_.at(v)));
   }
-  const double size = max_or_nan(all.absolute);
-  return size != 0 ? max_or_nan(all.sum) / size : 0;
+  return all.ratio();
 }
 
 /// w; near walls E and Σ|terms| too.

@@ -95,28 +95,30 @@ class IncrementPass {
     if constexpr (parts > 0) {
       const Pack u = weights_.added(Pack(0.0), seen_);
       if constexpr (look == Look::row) {
-        change_ = detail::larger(abs(u), change_);
+        change_ = detail::larger_magnitude(change_, u);
       } else {
         double* const here = argument_ + at - (order == Order::ascending ? (parts - 1) * lanes : 0);
-        change_ = detail::larger(abs(u - Pack::load(here)), change_);
+        change_ = detail::larger_magnitude(change_, u - Pack::load(here));
         u.store(here);
       }
     }
   }
   [[gnu::always_inline]] void unseen(std::ptrdiff_t at, Pack w) {
     const Pack v = Pack::load(v_before_ + at) + w, y = Pack::load(y_before_ + at) + v;
-    largest_ = max_or_nan(abs(y), largest_);
+    largest_ = detail::larger_magnitude(largest_, y);
+    sum_ += y;
     if constexpr (parts > 0) seen_.take(look == Look::row ? y - Pack::load(expected_ + at) : y);
     v.store(v_ + at);
     y.store(y_ + at);
   }
-  RowChange result() const { return {largest_, change_}; }
+  RowChange result() const { return {largest_ + 0.0 * sum_, change_}; }
 
  private:
   const double *v_before_, *y_before_, *expected_;
   double *v_, *y_, *argument_;
   PackWeights<parts> weights_;
   Pack largest_ = 0.0, change_ = 0.0;
+  Pack sum_ = 0.0;  ///< of y: a NaN goes by in a maximum, and stays in a sum
   LastPacks<parts> seen_;  ///< y, less what was expected of it where the row is looked at
 };
 

@@ -19,6 +19,9 @@ constexpr int highest_order = 11;
 // tolerance 6e-8) the energy 161.9 rose by 0.6, 0.0032 and 0.0010 with p = 2, 3 and 4; with 4 that is as much as the
 // exact root's energy varies by.
 constexpr int lowest_order = 4;
+// Lower orders serve where steps are so small that what all steps of a unit of time leave together is less than this part
+// of tolerance · span: with p = 3 and 4 it was 0.3 and 0.02 there.
+constexpr double left_in_unit_time = 0.05;
 // What an iteration costs, in rows read: an evaluation of the density and two passes over several rows.
 constexpr double rows_per_iteration = 24;
 
@@ -30,10 +33,12 @@ int RowSeed::rows_for(int seed_order, int sites) {
   return std::clamp(seed_order - 1, 1, fits_cache(sites) ? highest_order : 3);
 }
 
-RowSeed::RowSeed(SectionRows& rows, int most_order, const std::vector<Argument>& looks, ArgumentRows* arguments)
+RowSeed::RowSeed(SectionRows& rows, double time_step, int most_order, const std::vector<Argument>& looks,
+                 ArgumentRows* arguments)
     : rows_(rows),
       y_slots_(rows.rows_held()),
       v_slots_(rows.increments_held()),
+      time_step_(time_step),
       most_order_(most_order),
       looks_(looks),
       bases_(static_cast<std::size_t>(most_order) + 1),
@@ -147,10 +152,15 @@ void RowSeed::choose(std::int64_t n, double tolerance, double contraction, doubl
   }
   (std::make_integer_sequence<int, highest_order>{});
   double cheapest = std::numeric_limits<double>::infinity();
+  // A seed goes astray twice as fast as it did where the field gets steeper.
+  const auto first_change = [&](int p) { return 2 * errors[p]; };
   // Where rows are long, steps are so small that this takes longer than anyone steps.
-  for (int p = most_order_ < lowest_order ? 1 : std::min(lowest_order, most); p <= most; ++p) {
-    // A seed goes astray twice as fast as it did where the field gets steeper.
-    double change = 2 * errors[p];
+  int lowest = most_order_ < lowest_order ? 1 : std::min(lowest_order, most);
+  while (lowest > 1 &&
+         contraction * first_change(lowest - 1) <= left_in_unit_time * time_step_ * tolerance * span_)
+    --lowest;
+  for (int p = lowest; p <= most; ++p) {
+    double change = first_change(p);
     int iterations = 1;
     while (iterations < 9 && !(weight * change <= tolerance * span_)) change *= contraction, ++iterations;
     const double cost = p + rows_per_iteration * iterations;

@@ -55,7 +55,7 @@ struct RowStepper::Impl {
         mixture(iterative && RowSeed::fits_cache(s.lattice().sites()) ? Mixture::of(s) : std::nullopt),
         rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, mixture ? 1 : seed_rows()) + 1, o.turn),
         equations(s, p, rows, history, mixture, seed_rows()),
-        seed(rows, seed_rows(), equations.looks(), equations.arguments()) {
+        seed(rows, s.time_step(), seed_rows(), equations.looks(), equations.arguments()) {
     // Made now, so that memory that is short is told at the start.
     if (equations.reads_unknown_row() && !(iterative && equations.is_streamed())) equations.candidate().hold_whole();
     if (iterative) gain = equations.gain(), weight = equations.least_weight();
@@ -209,9 +209,10 @@ struct RowStepper::Impl {
         const auto find = [&](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); };
         moved = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)
                                                            : std::function<void(PackRange)>());
+      } else if (mixture && iterations == 1) {
+        moved = equations.advance_extrapolated(order);
       } else {
-        if (mixture && iterations == 1) equations.evaluate_extrapolated(order);
-        else equations.evaluate_unknown_outputs(RowEquations::At::candidate);
+        equations.evaluate_unknown_outputs(RowEquations::At::candidate);
         moved = equations.advance(true);
       }
       value = moved.largest;

@@ -9,12 +9,4 @@ void RowSum::scale(double factor) {
   constant_ *= factor;
 }
 
-void RowSum::bind(const double* const* rows) {
-  for (auto* terms : {&differences_, &plain_})
-    for (Term& t : *terms) {
-      t.own = rows[t.row];
-      t.shifted = t.own + static_cast<std::ptrdiff_t>(t.shift) * lanes;
-    }
-}
-
 }  // namespace delf

@@ -2,6 +2,8 @@
 #pragma once
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include "schemes/row_layout.hpp"
@@ -24,7 +26,8 @@ class RowSum {
   /// Multiplies every coefficient.
   void scale(double factor);
 
-  void bind(const double* const* rows);
+  /// Sums are of the rows that stand there when they are taken.
+  void bind(const double* const* rows) { rows_ = rows; }
 
   template <class Consume>
   [[gnu::always_inline]] Consume pass(const RowLayout& layout, PackRange packs, Consume consume) const;
@@ -41,48 +44,72 @@ class RowSum {
   struct Term {
     int row, shift;
     double coefficient;
-    const double* shifted = nullptr;
-    const double* own = nullptr;
   };
+  const double* own(const Term& t) const { return rows_[t.row]; }
+  const double* shifted(const Term& t) const { return own(t) + static_cast<std::ptrdiff_t>(t.shift) * lanes; }
+  /// Differences are those to the sites on either side.
+  bool are_to_both_sides() const {
+    return differences_.size() == 2 && differences_[0].row == differences_[1].row &&
+           differences_[0].shift + differences_[1].shift == 0 && std::abs(differences_[0].shift) == 1;
+  }
   // Inlined where they are used: what `consume` carries would else be copied through memory.
   template <bool measured, class Consume>
   [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, int differences, int plain, class Consume>
+  template <bool measured, bool carried, int differences, int plain, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, class Consume>
   [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
 
   std::vector<Term> differences_, plain_;
   double constant_ = 0;
+  const double* const* rows_ = nullptr;
 };
 
-template <bool measured, int differences, int plain, class Consume>
+/// `carried`: differences to the next pack and to the one before it, packs one after the other. Either is then the
+/// other's of the pack before: one subtraction for both.
+template <bool measured, bool carried, int differences, int plain, class Consume>
 inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  const double *shifted[differences + 1], *row[plain + 1];
-  const double* const own = differences > 0 ? differences_[0].own : nullptr;
+  const double *beside[differences + 1], *row[plain + 1];
+  const double* const here = differences > 0 ? own(differences_[0]) : nullptr;
   double difference_coefficient[differences + 1], coefficient[plain + 1];
   for (int i = 0; i < differences; ++i) {
     const Term& t = differences_[static_cast<std::size_t>(i)];
-    shifted[i] = t.shifted, difference_coefficient[i] = t.coefficient;
+    beside[i] = shifted(t), difference_coefficient[i] = t.coefficient;
+  }
+  double of_next = 0, of_last = 0;
+  if constexpr (carried) {
+    const bool next_first = differences_[0].shift > 0;
+    of_next = difference_coefficient[next_first ? 0 : 1], of_last = difference_coefficient[next_first ? 1 : 0];
   }
   for (int i = 0; i < plain; ++i) {
     const Term& t = plain_[static_cast<std::size_t>(i)];
-    row[i] = t.shifted, coefficient[i] = t.coefficient;
+    row[i] = shifted(t), coefficient[i] = t.coefficient;
   }
   const Pack constant(constant_);
   const std::ptrdiff_t end = layout.at(packs.last), by = static_cast<std::ptrdiff_t>(packs.stride) * lanes;
-  for (std::ptrdiff_t at = layout.at(packs.first); at < end; at += by) {
+  std::ptrdiff_t at = layout.at(packs.first);
+  Pack value = differences > 0 ? Pack::load(here + at) : constant;
+  Pack last = carried ? value - Pack::load(here + at - lanes) : constant;
+  for (; at < end; at += by) {
     Pack sum = constant, absolute(0.0);
-    const Pack here = differences > 0 ? Pack::load(own + at) : constant;
-    for (int i = 0; i < differences; ++i) {
-      const Pack difference = Pack::load(shifted[i] + at) - here;
-      sum += difference_coefficient[i] * difference;
-      if constexpr (measured) absolute += std::abs(difference_coefficient[i]) * abs(difference);
+    if constexpr (carried) {
+      const Pack next_value = Pack::load(here + at + lanes), next = next_value - value;
+      sum += of_next * next;
+      sum -= of_last * last;
+      if constexpr (measured) absolute += std::abs(of_next) * abs(next) + std::abs(of_last) * abs(last);
+      value = next_value, last = next;
+    } else {
+      if (differences > 0) value = Pack::load(here + at);
+      for (int i = 0; i < differences; ++i) {
+        const Pack difference = Pack::load(beside[i] + at) - value;
+        sum += difference_coefficient[i] * difference;
+        if constexpr (measured) absolute += std::abs(difference_coefficient[i]) * abs(difference);
+      }
     }
     for (int i = 0; i < plain; ++i) {
-      const Pack value = Pack::load(row[i] + at);
-      sum += coefficient[i] * value;
-      if constexpr (measured) absolute += std::abs(coefficient[i]) * abs(value);
+      const Pack term = Pack::load(row[i] + at);
+      sum += coefficient[i] * term;
+      if constexpr (measured) absolute += std::abs(coefficient[i]) * abs(term);
     }
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
@@ -98,8 +125,8 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
       sum += term;
       if constexpr (measured) absolute += abs(term);
     };
-    for (const Term& t : differences_) add(t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.own + at)));
-    for (const Term& t : plain_) add(t.coefficient * Pack::load(t.shifted + at));
+    for (const Term& t : differences_) add(t.coefficient * (Pack::load(shifted(t) + at) - Pack::load(own(t) + at)));
+    for (const Term& t : plain_) add(t.coefficient * Pack::load(shifted(t) + at));
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
   }
@@ -109,37 +136,19 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
 /// registers.
 template <bool measured, class Consume>
 inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  const auto counted = [&]<int differences>() __attribute__((always_inline)) {
-    switch (plain_.size()) {
-      case 0:
-        return counted_pass<measured, differences, 0>(layout, packs, consume);
-      case 1:
-        return counted_pass<measured, differences, 1>(layout, packs, consume);
-      case 2:
-        return counted_pass<measured, differences, 2>(layout, packs, consume);
-      case 3:
-        return counted_pass<measured, differences, 3>(layout, packs, consume);
-      case 4:
-        return counted_pass<measured, differences, 4>(layout, packs, consume);
-      case 5:
-        return counted_pass<measured, differences, 5>(layout, packs, consume);
-      case 6:
-        return counted_pass<measured, differences, 6>(layout, packs, consume);
-      case 7:
-        return counted_pass<measured, differences, 7>(layout, packs, consume);
-      case 8:
-        return counted_pass<measured, differences, 8>(layout, packs, consume);
+  constexpr int most_plain = measured ? 11 : 8;
+  const auto counted = [&]<bool carried, int differences>() __attribute__((always_inline)) {
+    [&]<int... plain>(std::integer_sequence<int, plain...>) __attribute__((always_inline)) {
+      const int count = static_cast<int>(plain_.size());
+      ((count == plain ? counted_pass<measured, carried, differences, plain>(layout, packs, consume) : void()), ...);
     }
-    if constexpr (measured) {  // the unknown row's terms too
-      if (plain_.size() == 9) counted_pass<true, differences, 9>(layout, packs, consume);
-      if (plain_.size() == 10) counted_pass<true, differences, 10>(layout, packs, consume);
-      if (plain_.size() == 11) counted_pass<true, differences, 11>(layout, packs, consume);
-    }
+    (std::make_integer_sequence<int, most_plain + 1>{});
   };
-  constexpr std::size_t most_plain = measured ? 11 : 8;
-  if (differences_.empty() && plain_.size() <= most_plain) counted.template operator()<0>();
-  else if (differences_.size() == 2 && differences_[0].own == differences_[1].own && plain_.size() <= most_plain)
-    counted.template operator()<2>();
+  if (plain_.size() > most_plain) general_pass<measured>(layout, packs, consume);
+  else if (differences_.empty()) counted.template operator()<false, 0>();
+  else if (packs.stride == 1 && are_to_both_sides()) counted.template operator()<true, 2>();
+  else if (differences_.size() == 2 && differences_[0].row == differences_[1].row)
+    counted.template operator()<false, 2>();
   else general_pass<measured>(layout, packs, consume);
 }
 

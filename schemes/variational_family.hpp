@@ -161,7 +161,9 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     const double t = row.t + time_offset(map.shape, point) * row.time_step;
     const double x_offset = space_offset(map.shape, point) * row.space_step;
     constexpr int stride = map.shape.placement == Placement::every_site ? 1 : 2;
-    if constexpr (d == 1) argument_loop_for<stride>(lagrangian_.density, row, t, x_offset, out, packs);
+    if constexpr (d == 1)
+      argument_loop_for<stride>(
+          MixtureSlope<D>{lagrangian_.density, row.known_weight, Pack(t), row.positions, x_offset}, row, out, packs);
   }
 
   std::span<const int> explicit_neighbours() const override {

@@ -73,6 +73,19 @@ TEST_CASE("max_or_nan is the larger, and a NaN in any lane of either stays one")
   }
 }
 
+TEST_CASE("the larger magnitude has no sign, and a NaN goes by") {
+  using detail::larger_magnitude;
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (int l = 0; l < lanes; ++l) {
+    for (double b : {-3.0, 3.0, -0.5, 0.5, -0.0, 0.0, -infinity, infinity, -1e-310, 2.0, -2.0}) {
+      const double found = larger_magnitude(Pack(2.0), with(Pack(0.25), l, b))[l];
+      CHECK(found == std::max(2.0, std::abs(b)));
+      CHECK_FALSE(std::signbit(larger_magnitude(Pack(0.0), with(Pack(0.25), l, b))[l]));
+    }
+    CHECK(larger_magnitude(Pack(2.0), with(Pack(7.0), l, not_a_number))[l] == 2);
+  }
+}
+
 TEST_CASE("the maximum over lanes is found wherever it is") {
   for (int l = 0; l < lanes; ++l) {
     CHECK(max_or_nan(with(ramp(-1, -0.5), l, 3)) == 3);

@@ -47,6 +47,12 @@ struct Sums {
     differences = some(of_differences), plain = some(of_plain);
     constant = random(-1, 1);
   }
+  /// Differences to the sites on either side, as the usual schemes have them, in either order.
+  void choose_both_sides(bool next_first, int of_plain) {
+    choose(2, of_plain);
+    differences[1].row = differences[0].row;
+    differences[0].shift = next_first ? 1 : -1, differences[1].shift = -differences[0].shift;
+  }
   RowSum sum() const {
     RowSum result;
     for (const TestTerm& t : differences) result.add_difference(t.row, t.shift, t.coefficient);
@@ -102,12 +108,15 @@ int count(PackRange r) { return r.first >= r.last ? 0 : (r.last - r.first + r.st
 
 constexpr double rounding = 2e-15 * 14;  // so many terms of size 4
 
+constexpr int next_first = 5, last_first = 6;  // two differences, to both sides
+
 /// Random sums with every number of terms, over every range of packs.
 void for_each_sum(const auto& check) {
   Sums sums;
-  for (int differences : {0, 1, 2, 3, 4})
+  for (int differences : {0, 1, 2, 3, 4, next_first, last_first})
     for (int plain = 0; plain <= 9; ++plain) {
-      sums.choose(differences, plain);
+      if (differences > 4) sums.choose_both_sides(differences == next_first, plain);
+      else sums.choose(differences, plain);
       RowSum sum = sums.sum();
       sum.bind(sums.bases.data());
       for (const PackRange range : ranges(sums.layout)) {
@@ -196,9 +205,10 @@ TEST_CASE("the comparison of sums can fail: each term matters, and so do its shi
     sum.bind(sums.bases.data());
     return sum.pass(sums.layout, sums.layout.all(), Collect(sums, sums.layout.all())).worst;
   };
-  for (int differences : {0, 1, 2, 4})
+  for (int differences : {0, 1, 2, 4, next_first, last_first})
     for (int plain : {1, 8, 9}) {
-      sums.choose(differences, plain);
+      if (differences > 4) sums.choose_both_sides(differences == next_first, plain);
+      else sums.choose(differences, plain);
       const RowSum right = sums.sum();
       CHECK(off(right) < rounding);
       for (auto* terms : {&sums.differences, &sums.plain})

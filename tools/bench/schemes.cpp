@@ -15,6 +15,7 @@ Side counting_side(const Collision& collision, double& mean) {
   Side side = side_of(simulation, collision);
   side.advance = [simulation, &mean](long steps) {
     long iterations = 0;
+    const FlushDenormals for_all_steps;  // as in `delf run`
     for (long n = 0; n < steps; ++n) {
       simulation->step(false);
       iterations += simulation->iterations();
