@@ -5,7 +5,7 @@
 namespace delf {
 
 namespace detail {
-/// Below this the series is used; its first neglected term is 4e-19.
+/// Below this the series are used; what they neglect first is 1e-17.
 inline constexpr double sinc_series_below = 0.25;
 template <class T>
 T sinc_series(T s) {  // s = x²:  1 − s/3! + s²/5! − …
@@ -17,9 +17,10 @@ T sinc_slope_series(T x, T s) {  // −x/3 + x³/30 − x⁵/840 + …
          (-1. / 3 + s * (1. / 30 + s * (-1. / 840 + s * (1. / 45360 + s * (-1. / 3991680 + s * (1. / 518918400))))));
 }
 
-// Packs: difference quotients ask for sinc of small differences, so that polynomials alone serve, without any division.
-// They are minimax on |x| ≤ π/2, found and rounded as the sine's; with errors 2.8e-19 (sinc), 1.9e-17 (slope) and
-// 1.9e-17 (curvature). A pack that has a lane beyond takes the quotient too, out of line, for those lanes only.
+// Packs: difference quotients ask for sinc of small differences, so that polynomials alone serve, without any division:
+// of sinc itself the series while all lanes are within its reach. The others are minimax on |x| ≤ π/2, found and rounded
+// as the sine's; with errors 2.8e-19 (sinc), 1.9e-17 (slope) and 1.9e-17 (curvature). A pack that has a lane beyond takes
+// the quotient too, out of line, for those lanes only.
 inline constexpr double sinc_polynomial_below = 0x1.921fb54442d18p+0;
 inline Pack sinc_slope_part(Pack s) {  // (x cos x − sin x)/x³
   Pack p = 0x1.861c78714c056p-45;
@@ -46,6 +47,14 @@ template <class Function>
 [[gnu::noinline]] Pack far_from_zero(Pack x, Pack near, Function f) {
   return {abs(x).v <= sinc_polynomial_below ? near.v : f(x).v};
 }
+/// Each lane as if it were alone: the series, the polynomial or the quotient.
+[[gnu::noinline, gnu::const]] inline Pack sinc_of_any(Pack x) {
+  const Pack s = x * x, magnitude = abs(x);
+  const Pack near{magnitude.v <= sinc_series_below ? sinc_series(s).v : (sine_cubic_part(s) * s + 1.0).v};
+  if (any_above(magnitude, sinc_polynomial_below))
+    return far_from_zero(x, near, [](Pack y) { return sin(y) / y; });
+  return near;
+}
 }  // namespace detail
 
 /// sin(x)/x, with its value 1 and its derivative 0 at x = 0.
@@ -53,10 +62,9 @@ inline double sinc(double x) {
   return std::abs(x) < detail::sinc_series_below ? detail::sinc_series(x * x) : std::sin(x) / x;
 }
 inline Pack sinc(Pack x) {
-  const Pack s = x * x, near = detail::sine_cubic_part(s) * s + 1.0;
-  if (detail::any_above(abs(x), detail::sinc_polynomial_below)) [[unlikely]]
-    return detail::far_from_zero(x, near, [](Pack y) { return sin(y) / y; });
-  return near;
+  if (detail::any_above(abs(x), detail::sinc_series_below)) [[unlikely]]
+    return detail::sinc_of_any(x);
+  return detail::sinc_series(x * x);
 }
 
 /// d sinc/dx = (cos x − sinc x)/x
