@@ -97,7 +97,10 @@ Pack RowEquations::close_new_row() {
     for (const RowIncrement& rows : increments_) layout_.copy_overlaps(rows.v), layout_.copy_overlaps(rows.y);
   };
   if (!layout_.halos_come_first()) copy_overlaps();
-  for (const RowIncrement& rows : increments_) layout_.fill_halo(rows.v), layout_.fill_halo(rows.y, turn_);
+  for (const RowIncrement& rows : increments_) {
+    if (increments_have_halos_) layout_.fill_halo(rows.v);
+    layout_.fill_halo(rows.y, turn_);
+  }
   Pack change(0.0);
   if (arguments_) {  // of the last packs, which look beyond the end
     const RowIncrement& rows = increments_[0];

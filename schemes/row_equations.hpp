@@ -187,6 +187,7 @@ class RowEquations {
   std::vector<double*> w_rows_, slab_out_;
   std::vector<const double*> slab_rows_;
   std::vector<RowIncrement> increments_;
+  bool increments_have_halos_ = true;  ///< or else who looks beyond the ends of arcs fills them: residual()
   bool is_streamed_ = false;
   bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row
   bool goes_by_strips_ = false;    ///< advance_extrapolated() evaluates while it makes the row

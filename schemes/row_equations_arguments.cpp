@@ -11,6 +11,9 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   RowLook& look = increments_[0].look;
   look.parts = mixture.parts;
   std::ranges::copy(mixture.weights, look.weights);
+  increments_have_halos_ = std::ranges::any_of(equations_.bulk[0].terms, [](const Term& t) {
+    return t.source == Source::increment && t.shift != 0;
+  });
   constexpr int packs_in_cache = 128;  // of the first level
   const int newest = outputs_[0].newest;
   goes_by_strips_ = solver_[0]->can_prepare() && !is_stored_ && layout_.packs() > packs_in_cache &&

@@ -38,7 +38,8 @@ double RowEquations::residual(std::int64_t n) {
   if (!scratch_.rows() && residual_rows() > 0) scratch_ = RowBuffer(layout_, residual_rows());
   for (int a = 0; a < d_; ++a) {
     double* const w = has_spare_increment() ? rows_.v(n + 2 - rows_.increments_held(), a) : scratch_.row(a);
-    const double *v_new = rows_.v(n + 1, a), *v = rows_.v(n, a);
+    double *const v_new = rows_.v(n + 1, a), *const v = rows_.v(n, a);
+    if (!increments_have_halos_) layout_.fill_halo(v_new), layout_.fill_halo(v);
     for (std::size_t s = 0; s < layout_.doubles(); ++s) w[s] = v_new[s] - v[s];
     bases_[static_cast<std::size_t>(w_base_ + a)] = w;
   }
