@@ -17,10 +17,10 @@ T sinc_slope_series(T x, T s) {  // −x/3 + x³/30 − x⁵/840 + …
          (-1. / 3 + s * (1. / 30 + s * (-1. / 840 + s * (1. / 45360 + s * (-1. / 3991680 + s * (1. / 518918400))))));
 }
 
-// Packs: difference quotients ask for sinc of small differences, so that polynomials alone serve, without any division:
-// of sinc itself the series while all lanes are within its reach. The others are minimax on |x| ≤ π/2, found and rounded
-// as the sine's; with errors 2.8e-19 (sinc), 1.9e-17 (slope) and 1.9e-17 (curvature). A pack that has a lane beyond takes
-// the quotient too, out of line, for those lanes only.
+// Packs: difference quotients ask for sinc of small differences, so that polynomials alone serve, without any
+// division: of sinc itself the series while all lanes are within its reach. The others are minimax on |x| ≤ π/2, found
+// and rounded as the sine's; with errors 2.8e-19 (sinc), 1.9e-17 (slope) and 1.9e-17 (curvature). A pack that has a lane
+// beyond takes the quotient too, out of line, for those lanes only.
 inline constexpr double sinc_polynomial_below = 0x1.921fb54442d18p+0;
 inline Pack sinc_slope_part(Pack s) {  // (x cos x − sin x)/x³
   Pack p = 0x1.861c78714c056p-45;

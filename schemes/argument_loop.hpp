@@ -8,8 +8,8 @@
 
 namespace delf {
 
-/// out = output(u, known, at) for the packs of a row of arguments, whose unknown part u is extrapolated from so many rows
-/// first, if any: they are read while the output is worked out.
+/// out = output(u, known, at) for the packs of a row of arguments, whose unknown part u is extrapolated from so many
+/// rows first, if any: they are read while the output is worked out.
 template <int past_rows, int stride, class Output>
 [[gnu::flatten]] void argument_loop(const Output& given_output, const ArgumentRow& given, double* out,
                                     const PackRange& packs) {

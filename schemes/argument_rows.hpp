@@ -19,8 +19,8 @@ class LatticeSystem;
 ///
 ///     m(i) = u_{n+1}(i) + what is known,      u_r(i) = Σ_p weights[p] y_r(i + p),      p = 0 … parts − 1.
 ///
-/// Known is known_weight · y(i + known_site) in the row below the unknown one, or u_n again with the weight 1. What looks at
-/// a pair of values at one site is served by the same rows: u is then y_{n+1}, and known is y, known_row rows below it.
+/// Known is known_weight · y(i + known_site) in the row below the unknown one, or u_n again with the weight 1. What looks
+/// at a pair of values at one site is served by the same rows: u is then y_{n+1}, and known is y, known_row rows below.
 struct Mixture {
   int parts = 0;
   double weights[RowLook::most_parts] = {};
@@ -62,8 +62,8 @@ class ArgumentRows {
   ///     u_{n+1} ≈ Σ_{j=0}^{order} (−1)^j C(order + 1, j + 1) u_{n−j}
   ///
   void extrapolate(int order, ArgumentRow& row) const {
-    const int highest = static_cast<int>(std::min<std::int64_t>(n_, static_cast<std::int64_t>(coefficients_.size()) - 1));
-    order = std::clamp(order, 1, highest);
+    const auto highest = std::min(n_, static_cast<std::int64_t>(coefficients_.size()) - 1);
+    order = std::clamp(order, 1, static_cast<int>(highest));
     row.past_rows = order + 1;
     row.coefficients = coefficients_[static_cast<std::size_t>(order)].data();
     row.ring = ring_.row(0), row.stride = ring_.stride(), row.slots = ring_.rows(), row.slot = slots_(0);

@@ -39,8 +39,8 @@ struct Argument {
   std::vector<Part> parts;
 };
 
-/// A row of arguments m = u + known_weight · known, or of pairs (u, known): what is known of them, and u, which stands in
-/// `unknown`, or is extrapolated to there from a ring of rows before it,
+/// A row of arguments m = u + known_weight · known, or of pairs (u, known): what is known of them, and u, which stands
+/// in `unknown`, or is extrapolated to there from a ring of rows before it,
 ///
 ///     u = Σ_j coefficients[j] (the row in `slot` − j),      j = 0 … past_rows − 1.
 ///
@@ -78,8 +78,9 @@ class RowKernel {
   /// What the outputs are functions of, the same mixture for every component; empty where it is more than mixtures of
   /// values.
   const std::vector<Argument>& arguments() const { return arguments_; }
-  /// What one unit of out_c adds to the residual r[i] of vertex and component i = l·d + a. A direct residual may part
-  /// with what r itself has at one vertex, and give each stencil a share of it at several: sums over stencils are alike.
+  /// What one unit of out_c adds to the residual r[i] of vertex and component i = l·d + a. A direct residual may
+  /// part with what r itself has at one vertex, and give each stencil a share of it at several: sums over stencils are
+  /// alike.
   double weight(int output, int i) const { return weights_[static_cast<std::size_t>(output * row_size_ + i)]; }
 
   /// The constant J and r(0) of the split.
@@ -89,8 +90,8 @@ class RowKernel {
   virtual void evaluate(const SlabRows&, double* const* out, const PackRange&) const = 0;
   void evaluate(const SlabRows& rows, double* const* out) const { evaluate(rows, out, rows.layout->all()); }
 
-  /// Whether there is one output, a function of one argument, or of the values of two rows at a site; and that output for
-  /// a row of arguments, or of such pairs.
+  /// Whether there is one output, a function of one argument, or of the values of two rows at a site; and that output
+  /// for a row of arguments, or of such pairs.
   virtual bool evaluates_arguments() const { return false; }
   virtual void evaluate_arguments(const ArgumentRow&, double* /*out*/, const PackRange&) const {}
 

@@ -49,7 +49,8 @@ double shared_defect(const Theory& theory, double of_below) {
       stencil[static_cast<std::size_t>(l)] = value;
       sum += J[static_cast<std::size_t>(9 * Stencil::centre + l)] * value;
     }
-    sum += kernel.weight(0, 4) * out.row(0)[layout.slot(i)] + of_below * kernel.weight(0, 7) * out.row(1)[layout.slot(i)];
+    const int slot = layout.slot(i);
+    sum += kernel.weight(0, 4) * out.row(0)[slot] + of_below * kernel.weight(0, 7) * out.row(1)[slot];
     family.residual(cell, stencil, r);
     worst = std::max(worst, std::abs(sum - r[Stencil::centre]));
   }
