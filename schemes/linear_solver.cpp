@@ -70,25 +70,13 @@ class ScalarSolver final : public LinearSolver {
   }
   RowChange advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
                     double* const*) const override {
-    return with_increment_pass<Order::ascending>(rows[0], [&](auto pass, int unseen) __attribute__((always_inline)) {
-      if (unseen > 0) right_sides[0]->pass(layout, {0, unseen}, Unseen<decltype(pass)>{pass});
-      right_sides[0]->pass_on(layout, {unseen, layout.packs()}, pass);
-      return pass.result();
-    });
+    return advance_by(layout.packs(), layout, *right_sides[0], rows[0], nullptr);
   }
   bool can_prepare() const override { return true; }
   RowChange advance_preparing(const RowLayout& layout, const RowSum& right_side, const RowIncrement& rows,
                               const Prepare& prepare) const override {
     constexpr int strip = 64;  // packs: some six rows of it stay in the first level of the cache
-    return with_increment_pass<Order::ascending>(rows, [&](auto pass, int unseen) __attribute__((always_inline)) {
-      for (int first = 0, last; first < layout.packs(); first = last) {
-        last = std::min(first + strip, layout.packs());
-        prepare({first, last});
-        if (first == 0 && unseen > 0) right_side.pass(layout, {0, unseen}, Unseen<decltype(pass)>{pass});
-        right_side.pass_on(layout, {first == 0 ? unseen : first, last}, pass);
-      }
-      return pass.result();
-    });
+    return advance_by(strip, layout, right_side, rows, &prepare);
   }
   std::unique_ptr<RowStream> stream(const RowLayout& layout, const RowSum& right_side,
                                     const RowIncrement& rows) const override {
@@ -100,6 +88,27 @@ class ScalarSolver final : public LinearSolver {
   std::string name() const override { return "division by one number"; }
 
  private:
+  RowChange advance_by(int strip, const RowLayout& layout, const RowSum& right_side, const RowIncrement& rows,
+                       const Prepare* prepare) const {
+    return with_increment_pass<Order::ascending>(rows, [&](auto pass, int unseen) {
+      return advance_with<decltype(pass)>(unseen, strip, layout, right_side, rows, prepare);
+    });
+  }
+  /// A function for each kind of pass: all in one would take compilers minutes.
+  template <class Pass>
+  [[gnu::noinline]] static RowChange advance_with(int unseen, int strip, const RowLayout& layout,
+                                                  const RowSum& right_side, const RowIncrement& rows,
+                                                  const Prepare* prepare) {
+    Pass pass(rows);
+    for (int first = 0, last; first < layout.packs(); first = last) {
+      last = std::min(first + strip, layout.packs());
+      if (prepare) (*prepare)({first, last});
+      if (first == 0 && unseen > 0) right_side.pass_few(layout, {0, unseen}, Unseen<Pass>{pass});
+      right_side.pass_on(layout, {first == 0 ? unseen : first, last}, pass);
+    }
+    return pass.result();
+  }
+
   const RowLayout* layout_;
   double inverse_;
 };

@@ -176,8 +176,8 @@ void RowEquations::store_right_sides(const PackRange& packs) {
     if (!bricks_) sums_[at].pass(layout_, packs, store);
     else
       for (int first = packs.first; first < packs.first + 2; ++first)
-        sums_[2 * at + static_cast<std::size_t>((equation_row + first) % 2 != 0)].pass(layout_, {first, packs.last, 2},
-                                                                                       store);
+        sums_[2 * at + static_cast<std::size_t>((equation_row + first) % 2 != 0)].pass_bricks(
+            layout_, {first, packs.last, 2}, store);
   }
 }
 

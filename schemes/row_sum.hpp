@@ -36,6 +36,18 @@ class RowSum {
   [[gnu::always_inline]] void pass_on(const RowLayout& layout, PackRange packs, Consume& consume) const {
     dispatch<false>(layout, packs, consume);
   }
+  /// The same for a few packs, where a loop for every number of terms would be code for nothing.
+  template <class Consume>
+  void pass_few(const RowLayout& layout, PackRange packs, Consume consume) const {
+    general_pass<false>(layout, packs, consume);
+  }
+  /// The same for every second pack.
+  template <class Consume>
+  [[gnu::always_inline]] void pass_bricks(const RowLayout& layout, PackRange packs, Consume consume) const {
+    if (are_of_one_row() && static_cast<int>(plain_.size()) <= most_plain<false>)
+      counted<false, false, 2>(layout, packs, consume);
+    else general_pass<false>(layout, packs, consume);
+  }
   /// The same with the sum of the terms' absolute values: `consume(at, sum, absolute)`.
   template <class Consume>
   Consume measure(const RowLayout& layout, PackRange packs, Consume consume) const;
@@ -47,18 +59,23 @@ class RowSum {
   };
   const double* own(const Term& t) const { return rows_[t.row]; }
   const double* shifted(const Term& t) const { return own(t) + static_cast<std::ptrdiff_t>(t.shift) * lanes; }
+  bool are_of_one_row() const { return differences_.size() == 2 && differences_[0].row == differences_[1].row; }
   /// Differences are those to the sites on either side.
   bool are_to_both_sides() const {
-    return differences_.size() == 2 && differences_[0].row == differences_[1].row &&
-           differences_[0].shift + differences_[1].shift == 0 && std::abs(differences_[0].shift) == 1;
+    return are_of_one_row() && differences_[0].shift + differences_[1].shift == 0 &&
+           std::abs(differences_[0].shift) == 1;
   }
   // Inlined where they are used: what `consume` carries would else be copied through memory.
   template <bool measured, class Consume>
   [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, bool carried, int differences, int plain, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
+  template <bool measured, bool carried, int differences, class Consume>
+  [[gnu::always_inline]] void counted(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, class Consume>
   [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
+  template <bool measured>
+  static constexpr int most_plain = measured ? 11 : 8;  ///< with the unknown row's
 
   std::vector<Term> differences_, plain_;
   double constant_ = 0;
@@ -134,22 +151,23 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
 
 /// The numbers of terms of the usual schemes are compiled, differences being those of one row: rows then stay in
 /// registers.
+template <bool measured, bool carried, int differences, class Consume>
+inline void RowSum::counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
+  [&]<int... plain>(std::integer_sequence<int, plain...>) __attribute__((always_inline)) {
+    const int count = static_cast<int>(plain_.size());
+    ((count == plain ? counted_pass<measured, carried, differences, plain>(layout, packs, consume) : void()), ...);
+  }
+  (std::make_integer_sequence<int, most_plain<measured> + 1>{});
+}
 template <bool measured, class Consume>
 inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  constexpr int most_plain = measured ? 11 : 8;
-  const auto counted = [&]<bool carried, int differences>() __attribute__((always_inline)) {
-    [&]<int... plain>(std::integer_sequence<int, plain...>) __attribute__((always_inline)) {
-      const int count = static_cast<int>(plain_.size());
-      ((count == plain ? counted_pass<measured, carried, differences, plain>(layout, packs, consume) : void()), ...);
-    }
-    (std::make_integer_sequence<int, most_plain + 1>{});
-  };
-  if (plain_.size() > most_plain) general_pass<measured>(layout, packs, consume);
-  else if (differences_.empty()) counted.template operator()<false, 0>();
-  else if (packs.stride == 1 && are_to_both_sides()) counted.template operator()<true, 2>();
-  else if (differences_.size() == 2 && differences_[0].row == differences_[1].row)
-    counted.template operator()<false, 2>();
-  else general_pass<measured>(layout, packs, consume);
+  const bool is_counted = static_cast<int>(plain_.size()) <= most_plain<measured>;
+  if (is_counted && differences_.empty()) return counted<measured, false, 0>(layout, packs, consume);
+  if (is_counted && packs.stride == 1 && are_to_both_sides())
+    return counted<measured, true, 2>(layout, packs, consume);
+  if constexpr (measured)  // every second pack too
+    if (is_counted && are_of_one_row()) return counted<true, false, 2>(layout, packs, consume);
+  general_pass<measured>(layout, packs, consume);
 }
 
 template <class Consume>
