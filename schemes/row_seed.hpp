@@ -21,7 +21,8 @@ class RowSeed {
  public:
   /// Increments up to this many rows back are read; what matters of a candidate is what the nonlinear part looks at.
   /// Where steps extrapolate `arguments`, these are read in the place of increments.
-  RowSeed(SectionRows&, double time_step, int most_order, const std::vector<Argument>& looks, ArgumentRows* arguments = nullptr);
+  RowSeed(SectionRows&, double time_step, int most_order, const std::vector<Argument>& looks,
+          ArgumentRows* arguments = nullptr);
   /// How many increments to hold for a seed from `seed_order` rows: fewer where rows outgrow the cache.
   static int rows_for(int seed_order, int sites);
   static bool fits_cache(int sites);  ///< some twenty rows do
