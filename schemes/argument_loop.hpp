@@ -8,30 +8,51 @@
 
 namespace delf {
 
-/// out = output(u, known, at) for the packs of a row of arguments, whose unknown part u is extrapolated from so many
-/// rows first, if any: they are read while the output is worked out.
+/// The unknown part u of arguments, pack by pack: as it stands, or extrapolated from so many rows, and put there.
+template <int past_rows>
+class UnknownArgument {
+ public:
+  explicit UnknownArgument(const ArgumentRow& given) : unknown_(given.unknown) {
+    int slot = given.slot;
+    for (int j = 0; j < past_rows; ++j) {
+      past_[j] = given.ring + slot * given.stride;
+      slot = slot == 0 ? given.slots - 1 : slot - 1;
+      coefficients_[j] = given.coefficients[j];
+    }
+  }
+  [[gnu::always_inline]] Pack operator()(std::ptrdiff_t at) const {
+    if constexpr (past_rows == 0) return Pack::load(unknown_ + at);
+    Pack u = coefficients_[0] * Pack::load(past_[0] + at);
+    for (int j = 1; j < past_rows; ++j) u += coefficients_[j] * Pack::load(past_[j] + at);
+    u.store(unknown_ + at);
+    return u;
+  }
+
+ private:
+  double* unknown_;
+  std::array<const double*, past_rows + 1> past_;
+  std::array<double, past_rows + 1> coefficients_;
+};
+
+/// `run` with past_rows, none or 2 … most, as a constant.
+template <int most, class Run>
+[[gnu::always_inline]] inline void with_past_rows(int past_rows, const Run& run) {
+  [&]<int... j>(std::integer_sequence<int, j...>) __attribute__((always_inline)) {
+    constexpr auto rows = [](int i) { return i == 0 ? 0 : i + 1; };
+    ((past_rows == rows(j) ? run.template operator()<rows(j)>() : void()), ...);
+  }
+  (std::make_integer_sequence<int, most>{});
+}
+
+/// out = output(u, known, at) for the packs of a row of arguments: where u is extrapolated, that is done while the output
+/// is worked out.
 template <int past_rows, int stride, class Output>
 [[gnu::flatten]] void argument_loop(const Output& given_output, const ArgumentRow& given, double* out,
                                     const PackRange& packs) {
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
   const Output output = given_output;
-  double* const unknown = given.unknown;
+  const UnknownArgument<past_rows> found(given);
   const double* const known = given.known;
-  std::array<const double*, past_rows + 1> past;
-  std::array<double, past_rows + 1> coefficients;
-  int slot = given.slot;
-  for (int j = 0; j < past_rows; ++j) {
-    past[j] = given.ring + slot * given.stride;
-    slot = slot == 0 ? given.slots - 1 : slot - 1;
-    coefficients[j] = given.coefficients[j];
-  }
-  const auto found = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
-    if constexpr (past_rows == 0) return Pack::load(unknown + at);
-    Pack u = coefficients[0] * Pack::load(past[0] + at);
-    for (int j = 1; j < past_rows; ++j) u += coefficients[j] * Pack::load(past[j] + at);
-    u.store(unknown + at);
-    return u;
-  };
   // Where bricks are missing, packs in between are extrapolated too: steps compare u everywhere.
   const std::ptrdiff_t between = packs.first % 2 == 0 ? lanes : -lanes;
   const std::ptrdiff_t end = given.layout->at(packs.last);
@@ -41,14 +62,10 @@ template <int past_rows, int stride, class Output>
   }
 }
 
-/// The loop for so many past rows, none or 2 … most.
 template <int stride, class Output>
 void argument_loop_for(const Output& output, const ArgumentRow& row, double* out, const PackRange& packs) {
-  [&]<int... j>(std::integer_sequence<int, j...>) {
-    constexpr auto rows = [](int i) { return i == 0 ? 0 : i + 1; };
-    ((row.past_rows == rows(j) ? argument_loop<rows(j), stride>(output, row, out, packs) : void()), ...);
-  }
-  (std::make_integer_sequence<int, ArgumentRow::most_past_rows>{});
+  with_past_rows<ArgumentRow::most_past_rows>(
+      row.past_rows, [&]<int past_rows>() { argument_loop<past_rows, stride>(output, row, out, packs); });
 }
 
 /// ∂ℓ/∂φ at the mixture m = u + known_weight · known; t, and x from the anchor's, are those of the arguments.

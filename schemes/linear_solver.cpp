@@ -70,14 +70,11 @@ class ScalarSolver final : public LinearSolver {
   }
   RowChange advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
                     double* const*) const override {
-    return advance_by(layout.packs(), layout, *right_sides[0], rows[0], nullptr);
+    return with_increment_pass<Order::ascending>(rows[0], [&](auto pass, int unseen) {
+      return advance_with<decltype(pass)>(unseen, layout, *right_sides[0], rows[0]);
+    });
   }
-  bool can_prepare() const override { return true; }
-  RowChange advance_preparing(const RowLayout& layout, const RowSum& right_side, const RowIncrement& rows,
-                              const Prepare& prepare) const override {
-    constexpr int strip = 64;  // packs: some six rows of it stay in the first level of the cache
-    return advance_by(strip, layout, right_side, rows, &prepare);
-  }
+  bool is_a_number() const override { return true; }
   std::unique_ptr<RowStream> stream(const RowLayout& layout, const RowSum& right_side,
                                     const RowIncrement& rows) const override {
     return std::make_unique<Stream>(layout, right_side, rows);
@@ -88,24 +85,13 @@ class ScalarSolver final : public LinearSolver {
   std::string name() const override { return "division by one number"; }
 
  private:
-  RowChange advance_by(int strip, const RowLayout& layout, const RowSum& right_side, const RowIncrement& rows,
-                       const Prepare* prepare) const {
-    return with_increment_pass<Order::ascending>(rows, [&](auto pass, int unseen) {
-      return advance_with<decltype(pass)>(unseen, strip, layout, right_side, rows, prepare);
-    });
-  }
   /// A function for each kind of pass: all in one would take compilers minutes.
   template <class Pass>
-  [[gnu::noinline]] static RowChange advance_with(int unseen, int strip, const RowLayout& layout,
-                                                  const RowSum& right_side, const RowIncrement& rows,
-                                                  const Prepare* prepare) {
+  [[gnu::noinline]] static RowChange advance_with(int unseen, const RowLayout& layout, const RowSum& right_side,
+                                                  const RowIncrement& rows) {
     Pass pass(rows);
-    for (int first = 0, last; first < layout.packs(); first = last) {
-      last = std::min(first + strip, layout.packs());
-      if (prepare) (*prepare)({first, last});
-      if (first == 0 && unseen > 0) right_side.pass_few(layout, {0, unseen}, Unseen<Pass>{pass});
-      right_side.pass_on(layout, {first == 0 ? unseen : first, last}, pass);
-    }
+    if (unseen > 0) right_side.pass_few(layout, {0, unseen}, Unseen<Pass>{pass});
+    right_side.pass_on(layout, {unseen, layout.packs()}, pass);
     return pass.result();
   }
 

@@ -37,13 +37,8 @@ class LinearSolver {
   /// of A w times right_side_scale(); `w` is work space. Overlaps and halos of the new row are the caller's business.
   virtual RowChange advance(const RowLayout&, int components, const RowSum* const* right_sides,
                             const RowIncrement* rows, double* const* w) const;
-  /// Whether packs of the new row are made one after the other, so that what right sides are made of can be prepared
-  /// strip by strip, and is still in the cache when it is summed: by advance_preparing(), for one component.
-  using Prepare = std::function<void(PackRange)>;
-  virtual bool can_prepare() const { return false; }
-  virtual RowChange advance_preparing(const RowLayout&, const RowSum&, const RowIncrement&, const Prepare&) const {
-    return {};
-  }
+  /// A is one number: w is the right side times right_side_scale().
+  virtual bool is_a_number() const { return false; }
   virtual double right_side_scale(int /*component*/) const { return 1; }
   /// Whether advance() needs the rows w where the new increment is not made from itself.
   virtual bool needs_work_rows() const { return true; }

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "schemes/argument_loop.hpp"
+#include "schemes/division_loop.hpp"
 #include "schemes/row_kernel.hpp"
 #include "schemes/stencil_family.hpp"
 
@@ -73,6 +73,9 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     return R::shape.vertex(found.latest).space == R::shape.vertex(found.other).space ? found : Pair{};
   }();
 
+  /// A part that is shared is kept from row to row: steps that divide take it in other loops.
+  static constexpr bool divided = pair.latest >= 0 && !is_shared;
+
  public:
   ResidualFamily(R stencil, double time_step, double space_step)
       : StencilFamily(StencilPattern(R::shape), values_at_every_vertex(StencilPattern(R::shape), 1), false),
@@ -125,6 +128,11 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
   bool evaluates_arguments() const override { return pair.latest >= 0; }
   void evaluate_arguments(const ArgumentRow& row, double* out, const PackRange& packs) const override {
     if constexpr (pair.latest >= 0) argument_loop_for<1>(PartOfPair{stencil_}, row, out, packs);
+  }
+  bool divides(int old, int parts) const override { return divided && old == 0 && parts == 1; }
+  RowChange divide(const DivisionRows& given, const RowIncrement& rows) const override {
+    if constexpr (divided) return division_loop_for<0, 1>(PartOfPair{stencil_}, given, rows);
+    else return {};
   }
 
  private:

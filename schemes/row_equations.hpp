@@ -61,8 +61,9 @@ class RowEquations {
     double largest, change;  ///< |y|, |look|
   };
   Advance advance(bool compared);
-  /// The same after outputs that read row n+1 were evaluated at arguments, which are extrapolated.
+  /// The same with the outputs that read row n+1, at arguments: extrapolated, or as the row makes them that was found.
   Advance advance_extrapolated(int order);
+  Advance advance_again() { return advance_at(argument_row()); }
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
@@ -142,11 +143,13 @@ class RowEquations {
     if (o.family->pattern().placement != Placement::brick_wall) return packs;
     return {packs.first + static_cast<int>((packs.first + n_ + age) % 2 != 0), packs.last, 2};
   }
+  void build_division();
   void find_arguments();
   void evaluate_arguments(At);
   ArgumentRow argument_row();
   double* newest_output() { return outputs_[0].ring.row(outputs_[0].slots(-outputs_[0].newest)); }
   void evaluate_at(const ArgumentRow&);
+  Advance advance_at(const ArgumentRow&);
   Advance advanced(RowChange);
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
@@ -182,6 +185,7 @@ class RowEquations {
   RowBuffer w_, scratch_, positions_;
   CandidateRows candidate_;
   std::optional<ArgumentRows> arguments_;
+  std::optional<DivisionRows> division_;  ///< if a step at arguments is one loop
   std::vector<Argument> whole_{{{{Site{}, 1.0}}}},
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;
@@ -190,7 +194,6 @@ class RowEquations {
   bool increments_have_halos_ = true;  ///< or else who looks beyond the ends of arcs fills them: residual()
   bool is_streamed_ = false;
   bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row
-  bool goes_by_strips_ = false;    ///< advance_extrapolated() evaluates while it makes the row
 
   const RowKernel* one_loop_ = nullptr;
   std::vector<double> loop_linear_, loop_nonlinear_;

@@ -2,7 +2,8 @@
 #include "schemes/row_equations.hpp"
 
 #include <algorithm>
-#include <functional>
+
+#include "schemes/division_loop.hpp"
 
 namespace delf {
 
@@ -14,12 +15,35 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   increments_have_halos_ = std::ranges::any_of(equations_.bulk[0].terms, [](const Term& t) {
     return t.source == Source::increment && t.shift != 0;
   });
-  constexpr int packs_in_cache = 128;  // of the first level
+  build_division();
+}
+
+/// Rows of 511 sites and less stay in the first level of the cache: two loops after each other then take a twentieth less
+/// than one that has more in hand than there are registers for.
+void RowEquations::build_division() {
+  constexpr int packs_in_cache = 64;
+  if (is_stored_ || !solver_[0]->is_a_number() || layout_.packs() <= packs_in_cache) return;
   const int newest = outputs_[0].newest;
-  goes_by_strips_ = solver_[0]->can_prepare() && !is_stored_ && layout_.packs() > packs_in_cache &&
-                    std::ranges::none_of(equations_.bulk[0].terms, [newest](const Term& t) {
-                      return t.source == Source::output && t.age == newest && t.shift != 0;
-                    });
+  const double scale = -solver_[0]->right_side_scale(0);
+  DivisionRows division{};
+  int old = 0;
+  const auto place_of = [&](const Term& t) -> double* {
+    if (t.source == Source::difference && t.shift == 1) return &division.after;
+    if (t.source == Source::difference && t.shift == -1) return &division.before;
+    if (t.source != Source::output) return nullptr;
+    if (t.age == newest && t.shift == 0) return &division.of_output;
+    if (t.age != newest - 1 || t.shift > 0 || t.shift < -1) return nullptr;
+    old = std::max(old, 1 - t.shift);
+    return division.of_old - t.shift;
+  };
+  for (const Term& t : equations_.bulk[0].terms) {
+    if (t.source == Source::unknown) continue;
+    double* const place = place_of(t);
+    if (!place) return;
+    *place += scale * t.coefficient;
+  }
+  division.constant = scale * equations_.bulk[0].constant;
+  if (outputs_[0].kernel->divides(old, arguments_->mixture().parts)) division_ = division;
 }
 
 void RowEquations::find_arguments() {
@@ -33,16 +57,21 @@ void RowEquations::find_arguments() {
 RowEquations::Advance RowEquations::advance_extrapolated(int order) {
   ArgumentRow row = argument_row();
   arguments_->extrapolate(order, row);
-  if (!goes_by_strips_) {
+  return advance_at(row);
+}
+
+RowEquations::Advance RowEquations::advance_at(const ArgumentRow& row) {
+  if (!division_ || row.past_rows > most_past_rows_divided) {
     evaluate_at(row);
     return advance(true);
   }
   const Outputs& o = outputs_[0];
-  double* const out = newest_output();
-  const auto prepare = [&](PackRange packs) { o.kernel->evaluate_arguments(row, out, packs); };
-  // By reference: what is copied into a function would be allocated.
-  const RowChange all = solver_[0]->advance_preparing(layout_, right_side(0), increments_[0], std::ref(prepare));
-  layout_.fill_halo(out);
+  division_->arguments = row;
+  division_->y = increments_[0].y_before;
+  division_->output = newest_output();
+  division_->old_output = o.rows() > 1 ? o.ring.row(o.slots(1 - o.newest)) : nullptr;
+  const RowChange all = o.kernel->divide(*division_, increments_[0]);
+  layout_.fill_halo(division_->output);
   return advanced(all);
 }
 

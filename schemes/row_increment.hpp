@@ -111,6 +111,7 @@ class IncrementPass {
     v.store(v_ + at);
     y.store(y_ + at);
   }
+  void forget_change() { change_ = 0.0; }
   RowChange result() const { return {largest_ + 0.0 * sum_, change_}; }
 
  private:

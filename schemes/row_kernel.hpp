@@ -5,6 +5,7 @@
 
 #include "jets/discrete_lagrangian.hpp"
 #include "jets/structure.hpp"
+#include "schemes/row_increment.hpp"
 #include "schemes/row_layout.hpp"
 
 namespace delf {
@@ -60,6 +61,20 @@ struct ArgumentRow {
   int slots = 0, slot = 0;
 };
 
+/// A step where the matrix is one number: at a row of arguments the output E' is evaluated, and with it
+///
+///     w(i) = constant + after (y(i + 1) − y(i)) + before (y(i − 1) − y(i))
+///            + of_output E'(i) + of_old[0] E(i) + of_old[1] E(i − 1)
+///
+/// from y and the output E of the row before, halos filled.
+struct DivisionRows {
+  ArgumentRow arguments;
+  const double* y;
+  const double* old_output;
+  double* output;
+  double constant = 0, before = 0, after = 0, of_output = 0, of_old[2] = {0, 0};
+};
+
 /// A stencil family evaluated for whole rows: d components at every vertex, i = l·d + a, and the residual split
 ///
 ///     r(y) = r(0) + J y + Σ_c weight(c, ·) out_c(y)
@@ -94,6 +109,11 @@ class RowKernel {
   /// for a row of arguments, or of such pairs.
   virtual bool evaluates_arguments() const { return false; }
   virtual void evaluate_arguments(const ArgumentRow&, double* /*out*/, const PackRange&) const {}
+
+  /// Whether there is a loop for DivisionRows with so many of_old, whose u is a mixture of so many parts; and that loop,
+  /// which makes the new row.
+  virtual bool divides(int /*old*/, int /*parts*/) const { return false; }
+  virtual RowChange divide(const DivisionRows&, const RowIncrement&) const { return {}; }
 
   /// Where the nonlinear part of the equation at a site is that of its own value alone, a step is one loop:
   ///

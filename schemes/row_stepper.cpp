@@ -209,8 +209,8 @@ struct RowStepper::Impl {
         const auto find = [&](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); };
         moved = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)
                                                            : std::function<void(PackRange)>());
-      } else if (mixture && iterations == 1) {
-        moved = equations.advance_extrapolated(order);
+      } else if (mixture) {
+        moved = iterations == 1 ? equations.advance_extrapolated(order) : equations.advance_again();
       } else {
         equations.evaluate_unknown_outputs(RowEquations::At::candidate);
         moved = equations.advance(true);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "schemes/argument_loop.hpp"
+#include "schemes/division_loop.hpp"
 #include "schemes/explicit_loop.hpp"
 #include "schemes/row_kernel.hpp"
 #include "schemes/stencil_family.hpp"
@@ -157,13 +157,14 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
 
   bool evaluates_arguments() const override { return d == 1 && outputs_ == 1 && nonlinearity_ == Nonlinearity::values; }
   void evaluate_arguments(const ArgumentRow& row, double* out, const PackRange& packs) const override {
-    constexpr auto& point = map.quadrature[distinct.representative[0]];
-    const double t = row.t + time_offset(map.shape, point) * row.time_step;
-    const double x_offset = space_offset(map.shape, point) * row.space_step;
-    constexpr int stride = map.shape.placement == Placement::every_site ? 1 : 2;
-    if constexpr (d == 1)
-      argument_loop_for<stride>(
-          MixtureSlope<D>{lagrangian_.density, row.known_weight, Pack(t), row.positions, x_offset}, row, out, packs);
+    if constexpr (d == 1) argument_loop_for<stride>(slope(row), row, out, packs);
+  }
+  bool divides(int old, int parts) const override {
+    return evaluates_arguments() && stride == 1 && old == 2 && parts == 2;
+  }
+  RowChange divide(const DivisionRows& given, const RowIncrement& rows) const override {
+    if constexpr (d == 1 && stride == 1) return division_loop_for<2, 2>(slope(given.arguments), given, rows);
+    else return {};
   }
 
   std::span<const int> explicit_neighbours() const override {
@@ -176,6 +177,12 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
  private:
+  static constexpr int stride = map.shape.placement == Placement::every_site ? 1 : 2;
+  MixtureSlope<D> slope(const ArgumentRow& row) const {
+    constexpr auto& point = map.quadrature[distinct.representative[0]];
+    return {lagrangian_.density, row.known_weight, Pack(row.t + time_offset(map.shape, point) * row.time_step),
+            row.positions, space_offset(map.shape, point) * row.space_step};
+  }
   /// ℓ(φ, 0, 0)
   struct ValuesOnly {
     static constexpr int components = d;

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/division_loop.hpp"
+
+#include "schemes/argument_rows.hpp"
+#include "tests/catch.hpp"
+#include "tests/schemes/support.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+constexpr double h = 0.2, k = 0.3;
+constexpr int N = 61, halo = 2;
+
+/// A step of division of a scheme, from random rows with random coefficients.
+struct RandomDivision {
+  Lattice lattice = Lattice::circle(N, N * k);
+  Evolution evolution;
+  const RowKernel& kernel;
+  RowLayout layout{lattice, halo};
+  int parts, old;
+  RowBuffer y{layout, 1}, v{layout, 1}, past{layout, most_past_rows_divided}, argument{layout, 1}, known{layout, 1},
+      old_output{layout, 1}, output{layout, 1}, y_new{layout, 1}, v_new{layout, 1};
+  std::vector<double> seed;
+  DivisionRows rows{};
+  RowIncrement increment{};
+
+  RandomDivision(const std::string& scheme, int past_rows)
+      : evolution(evolution_of(problem_of("sine-gordon"), scheme, lattice, h)),
+        kernel(*evolution.system().families()[0]->row_kernel()),
+        parts(scheme == "triangle" ? 2 : 1),
+        old(scheme == "triangle" ? 2 : 0) {
+    Random random(7);
+    for (RowBuffer* row : {&y, &v, &past, &argument, &known, &old_output})
+      for (int r = 0; r < row->rows(); ++r) layout.scatter(random_rows(random, 1, N, 1)[0], row->row(r));
+    for (int j = 0; j < past_rows; ++j) seed.push_back(random(-1, 1));
+    rows = {.arguments = {.layout = &layout,
+                          .unknown = argument.row(0),
+                          .known = known.row(0),
+                          .known_weight = 0.3,
+                          .t = 1.1,
+                          .time_step = h,
+                          .space_step = k,
+                          .past_rows = past_rows,
+                          .coefficients = seed.data(),
+                          .ring = past.row(0),
+                          .stride = past.stride(),
+                          .slots = past.rows(),
+                          .slot = 1},
+            .y = y.row(0),
+            .old_output = old_output.row(0),
+            .output = output.row(0),
+            .constant = random(-1, 1),
+            .before = random(-1, 1),
+            .after = random(-1, 1),
+            .of_output = random(-1, 1),
+            .of_old = {random(-1, 1), random(-1, 1)}};
+    increment = {v.row(0), y.row(0), v_new.row(0), y_new.row(0), {}};
+    increment.look.argument = argument.row(0);
+    increment.look.parts = parts;
+    for (int p = 0; p < parts; ++p) increment.look.weights[p] = 0.5 - 0.2 * p;
+  }
+
+  /// What is extrapolated of the argument at a slot.
+  double extrapolated(std::ptrdiff_t at) {
+    if (seed.empty()) return argument.row(0)[at];
+    double u = 0;
+    for (std::size_t j = 0; j < seed.size(); ++j)
+      u += seed[j] * past.row((1 - static_cast<int>(j) + past.rows()) % past.rows())[at];
+    return u;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a division's loop evaluates, sums, makes the new row and looks at it as its formula says") {
+  for (const std::string scheme : {"triangle", "guo"})
+    for (int past_rows = 0; past_rows <= most_past_rows_divided; ++past_rows) {
+      if (past_rows == 1) continue;
+      CAPTURE(scheme, past_rows);
+      RandomDivision given(scheme, past_rows);
+      const RowLayout& layout = given.layout;
+      REQUIRE(given.kernel.divides(given.old, given.parts));
+      // The outputs by the loop that does nothing else.
+      RowBuffer u(layout, 1), E(layout, 1);
+      const auto begin = layout.at(0), end = layout.at(layout.packs());
+      for (auto at = begin; at < end; ++at) u.row(0)[at] = given.extrapolated(at);
+      ArgumentRow apart = given.rows.arguments;
+      apart.unknown = u.row(0), apart.past_rows = 0;
+      given.kernel.evaluate_arguments(apart, E.row(0), layout.all());
+
+      const RowChange all = given.kernel.divide(given.rows, given.increment);
+      double worst = 0, largest = 0, change = 0;
+      const auto hold = [&](double found, double expected) { worst = std::max(worst, std::abs(found - expected)); };
+      const double* const y = given.y.row(0);
+      const double* const old_row = given.old_output.row(0);
+      for (auto at = begin; at < end; ++at) {
+        const DivisionRows& r = given.rows;
+        double w = r.constant + r.after * (y[at + lanes] - y[at]) + r.before * (y[at - lanes] - y[at]) +
+                   r.of_output * E.row(0)[at];
+        if (given.old > 0) w += r.of_old[0] * old_row[at] + r.of_old[1] * old_row[at - lanes];
+        hold(given.output.row(0)[at], E.row(0)[at]);
+        hold(given.v_new.row(0)[at], given.v.row(0)[at] + w);
+        hold(given.y_new.row(0)[at], y[at] + given.v.row(0)[at] + w);
+        largest = std::max(largest, std::abs(given.y_new.row(0)[at]));
+        // The last pack looks beyond the end: that is the caller's business.
+        if (at + (given.parts - 1) * lanes >= end) continue;
+        double look = 0;
+        for (int p = 0; p < given.parts; ++p)
+          look += given.increment.look.weights[p] * given.y_new.row(0)[at + p * lanes];
+        hold(given.argument.row(0)[at], look);
+        change = std::max(change, std::abs(look - u.row(0)[at]));
+      }
+      CHECK(worst < 1e-14);
+      CHECK(max_or_nan(all.largest) == largest);
+      CHECK(max_or_nan(all.change) == Approx(change).epsilon(1e-14));
+    }
+}
+
+TEST_CASE("a division's loop shows what is not a number") {
+  for (const std::string scheme : {"triangle", "guo"})
+    for (int v : {0, 3, 7}) {
+      CAPTURE(scheme, v);
+      RandomDivision given(scheme, 3);
+      given.v.row(0)[given.layout.at(v) + 2] = std::nan("");
+      CHECK(std::isnan(max_or_nan(given.kernel.divide(given.rows, given.increment).largest)));
+    }
+}
+
+TEST_CASE("there are loops of division for the triangle and (5.15), and for their terms alone") {
+  const auto divides = [](const std::string& scheme, int old, int parts) {
+    return family_of(problem_of("sine-gordon"), scheme, h, k)->row_kernel()->divides(old, parts);
+  };
+  CHECK(divides("triangle", 2, 2));
+  CHECK_FALSE(divides("triangle", 1, 2));
+  CHECK_FALSE(divides("triangle", 2, 3));
+  CHECK(divides("guo", 0, 1));
+  CHECK_FALSE(divides("guo", 1, 1));
+  CHECK_FALSE(divides("vu-quoc-li", 0, 1));  // keeps its quotients
+  CHECK_FALSE(divides("hexagon", 2, 2));     // of a brick wall
+}
