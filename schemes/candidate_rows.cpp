@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/candidate_rows.hpp"
 
-#include <algorithm>
-
 namespace delf {
 
 void CandidateRows::hold_whole() {
@@ -13,16 +11,8 @@ void CandidateRows::hold_whole() {
 }
 
 void CandidateRows::hold_window(int packs, int first, int kept_until) {
-  const std::size_t doubles = static_cast<std::size_t>(packs) * lanes;
-  const bool nothing_held = is_whole_ || window_.rows() == 0;
-  if (window_.bytes() < at_.size() * doubles * sizeof(double)) window_ = RowBuffer(at_.size() * doubles);
-  for (std::size_t a = 0; a < at_.size(); ++a) {
-    double* const start = window_.row(0) + a * doubles;
-    if (!nothing_held && kept_until > first && first >= first_)
-      std::copy(at_[a] + layout_->at(first), at_[a] + layout_->at(kept_until), start);
-    at_[a] = start - layout_->at(first);
-  }
-  first_ = first;
+  window_.hold(packs, first, kept_until);
+  at_[0] = window_.row();
   is_whole_ = false;
 }
 

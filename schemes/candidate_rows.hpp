@@ -2,20 +2,20 @@
 #pragma once
 #include <vector>
 
-#include "schemes/row_layout.hpp"
+#include "schemes/pack_window.hpp"
 
 namespace delf {
 
 /// The candidate for y_{n+1}, d rows: kept apart from the row itself, so that a step can tell how far apart they are.
-/// Either whole, or a window of packs that slides along where rows outgrow the cache; memory is taken when first needed.
+/// Either whole, or, of one component, a window of packs; memory is taken when first needed.
 class CandidateRows {
  public:
   CandidateRows(const RowLayout& layout, int components)
-      : layout_(&layout), at_(static_cast<std::size_t>(components), nullptr) {}
+      : layout_(&layout), window_(layout), at_(static_cast<std::size_t>(components), nullptr) {}
 
   /// All packs and halos from here on. What a window held is gone.
   void hold_whole();
-  /// Room for `packs` packs from `first` on; of what is held, first … kept_until − 1 stays.
+  /// PackWindow::hold()
   void hold_window(int packs, int first, int kept_until);
   /// Whether all packs are held.
   bool is_whole() const { return is_whole_; }
@@ -27,10 +27,10 @@ class CandidateRows {
 
  private:
   const RowLayout* layout_;
-  RowBuffer whole_, window_;
+  RowBuffer whole_;
+  PackWindow window_;
   std::vector<double*> at_;
   bool is_whole_ = false;
-  int first_ = 0;
 };
 
 }  // namespace delf

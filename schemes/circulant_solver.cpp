@@ -158,20 +158,19 @@ RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* r
   });
 }
 
-/// u stands in the new increment's row until it is replaced.
+/// u stands in the work space until the new row is made of it.
 class CirculantSolver::Stream final : public RowStream {
  public:
   Stream(const CirculantSolver& solver, const RowSum& right_side, const RowIncrement& rows)
-      : solver_(solver), right_side_(right_side), u_(rows.v), increment_(rows) {}
+      : solver_(solver), right_side_(right_side), increment_(rows) {}
   PackRange last_packs() const override;
-  void begin() override;
-  int advance(int end) override;
+  void begin(double* u) override;
+  int advance(int end, double* u) override;
   double largest() const override { return max_or_nan(increment_.result().largest); }
 
  private:
   const CirculantSolver& solver_;
   const RowSum& right_side_;
-  double* u_;
   IncrementPass<0, Order::descending, Look::row> increment_;
   Pack last_ = 0.0, sums_ = 0.0, after_ = 0.0;
   int forward_ = 0, done_ = 0;
@@ -190,15 +189,15 @@ PackRange CirculantSolver::Stream::last_packs() const {
   return {packs - solver_.near_, packs};
 }
 
-void CirculantSolver::Stream::begin() {
-  right_side_.pass(*solver_.layout_, last_packs(), Recurrence{solver_.q_, u_});
-  last_ = solver_.entering(u_, Pack(0.0)).u;
+void CirculantSolver::Stream::begin(double* u) {
+  right_side_.pass(*solver_.layout_, last_packs(), Recurrence{solver_.q_, u});
+  last_ = solver_.entering(u, Pack(0.0)).u;
 }
 
-int CirculantSolver::Stream::advance(int end) {
+int CirculantSolver::Stream::advance(int end, double* u) {
   const RowLayout& layout = *solver_.layout_;
   const int near = solver_.near_, packs = layout.packs();
-  SummedRecurrence summed{{solver_.q_, u_, last_}, solver_.backward_.row(0), sums_};
+  SummedRecurrence summed{{solver_.q_, u, last_}, solver_.backward_.row(0), sums_};
   if (forward_ < near) {
     summed = right_side_.pass(layout, {forward_, std::min(end, near)}, summed);
     forward_ = std::min(end, near);
@@ -216,10 +215,10 @@ int CirculantSolver::Stream::advance(int end) {
   Pack x = end == packs ? after_ : Pack(0.0);
   const double q = solver_.q_;
   int v = end - 1;
-  for (; v >= ready; --v) x = Pack::load(u_ + layout.at(v)) + q * x;
+  for (; v >= ready; --v) x = Pack::load(u + layout.at(v)) + q * x;
   auto increment = increment_;
   for (; v >= done_; --v) {
-    x = Pack::load(u_ + layout.at(v)) + q * x;
+    x = Pack::load(u + layout.at(v)) + q * x;
     increment(layout.at(v), x);
   }
   increment_ = increment;

@@ -47,9 +47,16 @@ class ScalarSolver final : public LinearSolver {
    public:
     Stream(const RowLayout& layout, const RowSum& right_side, const RowIncrement& rows)
         : layout_(layout), right_side_(right_side), increment_(rows) {}
-    int advance(int end) override {
-      increment_ = right_side_.pass(layout_, {done_, end}, increment_);
-      return done_ = end;
+    int advance(int end, double* w) override {
+      right_side_.pass(layout_, {summed_, end},
+                       [w](std::ptrdiff_t at, Pack sum) __attribute__((always_inline)) { sum.store(w + at); });
+      summed_ = end;
+      // The next sums look back at neighbours.
+      const int ready = end == layout_.packs() ? end : std::max(done_, end - layout_.halo());
+      auto increment = increment_;
+      for (; done_ < ready; ++done_) increment(layout_.at(done_), Pack::load(w + layout_.at(done_)));
+      increment_ = increment;
+      return done_;
     }
     double largest() const override { return max_or_nan(increment_.result().largest); }
 
@@ -57,7 +64,7 @@ class ScalarSolver final : public LinearSolver {
     const RowLayout& layout_;
     const RowSum& right_side_;
     IncrementPass<0, Order::ascending, Look::row> increment_;
-    int done_ = 0;
+    int summed_ = 0, done_ = 0;
   };
 
  public:

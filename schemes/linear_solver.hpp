@@ -15,15 +15,17 @@
 namespace delf {
 
 /// A step strip by strip, from the first pack to the last, for rows that outgrow the cache: what comes before and after
-/// finds a strip in the cache.
+/// finds a strip in the cache. The new row may be written over the old one: neighbours are read before.
 class RowStream {
  public:
   virtual ~RowStream() = default;
   /// Packs whose right side must be ready before begin().
   virtual PackRange last_packs() const { return {0, 0}; }
-  virtual void begin() {}
-  /// The right side is ready up to pack `end`. Returns up to where the new row is done.
-  virtual int advance(int end) = 0;
+  /// `work` has room for them; pack v stands at layout.at(v).
+  virtual void begin(double* /*work*/) {}
+  /// The right side is ready up to pack `end`. Returns up to where the new row is done. `work` has room from there on, and
+  /// holds what was put there.
+  virtual int advance(int end, double* work) = 0;
   virtual double largest() const = 0;
 };
 

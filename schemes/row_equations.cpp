@@ -21,7 +21,9 @@ RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, S
       equations_(assemble(system, plan)),
       y_slots_(rows.rows_held()),
       v_slots_(rows.increments_held()),
-      candidate_(layout_, d_) {
+      candidate_(layout_, d_),
+      work_window_(layout_),
+      right_side_window_(layout_) {
   build_solvers();
   build_loop();
   build_outputs();
@@ -29,24 +31,28 @@ RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, S
   build_sums();
   if (mixture) build_arguments(*mixture, most_order);
   build_looks();
+  if (can_go_in_place()) make_room_in_place();
   build_places();
 }
 
-void RowEquations::begin(std::int64_t n) {
+void RowEquations::begin(std::int64_t n, bool in_place) {
   n_ = n;
+  in_place_ = in_place;
   if (is_one_loop()) return;
-  y_slots_.at(n);
-  v_slots_.at(n);
-  for (Outputs& o : outputs_) o.slots.at(n);
+  const std::int64_t place = rows_.place(n);
+  y_slots_.at(place);
+  v_slots_.at(place);
+  for (Outputs& o : outputs_) o.slots.at(place);
   if (places_.empty()) {
     find_bases();
   } else {
-    period_.at(n);
+    period_.at(place);
     std::copy_n(places_.data() + static_cast<std::size_t>(period_(0)) * bases_.size(), bases_.size(), bases_.data());
   }
   for (int a = 0; a < d_; ++a) {
     const auto at = static_cast<std::size_t>(a);
-    double *const v = rows_.v_at(v_slots_(-1), a), *const y = rows_.y_at(y_slots_(-1), a);
+    const int newest = in_place ? 0 : -1;
+    double *const v = rows_.v_at(v_slots_(newest), a), *const y = rows_.y_at(y_slots_(newest), a);
     RowIncrement& increment = increments_[at];
     increment.v_before = equations_.correction_form ? v : rows_.v_at(v_slots_(0), a);
     increment.y_before = rows_.y_at(y_slots_(0), a);
@@ -78,7 +84,7 @@ void RowEquations::find_bases() {
 void RowEquations::build_places() {
   if (is_one_loop()) return;
   int period = std::lcm(rows_.rows_held(), rows_.increments_held());
-  for (const Outputs& o : outputs_) period = std::lcm(period, std::max(1, o.rows()));
+  for (const Outputs& o : outputs_) period = std::lcm(period, std::max(1, o.held));
   for (RowSum& sum : sums_) sum.bind(bases_.data());
   for (RowSum& sum : stored_) sum.bind(bases_.data());
   constexpr int longest = 32;
@@ -151,10 +157,10 @@ void RowEquations::evaluate_unknown_outputs(At at) {
       if (o.reads_unknown_row(age)) evaluate_in_ring(o, age, at);
 }
 
-void RowEquations::evaluate_in_ring(Outputs& o, int age, At at, const PackRange& packs) {
+void RowEquations::evaluate_in_ring(Outputs& o, int age, At at) {
   const int count = o.kernel->outputs(), slot = o.slots(-age);
   for (int c = 0; c < count; ++c) slab_out_[static_cast<std::size_t>(c)] = o.ring.row(slot * count + c);
-  evaluate(o, age, slab_out_.data(), at, packs);
+  evaluate(o, age, slab_out_.data(), at, where_read(o));
 }
 
 void RowEquations::evaluate_known_outputs() {
@@ -167,12 +173,12 @@ bool RowEquations::reads_unknown_row() const {
 }
 
 /// −E of some packs: bricks differ by the parity of row + site.
-void RowEquations::store_right_sides(const PackRange& packs) {
+void RowEquations::store_right_sides(const PackRange& packs, double* const* to) {
   const std::int64_t equation_row = n_ + 1 - equations_.bulk[0].shift;
   for (int a = 0; a < d_; ++a) {
     const auto at = static_cast<std::size_t>(a);
-    double* const E = stored_right_side(a);
-    const auto store = [E](std::ptrdiff_t to, Pack sum) __attribute__((always_inline)) { sum.store(E + to); };
+    double* const E = to[a];
+    const auto store = [E](std::ptrdiff_t where, Pack sum) __attribute__((always_inline)) { sum.store(E + where); };
     if (!bricks_) sums_[at].pass(layout_, packs, store);
     else
       for (int first = packs.first; first < packs.first + 2; ++first)
@@ -190,7 +196,11 @@ RowEquations::Advance RowEquations::advance(bool compared) {
     look.parts = compared && looks_on_the_way_ ? static_cast<int>(looks_[0].parts.size()) : 0;
     look.expected = candidate_.row(a);
   }
-  if (is_stored_) store_right_sides(layout_.all());
+  if (is_stored_) {
+    double* to[RowKernel::most_components];
+    for (int a = 0; a < d_; ++a) to[a] = stored_right_side(a);
+    store_right_sides(layout_.all(), to);
+  }
   if (!equations_.exceptional.empty()) set_exceptional_sites();
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
   RowChange all = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides, increments_.data(), w_rows_.data());
@@ -211,9 +221,33 @@ RowEquations::Advance RowEquations::advance(bool compared) {
   return {max_or_nan(all.largest), max_or_nan(all.change)};
 }
 
+bool RowEquations::can_go_in_place() const {
+  if (!is_streamed_ || outputs_[0].rows() > 2) return false;
+  for (const Term& t : equations_.bulk[0].terms)
+    if (t.source == Source::increment) return false;
+  for (const Argument& argument : outputs_[0].kernel->arguments())
+    for (const Argument::Part& part : argument.parts)
+      if (outputs_[0].newest + part.vertex.time < 0) return false;
+  return !outputs_[0].kernel->arguments().empty();
+}
+
+/// Windows; and where steps in place write over the newest outputs, those of the row that can be gone back to, and those
+/// of a next step that is not in place, lie beside.
+void RowEquations::make_room_in_place() {
+  const int window = window_packs(solver_[0]->stream(layout_, right_side(0), {})->last_packs());
+  for (PackWindow& out : output_windows_) out.hold(window, 0, 0);
+  work_window_.hold(window, 0, 0);
+  if (is_stored_) right_side_window_.hold(window, 0, 0);
+  Outputs& o = outputs_[0];
+  if (o.rows() < 2) return;
+  o.held = o.rows() + 1;
+  o.slots = RingSlots(o.held);
+  o.ring = RowBuffer(layout_, o.held * o.kernel->outputs());
+}
+
 RowEquations::Advance RowEquations::advance_streamed(const std::function<void(PackRange)>& find) {
   Outputs& o = outputs_[0];
-  const int packs = layout_.packs(), halo = layout_.halo();
+  const int packs = layout_.packs(), halo = layout_.halo(), count = o.kernel->outputs();
   const PackRange read = where_read(o);
   int reach = 0;
   for (const Argument& look : looks_)
@@ -222,34 +256,69 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   const auto stream = solver_[0]->stream(layout_, right_side(0), increments_[0]);
   const PackRange last = stream->last_packs();
   const int window = window_packs(last), strip = strip_packs(last);
-  if (last.first < last.last) {
-    if (find) {
-      candidate_.hold_window(window, last.first - halo, 0);
-      find({last.first - halo, packs + halo});
+  const auto hold_candidate = [&](int first, int kept_until) {
+    if (find) candidate_.hold_window(window, first, kept_until);
+  };
+  // What would stand in a row beside the old one has windows where there is none.
+  const auto hold = [&](PackWindow& place, double* beside, int first, int kept_until) {
+    if (!in_place_) return beside;
+    place.hold(window, first, kept_until);
+    return place.row();
+  };
+  const auto hold_outputs = [&](int first, int kept_until) {
+    for (int c = 0; c < count; ++c) {
+      double* const out = hold(output_windows_[static_cast<std::size_t>(c)], o.ring.row(o.slots(-o.newest) * count + c),
+                               first, kept_until);
+      slab_out_[static_cast<std::size_t>(c)] = out;
+      bases_[static_cast<std::size_t>(o.base + (o.newest - o.oldest) * count + c)] = out;
     }
-    evaluate_in_ring(o, o.newest, At::candidate, {last.first + o.lowest, read.last});
-    if (is_stored_) store_right_sides(last);
+  };
+  const auto sum_right_sides = [&](PackRange of) {
+    if (!is_stored_) return;
+    double* const to = hold(right_side_window_, stored_right_side(0), of.first, of.first);
+    bases_[static_cast<std::size_t>(E_base_)] = to;
+    store_right_sides(of, &to);
+  };
+  const auto work = [&](int first, int kept_until) {
+    return hold(work_window_, increments_[0].v, first, kept_until);
+  };
+  double* ends = nullptr;
+  if (last.first < last.last) {
+    hold_candidate(last.first - halo, 0);
+    if (find) find({last.first - halo, packs + halo});
+    hold_outputs(last.first + o.lowest, 0);
+    evaluate(o, o.newest, slab_out_.data(), At::candidate, {last.first + o.lowest, read.last});
+    sum_right_sides(last);
+    ends = work(last.first, last.first);
   }
-  stream->begin();
-  if (find) {
-    candidate_.hold_window(window, -halo, 0);
-    find({-halo, halo});
-  }
-  int found = halo, evaluated = read.first, stored = 0, changed = 0;
+  stream->begin(ends);
+  hold_candidate(-halo, 0);
+  if (find) find({-halo, halo});
+  const int slot_of_old = o.slots(o.rows() > 1 ? 1 - o.newest : -o.newest);
+  int found = halo, evaluated = read.first, kept = read.first, summed = 0, done = 0, changed = 0;
   double change = 0;
   for (int end = 0; end < packs;) {
     end = packs - end < 2 * strip ? packs : end + strip;
     const bool all = end == packs;
-    if (find) {
-      candidate_.hold_window(window, std::max(-halo, changed - 2 * halo), found);
-      find({found, all ? packs + halo : end + halo});
-    }
+    hold_candidate(std::max(-halo, changed - 2 * halo), found);
+    if (find) find({found, all ? packs + halo : end + halo});
     found = end + halo;
-    evaluate_in_ring(o, o.newest, At::candidate, {evaluated, all ? read.last : end + o.highest});
-    evaluated = end + o.highest;
-    if (is_stored_) store_right_sides({stored, end});
-    stored = end;
-    const int done = stream->advance(end);
+    const int evaluated_until = all ? read.last : end + o.highest;
+    hold_outputs(kept, evaluated);
+    evaluate(o, o.newest, slab_out_.data(), At::candidate, {evaluated, evaluated_until});
+    evaluated = evaluated_until;
+    sum_right_sides({summed, end});
+    double* const room = work(done, summed);
+    summed = end;
+    done = stream->advance(end, room);
+    // Outputs take the place of those that are no longer read.
+    const int keep_until = all ? read.last : end + o.lowest;
+    for (int c = 0; c < count && in_place_; ++c) {
+      const double* const from = slab_out_[static_cast<std::size_t>(c)];
+      std::copy(from + layout_.at(kept), from + layout_.at(keep_until),
+                o.ring.row(slot_of_old * count + c) + layout_.at(kept));
+    }
+    kept = keep_until;
     if (!all && done - reach > changed) {
       change = larger_or_nan(largest_change(looks_, {changed, done - reach}), change);
       changed = done - reach;
@@ -304,6 +373,12 @@ std::size_t RowEquations::bytes_to_come(int parts, bool residual) const {
   return total;
 }
 
+std::size_t RowEquations::window_bytes() const {
+  std::size_t total = work_window_.bytes() + right_side_window_.bytes();
+  for (const PackWindow& out : output_windows_) total += out.bytes();
+  return total;
+}
+
 std::size_t RowEquations::output_bytes() const {
   std::size_t total = 0;
   for (const Outputs& o : outputs_) total += o.ring.bytes();
@@ -315,7 +390,7 @@ std::size_t RowEquations::work_bytes() const {
   std::size_t total = layout_.bytes();
   total += places_.size() * sizeof(const double*);
   for (const RowBuffer* b : {&w_, &scratch_, &positions_, &edges_}) total += b->bytes();
-  return total + candidate_.bytes() + (arguments_ ? arguments_->bytes() : 0);
+  return total + window_bytes() + candidate_.bytes() + (arguments_ ? arguments_->bytes() : 0);
 }
 
 }  // namespace delf

@@ -28,8 +28,9 @@ class RowEquations {
   RowEquations(const LatticeSystem&, const SolvePlan&, SectionRows&, int history,
                const std::optional<Mixture>& = std::nullopt, int most_order = 0);
 
-  /// Finds the rows for the step from row n. What follows is about this step.
-  void begin(std::int64_t n);
+  /// Finds the rows for the step from row n. What follows is about this step. `in_place`: what it makes is written over
+  /// what it is made from, if can_go_in_place().
+  void begin(std::int64_t n, bool in_place = false);
 
   /// A step is one loop: no outputs, no matrix.
   bool is_one_loop() const { return one_loop_ != nullptr; }
@@ -66,6 +67,8 @@ class RowEquations {
   Advance advance_again() { return advance_at(argument_row()); }
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
+  /// Steps that are streamed read no rows before y_n, v_n and the newest outputs.
+  bool can_go_in_place() const;
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
   /// stream through the rows. A candidate that is found on the way is not kept.
   Advance advance_streamed(const std::function<void(PackRange)>& find);
@@ -102,6 +105,7 @@ class RowEquations {
     int first_time = 0, last_time = 0;  ///< of the pattern
     int lowest = 0, highest = 0;        ///< shifts at which equations read
     int base = 0;                       ///< where its rows stand among bases_
+    int held = 0;                       ///< rows of the ring
 
     int rows() const { return newest - oldest + 1; }
     bool reads_unknown_row(int age) const { return age + kernel->outputs_read_until() >= 1; }
@@ -114,17 +118,20 @@ class RowEquations {
   void build_loop();
   void build_arguments(const Mixture&, int most_order);
   void build_looks();
+  void make_room_in_place();
   void build_places();
   void find_bases();
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
   int scratch_rows_of_sums() const, residual_rows() const;
+  /// Of a stream, without the candidate's.
+  std::size_t window_bytes() const;
   /// An increment is held that neither the residual nor a seed reads.
   bool has_spare_increment() const { return !reads_unknown_row() && rows_.increments_held() >= ages_ + 2; }
   /// Packs of a strip: long against what solving overlaps; rows of it fit into the first level of the cache if that is
   /// little, or else ten of them into the second.
   static int strip_packs(PackRange last) { return std::clamp(6 * (last.last - last.first), 96, 1024); }
-  /// That a candidate needs room for where a stream goes by strips.
+  /// That windows need room for where a stream goes by strips.
   int window_packs(PackRange last) const {
     return last.last - last.first + 2 * strip_packs(last) + 8 * layout_.halo();
   }
@@ -136,8 +143,7 @@ class RowEquations {
   bool brick_exists(const Term&, int equation_shift, int parity) const;
   PackRange where_read(const Outputs&) const;
   void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&);
-  void evaluate_in_ring(Outputs& o, int age, At at) { evaluate_in_ring(o, age, at, where_read(o)); }
-  void evaluate_in_ring(Outputs&, int age, At, const PackRange&);
+  void evaluate_in_ring(Outputs&, int age, At);
   /// Those at which stencils anchored `age` rows after row n exist.
   PackRange packs_of(const Outputs& o, int age, PackRange packs) const {
     if (o.family->pattern().placement != Placement::brick_wall) return packs;
@@ -156,7 +162,7 @@ class RowEquations {
   const RowSum& right_side(int a) const { return (is_stored_ ? stored_ : sums_)[static_cast<std::size_t>(a)]; }
   /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
   double* stored_right_side(int a) { return rows_.y_at(y_slots_(-1), a); }
-  void store_right_sides(const PackRange&);
+  void store_right_sides(const PackRange&, double* const* to);
   void set_exceptional_sites();
   double value_at(const SiteEquation&, bool unknown_too, double* absolute) const;
 
@@ -172,6 +178,7 @@ class RowEquations {
 
   // Rows of the step from n: y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E and w, d rows each.
   std::int64_t n_ = -1;
+  bool in_place_ = false;
   RingSlots y_slots_, v_slots_;
   int ages_ = 1;
   std::vector<const double*> bases_;
@@ -184,6 +191,8 @@ class RowEquations {
   bool is_stored_ = false;  ///< right sides are summed to a row first: bricks, and walls
   RowBuffer w_, scratch_, positions_;
   CandidateRows candidate_;
+  std::vector<PackWindow> output_windows_;        ///< of a stream: out_c at the candidate
+  PackWindow work_window_, right_side_window_;  ///< and its solver's work space; −E, where that is stored
   std::optional<ArgumentRows> arguments_;
   std::optional<DivisionRows> division_;  ///< if a step at arguments is one loop
   std::vector<Argument> whole_{{{{Site{}, 1.0}}}},

@@ -15,6 +15,8 @@ void RowEquations::build_looks() {
   if (d_ == 1 && equations_.exceptional.empty() && !solver_[1] && !equations_.correction_form && turn_ == 0 &&
       one_age && !arguments_ && layout_.packs() >= packs_in_cache)
     is_streamed_ = solver_[0]->stream(layout_, right_side(0), {}) != nullptr;
+  if (is_streamed_)
+    for (int c = 0; c < outputs_[0].kernel->outputs(); ++c) output_windows_.emplace_back(layout_);
   for (const Outputs& o : outputs_) {
     const Argument whole{{{Site{}, 1.0}}};
     const auto& arguments = o.kernel->arguments();
@@ -93,7 +95,7 @@ double RowEquations::gain() {
 
 void RowEquations::make_row_the_candidate() {
   candidate_.hold_whole();
-  for (int a = 0; a < d_; ++a) std::copy_n(rows_.y_at(y_slots_(-1), a), layout_.doubles(), candidate_.row(a));
+  for (int a = 0; a < d_; ++a) std::copy_n(increments_[static_cast<std::size_t>(a)].y, layout_.doubles(), candidate_.row(a));
 }
 
 namespace {
@@ -132,7 +134,7 @@ double RowEquations::largest_change(const std::vector<Argument>& looks, PackRang
   Pack largest(0.0);
   for (const Argument& look : looks)
     for (int a = 0; a < d_; ++a) {
-      const double *y = rows_.y_at(y_slots_(-1), a), *z = candidate_.row(a);
+      const double *y = increments_[static_cast<std::size_t>(a)].y, *z = candidate_.row(a);
       switch (look.parts.size()) {
         case 1:
           largest = max_or_nan(largest_difference<1>(layout_, packs, look, y, z), largest);

@@ -71,7 +71,8 @@ void RowEquations::build_outputs() {
     for (const auto& equation : equations_.bulk) scan(equation);
     for (const auto& special : equations_.exceptional) scan(special.equation);
     if (oldest <= newest) o.oldest = oldest, o.newest = newest;
-    o.slots = RingSlots(std::max(1, o.rows()));
+    o.held = o.rows();
+    o.slots = RingSlots(std::max(1, o.held));
     if (!is_one_loop()) o.ring = RowBuffer(layout_, o.rows() * o.kernel->outputs());
     slab_rows_.resize(std::max(slab_rows_.size(), static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_)));
     slab_out_.resize(std::max(slab_out_.size(), static_cast<std::size_t>(o.kernel->outputs())));

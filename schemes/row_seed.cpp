@@ -12,7 +12,8 @@
 namespace delf {
 namespace {
 
-constexpr int steps_between_looks = 64;
+// Looks are rare where steps in place, which keep no past rows, have to pause for them.
+constexpr int steps_between_looks = 64, where_rows_are_long = 256;
 constexpr int highest_order = 11;
 // A seed of order p misses (1 − e^{−iωh})^{p+1} of a wave e^{iωt}. What an accepted iteration leaves of that is in
 // phase with the wave's velocity, and damps it or feeds it step after step. Over 5000 collisions (N = 255, h = k/8,
@@ -41,6 +42,7 @@ RowSeed::RowSeed(SectionRows& rows, double time_step, int most_order, const std:
       v_slots_(rows.increments_held()),
       time_step_(time_step),
       most_order_(most_order),
+      period_(fits_cache(rows.sites()) ? steps_between_looks : where_rows_are_long),
       looks_(looks),
       bases_(static_cast<std::size_t>(most_order) + 1),
       arguments_(arguments) {
@@ -56,8 +58,8 @@ void RowSeed::find(std::int64_t n, int order, double* const* candidate, const Pa
   order = static_cast<int>(std::min<std::int64_t>({order, n, most_order_}));
   const RowLayout& layout = rows_.layout();
   RowSum& sum = sums_[static_cast<std::size_t>(order)];
-  y_slots_.at(n);
-  v_slots_.at(n);
+  y_slots_.at(rows_.place(n));
+  v_slots_.at(rows_.place(n));
   for (int a = 0; a < rows_.components(); ++a) {
     bases_[0] = rows_.y_at(y_slots_(0), a);
     int slot = v_slots_(0);
@@ -135,11 +137,11 @@ void RowSeed::measure(double* errors) {
 }
 
 void RowSeed::choose(std::int64_t n, double tolerance, double contraction, double weight) {
-  const bool due = looked_at_ < 0 || n >= looked_at_ + steps_between_looks || n <= most_order_ + 1;
+  const bool due = looked_at_ < 0 || n >= looked_at_ + period_ || n <= most_order_ + 1;
   if (!due) return;
   looked_at_ = n;
-  y_slots_.at(n);
-  v_slots_.at(n);
+  y_slots_.at(rows_.place(n));
+  v_slots_.at(rows_.place(n));
   find_span();
   const int most = static_cast<int>(std::min<std::int64_t>(most_order_, n - 1));
   order_ = std::max(1, most);

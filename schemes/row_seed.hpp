@@ -30,6 +30,11 @@ class RowSeed {
   /// Forgets the order: rows have been set anew.
   void restart() { looked_at_ = -1; }
   int order() const { return order_; }
+  /// Whether neither the step from row n nor those that choose() will look back at from its next look read more than the
+  /// newest increment.
+  bool reads_one_increment(std::int64_t n) const {
+    return order_ == 1 && looked_at_ >= 0 && n > most_order_ + 1 && n < looked_at_ + period_ - (most_order_ + 1);
+  }
   /// Chooses the order for the step from row n, now and then, by how well each would have foretold the newest row:
   /// each change is `contraction` times the last, until `weight` times it is below tolerance · span().
   void choose(std::int64_t n, double tolerance, double contraction, double weight);
@@ -53,6 +58,7 @@ class RowSeed {
   RingSlots y_slots_, v_slots_;
   double time_step_;
   int most_order_, order_ = 1;
+  int period_;  ///< steps from look to look
   std::int64_t looked_at_ = -1;
   double span_ = 0;
   std::vector<RowSum> sums_;  ///< by order

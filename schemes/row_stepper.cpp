@@ -39,9 +39,10 @@ struct RowStepper::Impl {
   int iterations = 0;
   int rows_known = 0;  ///< newest rows that have not been written over
   std::vector<double> values_of_parts;
-  /// A row that lies beside the one that loops write over, with its increment; −1: none.
-  std::int64_t kept_row = -1;
-  std::vector<const double*> kept_y, kept_v;
+  /// A row that lies beside the one that steps in place write over, with all that a step needs; −1: none. What was known
+  /// when it was the newest.
+  std::int64_t kept_row = -1, kept_overwritten = 0;
+  double kept_largest[2] = {0, 0};
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
       : system(s),
@@ -53,7 +54,7 @@ struct RowStepper::Impl {
         contraction(iterative ? std::optional(Contraction(s, p)) : std::nullopt),
         stiff(iterative && contraction->is_stiff()),
         mixture(iterative && RowSeed::fits_cache(s.lattice().sites()) ? Mixture::of(s) : std::nullopt),
-        rows(s, std::max(1, s.width()), history + 1, std::max(history - 1, mixture ? 1 : seed_rows()) + 1, o.turn),
+        rows(s, std::max(1, s.width()), history + 1, increments(), o.turn),
         equations(s, p, rows, history, mixture, seed_rows()),
         seed(rows, s.time_step(), seed_rows(), equations.looks(), equations.arguments()) {
     // Made now, so that memory that is short is told at the start.
@@ -64,26 +65,93 @@ struct RowStepper::Impl {
   }
 
   int seed_rows() const { return iterative ? RowSeed::rows_for(options.seed_order, system.lattice().sites()) : 2; }
+  /// The new one too; and where steps in place may be followed by one that is not, that of the kept row besides.
+  int increments() const {
+    const int read = std::max(history - 1, mixture ? 1 : seed_rows());
+    return (iterative && !RowSeed::fits_cache(system.lattice().sites()) ? std::max(read, 2) : read) + 1;
+  }
   const RowLayout& layout() const { return rows.layout(); }
 
   void step(bool looked_at) {
     const FlushDenormals guard;
     iterations = 0;
-    equations.begin(n);
+    looked_at = looked_at || options.fibre == Fibre::circle;  // whose rows are compared
     double value = 0;
     if (equations.is_one_loop()) {
-      value = loop(looked_at || options.fibre == Fibre::circle);  // whose rows are compared
-    } else {
-      equations.evaluate_known_outputs();
-      if (!iterative) value = solve_once();
-      else if (stiff || !iterate(value)) value = follow_root();
+      equations.begin(n);
+      value = loop(looked_at);
+    } else if (looked_at || !step_in_place(value)) {
+      value = step_beside();
     }
     if (overflowed(value)) report_not_finite();
     if (options.fibre == Fibre::circle) check_wrapped_differences();
+    row_is_found(value);
+    ++n;
+  }
+  void row_is_found(double value) {
     largest[1] = largest[0];
     largest[0] = value;
     rows_known = std::min(rows_known + 1, rows.rows_held());
-    ++n;
+  }
+
+  /// A step that leaves the row before it where it is.
+  double step_beside() {
+    const double before[2] = {largest[0], largest[1]};
+    equations.begin(n);
+    equations.evaluate_known_outputs();
+    double value = 0;
+    if (!iterative) value = solve_once();
+    else if (stiff || !iterate(value)) {
+      if (rows_known < history) {
+        step_again();
+        equations.begin(n);
+      }
+      value = follow_root();
+    }
+    if (iterative && !stiff && iterations == 1 && equations.can_go_in_place()) keep(before);
+    else kept_row = -1;
+    return value;
+  }
+
+  /// An implicit step in one stream through the rows, written over the old ones: these would else come from memory, and
+  /// the new ones too. False if it would take a second iteration, or looks back soon: nothing is changed then.
+  bool step_in_place(double& value) {
+    if (kept_row < 0 || n == kept_row || !seed.reads_one_increment(n)) return false;
+    equations.begin(n, true);
+    rows_known = 0;
+    const RowEquations::Advance moved = advance_streamed(1);
+    const double next_change = contraction_now();
+    iterations = 1;
+    value = moved.largest;
+    if (!overflowed(value) && is_enough(moved.change, next_change, value)) {
+      rows.overwrite_newest();
+      return true;
+    }
+    iterations = 0;
+    step_again();
+    return false;
+  }
+
+  /// The steps from the kept row on once more, each beside the row before. They took one iteration.
+  void step_again() {
+    const std::int64_t last = n;
+    go_back();
+    for (; n < last; ++n) {
+      equations.begin(n);
+      row_is_found(advance_streamed(1).largest);
+    }
+    kept_row = -1;
+  }
+  void go_back() {
+    n = kept_row;
+    rows.restore(kept_overwritten);
+    std::ranges::copy(kept_largest, largest);
+    rows_known = 1;
+  }
+  void keep(const double* largest_before) {
+    kept_row = n;
+    kept_overwritten = rows.overwritten();
+    std::copy_n(largest_before, 2, kept_largest);
   }
 
   /// An explicit step of one loop; in place if no one looks at the row. Returns √Σy².
@@ -98,7 +166,7 @@ struct RowStepper::Impl {
       if (rows_known < 2) value = loop_again();
       kept_row = -1;  // from here on nothing is written over
     } else if (!in_place) {
-      keep();
+      keep(largest);
     }
     return value;
   }
@@ -124,34 +192,16 @@ struct RowStepper::Impl {
     return value;
   }
 
-  void keep() {
-    kept_y.resize(static_cast<std::size_t>(d)), kept_v.resize(static_cast<std::size_t>(d));
-    for (int a = 0; a < d; ++a) {
-      kept_y[static_cast<std::size_t>(a)] = rows.y(n, a);
-      kept_v[static_cast<std::size_t>(a)] = rows.v(n, a);
-    }
-    kept_row = n;
-  }
-
   /// The steps from the kept row on once more, each beside the row before.
   double loop_again() {
     const std::int64_t last = n;
-    n = kept_row;
+    go_back();
     equations.forget_rows();
-    const auto put = [&](const double* kept, double* row) {
-      if (row != kept) std::copy_n(kept, layout().doubles(), row);
-    };
-    for (int a = 0; a < d; ++a) {
-      put(kept_y[static_cast<std::size_t>(a)], rows.y(n, a));
-      put(kept_v[static_cast<std::size_t>(a)], rows.v(n, a));
-    }
-    rows_known = 1;
-    double value = 0;
     for (;; ++n) {
       equations.begin(n);
-      value = loop_in_parts(false);
+      const double value = loop_in_parts(false);
       if (n == last) return value;
-      rows_known = std::min(rows_known + 1, rows.rows_held());
+      row_is_found(value);
     }
   }
 
@@ -190,44 +240,54 @@ struct RowStepper::Impl {
     return std::max(tolerance * span, 4 * std::numeric_limits<double>::epsilon() * size);
   }
 
-  /// Simplified Newton with the constant part. False when it does not contract, or not fast enough.
-  bool iterate(double& value) {
-    const double tolerance = std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon());
+  /// By which one more iteration's change would be less.
+  double contraction_now() {
     if (contracted < 0 || contraction->is_outgrown(largest[0]))
       contracted = contraction->next_change(largest[0], weight, gain);
-    double next_change = contracted;
-    // The smallest tolerances ask for all that rounding allows: there nothing is left to an estimate.
-    const bool estimates = options.tolerance >= smallest_estimated;
-    seed.choose(n, tolerance, next_change, estimates ? next_change : 1 / weight);
+    return contracted;
+  }
+  /// The smallest tolerances ask for all that rounding allows: there nothing is left to an estimate.
+  bool estimates() const { return options.tolerance >= smallest_estimated; }
+  /// One more iteration would change the row by no more than what it makes of the last change.
+  bool is_enough(double change, double next_change, double value) const {
+    const double enough = within(std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()),
+                                 std::max({value, largest[0], largest[1]}));
+    return change <= weight * enough || (estimates() && next_change * change <= enough);
+  }
+
+  RowEquations::Advance advance_streamed(int order) {
+    return equations.advance_streamed(
+        [this, order](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); });
+  }
+  RowEquations::Advance advance(int order) {
+    if (mixture) return iterations == 1 ? equations.advance_extrapolated(order) : equations.advance_again();
+    if (equations.is_streamed()) return iterations == 1 ? advance_streamed(order) : equations.advance_streamed({});
+    equations.evaluate_unknown_outputs(RowEquations::At::candidate);
+    return equations.advance(true);
+  }
+
+  /// Simplified Newton with the constant part. False when it does not contract, or not fast enough.
+  bool iterate(double& value) {
+    double next_change = contraction_now();
+    seed.choose(n, std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()), next_change,
+                estimates() ? next_change : 1 / weight);
     const int order = seed.order();
     if (!mixture && !equations.is_streamed()) take_seed(order);
     double before = std::numeric_limits<double>::infinity();
     while (iterations < options.max_iterations) {
       ++iterations;
-      RowEquations::Advance moved;
-      if (equations.is_streamed()) {
-        const auto find = [&](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); };
-        moved = equations.advance_streamed(iterations == 1 ? std::function<void(PackRange)>(find)
-                                                           : std::function<void(PackRange)>());
-      } else if (mixture) {
-        moved = iterations == 1 ? equations.advance_extrapolated(order) : equations.advance_again();
-      } else {
-        equations.evaluate_unknown_outputs(RowEquations::At::candidate);
-        moved = equations.advance(true);
-      }
+      const RowEquations::Advance moved = advance(order);
       value = moved.largest;
       const double change = moved.change;
       // A field that overflowed has no root to look for.
       if (overflowed(value)) report_not_finite();
-      const double scale = std::max({value, largest[0], largest[1]});
-      const double enough = within(tolerance, scale);
-      // One more iteration would change the row by no more than what it makes of the last change.
-      if (change <= weight * enough || (estimates && next_change * change <= enough)) return true;
-      if (estimates && iterations > 1) next_change = std::min(next_change, 2 * equations.whole_change() / before);
-      if (estimates && next_change * change <= enough) return true;
+      if (is_enough(change, next_change, value)) return true;
+      if (estimates() && iterations > 1) next_change = std::min(next_change, 2 * equations.whole_change() / before);
+      if (is_enough(change, next_change, value)) return true;
       // Changes that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
       if (iterations >= 3 && change > 0.25 * before)
-        return change <= 64 * std::numeric_limits<double>::epsilon() * scale;
+        return change <=
+               64 * std::numeric_limits<double>::epsilon() * std::max({value, largest[0], largest[1]});
       before = change;
       equations.make_row_the_candidate();
     }
@@ -319,7 +379,7 @@ int RowStepper::starting_rows() const { return impl_->history; }
 
 void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   Impl& s = *impl_;
-  s.rows.restart();
+  s.rows.restore(0);
   s.equations.forget_rows();
   s.rows_known = std::min(static_cast<int>(rows.size()), s.rows.rows_held());
   s.kept_row = -1;

@@ -28,8 +28,11 @@ class SectionRows {
   /// Lets the next row and its increment take the place of the newest instead of the oldest: the one before it is then
   /// gone.
   void overwrite_newest() { ++overwritten_; }
-  /// Before rows are set anew.
-  void restart() { overwritten_ = 0; }
+  /// Where a row comes in the rings: rows that took the place of the one before do not count.
+  std::int64_t place(std::int64_t row) const { return row - overwritten_; }
+  /// How often that was done; to go back to a time when it had been done less often, or before rows are set anew.
+  std::int64_t overwritten() const { return overwritten_; }
+  void restore(std::int64_t overwritten) { overwritten_ = overwritten; }
   /// By their slots in the rings, for those who keep count of them.
   double* y_at(int slot, int a) { return y_.row(slot * d_ + a); }
   double* v_at(int slot, int a) { return v_.row(slot * d_ + a); }
@@ -47,7 +50,7 @@ class SectionRows {
 
  private:
   int slot(std::int64_t row, int held) const {
-    const std::int64_t r = row - overwritten_;
+    const std::int64_t r = place(row);
     // A division of 64 bits takes several times as long.
     if (r >= 0 && r < std::numeric_limits<std::uint32_t>::max())
       return static_cast<int>(static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(held));

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include <numbers>
+
+#include "tests/catch.hpp"
+#include "tests/schemes/support.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+/// Long enough to go strip by strip, and not a multiple of the lanes.
+constexpr int N = 33002;
+
+Problem problem(const std::string& scheme) {
+  Problem p = problem_of("sine-gordon");
+  p.lattice = Lattice::circle(N, 40);
+  const bool compared = scheme == "vu-quoc-li" || scheme == "guo";
+  (compared ? p.method : p.stencil) = scheme;
+  p.time_step = p.lattice.space_step() / 8;
+  p.tolerance = 6e-8;
+  return p;
+}
+/// A pendulum at every site, a little out of phase with its neighbours.
+std::vector<Row> begin(const Problem& p, double height, double speed) {
+  std::vector<Row> rows(2);
+  for (int i = 0; i < N; ++i) {
+    const double wave = std::sin(2 * std::numbers::pi * i / N);
+    rows[0].push_back(height + 0.2 * wave);
+    rows[1].push_back(rows[0].back() + p.time_step * (speed + 0.3 * wave));
+  }
+  return rows;
+}
+Row row_of(const Simulation& simulation, int back = 0) { return simulation.evolution().stepper().row(back); }
+bool holds_two_rows(const Simulation& simulation) {
+  try {
+    row_of(simulation, 1);
+    return true;
+  } catch (const std::logic_error&) {
+    return false;
+  }
+}
+/// Not to be printed.
+bool same(const Row& a, const Row& b) { return a == b; }
+
+/// Two runs, of which one looks at every row; how often the other wrote over the row before, and what steps took.
+struct TwoRuns {
+  Simulation looked_at, other;
+  int in_place = 0, steps_of_one = 0, steps_of_more = 0;
+
+  TwoRuns(const Problem& p, double height, double speed = 0) : looked_at(p), other(p) {
+    for (Simulation* s : {&looked_at, &other}) s->start(begin(p, height, speed));
+  }
+  void step(bool look) {
+    looked_at.step(true);
+    other.step(look);
+    in_place += holds_two_rows(other) ? 0 : 1;
+    (looked_at.iterations() == 1 ? steps_of_one : steps_of_more) += 1;
+    CHECK(other.iterations() == looked_at.iterations());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("streams through long rows write over the old ones without a bit's difference, unless someone looks") {
+  for (const std::string scheme : {"rectangle", "rectangle-symmetric", "triangle", "hexagon", "vu-quoc-li", "guo"}) {
+    CAPTURE(scheme);
+    TwoRuns runs(problem(scheme), 1);
+    for (int n = 0; n < 40; ++n) runs.step(n % 13 == 12);
+    CHECK(runs.steps_of_more < 6);  // the first ones
+    CHECK(same(row_of(runs.other), row_of(runs.looked_at)));
+    for (int n = 0; n < 3; ++n) runs.step(true);
+    CHECK(same(row_of(runs.other), row_of(runs.looked_at)));
+    CHECK(same(row_of(runs.other, 1), row_of(runs.looked_at, 1)));
+    CHECK(runs.other.residual() == runs.looked_at.residual());
+    CHECK(runs.other.residual() < 1e-6);
+    CHECK(runs.other.monitors().energy == runs.looked_at.monitors().energy);
+    // (5.15) reads y_{n−1} too
+    if (scheme == "guo") CHECK(runs.in_place == 0);
+    else CHECK(runs.in_place > 20);
+  }
+}
+
+TEST_CASE("seeds are chosen at the same steps, whether rows are written over or not") {
+  TwoRuns runs(problem("rectangle"), 1);
+  for (int n = 0; n < 540; ++n) runs.step(n == 400);
+  CHECK(runs.in_place > 480);
+  CHECK(runs.in_place < 535);
+  CHECK(same(row_of(runs.other), row_of(runs.looked_at)));
+}
+
+namespace {
+
+/// Seeds that are straight lines, and steps so long that these suffice only where the field bends little.
+Problem with_long_steps(const std::string& scheme) {
+  Problem p = problem(scheme);
+  p.lattice = Lattice::circle(N, 0.1 * N);
+  p.time_step = 0.02;
+  p.mass = 1;
+  p.seed_order = 2;
+  p.tolerance = scheme == "hexagon" ? 2.2e-7 : 1.6e-7;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("a step in place that would take a second iteration is taken again from rows that were kept") {
+  for (const std::string scheme : {"rectangle", "triangle", "hexagon", "vu-quoc-li"}) {
+    CAPTURE(scheme);
+    TwoRuns runs(with_long_steps(scheme), 0.3);
+    for (int n = 0; n < 400; ++n) runs.step(n % 90 == 89);
+    CHECK(runs.in_place > 100);
+    CHECK(runs.steps_of_one > 100);
+    CHECK(runs.steps_of_more > 100);
+    CHECK(same(row_of(runs.other), row_of(runs.looked_at)));
+  }
+}
