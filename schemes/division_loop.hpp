@@ -6,19 +6,89 @@
 
 namespace delf {
 
-/// The highest number of past rows that an argument is extrapolated from in a DivisionRows' loop.
+/// The highest number of past rows that an argument is extrapolated from in a loop of division.
 inline constexpr int most_past_rows_divided = 7;
+
+/// What a loop of division looks at in rows of arguments, and what it makes of w.
+template <int past_rows, int parts>
+class DivisionByArguments {
+ public:
+  DivisionByArguments(const DivisionRows& given, const RowIncrement& rows)
+      : unknown_(given.arguments), known_(given.arguments.known), pass_(rows) {}
+  [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) const { return unknown_(at); }
+  [[gnu::always_inline]] Pack known(std::ptrdiff_t at) const { return Pack::load(known_ + at); }
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w, Pack /*u*/) { pass_(at, w); }
+  void forget_change() { pass_.forget_change(); }
+  RowChange result() const { return pass_.result(); }
+
+ private:
+  UnknownArgument<past_rows> unknown_;
+  const double* known_;
+  IncrementPass<parts, Order::ascending, Look::argument> pass_;
+};
+
+/// The same where the argument is that of straight lines in time, with no rows of its own,
+///
+///     u(i) = Σ_p weights[p] (y + v)(i + p),        known(i) = y(i + known_site) − known_increment v(i),
+///
+/// and the new row may be written over the old one.
+template <int parts>
+class StraightDivision {
+ public:
+  StraightDivision(const DivisionRows& given, const RowIncrement& rows)
+      : y_(rows.y_before),
+        v_(rows.v_before),
+        known_(given.arguments.known),
+        y_new_(rows.y),
+        v_new_(rows.v),
+        known_increment_(given.known_increment),
+        weights_(rows.look.weights, 1) {
+    const std::ptrdiff_t begin = given.arguments.layout->at(0);
+    for (int p = 0; p + 1 < parts; ++p) ahead_.take(straight(begin + p * lanes));
+  }
+  [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) {
+    ahead_.take(straight(at + (parts - 1) * lanes));
+    return weights_.added(Pack(0.0), ahead_);
+  }
+  [[gnu::always_inline]] Pack known(std::ptrdiff_t at) const {
+    const Pack y = Pack::load(known_ + at);
+    if constexpr (parts > 1) return y;
+    else return y - known_increment_ * Pack::load(v_ + at);
+  }
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w, Pack u) {
+    const Pack v = Pack::load(v_ + at) + w, y = Pack::load(y_ + at) + v;
+    largest_ = detail::larger_magnitude(largest_, y);
+    sum_ += y;
+    seen_.take(y), expected_.take(u);
+    change_ = detail::larger_magnitude(change_, weights_.added(Pack(0.0), seen_) - expected_.oldest());
+    v.store(v_new_ + at);
+    y.store(y_new_ + at);
+  }
+  void forget_change() { change_ = 0.0; }
+  RowChange result() const { return {largest_ + 0.0 * sum_, change_}; }
+  /// u of the last pack, which looks beyond the end.
+  Pack last_argument() const { return expected_.newest; }
+
+ private:
+  [[gnu::always_inline]] Pack straight(std::ptrdiff_t at) const { return Pack::load(y_ + at) + Pack::load(v_ + at); }
+
+  const double *y_, *v_, *known_;
+  double *y_new_, *v_new_;
+  double known_increment_;
+  PackWeights<parts> weights_;
+  LastPacks<parts> ahead_, seen_, expected_;
+  Pack largest_ = 0.0, change_ = 0.0;
+  Pack sum_ = 0.0;  ///< of y: a NaN goes by in a maximum, and stays in a sum
+};
 
 /// A step of DivisionRows in one loop. The new row is made one pack after its outputs: what waits for an output would keep
 /// the evaluation of the next ones waiting.
-template <int past_rows, int old, int parts, class Output>
-[[gnu::flatten]] RowChange division_loop(const Output& given_output, const DivisionRows& given,
-                                         const RowIncrement& rows) {
+template <int old, int parts, class Output, class Division>
+[[gnu::flatten]] void division_loop(const Output& given_output, const DivisionRows& given, Division& given_division) {
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
   const Output output = given_output;
-  IncrementPass<parts, Order::ascending, Look::argument> pass(rows);
-  const UnknownArgument<past_rows> found(given.arguments);
-  const double *const known = given.arguments.known, *const y = given.y, *const old_row = given.old_output;
+  Division division = given_division;
+  const double *const y = given.y, *const old_row = given.old_output;
   double* const out = given.output;
   const double before = given.before, after = given.after, of_output = given.of_output, of_old = given.of_old[0],
                of_old_before = given.of_old[1];
@@ -27,40 +97,43 @@ template <int past_rows, int old, int parts, class Output>
   const std::ptrdiff_t begin = layout.at(0);
   Pack here = Pack::load(y + begin), last = here - Pack::load(y + begin - lanes);
   Pack last_old = old > 1 ? Pack::load(old_row + begin - lanes) : Pack(0.0);
-  const auto evaluate = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
-    const Pack E = output(found(at), Pack::load(known + at), at);
-    E.store(out + at);
-    return E;
+  struct Evaluated {
+    Pack u, E, E_old;
   };
-  const auto make = [&](std::ptrdiff_t at, Pack E) __attribute__((always_inline)) {
+  const auto evaluate = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
+    Evaluated e;
+    e.u = division.unknown(at);
+    e.E = output(e.u, division.known(at), at);
+    e.E_old = old > 0 ? Pack::load(old_row + at) : Pack(0.0);  // before it is written over
+    e.E.store(out + at);
+    return e;
+  };
+  const auto make = [&](std::ptrdiff_t at, const Evaluated& e) __attribute__((always_inline)) {
     const Pack next_value = Pack::load(y + at + lanes), next = next_value - here;
     Pack w = constant + after * next;
     w -= before * last;
     here = next_value, last = next;
-    if constexpr (old > 0) {
-      const Pack value = Pack::load(old_row + at);
-      w += of_old * value;
-      if constexpr (old > 1) w += of_old_before * last_old;
-      last_old = value;
-    }
-    pass(at, w + of_output * E);
+    if constexpr (old > 0) w += of_old * e.E_old;
+    if constexpr (old > 1) w += of_old_before * last_old;
+    last_old = e.E_old;
+    division(at, w + of_output * e.E, e.u);
   };
-  Pack E = evaluate(begin);
+  Evaluated ready = evaluate(begin);
   std::ptrdiff_t ahead = begin + lanes;
   const auto until = [&](int packs) __attribute__((always_inline)) {
     for (const std::ptrdiff_t end = layout.at(packs); ahead < end; ahead += lanes) {
-      const Pack E_next = evaluate(ahead);
-      make(ahead - lanes, E);
-      E = E_next;
+      const Evaluated next = evaluate(ahead);
+      make(ahead - lanes, ready);
+      ready = next;
     }
   };
   if constexpr (parts > 1) {
     until(parts);
-    pass.forget_change();  // the first packs had nothing to be looked at with
+    division.forget_change();  // the first packs had nothing to be looked at with
   }
   until(layout.packs());
-  make(ahead - lanes, E);
-  return pass.result();
+  make(ahead - lanes, ready);
+  given_division = division;
 }
 
 /// The loop for so many past rows, none or 2 … most.
@@ -68,9 +141,19 @@ template <int old, int parts, class Output>
 RowChange division_loop_for(const Output& output, const DivisionRows& given, const RowIncrement& rows) {
   RowChange all;
   with_past_rows<most_past_rows_divided>(given.arguments.past_rows, [&]<int past_rows>() {
-    all = division_loop<past_rows, old, parts>(output, given, rows);
+    DivisionByArguments<past_rows, parts> division(given, rows);
+    division_loop<old, parts>(output, given, division);
+    all = division.result();
   });
   return all;
+}
+template <int old, int parts, class Output>
+RowChange straight_division_loop(const Output& output, const DivisionRows& given, const RowIncrement& rows,
+                                 Pack& last_argument) {
+  StraightDivision<parts> division(given, rows);
+  division_loop<old, parts>(output, given, division);
+  last_argument = division.last_argument();
+  return division.result();
 }
 
 }  // namespace delf

@@ -43,30 +43,6 @@ class DiagonalSolver final : public LinearSolver {
 
 /// Division by one number.
 class ScalarSolver final : public LinearSolver {
-  class Stream final : public RowStream {
-   public:
-    Stream(const RowLayout& layout, const RowSum& right_side, const RowIncrement& rows)
-        : layout_(layout), right_side_(right_side), increment_(rows) {}
-    int advance(int end, double* w) override {
-      right_side_.pass(layout_, {summed_, end},
-                       [w](std::ptrdiff_t at, Pack sum) __attribute__((always_inline)) { sum.store(w + at); });
-      summed_ = end;
-      // The next sums look back at neighbours.
-      const int ready = end == layout_.packs() ? end : std::max(done_, end - layout_.halo());
-      auto increment = increment_;
-      for (; done_ < ready; ++done_) increment(layout_.at(done_), Pack::load(w + layout_.at(done_)));
-      increment_ = increment;
-      return done_;
-    }
-    double largest() const override { return max_or_nan(increment_.result().largest); }
-
-   private:
-    const RowLayout& layout_;
-    const RowSum& right_side_;
-    IncrementPass<0, Order::ascending, Look::row> increment_;
-    int summed_ = 0, done_ = 0;
-  };
-
  public:
   ScalarSolver(const RowLayout& layout, double diagonal) : layout_(&layout), inverse_(1 / diagonal) {}
   void solve(const double* const* rhs, double* const* w) const override {
@@ -82,10 +58,6 @@ class ScalarSolver final : public LinearSolver {
     });
   }
   bool is_a_number() const override { return true; }
-  std::unique_ptr<RowStream> stream(const RowLayout& layout, const RowSum& right_side,
-                                    const RowIncrement& rows) const override {
-    return std::make_unique<Stream>(layout, right_side, rows);
-  }
   double right_side_scale(int) const override { return inverse_; }
   bool needs_work_rows() const override { return false; }
   std::size_t bytes() const override { return 0; }

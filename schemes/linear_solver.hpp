@@ -19,11 +19,10 @@ namespace delf {
 class RowStream {
  public:
   virtual ~RowStream() = default;
-  /// Packs whose right side must be ready before begin().
-  virtual PackRange last_packs() const { return {0, 0}; }
-  /// `work` has room for them; pack v stands at layout.at(v).
-  virtual void begin(double* /*work*/) {}
-  /// The right side is ready up to pack `end`. Returns up to where the new row is done. `work` has room from there on, and
+  /// Packs whose right side must be ready before begin(); `work` has room for them, pack v at layout.at(v).
+  virtual PackRange last_packs() const = 0;
+  virtual void begin(double* work) = 0;
+  /// The right side is ready up to pack `end`. Returns up to where the new row is done: `work` has room from there on, and
   /// holds what was put there.
   virtual int advance(int end, double* work) = 0;
   virtual double largest() const = 0;

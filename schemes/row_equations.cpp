@@ -222,7 +222,7 @@ RowEquations::Advance RowEquations::advance(bool compared) {
 }
 
 bool RowEquations::can_go_in_place() const {
-  if (!is_streamed_ || outputs_[0].rows() > 2) return false;
+  if (!(is_streamed_ || straight_) || outputs_[0].rows() > 2) return false;
   for (const Term& t : equations_.bulk[0].terms)
     if (t.source == Source::increment) return false;
   for (const Argument& argument : outputs_[0].kernel->arguments())
@@ -231,13 +231,15 @@ bool RowEquations::can_go_in_place() const {
   return !outputs_[0].kernel->arguments().empty();
 }
 
-/// Windows; and where steps in place write over the newest outputs, those of the row that can be gone back to, and those
+/// A stream's windows; and where steps in place write over the newest outputs, those of the row that can be gone back to, and those
 /// of a next step that is not in place, lie beside.
 void RowEquations::make_room_in_place() {
-  const int window = window_packs(solver_[0]->stream(layout_, right_side(0), {})->last_packs());
-  for (PackWindow& out : output_windows_) out.hold(window, 0, 0);
-  work_window_.hold(window, 0, 0);
-  if (is_stored_) right_side_window_.hold(window, 0, 0);
+  if (is_streamed_) {
+    const int window = window_packs(solver_[0]->stream(layout_, right_side(0), {})->last_packs());
+    for (PackWindow& out : output_windows_) out.hold(window, 0, 0);
+    work_window_.hold(window, 0, 0);
+    if (is_stored_) right_side_window_.hold(window, 0, 0);
+  }
   Outputs& o = outputs_[0];
   if (o.rows() < 2) return;
   o.held = o.rows() + 1;
@@ -282,16 +284,12 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   const auto work = [&](int first, int kept_until) {
     return hold(work_window_, increments_[0].v, first, kept_until);
   };
-  double* ends = nullptr;
-  if (last.first < last.last) {
-    hold_candidate(last.first - halo, 0);
-    if (find) find({last.first - halo, packs + halo});
-    hold_outputs(last.first + o.lowest, 0);
-    evaluate(o, o.newest, slab_out_.data(), At::candidate, {last.first + o.lowest, read.last});
-    sum_right_sides(last);
-    ends = work(last.first, last.first);
-  }
-  stream->begin(ends);
+  hold_candidate(last.first - halo, 0);
+  if (find) find({last.first - halo, packs + halo});
+  hold_outputs(last.first + o.lowest, 0);
+  evaluate(o, o.newest, slab_out_.data(), At::candidate, {last.first + o.lowest, read.last});
+  sum_right_sides(last);
+  stream->begin(work(last.first, last.first));
   hold_candidate(-halo, 0);
   if (find) find({-halo, halo});
   const int slot_of_old = o.slots(o.rows() > 1 ? 1 - o.newest : -o.newest);
@@ -370,6 +368,7 @@ std::size_t RowEquations::bytes_to_come(int parts, bool residual) const {
     const std::size_t window = static_cast<std::size_t>(window_packs(last)) * lanes;
     total += missing(RowBuffer::bytes_of(window) + RowBuffer::bytes_of(row), candidate_.bytes());
   }
+  if (straight_) total += missing(RowBuffer::bytes_of(row), candidate_.bytes());
   return total;
 }
 

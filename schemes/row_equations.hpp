@@ -67,7 +67,10 @@ class RowEquations {
   Advance advance_again() { return advance_at(argument_row()); }
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
-  /// Steps that are streamed read no rows before y_n, v_n and the newest outputs.
+  /// Or in one loop, from a candidate of order 1.
+  bool goes_straight() const { return straight_.has_value(); }
+  Advance advance_straight();
+  /// Steps of one of these kinds read no rows before y_n, v_n and the newest outputs.
   bool can_go_in_place() const;
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
   /// stream through the rows. A candidate that is found on the way is not kept.
@@ -149,10 +152,16 @@ class RowEquations {
     if (o.family->pattern().placement != Placement::brick_wall) return packs;
     return {packs.first + static_cast<int>((packs.first + n_ + age) % 2 != 0), packs.last, 2};
   }
-  void build_division();
+  void build_division(const Mixture&);
+  void build_straight_lines();
   void find_arguments();
   void evaluate_arguments(At);
   ArgumentRow argument_row();
+  void place(ArgumentRow&) const;  ///< in time and space
+  /// Of the row before; null where equations read no such.
+  double* old_output() {
+    return outputs_[0].rows() > 1 ? outputs_[0].ring.row(outputs_[0].slots(1 - outputs_[0].newest)) : nullptr;
+  }
   double* newest_output() { return outputs_[0].ring.row(outputs_[0].slots(-outputs_[0].newest)); }
   void evaluate_at(const ArgumentRow&);
   Advance advance_at(const ArgumentRow&);
@@ -195,6 +204,7 @@ class RowEquations {
   PackWindow work_window_, right_side_window_;  ///< and its solver's work space; −E, where that is stored
   std::optional<ArgumentRows> arguments_;
   std::optional<DivisionRows> division_;  ///< if a step at arguments is one loop
+  std::optional<Mixture> straight_;
   std::vector<Argument> whole_{{{{Site{}, 1.0}}}},
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;

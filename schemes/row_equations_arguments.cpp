@@ -15,14 +15,14 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   increments_have_halos_ = std::ranges::any_of(equations_.bulk[0].terms, [](const Term& t) {
     return t.source == Source::increment && t.shift != 0;
   });
-  build_division();
+  // Rows of 511 sites and less stay in the first level of the cache: two loops after each other then take a twentieth less
+  // than one that has more in hand than there are registers for.
+  constexpr int packs_in_cache = 64;
+  if (layout_.packs() > packs_in_cache) build_division(mixture);
 }
 
-/// Rows of 511 sites and less stay in the first level of the cache: two loops after each other then take a twentieth less
-/// than one that has more in hand than there are registers for.
-void RowEquations::build_division() {
-  constexpr int packs_in_cache = 64;
-  if (is_stored_ || !solver_[0]->is_a_number() || layout_.packs() <= packs_in_cache) return;
+void RowEquations::build_division(const Mixture& mixture) {
+  if (is_stored_ || !solver_[0]->is_a_number()) return;
   const int newest = outputs_[0].newest;
   const double scale = -solver_[0]->right_side_scale(0);
   DivisionRows division{};
@@ -43,7 +43,7 @@ void RowEquations::build_division() {
     *place += scale * t.coefficient;
   }
   division.constant = scale * equations_.bulk[0].constant;
-  if (outputs_[0].kernel->divides(old, arguments_->mixture().parts)) division_ = division;
+  if (outputs_[0].kernel->divides(old, mixture.parts)) division_ = division;
 }
 
 void RowEquations::find_arguments() {
@@ -69,10 +69,46 @@ RowEquations::Advance RowEquations::advance_at(const ArgumentRow& row) {
   division_->arguments = row;
   division_->y = increments_[0].y_before;
   division_->output = newest_output();
-  division_->old_output = o.rows() > 1 ? o.ring.row(o.slots(1 - o.newest)) : nullptr;
+  division_->old_output = old_output();
   const RowChange all = o.kernel->divide(*division_, increments_[0]);
   layout_.fill_halo(division_->output);
   return advanced(all);
+}
+
+/// Where rows outgrow the cache and the matrix is one number: what the nonlinear part looks at is worked out from y_n and
+/// v_n on the way.
+void RowEquations::build_straight_lines() {
+  const auto mixture = Mixture::of(system_);
+  if (!mixture || mixture->is_known_alike || mixture->known_row > 2) return;
+  build_division(*mixture);
+  if (!division_) return;
+  straight_ = mixture;
+  division_->known_increment = mixture->known_row - 1;
+}
+
+RowEquations::Advance RowEquations::advance_straight() {
+  const RowKernel& kernel = *outputs_[0].kernel;
+  RowIncrement& rows = increments_[0];
+  std::ranges::copy(straight_->weights, rows.look.weights);
+  ArgumentRow row{.layout = &layout_,
+                  .unknown = nullptr,
+                  .known = rows.y_before + static_cast<std::ptrdiff_t>(straight_->known_site) * lanes,
+                  .known_weight = straight_->known_weight};
+  place(row);
+  division_->arguments = row;
+  division_->y = rows.y_before;
+  division_->old_output = old_output();
+  division_->output = in_place_ && division_->old_output ? old_output() : newest_output();
+  Pack last(0.0);
+  RowChange all = kernel.divide_straight(*division_, rows, last);
+  layout_.fill_halo(division_->output);
+  close_new_row();
+  if (straight_->parts > 1) {  // the last pack looks beyond the end
+    for (int p = 0; p < straight_->parts; ++p)
+      last -= straight_->weights[p] * Pack::load(rows.y + layout_.at(layout_.packs() - 1 + p));
+    all.change = max_or_nan(abs(last), all.change);
+  }
+  return {max_or_nan(all.largest), max_or_nan(all.change)};
 }
 
 /// The step after the solver's part of it.
@@ -88,10 +124,13 @@ void RowEquations::evaluate_arguments(At at) {
 
 ArgumentRow RowEquations::argument_row() {
   ArgumentRow row = arguments_->argument(rows_.y_at(y_slots_(arguments_->mixture().known_row - 1), 0));
+  place(row);
+  return row;
+}
+void RowEquations::place(ArgumentRow& row) const {
   if (positions_.rows()) row.positions = positions_.row(0);
   row.t = static_cast<double>(n_ + outputs_[0].newest) * time_step_;
   row.time_step = time_step_, row.space_step = space_step_;
-  return row;
 }
 
 /// On a circle each stencil's output is found once: beyond the ends of arcs it is repeated.

@@ -13,8 +13,10 @@ void RowEquations::build_looks() {
   const bool one_age = outputs_.size() == 1 && outputs_[0].reads_unknown_row(outputs_[0].newest) &&
                        !outputs_[0].reads_unknown_row(outputs_[0].newest - 1);
   if (d_ == 1 && equations_.exceptional.empty() && !solver_[1] && !equations_.correction_form && turn_ == 0 &&
-      one_age && !arguments_ && layout_.packs() >= packs_in_cache)
+      one_age && !arguments_ && layout_.packs() >= packs_in_cache) {
     is_streamed_ = solver_[0]->stream(layout_, right_side(0), {}) != nullptr;
+    build_straight_lines();
+  }
   if (is_streamed_)
     for (int c = 0; c < outputs_[0].kernel->outputs(); ++c) output_windows_.emplace_back(layout_);
   for (const Outputs& o : outputs_) {

@@ -50,6 +50,10 @@ struct LastPacks {
     older.take(newest);
     newest = next;
   }
+  [[gnu::always_inline]] Pack oldest() const {
+    if constexpr (count == 1) return newest;
+    else return older.oldest();
+  }
 };
 template <>
 struct LastPacks<0> {

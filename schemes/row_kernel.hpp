@@ -73,6 +73,7 @@ struct DivisionRows {
   const double* old_output;
   double* output;
   double constant = 0, before = 0, after = 0, of_output = 0, of_old[2] = {0, 0};
+  double known_increment = 0;  ///< of straight lines: what is known is less by so much of the increment
 };
 
 /// A stencil family evaluated for whole rows: d components at every vertex, i = l·d + a, and the residual split
@@ -114,6 +115,11 @@ class RowKernel {
   /// which makes the new row.
   virtual bool divides(int /*old*/, int /*parts*/) const { return false; }
   virtual RowChange divide(const DivisionRows&, const RowIncrement&) const { return {}; }
+  /// The same where u is that of straight lines, y_n + v_n in the place of y_{n+1}: there are no rows of it, and the new
+  /// row, its increment and E' may be written over the old ones. `last_argument`: u of the last pack.
+  virtual RowChange divide_straight(const DivisionRows&, const RowIncrement&, Pack& /*last_argument*/) const {
+    return {};
+  }
 
   /// Where the nonlinear part of the equation at a site is that of its own value alone, a step is one loop:
   ///

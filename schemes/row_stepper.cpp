@@ -58,7 +58,8 @@ struct RowStepper::Impl {
         equations(s, p, rows, history, mixture, seed_rows()),
         seed(rows, s.time_step(), seed_rows(), equations.looks(), equations.arguments()) {
     // Made now, so that memory that is short is told at the start.
-    if (equations.reads_unknown_row() && !(iterative && equations.is_streamed())) equations.candidate().hold_whole();
+    const bool goes_in_one = equations.is_streamed() || equations.goes_straight();
+    if (equations.reads_unknown_row() && !(iterative && goes_in_one)) equations.candidate().hold_whole();
     if (iterative) gain = equations.gain(), weight = equations.least_weight();
     if (o.threads > 1 && equations.is_one_loop())
       team.emplace(o.threads), values_of_parts.resize(static_cast<std::size_t>(o.threads));
@@ -119,7 +120,7 @@ struct RowStepper::Impl {
     if (kept_row < 0 || n == kept_row || !seed.reads_one_increment(n)) return false;
     equations.begin(n, true);
     rows_known = 0;
-    const RowEquations::Advance moved = advance_streamed(1);
+    const RowEquations::Advance moved = advance_straight();
     const double next_change = contraction_now();
     iterations = 1;
     value = moved.largest;
@@ -138,7 +139,7 @@ struct RowStepper::Impl {
     go_back();
     for (; n < last; ++n) {
       equations.begin(n);
-      row_is_found(advance_streamed(1).largest);
+      row_is_found(advance_straight().largest);
     }
     kept_row = -1;
   }
@@ -219,6 +220,7 @@ struct RowStepper::Impl {
   }
 
   void take_seed(int order) {
+    if (!equations.candidate().is_whole()) equations.candidate().hold_whole();
     seed.find(n, order, equations.candidate().rows());
     if (equations.correction_form()) take_increment_of_candidate();
   }
@@ -259,9 +261,16 @@ struct RowStepper::Impl {
     return equations.advance_streamed(
         [this, order](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); });
   }
+  /// From a seed of order 1, rows that outgrow the cache.
+  RowEquations::Advance advance_straight() {
+    return equations.goes_straight() ? equations.advance_straight() : advance_streamed(1);
+  }
   RowEquations::Advance advance(int order) {
-    if (mixture) return iterations == 1 ? equations.advance_extrapolated(order) : equations.advance_again();
-    if (equations.is_streamed()) return iterations == 1 ? advance_streamed(order) : equations.advance_streamed({});
+    const bool first = iterations == 1;
+    if (mixture) return first ? equations.advance_extrapolated(order) : equations.advance_again();
+    if (equations.is_streamed()) return first ? advance_streamed(order) : equations.advance_streamed({});
+    if (equations.goes_straight() && first && order == 1) return equations.advance_straight();
+    if (first) take_seed(order);
     equations.evaluate_unknown_outputs(RowEquations::At::candidate);
     return equations.advance(true);
   }
@@ -272,7 +281,6 @@ struct RowStepper::Impl {
     seed.choose(n, std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()), next_change,
                 estimates() ? next_change : 1 / weight);
     const int order = seed.order();
-    if (!mixture && !equations.is_streamed()) take_seed(order);
     double before = std::numeric_limits<double>::infinity();
     while (iterations < options.max_iterations) {
       ++iterations;

@@ -166,6 +166,11 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     if constexpr (d == 1 && stride == 1) return division_loop_for<2, 2>(slope(given.arguments), given, rows);
     else return {};
   }
+  RowChange divide_straight(const DivisionRows& given, const RowIncrement& rows, Pack& last_argument) const override {
+    if constexpr (d == 1 && stride == 1)
+      return straight_division_loop<2, 2>(slope(given.arguments), given, rows, last_argument);
+    else return {};
+  }
 
   std::span<const int> explicit_neighbours() const override {
     if constexpr (is_nodal(map)) return neighbours_within<reach>;

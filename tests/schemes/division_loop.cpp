@@ -118,6 +118,53 @@ TEST_CASE("a division's loop evaluates, sums, makes the new row and looks at it 
     }
 }
 
+TEST_CASE("along straight lines a division's loop does the same without rows of the argument, and in place") {
+  for (const std::string scheme : {"triangle", "guo"})
+    for (const double known_increment : {0.0, 1.0}) {
+      if (scheme == "triangle" && known_increment != 0) continue;
+      CAPTURE(scheme, known_increment);
+      RandomDivision apart(scheme, 0), beside(scheme, 0), over(scheme, 0);
+      const RowLayout& layout = apart.layout;
+      // Rows of the argument, by its formula.
+      for (auto at = layout.at(0); at < layout.at(layout.packs()); ++at) {
+        const double *y = apart.y.row(0) + at, *v = apart.v.row(0) + at;
+        apart.argument.row(0)[at] = 0;
+        for (int p = 0; p < apart.parts; ++p)
+          apart.argument.row(0)[at] += apart.increment.look.weights[p] * (y[p * lanes] + v[p * lanes]);
+        apart.known.row(0)[at] = y[0] - known_increment * v[0];
+      }
+      const double last_argument = apart.argument.row(0)[layout.at(layout.packs() - 1)];
+      const RowChange expected = apart.kernel.divide(apart.rows, apart.increment);
+
+      for (RandomDivision* given : {&beside, &over}) {
+        given->rows.arguments.known = given->y.row(0);
+        given->rows.known_increment = known_increment;
+      }
+      over.rows.output = over.old_output.row(0);
+      over.increment.v = over.v.row(0), over.increment.y = over.y.row(0);
+      Pack last[2] = {0.0, 0.0};
+      const RowChange found = beside.kernel.divide_straight(beside.rows, beside.increment, last[0]);
+      const RowChange in_place = over.kernel.divide_straight(over.rows, over.increment, last[1]);
+      double worst = 0, difference = 0;
+      const auto hold = [&](RowBuffer& right, RowBuffer& there, RowBuffer& there_in_place, std::ptrdiff_t at) {
+        worst = std::max(worst, std::abs(right.row(0)[at] - there.row(0)[at]));
+        difference = std::max(difference, std::abs(there.row(0)[at] - there_in_place.row(0)[at]));
+      };
+      for (auto at = layout.at(0); at < layout.at(layout.packs()); ++at) {
+        hold(apart.y_new, beside.y_new, over.y, at);
+        hold(apart.v_new, beside.v_new, over.v, at);
+        hold(apart.output, beside.output, over.old_output, at);
+      }
+      CHECK(worst < 1e-14);
+      CHECK(difference == 0);
+      CHECK(max_or_nan(found.largest) == Approx(max_or_nan(expected.largest)).epsilon(1e-14));
+      CHECK(max_or_nan(found.change) == Approx(max_or_nan(expected.change)).epsilon(1e-13));
+      CHECK(max_or_nan(in_place.change) == max_or_nan(found.change));
+      CHECK(last[0][0] == Approx(last_argument).epsilon(1e-14));
+      CHECK(last[1][0] == last[0][0]);
+    }
+}
+
 TEST_CASE("a division's loop shows what is not a number") {
   for (const std::string scheme : {"triangle", "guo"})
     for (int v : {0, 3, 7}) {
