@@ -44,8 +44,8 @@ template <int most, class Run>
   (std::make_integer_sequence<int, most>{});
 }
 
-/// out = output(u, known, at) for the packs of a row of arguments: where u is extrapolated, that is done while the output
-/// is worked out.
+/// out = output(u, known, at) for the packs of a row of arguments: where u is extrapolated, that is done while the
+/// output is worked out.
 template <int past_rows, int stride, class Output>
 [[gnu::flatten]] void argument_loop(const Output& given_output, const ArgumentRow& given, double* out,
                                     const PackRange& packs) {

@@ -81,8 +81,8 @@ class StraightDivision {
   Pack sum_ = 0.0;  ///< of y: a NaN goes by in a maximum, and stays in a sum
 };
 
-/// A step of DivisionRows in one loop. The new row is made one pack after its outputs: what waits for an output would keep
-/// the evaluation of the next ones waiting.
+/// A step of DivisionRows in one loop. The new row is made one pack after its outputs: what waits for an output would
+/// keep the evaluation of the next ones waiting.
 template <int old, int parts, class Output, class Division>
 [[gnu::flatten]] void division_loop(const Output& given_output, const DivisionRows& given, Division& given_division) {
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.

@@ -22,8 +22,8 @@ class RowStream {
   /// Packs whose right side must be ready before begin(); `work` has room for them, pack v at layout.at(v).
   virtual PackRange last_packs() const = 0;
   virtual void begin(double* work) = 0;
-  /// The right side is ready up to pack `end`. Returns up to where the new row is done: `work` has room from there on, and
-  /// holds what was put there.
+  /// The right side is ready up to pack `end`. Returns up to where the new row is done: `work` has room from there
+  /// on, and holds what was put there.
   virtual int advance(int end, double* work) = 0;
   virtual double largest() const = 0;
 };

@@ -222,7 +222,7 @@ RowEquations::Advance RowEquations::advance(bool compared) {
 }
 
 bool RowEquations::can_go_in_place() const {
-  if (!(is_streamed_ || straight_) || outputs_[0].rows() > 2) return false;
+  if (!(is_streamed_ || straight_) || history_ > 2 || outputs_[0].rows() > 2) return false;
   for (const Term& t : equations_.bulk[0].terms)
     if (t.source == Source::increment) return false;
   for (const Argument& argument : outputs_[0].kernel->arguments())
@@ -231,8 +231,8 @@ bool RowEquations::can_go_in_place() const {
   return !outputs_[0].kernel->arguments().empty();
 }
 
-/// A stream's windows; and where steps in place write over the newest outputs, those of the row that can be gone back to, and those
-/// of a next step that is not in place, lie beside.
+/// A stream's windows; and where steps in place write over the newest outputs, those of the row that can be gone back
+/// to, and those of a next step that is not in place, lie beside.
 void RowEquations::make_room_in_place() {
   if (is_streamed_) {
     const int window = window_packs(solver_[0]->stream(layout_, right_side(0), {})->last_packs());

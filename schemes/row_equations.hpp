@@ -200,11 +200,11 @@ class RowEquations {
   bool is_stored_ = false;  ///< right sides are summed to a row first: bricks, and walls
   RowBuffer w_, scratch_, positions_;
   CandidateRows candidate_;
-  std::vector<PackWindow> output_windows_;        ///< of a stream: out_c at the candidate
+  std::vector<PackWindow> output_windows_;      ///< of a stream: out_c at the candidate
   PackWindow work_window_, right_side_window_;  ///< and its solver's work space; −E, where that is stored
   std::optional<ArgumentRows> arguments_;
   std::optional<DivisionRows> division_;  ///< if a step at arguments is one loop
-  std::optional<Mixture> straight_;
+  std::optional<Mixture> straight_;       ///< what is looked at along straight lines, if that is so for long rows
   std::vector<Argument> whole_{{{{Site{}, 1.0}}}},
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;

@@ -15,8 +15,8 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   increments_have_halos_ = std::ranges::any_of(equations_.bulk[0].terms, [](const Term& t) {
     return t.source == Source::increment && t.shift != 0;
   });
-  // Rows of 511 sites and less stay in the first level of the cache: two loops after each other then take a twentieth less
-  // than one that has more in hand than there are registers for.
+  // Rows of 511 sites and less stay in the first level of the cache: two loops after each other then take a twentieth
+  // less than one that has more in hand than there are registers for.
   constexpr int packs_in_cache = 64;
   if (layout_.packs() > packs_in_cache) build_division(mixture);
 }
@@ -75,8 +75,8 @@ RowEquations::Advance RowEquations::advance_at(const ArgumentRow& row) {
   return advanced(all);
 }
 
-/// Where rows outgrow the cache and the matrix is one number: what the nonlinear part looks at is worked out from y_n and
-/// v_n on the way.
+/// Where rows outgrow the cache and the matrix is one number: what the nonlinear part looks at is worked out from y_n
+/// and v_n on the way.
 void RowEquations::build_straight_lines() {
   const auto mixture = Mixture::of(system_);
   if (!mixture || mixture->is_known_alike || mixture->known_row > 2) return;

@@ -97,7 +97,8 @@ double RowEquations::gain() {
 
 void RowEquations::make_row_the_candidate() {
   candidate_.hold_whole();
-  for (int a = 0; a < d_; ++a) std::copy_n(increments_[static_cast<std::size_t>(a)].y, layout_.doubles(), candidate_.row(a));
+  for (int a = 0; a < d_; ++a)
+    std::copy_n(increments_[static_cast<std::size_t>(a)].y, layout_.doubles(), candidate_.row(a));
 }
 
 namespace {

@@ -111,12 +111,12 @@ class RowKernel {
   virtual bool evaluates_arguments() const { return false; }
   virtual void evaluate_arguments(const ArgumentRow&, double* /*out*/, const PackRange&) const {}
 
-  /// Whether there is a loop for DivisionRows with so many of_old, whose u is a mixture of so many parts; and that loop,
-  /// which makes the new row.
+  /// Whether there is a loop for DivisionRows with so many of_old, whose u is a mixture of so many parts; and that
+  /// loop, which makes the new row.
   virtual bool divides(int /*old*/, int /*parts*/) const { return false; }
   virtual RowChange divide(const DivisionRows&, const RowIncrement&) const { return {}; }
-  /// The same where u is that of straight lines, y_n + v_n in the place of y_{n+1}: there are no rows of it, and the new
-  /// row, its increment and E' may be written over the old ones. `last_argument`: u of the last pack.
+  /// The same where u is that of straight lines, y_n + v_n in the place of y_{n+1}: there are no rows of it, and the
+  /// new row, its increment and E' may be written over the old ones. `last_argument`: u of the last pack.
   virtual RowChange divide_straight(const DivisionRows&, const RowIncrement&, Pack& /*last_argument*/) const {
     return {};
   }

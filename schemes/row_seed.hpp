@@ -30,8 +30,8 @@ class RowSeed {
   /// Forgets the order: rows have been set anew.
   void restart() { looked_at_ = -1; }
   int order() const { return order_; }
-  /// Whether neither the step from row n nor those that choose() will look back at from its next look read more than the
-  /// newest increment.
+  /// Whether neither the step from row n nor those that choose() will look back at from its next look read more than
+  /// the newest increment.
   bool reads_one_increment(std::int64_t n) const {
     return order_ == 1 && looked_at_ >= 0 && n > most_order_ + 1 && n < looked_at_ + period_ - (most_order_ + 1);
   }

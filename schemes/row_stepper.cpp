@@ -39,8 +39,8 @@ struct RowStepper::Impl {
   int iterations = 0;
   int rows_known = 0;  ///< newest rows that have not been written over
   std::vector<double> values_of_parts;
-  /// A row that lies beside the one that steps in place write over, with all that a step needs; −1: none. What was known
-  /// when it was the newest.
+  /// A row that lies beside the one that steps in place write over, with all that a step needs; −1: none. What was
+  /// known when it was the newest.
   std::int64_t kept_row = -1, kept_overwritten = 0;
   double kept_largest[2] = {0, 0};
 

@@ -31,8 +31,8 @@ class Stepper {
   }
 
   /// Throws NoConvergence or NotFinite and then still holds the rows that it held before.
-  /// If the new row is not to be `looked_at`, an explicit step, or one through long rows, may write it over the old one:
-  /// there is then no row before it (std::logic_error), and no residual (NaN).
+  /// If the new row is not to be `looked_at`, an explicit step, or one through long rows, may write it over the old
+  /// one: there is then no row before it (std::logic_error), and no residual (NaN).
   void step(bool looked_at = true) { method_->step(looked_at); }
 
   std::int64_t newest() const { return method_->newest(); }
