@@ -7,7 +7,7 @@
 namespace delf {
 
 /// The highest number of past rows that an argument is extrapolated from in a loop of division.
-inline constexpr int most_past_rows_divided = 7;
+inline constexpr int most_past_rows_divided = 5;
 
 /// What a loop of division looks at in rows of arguments, and what it makes of w.
 template <int past_rows, int parts>
