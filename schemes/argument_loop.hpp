@@ -62,29 +62,9 @@ template <int past_rows, int stride, class Output>
   }
 }
 
-/// From so many past rows u is extrapolated while the output is worked out; from more, which only tolerances near
-/// rounding ask for, beforehand: a loop for every number takes compilers long.
-inline constexpr int most_past_rows_in_loop = 8;
-
-/// u of an argument, put in its place; whole rows of bricks, present or not.
-inline void extrapolate_beforehand(const ArgumentRow& row, const PackRange& packs) {
-  const std::ptrdiff_t end = row.layout->at(packs.last);
-  for (std::ptrdiff_t at = row.layout->at(packs.first - packs.first % packs.stride); at < end; at += lanes) {
-    Pack u(0.0);
-    for (int j = 0, slot = row.slot; j < row.past_rows; ++j, slot = slot == 0 ? row.slots - 1 : slot - 1)
-      u += row.coefficients[j] * Pack::load(row.ring + slot * row.stride + at);
-    u.store(row.unknown + at);
-  }
-}
-
 template <int stride, class Output>
-void argument_loop_for(const Output& output, const ArgumentRow& given, double* out, const PackRange& packs) {
-  ArgumentRow row = given;
-  if (row.past_rows > most_past_rows_in_loop) {
-    extrapolate_beforehand(row, packs);
-    row.past_rows = 0;
-  }
-  with_past_rows<most_past_rows_in_loop>(
+void argument_loop_for(const Output& output, const ArgumentRow& row, double* out, const PackRange& packs) {
+  with_past_rows<ArgumentRow::most_past_rows>(
       row.past_rows, [&]<int past_rows>() { argument_loop<past_rows, stride>(output, row, out, packs); });
 }
 

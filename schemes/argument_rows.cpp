@@ -55,6 +55,15 @@ ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int 
   }
 }
 
+void ArgumentRows::put_extrapolated(const std::vector<double>& coefficients) {
+  for (int v = 0; v < layout_->packs(); ++v) {
+    Pack u(0.0);
+    for (int j = 0; j < static_cast<int>(coefficients.size()); ++j)
+      u += coefficients[static_cast<std::size_t>(j)] * Pack::load(row(j + 1) + layout_->at(v));
+    u.store(row(0) + layout_->at(v));
+  }
+}
+
 Pack ArgumentRows::find(const double* y, const PackRange& packs) {
   Pack change(0.0);
   double* const u = row(0);

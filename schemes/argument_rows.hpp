@@ -61,9 +61,11 @@ class ArgumentRows {
   ///
   ///     u_{n+1} ≈ Σ_{j=0}^{order} (−1)^j C(order + 1, j + 1) u_{n−j}
   ///
-  void extrapolate(int order, ArgumentRow& row) const {
+  /// From more rows than loops take, which only tolerances near rounding ask for, this is done at once.
+  void extrapolate(int order, ArgumentRow& row) {
     const auto highest = std::min(n_, static_cast<std::int64_t>(coefficients_.size()) - 1);
     order = std::clamp(order, 1, static_cast<int>(highest));
+    if (order + 1 > ArgumentRow::most_past_rows) return put_extrapolated(coefficients_[static_cast<std::size_t>(order)]);
     row.past_rows = order + 1;
     row.coefficients = coefficients_[static_cast<std::size_t>(order)].data();
     row.ring = ring_.row(0), row.stride = ring_.stride(), row.slots = ring_.rows(), row.slot = slots_(0);
@@ -73,6 +75,8 @@ class ArgumentRows {
   std::size_t bytes() const { return ring_.bytes(); }
 
  private:
+  void put_extrapolated(const std::vector<double>& coefficients);
+
   const RowLayout* layout_;
   Mixture mixture_;
   RowBuffer ring_;

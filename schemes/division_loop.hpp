@@ -39,9 +39,8 @@ class StraightDivision {
       : y_(rows.y_before),
         v_(rows.v_before),
         known_(given.arguments.known),
-        y_new_(rows.y),
-        v_new_(rows.v),
         known_increment_(given.known_increment),
+        pass_(rows),
         weights_(rows.look.weights, 1) {
     const std::ptrdiff_t begin = given.arguments.layout->at(0);
     for (int p = 0; p + 1 < parts; ++p) ahead_.take(straight(begin + p * lanes));
@@ -56,16 +55,11 @@ class StraightDivision {
     else return y - known_increment_ * Pack::load(v_ + at);
   }
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w, Pack u) {
-    const Pack v = Pack::load(v_ + at) + w, y = Pack::load(y_ + at) + v;
-    largest_ = detail::larger_magnitude(largest_, y);
-    sum_ += y;
-    seen_.take(y), expected_.take(u);
+    seen_.take(pass_.unseen(at, w)), expected_.take(u);
     change_ = detail::larger_magnitude(change_, weights_.added(Pack(0.0), seen_) - expected_.oldest());
-    v.store(v_new_ + at);
-    y.store(y_new_ + at);
   }
   void forget_change() { change_ = 0.0; }
-  RowChange result() const { return {largest_ + 0.0 * sum_, change_}; }
+  RowChange result() const { return {pass_.result().largest, change_}; }
   /// u of the last pack, which looks beyond the end.
   Pack last_argument() const { return expected_.newest; }
 
@@ -73,12 +67,11 @@ class StraightDivision {
   [[gnu::always_inline]] Pack straight(std::ptrdiff_t at) const { return Pack::load(y_ + at) + Pack::load(v_ + at); }
 
   const double *y_, *v_, *known_;
-  double *y_new_, *v_new_;
   double known_increment_;
+  IncrementPass<0, Order::ascending, Look::row> pass_;
   PackWeights<parts> weights_;
   LastPacks<parts> ahead_, seen_, expected_;
-  Pack largest_ = 0.0, change_ = 0.0;
-  Pack sum_ = 0.0;  ///< of y: a NaN goes by in a maximum, and stays in a sum
+  Pack change_ = 0.0;
 };
 
 /// A step of DivisionRows in one loop. The new row is made one pack after its outputs: what waits for an output would

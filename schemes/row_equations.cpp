@@ -269,8 +269,8 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   };
   const auto hold_outputs = [&](int first, int kept_until) {
     for (int c = 0; c < count; ++c) {
-      double* const out = hold(output_windows_[static_cast<std::size_t>(c)], o.ring.row(o.slots(-o.newest) * count + c),
-                               first, kept_until);
+      double* const out = hold(output_windows_[static_cast<std::size_t>(c)], o.ring.row(output_slot() * count + c), first,
+                               kept_until);
       slab_out_[static_cast<std::size_t>(c)] = out;
       bases_[static_cast<std::size_t>(o.base + (o.newest - o.oldest) * count + c)] = out;
     }
@@ -292,7 +292,6 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   stream->begin(work(last.first, last.first));
   hold_candidate(-halo, 0);
   if (find) find({-halo, halo});
-  const int slot_of_old = o.slots(o.rows() > 1 ? 1 - o.newest : -o.newest);
   int found = halo, evaluated = read.first, kept = read.first, summed = 0, done = 0, changed = 0;
   double change = 0;
   for (int end = 0; end < packs;) {
@@ -314,7 +313,7 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
     for (int c = 0; c < count && in_place_; ++c) {
       const double* const from = slab_out_[static_cast<std::size_t>(c)];
       std::copy(from + layout_.at(kept), from + layout_.at(keep_until),
-                o.ring.row(slot_of_old * count + c) + layout_.at(kept));
+                o.ring.row(output_slot() * count + c) + layout_.at(kept));
     }
     kept = keep_until;
     if (!all && done - reach > changed) {

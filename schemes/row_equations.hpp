@@ -162,7 +162,13 @@ class RowEquations {
   double* old_output() {
     return outputs_[0].rows() > 1 ? outputs_[0].ring.row(outputs_[0].slots(1 - outputs_[0].newest)) : nullptr;
   }
-  double* newest_output() { return outputs_[0].ring.row(outputs_[0].slots(-outputs_[0].newest)); }
+  /// Where those of the unknown row go: in steps in place, over those of the row before.
+  int output_slot() const {
+    const Outputs& o = outputs_[0];
+    return o.slots(in_place_ && o.rows() > 1 ? 1 - o.newest : -o.newest);
+  }
+  double* newest_output() { return outputs_[0].ring.row(output_slot()); }
+  RowChange divide(const ArgumentRow&, Pack* last_argument);
   void evaluate_at(const ArgumentRow&);
   Advance advance_at(const ArgumentRow&);
   Advance advanced(RowChange);

@@ -65,14 +65,21 @@ RowEquations::Advance RowEquations::advance_at(const ArgumentRow& row) {
     evaluate_at(row);
     return advance(true);
   }
-  const Outputs& o = outputs_[0];
+  return advanced(divide(row, nullptr));
+}
+
+/// Along straight lines if the last argument is asked for.
+RowChange RowEquations::divide(const ArgumentRow& row, Pack* last_argument) {
+  const RowKernel& kernel = *outputs_[0].kernel;
+  const RowIncrement& rows = increments_[0];
   division_->arguments = row;
-  division_->y = increments_[0].y_before;
+  division_->y = rows.y_before;
   division_->output = newest_output();
   division_->old_output = old_output();
-  const RowChange all = o.kernel->divide(*division_, increments_[0]);
+  const RowChange all = last_argument ? kernel.divide_straight(*division_, rows, *last_argument)
+                                      : kernel.divide(*division_, rows);
   layout_.fill_halo(division_->output);
-  return advanced(all);
+  return all;
 }
 
 /// Where rows outgrow the cache and the matrix is one number: what the nonlinear part looks at is worked out from y_n
@@ -83,25 +90,19 @@ void RowEquations::build_straight_lines() {
   build_division(*mixture);
   if (!division_) return;
   straight_ = mixture;
+  std::ranges::copy(mixture->weights, increments_[0].look.weights);
   division_->known_increment = mixture->known_row - 1;
 }
 
 RowEquations::Advance RowEquations::advance_straight() {
-  const RowKernel& kernel = *outputs_[0].kernel;
-  RowIncrement& rows = increments_[0];
-  std::ranges::copy(straight_->weights, rows.look.weights);
+  const RowIncrement& rows = increments_[0];
   ArgumentRow row{.layout = &layout_,
                   .unknown = nullptr,
                   .known = rows.y_before + static_cast<std::ptrdiff_t>(straight_->known_site) * lanes,
                   .known_weight = straight_->known_weight};
   place(row);
-  division_->arguments = row;
-  division_->y = rows.y_before;
-  division_->old_output = old_output();
-  division_->output = in_place_ && division_->old_output ? old_output() : newest_output();
   Pack last(0.0);
-  RowChange all = kernel.divide_straight(*division_, rows, last);
-  layout_.fill_halo(division_->output);
+  RowChange all = divide(row, &last);
   close_new_row();
   if (straight_->parts > 1) {  // the last pack looks beyond the end
     for (int p = 0; p < straight_->parts; ++p)

@@ -107,13 +107,15 @@ class IncrementPass {
       }
     }
   }
-  [[gnu::always_inline]] void unseen(std::ptrdiff_t at, Pack w) {
+  /// Returns y.
+  [[gnu::always_inline]] Pack unseen(std::ptrdiff_t at, Pack w) {
     const Pack v = Pack::load(v_before_ + at) + w, y = Pack::load(y_before_ + at) + v;
     largest_ = detail::larger_magnitude(largest_, y);
     sum_ += y;
     if constexpr (parts > 0) seen_.take(look == Look::row ? y - Pack::load(expected_ + at) : y);
     v.store(v_ + at);
     y.store(y_ + at);
+    return y;
   }
   void forget_change() { change_ = 0.0; }
   RowChange result() const { return {largest_ + 0.0 * sum_, change_}; }

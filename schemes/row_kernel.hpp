@@ -46,7 +46,7 @@ struct Argument {
 ///     u = Σ_j coefficients[j] (the row in `slot` − j),      j = 0 … past_rows − 1.
 ///
 struct ArgumentRow {
-  static constexpr int most_past_rows = 12;
+  static constexpr int most_past_rows = 8;  ///< a loop for each: more would take compilers long
   const RowLayout* layout;
   double* unknown;
   const double* known;

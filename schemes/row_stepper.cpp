@@ -97,7 +97,6 @@ struct RowStepper::Impl {
 
   /// A step that leaves the row before it where it is.
   double step_beside() {
-    const double before[2] = {largest[0], largest[1]};
     equations.begin(n);
     equations.evaluate_known_outputs();
     double value = 0;
@@ -109,7 +108,7 @@ struct RowStepper::Impl {
       }
       value = follow_root();
     }
-    if (iterative && !stiff && iterations == 1 && equations.can_go_in_place()) keep(before);
+    if (iterative && !stiff && iterations == 1 && equations.can_go_in_place()) keep();
     else kept_row = -1;
     return value;
   }
@@ -149,10 +148,11 @@ struct RowStepper::Impl {
     std::ranges::copy(kept_largest, largest);
     rows_known = 1;
   }
-  void keep(const double* largest_before) {
+  /// Before row_is_found().
+  void keep() {
     kept_row = n;
     kept_overwritten = rows.overwritten();
-    std::copy_n(largest_before, 2, kept_largest);
+    std::ranges::copy(largest, kept_largest);
   }
 
   /// An explicit step of one loop; in place if no one looks at the row. Returns √Σy².
@@ -167,7 +167,7 @@ struct RowStepper::Impl {
       if (rows_known < 2) value = loop_again();
       kept_row = -1;  // from here on nothing is written over
     } else if (!in_place) {
-      keep(largest);
+      keep();
     }
     return value;
   }
@@ -248,12 +248,12 @@ struct RowStepper::Impl {
       contracted = contraction->next_change(largest[0], weight, gain);
     return contracted;
   }
+  double tolerance() const { return std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()); }
   /// The smallest tolerances ask for all that rounding allows: there nothing is left to an estimate.
   bool estimates() const { return options.tolerance >= smallest_estimated; }
   /// One more iteration would change the row by no more than what it makes of the last change.
   bool is_enough(double change, double next_change, double value) const {
-    const double enough = within(std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()),
-                                 std::max({value, largest[0], largest[1]}));
+    const double enough = within(tolerance(), std::max({value, largest[0], largest[1]}));
     return change <= weight * enough || (estimates() && next_change * change <= enough);
   }
 
@@ -278,8 +278,7 @@ struct RowStepper::Impl {
   /// Simplified Newton with the constant part. False when it does not contract, or not fast enough.
   bool iterate(double& value) {
     double next_change = contraction_now();
-    seed.choose(n, std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()), next_change,
-                estimates() ? next_change : 1 / weight);
+    seed.choose(n, tolerance(), next_change, estimates() ? next_change : 1 / weight);
     const int order = seed.order();
     double before = std::numeric_limits<double>::infinity();
     while (iterations < options.max_iterations) {
