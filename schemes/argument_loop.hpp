@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -13,10 +14,10 @@ template <int past_rows>
 class UnknownArgument {
  public:
   explicit UnknownArgument(const ArgumentRow& given) : unknown_(given.unknown) {
-    int slot = given.slot;
+    const double* row = given.newest;
     for (int j = 0; j < past_rows; ++j) {
-      past_[j] = given.ring + slot * given.stride;
-      slot = slot == 0 ? given.slots - 1 : slot - 1;
+      past_[j] = row;
+      row = row == given.first ? given.last : row - given.stride;
       coefficients_[j] = given.coefficients[j];
     }
   }
@@ -44,7 +45,7 @@ template <int most, class Run>
   (std::make_integer_sequence<int, most>{});
 }
 
-/// out = output(u, known, at) for the packs of a row of arguments: where u is extrapolated, that is done while the
+/// out = output(output.argument(u, known), at) for the packs of a row of arguments: where u is extrapolated, that is done while the
 /// output is worked out.
 template <int past_rows, int stride, class Output>
 [[gnu::flatten]] void argument_loop(const Output& given_output, const ArgumentRow& given, double* out,
@@ -55,10 +56,22 @@ template <int past_rows, int stride, class Output>
   const double* const known = given.known;
   // Where bricks are missing, packs in between are extrapolated too: steps compare u everywhere.
   const std::ptrdiff_t between = packs.first % 2 == 0 ? lanes : -lanes;
-  const std::ptrdiff_t end = given.layout->at(packs.last);
-  for (std::ptrdiff_t at = given.layout->at(packs.first); at < end; at += stride * lanes) {
+  const auto find = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
     if constexpr (stride == 2 && past_rows > 0) found(at + between);
-    output(found(at), Pack::load(known + at), at).store(out + at);
+    return output.argument(found(at), Pack::load(known + at));
+  };
+  // Arguments are found two packs ahead: evaluations that wait for theirs would keep others waiting. At the end the last
+  // one is found again.
+  constexpr std::ptrdiff_t by = stride * lanes;
+  std::ptrdiff_t at = given.layout->at(packs.first);
+  const std::ptrdiff_t end = given.layout->at(packs.last);
+  if (at >= end) return;
+  const std::ptrdiff_t last = at + (end - at - 1) / by * by;
+  auto here = find(at), next = find(std::min(at + by, last));
+  for (; at < end; at += by) {
+    const auto ahead = find(std::min(at + 2 * by, last));
+    output(here, at).store(out + at);
+    here = next, next = ahead;
   }
 }
 
@@ -77,8 +90,8 @@ struct MixtureSlope {
   const double* positions;
   double x_offset;
 
-  [[gnu::always_inline]] Pack operator()(Pack u, Pack known, std::ptrdiff_t at) const {
-    const Pack m = u + known_weight * known;
+  [[gnu::always_inline]] Pack argument(Pack u, Pack known) const { return u + known_weight * known; }
+  [[gnu::always_inline]] Pack operator()(Pack m, std::ptrdiff_t at) const {
     return density(value_jet<D>([m](int) { return m; }, t, positions + at, x_offset)).derivative(0);
   }
 };

@@ -47,7 +47,14 @@ ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int 
       mixture_(mixture),
       // One more than is read, to see what the highest order would have missed.
       ring_(layout, most_order + 2),
-      slots_(most_order + 2) {
+      slots_(most_order + 2),
+      row_{.layout = &layout,
+           .unknown = nullptr,
+           .known = nullptr,
+           .known_weight = mixture.known_weight,
+           .first = ring_.row(0),
+           .last = ring_.row(most_order + 1),
+           .stride = ring_.stride()} {
   for (int order = 0; order <= most_order; ++order) {
     std::vector<double> of_rows;
     for (int j = 1; j <= order + 1; ++j) of_rows.push_back(extrapolation_weight(order + 1, j));

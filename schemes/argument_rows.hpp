@@ -47,15 +47,16 @@ class ArgumentRows {
   void begin(std::int64_t n) {
     slots_.at(n);
     n_ = n;
+    row_.unknown = row(0), row_.newest = row(1);
   }
   /// u_{n+1−back}: 0 is the one that is looked for.
   double* row(int back) { return ring_.row(slots_(back - 1)); }
-  /// u_{n+1} and what is known, with the row y of known_row; positions, t and steps are the caller's.
-  ArgumentRow argument(const double* y) {
-    return {.layout = layout_,
-            .unknown = row(0),
-            .known = mixture_.is_known_alike ? row(1) : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes,
-            .known_weight = mixture_.known_weight};
+  /// u_{n+1} as it stands and what is known, with the row y of known_row; positions, t and steps are the caller's. It is
+  /// the same one in every step.
+  ArgumentRow& argument(const double* y) {
+    row_.known = mixture_.is_known_alike ? row_.newest : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes;
+    row_.past_rows = 0;
+    return row_;
   }
   /// Lets u_{n+1} be extrapolated by a polynomial of this order, or the highest that there are rows for, from row 0 on:
   ///
@@ -68,7 +69,6 @@ class ArgumentRows {
     if (order + 1 > ArgumentRow::most_past_rows) return put_extrapolated(coefficients_[static_cast<std::size_t>(order)]);
     row.past_rows = order + 1;
     row.coefficients = coefficients_[static_cast<std::size_t>(order)].data();
-    row.ring = ring_.row(0), row.stride = ring_.stride(), row.slots = ring_.rows(), row.slot = slots_(0);
   }
   /// u_{n+1} of the row itself, whose halos are filled; returns the largest change.
   Pack find(const double* y, const PackRange&);
@@ -82,6 +82,7 @@ class ArgumentRows {
   RowBuffer ring_;
   RingSlots slots_;
   std::int64_t n_ = 0;
+  ArgumentRow row_;
   std::vector<std::vector<double>> coefficients_;  ///< by order
 };
 

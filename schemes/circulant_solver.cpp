@@ -107,8 +107,7 @@ CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) 
 }
 
 template <class Sink>
-[[gnu::always_inline]] inline void CirculantSolver::backward(const Entering& entering, const double* u, Sink& sink,
-                                                             int unseen) const {
+[[gnu::always_inline]] inline void CirculantSolver::backward(const Entering& entering, const double* u, Sink& sink) const {
   const RowLayout& layout = *layout_;
   Pack x = entering.x;
   const Pack entering_u = entering.u;
@@ -122,7 +121,8 @@ template <class Sink>
     return x = (Pack::load(u + at) + powers[v] * entering_u) + q * x;
   };
   int v = layout.packs() - 1;
-  for (; unseen > 0; --unseen, --v) sink.unseen(layout.at(v), v < near ? close(layout.at(v), v) : far(layout.at(v)));
+  for (const int seen = v - Sink::packs_unseen; v > seen; --v)
+    sink.unseen(layout.at(v), v < near ? close(layout.at(v), v) : far(layout.at(v)));
   for (; v >= near; --v) sink(layout.at(v), far(layout.at(v)));
   for (; v >= 0; --v) sink(layout.at(v), close(layout.at(v), v));
 }
@@ -131,6 +131,7 @@ namespace {
 
 /// Stores x.
 struct Storing {
+  static constexpr int packs_unseen = 0;
   double* x;
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack value) const { value.store(x + at); }
   void unseen(std::ptrdiff_t at, Pack value) const { (*this)(at, value); }
@@ -144,7 +145,7 @@ void CirculantSolver::solve(const double* const* rhs, double* const* w) const {
   scaled.bind(rhs);
   double* const x = w[0];
   Storing storing{x};
-  backward(forward(scaled, x), x, storing, 0);
+  backward(forward(scaled, x), x, storing);
 }
 
 RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
@@ -152,8 +153,8 @@ RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* r
   // u stands where the new increment will, unless that is made from itself.
   double* const u = rows[0].v == rows[0].v_before ? w[0] : rows[0].v;
   const Entering entering = forward(*right_sides[0], u);
-  return with_increment_pass<Order::descending>(rows[0], [&](auto pass, int unseen) __attribute__((always_inline)) {
-    backward(entering, u, pass, unseen);
+  return with_increment_pass<Order::descending>(rows[0], [&](auto pass) __attribute__((always_inline)) {
+    backward(entering, u, pass);
     return pass.result();
   });
 }

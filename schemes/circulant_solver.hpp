@@ -37,9 +37,9 @@ class CirculantSolver final : public LinearSolver {
   };
   Entering entering(const double* u, Pack sums) const;
   Entering forward(const RowSum& right_side, double* u) const;
-  /// So many packs go to sink.unseen().
+  /// The first Sink::packs_unseen go to sink.unseen().
   template <class Sink>
-  void backward(const Entering&, const double* u, Sink&, int unseen) const;
+  void backward(const Entering&, const double* u, Sink&) const;
   void build_closure();
 
   const RowLayout* layout_;

@@ -18,7 +18,6 @@ class DivisionByArguments {
   [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) const { return unknown_(at); }
   [[gnu::always_inline]] Pack known(std::ptrdiff_t at) const { return Pack::load(known_ + at); }
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w, Pack /*u*/) { pass_(at, w); }
-  void forget_change() { pass_.forget_change(); }
   RowChange result() const { return pass_.result(); }
 
  private:
@@ -42,6 +41,7 @@ class StraightDivision {
         known_increment_(given.known_increment),
         pass_(rows),
         weights_(rows.look.weights, 1) {
+    seen_.have_seen_nothing();
     const std::ptrdiff_t begin = given.arguments.layout->at(0);
     for (int p = 0; p + 1 < parts; ++p) ahead_.take(straight(begin + p * lanes));
   }
@@ -58,7 +58,6 @@ class StraightDivision {
     seen_.take(pass_.unseen(at, w)), expected_.take(u);
     change_ = detail::larger_magnitude(change_, weights_.added(Pack(0.0), seen_) - expected_.oldest());
   }
-  void forget_change() { change_ = 0.0; }
   RowChange result() const { return {pass_.result().largest, change_}; }
   /// u of the last pack, which looks beyond the end.
   Pack last_argument() const { return expected_.newest; }
@@ -96,7 +95,7 @@ template <int old, int parts, class Output, class Division>
   const auto evaluate = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
     Evaluated e;
     e.u = division.unknown(at);
-    e.E = output(e.u, division.known(at), at);
+    e.E = output(output.argument(e.u, division.known(at)), at);
     e.E_old = old > 0 ? Pack::load(old_row + at) : Pack(0.0);  // before it is written over
     e.E.store(out + at);
     return e;
@@ -113,18 +112,11 @@ template <int old, int parts, class Output, class Division>
   };
   Evaluated ready = evaluate(begin);
   std::ptrdiff_t ahead = begin + lanes;
-  const auto until = [&](int packs) __attribute__((always_inline)) {
-    for (const std::ptrdiff_t end = layout.at(packs); ahead < end; ahead += lanes) {
-      const Evaluated next = evaluate(ahead);
-      make(ahead - lanes, ready);
-      ready = next;
-    }
-  };
-  if constexpr (parts > 1) {
-    until(parts);
-    division.forget_change();  // the first packs had nothing to be looked at with
+  for (const std::ptrdiff_t end = layout.at(layout.packs()); ahead < end; ahead += lanes) {
+    const Evaluated next = evaluate(ahead);
+    make(ahead - lanes, ready);
+    ready = next;
   }
-  until(layout.packs());
   make(ahead - lanes, ready);
   given_division = division;
 }

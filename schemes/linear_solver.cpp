@@ -53,9 +53,8 @@ class ScalarSolver final : public LinearSolver {
   }
   RowChange advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
                     double* const*) const override {
-    return with_increment_pass<Order::ascending>(rows[0], [&](auto pass, int unseen) {
-      return advance_with<decltype(pass)>(unseen, layout, *right_sides[0], rows[0]);
-    });
+    return with_increment_pass<Order::ascending>(
+        rows[0], [&](auto pass) { return advance_with<decltype(pass)>(layout, *right_sides[0], rows[0]); });
   }
   bool is_a_number() const override { return true; }
   double right_side_scale(int) const override { return inverse_; }
@@ -66,11 +65,10 @@ class ScalarSolver final : public LinearSolver {
  private:
   /// A function for each kind of pass: all in one would take compilers minutes.
   template <class Pass>
-  [[gnu::noinline]] static RowChange advance_with(int unseen, const RowLayout& layout, const RowSum& right_side,
+  [[gnu::noinline]] static RowChange advance_with(const RowLayout& layout, const RowSum& right_side,
                                                   const RowIncrement& rows) {
     Pass pass(rows);
-    if (unseen > 0) right_side.pass_few(layout, {0, unseen}, Unseen<Pass>{pass});
-    right_side.pass_on(layout, {unseen, layout.packs()}, pass);
+    right_side.pass_on(layout, layout.all(), pass);
     return pass.result();
   }
 
@@ -170,10 +168,8 @@ RowChange LinearSolver::advance(const RowLayout& layout, int components, const R
   for (int a = 0; a < components; ++a) {
     const double* const from = w[a];
     layout.copy_overlaps(w[a]);  // solvers need not fill them
-    all.take(with_increment_pass<Order::ascending>(rows[a], [&layout, from](auto pass, int unseen) __attribute__((always_inline)) {
-      int v = 0;
-      for (; v < unseen; ++v) pass.unseen(layout.at(v), Pack::load(from + layout.at(v)));
-      for (; v < layout.packs(); ++v) pass(layout.at(v), Pack::load(from + layout.at(v)));
+    all.take(with_increment_pass<Order::ascending>(rows[a], [&layout, from](auto pass) __attribute__((always_inline)) {
+      for (int v = 0; v < layout.packs(); ++v) pass(layout.at(v), Pack::load(from + layout.at(v)));
       return pass.result();
     }));
   }

@@ -147,9 +147,13 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
   }
   struct PartOfPair {
     R stencil;
-    [[gnu::always_inline]] Pack operator()(Pack u, Pack known, std::ptrdiff_t) const {
+    struct Values {
+      Pack latest, other;
+    };
+    [[gnu::always_inline]] Values argument(Pack u, Pack known) const { return {u, known}; }
+    [[gnu::always_inline]] Pack operator()(const Values& values, std::ptrdiff_t) const {
       std::array<Pack, n> y{};
-      y[pair.latest] = u, y[pair.other] = known;
+      y[pair.latest] = values.latest, y[pair.other] = values.other;
       return part(stencil, y);
     }
   };

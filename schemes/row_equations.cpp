@@ -40,23 +40,20 @@ void RowEquations::begin(std::int64_t n, bool in_place) {
   in_place_ = in_place;
   if (is_one_loop()) return;
   const std::int64_t place = rows_.place(n);
-  y_slots_.at(place);
-  v_slots_.at(place);
-  for (Outputs& o : outputs_) o.slots.at(place);
   if (places_.empty()) {
-    find_bases();
+    find_bases(place);
   } else {
     period_.at(place);
     std::copy_n(places_.data() + static_cast<std::size_t>(period_(0)) * bases_.size(), bases_.size(), bases_.data());
   }
-  for (int a = 0; a < d_; ++a) {
-    const auto at = static_cast<std::size_t>(a);
-    const int newest = in_place ? 0 : -1;
-    double *const v = rows_.v_at(v_slots_(newest), a), *const y = rows_.y_at(y_slots_(newest), a);
-    RowIncrement& increment = increments_[at];
-    increment.v_before = equations_.correction_form ? v : rows_.v_at(v_slots_(0), a);
-    increment.y_before = rows_.y_at(y_slots_(0), a);
-    increment.v = v, increment.y = y;
+  bind_sums();
+  for (std::size_t a = 0; a < increments_.size(); ++a) {
+    RowIncrement& increment = increments_[a];
+    double *const y = bases_[static_cast<std::size_t>(y_base_) + a], *const v = bases_[static_cast<std::size_t>(v_base_) + a];
+    increment.y_before = y;
+    increment.v = in_place ? v : bases_[static_cast<std::size_t>(v_new_base_) + a];
+    increment.y = in_place ? y : bases_[static_cast<std::size_t>(E_base_) + a];
+    increment.v_before = equations_.correction_form ? increment.v : v;
   }
   if (arguments_) {
     arguments_->begin(n);
@@ -64,19 +61,27 @@ void RowEquations::begin(std::int64_t n, bool in_place) {
   }
 }
 
-void RowEquations::find_bases() {
-  const auto base = [&](int at) -> const double*& { return bases_[static_cast<std::size_t>(at)]; };
+void RowEquations::bind_sums() {
+  for (RowSum& sum : sums_) sum.bind(bases_.data());
+  for (RowSum& sum : stored_) sum.bind(bases_.data());
+}
+
+void RowEquations::find_bases(std::int64_t place) {
+  y_slots_.at(place);
+  v_slots_.at(place);
+  for (Outputs& o : outputs_) o.slots.at(place);
+  const auto base = [&](int at) -> double*& { return bases_[static_cast<std::size_t>(at)]; };
   for (int a = 0; a < d_; ++a) {
     base(y_base_ + a) = rows_.y_at(y_slots_(0), a);
     base(E_base_ + a) = rows_.y_at(y_slots_(-1), a);
+    base(v_new_base_ + a) = rows_.v_at(v_slots_(-1), a);
     for (int age = 0; age < ages_; ++age) base(v_base_ + age * d_ + a) = rows_.v_at(v_slots_(age), a);
   }
-  for (Outputs& o : outputs_) {
-    const int count = o.kernel->outputs();
+  if (arguments_) base(y_known_base_) = rows_.y_at(y_slots_(arguments_->mixture().known_row - 1), 0);
+  for (Outputs& o : outputs_)
     for (int age = o.oldest; age <= o.newest; ++age)
-      for (int c = 0; c < count; ++c)
-        base(o.base + (age - o.oldest) * count + c) = o.ring.row(o.slots(-age) * count + c);
-  }
+      for (int c = 0; c < o.kernel->outputs(); ++c)
+        output(o, age, c) = o.ring.row(o.slots(-age) * o.kernel->outputs() + c);
 }
 
 /// The rings come round together after as many steps as their common multiple: where rows lie can be looked up then. To
@@ -85,12 +90,10 @@ void RowEquations::build_places() {
   if (is_one_loop()) return;
   int period = std::lcm(rows_.rows_held(), rows_.increments_held());
   for (const Outputs& o : outputs_) period = std::lcm(period, std::max(1, o.held));
-  for (RowSum& sum : sums_) sum.bind(bases_.data());
-  for (RowSum& sum : stored_) sum.bind(bases_.data());
   constexpr int longest = 32;
   if (!reads_unknown_row() || period > longest) return;
   period_ = RingSlots(period);
-  std::vector<const double*> places;
+  std::vector<double*> places;
   for (int n = 0; n < period; ++n) {
     begin(n);
     places.insert(places.end(), bases_.begin(), bases_.end());
@@ -126,6 +129,7 @@ PackRange RowEquations::where_read(const Outputs& o) const {
 void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& given) {
   const PackRange packs = packs_of(o, age, given);
   const std::int64_t anchor_row = n_ + age;
+  y_slots_.at(rows_.place(n_));
   const int newest = o.reads_unknown_row(age) ? 1 : 0;
   for (int t = o.first_time; t <= o.last_time; ++t)
     for (int a = 0; a < d_; ++a) {
@@ -158,12 +162,11 @@ void RowEquations::evaluate_unknown_outputs(At at) {
 }
 
 void RowEquations::evaluate_in_ring(Outputs& o, int age, At at) {
-  const int count = o.kernel->outputs(), slot = o.slots(-age);
-  for (int c = 0; c < count; ++c) slab_out_[static_cast<std::size_t>(c)] = o.ring.row(slot * count + c);
+  for (int c = 0; c < o.kernel->outputs(); ++c) slab_out_[static_cast<std::size_t>(c)] = output(o, age, c);
   evaluate(o, age, slab_out_.data(), at, where_read(o));
 }
 
-void RowEquations::evaluate_known_outputs() {
+void RowEquations::evaluate_newest_known_outputs() {
   for (Outputs& o : outputs_)
     if (o.oldest <= o.newest && !o.reads_unknown_row(o.newest)) evaluate_in_ring(o, o.newest, At::row);
 }
@@ -188,10 +191,7 @@ void RowEquations::store_right_sides(const PackRange& packs, double* const* to) 
 }
 
 RowEquations::Advance RowEquations::advance(bool compared) {
-  const RowSum* right_sides[RowKernel::most_components];
-  for (int a = 0; a < d_; ++a) {
-    right_sides[a] = &right_side(a);
-    if (arguments_) continue;
+  for (int a = 0; a < d_ && !arguments_; ++a) {
     RowLook& look = increments_[static_cast<std::size_t>(a)].look;
     look.parts = compared && looks_on_the_way_ ? static_cast<int>(looks_[0].parts.size()) : 0;
     look.expected = candidate_.row(a);
@@ -203,7 +203,7 @@ RowEquations::Advance RowEquations::advance(bool compared) {
   }
   if (!equations_.exceptional.empty()) set_exceptional_sites();
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
-  RowChange all = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides, increments_.data(), w_rows_.data());
+  RowChange all = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides_.data(), increments_.data(), w_rows_.data());
   if (arguments_) return advanced(all);
   close_new_row();
   if (!compared) return {max_or_nan(all.largest), 0};
@@ -251,6 +251,7 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   Outputs& o = outputs_[0];
   const int packs = layout_.packs(), halo = layout_.halo(), count = o.kernel->outputs();
   const PackRange read = where_read(o);
+  for (int c = 0; c < count; ++c) output_places_[static_cast<std::size_t>(c)] = newest_output(c);
   int reach = 0;
   for (const Argument& look : looks_)
     for (const Argument::Part& part : look.parts) reach = std::max(reach, part.vertex.space);
@@ -269,16 +270,16 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   };
   const auto hold_outputs = [&](int first, int kept_until) {
     for (int c = 0; c < count; ++c) {
-      double* const out = hold(output_windows_[static_cast<std::size_t>(c)], o.ring.row(output_slot() * count + c), first,
-                               kept_until);
-      slab_out_[static_cast<std::size_t>(c)] = out;
-      bases_[static_cast<std::size_t>(o.base + (o.newest - o.oldest) * count + c)] = out;
+      const auto at = static_cast<std::size_t>(c);
+      output(o, o.newest, c) = slab_out_[at] = hold(output_windows_[at], output_places_[at], first, kept_until);
     }
+    bind_sums();
   };
   const auto sum_right_sides = [&](PackRange of) {
     if (!is_stored_) return;
-    double* const to = hold(right_side_window_, stored_right_side(0), of.first, of.first);
+    double* const to = hold(right_side_window_, increments_[0].y, of.first, of.first);
     bases_[static_cast<std::size_t>(E_base_)] = to;
+    bind_sums();
     store_right_sides(of, &to);
   };
   const auto work = [&](int first, int kept_until) {
@@ -313,7 +314,7 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
     for (int c = 0; c < count && in_place_; ++c) {
       const double* const from = slab_out_[static_cast<std::size_t>(c)];
       std::copy(from + layout_.at(kept), from + layout_.at(keep_until),
-                o.ring.row(output_slot() * count + c) + layout_.at(kept));
+                output_places_[static_cast<std::size_t>(c)] + layout_.at(kept));
     }
     kept = keep_until;
     if (!all && done - reach > changed) {
@@ -338,8 +339,8 @@ double RowEquations::value_at(const SiteEquation& special, bool unknown_too, dou
   const int own = layout_.slot(special.site), a = special.component;
   if (special.fixed) {
     // v_{n+1} = v_n + w = 0; where w corrects the candidate, v_{n+1} is the candidate's
-    if (equations_.correction_form || unknown_too) return rows_.v_at(v_slots_(-1), a)[own];
-    return rows_.v_at(v_slots_(0), a)[own];
+    const int v = equations_.correction_form || unknown_too ? v_new_base_ : v_base_;
+    return bases_[static_cast<std::size_t>(v + a)][own];
   }
   const EquationTerms& equation = special.equation;
   const double sign = (n_ + 1 - equation.shift + special.site) % 2 == 0 ? 1 : -1;

@@ -52,7 +52,9 @@ class RowEquations {
   enum class At { candidate, row };
   void evaluate_unknown_outputs(At);
   /// Evaluates the outputs that read rows up to n only and that no earlier step had to evaluate.
-  void evaluate_known_outputs();
+  void evaluate_known_outputs() {
+    if (has_known_outputs_) evaluate_newest_known_outputs();
+  }
   /// Whether there are outputs that read row n+1.
   bool reads_unknown_row() const;
 
@@ -123,7 +125,9 @@ class RowEquations {
   void build_looks();
   void make_room_in_place();
   void build_places();
-  void find_bases();
+  void find_bases(std::int64_t place);
+  void bind_sums();
+  void evaluate_newest_known_outputs();
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
   int scratch_rows_of_sums() const, residual_rows() const;
@@ -156,27 +160,28 @@ class RowEquations {
   void build_straight_lines();
   void find_arguments();
   void evaluate_arguments(At);
-  ArgumentRow argument_row();
+  ArgumentRow& argument_row();
   void place(ArgumentRow&) const;  ///< in time and space
+  /// out_c of stencils anchored `age` rows after row n, where sums read it.
+  double*& output(const Outputs& o, int age, int c = 0) {
+    return bases_[static_cast<std::size_t>(o.base + (age - o.oldest) * o.kernel->outputs() + c)];
+  }
   /// Of the row before; null where equations read no such.
-  double* old_output() {
-    return outputs_[0].rows() > 1 ? outputs_[0].ring.row(outputs_[0].slots(1 - outputs_[0].newest)) : nullptr;
-  }
+  double* old_output() { return outputs_[0].rows() > 1 ? output(outputs_[0], outputs_[0].newest - 1) : nullptr; }
   /// Where those of the unknown row go: in steps in place, over those of the row before.
-  int output_slot() const {
+  double* newest_output(int c = 0) {
     const Outputs& o = outputs_[0];
-    return o.slots(in_place_ && o.rows() > 1 ? 1 - o.newest : -o.newest);
+    return output(o, o.newest - (in_place_ && o.rows() > 1 ? 1 : 0), c);
   }
-  double* newest_output() { return outputs_[0].ring.row(output_slot()); }
   RowChange divide(const ArgumentRow&, Pack* last_argument);
   void evaluate_at(const ArgumentRow&);
   Advance advance_at(const ArgumentRow&);
   Advance advanced(RowChange);
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
-  const RowSum& right_side(int a) const { return (is_stored_ ? stored_ : sums_)[static_cast<std::size_t>(a)]; }
+  const RowSum& right_side(int a) const { return *right_sides_[static_cast<std::size_t>(a)]; }
   /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
-  double* stored_right_side(int a) { return rows_.y_at(y_slots_(-1), a); }
+  double* stored_right_side(int a) { return bases_[static_cast<std::size_t>(E_base_ + a)]; }
   void store_right_sides(const PackRange&, double* const* to);
   void set_exceptional_sites();
   double value_at(const SiteEquation&, bool unknown_too, double* absolute) const;
@@ -196,17 +201,21 @@ class RowEquations {
   bool in_place_ = false;
   RingSlots y_slots_, v_slots_;
   int ages_ = 1;
-  std::vector<const double*> bases_;
-  std::vector<const double*> places_;  ///< bases_ of one step after the other, until they are the first again
+  std::vector<double*> bases_;
+  std::vector<double*> places_;  ///< bases_ of one step after the other, until they are the first again
   RingSlots period_;
   int y_base_ = 0, v_base_ = 0, E_base_ = 0, w_base_ = 0;
+  int v_new_base_ = 0, y_known_base_ = 0;  ///< v_{n+1}; y of the mixture's known_row
 
   /// −E times the solver's scale, for each component; of bricks for each parity of the equation's row and of the packs.
   std::vector<RowSum> sums_, stored_, measured_;
+  std::vector<const RowSum*> right_sides_;
+  bool has_known_outputs_ = false;  ///< that each step must evaluate
   bool is_stored_ = false;  ///< right sides are summed to a row first: bricks, and walls
   RowBuffer w_, scratch_, positions_;
   CandidateRows candidate_;
   std::vector<PackWindow> output_windows_;      ///< of a stream: out_c at the candidate
+  std::vector<double*> output_places_;          ///< and where it stands afterwards
   PackWindow work_window_, right_side_window_;  ///< and its solver's work space; −E, where that is stored
   std::optional<ArgumentRows> arguments_;
   std::optional<DivisionRows> division_;  ///< if a step at arguments is one loop

@@ -55,7 +55,7 @@ void RowEquations::find_arguments() {
 }
 
 RowEquations::Advance RowEquations::advance_extrapolated(int order) {
-  ArgumentRow row = argument_row();
+  ArgumentRow& row = argument_row();
   arguments_->extrapolate(order, row);
   return advance_at(row);
 }
@@ -123,8 +123,8 @@ void RowEquations::evaluate_arguments(At at) {
   evaluate_at(argument_row());
 }
 
-ArgumentRow RowEquations::argument_row() {
-  ArgumentRow row = arguments_->argument(rows_.y_at(y_slots_(arguments_->mixture().known_row - 1), 0));
+ArgumentRow& RowEquations::argument_row() {
+  ArgumentRow& row = arguments_->argument(bases_[static_cast<std::size_t>(y_known_base_)]);
   place(row);
   return row;
 }

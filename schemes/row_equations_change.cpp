@@ -18,7 +18,8 @@ void RowEquations::build_looks() {
     build_straight_lines();
   }
   if (is_streamed_)
-    for (int c = 0; c < outputs_[0].kernel->outputs(); ++c) output_windows_.emplace_back(layout_);
+    for (int c = 0; c < outputs_[0].kernel->outputs(); ++c)
+      output_windows_.emplace_back(layout_), output_places_.push_back(nullptr);
   for (const Outputs& o : outputs_) {
     const Argument whole{{{Site{}, 1.0}}};
     const auto& arguments = o.kernel->arguments();

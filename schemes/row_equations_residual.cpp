@@ -52,8 +52,7 @@ double RowEquations::residual(std::int64_t n) {
       for (int c = 0; c < count; ++c, ++next) {
         slab_out_[static_cast<std::size_t>(c)] =
             next < first ? rows_.y(n + 2 - rows_.rows_held(), next - first + d_) : scratch_.row(next);
-        bases_[static_cast<std::size_t>(o.base + (age - o.oldest) * count + c)] =
-            slab_out_[static_cast<std::size_t>(c)];
+        output(o, age, c) = slab_out_[static_cast<std::size_t>(c)];
       }
       evaluate(o, age, slab_out_.data(), At::row, where_read(o));
     }

@@ -76,6 +76,7 @@ void RowEquations::build_outputs() {
     if (!is_one_loop()) o.ring = RowBuffer(layout_, o.rows() * o.kernel->outputs());
     slab_rows_.resize(std::max(slab_rows_.size(), static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_)));
     slab_out_.resize(std::max(slab_out_.size(), static_cast<std::size_t>(o.kernel->outputs())));
+    has_known_outputs_ = has_known_outputs_ || (o.oldest <= o.newest && !o.reads_unknown_row(o.newest));
     outputs_.push_back(std::move(o));
   }
 }
@@ -105,7 +106,9 @@ void RowEquations::build_sums() {
   }
   E_base_ = next;
   w_base_ = next + d_;
-  bases_.resize(static_cast<std::size_t>(w_base_ + d_));
+  v_new_base_ = w_base_ + d_;
+  y_known_base_ = v_new_base_ + d_;
+  bases_.resize(static_cast<std::size_t>(y_known_base_) + 1);
 
   is_stored_ = bricks_ || !equations_.exceptional.empty();
   for (int a = 0; a < d_; ++a) {
@@ -129,6 +132,7 @@ void RowEquations::build_sums() {
     stored.add(E_base_ + a, 0, solver_[0]->right_side_scale(a));
     stored_.push_back(std::move(stored));
   }
+  for (int a = 0; a < d_; ++a) right_sides_.push_back(&(is_stored_ ? stored_ : sums_)[static_cast<std::size_t>(a)]);
   if (is_one_loop()) return;
   if (solver_[0]->needs_work_rows() || equations_.correction_form) w_ = RowBuffer(layout_, d_);
   for (int a = 0; a < d_; ++a) w_rows_.push_back(w_.rows() ? w_.row(a) : nullptr);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <limits>
+
 #include "schemes/row_layout.hpp"
 
 namespace delf {
@@ -54,10 +56,16 @@ struct LastPacks {
     if constexpr (count == 1) return newest;
     else return older.oldest();
   }
+  /// As long as less has been seen, sums over all of them are NaN, which larger_magnitude() leaves out.
+  void have_seen_nothing() {
+    older.have_seen_nothing();
+    newest = std::numeric_limits<double>::quiet_NaN();
+  }
 };
 template <>
 struct LastPacks<0> {
   [[gnu::always_inline]] void take(Pack) {}
+  void have_seen_nothing() {}
 };
 
 /// Their weights: Σ_p weight_p · pack_p is added to a sum.
@@ -80,11 +88,14 @@ struct PackWeights<0> {
 enum class Look { row, argument };
 
 /// A pass over all packs of a RowIncrement, one after the other; what it measures stays in registers. The first
-/// `parts` − 1 of them have nothing to be looked at with: they are handed to unseen(). What was expected is finite: where
-/// a change is NaN, the largest |y| shows it.
+/// `parts` − 1 of them have nothing to be looked at with. Ascending passes leave them out by themselves: what they would
+/// put into arguments is NaN, in packs of the halo, which no one reads. Descending ones would put it into arguments that
+/// are still wanted: so many packs must be handed to unseen(). What was expected is finite: where a change is NaN, the
+/// largest |y| shows it.
 template <int parts, Order order, Look look>
 class IncrementPass {
  public:
+  static constexpr int packs_unseen = order == Order::descending && parts > 1 ? parts - 1 : 0;
   explicit IncrementPass(const RowIncrement& rows)
       : v_before_(rows.v_before),
         y_before_(rows.y_before),
@@ -93,7 +104,9 @@ class IncrementPass {
         y_(rows.y),
         argument_(rows.look.argument),
         weights_(rows.look.weights + (order == Order::ascending || parts == 0 ? 0 : parts - 1),
-                 order == Order::ascending ? 1 : -1) {}
+                 order == Order::ascending ? 1 : -1) {
+    seen_.have_seen_nothing();
+  }
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) {
     unseen(at, w);
     if constexpr (parts > 0) {
@@ -117,7 +130,6 @@ class IncrementPass {
     y.store(y_ + at);
     return y;
   }
-  void forget_change() { change_ = 0.0; }
   RowChange result() const { return {largest_ + 0.0 * sum_, change_}; }
 
  private:
@@ -129,35 +141,28 @@ class IncrementPass {
   LastPacks<parts> seen_;  ///< y, less what was expected of it where the row is looked at
 };
 
-/// A pass whose packs are not looked at.
-template <class Pass>
-struct Unseen {
-  Pass& pass;
-  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) { pass.unseen(at, w); }
-};
-
 /// `run` with the IncrementPass that the rows ask for. Inlined, as passes are: what they carry stays in registers.
 template <Order order, class Run>
 [[gnu::always_inline]] inline RowChange with_increment_pass(const RowIncrement& rows, Run run) {
   if (rows.look.argument) {
     switch (rows.look.parts) {
       case 1:
-        return run(IncrementPass<1, order, Look::argument>(rows), 0);
+        return run(IncrementPass<1, order, Look::argument>(rows));
       case 2:
-        return run(IncrementPass<2, order, Look::argument>(rows), 1);
+        return run(IncrementPass<2, order, Look::argument>(rows));
       default:
-        return run(IncrementPass<3, order, Look::argument>(rows), 2);
+        return run(IncrementPass<3, order, Look::argument>(rows));
     }
   }
   switch (rows.look.parts) {
     case 0:
-      return run(IncrementPass<0, order, Look::row>(rows), 0);
+      return run(IncrementPass<0, order, Look::row>(rows));
     case 1:
-      return run(IncrementPass<1, order, Look::row>(rows), 0);
+      return run(IncrementPass<1, order, Look::row>(rows));
     case 2:
-      return run(IncrementPass<2, order, Look::row>(rows), 1);
+      return run(IncrementPass<2, order, Look::row>(rows));
     default:
-      return run(IncrementPass<3, order, Look::row>(rows), 2);
+      return run(IncrementPass<3, order, Look::row>(rows));
   }
 }
 

@@ -41,10 +41,11 @@ struct Argument {
 };
 
 /// A row of arguments m = u + known_weight · known, or of pairs (u, known): what is known of them, and u, which stands
-/// in `unknown`, or is extrapolated to there from a ring of rows before it,
+/// in `unknown`, or is extrapolated to there from the rows before it,
 ///
-///     u = Σ_j coefficients[j] (the row in `slot` − j),      j = 0 … past_rows − 1.
+///     u = Σ_j coefficients[j] (the row j before `newest`),      j = 0 … past_rows − 1,
 ///
+/// which lie in a ring: each `stride` before the next, and the one before `first` is `last`.
 struct ArgumentRow {
   static constexpr int most_past_rows = 8;  ///< a loop for each: more would take compilers long
   const RowLayout* layout;
@@ -56,9 +57,8 @@ struct ArgumentRow {
   double time_step = 0, space_step = 0;
   int past_rows = 0;  ///< 2 … most_past_rows; none: u stands
   const double* coefficients = nullptr;
-  const double* ring = nullptr;
-  std::ptrdiff_t stride = 0;  ///< from slot to slot, in doubles
-  int slots = 0, slot = 0;
+  const double *first = nullptr, *last = nullptr, *newest = nullptr;
+  std::ptrdiff_t stride = 0;  ///< in doubles
 };
 
 /// A step where the matrix is one number: at a row of arguments the output E' is evaluated, and with it

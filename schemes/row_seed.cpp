@@ -136,9 +136,7 @@ void RowSeed::measure(double* errors) {
   }
 }
 
-void RowSeed::choose(std::int64_t n, double tolerance, double contraction, double weight) {
-  const bool due = looked_at_ < 0 || n >= looked_at_ + period_ || n <= most_order_ + 1;
-  if (!due) return;
+void RowSeed::look(std::int64_t n, double tolerance, double contraction, double weight) {
   looked_at_ = n;
   y_slots_.at(rows_.place(n));
   v_slots_.at(rows_.place(n));

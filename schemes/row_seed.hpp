@@ -37,7 +37,9 @@ class RowSeed {
   }
   /// Chooses the order for the step from row n, now and then, by how well each would have foretold the newest row:
   /// each change is `contraction` times the last, until `weight` times it is below tolerance · span().
-  void choose(std::int64_t n, double tolerance, double contraction, double weight);
+  void choose(std::int64_t n, double tolerance, double contraction, double weight) {
+    if (looked_at_ < 0 || n >= looked_at_ + period_ || n <= most_order_ + 1) look(n, tolerance, contraction, weight);
+  }
   void choose(std::int64_t n, double tolerance, double contraction) { choose(n, tolerance, contraction, contraction); }
   /// max y − min y over all components when last looked at.
   double span() const { return span_; }
@@ -48,6 +50,7 @@ class RowSeed {
   void find(std::int64_t n, int order, double* const* candidate, const PackRange&);
 
  private:
+  void look(std::int64_t n, double tolerance, double contraction, double weight);
   void find_span();
   template <int most>
   void measure(double* errors);

@@ -281,6 +281,7 @@ struct RowStepper::Impl {
     seed.choose(n, tolerance(), next_change, estimates() ? next_change : 1 / weight);
     const int order = seed.order();
     double before = std::numeric_limits<double>::infinity();
+    bool is_row_before_kept = false;
     while (iterations < options.max_iterations) {
       ++iterations;
       const RowEquations::Advance moved = advance(order);
@@ -289,14 +290,17 @@ struct RowStepper::Impl {
       // A field that overflowed has no root to look for.
       if (overflowed(value)) report_not_finite();
       if (is_enough(change, next_change, value)) return true;
-      if (estimates() && iterations > 1) next_change = std::min(next_change, 2 * equations.whole_change() / before);
+      if (estimates() && is_row_before_kept)
+        next_change = std::min(next_change, 2 * equations.whole_change() / before);
       if (is_enough(change, next_change, value)) return true;
       // Changes that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
       if (iterations >= 3 && change > 0.25 * before)
         return change <=
                64 * std::numeric_limits<double>::epsilon() * std::max({value, largest[0], largest[1]});
       before = change;
-      equations.make_row_the_candidate();
+      // Arguments go on by themselves: the row is wanted only where one iteration more may not be the last.
+      is_row_before_kept = !mixture || !estimates() || !is_enough(weight * next_change * change, next_change, value);
+      if (is_row_before_kept) equations.make_row_the_candidate();
     }
     return false;
   }

@@ -26,8 +26,11 @@ class RowSum {
   /// Multiplies every coefficient.
   void scale(double factor);
 
-  /// Sums are of the rows that stand there when they are taken.
-  void bind(const double* const* rows) { rows_ = rows; }
+  /// Sums are taken of these rows from here on; where one of them is another, bind again.
+  void bind(const double* const* rows) {
+    for (Term& t : differences_) t.bind(rows);
+    for (Term& t : plain_) t.bind(rows);
+  }
 
   template <class Consume>
   [[gnu::always_inline]] Consume pass(const RowLayout& layout, PackRange packs, Consume consume) const;
@@ -35,11 +38,6 @@ class RowSum {
   template <class Consume>
   [[gnu::always_inline]] void pass_on(const RowLayout& layout, PackRange packs, Consume& consume) const {
     dispatch<false>(layout, packs, consume);
-  }
-  /// The same for a few packs, where a loop for every number of terms would be code for nothing.
-  template <class Consume>
-  void pass_few(const RowLayout& layout, PackRange packs, Consume consume) const {
-    general_pass<false>(layout, packs, consume);
   }
   /// The same for every second pack.
   template <class Consume>
@@ -56,9 +54,12 @@ class RowSum {
   struct Term {
     int row, shift;
     double coefficient;
+    const double *own = nullptr, *shifted = nullptr;  ///< the row, and it from `shift` sites further on
+    void bind(const double* const* rows) {
+      own = rows[row];
+      shifted = own + static_cast<std::ptrdiff_t>(shift) * lanes;
+    }
   };
-  const double* own(const Term& t) const { return rows_[t.row]; }
-  const double* shifted(const Term& t) const { return own(t) + static_cast<std::ptrdiff_t>(t.shift) * lanes; }
   bool are_of_one_row() const { return differences_.size() == 2 && differences_[0].row == differences_[1].row; }
   /// Differences are those to the sites on either side.
   bool are_to_both_sides() const {
@@ -79,7 +80,6 @@ class RowSum {
 
   std::vector<Term> differences_, plain_;
   double constant_ = 0;
-  const double* const* rows_ = nullptr;
 };
 
 /// `carried`: differences to the next pack and to the one before it, packs one after the other. Either is then the
@@ -87,11 +87,11 @@ class RowSum {
 template <bool measured, bool carried, int differences, int plain, class Consume>
 inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
   const double *beside[differences + 1], *row[plain + 1];
-  const double* const here = differences > 0 ? own(differences_[0]) : nullptr;
+  const double* const here = differences > 0 ? differences_[0].own : nullptr;
   double difference_coefficient[differences + 1], coefficient[plain + 1];
   for (int i = 0; i < differences; ++i) {
     const Term& t = differences_[static_cast<std::size_t>(i)];
-    beside[i] = shifted(t), difference_coefficient[i] = t.coefficient;
+    beside[i] = t.shifted, difference_coefficient[i] = t.coefficient;
   }
   double of_next = 0, of_last = 0;
   if constexpr (carried) {
@@ -100,7 +100,7 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
   }
   for (int i = 0; i < plain; ++i) {
     const Term& t = plain_[static_cast<std::size_t>(i)];
-    row[i] = shifted(t), coefficient[i] = t.coefficient;
+    row[i] = t.shifted, coefficient[i] = t.coefficient;
   }
   const Pack constant(constant_);
   const std::ptrdiff_t end = layout.at(packs.last), by = static_cast<std::ptrdiff_t>(packs.stride) * lanes;
@@ -142,8 +142,8 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
       sum += term;
       if constexpr (measured) absolute += abs(term);
     };
-    for (const Term& t : differences_) add(t.coefficient * (Pack::load(shifted(t) + at) - Pack::load(own(t) + at)));
-    for (const Term& t : plain_) add(t.coefficient * Pack::load(shifted(t) + at));
+    for (const Term& t : differences_) add(t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.own + at)));
+    for (const Term& t : plain_) add(t.coefficient * Pack::load(t.shifted + at));
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
   }
