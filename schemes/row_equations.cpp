@@ -22,8 +22,7 @@ RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, S
       y_slots_(rows.rows_held()),
       v_slots_(rows.increments_held()),
       candidate_(layout_, d_),
-      work_window_(layout_),
-      right_side_window_(layout_) {
+      work_window_(layout_) {
   build_solvers();
   build_loop();
   build_outputs();
@@ -62,8 +61,15 @@ void RowEquations::begin(std::int64_t n, bool in_place) {
 }
 
 void RowEquations::bind_sums() {
-  for (RowSum& sum : sums_) sum.bind(bases_.data());
+  bind(sums_);
   for (RowSum& sum : stored_) sum.bind(bases_.data());
+}
+/// Of bricks, those of the equations' row.
+void RowEquations::bind(std::vector<RowSum>& sums) {
+  for (RowSum& sum : sums) sum.bind(bases_.data());
+  if (!bricks_) return;
+  const int phase = (n_ + 1 - equations_.bulk[0].shift) % 2 != 0 ? 1 : 0;
+  for (std::size_t first = 0; first < sums.size(); first += 2) sums[first].take_turns_with(sums[first + 1], phase);
 }
 
 void RowEquations::find_bases(std::int64_t place) {
@@ -175,18 +181,12 @@ bool RowEquations::reads_unknown_row() const {
   return std::ranges::any_of(outputs_, [](const Outputs& o) { return o.rows() > 0 && o.reads_unknown_row(o.newest); });
 }
 
-/// −E of some packs: bricks differ by the parity of row + site.
-void RowEquations::store_right_sides(const PackRange& packs, double* const* to) {
-  const std::int64_t equation_row = n_ + 1 - equations_.bulk[0].shift;
+void RowEquations::store_right_sides() {
   for (int a = 0; a < d_; ++a) {
-    const auto at = static_cast<std::size_t>(a);
-    double* const E = to[a];
-    const auto store = [E](std::ptrdiff_t where, Pack sum) __attribute__((always_inline)) { sum.store(E + where); };
-    if (!bricks_) sums_[at].pass(layout_, packs, store);
-    else
-      for (int first = packs.first; first < packs.first + 2; ++first)
-        sums_[2 * at + static_cast<std::size_t>((equation_row + first) % 2 != 0)].pass_bricks(
-            layout_, {first, packs.last, 2}, store);
+    double* const E = stored_right_side(a);
+    sums_[first_sum(a)].pass(layout_, layout_.all(), [E](std::ptrdiff_t at, Pack sum) __attribute__((always_inline)) {
+      sum.store(E + at);
+    });
   }
 }
 
@@ -196,11 +196,7 @@ RowEquations::Advance RowEquations::advance(bool compared) {
     look.parts = compared && looks_on_the_way_ ? static_cast<int>(looks_[0].parts.size()) : 0;
     look.expected = candidate_.row(a);
   }
-  if (is_stored_) {
-    double* to[RowKernel::most_components];
-    for (int a = 0; a < d_; ++a) to[a] = stored_right_side(a);
-    store_right_sides(layout_.all(), to);
-  }
+  if (is_stored_) store_right_sides();
   if (!equations_.exceptional.empty()) set_exceptional_sites();
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
   RowChange all = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides_.data(), increments_.data(), w_rows_.data());
@@ -238,7 +234,6 @@ void RowEquations::make_room_in_place() {
     const int window = window_packs(solver_[0]->stream(layout_, right_side(0), {})->last_packs());
     for (PackWindow& out : output_windows_) out.hold(window, 0, 0);
     work_window_.hold(window, 0, 0);
-    if (is_stored_) right_side_window_.hold(window, 0, 0);
   }
   Outputs& o = outputs_[0];
   if (o.rows() < 2) return;
@@ -275,13 +270,6 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
     }
     bind_sums();
   };
-  const auto sum_right_sides = [&](PackRange of) {
-    if (!is_stored_) return;
-    double* const to = hold(right_side_window_, increments_[0].y, of.first, of.first);
-    bases_[static_cast<std::size_t>(E_base_)] = to;
-    bind_sums();
-    store_right_sides(of, &to);
-  };
   const auto work = [&](int first, int kept_until) {
     return hold(work_window_, increments_[0].v, first, kept_until);
   };
@@ -289,7 +277,6 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   if (find) find({last.first - halo, packs + halo});
   hold_outputs(last.first + o.lowest, 0);
   evaluate(o, o.newest, slab_out_.data(), At::candidate, {last.first + o.lowest, read.last});
-  sum_right_sides(last);
   stream->begin(work(last.first, last.first));
   hold_candidate(-halo, 0);
   if (find) find({-halo, halo});
@@ -305,7 +292,6 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
     hold_outputs(kept, evaluated);
     evaluate(o, o.newest, slab_out_.data(), At::candidate, {evaluated, evaluated_until});
     evaluated = evaluated_until;
-    sum_right_sides({summed, end});
     double* const room = work(done, summed);
     summed = end;
     done = stream->advance(end, room);
@@ -373,7 +359,7 @@ std::size_t RowEquations::bytes_to_come(int parts, bool residual) const {
 }
 
 std::size_t RowEquations::window_bytes() const {
-  std::size_t total = work_window_.bytes() + right_side_window_.bytes();
+  std::size_t total = work_window_.bytes();
   for (const PackWindow& out : output_windows_) total += out.bytes();
   return total;
 }

@@ -127,6 +127,8 @@ class RowEquations {
   void build_places();
   void find_bases(std::int64_t place);
   void bind_sums();
+  std::size_t first_sum(int a) const { return static_cast<std::size_t>(bricks_ ? 2 * a : a); }
+  void bind(std::vector<RowSum>& sums);
   void evaluate_newest_known_outputs();
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
@@ -182,7 +184,7 @@ class RowEquations {
   const RowSum& right_side(int a) const { return *right_sides_[static_cast<std::size_t>(a)]; }
   /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
   double* stored_right_side(int a) { return bases_[static_cast<std::size_t>(E_base_ + a)]; }
-  void store_right_sides(const PackRange&, double* const* to);
+  void store_right_sides();
   void set_exceptional_sites();
   double value_at(const SiteEquation&, bool unknown_too, double* absolute) const;
 
@@ -207,16 +209,17 @@ class RowEquations {
   int y_base_ = 0, v_base_ = 0, E_base_ = 0, w_base_ = 0;
   int v_new_base_ = 0, y_known_base_ = 0;  ///< v_{n+1}; y of the mixture's known_row
 
-  /// −E times the solver's scale, for each component; of bricks for each parity of the equation's row and of the packs.
+  /// −E times the solver's scale, for each component; of bricks two that take turns, the first for packs whose site and
+  /// equation's row are both even or both odd.
   std::vector<RowSum> sums_, stored_, measured_;
   std::vector<const RowSum*> right_sides_;
   bool has_known_outputs_ = false;  ///< that each step must evaluate
-  bool is_stored_ = false;  ///< right sides are summed to a row first: bricks, and walls
+  bool is_stored_ = false;  ///< right sides are summed to a row first: walls, and solvers that alternate
   RowBuffer w_, scratch_, positions_;
   CandidateRows candidate_;
   std::vector<PackWindow> output_windows_;      ///< of a stream: out_c at the candidate
   std::vector<double*> output_places_;          ///< and where it stands afterwards
-  PackWindow work_window_, right_side_window_;  ///< and its solver's work space; −E, where that is stored
+  PackWindow work_window_;                      ///< and its solver's work space
   std::optional<ArgumentRows> arguments_;
   std::optional<DivisionRows> division_;  ///< if a step at arguments is one loop
   std::optional<Mixture> straight_;       ///< what is looked at along straight lines, if that is so for long rows

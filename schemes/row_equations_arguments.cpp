@@ -22,7 +22,7 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
 }
 
 void RowEquations::build_division(const Mixture& mixture) {
-  if (is_stored_ || !solver_[0]->is_a_number()) return;
+  if (bricks_ || is_stored_ || !solver_[0]->is_a_number()) return;
   const int newest = outputs_[0].newest;
   const double scale = -solver_[0]->right_side_scale(0);
   DivisionRows division{};

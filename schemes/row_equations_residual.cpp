@@ -57,14 +57,9 @@ double RowEquations::residual(std::int64_t n) {
       evaluate(o, age, slab_out_.data(), At::row, where_read(o));
     }
 
-  const std::int64_t equation_row = n_ + 1 - equations_.bulk[0].shift;
+  bind(measured_);
   const auto measure = [&](int a, const auto& consume) {
-    const auto pass = [&](int pack, const auto& with) {
-      const auto at = static_cast<std::size_t>(bricks_ ? 2 * a + ((equation_row + pack) % 2 != 0 ? 1 : 0) : a);
-      measured_[at].bind(bases_.data());
-      return measured_[at].measure(layout_, {pack, layout_.packs(), bricks_ ? 2 : 1}, with);
-    };
-    return bricks_ ? pass(1, pass(0, consume)) : pass(0, consume);
+    return measured_[first_sum(a)].measure(layout_, layout_.all(), consume);
   };
   LargestTerms all;
   for (int a = 0; a < d_; ++a) {

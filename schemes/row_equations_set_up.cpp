@@ -110,7 +110,7 @@ void RowEquations::build_sums() {
   y_known_base_ = v_new_base_ + d_;
   bases_.resize(static_cast<std::size_t>(y_known_base_) + 1);
 
-  is_stored_ = bricks_ || !equations_.exceptional.empty();
+  is_stored_ = solver_[1] || !equations_.exceptional.empty();
   for (int a = 0; a < d_; ++a) {
     const EquationTerms& equation = equations_.bulk[static_cast<std::size_t>(a)];
     for (int parity = 0; parity < (bricks_ ? 2 : 1); ++parity) {
@@ -132,7 +132,8 @@ void RowEquations::build_sums() {
     stored.add(E_base_ + a, 0, solver_[0]->right_side_scale(a));
     stored_.push_back(std::move(stored));
   }
-  for (int a = 0; a < d_; ++a) right_sides_.push_back(&(is_stored_ ? stored_ : sums_)[static_cast<std::size_t>(a)]);
+  for (int a = 0; a < d_; ++a)
+    right_sides_.push_back(is_stored_ ? &stored_[static_cast<std::size_t>(a)] : &sums_[first_sum(a)]);
   if (is_one_loop()) return;
   if (solver_[0]->needs_work_rows() || equations_.correction_form) w_ = RowBuffer(layout_, d_);
   for (int a = 0; a < d_; ++a) w_rows_.push_back(w_.rows() ? w_.row(a) : nullptr);

@@ -32,19 +32,15 @@ class RowSum {
     for (Term& t : plain_) t.bind(rows);
   }
 
+  /// Every second pack, v where v + `phase` is odd, takes the other sum, as bricks do.
+  void take_turns_with(const RowSum& other, int phase) { other_ = &other, phase_ = phase; }
+
   template <class Consume>
   [[gnu::always_inline]] Consume pass(const RowLayout& layout, PackRange packs, Consume consume) const;
   /// The same with `consume` itself: where one goes on with what another pass left, a copy would go through memory.
   template <class Consume>
   [[gnu::always_inline]] void pass_on(const RowLayout& layout, PackRange packs, Consume& consume) const {
     dispatch<false>(layout, packs, consume);
-  }
-  /// The same for every second pack.
-  template <class Consume>
-  [[gnu::always_inline]] void pass_bricks(const RowLayout& layout, PackRange packs, Consume consume) const {
-    if (are_of_one_row() && static_cast<int>(plain_.size()) <= most_plain<false>)
-      counted<false, false, 2>(layout, packs, consume);
-    else general_pass<false>(layout, packs, consume);
   }
   /// The same with the sum of the terms' absolute values: `consume(at, sum, absolute)`.
   template <class Consume>
@@ -60,113 +56,133 @@ class RowSum {
       shifted = own + static_cast<std::ptrdiff_t>(shift) * lanes;
     }
   };
-  bool are_of_one_row() const { return differences_.size() == 2 && differences_[0].row == differences_[1].row; }
+  const RowSum& of(int pack) const { return other_ && (pack + phase_) % 2 != 0 ? *other_ : *this; }
   /// Differences are those to the sites on either side.
   bool are_to_both_sides() const {
-    return are_of_one_row() && differences_[0].shift + differences_[1].shift == 0 &&
-           std::abs(differences_[0].shift) == 1;
+    return differences_.size() == 2 && differences_[0].row == differences_[1].row &&
+           differences_[0].shift + differences_[1].shift == 0 && std::abs(differences_[0].shift) == 1;
   }
+  bool are_like(const RowSum& other) const {
+    return plain_.size() == other.plain_.size() && are_to_both_sides() && other.are_to_both_sides() &&
+           differences_[0].row == other.differences_[0].row;
+  }
+  /// The terms of a counted pass, as a pass keeps them.
+  template <int differences, int plain>
+  struct Counted;
   // Inlined where they are used: what `consume` carries would else be copied through memory.
   template <bool measured, class Consume>
   [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, bool carried, int differences, int plain, class Consume>
+  template <bool measured, bool in_turn, int differences, int plain, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, bool carried, int differences, class Consume>
+  template <bool measured, bool in_turn, int differences, int most, class Consume>
   [[gnu::always_inline]] void counted(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, class Consume>
   [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
+  /// Compiled, with the unknown row's where sums are measured; of sums that take turns.
   template <bool measured>
-  static constexpr int most_plain = measured ? 11 : 8;  ///< with the unknown row's
+  static constexpr int most_plain = measured ? 11 : 8;
+  template <bool measured>
+  static constexpr int most_in_turn = measured ? 6 : 3;
 
   std::vector<Term> differences_, plain_;
   double constant_ = 0;
+  const RowSum* other_ = nullptr;
+  int phase_ = 0;
 };
 
-/// `carried`: differences to the next pack and to the one before it, packs one after the other. Either is then the
-/// other's of the pack before: one subtraction for both.
-template <bool measured, bool carried, int differences, int plain, class Consume>
-inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  const double *beside[differences + 1], *row[plain + 1];
-  const double* const here = differences > 0 ? differences_[0].own : nullptr;
-  double difference_coefficient[differences + 1], coefficient[plain + 1];
-  for (int i = 0; i < differences; ++i) {
-    const Term& t = differences_[static_cast<std::size_t>(i)];
-    beside[i] = t.shifted, difference_coefficient[i] = t.coefficient;
-  }
+/// None or two differences: those to the next pack and to the one before it. Either is then the other's of the pack
+/// before: one subtraction for both.
+template <int differences, int plain>
+struct RowSum::Counted {
+  const double* row[plain + 1];
+  double coefficient[plain + 1];
   double of_next = 0, of_last = 0;
-  if constexpr (carried) {
-    const bool next_first = differences_[0].shift > 0;
-    of_next = difference_coefficient[next_first ? 0 : 1], of_last = difference_coefficient[next_first ? 1 : 0];
+  Pack constant;
+
+  [[gnu::always_inline]] explicit Counted(const RowSum& sum) : constant(sum.constant_) {
+    for (int i = 0; i < plain; ++i) {
+      const Term& t = sum.plain_[static_cast<std::size_t>(i)];
+      row[i] = t.shifted, coefficient[i] = t.coefficient;
+    }
+    if constexpr (differences > 0) {
+      const std::size_t next = sum.differences_[0].shift > 0 ? 0 : 1;
+      of_next = sum.differences_[next].coefficient, of_last = sum.differences_[1 - next].coefficient;
+    }
   }
-  for (int i = 0; i < plain; ++i) {
-    const Term& t = plain_[static_cast<std::size_t>(i)];
-    row[i] = t.shifted, coefficient[i] = t.coefficient;
-  }
-  const Pack constant(constant_);
-  const std::ptrdiff_t end = layout.at(packs.last), by = static_cast<std::ptrdiff_t>(packs.stride) * lanes;
+};
+
+/// `in_turn`: with the other sum, which is like this one. Packs follow each other.
+template <bool measured, bool in_turn, int differences, int plain, class Consume>
+inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
+  const Counted<differences, plain> first(of(packs.first)), second(in_turn ? of(packs.first + 1) : *this);
+  const double* const here = differences > 0 ? differences_[0].own : nullptr;
   std::ptrdiff_t at = layout.at(packs.first);
-  Pack value = differences > 0 ? Pack::load(here + at) : constant;
-  Pack last = carried ? value - Pack::load(here + at - lanes) : constant;
-  for (; at < end; at += by) {
-    Pack sum = constant, absolute(0.0);
-    if constexpr (carried) {
+  const std::ptrdiff_t end = layout.at(packs.last);
+  Pack value = differences > 0 ? Pack::load(here + at) : Pack(0.0);
+  Pack last = differences > 0 ? value - Pack::load(here + at - lanes) : Pack(0.0);
+  const auto take = [&](const Counted<differences, plain>& terms) __attribute__((always_inline)) {
+    Pack sum = terms.constant, absolute(0.0);
+    if constexpr (differences > 0) {
       const Pack next_value = Pack::load(here + at + lanes), next = next_value - value;
-      sum += of_next * next;
-      sum -= of_last * last;
-      if constexpr (measured) absolute += std::abs(of_next) * abs(next) + std::abs(of_last) * abs(last);
+      sum += terms.of_next * next;
+      sum -= terms.of_last * last;
+      if constexpr (measured) absolute += std::abs(terms.of_next) * abs(next) + std::abs(terms.of_last) * abs(last);
       value = next_value, last = next;
-    } else {
-      if (differences > 0) value = Pack::load(here + at);
-      for (int i = 0; i < differences; ++i) {
-        const Pack difference = Pack::load(beside[i] + at) - value;
-        sum += difference_coefficient[i] * difference;
-        if constexpr (measured) absolute += std::abs(difference_coefficient[i]) * abs(difference);
-      }
     }
     for (int i = 0; i < plain; ++i) {
-      const Pack term = Pack::load(row[i] + at);
-      sum += coefficient[i] * term;
-      if constexpr (measured) absolute += std::abs(coefficient[i]) * abs(term);
+      const Pack term = Pack::load(terms.row[i] + at);
+      sum += terms.coefficient[i] * term;
+      if constexpr (measured) absolute += std::abs(terms.coefficient[i]) * abs(term);
     }
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
+    at += lanes;
+  };
+  if constexpr (in_turn) {
+    while (at + lanes < end) take(first), take(second);
+    if (at < end) take(first);
+  } else {
+    while (at < end) take(first);
   }
 }
 
 template <bool measured, class Consume>
 inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  for (int v = packs.first; v < packs.last; v += packs.stride) {
+  for (int v = packs.first; v < packs.last; ++v) {
     const std::ptrdiff_t at = layout.at(v);
-    Pack sum = constant_, absolute(0.0);
+    const RowSum& terms = of(v);
+    Pack sum = terms.constant_, absolute(0.0);
     const auto add = [&](Pack term) {
       sum += term;
       if constexpr (measured) absolute += abs(term);
     };
-    for (const Term& t : differences_) add(t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.own + at)));
-    for (const Term& t : plain_) add(t.coefficient * Pack::load(t.shifted + at));
+    for (const Term& t : terms.differences_) add(t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.own + at)));
+    for (const Term& t : terms.plain_) add(t.coefficient * Pack::load(t.shifted + at));
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
   }
 }
 
-/// The numbers of terms of the usual schemes are compiled, differences being those of one row: rows then stay in
+/// The numbers of terms of the usual schemes are compiled, differences being those to both sides: rows then stay in
 /// registers.
-template <bool measured, bool carried, int differences, class Consume>
+template <bool measured, bool in_turn, int differences, int most, class Consume>
 inline void RowSum::counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
   [&]<int... plain>(std::integer_sequence<int, plain...>) __attribute__((always_inline)) {
     const int count = static_cast<int>(plain_.size());
-    ((count == plain ? counted_pass<measured, carried, differences, plain>(layout, packs, consume) : void()), ...);
+    ((count == plain ? counted_pass<measured, in_turn, differences, plain>(layout, packs, consume) : void()), ...);
   }
-  (std::make_integer_sequence<int, most_plain<measured> + 1>{});
+  (std::make_integer_sequence<int, most + 1>{});
 }
 template <bool measured, class Consume>
 inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  const bool is_counted = static_cast<int>(plain_.size()) <= most_plain<measured>;
-  if (is_counted && differences_.empty()) return counted<measured, false, 0>(layout, packs, consume);
-  if (is_counted && packs.stride == 1 && are_to_both_sides())
-    return counted<measured, true, 2>(layout, packs, consume);
-  if constexpr (measured)  // every second pack too
-    if (is_counted && are_of_one_row()) return counted<true, false, 2>(layout, packs, consume);
+  const int count = static_cast<int>(plain_.size());
+  if (other_) {
+    if (count <= most_in_turn<measured> && are_like(*other_))
+      return counted<measured, true, 2, most_in_turn<measured>>(layout, packs, consume);
+  } else if (count <= most_plain<measured>) {
+    if (differences_.empty()) return counted<measured, false, 0, most_plain<measured>>(layout, packs, consume);
+    if (are_to_both_sides()) return counted<measured, false, 2, most_plain<measured>>(layout, packs, consume);
+  }
   general_pass<measured>(layout, packs, consume);
 }
 
