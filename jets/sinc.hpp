@@ -49,9 +49,9 @@ template <class Function>
 }
 /// Each lane as if it were alone: the series, the polynomial or the quotient.
 [[gnu::noinline, gnu::const]] inline Pack sinc_of_any(Pack x) {
-  const Pack s = x * x, magnitude = abs(x);
-  const Pack near{magnitude.v <= sinc_series_below ? sinc_series(s).v : (sine_cubic_part(s) * s + 1.0).v};
-  if (any_above(magnitude, sinc_polynomial_below))
+  const Pack s = x * x;
+  const Pack near{s.v <= sinc_series_below * sinc_series_below ? sinc_series(s).v : (sine_cubic_part(s) * s + 1.0).v};
+  if (any_above(abs(x), sinc_polynomial_below))
     return far_from_zero(x, near, [](Pack y) { return sin(y) / y; });
   return near;
 }
@@ -62,9 +62,10 @@ inline double sinc(double x) {
   return std::abs(x) < detail::sinc_series_below ? detail::sinc_series(x * x) : std::sin(x) / x;
 }
 inline Pack sinc(Pack x) {
-  if (detail::any_above(abs(x), detail::sinc_series_below)) [[unlikely]]
+  const Pack s = x * x;
+  if (detail::any_above(s, detail::sinc_series_below * detail::sinc_series_below)) [[unlikely]]
     return detail::sinc_of_any(x);
-  return detail::sinc_series(x * x);
+  return detail::sinc_series(s);
 }
 
 /// d sinc/dx = (cos x − sinc x)/x

@@ -13,6 +13,7 @@ inline constexpr int most_past_rows_divided = 5;
 template <int past_rows, int parts>
 class DivisionByArguments {
  public:
+  static constexpr bool finds_ahead = parts == 1;
   DivisionByArguments(const DivisionRows& given, const RowIncrement& rows)
       : unknown_(given.arguments), known_(given.arguments.known), pass_(rows) {}
   [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) const { return unknown_(at); }
@@ -34,6 +35,7 @@ class DivisionByArguments {
 template <int parts>
 class StraightDivision {
  public:
+  static constexpr bool finds_ahead = parts > 1;
   StraightDivision(const DivisionRows& given, const RowIncrement& rows)
       : y_(rows.y_before),
         v_(rows.v_before),
@@ -74,7 +76,8 @@ class StraightDivision {
 };
 
 /// A step of DivisionRows in one loop. The new row is made one pack after its outputs: what waits for an output would
-/// keep the evaluation of the next ones waiting.
+/// keep the evaluation of the next ones waiting. Arguments are found one pack ahead where a tenth is gained by it; there
+/// are registers enough for that in some of these loops only.
 template <int old, int parts, class Output, class Division>
 [[gnu::flatten]] void division_loop(const Output& given_output, const DivisionRows& given, Division& given_division) {
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
@@ -89,13 +92,21 @@ template <int old, int parts, class Output, class Division>
   const std::ptrdiff_t begin = layout.at(0);
   Pack here = Pack::load(y + begin), last = here - Pack::load(y + begin - lanes);
   Pack last_old = old > 1 ? Pack::load(old_row + begin - lanes) : Pack(0.0);
+  struct Found {
+    Pack u;
+    decltype(output.argument(Pack(), Pack())) argument;
+  };
   struct Evaluated {
     Pack u, E, E_old;
   };
-  const auto evaluate = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
+  const auto find = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
+    const Pack u = division.unknown(at);
+    return Found{u, output.argument(u, division.known(at))};
+  };
+  const auto evaluate = [&](std::ptrdiff_t at, const Found& found) __attribute__((always_inline)) {
     Evaluated e;
-    e.u = division.unknown(at);
-    e.E = output(output.argument(e.u, division.known(at)), at);
+    e.u = found.u;
+    e.E = output(found.argument, at);
     e.E_old = old > 0 ? Pack::load(old_row + at) : Pack(0.0);  // before it is written over
     e.E.store(out + at);
     return e;
@@ -110,10 +121,15 @@ template <int old, int parts, class Output, class Division>
     last_old = e.E_old;
     division(at, w + of_output * e.E, e.u);
   };
-  Evaluated ready = evaluate(begin);
+  const std::ptrdiff_t end = layout.at(layout.packs());
+  Evaluated ready = evaluate(begin, find(begin));
   std::ptrdiff_t ahead = begin + lanes;
-  for (const std::ptrdiff_t end = layout.at(layout.packs()); ahead < end; ahead += lanes) {
-    const Evaluated next = evaluate(ahead);
+  Found found{};
+  if (Division::finds_ahead && ahead < end) found = find(ahead);
+  for (; ahead < end; ahead += lanes) {
+    const Found sought = Division::finds_ahead ? found : find(ahead);
+    if (Division::finds_ahead && ahead + lanes < end) found = find(ahead + lanes);
+    const Evaluated next = evaluate(ahead, sought);
     make(ahead - lanes, ready);
     ready = next;
   }
