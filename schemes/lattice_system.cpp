@@ -96,8 +96,19 @@ std::vector<Coefficient> LatticeSystem::linearised(const Lattice& lattice, Site 
 
 std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice& lattice, Site site, int component,
                                                                   double amplitude) const {
+  struct Sum {
+    double scale = 0, at[3] = {0, 0, 0};
+    void add(int s, double J) { at[s] += J, scale += std::abs(J); }
+    double most() const { return *std::max_element(at, at + 3); }
+    double least() const { return *std::min_element(at, at + 3); }
+    double round_off() const { return 1e-13 * scale; }
+    bool is_constant() const { return most() - least() <= round_off(); }
+  };
+  // On fine lattices what varies is of the size of h² beside constants, and soon of that of rounding: it is looked for on
+  // a cell of the same shape whose longer side is 1 too. Derivatives' part is the same there.
   struct Sample {
-    double constant = 0, scale = 0, at[3] = {0, 0, 0};
+    double constant = 0;
+    Sum here, wide;
   };
   std::map<std::tuple<Site, int>, Sample> samples;
   std::mt19937_64 engine(20250901);
@@ -109,6 +120,9 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
     std::vector<double> y(static_cast<std::size_t>(size)), J(y.size() * y.size()), r0(y.size());
     // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
     const Cell cell = cell_at(lattice, site.time + touch.anchor.time, site.space + touch.anchor.space, time_step_);
+    const double widened = 1 / std::min(1.0, std::max(cell.time_step, cell.space_step));
+    Cell wide = cell;
+    wide.time_step *= widened, wide.space_step *= widened;
     const auto key = [&](int m) {
       const Site vertex = touch.family->site(m);
       return std::tuple{touch.anchor + Site{vertex.time, vertex.space},
@@ -126,22 +140,18 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
         y[static_cast<std::size_t>(m)] = where->second[static_cast<std::size_t>(s)];
       }
       touch.family->jacobian(cell, y, J);
-      for (int m = 0; m < size; ++m) {
-        Sample& sample = samples[key(m)];
-        sample.at[s] += J[from + static_cast<std::size_t>(m)];
-        sample.scale += std::abs(J[from + static_cast<std::size_t>(m)]);
-      }
+      for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[from + static_cast<std::size_t>(m)]);
+      touch.family->jacobian(wide, y, J);
+      for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[from + static_cast<std::size_t>(m)]);
     }
   }
   std::vector<Coefficient> result;
   for (const auto& [where, sample] : samples) {
-    const double least = *std::min_element(sample.at, sample.at + 3),
-                 most = *std::max_element(sample.at, sample.at + 3);
-    if (!std::isfinite(sample.scale)) return std::nullopt;
-    const double round_off = 1e-13 * sample.scale;
-    if (std::max(std::abs(least), std::abs(most)) <= round_off) continue;
-    const bool constant = most - least <= round_off;
-    const double value = std::abs(sample.constant) <= round_off ? 0.0 : sample.constant;
+    const Sum& here = sample.here;
+    if (!std::isfinite(here.scale)) return std::nullopt;
+    const bool constant = here.is_constant() && (sample.wide.is_constant() || !std::isfinite(sample.wide.scale));
+    if (constant && std::max(std::abs(here.least()), std::abs(here.most())) <= here.round_off()) continue;
+    const double value = std::abs(sample.constant) <= here.round_off() ? 0.0 : sample.constant;
     result.push_back(
         {std::get<0>(where), std::get<1>(where), value, constant ? Dependence::linear : Dependence::nonlinear});
   }

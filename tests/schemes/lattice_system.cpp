@@ -3,6 +3,7 @@
 
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "schemes/theories/sine_gordon.hpp"
 #include "schemes/theories/wave.hpp"
@@ -246,6 +247,27 @@ TEST_CASE("coefficients that the potential touches are nonlinear, those that can
   const LatticeSystem square(ring, {family_of(sine_gordon(), "rectangle-symmetric", k, k)}, k);
   for (const Coefficient& c : square.linearised({0, 5}, 0))
     if (c.offset.time == 1 && c.offset.space != 0) CHECK(c.value == 0);
+}
+
+TEST_CASE("what is nonlinear is found on the finest lattices too, and nothing else is") {
+  const auto nonlinear = [](const Problem& problem, const std::string& scheme, double sites) {
+    const double fine = 40 / sites, step = fine / 8;
+    const LatticeSystem system(Lattice::circle(N, N * fine), {family_of(problem, scheme, step, fine)}, step);
+    std::set<Site> found;
+    for (const Coefficient& c : system.linearised({0, 5}, 0))
+      if (c.dependence == Dependence::nonlinear) found.insert(c.offset);
+    return found;
+  };
+  for (const std::string scheme : {"triangle", "rectangle", "rectangle-symmetric", "triangle-vertex", "guo", "vu-quoc-li"}) {
+    CAPTURE(scheme);
+    const auto expected = nonlinear(sine_gordon(), scheme, 255);
+    CHECK_FALSE(expected.empty());
+    for (double sites : {1e6, 1e7, 3e7}) {
+      CAPTURE(sites);
+      CHECK(nonlinear(sine_gordon(), scheme, sites) == expected);
+      CHECK(nonlinear(problem_of("klein-gordon"), scheme, sites).empty());
+    }
+  }
 }
 
 TEST_CASE("the Jacobian of the equations is that of finite differences, across the seam too") {
