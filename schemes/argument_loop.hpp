@@ -45,8 +45,8 @@ template <int most, class Run>
   (std::make_integer_sequence<int, most>{});
 }
 
-/// out = output(output.argument(u, known), at) for the packs of a row of arguments: where u is extrapolated, that is done while the
-/// output is worked out.
+/// out = output(output.argument(u, known), at) for the packs of a row of arguments: where u is extrapolated, that is done
+/// while the output is worked out.
 template <int past_rows, int stride, class Output>
 [[gnu::flatten]] void argument_loop(const Output& given_output, const ArgumentRow& given, double* out,
                                     const PackRange& packs) {
@@ -60,8 +60,8 @@ template <int past_rows, int stride, class Output>
     if constexpr (stride == 2 && past_rows > 0) found(at + between);
     return output.argument(found(at), Pack::load(known + at));
   };
-  // Arguments are found two packs ahead: evaluations that wait for theirs would keep others waiting. At the end the last
-  // one is found again.
+  // Arguments are found two packs ahead: evaluations that wait for theirs would keep others waiting. At the end the
+  // last one is found again.
   constexpr std::ptrdiff_t by = stride * lanes;
   std::ptrdiff_t at = given.layout->at(packs.first);
   const std::ptrdiff_t end = given.layout->at(packs.last);

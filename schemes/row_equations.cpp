@@ -48,7 +48,8 @@ void RowEquations::begin(std::int64_t n, bool in_place) {
   bind_sums();
   for (std::size_t a = 0; a < increments_.size(); ++a) {
     RowIncrement& increment = increments_[a];
-    double *const y = bases_[static_cast<std::size_t>(y_base_) + a], *const v = bases_[static_cast<std::size_t>(v_base_) + a];
+    double* const y = bases_[static_cast<std::size_t>(y_base_) + a];
+    double* const v = bases_[static_cast<std::size_t>(v_base_) + a];
     increment.y_before = y;
     increment.v = in_place ? v : bases_[static_cast<std::size_t>(v_new_base_) + a];
     increment.y = in_place ? y : bases_[static_cast<std::size_t>(E_base_) + a];

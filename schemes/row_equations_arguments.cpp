@@ -15,8 +15,8 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   increments_have_halos_ = std::ranges::any_of(equations_.bulk[0].terms, [](const Term& t) {
     return t.source == Source::increment && t.shift != 0;
   });
-  // Rows of 415 sites and less stay in the first level of the cache: two loops after each other then take a sixth less than
-  // one that has more in hand than there are registers for.
+  // Rows of 415 sites and less stay in the first level of the cache: two loops after each other then take a sixth less
+  // than one that has more in hand than there are registers for.
   constexpr int packs_in_cache = 52;
   if (layout_.packs() > packs_in_cache) build_division(mixture);
 }

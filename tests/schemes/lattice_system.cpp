@@ -258,7 +258,8 @@ TEST_CASE("what is nonlinear is found on the finest lattices too, and nothing el
       if (c.dependence == Dependence::nonlinear) found.insert(c.offset);
     return found;
   };
-  for (const std::string scheme : {"triangle", "rectangle", "rectangle-symmetric", "triangle-vertex", "guo", "vu-quoc-li"}) {
+  for (const std::string scheme :
+       {"triangle", "rectangle", "rectangle-symmetric", "triangle-vertex", "guo", "vu-quoc-li"}) {
     CAPTURE(scheme);
     const auto expected = nonlinear(sine_gordon(), scheme, 255);
     CHECK_FALSE(expected.empty());
