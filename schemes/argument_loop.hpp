@@ -45,6 +45,37 @@ template <int most, class Run>
   (std::make_integer_sequence<int, most>{});
 }
 
+/// Fetches the rows of SlabRows::ahead, so many packs at a time; where none is wanted, one that is in the cache anyway.
+template <int packs = 1>
+class FetchAhead {
+ public:
+  explicit FetchAhead(const SlabRows& rows) {
+    for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r] = rows.ahead[r] ? rows.ahead[r] : rows.values[0];
+  }
+  [[gnu::always_inline]] void fetch(std::ptrdiff_t at) const {
+    for (const double* row : rows_)  // into the second level: they are a strip
+      for (int v = 0; v < packs; ++v) __builtin_prefetch(row + at + v * lanes, 0, 2);
+  }
+
+ private:
+  decltype(SlabRows::ahead) rows_;
+};
+
+/// evaluate(at, find(at)) from pack to pack. What is evaluated is found two packs ahead: evaluations that wait for theirs
+/// would keep others waiting. At the end the last one is found again.
+template <class Find, class Evaluate>
+[[gnu::always_inline]] inline void find_ahead(std::ptrdiff_t at, std::ptrdiff_t end, std::ptrdiff_t by, const Find& find,
+                                              const Evaluate& evaluate) {
+  if (at >= end) return;
+  const std::ptrdiff_t last = at + (end - at - 1) / by * by;
+  auto here = find(at), next = find(std::min(at + by, last));
+  for (; at < end; at += by) {
+    const auto ahead = find(std::min(at + 2 * by, last));
+    evaluate(at, here);
+    here = next, next = ahead;
+  }
+}
+
 /// out = output(output.argument(u, known), at) for the packs of a row of arguments: where u is extrapolated, that is done
 /// while the output is worked out.
 template <int past_rows, int stride, class Output>
@@ -60,19 +91,10 @@ template <int past_rows, int stride, class Output>
     if constexpr (stride == 2 && past_rows > 0) found(at + between);
     return output.argument(found(at), Pack::load(known + at));
   };
-  // Arguments are found two packs ahead: evaluations that wait for theirs would keep others waiting. At the end the
-  // last one is found again.
-  constexpr std::ptrdiff_t by = stride * lanes;
-  std::ptrdiff_t at = given.layout->at(packs.first);
-  const std::ptrdiff_t end = given.layout->at(packs.last);
-  if (at >= end) return;
-  const std::ptrdiff_t last = at + (end - at - 1) / by * by;
-  auto here = find(at), next = find(std::min(at + by, last));
-  for (; at < end; at += by) {
-    const auto ahead = find(std::min(at + 2 * by, last));
-    output(here, at).store(out + at);
-    here = next, next = ahead;
-  }
+  find_ahead(given.layout->at(packs.first), given.layout->at(packs.last), stride * lanes, find,
+             [&](std::ptrdiff_t at, const auto& argument) __attribute__((always_inline)) {
+               output(argument, at).store(out + at);
+             });
 }
 
 template <int stride, class Output>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
-#include <type_traits>
 
 #include "jets/density.hpp"
 #include "jets/structure.hpp"
@@ -51,107 +51,174 @@ StressEnergy stress_energy(const D& density, const double* phi, const double* ph
   return s;
 }
 
-/// ∂ℓ/∂φ_t where it is an affine function of the jet with constant coefficients, as for every density that is not
-/// nonlinear in its derivatives: then a jet's energy needs ℓ itself, and no derivative.
-///
-///     ∂ℓ/∂φ_t^a = at_rest[a] + Σ_b by_jet[a][b] j_b,      j = φ¹ … φᵈ, φ_t¹ …, φ_x¹ …
+/// ℓ = Σ_a ½(inertia[a] (φ_t^a)² − tension[a] (φ_x^a)²) + ℓ(φ, 0, 0), as of most densities: energy is then made of
+/// sums of squares and of ℓ at rest, and no derivative is needed.
 template <int d>
-struct AffineMomenta {
-  std::array<double, static_cast<std::size_t>(d)> at_rest{};
-  std::array<std::array<double, static_cast<std::size_t>(3 * d)>, static_cast<std::size_t>(d)> by_jet{};
+struct WaveForm {
+  std::array<double, static_cast<std::size_t>(d)> inertia{}, tension{};
 };
 /// Nothing for other densities, or where the coefficients are not finite.
 template <Density D>
-std::optional<AffineMomenta<components_of<D>()>> affine_momenta(const D& density) {
+std::optional<WaveForm<components_of<D>()>> wave_form(const D& density) {
   constexpr int d = components_of<D>();
-  if (structure_of(density).nonlinearity == Nonlinearity::all) return std::nullopt;
-  using Inner = Dual<double, 3 * d>;
-  using Number = Dual<Inner, 3 * d>;
+  const Abstract proved = structure_of(density).of_density;
+  for (int a = d; a < 3 * d; ++a)  // φ_t^a or φ_x^a meets nothing but itself, with a constant coefficient
+    if (proved.varying[a] != 0 || (proved.nonzero[a] & ~(1u << a)) != 0) return std::nullopt;
+  using Inner = Dual<double, 2 * d>;
+  using Number = Dual<Inner, 2 * d>;
   // The coefficients are the same at every jet; this is one where densities have values.
   JetFor<Number, D> jet;
-  std::array<double, static_cast<std::size_t>(3 * d)> at{};
-  for (int a = 0; a < d; ++a) at[a] = 1 + 0.25 * a;
   for (int a = 0; a < d; ++a) {
-    component(jet.phi, a) = Number::variable(Inner::variable(at[a], a), a);
-    component(jet.phi_t, a) = Number::variable(Inner::variable(0, d + a), d + a);
-    component(jet.phi_x, a) = Number::variable(Inner::variable(0, 2 * d + a), 2 * d + a);
+    component(jet.phi, a) = Number(Inner(1 + 0.25 * a));
+    component(jet.phi_t, a) = Number::variable(Inner::variable(0, a), a);
+    component(jet.phi_x, a) = Number::variable(Inner::variable(0, d + a), d + a);
   }
   if constexpr (is_placed<D>()) jet.t = Number(0.0), jet.x = Number(0.0);
   const Number l = density(jet);
-  AffineMomenta<d> result;
+  WaveForm<d> result;
   for (int a = 0; a < d; ++a) {
-    result.at_rest[a] = l.derivative(d + a).value;
-    for (int b = 0; b < 3 * d; ++b) {
-      result.by_jet[a][b] = l.derivative(d + a).derivative(b);
-      result.at_rest[a] -= result.by_jet[a][b] * at[b];
-    }
-    if (!std::isfinite(result.at_rest[a])) return std::nullopt;
+    result.inertia[a] = l.derivative(a).derivative(a);
+    result.tension[a] = -l.derivative(d + a).derivative(d + a);
+    // Neither may enter linearly as well; a NaN is not zero.
+    if (!(l.derivative(a).value == 0 && l.derivative(d + a).value == 0)) return std::nullopt;
+    if (!std::isfinite(result.inertia[a]) || !std::isfinite(result.tension[a])) return std::nullopt;
   }
   return result;
 }
+
+/// Which cells are counted: 1 for each slot that is the left end of one, else 0; in the packs before `whole` all are.
+struct CellWeights {
+  const double* row;
+  int whole;
+};
 
 /// Energy and momentum between two rows j and j+1, over the symmetric rectangle's jets whatever the scheme:
 ///
 ///   H = k Σ (φ_t ∂ℓ/∂φ_t − ℓ)                 P = −k Σ φ_x ∂ℓ/∂φ_t
 ///
 /// For sine-Gordon H is k times the sum of Marsden–Patrick–Shkoller's footnote 4. The lattice breaks the symmetries
-/// behind both: they are measured, not conserved. rows.values: d rows at time j, then d rows of y_{j+1} − y_j;
-/// weights: 1 for each slot that is counted as the left end of a cell, else 0.
-///
-/// `affine`: affine_momenta(density), or null.
+/// behind both: they are measured, not conserved. rows.values: d rows at time j, then d rows of y_{j+1} − y_j.
 template <Density D>
-[[gnu::flatten]] EnergyMomentum energy_momentum(const D& given, const AffineMomenta<components_of<D>()>* affine,
-                                                const SlabRows& rows, const double* weights) {
+[[gnu::flatten]] EnergyMomentum energy_momentum(const D& given, const SlabRows& rows, const CellWeights& weights) {
   constexpr int d = components_of<D>();
+  using Number = Dual<Pack, d>;
   const D density = given;
   const double per_h = 0.5 / rows.time_step, per_k = 0.5 / rows.space_step;
-  const auto sums = [&]<class Number>(const auto& with_derivatives) __attribute__((always_inline)) {
-    Pack energy(0.0), momentum(0.0);
-    for (int v = 0; v < rows.layout->packs(); ++v) {
-      const std::ptrdiff_t at = rows.layout->at(v);
-      JetFor<Number, D> jet;
-      std::array<Pack, static_cast<std::size_t>(d)> phi, by_t, by_x;
-      for (int a = 0; a < d; ++a) {
-        const double *y = rows.values[a] + at, *step = rows.values[d + a] + at;
-        const Pack y_0 = Pack::load(y), y_1 = Pack::load(y + lanes);
-        const Pack v_0 = Pack::load(step), v_1 = Pack::load(step + lanes);
-        phi[a] = 0.5 * (y_0 + y_1) + 0.25 * (v_0 + v_1);
-        by_t[a] = per_h * (v_0 + v_1);
-        by_x[a] = per_k * (2.0 * (y_1 - y_0) + (v_1 - v_0));
-        component(jet.phi, a) = Number(phi[a]);
-        if constexpr (with_derivatives.value) component(jet.phi_t, a) = Number::variable(by_t[a], a);
-        else component(jet.phi_t, a) = by_t[a];
-        component(jet.phi_x, a) = Number(by_x[a]);
-      }
-      if constexpr (is_placed<D>()) {
-        jet.t = Number(Pack(rows.t + 0.5 * rows.time_step));
-        jet.x = Number(Pack::load(rows.positions + at) + 0.5 * rows.space_step);
-      }
-      const Number l = density(jet);
-      Pack h(0.0), p(0.0);
-      for (int a = 0; a < d; ++a) {
-        Pack momenta(0.0);
-        if constexpr (with_derivatives.value) {
-          momenta = l.derivative(a);
-        } else {
-          momenta = affine->at_rest[a];
-          for (int b = 0; b < d; ++b)
-            momenta += affine->by_jet[a][b] * phi[b] + affine->by_jet[a][d + b] * by_t[b] +
-                       affine->by_jet[a][2 * d + b] * by_x[b];
-        }
-        h += by_t[a] * momenta;
-        p -= by_x[a] * momenta;
-      }
-      if constexpr (with_derivatives.value) h -= l.value;
-      else h -= l;
-      const Pack weight = Pack::load(weights + at);
-      energy += weight * h;
-      momentum += weight * p;
+  Pack energy(0.0), momentum(0.0);
+  for (int v = 0; v < rows.layout->packs(); ++v) {
+    const std::ptrdiff_t at = rows.layout->at(v);
+    JetFor<Number, D> jet;
+    std::array<Pack, static_cast<std::size_t>(d)> by_t, by_x;
+    for (int a = 0; a < d; ++a) {
+      const double *y = rows.values[a] + at, *step = rows.values[d + a] + at;
+      const Pack y_0 = Pack::load(y), y_1 = Pack::load(y + lanes);
+      const Pack v_0 = Pack::load(step), v_1 = Pack::load(step + lanes);
+      by_t[a] = per_h * (v_0 + v_1);
+      by_x[a] = per_k * (2.0 * (y_1 - y_0) + (v_1 - v_0));
+      component(jet.phi, a) = Number(0.5 * (y_0 + y_1) + 0.25 * (v_0 + v_1));
+      component(jet.phi_t, a) = Number::variable(by_t[a], a);
+      component(jet.phi_x, a) = Number(by_x[a]);
     }
-    return EnergyMomentum{rows.space_step * sum(energy), rows.space_step * sum(momentum)};
+    if constexpr (is_placed<D>()) {
+      jet.t = Number(Pack(rows.t + 0.5 * rows.time_step));
+      jet.x = Number(Pack::load(rows.positions + at) + 0.5 * rows.space_step);
+    }
+    const Number l = density(jet);
+    Pack h = -l.value, p(0.0);
+    for (int a = 0; a < d; ++a) h += by_t[a] * l.derivative(a), p -= by_x[a] * l.derivative(a);
+    const Pack weight = Pack::load(weights.row + at);
+    energy += weight * h;
+    momentum += weight * p;
+  }
+  return {rows.space_step * sum(energy), rows.space_step * sum(momentum)};
+}
+
+/// The same for a density with a wave form. With the means m = y_j + ½v of the two rows,
+///
+///     φ = (m_i + m_{i+1})/2        φ_t = (v_i + v_{i+1})/(2h)        φ_x = (m_{i+1} − m_i)/k
+///
+///   H = k Σ (½ inertia φ_t² + ½ tension φ_x² − ℓ(φ, 0, 0))           P = −k Σ inertia φ_t φ_x
+template <Density D>
+[[gnu::flatten]] EnergyMomentum energy_momentum(const D& given, const WaveForm<components_of<D>()>& form,
+                                                const SlabRows& given_rows, const CellWeights& weights) {
+  constexpr int d = components_of<D>();
+  // Copies of this function alone, which stay in registers.
+  const D density = given;
+  std::array<const double*, static_cast<std::size_t>(2 * d)> rows;
+  std::copy_n(given_rows.values, 2 * d, rows.begin());
+  const double* const positions = given_rows.positions;
+  const Pack t(given_rows.t + 0.5 * given_rows.time_step);
+  const double x_offset = 0.5 * given_rows.space_step;
+
+  struct Means {
+    Pack v, mean;
   };
-  if (affine) return sums.template operator()<Pack>(std::false_type{});
-  return sums.template operator()<Dual<Pack, d>>(std::true_type{});
+  struct Sums {
+    Pack tt = 0.0, xx = 0.0, tx = 0.0;
+  };
+  std::array<Means, static_cast<std::size_t>(d)> left;
+  std::array<Sums, static_cast<std::size_t>(d)> sums;
+  Pack at_rest(0.0);
+  const auto load = [&](int a, std::ptrdiff_t at) __attribute__((always_inline)) {
+    const Pack v = Pack::load(rows[d + a] + at);
+    return Means{v, Pack::load(rows[a] + at) + 0.5 * v};
+  };
+  // φ of the next cells, which count by what `weigh` makes of them.
+  using Values = std::array<Pack, static_cast<std::size_t>(d)>;
+  const auto find = [&](std::ptrdiff_t at, const auto& weigh) __attribute__((always_inline)) {
+    Values phi;
+    for (int a = 0; a < d; ++a) {
+      const Means right = load(a, at + lanes);
+      const Pack by_t = left[a].v + right.v, by_x = right.mean - left[a].mean;
+      sums[a].tt += weigh(by_t) * by_t;
+      sums[a].xx += weigh(by_x) * by_x;
+      sums[a].tx += weigh(by_t) * by_x;
+      phi[a] = 0.5 * (left[a].mean + right.mean);
+      left[a] = right;
+    }
+    return phi;
+  };
+  const auto rest = [&](std::ptrdiff_t at, const Values& phi) __attribute__((always_inline)) {
+    JetFor<Pack, D> jet;
+    for (int a = 0; a < d; ++a) {
+      component(jet.phi, a) = phi[a];
+      component(jet.phi_t, a) = 0.0;
+      component(jet.phi_x, a) = 0.0;
+    }
+    if constexpr (is_placed<D>()) jet.t = t, jet.x = Pack::load(positions + at) + x_offset;
+    return density(jet);
+  };
+  const auto all = [](Pack x) __attribute__((always_inline)) { return x; };
+  const RowLayout& layout = *given_rows.layout;
+  std::ptrdiff_t at = layout.at(0);
+  const std::ptrdiff_t whole = layout.at(weights.whole), end = layout.at(layout.packs());
+  for (int a = 0; a < d; ++a) left[a] = load(a, at);
+  // φ is found two packs ahead, as arguments are in argument_loop().
+  if (at + lanes < whole) {
+    Values here = find(at, all), next = find(at + lanes, all);
+    for (; at + 2 * lanes < whole; at += lanes) {
+      const Values ahead = find(at + 2 * lanes, all);
+      at_rest += rest(at, here);
+      here = next, next = ahead;
+    }
+    at_rest += rest(at, here) + rest(at + lanes, next);
+    at += 2 * lanes;
+  }
+  for (; at < end; at += lanes) {
+    const auto weigh = [weight = Pack::load(weights.row + at)](Pack x)
+                           __attribute__((always_inline)) { return weight * x; };
+    const Values phi = find(at, weigh);
+    at_rest += weigh(rest(at, phi));
+  }
+
+  const double per_h = 0.5 / given_rows.time_step, per_k = 1 / given_rows.space_step;
+  EnergyMomentum total{-sum(at_rest), 0};
+  for (int a = 0; a < d; ++a) {
+    total.energy += 0.5 * (form.inertia[a] * per_h * per_h * sum(sums[a].tt) +
+                           form.tension[a] * per_k * per_k * sum(sums[a].xx));
+    total.momentum -= form.inertia[a] * per_h * per_k * sum(sums[a].tx);
+  }
+  return {given_rows.space_step * total.energy, given_rows.space_step * total.momentum};
 }
 
 }  // namespace delf

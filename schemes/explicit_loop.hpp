@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -89,6 +90,71 @@ template <int reach, Density D>
     advance(v, [&](int a) { return now[a] + origin + static_cast<std::ptrdiff_t>(v + reach) * lanes; });
   for (; v < packs.last; ++v) advance(v, [&](int a) { return old_value(a, v + reach); });
   return std::sqrt(sum(squares));
+}
+
+/// What is left of the same equation,
+///
+///     E = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)) − (v − v_before)(i)
+template <int reach, Density D>
+[[gnu::flatten]] void explicit_residual_loop(const D& given_density, const ExplicitRows& given, LargestTerms* terms) {
+  constexpr int d = components_of<D>(), count = 2 * reach;
+  // Copies of this function alone, which stay in registers.
+  const D density = given_density;
+  const double* const positions = given.now.positions;
+  const Pack t(given.now.t);
+  std::array<const double*, d> now, v_before, v;
+  std::array<double, static_cast<std::size_t>(d * count)> linear;
+  std::array<double, d> nonlinear;
+  for (int a = 0; a < d; ++a) {
+    now[a] = given.now.values[a], v_before[a] = given.v_before[a], v[a] = given.v[a];
+    nonlinear[a] = given.nonlinear[a];
+    for (int s = 0; s < count; ++s) linear[a * count + s] = given.linear[a * count + s];
+  }
+  std::array<LargestTerms, d> largest;
+  const auto slope = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
+    return density(
+        value_jet<D>([&](int a) __attribute__((always_inline)) { return Pack::load(now[a] + at); }, t, positions + at)).d;
+  };
+  std::ptrdiff_t at = given.now.layout->at(0);
+  const std::ptrdiff_t last = given.now.layout->at(given.now.layout->packs() - 1);
+  // y(i) − y(i − 1), and its size, where neighbours reach no further: the pack before has worked it out.
+  struct Difference {
+    Pack value, size;
+  };
+  const auto difference = [&](int a, std::ptrdiff_t to, std::ptrdiff_t from) __attribute__((always_inline)) {
+    const Pack value = Pack::load(now[a] + to) - Pack::load(now[a] + from);
+    return Difference{value, abs(value)};
+  };
+  std::array<Difference, d> before;
+  for (int a = 0; a < d; ++a) before[a] = difference(a, at, at - lanes);
+  // Slopes are evaluated one pack ahead: what waits for them would keep the next ones waiting.
+  auto here = slope(at);
+  for (; at <= last; at += lanes) {
+    const auto next = slope(std::min(at + lanes, last));
+    for (int a = 0; a < d; ++a) {
+      const Pack w = Pack::load(v[a] + at) - Pack::load(v_before[a] + at);
+      Pack E = -w, size = abs(w);
+      const auto add = [&](double coefficient, const Difference& term) __attribute__((always_inline)) {
+        E += coefficient * term.value;
+        size += std::abs(coefficient) * term.size;
+      };
+      if constexpr (reach == 1) {
+        const Difference after = difference(a, at + lanes, at);
+        add(-linear[a * count], before[a]);
+        add(linear[a * count + 1], after);
+        before[a] = after;
+      } else {
+        for (int s = 0; s < count; ++s)
+          add(linear[a * count + s],
+              difference(a, at + neighbours_within<reach>[static_cast<std::size_t>(s)] * lanes, at));
+      }
+      const Pack slope_here = here[static_cast<std::size_t>(a)];
+      add(nonlinear[a], {slope_here, abs(slope_here)});
+      largest[a](at, E, size);
+    }
+    here = next;
+  }
+  for (int a = 0; a < d; ++a) terms[a] = largest[a];
 }
 
 }  // namespace delf

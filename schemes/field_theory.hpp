@@ -39,7 +39,7 @@ class FieldTheory {
   /// A comparator; null if there is none of that name for this theory.
   virtual std::shared_ptr<const StencilFamily> comparator(const std::string& method, double h, double k) const = 0;
   /// Sums over the symmetric rectangle's jets between two rows.
-  virtual EnergyMomentum energy_momentum(const SlabRows&, const double* weights) const = 0;
+  virtual EnergyMomentum energy_momentum(const SlabRows&, const CellWeights&) const = 0;
   /// At one jet; components() numbers each.
   virtual StressEnergy stress_energy(const double* phi, const double* phi_t, const double* phi_x, double t,
                                      double x) const = 0;
@@ -64,7 +64,7 @@ void for_each_stencil(Function&& f) {
 template <Density D>
 class TheoryOf final : public FieldTheory {
  public:
-  explicit TheoryOf(D density) : density_(std::move(density)), momenta_(affine_momenta(density_)) {}
+  explicit TheoryOf(D density) : density_(std::move(density)), wave_form_(wave_form(density_)) {}
 
   int components() const override { return components_of<D>(); }
   bool is_placed() const override { return delf::is_placed<D>(); }
@@ -102,8 +102,9 @@ class TheoryOf final : public FieldTheory {
     return nullptr;
   }
 
-  EnergyMomentum energy_momentum(const SlabRows& rows, const double* weights) const override {
-    return delf::energy_momentum(density_, momenta_ ? &*momenta_ : nullptr, rows, weights);
+  EnergyMomentum energy_momentum(const SlabRows& rows, const CellWeights& weights) const override {
+    if (wave_form_) return delf::energy_momentum(density_, *wave_form_, rows, weights);
+    return delf::energy_momentum(density_, rows, weights);
   }
 
   StressEnergy stress_energy(const double* phi, const double* phi_t, const double* phi_x, double t,
@@ -113,7 +114,7 @@ class TheoryOf final : public FieldTheory {
 
  private:
   D density_;
-  std::optional<AffineMomenta<components_of<D>()>> momenta_;
+  std::optional<WaveForm<components_of<D>()>> wave_form_;
 };
 
 }  // namespace delf

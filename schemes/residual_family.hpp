@@ -114,15 +114,9 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
   }
 
   using RowKernel::evaluate;
-  [[gnu::flatten]] void evaluate(const SlabRows& rows, double* const* out, const PackRange& packs) const override {
-    for (int v = packs.first; v < packs.last; v += packs.stride) {
-      const std::ptrdiff_t at = rows.layout->at(v);
-      std::array<Pack, n> y{};
-      for (int l = 0; l < n; ++l)
-        if (looked_at[l])
-          y[l] = Pack::load(rows.values[R::shape.vertex(l).time - first_time] + at + R::shape.vertex(l).space * lanes);
-      part(stencil_, y).store(out[0] + at);
-    }
+  void evaluate(const SlabRows& rows, double* const* out, const PackRange& packs) const override {
+    if constexpr (pair.latest >= 0) evaluate_pair(rows, out[0], packs);
+    else evaluate_any(rows, out[0], packs);
   }
 
   bool evaluates_arguments() const override { return pair.latest >= 0; }
@@ -140,6 +134,34 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
   }
 
  private:
+  static const double* row_of(const SlabRows& rows, int l) {
+    constexpr auto& shape = R::shape;
+    return rows.values[shape.vertex(l).time - first_time] + shape.vertex(l).space * lanes;
+  }
+  [[gnu::flatten]] void evaluate_pair(const SlabRows& rows, double* out, const PackRange& packs) const {
+    const PartOfPair output{stencil_};
+    const FetchAhead<> ahead(rows);
+    const double *const latest = row_of(rows, pair.latest), *const other = row_of(rows, pair.other);
+    find_ahead(
+        rows.layout->at(packs.first), rows.layout->at(packs.last), lanes,
+        [&](std::ptrdiff_t at) __attribute__((always_inline)) {
+          return output.argument(Pack::load(latest + at), Pack::load(other + at));
+        },
+        [&](std::ptrdiff_t at, const auto& values) __attribute__((always_inline)) {
+          ahead.fetch(at);
+          output(values, at).store(out + at);
+        });
+  }
+  [[gnu::flatten]] void evaluate_any(const SlabRows& rows, double* out, const PackRange& packs) const {
+    for (int v = packs.first; v < packs.last; v += packs.stride) {
+      const std::ptrdiff_t at = rows.layout->at(v);
+      std::array<Pack, n> y{};
+      for (int l = 0; l < n; ++l)
+        if (looked_at[l]) y[l] = Pack::load(row_of(rows, l) + at);
+      part(stencil_, y).store(out + at);
+    }
+  }
+
   template <class T>
   static T part(const R& stencil, const std::array<T, n>& y) {
     if constexpr (is_shared) return stencil.part(y);

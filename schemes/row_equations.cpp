@@ -38,13 +38,7 @@ void RowEquations::begin(std::int64_t n, bool in_place) {
   n_ = n;
   in_place_ = in_place;
   if (is_one_loop()) return;
-  const std::int64_t place = rows_.place(n);
-  if (places_.empty()) {
-    find_bases(place);
-  } else {
-    period_.at(place);
-    std::copy_n(places_.data() + static_cast<std::size_t>(period_(0)) * bases_.size(), bases_.size(), bases_.data());
-  }
+  find_rows();
   bind_sums();
   for (std::size_t a = 0; a < increments_.size(); ++a) {
     RowIncrement& increment = increments_[a];
@@ -59,6 +53,13 @@ void RowEquations::begin(std::int64_t n, bool in_place) {
     arguments_->begin(n);
     increments_[0].look.argument = arguments_->row(0);
   }
+}
+
+void RowEquations::find_rows() {
+  const std::int64_t place = rows_.place(n_);
+  if (places_.empty()) return find_bases(place);
+  period_.at(place);
+  std::copy_n(places_.data() + static_cast<std::size_t>(period_(0)) * bases_.size(), bases_.size(), bases_.data());
 }
 
 void RowEquations::bind_sums() {
@@ -133,7 +134,8 @@ PackRange RowEquations::where_read(const Outputs& o) const {
 }
 
 /// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others.
-void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& given) {
+void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& given,
+                            const RowsAhead& ahead) {
   const PackRange packs = packs_of(o, age, given);
   const std::int64_t anchor_row = n_ + age;
   y_slots_.at(rows_.place(n_));
@@ -143,11 +145,10 @@ void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At wh
       const int row = std::clamp(age + t, 1 - history_, newest);
       slab_rows_[static_cast<std::size_t>((t - o.first_time) * d_ + a)] =
           row == 1 && which == At::candidate ? candidate_.row(a)
-          : is_one_loop()                    ? rows_.y(n_ + row, a)
                                              : rows_.y_at(y_slots_(-row), a);
     }
   o.kernel->evaluate({&layout_, slab_rows_.data(), positions_.rows() ? positions_.row(0) : nullptr,
-                      static_cast<double>(anchor_row) * time_step_, time_step_, space_step_},
+                      static_cast<double>(anchor_row) * time_step_, time_step_, space_step_, ahead},
                      out, packs);
   if (turn_ != 0)
     for (int c = 0; c < o.kernel->outputs(); ++c) layout_.fill_halo(out[c]);
@@ -274,6 +275,13 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   const auto work = [&](int first, int kept_until) {
     return hold(work_window_, increments_[0].v, first, kept_until);
   };
+  // What a strip is made from, so many packs further on: it comes from memory while those before are evaluated.
+  const auto rows_after = [&](int shift) {
+    RowsAhead ahead{increments_[0].y_before, increments_[0].v_before, old_output()};
+    for (const double*& row : ahead)
+      if (row) row += static_cast<std::ptrdiff_t>(shift) * lanes;
+    return ahead;
+  };
   hold_candidate(last.first - halo, 0);
   if (find) find({last.first - halo, packs + halo});
   hold_outputs(last.first + o.lowest, 0);
@@ -291,7 +299,8 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
     found = end + halo;
     const int evaluated_until = all ? read.last : end + o.highest;
     hold_outputs(kept, evaluated);
-    evaluate(o, o.newest, slab_out_.data(), At::candidate, {evaluated, evaluated_until});
+    evaluate(o, o.newest, slab_out_.data(), At::candidate, {evaluated, evaluated_until},
+             all ? RowsAhead{} : rows_after(found - evaluated));
     evaluated = evaluated_until;
     double* const room = work(done, summed);
     summed = end;
@@ -336,8 +345,11 @@ double RowEquations::value_at(const SiteEquation& special, bool unknown_too, dou
     if (t.source == Source::unknown && !unknown_too) continue;
     const double* row = bases_[static_cast<std::size_t>(index_of(t))];
     const int beside = layout_.slot(std::clamp(special.site + t.shift, 0, layout_.sites() - 1));
-    const double x =
-        (t.coefficient + sign * t.alternating) * (row[beside] - (t.source == Source::difference ? row[own] : 0));
+    const double less = t.source == Source::difference ? row[own]
+                        : t.source == Source::unknown
+                            ? bases_[static_cast<std::size_t>(v_base_ + t.component)][beside]  // w = v_{n+1} − v_n
+                            : 0;
+    const double x = (t.coefficient + sign * t.alternating) * (row[beside] - less);
     value += x;
     if (absolute) *absolute += std::abs(x);
   }

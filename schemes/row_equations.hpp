@@ -10,6 +10,7 @@
 #include "schemes/argument_rows.hpp"
 #include "schemes/candidate_rows.hpp"
 #include "schemes/equation_terms.hpp"
+#include "schemes/largest_terms.hpp"
 #include "schemes/linear_solver.hpp"
 #include "schemes/ring_slots.hpp"
 #include "schemes/row_kernel.hpp"
@@ -125,6 +126,7 @@ class RowEquations {
   void build_looks();
   void make_room_in_place();
   void build_places();
+  void find_rows();
   void find_bases(std::int64_t place);
   void bind_sums();
   std::size_t first_sum(int a) const { return static_cast<std::size_t>(bricks_ ? 2 * a : a); }
@@ -132,14 +134,13 @@ class RowEquations {
   void evaluate_newest_known_outputs();
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
-  int scratch_rows_of_sums() const, residual_rows() const;
+  int residual_rows() const;
+  void measure_sums(LargestTerms&);
+  void measure_loop(LargestTerms*);  ///< one for each component, times right_side_scale()
   /// Of a stream, without the candidate's.
   std::size_t window_bytes() const;
-  /// An increment is held that neither the residual nor a seed reads.
-  bool has_spare_increment() const { return !reads_unknown_row() && rows_.increments_held() >= ages_ + 2; }
-  /// Packs of a strip: long against what solving overlaps; rows of it fit into the first level of the cache if that is
-  /// little, or else ten of them into the second.
-  static int strip_packs(PackRange last) { return std::clamp(6 * (last.last - last.first), 96, 1024); }
+  /// Packs of a strip: long against what solving overlaps; ten rows of it fit into the second level of the cache.
+  static int strip_packs(PackRange last) { return std::clamp(6 * (last.last - last.first), 512, 1024); }
   /// That windows need room for where a stream goes by strips.
   int window_packs(PackRange last) const {
     return last.last - last.first + 2 * strip_packs(last) + 8 * layout_.halo();
@@ -151,7 +152,8 @@ class RowEquations {
   void add_term(RowSum&, const Term&, double coefficient) const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
   PackRange where_read(const Outputs&) const;
-  void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&);
+  using RowsAhead = decltype(SlabRows::ahead);
+  void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&, const RowsAhead& = {});
   void evaluate_in_ring(Outputs&, int age, At);
   /// Those at which stencils anchored `age` rows after row n exist.
   PackRange packs_of(const Outputs& o, int age, PackRange packs) const {
@@ -181,6 +183,7 @@ class RowEquations {
   Advance advanced(RowChange);
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
+  SlabRows loop_slab(const double* const* now) const;
   const RowSum& right_side(int a) const { return *right_sides_[static_cast<std::size_t>(a)]; }
   /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
   double* stored_right_side(int a) { return bases_[static_cast<std::size_t>(E_base_ + a)]; }
@@ -198,7 +201,7 @@ class RowEquations {
   std::vector<Outputs> outputs_;
   std::unique_ptr<LinearSolver> solver_[2];  ///< of even and odd unknown rows; the second only if bricks differ
 
-  // Rows of the step from n: y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E and w, d rows each.
+  // Rows of the step from n: y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E, d rows each.
   std::int64_t n_ = -1;
   bool in_place_ = false;
   RingSlots y_slots_, v_slots_;
@@ -206,7 +209,7 @@ class RowEquations {
   std::vector<double*> bases_;
   std::vector<double*> places_;  ///< bases_ of one step after the other, until they are the first again
   RingSlots period_;
-  int y_base_ = 0, v_base_ = 0, E_base_ = 0, w_base_ = 0;
+  int y_base_ = 0, v_base_ = 0, E_base_ = 0;
   int v_new_base_ = 0, y_known_base_ = 0;  ///< v_{n+1}; y of the mixture's known_row
 
   /// −E times the solver's scale, for each component; of bricks two that take turns, the first for packs whose site and

@@ -105,8 +105,7 @@ void RowEquations::build_sums() {
     next += o.rows() * o.kernel->outputs();
   }
   E_base_ = next;
-  w_base_ = next + d_;
-  v_new_base_ = w_base_ + d_;
+  v_new_base_ = next + d_;
   y_known_base_ = v_new_base_ + d_;
   bases_.resize(static_cast<std::size_t>(y_known_base_) + 1);
 
@@ -155,7 +154,7 @@ int RowEquations::index_of(const Term& t) const {
     case Source::increment:
       return v_base_ + t.age * d_ + t.component;
     case Source::unknown:
-      return w_base_ + t.component;
+      return v_new_base_ + t.component;
     case Source::output:
       break;
   }
@@ -165,7 +164,8 @@ int RowEquations::index_of(const Term& t) const {
 
 void RowEquations::add_term(RowSum& sum, const Term& t, double coefficient) const {
   if (coefficient == 0) return;
-  if (t.source == Source::difference) sum.add_difference(index_of(t), t.shift, coefficient);
+  if (t.source == Source::unknown) sum.add_change(index_of(t), v_base_ + t.component, t.shift, coefficient);  // w
+  else if (t.source == Source::difference) sum.add_difference(index_of(t), t.shift, coefficient);
   else sum.add(index_of(t), t.shift, coefficient);
 }
 

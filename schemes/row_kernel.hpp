@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
 #include "jets/discrete_lagrangian.hpp"
 #include "jets/structure.hpp"
+#include "schemes/largest_terms.hpp"
 #include "schemes/row_increment.hpp"
 #include "schemes/row_layout.hpp"
 
@@ -17,6 +19,8 @@ struct SlabRows {
   const double* positions;      ///< x of each slot's site; null unless the family is placed
   double t = 0;                 ///< of the anchors' row
   double time_step, space_step;
+  /// Rows that will be wanted next, from where pack 0 begins them: fetched on the way; null: none.
+  std::array<const double*, 3> ahead{};
 };
 
 /// The rows that an explicit step goes from and to, d of each, and its coefficients. y and v may take the place of what
@@ -129,6 +133,8 @@ class RowKernel {
   virtual std::span<const int> explicit_neighbours() const { return {}; }
   /// Returns √Σy² of the packs' new values: infinite or NaN where squares overflow.
   virtual double explicit_step(const ExplicitRows&, const PackRange&) const { return 0; }
+  /// Of the equation w = … above, for the rows as they are, y_n with its halo: one LargestTerms for each component.
+  virtual void explicit_residual(const ExplicitRows&, LargestTerms*) const {}
 
  protected:
   explicit RowKernel(int row_size) : row_size_(row_size) {}

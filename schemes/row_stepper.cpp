@@ -377,7 +377,6 @@ struct RowStepper::Impl {
     const std::int64_t base = n - 1;
     if (base < history - 1) return 0;
     if (rows_known < 2) return std::numeric_limits<double>::quiet_NaN();
-    if (equations.is_one_loop()) rows_known = 2;  // it is worked out where the oldest row is, which the next step takes
     return equations.residual(base);
   }
 };

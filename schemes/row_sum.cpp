@@ -4,7 +4,7 @@
 namespace delf {
 
 void RowSum::scale(double factor) {
-  for (auto* terms : {&differences_, &plain_})
+  for (auto* terms : {&differences_, &plain_, &changes_})
     for (Term& t : *terms) t.coefficient *= factor;
   constant_ *= factor;
 }

@@ -14,22 +14,28 @@ namespace delf {
 /// step:
 ///
 ///     constant + Σ coefficient · (row(shifted) − row) + Σ coefficient · row(shifted)
+///              + Σ coefficient · (row(shifted) − before(shifted))
 ///
+/// of differences, plain terms, and changes.
 /// A pass hands every pack's sum to `consume(at, sum)`, so that what is done with it needs no pass of its own. Like
 /// std::for_each it works with a copy of `consume` and returns it: what that carries along stays in registers.
 class RowSum {
  public:
   /// `row` is an index into the rows that bind() is given; `shift` in sites.
-  void add_difference(int row, int shift, double coefficient) { differences_.push_back({row, shift, coefficient}); }
-  void add(int row, int shift, double coefficient) { plain_.push_back({row, shift, coefficient}); }
+  void add_difference(int row, int shift, double coefficient) { differences_.push_back({row, shift, coefficient, row}); }
+  void add(int row, int shift, double coefficient) { plain_.push_back({row, shift, coefficient, row}); }
+  /// Of the row since `before`.
+  void add_change(int row, int before, int shift, double coefficient) {
+    changes_.push_back({row, shift, coefficient, before, shift});
+  }
   void add_constant(double c) { constant_ += c; }
   /// Multiplies every coefficient.
   void scale(double factor);
 
   /// Sums are taken of these rows from here on; where one of them is another, bind again.
   void bind(const double* const* rows) {
-    for (Term& t : differences_) t.bind(rows);
-    for (Term& t : plain_) t.bind(rows);
+    for (auto* terms : {&differences_, &plain_, &changes_})
+      for (Term& t : *terms) t.bind(rows);
   }
 
   /// Every second pack, v where v + `phase` is odd, takes the other sum, as bricks do.
@@ -50,10 +56,11 @@ class RowSum {
   struct Term {
     int row, shift;
     double coefficient;
-    const double *own = nullptr, *shifted = nullptr;  ///< the row, and it from `shift` sites further on
+    int from, from_shift = 0;
+    const double *shifted = nullptr, *subtracted = nullptr;  ///< the row from `shift` sites further on, and what it is less
     void bind(const double* const* rows) {
-      own = rows[row];
-      shifted = own + static_cast<std::ptrdiff_t>(shift) * lanes;
+      shifted = rows[row] + static_cast<std::ptrdiff_t>(shift) * lanes;
+      subtracted = rows[from] + static_cast<std::ptrdiff_t>(from_shift) * lanes;
     }
   };
   const RowSum& of(int pack) const { return other_ && (pack + phase_) % 2 != 0 ? *other_ : *this; }
@@ -62,41 +69,49 @@ class RowSum {
     return differences_.size() == 2 && differences_[0].row == differences_[1].row &&
            differences_[0].shift + differences_[1].shift == 0 && std::abs(differences_[0].shift) == 1;
   }
+  /// Changes are those of one row at a site, or at it and on either side of it.
+  bool are_around_site() const {
+    const auto is_there = [this](int shift) {
+      for (const Term& t : changes_)
+        if (t.shift == shift && t.row == changes_[0].row && t.from == changes_[0].from) return true;
+      return false;
+    };
+    return changes_.empty() || (changes_.size() == 1 && is_there(0)) ||
+           (changes_.size() == 3 && is_there(-1) && is_there(0) && is_there(1));
+  }
   bool are_like(const RowSum& other) const {
-    return plain_.size() == other.plain_.size() && are_to_both_sides() && other.are_to_both_sides() &&
+    return plain_.size() == other.plain_.size() && changes_.size() == other.changes_.size() && are_to_both_sides() && other.are_to_both_sides() &&
            differences_[0].row == other.differences_[0].row;
   }
   /// The terms of a counted pass, as a pass keeps them.
-  template <int differences, int plain>
+  template <int differences, int plain, int changes>
   struct Counted;
   // Inlined where they are used: what `consume` carries would else be copied through memory.
   template <bool measured, class Consume>
   [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, bool in_turn, int differences, int plain, class Consume>
+  template <bool measured, bool in_turn, int differences, int plain, int changes, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, bool in_turn, int differences, int most, class Consume>
+  template <bool measured, bool in_turn, int differences, int most, int changes, class Consume>
   [[gnu::always_inline]] void counted(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, class Consume>
   [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
-  /// Compiled, with the unknown row's where sums are measured; of sums that take turns.
-  template <bool measured>
-  static constexpr int most_plain = measured ? 11 : 8;
-  template <bool measured>
-  static constexpr int most_in_turn = measured ? 6 : 3;
+  /// Compiled; of sums that take turns.
+  static constexpr int most_plain = 8, most_in_turn = 3;
 
-  std::vector<Term> differences_, plain_;
+  std::vector<Term> differences_, plain_, changes_;
   double constant_ = 0;
   const RowSum* other_ = nullptr;
   int phase_ = 0;
 };
 
 /// None or two differences: those to the next pack and to the one before it. Either is then the other's of the pack
-/// before: one subtraction for both.
-template <int differences, int plain>
+/// before: one subtraction for both. None, one or three changes, which go on to the next pack in the same way.
+template <int differences, int plain, int changes>
 struct RowSum::Counted {
   const double* row[plain + 1];
   double coefficient[plain + 1];
   double of_next = 0, of_last = 0;
+  double of_change[3] = {0, 0, 0};  ///< of the last pack, here, and of the next one
   Pack constant;
 
   [[gnu::always_inline]] explicit Counted(const RowSum& sum) : constant(sum.constant_) {
@@ -108,31 +123,51 @@ struct RowSum::Counted {
       const std::size_t next = sum.differences_[0].shift > 0 ? 0 : 1;
       of_next = sum.differences_[next].coefficient, of_last = sum.differences_[1 - next].coefficient;
     }
+    for (int i = 0; i < changes; ++i) {
+      const Term& t = sum.changes_[static_cast<std::size_t>(i)];
+      of_change[t.shift + 1] = t.coefficient;
+    }
   }
 };
 
 /// `in_turn`: with the other sum, which is like this one. Packs follow each other.
-template <bool measured, bool in_turn, int differences, int plain, class Consume>
+template <bool measured, bool in_turn, int differences, int plain, int changes, class Consume>
 inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  const Counted<differences, plain> first(of(packs.first)), second(in_turn ? of(packs.first + 1) : *this);
-  const double* const here = differences > 0 ? differences_[0].own : nullptr;
+  using Terms = Counted<differences, plain, changes>;
+  const Terms first(of(packs.first)), second(in_turn ? of(packs.first + 1) : *this);
   std::ptrdiff_t at = layout.at(packs.first);
   const std::ptrdiff_t end = layout.at(packs.last);
+  const double* const here = differences > 0 ? differences_[0].subtracted : nullptr;
   Pack value = differences > 0 ? Pack::load(here + at) : Pack(0.0);
   Pack last = differences > 0 ? value - Pack::load(here + at - lanes) : Pack(0.0);
-  const auto take = [&](const Counted<differences, plain>& terms) __attribute__((always_inline)) {
+  const std::ptrdiff_t shift = changes > 0 ? changes_[0].shift * lanes : 0;
+  const double* const changed = changes > 0 ? changes_[0].shifted - shift : nullptr;
+  const double* const before = changes > 0 ? changes_[0].subtracted - shift : nullptr;
+  const auto change_at = [=](std::ptrdiff_t to) __attribute__((always_inline)) {
+    return Pack::load(changed + to) - Pack::load(before + to);
+  };
+  Pack last_change = changes == 3 ? change_at(at - lanes) : Pack(0.0);
+  Pack change = changes == 3 ? change_at(at) : Pack(0.0);
+  const auto take = [&](const Terms& terms) __attribute__((always_inline)) {
     Pack sum = terms.constant, absolute(0.0);
+    const auto add = [&](double coefficient, Pack term) __attribute__((always_inline)) {
+      sum += coefficient * term;
+      if constexpr (measured) absolute += std::abs(coefficient) * abs(term);
+    };
     if constexpr (differences > 0) {
       const Pack next_value = Pack::load(here + at + lanes), next = next_value - value;
-      sum += terms.of_next * next;
-      sum -= terms.of_last * last;
-      if constexpr (measured) absolute += std::abs(terms.of_next) * abs(next) + std::abs(terms.of_last) * abs(last);
+      add(terms.of_next, next);
+      add(-terms.of_last, last);
       value = next_value, last = next;
     }
-    for (int i = 0; i < plain; ++i) {
-      const Pack term = Pack::load(terms.row[i] + at);
-      sum += terms.coefficient[i] * term;
-      if constexpr (measured) absolute += std::abs(terms.coefficient[i]) * abs(term);
+    for (int i = 0; i < plain; ++i) add(terms.coefficient[i], Pack::load(terms.row[i] + at));
+    if constexpr (changes == 1) add(terms.of_change[1], change_at(at));
+    if constexpr (changes == 3) {
+      const Pack next_change = change_at(at + lanes);
+      add(terms.of_change[0], last_change);
+      add(terms.of_change[1], change);
+      add(terms.of_change[2], next_change);
+      last_change = change, change = next_change;
     }
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
@@ -156,7 +191,9 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
       sum += term;
       if constexpr (measured) absolute += abs(term);
     };
-    for (const Term& t : terms.differences_) add(t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.own + at)));
+    for (const auto* list : {&terms.differences_, &terms.changes_})
+      for (const Term& t : *list)
+        add(t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.subtracted + at)));
     for (const Term& t : terms.plain_) add(t.coefficient * Pack::load(t.shifted + at));
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
@@ -165,24 +202,44 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
 
 /// The numbers of terms of the usual schemes are compiled, differences being those to both sides: rows then stay in
 /// registers.
-template <bool measured, bool in_turn, int differences, int most, class Consume>
+template <bool measured, bool in_turn, int differences, int most, int changes, class Consume>
 inline void RowSum::counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
   [&]<int... plain>(std::integer_sequence<int, plain...>) __attribute__((always_inline)) {
     const int count = static_cast<int>(plain_.size());
-    ((count == plain ? counted_pass<measured, in_turn, differences, plain>(layout, packs, consume) : void()), ...);
+    ((count == plain ? counted_pass<measured, in_turn, differences, plain, changes>(layout, packs, consume) : void()),
+     ...);
   }
   (std::make_integer_sequence<int, most + 1>{});
 }
 template <bool measured, class Consume>
 inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
   const int count = static_cast<int>(plain_.size());
-  if (other_) {
-    if (count <= most_in_turn<measured> && are_like(*other_))
-      return counted<measured, true, 2, most_in_turn<measured>>(layout, packs, consume);
-  } else if (count <= most_plain<measured>) {
-    if (differences_.empty()) return counted<measured, false, 0, most_plain<measured>>(layout, packs, consume);
-    if (are_to_both_sides()) return counted<measured, false, 2, most_plain<measured>>(layout, packs, consume);
+  const auto choose = [&]<int differences, int changes>() __attribute__((always_inline)) {
+    if (other_) {
+      if constexpr (differences == 2) {
+        if (count > most_in_turn || !are_like(*other_)) return false;
+        counted<measured, true, 2, most_in_turn, changes>(layout, packs, consume);
+        return true;
+      }
+      return false;
+    }
+    if (count > most_plain || !(differences == 0 ? differences_.empty() : are_to_both_sides())) return false;
+    counted<measured, false, differences, most_plain, changes>(layout, packs, consume);
+    return true;
+  };
+  bool done = changes_.empty() && choose.template operator()<0, 0>();
+  // Changes are the unknown row's, which are measured, and not asked for by steps.
+  if constexpr (measured) {
+    const auto choose_changes = [&]<int differences>() __attribute__((always_inline)) {
+      return changes_.size() == 1 ? choose.template operator()<differences, 1>()
+                                  : changes_.size() == 3 && choose.template operator()<differences, 3>();
+    };
+    if (!done && are_around_site())
+      done = choose_changes.template operator()<0>() || choose_changes.template operator()<2>();
+  } else {
+    done = done || (changes_.empty() && choose.template operator()<2, 0>());
   }
+  if (done) return;
   general_pass<measured>(layout, packs, consume);
 }
 

@@ -63,6 +63,8 @@ struct Simulation::Impl {
   const LatticeSystem& system;
   std::unique_ptr<RowLayout> own_layout;  ///< of the monitors, where steps do not go by rows
   RowBuffer cell_weights, positions, last_rows;
+  int whole_packs = 0;  ///< whose weights are all 1
+  std::vector<const double*> monitored;
   int winding;
   std::vector<std::string> conserved_names;
 
@@ -141,6 +143,9 @@ struct Simulation::Impl {
     const int N = problem.lattice.sites(), cells = problem.lattice.cells(), d = theory->components();
     if (!stepper.layout()) last_rows = RowBuffer(layout, 2 * d);
     for (int i = 0; i < cells; ++i) cell_weights.row(0)[layout.slot(i)] = 1;
+    while (whole_packs < layout.packs() && sum(Pack::load(cell_weights.row(0) + layout.at(whole_packs))) == lanes)
+      ++whole_packs;
+    monitored.resize(static_cast<std::size_t>(2 * d));
     if (!theory->is_placed()) return;
     positions = RowBuffer(layout, 1);
     std::vector<double> x(static_cast<std::size_t>(N));
@@ -229,10 +234,9 @@ Simulation::Monitors Simulation::monitors() const {
   s.prepare_monitors();
   const RowLayout& layout = s.layout();
   const int d = s.theory->components(), last = s.problem.lattice.sites() - 1;
-  std::vector<const double*> rows;
+  const auto rows = [&](int r) -> const double*& { return s.monitored[static_cast<std::size_t>(r)]; };
   if (s.stepper.layout()) {
-    for (int a = 0; a < d; ++a) rows.push_back(s.stepper.row_data(1, a));
-    for (int a = 0; a < d; ++a) rows.push_back(s.stepper.newest_increment(a));
+    for (int a = 0; a < d; ++a) rows(a) = s.stepper.row_data(1, a), rows(d + a) = s.stepper.newest_increment(a);
   } else {
     const int C = s.system.components();
     const std::vector<double> newest = s.stepper.row(0), before = s.stepper.row(1);
@@ -246,20 +250,19 @@ Simulation::Monitors Simulation::monitors() const {
       layout.scatter(value, s.last_rows.row(a), 2 * std::numbers::pi * s.winding);
       layout.scatter(step, s.last_rows.row(d + a));
     }
-    for (int a = 0; a < 2 * d; ++a) rows.push_back(s.last_rows.row(a));
+    for (int r = 0; r < 2 * d; ++r) rows(r) = s.last_rows.row(r);
   }
   const double h = s.problem.time_step;
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const bool moving = s.system.fields() != d;
   const EnergyMomentum sums =
       moving ? EnergyMomentum{none, none}
-             : s.theory->energy_momentum({&layout, rows.data(), s.positions.rows() ? s.positions.row(0) : nullptr,
+             : s.theory->energy_momentum({&layout, s.monitored.data(), s.positions.rows() ? s.positions.row(0) : nullptr,
                                  static_cast<double>(newest() - 1) * h, h, s.problem.lattice.space_step()},
-                                s.cell_weights.row(0));
+                                {s.cell_weights.row(0), s.whole_packs});
   double charge = s.winding;
   if (!s.problem.lattice.is_circle()) {
-    const double* y = rows[0];
-    const double* step = rows[static_cast<std::size_t>(d)];
+    const double *const y = rows(0), *const step = rows(d);
     const auto at = [&](int i) { return y[layout.slot(i)] + step[layout.slot(i)]; };
     charge = (at(last) - at(0)) / (2 * std::numbers::pi);
   }

@@ -151,7 +151,10 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
 
   using RowKernel::evaluate;
   void evaluate(const SlabRows& rows, double* const* out, const PackRange& packs) const override {
-    if (nonlinearity_ == Nonlinearity::values) evaluate_values(rows, out, packs);
+    if (nonlinearity_ == Nonlinearity::values) {
+      if constexpr (d == 1 && distinct.count == 1) evaluate_value(rows, out[0], packs);
+      else evaluate_values(rows, out, packs);
+    }
     if (nonlinearity_ == Nonlinearity::all) evaluate_all(rows, out, packs);
   }
 
@@ -180,14 +183,20 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     if constexpr (is_nodal(map)) return explicit_loop<reach>(lagrangian_.density, rows, packs);
     else return 0;
   }
+  void explicit_residual(const ExplicitRows& rows, LargestTerms* terms) const override {
+    if constexpr (is_nodal(map)) explicit_residual_loop<reach>(lagrangian_.density, rows, terms);
+  }
 
  private:
   static constexpr int stride = map.shape.placement == Placement::every_site ? 1 : 2;
-  MixtureSlope<D> slope(const ArgumentRow& row) const {
+  /// At rows of arguments, or of values.
+  template <class Rows>
+  MixtureSlope<D> slope(const Rows& rows, double known_weight) const {
     constexpr auto& point = map.quadrature[distinct.representative[0]];
-    return {lagrangian_.density, row.known_weight, Pack(row.t + time_offset(map.shape, point) * row.time_step),
-            row.positions, space_offset(map.shape, point) * row.space_step};
+    return {lagrangian_.density, known_weight, Pack(rows.t + time_offset(map.shape, point) * rows.time_step),
+            rows.positions, space_offset(map.shape, point) * rows.space_step};
   }
+  MixtureSlope<D> slope(const ArgumentRow& row) const { return slope(row, row.known_weight); }
   /// ℓ(φ, 0, 0)
   struct ValuesOnly {
     static constexpr int components = d;
@@ -249,6 +258,24 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
       jet.t = Number(rows.t + time_offset(map.shape, map.point(q)) * rows.time_step);
       jet.x = Number(Pack::load(rows.positions + at) + space_offset(map.shape, map.point(q)) * rows.space_step);
     }
+  }
+
+  /// out = ∂ℓ/∂φ at the one value of φ that a stencil sees
+  [[gnu::flatten]] void evaluate_value(const SlabRows& given, double* out, const PackRange& packs) const {
+    const LocalRows rows(given);
+    const MixtureSlope<D> output = slope(given, 0);
+    const FetchAhead<stride> ahead(given);
+    constexpr auto& weights = map.quadrature[distinct.representative[0]].phi;
+    // A loop whose stride is known takes a tenth less.
+    find_ahead(
+        rows.at(packs.first), rows.at(packs.last), (stride == 1 ? 1 : packs.stride) * lanes,
+        [&](std::ptrdiff_t at) __attribute__((always_inline)) {
+          return weighted(weights, rows, 0, at, std::make_index_sequence<n>{});
+        },
+        [&](std::ptrdiff_t at, Pack phi) __attribute__((always_inline)) {
+          ahead.fetch(at);
+          output(phi, at).store(out + at);
+        });
   }
 
   /// out_c = ∂ℓ/∂φ at the distinct values of φ

@@ -86,6 +86,22 @@ TEST_CASE("the larger magnitude has no sign, and a NaN goes by") {
   }
 }
 
+TEST_CASE("the largest magnitude has no sign, and a NaN in either stays one") {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (int l = 0; l < lanes; ++l) {
+    for (double b : {-3.0, 3.0, -0.5, 0.5, -0.0, 0.0, -infinity, infinity, -1e-310, 2.0, -2.0}) {
+      CHECK(largest_magnitude(Pack(2.0), with(Pack(0.25), l, b))[l] == std::max(2.0, std::abs(b)));
+      CHECK_FALSE(std::signbit(largest_magnitude(Pack(0.0), with(Pack(0.25), l, b))[l]));
+    }
+    for (double sign : {1.0, -1.0}) {
+      const Pack nan = with(Pack(7.0), l, std::copysign(not_a_number, sign));
+      for (const Pack& m : {largest_magnitude(Pack(2.0), nan), largest_magnitude(abs(nan), Pack(9.0)),
+                            largest_magnitude(Pack(infinity), nan)})
+        for (int other = 0; other < lanes; ++other) CHECK(std::isnan(m[other]) == (other == l));
+    }
+  }
+}
+
 TEST_CASE("the maximum over lanes is found wherever it is") {
   for (int l = 0; l < lanes; ++l) {
     CHECK(max_or_nan(with(ramp(-1, -0.5), l, 3)) == 3);

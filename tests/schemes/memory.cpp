@@ -142,7 +142,7 @@ TEST_CASE("one loop takes its six rows and nothing more, with the residual too, 
   }
 }
 
-TEST_CASE("after the residual of one loop the newest two rows are held, and the next steps are what they were") {
+TEST_CASE("the residual of one loop leaves all rows where they are, and the next steps are what they were") {
   const Problem p = of_stencil(255, "triangle-vertex");
   Simulation asked(p), other(p);
   for (Simulation* s : {&asked, &other}) {
@@ -150,11 +150,9 @@ TEST_CASE("after the residual of one loop the newest two rows are held, and the 
     for (int n = 0; n < 5; ++n) s->step();
   }
   const Stepper &looked_at = asked.evolution().stepper(), &left = other.evolution().stepper();
-  CHECK(looked_at.row(2) == left.row(2));
   CHECK(asked.residual() == other.residual());
   CHECK(asked.residual() < 1e-14);  // again
-  for (int back : {0, 1}) CHECK(looked_at.row(back) == left.row(back));
-  CHECK_THROWS_AS(looked_at.row(2), std::logic_error);
+  for (int back : {0, 1, 2}) CHECK(looked_at.row(back) == left.row(back));
   Simulation unasked(p);
   start(unasked, p);
   for (int n = 0; n < 5; ++n) unasked.step();

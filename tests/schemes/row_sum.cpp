@@ -16,6 +16,7 @@ constexpr int N = 37, halo = 3, rows_given = 5;
 struct TestTerm {
   int row, shift;
   double coefficient;
+  int before = 0;  ///< of changes
 };
 
 /// Random rows on a circle, and sums over them by plain loops over the sites.
@@ -24,7 +25,7 @@ struct Sums {
   std::vector<Row> values;
   RowBuffer rows{layout, rows_given};
   std::vector<const double*> bases;
-  std::vector<TestTerm> differences, plain;
+  std::vector<TestTerm> differences, plain, changes;
   double constant = 0;
   Random random{5};
 
@@ -53,10 +54,19 @@ struct Sums {
     differences[1].row = differences[0].row;
     differences[0].shift = next_first ? 1 : -1, differences[1].shift = -differences[0].shift;
   }
+  /// Changes of one row at these shifts; or of any rows.
+  void choose_changes(const std::vector<int>& shifts, bool of_one_row = true) {
+    changes.clear();
+    const auto row = [&] { return static_cast<int>(random(0, rows_given - 0.001)); };
+    const int changed = row(), before = row() == changed ? (changed + 1) % rows_given : (changed + 2) % rows_given;
+    for (int shift : shifts)
+      changes.push_back({of_one_row ? changed : row(), shift, random(-2, 2), of_one_row ? before : row()});
+  }
   RowSum sum() const {
     RowSum result;
     for (const TestTerm& t : differences) result.add_difference(t.row, t.shift, t.coefficient);
     for (const TestTerm& t : plain) result.add(t.row, t.shift, t.coefficient);
+    for (const TestTerm& t : changes) result.add_change(t.row, t.before, t.shift, t.coefficient);
     result.add_constant(constant / 4);
     result.add_constant(3 * constant / 4);
     return result;
@@ -68,12 +78,15 @@ struct Sums {
     double total = constant;
     for (const TestTerm& t : differences) total += t.coefficient * (at(t.row, i + t.shift) - at(t.row, i));
     for (const TestTerm& t : plain) total += t.coefficient * at(t.row, i + t.shift);
+    for (const TestTerm& t : changes) total += t.coefficient * (at(t.row, i + t.shift) - at(t.before, i + t.shift));
     return total;
   }
   double expected_absolute(int i) const {
     double total = 0;
     for (const TestTerm& t : differences) total += std::abs(t.coefficient * (at(t.row, i + t.shift) - at(t.row, i)));
     for (const TestTerm& t : plain) total += std::abs(t.coefficient * at(t.row, i + t.shift));
+    for (const TestTerm& t : changes)
+      total += std::abs(t.coefficient * (at(t.row, i + t.shift) - at(t.before, i + t.shift)));
     return total;
   }
 };
@@ -110,20 +123,28 @@ constexpr double rounding = 2e-15 * 14;  // so many terms of size 4
 
 constexpr int next_first = 5, last_first = 6;  // two differences, to both sides
 
+/// Shifts of changes: those that are compiled, in any order, and others.
+const std::vector<std::vector<int>> shifts_of_changes{{},         {0},     {1},       {-1, 0, 1},
+                                                      {1, -1, 0}, {0, 1},  {0, 0, 1}, {-2, 0, 2}};
+
 /// Random sums with every number of terms, over every range of packs.
 void for_each_sum(const auto& check) {
   Sums sums;
   for (int differences : {0, 1, 2, 3, 4, next_first, last_first})
-    for (int plain = 0; plain <= 9; ++plain) {
-      if (differences > 4) sums.choose_both_sides(differences == next_first, plain);
-      else sums.choose(differences, plain);
-      RowSum sum = sums.sum();
-      sum.bind(sums.bases.data());
-      for (const PackRange range : ranges(sums.layout)) {
-        CAPTURE(differences, plain, range.first, range.last);
-        check(sums, sum, range);
-      }
-    }
+    for (int plain = 0; plain <= 9; ++plain)
+      for (const auto& shifts : shifts_of_changes)
+        for (const bool of_one_row : {true, false}) {
+          if (shifts.size() < 2 && !of_one_row) continue;
+          if (differences > 4) sums.choose_both_sides(differences == next_first, plain);
+          else sums.choose(differences, plain);
+          sums.choose_changes(shifts, of_one_row);
+          RowSum sum = sums.sum();
+          sum.bind(sums.bases.data());
+          for (const PackRange range : ranges(sums.layout)) {
+            CAPTURE(differences, plain, shifts, of_one_row, range.first, range.last);
+            check(sums, sum, range);
+          }
+        }
 }
 
 }  // namespace
@@ -197,6 +218,10 @@ TEST_CASE("two sums that take turns give each pack its own, whichever comes firs
         } else {
           one.choose(differences, plain), other.choose(differences, plain + more);
         }
+        // Those of the unknown row, as bricks have them.
+        one.choose_changes(more ? std::vector<int>{} : std::vector<int>{0});
+        other.changes = one.changes;
+        for (TestTerm& t : other.changes) t.coefficient = other.random(-2, 2);
         other.values = one.values;
         RowSum even = one.sum(), odd = other.sum();
         even.bind(one.bases.data()), odd.bind(one.bases.data());
@@ -235,9 +260,10 @@ TEST_CASE("a scaled sum is scaled with its constant, and rows may be bound anew"
   Sums sums;
   for (int differences : {0, 2, 3}) {
     sums.choose(differences, 3);
+    sums.choose_changes({0, 1});
     RowSum sum = sums.sum();
     sum.scale(-2.5);
-    for (auto* terms : {&sums.differences, &sums.plain})
+    for (auto* terms : {&sums.differences, &sums.plain, &sums.changes})
       for (TestTerm& t : *terms) t.coefficient *= -2.5;
     sums.constant *= -2.5;
     sum.bind(sums.bases.data());

@@ -70,7 +70,7 @@ class Unplaced final : public FieldTheory {
   std::shared_ptr<const StencilFamily> constraint() const override { return {}; }
   std::vector<LinearSymmetry> symmetries() const override { return {}; }
   std::shared_ptr<const StencilFamily> comparator(const std::string&, double, double) const override { return {}; }
-  EnergyMomentum energy_momentum(const SlabRows& rows, const double* weights) const override {
+  EnergyMomentum energy_momentum(const SlabRows& rows, const CellWeights& weights) const override {
     return theory_.energy_momentum(rows, weights);
   }
 

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+
+#include "jets/pack.hpp"
+
+namespace delf {
+
+/// How well a row of equations is solved: max |E| and max Σ |terms|, pack by pack; a NaN stays one.
+struct LargestTerms {
+  Pack sum = 0.0, absolute = 0.0;
+
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t, Pack s, Pack a) {
+    sum = largest_magnitude(sum, s);
+    absolute = largest_magnitude(absolute, a);
+  }
+};
+
+}  // namespace delf

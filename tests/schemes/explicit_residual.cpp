@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/scheme.hpp"
+#include "schemes/theories/sine_gordon.hpp"
+#include "tests/catch.hpp"
+#include "tests/schemes/support.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+constexpr double k = 0.1, h = 0.05;
+
+/// Two fields, the second four times as heavy: equations of different sizes.
+struct Uneven {
+  static constexpr int components = 2;
+  auto operator()(const auto& j) const {
+    return 0.5 * (j.phi_t[0] * j.phi_t[0] - j.phi_x[0] * j.phi_x[0]) +
+           2.0 * (j.phi_t[1] * j.phi_t[1] - j.phi_x[1] * j.phi_x[1]) + cos(j.phi[0] + j.phi[1]);
+  }
+};
+
+/// The vertex scheme with masses m_a and slopes s_a of the potential, by hand:
+///     E_a = m_a ((h/k)² (y_{i+1} − 2y_i + y_{i−1}) − (v_{j+1} − v_j)) − h² s_a,        max |E| / max Σ |terms|
+double by_hand(const std::vector<double>& mass, const auto& slope, const Row& y, const Row& v, const Row& v_before) {
+  const int d = static_cast<int>(mass.size()), N = static_cast<int>(y.size()) / d;
+  double worst = 0, size = 0;
+  for (int i = 0; i < N; ++i)
+    for (int a = 0; a < d; ++a) {
+      const auto at = [&](int site) { return static_cast<std::size_t>((site + N) % N * d + a); };
+      const double m = mass[static_cast<std::size_t>(a)], courant = h * h / (k * k), s = h * h * slope(i, a);
+      const double after = m * courant * (y[at(i + 1)] - y[at(i)]), before = m * courant * (y[at(i - 1)] - y[at(i)]),
+                   w = m * (v[at(i)] - v_before[at(i)]);
+      worst = std::max(worst, std::abs(after + before - s - w));
+      size = std::max(size, std::abs(after) + std::abs(before) + std::abs(s) + std::abs(w));
+    }
+  return worst / size;
+}
+
+Row difference(const Row& a, const Row& b) {
+  Row result = a;
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] -= b[i];
+  return result;
+}
+
+/// Adds to the newest increment at one site, and to all copies of it.
+void plant(const Stepper& stepper, int site, int a, double error) {
+  double* const v = const_cast<double*>(stepper.newest_increment(a));
+  for (int slot : stepper.layout()->slots_of(site)) v[slot] += error;
+}
+
+/// A planted error of the newest increment, as residual() sees it and by hand: at sites and components of all kinds.
+template <class D>
+void compare(const D& density, const std::vector<double>& mass, const auto& slope_at) {
+  const int d = components_of<D>();
+  Random random(90);
+  for (const int N : {3, 8, 9, 17, 37, 200})
+    for (const int site : {0, N / 2, N - 1})
+      for (int a = 0; a < d; ++a) {
+        CAPTURE(N, site, a);
+        Evolution evolution = Scheme{triangle_vertex, density}.on(Lattice::circle(N, N * k), h);
+        Stepper& stepper = evolution.stepper();
+        stepper.start(random_rows(random, 2, d * N, 1));
+        for (int n = 0; n < 3; ++n) stepper.step();
+        CHECK(stepper.residual() < 4e-15);
+        const Row y = stepper.row(1), v_before = difference(y, stepper.row(2));
+        Row v = difference(stepper.row(0), y);
+        plant(stepper, site, a, 1e-3);
+        v[static_cast<std::size_t>(site * d + a)] += 1e-3;
+        const auto slope = [&](int i, int b) { return slope_at(&y[static_cast<std::size_t>(i * d)], b); };
+        const double found = stepper.residual(), expected = by_hand(mass, slope, y, v, v_before);
+        CHECK(found > 1e-6);
+        CHECK(std::abs(found - expected) < 1e-9 * expected);
+        plant(stepper, site, a, std::numeric_limits<double>::quiet_NaN());
+        CHECK(std::isnan(stepper.residual()));
+      }
+}
+
+}  // namespace
+
+TEST_CASE("the residual of an explicit step is the scheme's by hand, wherever an error is planted") {
+  compare(SineGordon{1.3}, {1}, [](const double* y, int) { return 1.69 * std::sin(y[0]); });
+}
+
+TEST_CASE("and of two components whose equations are of different size") {
+  compare(Uneven{}, {1, 4}, [](const double* y, int) { return std::sin(y[0] + y[1]); });
+}
