@@ -255,7 +255,7 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
 
   const auto stream = solver_[0]->stream(layout_, right_side(0), increments_[0]);
   const PackRange last = stream->last_packs();
-  const int window = window_packs(last), strip = strip_packs(last);
+  const int window = window_packs(last);
   const auto hold_candidate = [&](int first, int kept_until) {
     if (find) candidate_.hold_window(window, first, kept_until);
   };
@@ -292,7 +292,7 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   int found = halo, evaluated = read.first, kept = read.first, summed = 0, done = 0, changed = 0;
   double change = 0;
   for (int end = 0; end < packs;) {
-    end = packs - end < 2 * strip ? packs : end + strip;
+    end = packs - end < 2 * strip_packs ? packs : end + strip_packs;
     const bool all = end == packs;
     hold_candidate(std::max(-halo, changed - 2 * halo), found);
     if (find) find({found, all ? packs + halo : end + halo});

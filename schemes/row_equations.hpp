@@ -139,11 +139,11 @@ class RowEquations {
   void measure_loop(LargestTerms*);  ///< one for each component, times right_side_scale()
   /// Of a stream, without the candidate's.
   std::size_t window_bytes() const;
-  /// Packs of a strip: long against what solving overlaps; ten rows of it fit into the second level of the cache.
-  static int strip_packs(PackRange last) { return std::clamp(6 * (last.last - last.first), 512, 1024); }
+  /// Packs of a strip: ten rows of it fit into the second level of the cache.
+  static constexpr int strip_packs = 1024;
   /// That windows need room for where a stream goes by strips.
   int window_packs(PackRange last) const {
-    return last.last - last.first + 2 * strip_packs(last) + 8 * layout_.halo();
+    return last.last - last.first + 2 * strip_packs + 8 * layout_.halo();
   }
   std::size_t edge_doubles(int parts) const {
     return parts == 1 ? 0 : static_cast<std::size_t>(2 * parts * d_ * loop_reach_ * lanes);

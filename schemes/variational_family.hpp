@@ -180,7 +180,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     else return {};
   }
   double explicit_step(const ExplicitRows& rows, const PackRange& packs) const override {
-    if constexpr (is_nodal(map)) return explicit_loop<reach>(lagrangian_.density, rows, packs);
+    if constexpr (is_nodal(map)) return explicit_loop_for<reach>(lagrangian_.density, rows, packs);
     else return 0;
   }
   void explicit_residual(const ExplicitRows& rows, LargestTerms* terms) const override {
