@@ -133,11 +133,15 @@ PackRange RowEquations::where_read(const Outputs& o) const {
   return {o.lowest, layout_.packs() + o.highest};
 }
 
+SlabRows RowEquations::slab_of(const double* const* values, std::int64_t row) const {
+  return {&layout_, values, positions_.rows() ? positions_.row(0) : nullptr, static_cast<double>(row) * time_step_,
+          time_step_, space_step_};
+}
+
 /// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others.
 void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& given,
                             const RowsAhead& ahead) {
   const PackRange packs = packs_of(o, age, given);
-  const std::int64_t anchor_row = n_ + age;
   y_slots_.at(rows_.place(n_));
   const int newest = o.reads_unknown_row(age) ? 1 : 0;
   for (int t = o.first_time; t <= o.last_time; ++t)
@@ -147,9 +151,9 @@ void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At wh
           row == 1 && which == At::candidate ? candidate_.row(a)
                                              : rows_.y_at(y_slots_(-row), a);
     }
-  o.kernel->evaluate({&layout_, slab_rows_.data(), positions_.rows() ? positions_.row(0) : nullptr,
-                      static_cast<double>(anchor_row) * time_step_, time_step_, space_step_, ahead},
-                     out, packs);
+  SlabRows slab = slab_of(slab_rows_.data(), n_ + age);
+  slab.ahead = ahead;
+  o.kernel->evaluate(slab, out, packs);
   if (turn_ != 0)
     for (int c = 0; c < o.kernel->outputs(); ++c) layout_.fill_halo(out[c]);
 }

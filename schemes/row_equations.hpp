@@ -183,7 +183,8 @@ class RowEquations {
   Advance advanced(RowChange);
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
-  SlabRows loop_slab(const double* const* now) const;
+  /// Rows of stencils anchored at this row.
+  SlabRows slab_of(const double* const* values, std::int64_t row) const;
   const RowSum& right_side(int a) const { return *right_sides_[static_cast<std::size_t>(a)]; }
   /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
   double* stored_right_side(int a) { return bases_[static_cast<std::size_t>(E_base_ + a)]; }

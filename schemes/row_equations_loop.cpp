@@ -92,13 +92,8 @@ double RowEquations::loop(int part, int parts) const {
     after[a] = edge(part, parts, 1, a);
   }
   return one_loop_->explicit_step(
-      {loop_slab(now), before, after, v_before, v, y, loop_linear_.data(), loop_nonlinear_.data()},
+      {slab_of(now, n_), before, after, v_before, v, y, loop_linear_.data(), loop_nonlinear_.data()},
       {first_of_part(part, parts), first_of_part(part + 1, parts)});
-}
-
-SlabRows RowEquations::loop_slab(const double* const* now) const {
-  return {&layout_, now, positions_.rows() ? positions_.row(0) : nullptr, static_cast<double>(n_) * time_step_,
-          time_step_, space_step_};
 }
 
 void RowEquations::measure_loop(LargestTerms* terms) {
@@ -107,7 +102,7 @@ void RowEquations::measure_loop(LargestTerms* terms) {
   double* v[most];
   for (int a = 0; a < d_; ++a) now[a] = rows_.y(n_, a), v_before[a] = rows_.v(n_, a), v[a] = rows_.v(n_ + 1, a);
   one_loop_->explicit_residual(
-      {loop_slab(now), nullptr, nullptr, v_before, v, nullptr, loop_linear_.data(), loop_nonlinear_.data()}, terms);
+      {slab_of(now, n_), nullptr, nullptr, v_before, v, nullptr, loop_linear_.data(), loop_nonlinear_.data()}, terms);
 }
 
 void RowEquations::close_loop() {

@@ -79,9 +79,12 @@ class RowSum {
     return changes_.empty() || (changes_.size() == 1 && is_there(0)) ||
            (changes_.size() == 3 && is_there(-1) && is_there(0) && is_there(1));
   }
+  /// The other sum has as many terms of each kind, its differences and changes of the same rows and at the same sites.
   bool are_like(const RowSum& other) const {
-    return plain_.size() == other.plain_.size() && changes_.size() == other.changes_.size() && are_to_both_sides() && other.are_to_both_sides() &&
-           differences_[0].row == other.differences_[0].row;
+    return plain_.size() == other.plain_.size() && are_to_both_sides() && other.are_to_both_sides() &&
+           differences_[0].row == other.differences_[0].row && changes_.size() == other.changes_.size() &&
+           other.are_around_site() &&
+           (changes_.empty() || (changes_[0].row == other.changes_[0].row && changes_[0].from == other.changes_[0].from));
   }
   /// The terms of a counted pass, as a pass keeps them.
   template <int differences, int plain, int changes>
@@ -89,6 +92,8 @@ class RowSum {
   // Inlined where they are used: what `consume` carries would else be copied through memory.
   template <bool measured, class Consume>
   [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
+  template <bool measured, int changes, class Consume>
+  [[gnu::always_inline]] bool dispatch_counted(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, bool in_turn, int differences, int plain, int changes, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, bool in_turn, int differences, int most, int changes, class Consume>
@@ -211,36 +216,29 @@ inline void RowSum::counted(const RowLayout& layout, PackRange packs, Consume& c
   }
   (std::make_integer_sequence<int, most + 1>{});
 }
+/// False where the terms are not of the kinds that are compiled: nothing has been done then.
+template <bool measured, int changes, class Consume>
+inline bool RowSum::dispatch_counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
+  const int count = static_cast<int>(plain_.size());
+  if (other_) {
+    if (count > most_in_turn || !are_like(*other_)) return false;
+    counted<measured, true, 2, most_in_turn, changes>(layout, packs, consume);
+    return true;
+  }
+  if (count > most_plain || !(differences_.empty() || are_to_both_sides())) return false;
+  if (differences_.empty()) counted<measured, false, 0, most_plain, changes>(layout, packs, consume);
+  else counted<measured, false, 2, most_plain, changes>(layout, packs, consume);
+  return true;
+}
 template <bool measured, class Consume>
 inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  const int count = static_cast<int>(plain_.size());
-  const auto choose = [&]<int differences, int changes>() __attribute__((always_inline)) {
-    if (other_) {
-      if constexpr (differences == 2) {
-        if (count > most_in_turn || !are_like(*other_)) return false;
-        counted<measured, true, 2, most_in_turn, changes>(layout, packs, consume);
-        return true;
-      }
-      return false;
-    }
-    if (count > most_plain || !(differences == 0 ? differences_.empty() : are_to_both_sides())) return false;
-    counted<measured, false, differences, most_plain, changes>(layout, packs, consume);
-    return true;
-  };
-  bool done = changes_.empty() && choose.template operator()<0, 0>();
-  // Changes are the unknown row's, which are measured, and not asked for by steps.
-  if constexpr (measured) {
-    const auto choose_changes = [&]<int differences>() __attribute__((always_inline)) {
-      return changes_.size() == 1 ? choose.template operator()<differences, 1>()
-                                  : changes_.size() == 3 && choose.template operator()<differences, 3>();
-    };
-    if (!done && are_around_site())
-      done = choose_changes.template operator()<0>() || choose_changes.template operator()<2>();
-  } else {
-    done = done || (changes_.empty() && choose.template operator()<2, 0>());
-  }
-  if (done) return;
-  general_pass<measured>(layout, packs, consume);
+  bool done = false;
+  if (changes_.empty()) done = dispatch_counted<measured, 0>(layout, packs, consume);
+  if constexpr (measured)  // changes are the unknown row's, which steps do not ask for
+    if (!changes_.empty() && are_around_site())
+      done = changes_.size() == 1 ? dispatch_counted<measured, 1>(layout, packs, consume)
+                                  : dispatch_counted<measured, 3>(layout, packs, consume);
+  if (!done) general_pass<measured>(layout, packs, consume);
 }
 
 template <class Consume>

@@ -90,14 +90,13 @@ double difference_of_ways(const D& density, int N, double wrong = 0) {
     values.push_back(rows.row(r));
   }
   Row x;
-  for (int i = 0; i < N; ++i) x.push_back(ring.position(i));
-  for (int i = 0; i < N; ++i) marks.row(0)[layout.slot(i)] = 1;
+  for (int i = 0; i < N; ++i) x.push_back(ring.position(i)), marks.row(0)[layout.slot(i)] = 1;
   layout.scatter(x, marks.row(1));
   const SlabRows slab{&layout, values.data(), marks.row(1), 0.7, 0.05, ring.space_step()};
   auto form = wave_form(density);
   REQUIRE(form);
   form->tension[0] += wrong;
-  // N is owned by all lanes alike in the first packs, and in those of the shortest arc.
+  // Arcs overlap in their last packs: before these every slot is counted.
   const CellWeights weights{marks.row(0), N / lanes > 2 ? N / lanes - 2 : 0};
   const EnergyMomentum plain = energy_momentum(density, *form, slab, weights),
                        differentiated = energy_momentum(density, slab, weights);

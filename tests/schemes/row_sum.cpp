@@ -242,6 +242,31 @@ TEST_CASE("two sums that take turns give each pack its own, whichever comes firs
   CHECK(compiled == 8);
 }
 
+TEST_CASE("sums that take turns may have changes of other rows, or at other sites") {
+  Sums one, other;
+  for (const std::vector<int>& shifts : {std::vector<int>{0}, {2}, {-1, 0, 1}, {0, 1, 2}}) {
+    one.choose_both_sides(true, 2), other.choose_both_sides(true, 2);
+    for (TestTerm& t : other.differences) t.row = one.differences[0].row;
+    one.choose_changes(shifts.size() == 1 ? std::vector<int>{0} : std::vector<int>{-1, 0, 1});
+    other.choose_changes(shifts);
+    for (TestTerm& t : one.changes) t.row = 0, t.before = 1;
+    for (TestTerm& t : other.changes) t.row = 2, t.before = 3;
+    other.values = one.values;
+    RowSum even = one.sum(), odd = other.sum();
+    even.bind(one.bases.data()), odd.bind(one.bases.data());
+    even.take_turns_with(odd, 0);
+    Collect seen[2] = {{one, one.layout.all()}, {other, one.layout.all()}};
+    int next = 0;
+    even.measure(one.layout, one.layout.all(), [&](std::ptrdiff_t at, Pack sum, Pack) {
+      Collect& mine = seen[next % 2];
+      mine.next = next++;
+      mine(at, sum);
+    });
+    CAPTURE(shifts);
+    for (const Collect& mine : seen) CHECK(mine.worst < rounding);
+  }
+}
+
 TEST_CASE("measure gives the sum and the sum of absolute values") {
   for_each_sum([](const Sums& sums, const RowSum& sum, PackRange range) {
     Collect seen(sums, range), sizes(sums, range);
