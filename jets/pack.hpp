@@ -122,12 +122,6 @@ inline Pack largest_magnitude(Pack a, Pack b) {
   return max_or_nan(abs(b), a);
 #endif
 }
-inline double sum(Pack a) {
-  double s = 0;
-  for (int l = 0; l < lanes; ++l) s += a[l];
-  return s;
-}
-
 namespace detail {
 template <int by, int... l>
 inline Pack rotated(Pack a, std::integer_sequence<int, l...>) {
@@ -137,6 +131,13 @@ inline Pack rotated(Pack a, std::integer_sequence<int, l...>) {
 /// Lane l of what lane l + 1, or l − 1, was; round the end.
 inline Pack from_lane_above(Pack a) { return detail::rotated<1>(a, std::make_integer_sequence<int, lanes>()); }
 inline Pack from_lane_below(Pack a) { return detail::rotated<lanes - 1>(a, std::make_integer_sequence<int, lanes>()); }
+/// Of all lanes, by halves: what waits for it waits for log₂ lanes additions.
+inline double sum(Pack a) {
+  constexpr auto all = std::make_integer_sequence<int, lanes>();
+  if constexpr (lanes > 4) a += detail::rotated<4>(a, all);
+  if constexpr (lanes > 2) a += detail::rotated<2>(a, all);
+  return (a + detail::rotated<1>(a, all))[0];
+}
 inline double max_or_nan(Pack a) {
   constexpr auto all = std::make_integer_sequence<int, lanes>();
   if (detail::any_above(a, std::numeric_limits<double>::infinity())) [[unlikely]]

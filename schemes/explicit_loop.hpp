@@ -25,10 +25,11 @@ inline constexpr auto neighbours_within = [] {
 ///     w = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)),    v += w,    y += stride v
 ///
 /// over the neighbours s within `reach`. What they were is carried along in registers, so that the new row may be
-/// written over the old one. Returns √Σy² of the new values: infinite or NaN where squares overflow.
+/// written over the old one. Returns Σy² of the new values: infinite or NaN where squares overflow.
 ///
 /// `even`: stride is 1, and so far as one neighbour on either side is concerned linear(−1) = linear(1): a tenth less.
-template <int reach, bool even, Density D>
+/// `kept`: the slopes ∂ℓ/∂φ are.
+template <int reach, bool even, bool kept, Density D>
 [[gnu::flatten]] double explicit_loop(const D& given_density, const ExplicitRows& given, const PackRange& given_packs) {
   const PackRange packs = given_packs;
   constexpr int d = components_of<D>(), count = 2 * reach;
@@ -39,13 +40,14 @@ template <int reach, bool even, Density D>
   const Pack t(given.now.t);
   const std::ptrdiff_t origin = given.now.layout->at(0);
   std::array<const double*, d> now, v_before;
-  std::array<double*, d> v_new, y_new;
+  std::array<double*, d> v_new, y_new, slopes;
   std::array<double, static_cast<std::size_t>(d * count)> linear;
   std::array<double, d> nonlinear;
   for (int a = 0; a < d; ++a) {
     now[a] = given.now.values[a], v_before[a] = given.v_before[a];
     v_new[a] = given.v[a], y_new[a] = given.y[a];
     nonlinear[a] = given.nonlinear[a];
+    if constexpr (kept) slopes[a] = given.slopes[a];
     for (int s = 0; s < count; ++s) linear[a * count + s] = given.linear[a * count + s];
   }
   // Where the old value of a pack at or after the first one is, be it beyond the last.
@@ -63,11 +65,8 @@ template <int reach, bool even, Density D>
   Pack squares(0.0);
   // Of this pack, or of the next one.
   const auto slope = [&](int beside, std::ptrdiff_t at) __attribute__((always_inline)) {
-    const auto value = [&](int a) __attribute__((always_inline)) {
-      if constexpr (reach == 0) return Pack::load(now[a] + at);
-      else return y[a][reach + beside];
-    };
-    return density(value_jet<D>(value, t, positions + at)).d;
+    return density(value_jet<D>([&](int a) __attribute__((always_inline)) { return y[a][reach + beside]; }, t,
+                                positions + at)).d;
   };
   const auto take = [&](const auto& incoming) __attribute__((always_inline)) {
     for (int a = 0; a < d; ++a) {
@@ -78,6 +77,7 @@ template <int reach, bool even, Density D>
   const auto advance = [&](std::ptrdiff_t at, const std::array<Pack, d>& here_slope) __attribute__((always_inline)) {
     for (int a = 0; a < d; ++a) {
       const Pack here = y[a][reach];
+      if constexpr (kept) here_slope[a].store(slopes[a] + at);
       Pack w = nonlinear[a] * here_slope[a];
       if constexpr (reach == 1) {
         const Pack next = y[a][2] - here;
@@ -104,20 +104,18 @@ template <int reach, bool even, Density D>
   std::ptrdiff_t at = origin + static_cast<std::ptrdiff_t>(v) * lanes;
   take([&](int a) { return old_value(a, v + reach); });
   std::array<Pack, d> here = slope(0, at);
-  for (; v + 1 + reach < packs.last; ++v, at += lanes) {
-    const std::array<Pack, d> next = slope(1, at + lanes);
-    advance(at, here);
-    here = next;
-    take([&](int a) { return now[a] + at + (1 + reach) * lanes; });
-  }
-  for (; v + 1 < packs.last; ++v, at += lanes) {
-    const std::array<Pack, d> next = slope(1, at + lanes);
-    advance(at, here);
-    here = next;
-    take([&](int a) { return old_value(a, v + 1 + reach); });
-  }
+  const auto go_until = [&](int end, const auto& incoming) __attribute__((always_inline)) {
+    for (; v < end; ++v, at += lanes) {
+      const std::array<Pack, d> next = slope(1, at + lanes);
+      advance(at, here);
+      here = next;
+      take(incoming);
+    }
+  };
+  go_until(packs.last - 1 - reach, [&](int a) { return now[a] + at + (1 + reach) * lanes; });
+  go_until(packs.last - 1, [&](int a) { return old_value(a, v + 1 + reach); });
   advance(at, here);
-  return std::sqrt(sum(squares));
+  return sum(squares);
 }
 
 /// The loop that the coefficients allow.
@@ -125,72 +123,26 @@ template <int reach, Density D>
 double explicit_loop_for(const D& density, const ExplicitRows& rows, const PackRange& packs) {
   bool even = rows.stride == 1;
   for (int a = 0; a < components_of<D>() && reach == 1; ++a) even = even && rows.linear[2 * a] == rows.linear[2 * a + 1];
-  return even ? explicit_loop<reach, true>(density, rows, packs) : explicit_loop<reach, false>(density, rows, packs);
+  if (rows.slopes)
+    return even ? explicit_loop<reach, true, true>(density, rows, packs)
+                : explicit_loop<reach, false, true>(density, rows, packs);
+  return even ? explicit_loop<reach, true, false>(density, rows, packs)
+              : explicit_loop<reach, false, false>(density, rows, packs);
 }
 
-/// What is left of the same equation,
-///
-///     E = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)) − (v − v_before)(i)
-template <int reach, Density D>
-[[gnu::flatten]] void explicit_residual_loop(const D& given_density, const ExplicitRows& given, LargestTerms* terms) {
-  constexpr int d = components_of<D>(), count = 2 * reach;
-  // Copies of this function alone, which stay in registers.
+/// The slopes ∂ℓ/∂φ(y(i)) of such a step alone.
+template <Density D>
+[[gnu::flatten]] void slope_loop(const D& given_density, const SlabRows& now, double* const* slopes,
+                                 const PackRange& packs) {
+  constexpr int d = components_of<D>();
   const D density = given_density;
-  const double* const positions = given.now.positions;
-  const Pack t(given.now.t);
-  std::array<const double*, d> now, v_before, v;
-  std::array<double, static_cast<std::size_t>(d * count)> linear;
-  std::array<double, d> nonlinear;
-  for (int a = 0; a < d; ++a) {
-    now[a] = given.now.values[a], v_before[a] = given.v_before[a], v[a] = given.v[a];
-    nonlinear[a] = given.nonlinear[a];
-    for (int s = 0; s < count; ++s) linear[a * count + s] = given.linear[a * count + s];
+  const Pack t(now.t);
+  for (int v = packs.first; v < packs.last; ++v) {
+    const std::ptrdiff_t at = now.layout->at(v);
+    const auto l =
+        density(value_jet<D>([&](int a) { return Pack::load(now.values[a] + at); }, t, now.positions + at));
+    for (int a = 0; a < d; ++a) l.derivative(a).store(slopes[a] + at);
   }
-  std::array<LargestTerms, d> largest;
-  const auto slope = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
-    return density(
-        value_jet<D>([&](int a) __attribute__((always_inline)) { return Pack::load(now[a] + at); }, t, positions + at)).d;
-  };
-  std::ptrdiff_t at = given.now.layout->at(0);
-  const std::ptrdiff_t last = given.now.layout->at(given.now.layout->packs() - 1);
-  // y(i) − y(i − 1), and its size, where neighbours reach no further: the pack before has worked it out.
-  struct Difference {
-    Pack value, size;
-  };
-  const auto difference = [&](int a, std::ptrdiff_t to, std::ptrdiff_t from) __attribute__((always_inline)) {
-    const Pack value = Pack::load(now[a] + to) - Pack::load(now[a] + from);
-    return Difference{value, abs(value)};
-  };
-  std::array<Difference, d> before;
-  for (int a = 0; a < d; ++a) before[a] = difference(a, at, at - lanes);
-  // Slopes are evaluated one pack ahead: what waits for them would keep the next ones waiting.
-  auto here = slope(at);
-  for (; at <= last; at += lanes) {
-    const auto next = slope(std::min(at + lanes, last));
-    for (int a = 0; a < d; ++a) {
-      const Pack w = Pack::load(v[a] + at) - Pack::load(v_before[a] + at);
-      Pack E = -w, size = abs(w);
-      const auto add = [&](double coefficient, const Difference& term) __attribute__((always_inline)) {
-        E += coefficient * term.value;
-        size += std::abs(coefficient) * term.size;
-      };
-      if constexpr (reach == 1) {
-        const Difference after = difference(a, at + lanes, at);
-        add(-linear[a * count], before[a]);
-        add(linear[a * count + 1], after);
-        before[a] = after;
-      } else {
-        for (int s = 0; s < count; ++s)
-          add(linear[a * count + s],
-              difference(a, at + neighbours_within<reach>[static_cast<std::size_t>(s)] * lanes, at));
-      }
-      const Pack slope_here = here[static_cast<std::size_t>(a)];
-      add(nonlinear[a], {slope_here, abs(slope_here)});
-      largest[a](at, E, size);
-    }
-    here = next;
-  }
-  for (int a = 0; a < d; ++a) terms[a] = largest[a];
 }
 
 }  // namespace delf

@@ -23,10 +23,10 @@ RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, S
       v_slots_(rows.increments_held()),
       candidate_(layout_, d_),
       work_window_(layout_) {
+  build_marks();
   build_solvers();
   build_loop();
   build_outputs();
-  build_marks();
   build_sums();
   if (mixture) build_arguments(*mixture, most_order);
   build_looks();
@@ -59,22 +59,31 @@ void RowEquations::find_rows() {
   const std::int64_t place = rows_.place(n_);
   if (places_.empty()) return find_bases(place);
   period_.at(place);
-  std::copy_n(places_.data() + static_cast<std::size_t>(period_(0)) * bases_.size(), bases_.size(), bases_.data());
+  bases_ = places_.data() + static_cast<std::size_t>(period_(0)) * own_bases_.size();
+  if (is_streamed_) take_own_bases();
+}
+
+/// Before outputs are sent elsewhere for once.
+void RowEquations::take_own_bases() {
+  if (bases_ == own_bases_.data()) return;
+  std::copy_n(bases_, own_bases_.size(), own_bases_.data());
+  bases_ = own_bases_.data();
 }
 
 void RowEquations::bind_sums() {
   bind(sums_);
-  for (RowSum& sum : stored_) sum.bind(bases_.data());
+  for (RowSum& sum : stored_) sum.bind(bases_);
 }
 /// Of bricks, those of the equations' row.
 void RowEquations::bind(std::vector<RowSum>& sums) {
-  for (RowSum& sum : sums) sum.bind(bases_.data());
+  for (RowSum& sum : sums) sum.bind(bases_);
   if (!bricks_) return;
   const int phase = (n_ + 1 - equations_.bulk[0].shift) % 2 != 0 ? 1 : 0;
   for (std::size_t first = 0; first < sums.size(); first += 2) sums[first].take_turns_with(sums[first + 1], phase);
 }
 
 void RowEquations::find_bases(std::int64_t place) {
+  bases_ = own_bases_.data();
   y_slots_.at(place);
   v_slots_.at(place);
   for (Outputs& o : outputs_) o.slots.at(place);
@@ -104,17 +113,19 @@ void RowEquations::build_places() {
   std::vector<double*> places;
   for (int n = 0; n < period; ++n) {
     begin(n);
-    places.insert(places.end(), bases_.begin(), bases_.end());
+    places.insert(places.end(), own_bases_.begin(), own_bases_.end());
   }
   places_ = std::move(places);
 }
 
 Pack RowEquations::close_new_row() {
-  const auto copy_overlaps = [&] {
-    for (const RowIncrement& rows : increments_) layout_.copy_overlaps(rows.v), layout_.copy_overlaps(rows.y);
+  const bool halos_first = layout_.halos_come_first();
+  const auto copy_overlaps = [&](const RowIncrement& rows) {
+    layout_.copy_overlaps(rows.v);
+    layout_.copy_overlaps(rows.y);
   };
-  if (!layout_.halos_come_first()) copy_overlaps();
   for (const RowIncrement& rows : increments_) {
+    if (!halos_first) copy_overlaps(rows);
     if (increments_have_halos_) layout_.fill_halo(rows.v);
     layout_.fill_halo(rows.y, turn_);
   }
@@ -123,7 +134,7 @@ Pack RowEquations::close_new_row() {
     const RowIncrement& rows = increments_[0];
     change = arguments_->find(rows.y, {layout_.packs() + 1 - rows.look.parts, layout_.packs()});
   }
-  if (layout_.halos_come_first()) copy_overlaps();
+  if (halos_first) std::ranges::for_each(increments_, copy_overlaps);
   return change;
 }
 
@@ -274,7 +285,6 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
       const auto at = static_cast<std::size_t>(c);
       output(o, o.newest, c) = slab_out_[at] = hold(output_windows_[at], output_places_[at], first, kept_until);
     }
-    bind_sums();
   };
   const auto work = [&](int first, int kept_until) {
     return hold(work_window_, increments_[0].v, first, kept_until);

@@ -39,8 +39,8 @@ class RowEquations {
   /// old ones.
   void begin_loop(int parts, bool in_place);
   /// Rows have been set anew.
-  void forget_rows() { loop_row_ = -1; }
-  /// A part of the new row by that loop; returns its √Σy².
+  void forget_rows() { loop_row_ = residual_row_ = slopes_row_ = -1; }
+  /// A part of the new row by that loop; returns its Σy².
   double loop(int part, int parts) const;
   void close_loop();
 
@@ -122,12 +122,14 @@ class RowEquations {
   void build_marks();
   void build_sums();
   void build_loop();
+  void find_loop_rows(bool in_place);
   void build_arguments(const Mixture&, int most_order);
   void build_looks();
   void make_room_in_place();
   void build_places();
   void find_rows();
   void find_bases(std::int64_t place);
+  void take_own_bases();
   void bind_sums();
   std::size_t first_sum(int a) const { return static_cast<std::size_t>(bricks_ ? 2 * a : a); }
   void bind(std::vector<RowSum>& sums);
@@ -137,6 +139,7 @@ class RowEquations {
   int residual_rows() const;
   void measure_sums(LargestTerms&);
   void measure_loop(LargestTerms*);  ///< one for each component, times right_side_scale()
+  LargestTerms measure_loop(int a, const PackRange&, const double* slopes, LargestTerms) const;
   /// Of a stream, without the candidate's.
   std::size_t window_bytes() const;
   /// Packs of a strip: ten rows of it fit into the second level of the cache.
@@ -207,8 +210,9 @@ class RowEquations {
   bool in_place_ = false;
   RingSlots y_slots_, v_slots_;
   int ages_ = 1;
-  std::vector<double*> bases_;
-  std::vector<double*> places_;  ///< bases_ of one step after the other, until they are the first again
+  double** bases_ = nullptr;          ///< a line of places_, or own_bases_
+  std::vector<double*> own_bases_;    ///< what may be written to
+  std::vector<double*> places_;       ///< bases_ of one step after the other, until they are the first again
   RingSlots period_;
   int y_base_ = 0, v_base_ = 0, E_base_ = 0;
   int v_new_base_ = 0, y_known_base_ = 0;  ///< v_{n+1}; y of the mixture's known_row
@@ -239,9 +243,13 @@ class RowEquations {
   const RowKernel* one_loop_ = nullptr;
   std::vector<double> loop_linear_, loop_nonlinear_;
   int loop_reach_ = 0;
-  std::vector<const double*> loop_now_, loop_v_before_;
-  std::vector<double*> loop_y_, loop_v_;
+  std::vector<const double*> loop_now_, loop_before_, loop_after_, loop_v_before_;
+  std::vector<double*> loop_y_, loop_v_, loop_slopes_;
+  ExplicitRows loop_rows_{};    ///< these, for a loop in one part
   std::int64_t loop_row_ = -1;  ///< the row that loop_y_ is
+  bool loop_in_place_ = false;
+  std::int64_t residual_row_ = -1;  ///< n when residual() was last asked for
+  std::int64_t slopes_row_ = -1;    ///< the row whose slopes scratch_ holds, where that is at every step
   RowBuffer edges_;             ///< of the parts: what lies beside them, before it is written over
 };
 

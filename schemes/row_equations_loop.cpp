@@ -35,10 +35,16 @@ void RowEquations::build_loop() {
   loop_linear_ = std::move(linear);
   loop_nonlinear_ = std::move(nonlinear);
   loop_reach_ = std::ranges::max(neighbours);
-  loop_now_.resize(static_cast<std::size_t>(d_));
-  loop_v_before_.resize(static_cast<std::size_t>(d_));
-  loop_y_.resize(static_cast<std::size_t>(d_));
-  loop_v_.resize(static_cast<std::size_t>(d_));
+  for (auto* rows : {&loop_now_, &loop_before_, &loop_after_, &loop_v_before_}) rows->resize(static_cast<std::size_t>(d_));
+  for (auto* rows : {&loop_y_, &loop_v_}) rows->resize(static_cast<std::size_t>(d_));
+  loop_rows_ = {.now = slab_of(loop_now_.data(), 0),
+                .before = loop_before_.data(),
+                .after = loop_after_.data(),
+                .v_before = loop_v_before_.data(),
+                .v = loop_v_.data(),
+                .y = loop_y_.data(),
+                .linear = loop_linear_.data(),
+                .nonlinear = loop_nonlinear_.data()};
 }
 
 int RowEquations::first_of_part(int part, int parts) const {
@@ -55,18 +61,13 @@ const double* RowEquations::edge(int part, int parts, int side, int a) const {
 }
 
 void RowEquations::begin_loop(int parts, bool in_place) {
-  const bool known = loop_row_ == n_;
   if (in_place) rows_.overwrite_newest();
-  for (int c = 0; c < d_; ++c) {
-    const auto a = static_cast<std::size_t>(c);
-    // Where rows lie takes divisions to find: a step in place after another goes on where that one was.
-    if (known) loop_now_[a] = loop_y_[a], loop_v_before_[a] = loop_v_[a];
-    if (known && in_place) continue;
-    loop_y_[a] = rows_.y(n_ + 1, c), loop_v_[a] = rows_.v(n_ + 1, c);
-    if (known) continue;
-    loop_now_[a] = in_place ? loop_y_[a] : rows_.y(n_, c);
-    loop_v_before_[a] = in_place ? loop_v_[a] : rows_.v(n_, c);
-  }
+  loop_rows_.now.t = static_cast<double>(n_) * time_step_;
+  const bool keeps_slopes = !in_place && !loop_slopes_.empty();
+  loop_rows_.slopes = keeps_slopes ? loop_slopes_.data() : nullptr;
+  if (keeps_slopes) slopes_row_ = n_;
+  // Where rows lie takes divisions to find: a step in place after another goes on where that one was.
+  if (!in_place || !loop_in_place_ || loop_row_ != n_) find_loop_rows(in_place);
   loop_row_ = n_ + 1;
   if (parts == 1) return;
   if (edges_.bytes() < edge_doubles(parts) * sizeof(double)) edges_ = RowBuffer(edge_doubles(parts));
@@ -79,30 +80,103 @@ void RowEquations::begin_loop(int parts, bool in_place) {
     }
 }
 
-double RowEquations::loop(int part, int parts) const {
-  constexpr int most = RowKernel::most_components;
-  const double *now[most], *v_before[most], *before[most], *after[most];
-  double *v[most], *y[most];
-  for (int a = 0; a < d_; ++a) {
-    now[a] = loop_now_[static_cast<std::size_t>(a)];
-    v_before[a] = loop_v_before_[static_cast<std::size_t>(a)];
-    v[a] = loop_v_[static_cast<std::size_t>(a)];
-    y[a] = loop_y_[static_cast<std::size_t>(a)];
-    before[a] = edge(part, parts, 0, a);
-    after[a] = edge(part, parts, 1, a);
+void RowEquations::find_loop_rows(bool in_place) {
+  const bool known = loop_row_ == n_;
+  for (int c = 0; c < d_; ++c) {
+    const auto a = static_cast<std::size_t>(c);
+    if (known) loop_now_[a] = loop_y_[a], loop_v_before_[a] = loop_v_[a];
+    if (!known || !in_place) loop_y_[a] = rows_.y(n_ + 1, c), loop_v_[a] = rows_.v(n_ + 1, c);
+    if (!known) {
+      loop_now_[a] = in_place ? loop_y_[a] : rows_.y(n_, c);
+      loop_v_before_[a] = in_place ? loop_v_[a] : rows_.v(n_, c);
+    }
+    loop_before_[a] = edge(0, 1, 0, c), loop_after_[a] = edge(0, 1, 1, c);
   }
-  return one_loop_->explicit_step(
-      {slab_of(now, n_), before, after, v_before, v, y, loop_linear_.data(), loop_nonlinear_.data()},
-      {first_of_part(part, parts), first_of_part(part + 1, parts)});
+  loop_in_place_ = in_place;
 }
 
-void RowEquations::measure_loop(LargestTerms* terms) {
+double RowEquations::loop(int part, int parts) const {
+  if (parts == 1) return one_loop_->explicit_step(loop_rows_, layout_.all());
   constexpr int most = RowKernel::most_components;
-  const double *now[most], *v_before[most];
-  double* v[most];
-  for (int a = 0; a < d_; ++a) now[a] = rows_.y(n_, a), v_before[a] = rows_.v(n_, a), v[a] = rows_.v(n_ + 1, a);
-  one_loop_->explicit_residual(
-      {slab_of(now, n_), nullptr, nullptr, v_before, v, nullptr, loop_linear_.data(), loop_nonlinear_.data()}, terms);
+  const double *before[most], *after[most];
+  for (int a = 0; a < d_; ++a) before[a] = edge(part, parts, 0, a), after[a] = edge(part, parts, 1, a);
+  ExplicitRows rows = loop_rows_;
+  rows.before = before, rows.after = after;
+  return one_loop_->explicit_step(rows, {first_of_part(part, parts), first_of_part(part + 1, parts)});
+}
+
+/// Slopes that the step has not kept are found again, some packs at a time. They are kept by the next steps where this
+/// is asked for after every one: then it pays for the row that they take.
+void RowEquations::measure_loop(LargestTerms* terms) {
+  constexpr int most_packs = 32, most = RowKernel::most_components;
+  if (slopes_row_ == n_) {
+    for (int a = 0; a < d_; ++a) terms[a] = measure_loop(a, layout_.all(), loop_slopes_[static_cast<std::size_t>(a)], {});
+  } else {
+    alignas(Pack) double found[most][most_packs * lanes];
+    const double* now[most];
+    for (int a = 0; a < d_; ++a) now[a] = rows_.y(n_, a);
+    const SlabRows slab = slab_of(now, n_);
+    for (int first = 0; first < layout_.packs(); first += most_packs) {
+      const PackRange packs{first, std::min(first + most_packs, layout_.packs())};
+      double* slopes[most];
+      for (int a = 0; a < d_; ++a) slopes[a] = found[a] - layout_.at(first);
+      one_loop_->explicit_slopes(slab, slopes, packs);
+      for (int a = 0; a < d_; ++a) terms[a] = measure_loop(a, packs, slopes[a], terms[a]);
+    }
+    if (residual_row_ >= 0 && residual_row_ == n_ - 1 && loop_slopes_.empty()) {
+      scratch_ = RowBuffer(layout_, d_);
+      for (int a = 0; a < d_; ++a) loop_slopes_.push_back(scratch_.row(a));
+    }
+  }
+  residual_row_ = n_;
+}
+
+/// What is left of the step's equation, for the rows as they are,
+///
+///     E = Σ_s linear(s) (y(i + s) − y(i)) + nonlinear ∂ℓ/∂φ(y(i)) − (v_{n+1} − v_n)(i)
+LargestTerms RowEquations::measure_loop(int a, const PackRange& packs, const double* slopes,
+                                        LargestTerms largest) const {
+  const double *const y = rows_.y(n_, a), *const v_before = rows_.v(n_, a), *const v = rows_.v(n_ + 1, a);
+  const auto neighbours = one_loop_->explicit_neighbours();
+  const double* const linear = loop_linear_.data() + static_cast<std::size_t>(a) * neighbours.size();
+  const double nonlinear = loop_nonlinear_[static_cast<std::size_t>(a)];
+  const auto measure = [&](const auto& add_linear) __attribute__((always_inline)) {
+    for (int pack = packs.first; pack < packs.last; ++pack) {
+      const std::ptrdiff_t at = layout_.at(pack);
+      const Pack w = Pack::load(v + at) - Pack::load(v_before + at);
+      Pack E = -w, size = abs(w);
+      const auto add = [&](double coefficient, Pack term, Pack magnitude) __attribute__((always_inline)) {
+        E += coefficient * term;
+        size += std::abs(coefficient) * magnitude;
+      };
+      add_linear(at, add);
+      const Pack slope = Pack::load(slopes + at);
+      add(nonlinear, slope, abs(slope));
+      largest(at, E, size);
+    }
+  };
+  const auto difference = [y](std::ptrdiff_t to, std::ptrdiff_t from) __attribute__((always_inline)) {
+    return Pack::load(y + to) - Pack::load(y + from);
+  };
+  if (loop_reach_ > 1) {
+    measure([&](std::ptrdiff_t at, const auto& add) {
+      for (std::size_t s = 0; s < neighbours.size(); ++s) {
+        const Pack term = difference(at + neighbours[s] * lanes, at);
+        add(linear[s], term, abs(term));
+      }
+    });
+    return largest;
+  }
+  // y(i) − y(i − 1), and its size: the pack before has worked it out.
+  const double to_last = -linear[0], to_next = linear[1];
+  Pack last = difference(layout_.at(packs.first), layout_.at(packs.first - 1)), last_size = abs(last);
+  measure([&](std::ptrdiff_t at, const auto& add) __attribute__((always_inline)) {
+    const Pack next = difference(at + lanes, at), next_size = abs(next);
+    add(to_last, last, last_size);
+    add(to_next, next, next_size);
+    last = next, last_size = next_size;
+  });
+  return largest;
 }
 
 void RowEquations::close_loop() {

@@ -29,6 +29,7 @@ double RowEquations::residual(std::int64_t n) {
 
 void RowEquations::measure_sums(LargestTerms& all) {
   find_rows();
+  take_own_bases();
   for (int a = 0; a < d_ && !increments_have_halos_; ++a)
     for (const int base : {v_new_base_, v_base_}) layout_.fill_halo(bases_[static_cast<std::size_t>(base + a)]);
   // A step goes on from the outputs of its last iterate: what is taken here from the accepted row goes elsewhere, or a

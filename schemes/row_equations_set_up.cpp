@@ -107,7 +107,8 @@ void RowEquations::build_sums() {
   E_base_ = next;
   v_new_base_ = next + d_;
   y_known_base_ = v_new_base_ + d_;
-  bases_.resize(static_cast<std::size_t>(y_known_base_) + 1);
+  own_bases_.resize(static_cast<std::size_t>(y_known_base_) + 1);
+  bases_ = own_bases_.data();
 
   is_stored_ = solver_[1] || !equations_.exceptional.empty();
   for (int a = 0; a < d_; ++a) {

@@ -6,7 +6,6 @@
 
 #include "jets/discrete_lagrangian.hpp"
 #include "jets/structure.hpp"
-#include "schemes/largest_terms.hpp"
 #include "schemes/row_increment.hpp"
 #include "schemes/row_layout.hpp"
 
@@ -33,6 +32,7 @@ struct ExplicitRows {
   const double* linear;         ///< [a·neighbours + s]
   const double* nonlinear;      ///< [a]
   double stride = 1;            ///< of y += stride v
+  double* const* slopes = nullptr;  ///< where ∂ℓ/∂φ(y_n) is kept; null: nowhere
 };
 
 /// What a nonlinear part looks at: Σ weight · y(vertex).
@@ -131,10 +131,10 @@ class RowKernel {
   ///
   /// with the neighbours s listed here; no neighbours where a family has no such loop.
   virtual std::span<const int> explicit_neighbours() const { return {}; }
-  /// Returns √Σy² of the packs' new values: infinite or NaN where squares overflow.
+  /// Returns Σy² of the packs' new values: infinite or NaN where squares overflow.
   virtual double explicit_step(const ExplicitRows&, const PackRange&) const { return 0; }
-  /// Of the equation w = … above, for the rows as they are, y_n with its halo: one LargestTerms for each component.
-  virtual void explicit_residual(const ExplicitRows&, LargestTerms*) const {}
+  /// ∂ℓ/∂φ(y_n) of these packs alone.
+  virtual void explicit_slopes(const SlabRows& /*now*/, double* const* /*slopes*/, const PackRange&) const {}
 
  protected:
   explicit RowKernel(int row_size) : row_size_(row_size) {}

@@ -22,7 +22,7 @@ struct RowStepper::Impl {
   const LatticeSystem& system;
   const SolvePlan& plan;
   const StepOptions options;
-  const int d, history;
+  const int d, history, rows_held;
   const bool iterative;
   std::optional<Contraction> contraction;  ///< of an iteration
   const bool stiff;
@@ -38,7 +38,7 @@ struct RowStepper::Impl {
   double largest[2] = {0, 0};  ///< |y| of the newest two rows
   int iterations = 0;
   int rows_known = 0;  ///< newest rows that have not been written over
-  std::vector<double> values_of_parts;
+  std::vector<double> squares_of_parts;
   /// A row that lies beside the one that steps in place write over, with all that a step needs; −1: none. What was
   /// known when it was the newest.
   std::int64_t kept_row = -1, kept_overwritten = 0;
@@ -50,11 +50,12 @@ struct RowStepper::Impl {
         options(o),
         d(s.components()),
         history(std::max(p.forward + p.backward, 2)),
+        rows_held(history + 1),
         iterative(!solved_at_once(s, p)),
         contraction(iterative ? std::optional(Contraction(s, p)) : std::nullopt),
         stiff(iterative && contraction->is_stiff()),
         mixture(iterative && RowSeed::fits_cache(s.lattice().sites()) ? Mixture::of(s) : std::nullopt),
-        rows(s, std::max(1, s.width()), history + 1, increments(), o.turn),
+        rows(s, std::max(1, s.width()), rows_held, increments(), o.turn),
         equations(s, p, rows, history, mixture, seed_rows()),
         seed(rows, s.time_step(), seed_rows(), equations.looks(), equations.arguments()) {
     // Made now, so that memory that is short is told at the start.
@@ -62,7 +63,7 @@ struct RowStepper::Impl {
     if (equations.reads_unknown_row() && !(iterative && goes_in_one)) equations.candidate().hold_whole();
     if (iterative) gain = equations.gain(), weight = equations.least_weight();
     if (o.threads > 1 && equations.is_one_loop())
-      team.emplace(o.threads), values_of_parts.resize(static_cast<std::size_t>(o.threads));
+      team.emplace(o.threads), squares_of_parts.resize(static_cast<std::size_t>(o.threads));
   }
 
   int seed_rows() const { return iterative ? RowSeed::rows_for(options.seed_order, system.lattice().sites()) : 2; }
@@ -80,19 +81,20 @@ struct RowStepper::Impl {
     double value = 0;
     if (equations.is_one_loop()) {
       equations.begin(n);
-      value = loop(looked_at);
-    } else if (looked_at || !step_in_place(value)) {
-      value = step_beside();
+      if (!loop(looked_at)) report_not_finite();
+    } else {
+      if (looked_at || !may_step_in_place() || !step_in_place(value)) value = step_beside();
+      if (overflowed(value)) report_not_finite();
     }
-    if (overflowed(value)) report_not_finite();
     if (options.fibre == Fibre::circle) check_wrapped_differences();
     row_is_found(value);
     ++n;
   }
+  /// Iterations ask for its largest |y|.
   void row_is_found(double value) {
     largest[1] = largest[0];
     largest[0] = value;
-    rows_known = std::min(rows_known + 1, rows.rows_held());
+    rows_known = std::min(rows_known + 1, rows_held);
   }
 
   /// A step that leaves the row before it where it is.
@@ -113,10 +115,12 @@ struct RowStepper::Impl {
     return value;
   }
 
+  /// Neither the next step nor the seed's next look reads rows that a step in place would write over.
+  bool may_step_in_place() const { return kept_row >= 0 && n != kept_row && seed.reads_one_increment(n); }
   /// An implicit step in one stream through the rows, written over the old ones: these would else come from memory, and
-  /// the new ones too. False if it would take a second iteration, or looks back soon: nothing is changed then.
-  bool step_in_place(double& value) {
-    if (kept_row < 0 || n == kept_row || !seed.reads_one_increment(n)) return false;
+  /// the new ones too. False if it would take a second iteration: nothing is changed then. Out of line, as all
+  /// that steps through short rows do without: they would save registers and align the stack for it.
+  [[gnu::noinline]] bool step_in_place(double& value) {
     equations.begin(n, true);
     rows_known = 0;
     const RowEquations::Advance moved = advance_straight();
@@ -155,21 +159,21 @@ struct RowStepper::Impl {
     std::ranges::copy(largest, kept_largest);
   }
 
-  /// An explicit step of one loop; in place if no one looks at the row. Returns √Σy².
+  /// An explicit step of one loop; in place if no one looks at the row. False if the row overflows.
   /// Rows that are written over are gone. But a step that is not in place leaves the row before it where it is, until
   /// two more of its kind have been taken: at every time two good rows are there, or follow from that one.
-  double loop(bool looked_at) {
+  bool loop(bool looked_at) {
     constexpr std::int64_t steps_between = 1024;  // that are in place: as many may have to be taken again
     const bool in_place = !looked_at && kept_row >= 0 && n > kept_row && n < kept_row + steps_between;
     if (in_place) rows_known = 0;
-    double value = loop_in_parts(in_place);
-    if (overflowed(value)) {
-      if (rows_known < 2) value = loop_again();
+    bool fine = loop_in_parts(in_place);
+    if (!fine) {
+      if (rows_known < 2) fine = loop_again();
       kept_row = -1;  // from here on nothing is written over
     } else if (!in_place) {
       keep();
     }
-    return value;
+    return fine;
   }
 
   /// As many threads as there are rows enough for.
@@ -177,32 +181,31 @@ struct RowStepper::Impl {
     constexpr int worth_a_thread = 1024;  // packs: below, waiting for each other costs more than it saves
     return team ? std::clamp(layout().packs() / worth_a_thread, 1, team->size()) : 1;
   }
-  double loop_in_parts(bool in_place) {
+  bool loop_in_parts(bool in_place) {
     const int parts = loop_parts();
     equations.begin_loop(parts, in_place);
-    double value = 0;
+    double squares = 0;
     if (parts == 1) {
-      value = equations.loop(0, 1);
+      squares = equations.loop(0, 1);
     } else {
       team->run(parts,
-                [&](int part) { values_of_parts[static_cast<std::size_t>(part)] = equations.loop(part, parts); });
-      for (int part = 0; part < parts; ++part)
-        value = larger_or_nan(values_of_parts[static_cast<std::size_t>(part)], value);
+                [&](int part) { squares_of_parts[static_cast<std::size_t>(part)] = equations.loop(part, parts); });
+      for (int part = 0; part < parts; ++part) squares += squares_of_parts[static_cast<std::size_t>(part)];
     }
     equations.close_loop();
-    return value;
+    return !squares_overflowed(squares);
   }
 
   /// The steps from the kept row on once more, each beside the row before.
-  double loop_again() {
+  bool loop_again() {
     const std::int64_t last = n;
     go_back();
     equations.forget_rows();
     for (;; ++n) {
       equations.begin(n);
-      const double value = loop_in_parts(false);
-      if (n == last) return value;
-      row_is_found(value);
+      const bool fine = loop_in_parts(false);
+      if (n == last) return fine;
+      row_is_found(0);
     }
   }
 
@@ -257,7 +260,7 @@ struct RowStepper::Impl {
     return change <= weight * enough || (estimates() && next_change * change <= enough);
   }
 
-  RowEquations::Advance advance_streamed(int order) {
+  [[gnu::noinline]] RowEquations::Advance advance_streamed(int order) {
     return equations.advance_streamed(
         [this, order](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); });
   }
@@ -340,7 +343,7 @@ struct RowStepper::Impl {
 
   /// S¹: wrapping says which way round only while differences on a stencil stay well below π. Looks at the stencils
   /// whose top row is the new one, from their first vertex to each other.
-  void check_wrapped_differences() {
+  [[gnu::noinline]] void check_wrapped_differences() {
     for (const auto& family : system.families()) {
       const auto& vertices = family->pattern().vertices;
       const int top = std::ranges::max(vertices, {}, &Site::time).time;

@@ -32,11 +32,8 @@ class RowSum {
   /// Multiplies every coefficient.
   void scale(double factor);
 
-  /// Sums are taken of these rows from here on; where one of them is another, bind again.
-  void bind(const double* const* rows) {
-    for (auto* terms : {&differences_, &plain_, &changes_})
-      for (Term& t : *terms) t.bind(rows);
-  }
+  /// Sums are taken of these rows from here on: a pass reads from the list where they are.
+  void bind(const double* const* rows) { rows_ = rows; }
 
   /// Every second pack, v where v + `phase` is odd, takes the other sum, as bricks do.
   void take_turns_with(const RowSum& other, int phase) { other_ = &other, phase_ = phase; }
@@ -57,12 +54,12 @@ class RowSum {
     int row, shift;
     double coefficient;
     int from, from_shift = 0;
-    const double *shifted = nullptr, *subtracted = nullptr;  ///< the row from `shift` sites further on, and what it is less
-    void bind(const double* const* rows) {
-      shifted = rows[row] + static_cast<std::ptrdiff_t>(shift) * lanes;
-      subtracted = rows[from] + static_cast<std::ptrdiff_t>(from_shift) * lanes;
-    }
   };
+  /// The row from `shift` sites further on, and what it is less.
+  const double* shifted(const Term& t) const { return rows_[t.row] + static_cast<std::ptrdiff_t>(t.shift) * lanes; }
+  const double* subtracted(const Term& t) const {
+    return rows_[t.from] + static_cast<std::ptrdiff_t>(t.from_shift) * lanes;
+  }
   const RowSum& of(int pack) const { return other_ && (pack + phase_) % 2 != 0 ? *other_ : *this; }
   /// Differences are those to the sites on either side.
   bool are_to_both_sides() const {
@@ -104,6 +101,7 @@ class RowSum {
   static constexpr int most_plain = 8, most_in_turn = 3;
 
   std::vector<Term> differences_, plain_, changes_;
+  const double* const* rows_ = nullptr;
   double constant_ = 0;
   const RowSum* other_ = nullptr;
   int phase_ = 0;
@@ -122,7 +120,9 @@ struct RowSum::Counted {
   [[gnu::always_inline]] explicit Counted(const RowSum& sum) : constant(sum.constant_) {
     for (int i = 0; i < plain; ++i) {
       const Term& t = sum.plain_[static_cast<std::size_t>(i)];
-      row[i] = t.shifted, coefficient[i] = t.coefficient;
+      row[i] = sum.shifted(t), coefficient[i] = t.coefficient;
+      // Hidden from compilers, which would find one row from another, and have too many registers to keep.
+      asm("" : "+r"(row[i]));
     }
     if constexpr (differences > 0) {
       const std::size_t next = sum.differences_[0].shift > 0 ? 0 : 1;
@@ -142,12 +142,11 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
   const Terms first(of(packs.first)), second(in_turn ? of(packs.first + 1) : *this);
   std::ptrdiff_t at = layout.at(packs.first);
   const std::ptrdiff_t end = layout.at(packs.last);
-  const double* const here = differences > 0 ? differences_[0].subtracted : nullptr;
+  const double* const here = differences > 0 ? rows_[differences_[0].row] : nullptr;
   Pack value = differences > 0 ? Pack::load(here + at) : Pack(0.0);
   Pack last = differences > 0 ? value - Pack::load(here + at - lanes) : Pack(0.0);
-  const std::ptrdiff_t shift = changes > 0 ? changes_[0].shift * lanes : 0;
-  const double* const changed = changes > 0 ? changes_[0].shifted - shift : nullptr;
-  const double* const before = changes > 0 ? changes_[0].subtracted - shift : nullptr;
+  const double* const changed = changes > 0 ? rows_[changes_[0].row] : nullptr;
+  const double* const before = changes > 0 ? rows_[changes_[0].from] : nullptr;
   const auto change_at = [=](std::ptrdiff_t to) __attribute__((always_inline)) {
     return Pack::load(changed + to) - Pack::load(before + to);
   };
@@ -198,8 +197,8 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
     };
     for (const auto* list : {&terms.differences_, &terms.changes_})
       for (const Term& t : *list)
-        add(t.coefficient * (Pack::load(t.shifted + at) - Pack::load(t.subtracted + at)));
-    for (const Term& t : terms.plain_) add(t.coefficient * Pack::load(t.shifted + at));
+        add(t.coefficient * (Pack::load(terms.shifted(t) + at) - Pack::load(terms.subtracted(t) + at)));
+    for (const Term& t : terms.plain_) add(t.coefficient * Pack::load(terms.shifted(t) + at));
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
   }

@@ -22,7 +22,10 @@ struct StepOptions {
 };
 
 /// Beyond this squares overflow, and with them every energy: nothing that could be reported is a number any more.
-inline bool overflowed(double largest_value) { return !(largest_value <= 1e150); }
+inline constexpr double largest_finite = 1e150;
+inline bool overflowed(double largest_value) { return !(largest_value <= largest_finite); }
+/// Of a whole row: whether √Σy² did.
+inline bool squares_overflowed(double sum_of_squares) { return !(sum_of_squares <= largest_finite * largest_finite); }
 
 /// How a system is stepped: by whole rows (RowStepper) or slab by slab (SlabStepper). What the functions do stands at
 /// Stepper, which chooses one.

@@ -62,6 +62,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   static constexpr int vertices_size = n * d;
   static constexpr auto distinct = distinct_values(map);
   static constexpr int reach = reach_of(map);
+  static constexpr bool goes_in_one_loop = is_nodal(map) && reach > 0;
   static constexpr int first_time = [] {
     int t = map.shape.vertex(0).time;
     for (int l = 1; l < n; ++l) t = std::min(t, map.shape.vertex(l).time);
@@ -176,15 +177,15 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   std::span<const int> explicit_neighbours() const override {
-    if constexpr (is_nodal(map)) return neighbours_within<reach>;
+    if constexpr (goes_in_one_loop) return neighbours_within<reach>;
     else return {};
   }
   double explicit_step(const ExplicitRows& rows, const PackRange& packs) const override {
-    if constexpr (is_nodal(map)) return explicit_loop_for<reach>(lagrangian_.density, rows, packs);
+    if constexpr (goes_in_one_loop) return explicit_loop_for<reach>(lagrangian_.density, rows, packs);
     else return 0;
   }
-  void explicit_residual(const ExplicitRows& rows, LargestTerms* terms) const override {
-    if constexpr (is_nodal(map)) explicit_residual_loop<reach>(lagrangian_.density, rows, terms);
+  void explicit_slopes(const SlabRows& now, double* const* slopes, const PackRange& packs) const override {
+    if constexpr (goes_in_one_loop) slope_loop(lagrangian_.density, now, slopes, packs);
   }
 
  private:

@@ -82,6 +82,40 @@ TEST_CASE("the residual of an explicit step is the scheme's by hand, wherever an
   compare(SineGordon{1.3}, {1}, [](const double* y, int) { return 1.69 * std::sin(y[0]); });
 }
 
+TEST_CASE("slopes that steps keep for a residual at every step are those that it finds by itself") {
+  for (const int N : {9, 37, 200}) {
+    CAPTURE(N);
+    Random random(7);
+    const std::vector<Row> start = random_rows(random, 2, N, 1);
+    const auto evolution = [&] {
+      Evolution made = Scheme{triangle_vertex, SineGordon{1.3}}.on(Lattice::circle(N, N * k), h);
+      made.stepper().start(start);
+      return made;
+    };
+    Evolution watched = evolution();
+    watched.stepper().step();
+    CHECK(watched.stepper().residual() < 4e-15);
+    const std::size_t bytes = watched.stepper().bytes(), row = RowBuffer::bytes_of(watched.stepper().layout()->doubles());
+    bool every_step = false;
+    for (const int unseen : {1, 0, 0, 1, 5, 0}) {
+      every_step = every_step || unseen == 0;
+      for (int n = 0; n < unseen; ++n) watched.stepper().step(false);
+      watched.stepper().step();
+      const double kept = watched.stepper().residual();
+      Evolution other = evolution();
+      while (other.stepper().newest() < watched.stepper().newest()) other.stepper().step();
+      CHECK(kept == other.stepper().residual());
+      CHECK(watched.stepper().row(0) == other.stepper().row(0));
+      CHECK(watched.stepper().residual() == kept);
+      CHECK(watched.stepper().bytes() == bytes + (every_step ? row : 0));
+    }
+    // Those of other rows are not: a start forgets them.
+    watched.stepper().start({start[1], start[0]});
+    watched.stepper().step();
+    CHECK(watched.stepper().residual() < 4e-15);
+  }
+}
+
 TEST_CASE("and of two components whose equations are of different size") {
   compare(Uneven{}, {1, 4}, [](const double* y, int) { return std::sin(y[0] + y[1]); });
 }
