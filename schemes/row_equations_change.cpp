@@ -115,21 +115,14 @@ Pack largest_difference(const RowLayout& layout, PackRange packs, const Argument
     const std::ptrdiff_t shift = static_cast<std::ptrdiff_t>(part.vertex.space) * lanes;
     above[p] = y + shift, below[p] = z + shift, weight[p] = part.weight;
   }
-  const auto difference = [&](int v) {
+  Pack largest(0.0);
+  for (int v = packs.first; v < packs.last; ++v) {
     const std::ptrdiff_t at = layout.at(v);
     Pack sum(0.0);
     for (int p = 0; p < count; ++p) sum += weight[p] * (Pack::load(above[p] + at) - Pack::load(below[p] + at));
-    return abs(sum);
-  };
-  // Two at a time: a maximum waits for the one before it.
-  Pack largest(0.0), other(0.0);
-  int v = packs.first;
-  for (; v + 1 < packs.last; v += 2) {
-    largest = max_or_nan(difference(v), largest);
-    other = max_or_nan(difference(v + 1), other);
+    largest = largest_magnitude(largest, sum);
   }
-  if (v < packs.last) largest = max_or_nan(difference(v), largest);
-  return max_or_nan(other, largest);
+  return largest;
 }
 
 }  // namespace
