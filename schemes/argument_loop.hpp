@@ -14,12 +14,7 @@ template <int past_rows>
 class UnknownArgument {
  public:
   explicit UnknownArgument(const ArgumentRow& given) : unknown_(given.unknown) {
-    const double* row = given.newest;
-    for (int j = 0; j < past_rows; ++j) {
-      past_[j] = row;
-      row = row == given.first ? given.last : row - given.stride;
-      coefficients_[j] = given.coefficients[j];
-    }
+    for (int j = 0; j < past_rows; ++j) past_[j] = given.past[j], coefficients_[j] = given.coefficients[j];
   }
   [[gnu::always_inline]] Pack operator()(std::ptrdiff_t at) const {
     if constexpr (past_rows == 0) return Pack::load(unknown_ + at);
@@ -107,14 +102,13 @@ void argument_loop_for(const Output& output, const ArgumentRow& row, double* out
 template <Density D>
 struct MixtureSlope {
   D density;
-  double known_weight;
-  Pack t;
+  double known_weight, t;
   const double* positions;
   double x_offset;
 
   [[gnu::always_inline]] Pack argument(Pack u, Pack known) const { return u + known_weight * known; }
   [[gnu::always_inline]] Pack operator()(Pack m, std::ptrdiff_t at) const {
-    return density(value_jet<D>([m](int) { return m; }, t, positions + at, x_offset)).derivative(0);
+    return density(value_jet<D>([m](int) { return m; }, Pack(t), positions + at, x_offset)).derivative(0);
   }
 };
 

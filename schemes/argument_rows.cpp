@@ -47,40 +47,37 @@ ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int 
       mixture_(mixture),
       // One more than is read, to see what the highest order would have missed.
       ring_(layout, most_order + 2),
-      slots_(most_order + 2),
-      row_{.layout = &layout,
-           .unknown = nullptr,
-           .known = nullptr,
-           .known_weight = mixture.known_weight,
-           .first = ring_.row(0),
-           .last = ring_.row(most_order + 1),
-           .stride = ring_.stride()} {
+      slots_(most_order + 2) {
+  row_.layout = &layout, row_.known_weight = mixture.known_weight;
+  for (int twice = 0; twice < 2; ++twice)
+    for (int slot = ring_.rows() - 1; slot >= 0; --slot) all_.push_back(ring_.row(slot));
   for (int order = 0; order <= most_order; ++order) {
     std::vector<double> of_rows;
     for (int j = 1; j <= order + 1; ++j) of_rows.push_back(extrapolation_weight(order + 1, j));
     coefficients_.push_back(std::move(of_rows));
   }
+  begin(0);
 }
 
 void ArgumentRows::put_extrapolated(const std::vector<double>& coefficients) {
   for (int v = 0; v < layout_->packs(); ++v) {
     Pack u(0.0);
-    for (int j = 0; j < static_cast<int>(coefficients.size()); ++j)
-      u += coefficients[static_cast<std::size_t>(j)] * Pack::load(row(j + 1) + layout_->at(v));
-    u.store(row(0) + layout_->at(v));
+    for (std::size_t j = 0; j < coefficients.size(); ++j)
+      u += coefficients[j] * Pack::load(row_.past[j] + layout_->at(v));
+    u.store(row_.unknown + layout_->at(v));
   }
 }
 
-Pack ArgumentRows::find(const double* y, const PackRange& packs) {
+double ArgumentRows::find(const double* y, const PackRange& packs) {
   Pack change(0.0);
-  double* const u = row(0);
+  double* const u = row_.unknown;
   for (int v = packs.first; v < packs.last; ++v) {
     Pack sum(0.0);
     for (int p = 0; p < mixture_.parts; ++p) sum += mixture_.weights[p] * Pack::load(y + layout_->at(v + p));
     change = max_or_nan(abs(sum - Pack::load(u + layout_->at(v))), change);
     sum.store(u + layout_->at(v));
   }
-  return change;
+  return max_or_nan(change);
 }
 
 }  // namespace delf

@@ -45,33 +45,34 @@ class ArgumentRows {
   const Mixture& mixture() const { return mixture_; }
   /// The step from row n; what follows is about it.
   void begin(std::int64_t n) {
-    slots_.at(n);
+    slots_.at(n + 1);
+    newest_first_ = all_.data() + (ring_.rows() - 1 - slots_.slot());
     n_ = n;
-    row_.unknown = row(0), row_.newest = row(1);
+    row_.unknown = newest_first_[0], row_.past = newest_first_ + 1;
   }
-  /// u_{n+1−back}: 0 is the one that is looked for.
-  double* row(int back) { return ring_.row(slots_(back - 1)); }
+  /// u_{n+1−back}: 0 is the one that is looked for. The oldest one lies where that will.
+  double* row(int back) { return newest_first_[back]; }
   /// u_{n+1} as it stands and what is known, with the row y of known_row; positions, t and steps are the caller's. It is
   /// the same one in every step.
   ArgumentRow& argument(const double* y) {
-    row_.known = mixture_.is_known_alike ? row_.newest : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes;
+    row_.known = mixture_.is_known_alike ? row_.past[0] : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes;
     row_.past_rows = 0;
     return row_;
   }
-  /// Lets u_{n+1} be extrapolated by a polynomial of this order, or the highest that there are rows for, from row 0 on:
+  /// Lets u_{n+1} of argument() be extrapolated by a polynomial of this order, or the highest that there are rows for:
   ///
   ///     u_{n+1} ≈ Σ_{j=0}^{order} (−1)^j C(order + 1, j + 1) u_{n−j}
   ///
   /// From more rows than loops take, which only tolerances near rounding ask for, this is done at once.
-  void extrapolate(int order, ArgumentRow& row) {
+  void extrapolate(int order) {
     const auto highest = std::min(n_, static_cast<std::int64_t>(coefficients_.size()) - 1);
     order = std::clamp(order, 1, static_cast<int>(highest));
     if (order + 1 > ArgumentRow::most_past_rows) return put_extrapolated(coefficients_[static_cast<std::size_t>(order)]);
-    row.past_rows = order + 1;
-    row.coefficients = coefficients_[static_cast<std::size_t>(order)].data();
+    row_.past_rows = order + 1;
+    row_.coefficients = coefficients_[static_cast<std::size_t>(order)].data();
   }
   /// u_{n+1} of the row itself, whose halos are filled; returns the largest change.
-  Pack find(const double* y, const PackRange&);
+  double find(const double* y, const PackRange&);
   std::size_t bytes() const { return ring_.bytes(); }
 
  private:
@@ -81,8 +82,10 @@ class ArgumentRows {
   Mixture mixture_;
   RowBuffer ring_;
   RingSlots slots_;
+  std::vector<double*> all_;  ///< the ring's rows from the last to the first, twice: any slot's, and those before it
+  double* const* newest_first_ = nullptr;
   std::int64_t n_ = 0;
-  ArgumentRow row_;
+  ArgumentRow row_{};
   std::vector<std::vector<double>> coefficients_;  ///< by order
 };
 

@@ -167,7 +167,7 @@ class CirculantSolver::Stream final : public RowStream {
   PackRange last_packs() const override;
   void begin(double* u) override;
   int advance(int end, double* u) override;
-  double largest() const override { return max_or_nan(increment_.result().largest); }
+  double largest() const override { return increment_.result().largest; }
 
  private:
   const CirculantSolver& solver_;

@@ -60,7 +60,7 @@ class StraightDivision {
     seen_.take(pass_.unseen(at, w)), expected_.take(u);
     change_ = detail::larger_magnitude(change_, weights_.added(Pack(0.0), seen_) - expected_.oldest());
   }
-  RowChange result() const { return {pass_.result().largest, change_}; }
+  RowChange result() const { return {pass_.result().largest, max_or_nan(change_)}; }
   /// u of the last pack, which looks beyond the end.
   Pack last_argument() const { return expected_.newest; }
 

@@ -23,6 +23,7 @@ class RingSlots {
     const int slot = slot_ - back;
     return slot < 0 ? slot + held_ : slot >= held_ ? slot - held_ : slot;
   }
+  int slot() const { return slot_; }
   /// The slot of the row before the one in `slot`.
   int before(int slot) const { return slot == 0 ? held_ - 1 : slot - 1; }
 

@@ -39,102 +39,101 @@ void RowEquations::begin(std::int64_t n, bool in_place) {
   in_place_ = in_place;
   if (is_one_loop()) return;
   find_rows();
-  bind_sums();
-  for (std::size_t a = 0; a < increments_.size(); ++a) {
-    RowIncrement& increment = increments_[a];
-    double* const y = bases_[static_cast<std::size_t>(y_base_) + a];
-    double* const v = bases_[static_cast<std::size_t>(v_base_) + a];
-    increment.y_before = y;
-    increment.v = in_place ? v : bases_[static_cast<std::size_t>(v_new_base_) + a];
-    increment.y = in_place ? y : bases_[static_cast<std::size_t>(E_base_) + a];
-    increment.v_before = equations_.correction_form ? increment.v : v;
-  }
-  if (arguments_) {
-    arguments_->begin(n);
-    increments_[0].look.argument = arguments_->row(0);
-  }
+  if (in_place) go_in_place();
+  bind(sums_);
+  for (RowSum& sum : stored_) sum.bind(here_->bases.data());
+  if (!arguments_) return;
+  arguments_->begin(n);
+  increment(0).look.argument = arguments_->row(0);
 }
 
 void RowEquations::find_rows() {
   const std::int64_t place = rows_.place(n_);
-  if (places_.empty()) return find_bases(place);
+  if (places_.empty()) return find_rows_at(place);
   period_.at(place);
-  bases_ = places_.data() + static_cast<std::size_t>(period_(0)) * own_bases_.size();
-  if (is_streamed_) take_own_bases();
+  here_ = &places_[static_cast<std::size_t>(period_.slot())];
+  if (is_streamed_) own_rows();
 }
 
-/// Before outputs are sent elsewhere for once.
-void RowEquations::take_own_bases() {
-  if (bases_ == own_bases_.data()) return;
-  std::copy_n(bases_, own_bases_.size(), own_bases_.data());
-  bases_ = own_bases_.data();
-}
-
-void RowEquations::bind_sums() {
-  bind(sums_);
-  for (RowSum& sum : stored_) sum.bind(bases_);
-}
-/// Of bricks, those of the equations' row.
+/// Sums of bricks are those of the equations' row.
 void RowEquations::bind(std::vector<RowSum>& sums) {
-  for (RowSum& sum : sums) sum.bind(bases_);
-  if (!bricks_) return;
+  for (RowSum& sum : sums) sum.bind(here_->bases.data());
+  if (bricks_) take_turns(sums);
+}
+void RowEquations::take_turns(std::vector<RowSum>& sums) const {
   const int phase = (n_ + 1 - equations_.bulk[0].shift) % 2 != 0 ? 1 : 0;
   for (std::size_t first = 0; first < sums.size(); first += 2) sums[first].take_turns_with(sums[first + 1], phase);
 }
 
-void RowEquations::find_bases(std::int64_t place) {
-  bases_ = own_bases_.data();
+/// Before something is sent elsewhere for once.
+RowEquations::StepRows& RowEquations::own_rows() {
+  if (here_ != &own_) own_ = *here_, here_ = &own_;
+  return own_;
+}
+
+/// The new row and its increment take the place of the old ones.
+void RowEquations::go_in_place() {
+  StepRows& rows = own_rows();
+  for (int a = 0; a < d_; ++a) rows.increments[static_cast<std::size_t>(a)].y = base(y_base_ + a);
+  for (int a = 0; a < d_; ++a) rows.increments[static_cast<std::size_t>(a)].v = base(v_base_ + a);
+}
+
+void RowEquations::find_rows_at(std::int64_t place) {
+  here_ = &own_;
   y_slots_.at(place);
   v_slots_.at(place);
   for (Outputs& o : outputs_) o.slots.at(place);
-  const auto base = [&](int at) -> double*& { return bases_[static_cast<std::size_t>(at)]; };
   for (int a = 0; a < d_; ++a) {
     base(y_base_ + a) = rows_.y_at(y_slots_(0), a);
     base(E_base_ + a) = rows_.y_at(y_slots_(-1), a);
     base(v_new_base_ + a) = rows_.v_at(v_slots_(-1), a);
     for (int age = 0; age < ages_; ++age) base(v_base_ + age * d_ + a) = rows_.v_at(v_slots_(age), a);
+    RowIncrement& rows = increment(a);
+    rows.y_before = base(y_base_ + a);
+    rows.v = base(v_new_base_ + a);
+    rows.y = base(E_base_ + a);
+    rows.v_before = equations_.correction_form ? rows.v : base(v_base_ + a);
   }
-  if (arguments_) base(y_known_base_) = rows_.y_at(y_slots_(arguments_->mixture().known_row - 1), 0);
   for (Outputs& o : outputs_)
     for (int age = o.oldest; age <= o.newest; ++age)
       for (int c = 0; c < o.kernel->outputs(); ++c)
         output(o, age, c) = o.ring.row(o.slots(-age) * o.kernel->outputs() + c);
+  if (!arguments_) return;
+  own_.known_values = rows_.y_at(y_slots_(arguments_->mixture().known_row - 1), 0);
+  own_.output = newest_output();
 }
 
 /// The rings come round together after as many steps as their common multiple: where rows lie can be looked up then. To
-/// find it out takes a twentieth of an implicit step of a few hundred sites.
+/// find it out takes a tenth of an implicit step of a few hundred sites.
 void RowEquations::build_places() {
   if (is_one_loop()) return;
   int period = std::lcm(rows_.rows_held(), rows_.increments_held());
   for (const Outputs& o : outputs_) period = std::lcm(period, std::max(1, o.held));
   constexpr int longest = 32;
   if (!reads_unknown_row() || period > longest) return;
-  period_ = RingSlots(period);
-  std::vector<double*> places;
-  for (int n = 0; n < period; ++n) {
-    begin(n);
-    places.insert(places.end(), own_bases_.begin(), own_bases_.end());
+  std::vector<StepRows> places;
+  for (int place = 0; place < period; ++place) {
+    find_rows_at(place);
+    places.push_back(own_);
   }
+  period_ = RingSlots(period);
   places_ = std::move(places);
 }
 
-Pack RowEquations::close_new_row() {
+double RowEquations::close_new_row() {
   const bool halos_first = layout_.halos_come_first();
   const auto copy_overlaps = [&](const RowIncrement& rows) {
     layout_.copy_overlaps(rows.v);
     layout_.copy_overlaps(rows.y);
   };
-  for (const RowIncrement& rows : increments_) {
+  for (const RowIncrement& rows : here_->increments) {
     if (!halos_first) copy_overlaps(rows);
     if (increments_have_halos_) layout_.fill_halo(rows.v);
     layout_.fill_halo(rows.y, turn_);
   }
-  Pack change(0.0);
-  if (arguments_) {  // of the last packs, which look beyond the end
-    const RowIncrement& rows = increments_[0];
-    change = arguments_->find(rows.y, {layout_.packs() + 1 - rows.look.parts, layout_.packs()});
-  }
-  if (halos_first) std::ranges::for_each(increments_, copy_overlaps);
+  double change = 0;
+  if (arguments_) change = look_beyond_end(increment(0));
+  if (halos_first) std::ranges::for_each(here_->increments, copy_overlaps);
   return change;
 }
 
@@ -207,31 +206,45 @@ void RowEquations::store_right_sides() {
   }
 }
 
-RowEquations::Advance RowEquations::advance(bool compared) {
-  for (int a = 0; a < d_ && !arguments_; ++a) {
-    RowLook& look = increments_[static_cast<std::size_t>(a)].look;
-    look.parts = compared && looks_on_the_way_ ? static_cast<int>(looks_[0].parts.size()) : 0;
-    look.expected = candidate_.row(a);
-  }
+/// v_{n+1} and y_{n+1} but for their overlaps and halos.
+RowChange RowEquations::make_new_row() {
   if (is_stored_) store_right_sides();
   if (!equations_.exceptional.empty()) set_exceptional_sites();
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
-  RowChange all = solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides_.data(), increments_.data(), w_rows_.data());
-  if (arguments_) return advanced(all);
-  close_new_row();
-  if (!compared) return {max_or_nan(all.largest), 0};
-  if (!looks_on_the_way_) return {max_or_nan(all.largest), largest_change(looks_)};
-  // What looks beyond the end.
-  for (const RowIncrement& increment : increments_)
-    for (int v = layout_.packs() + 1 - increment.look.parts; v < layout_.packs(); ++v) {
-      Pack look(0.0);
-      for (int p = 0; p < increment.look.parts; ++p) {
-        const std::ptrdiff_t at = layout_.at(v + p);
-        look += increment.look.weights[p] * (Pack::load(increment.y + at) - Pack::load(increment.look.expected + at));
-      }
-      all.change = max_or_nan(abs(look), all.change);
+  return solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides_.data(), here_->increments.data(), w_rows_.data());
+}
+
+/// What the last packs of a new row look at. Returns the largest change.
+double RowEquations::look_beyond_end(const RowIncrement& rows) const {
+  const RowLook& look = rows.look;
+  if (look.parts < 2) return 0;
+  Pack change(0.0);
+  for (int v = layout_.packs() + 1 - look.parts; v < layout_.packs(); ++v) {
+    const std::ptrdiff_t at = layout_.at(v);
+    Pack u(0.0);
+    for (int p = 0; p < look.parts; ++p) {
+      const std::ptrdiff_t beside = at + p * lanes;
+      const Pack y = Pack::load(rows.y + beside);
+      u += look.weights[p] * (look.argument ? y : y - Pack::load(look.expected + beside));
     }
-  return {max_or_nan(all.largest), max_or_nan(all.change)};
+    change = largest_magnitude(change, look.argument ? u - Pack::load(look.argument + at) : u);
+    if (look.argument) u.store(look.argument + at);
+  }
+  return max_or_nan(change);
+}
+
+RowChange RowEquations::advance(bool compared) {
+  const bool on_the_way = compared && looks_on_the_way_;
+  for (int a = 0; a < d_; ++a) {
+    RowLook& look = increment(a).look;
+    look.parts = on_the_way ? static_cast<int>(looks_[0].parts.size()) : 0;
+    look.expected = candidate_.row(a);
+  }
+  RowChange all = make_new_row();
+  close_new_row();
+  if (compared && !on_the_way) all.change = largest_change(looks_);
+  for (int a = 0; a < d_ && on_the_way; ++a) all.change = larger_or_nan(look_beyond_end(increment(a)), all.change);
+  return all;
 }
 
 bool RowEquations::can_go_in_place() const {
@@ -259,7 +272,7 @@ void RowEquations::make_room_in_place() {
   o.ring = RowBuffer(layout_, o.held * o.kernel->outputs());
 }
 
-RowEquations::Advance RowEquations::advance_streamed(const std::function<void(PackRange)>& find) {
+RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& find) {
   Outputs& o = outputs_[0];
   const int packs = layout_.packs(), halo = layout_.halo(), count = o.kernel->outputs();
   const PackRange read = where_read(o);
@@ -268,7 +281,7 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
   for (const Argument& look : looks_)
     for (const Argument::Part& part : look.parts) reach = std::max(reach, part.vertex.space);
 
-  const auto stream = solver_[0]->stream(layout_, right_side(0), increments_[0]);
+  const auto stream = solver_[0]->stream(layout_, right_side(0), increment(0));
   const PackRange last = stream->last_packs();
   const int window = window_packs(last);
   const auto hold_candidate = [&](int first, int kept_until) {
@@ -287,11 +300,11 @@ RowEquations::Advance RowEquations::advance_streamed(const std::function<void(Pa
     }
   };
   const auto work = [&](int first, int kept_until) {
-    return hold(work_window_, increments_[0].v, first, kept_until);
+    return hold(work_window_, increment(0).v, first, kept_until);
   };
   // What a strip is made from, so many packs further on: it comes from memory while those before are evaluated.
   const auto rows_after = [&](int shift) {
-    RowsAhead ahead{increments_[0].y_before, increments_[0].v_before, old_output()};
+    RowsAhead ahead{increment(0).y_before, increment(0).v_before, old_output()};
     for (const double*& row : ahead)
       if (row) row += static_cast<std::ptrdiff_t>(shift) * lanes;
     return ahead;
@@ -350,18 +363,18 @@ double RowEquations::value_at(const SiteEquation& special, bool unknown_too, dou
   if (special.fixed) {
     // v_{n+1} = v_n + w = 0; where w corrects the candidate, v_{n+1} is the candidate's
     const int v = equations_.correction_form || unknown_too ? v_new_base_ : v_base_;
-    return bases_[static_cast<std::size_t>(v + a)][own];
+    return base(v + a)[own];
   }
   const EquationTerms& equation = special.equation;
   const double sign = (n_ + 1 - equation.shift + special.site) % 2 == 0 ? 1 : -1;
   double value = equation.constant + sign * equation.constant_alternating;
   for (const Term& t : equation.terms) {
     if (t.source == Source::unknown && !unknown_too) continue;
-    const double* row = bases_[static_cast<std::size_t>(index_of(t))];
+    const double* row = base(index_of(t));
     const int beside = layout_.slot(std::clamp(special.site + t.shift, 0, layout_.sites() - 1));
     const double less = t.source == Source::difference ? row[own]
                         : t.source == Source::unknown
-                            ? bases_[static_cast<std::size_t>(v_base_ + t.component)][beside]  // w = v_{n+1} − v_n
+                            ? base(v_base_ + t.component)[beside]  // w = v_{n+1} − v_n
                             : 0;
     const double x = (t.coefficient + sign * t.alternating) * (row[beside] - less);
     value += x;
@@ -400,7 +413,8 @@ std::size_t RowEquations::output_bytes() const {
 std::size_t RowEquations::matrix_bytes() const { return solver_[0]->bytes() + (solver_[1] ? solver_[1]->bytes() : 0); }
 std::size_t RowEquations::work_bytes() const {
   std::size_t total = layout_.bytes();
-  total += places_.size() * sizeof(const double*);
+  total += places_.size() * (sizeof(StepRows) + own_.bases.size() * sizeof(double*) +
+                             own_.increments.size() * sizeof(RowIncrement));
   for (const RowBuffer* b : {&w_, &scratch_, &positions_, &edges_}) total += b->bytes();
   return total + window_bytes() + candidate_.bytes() + (arguments_ ? arguments_->bytes() : 0);
 }

@@ -28,6 +28,7 @@ class RowEquations {
   /// steps extrapolate by polynomials up to `most_order`.
   RowEquations(const LatticeSystem&, const SolvePlan&, SectionRows&, int history,
                const std::optional<Mixture>& = std::nullopt, int most_order = 0);
+  RowEquations(const RowEquations&) = delete;
 
   /// Finds the rows for the step from row n. What follows is about this step. `in_place`: what it makes is written over
   /// what it is made from, if can_go_in_place().
@@ -61,23 +62,20 @@ class RowEquations {
 
   /// Solves for w with the outputs as they are, and makes v_{n+1} and y_{n+1} of it, halos too. `compared`: with the
   /// candidate, in what the nonlinear outputs look at; otherwise the change is zero.
-  struct Advance {
-    double largest, change;  ///< |y|, |look|
-  };
-  Advance advance(bool compared);
+  RowChange advance(bool compared);
   /// The same with the outputs that read row n+1, at arguments: extrapolated, or as the row makes them that was found.
-  Advance advance_extrapolated(int order);
-  Advance advance_again() { return advance_at(argument_row()); }
+  RowChange advance_extrapolated(int order);
+  RowChange advance_again() { return advance_at(argument_row()); }
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
   /// Or in one loop, from a candidate of order 1.
   bool goes_straight() const { return straight_.has_value(); }
-  Advance advance_straight();
+  RowChange advance_straight();
   /// Steps of one of these kinds read no rows before y_n, v_n and the newest outputs.
   bool can_go_in_place() const;
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
   /// stream through the rows. A candidate that is found on the way is not kept.
-  Advance advance_streamed(const std::function<void(PackRange)>& find);
+  RowChange advance_streamed(const std::function<void(PackRange)>& find);
   /// The largest difference between the candidate and y_{n+1}.
   double whole_change() const { return largest_change(whole_); }
   /// What outputs look at, at the unknown row: mixtures of values whose weights sum to at least this.
@@ -87,7 +85,7 @@ class RowEquations {
   /// to 1: an exact ∞-norm, by the response to an impulse. 0 where it is not known: several components, walls.
   double gain();
   /// Overlaps and halos of v_{n+1}, y_{n+1}; and the arguments that could not be found before. Returns their change.
-  Pack close_new_row();
+  double close_new_row();
 
   /// max |E| / max Σ |terms| over the sites for row n+1 as it is. Leaves nothing changed that a step reads.
   double residual(std::int64_t n);
@@ -110,11 +108,18 @@ class RowEquations {
     int oldest = 0, newest = -1;        ///< anchors' rows that equations use, from n
     int first_time = 0, last_time = 0;  ///< of the pattern
     int lowest = 0, highest = 0;        ///< shifts at which equations read
-    int base = 0;                       ///< where its rows stand among bases_
+    int base = 0;                       ///< where its rows stand among the bases
     int held = 0;                       ///< rows of the ring
 
     int rows() const { return newest - oldest + 1; }
     bool reads_unknown_row(int age) const { return age + kernel->outputs_read_until() >= 1; }
+  };
+
+  /// Where all lies that a step from one place of the rings reads and makes.
+  struct StepRows {
+    std::vector<double*> bases;  ///< y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E, d rows each
+    std::vector<RowIncrement> increments;
+    double *known_values = nullptr, *output = nullptr;  ///< of arguments: y of their known_row, and what they give
   };
 
   void build_outputs();
@@ -128,12 +133,15 @@ class RowEquations {
   void make_room_in_place();
   void build_places();
   void find_rows();
-  void find_bases(std::int64_t place);
-  void take_own_bases();
-  void bind_sums();
+  // Out of line, what few steps come to: all others would save registers for it.
+  [[gnu::noinline]] void find_rows_at(std::int64_t place);
+  [[gnu::noinline]] StepRows& own_rows();
+  [[gnu::noinline]] void go_in_place();
+  [[gnu::noinline]] void take_turns(std::vector<RowSum>& sums) const;
   std::size_t first_sum(int a) const { return static_cast<std::size_t>(bricks_ ? 2 * a : a); }
   void bind(std::vector<RowSum>& sums);
   void evaluate_newest_known_outputs();
+  double look_beyond_end(const RowIncrement&) const;
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
   int residual_rows() const;
@@ -151,6 +159,10 @@ class RowEquations {
   std::size_t edge_doubles(int parts) const {
     return parts == 1 ? 0 : static_cast<std::size_t>(2 * parts * d_ * loop_reach_ * lanes);
   }
+  double*& base(int at) { return here_->bases[static_cast<std::size_t>(at)]; }
+  const double* base(int at) const { return here_->bases[static_cast<std::size_t>(at)]; }
+  RowIncrement& increment(int a) { return here_->increments[static_cast<std::size_t>(a)]; }
+  const RowIncrement& increment(int a) const { return here_->increments[static_cast<std::size_t>(a)]; }
   int index_of(const Term&) const;
   void add_term(RowSum&, const Term&, double coefficient) const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
@@ -167,11 +179,11 @@ class RowEquations {
   void build_straight_lines();
   void find_arguments();
   void evaluate_arguments(At);
-  ArgumentRow& argument_row();
+  const ArgumentRow& argument_row();
   void place(ArgumentRow&) const;  ///< in time and space
   /// out_c of stencils anchored `age` rows after row n, where sums read it.
   double*& output(const Outputs& o, int age, int c = 0) {
-    return bases_[static_cast<std::size_t>(o.base + (age - o.oldest) * o.kernel->outputs() + c)];
+    return base(o.base + (age - o.oldest) * o.kernel->outputs() + c);
   }
   /// Of the row before; null where equations read no such.
   double* old_output() { return outputs_[0].rows() > 1 ? output(outputs_[0], outputs_[0].newest - 1) : nullptr; }
@@ -180,17 +192,18 @@ class RowEquations {
     const Outputs& o = outputs_[0];
     return output(o, o.newest - (in_place_ && o.rows() > 1 ? 1 : 0), c);
   }
-  RowChange divide(const ArgumentRow&, Pack* last_argument);
+  RowChange divide(const ArgumentRow&, double* output, Pack* last_argument);
   void evaluate_at(const ArgumentRow&);
-  Advance advance_at(const ArgumentRow&);
-  Advance advanced(RowChange);
+  void fill_halo_of_output(double* out) const { layout_.fill_halo(out, outputs_[0].lowest < 0, outputs_[0].highest > 0); }
+  RowChange advance_at(const ArgumentRow&);
+  RowChange make_new_row();
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
   /// Rows of stencils anchored at this row.
   SlabRows slab_of(const double* const* values, std::int64_t row) const;
   const RowSum& right_side(int a) const { return *right_sides_[static_cast<std::size_t>(a)]; }
   /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
-  double* stored_right_side(int a) { return bases_[static_cast<std::size_t>(E_base_ + a)]; }
+  double* stored_right_side(int a) { return base(E_base_ + a); }
   void store_right_sides();
   void set_exceptional_sites();
   double value_at(const SiteEquation&, bool unknown_too, double* absolute) const;
@@ -205,17 +218,15 @@ class RowEquations {
   std::vector<Outputs> outputs_;
   std::unique_ptr<LinearSolver> solver_[2];  ///< of even and odd unknown rows; the second only if bricks differ
 
-  // Rows of the step from n: y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E, d rows each.
   std::int64_t n_ = -1;
   bool in_place_ = false;
   RingSlots y_slots_, v_slots_;
   int ages_ = 1;
-  double** bases_ = nullptr;          ///< a line of places_, or own_bases_
-  std::vector<double*> own_bases_;    ///< what may be written to
-  std::vector<double*> places_;       ///< bases_ of one step after the other, until they are the first again
+  StepRows own_;                  ///< what may be written to
+  std::vector<StepRows> places_;  ///< those of one step after the other, until they are the first again
+  StepRows* here_ = &own_;        ///< one of these
   RingSlots period_;
-  int y_base_ = 0, v_base_ = 0, E_base_ = 0;
-  int v_new_base_ = 0, y_known_base_ = 0;  ///< v_{n+1}; y of the mixture's known_row
+  int y_base_ = 0, v_base_ = 0, E_base_ = 0, v_new_base_ = 0;
 
   /// −E times the solver's scale, for each component; of bricks two that take turns, the first for packs whose site and
   /// equation's row are both even or both odd.
@@ -235,7 +246,6 @@ class RowEquations {
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;
   std::vector<const double*> slab_rows_;
-  std::vector<RowIncrement> increments_;
   bool increments_have_halos_ = true;  ///< or else who looks beyond the ends of arcs fills them: residual()
   bool is_streamed_ = false;
   bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row

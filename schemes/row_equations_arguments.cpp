@@ -9,7 +9,7 @@ namespace delf {
 
 void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   arguments_.emplace(layout_, mixture, most_order);
-  RowLook& look = increments_[0].look;
+  RowLook& look = increment(0).look;
   look.parts = mixture.parts;
   std::ranges::copy(mixture.weights, look.weights);
   increments_have_halos_ = std::ranges::any_of(equations_.bulk[0].terms, [](const Term& t) {
@@ -54,31 +54,35 @@ void RowEquations::find_arguments() {
   arguments_->begin(n_);
 }
 
-RowEquations::Advance RowEquations::advance_extrapolated(int order) {
-  ArgumentRow& row = argument_row();
-  arguments_->extrapolate(order, row);
+RowChange RowEquations::advance_extrapolated(int order) {
+  const ArgumentRow& row = argument_row();
+  arguments_->extrapolate(order);
   return advance_at(row);
 }
 
-RowEquations::Advance RowEquations::advance_at(const ArgumentRow& row) {
+RowChange RowEquations::advance_at(const ArgumentRow& row) {
+  RowChange all;
   if (!division_ || row.past_rows > most_past_rows_divided) {
     evaluate_at(row);
-    return advance(true);
+    all = make_new_row();
+  } else {
+    all = divide(row, here_->output, nullptr);
   }
-  return advanced(divide(row, nullptr));
+  all.change = larger_or_nan(close_new_row(), all.change);
+  return all;
 }
 
 /// Along straight lines if the last argument is asked for.
-RowChange RowEquations::divide(const ArgumentRow& row, Pack* last_argument) {
+RowChange RowEquations::divide(const ArgumentRow& row, double* output, Pack* last_argument) {
   const RowKernel& kernel = *outputs_[0].kernel;
-  const RowIncrement& rows = increments_[0];
+  const RowIncrement& rows = increment(0);
   division_->arguments = row;
   division_->y = rows.y_before;
-  division_->output = newest_output();
+  division_->output = output;
   division_->old_output = old_output();
   const RowChange all = last_argument ? kernel.divide_straight(*division_, rows, *last_argument)
                                       : kernel.divide(*division_, rows);
-  layout_.fill_halo(division_->output);
+  fill_halo_of_output(output);
   return all;
 }
 
@@ -90,41 +94,35 @@ void RowEquations::build_straight_lines() {
   build_division(*mixture);
   if (!division_) return;
   straight_ = mixture;
-  std::ranges::copy(mixture->weights, increments_[0].look.weights);
+  std::ranges::copy(mixture->weights, increment(0).look.weights);
   division_->known_increment = mixture->known_row - 1;
 }
 
-RowEquations::Advance RowEquations::advance_straight() {
-  const RowIncrement& rows = increments_[0];
+RowChange RowEquations::advance_straight() {
+  const RowIncrement& rows = increment(0);
   ArgumentRow row{.layout = &layout_,
                   .unknown = nullptr,
                   .known = rows.y_before + static_cast<std::ptrdiff_t>(straight_->known_site) * lanes,
                   .known_weight = straight_->known_weight};
   place(row);
   Pack last(0.0);
-  RowChange all = divide(row, &last);
+  RowChange all = divide(row, newest_output(), &last);
   close_new_row();
   if (straight_->parts > 1) {  // the last pack looks beyond the end
     for (int p = 0; p < straight_->parts; ++p)
       last -= straight_->weights[p] * Pack::load(rows.y + layout_.at(layout_.packs() - 1 + p));
-    all.change = max_or_nan(abs(last), all.change);
+    all.change = larger_or_nan(max_or_nan(abs(last)), all.change);
   }
-  return {max_or_nan(all.largest), max_or_nan(all.change)};
-}
-
-/// The step after the solver's part of it.
-RowEquations::Advance RowEquations::advanced(RowChange all) {
-  const Pack beyond = close_new_row();
-  return {max_or_nan(all.largest), max_or_nan(max_or_nan(beyond, all.change))};
+  return all;
 }
 
 void RowEquations::evaluate_arguments(At at) {
-  if (at == At::row) arguments_->find(increments_[0].y, layout_.all());
+  if (at == At::row) arguments_->find(increment(0).y, layout_.all());
   evaluate_at(argument_row());
 }
 
-ArgumentRow& RowEquations::argument_row() {
-  ArgumentRow& row = arguments_->argument(bases_[static_cast<std::size_t>(y_known_base_)]);
+const ArgumentRow& RowEquations::argument_row() {
+  ArgumentRow& row = arguments_->argument(here_->known_values);
   place(row);
   return row;
 }
@@ -137,9 +135,9 @@ void RowEquations::place(ArgumentRow& row) const {
 /// On a circle each stencil's output is found once: beyond the ends of arcs it is repeated.
 void RowEquations::evaluate_at(const ArgumentRow& row) {
   const Outputs& o = outputs_[0];
-  double* const out = newest_output();
+  double* const out = here_->output;
   o.kernel->evaluate_arguments(row, out, packs_of(o, o.newest, layout_.all()));
-  layout_.fill_halo(out);
+  fill_halo_of_output(out);
 }
 
 }  // namespace delf

@@ -46,8 +46,8 @@ void RowEquations::build_looks() {
   for (std::size_t p = 0; p < looks_[0].parts.size(); ++p)
     if (looks_[0].parts[p].vertex.space != static_cast<int>(p)) return;
   looks_on_the_way_ = true;
-  for (RowIncrement& increment : increments_)
-    for (std::size_t p = 0; p < looks_[0].parts.size(); ++p) increment.look.weights[p] = looks_[0].parts[p].weight;
+  for (RowIncrement& rows : own_.increments)
+    for (std::size_t p = 0; p < looks_[0].parts.size(); ++p) rows.look.weights[p] = looks_[0].parts[p].weight;
 }
 
 double RowEquations::least_weight() const {
@@ -99,7 +99,7 @@ double RowEquations::gain() {
 void RowEquations::make_row_the_candidate() {
   candidate_.hold_whole();
   for (int a = 0; a < d_; ++a)
-    std::copy_n(increments_[static_cast<std::size_t>(a)].y, layout_.doubles(), candidate_.row(a));
+    std::copy_n(increment(a).y, layout_.doubles(), candidate_.row(a));
 }
 
 namespace {
@@ -131,7 +131,7 @@ double RowEquations::largest_change(const std::vector<Argument>& looks, PackRang
   Pack largest(0.0);
   for (const Argument& look : looks)
     for (int a = 0; a < d_; ++a) {
-      const double *y = increments_[static_cast<std::size_t>(a)].y, *z = candidate_.row(a);
+      const double *y = increment(a).y, *z = candidate_.row(a);
       switch (look.parts.size()) {
         case 1:
           largest = max_or_nan(largest_difference<1>(layout_, packs, look, y, z), largest);

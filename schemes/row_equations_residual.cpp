@@ -29,9 +29,9 @@ double RowEquations::residual(std::int64_t n) {
 
 void RowEquations::measure_sums(LargestTerms& all) {
   find_rows();
-  take_own_bases();
+  own_rows();
   for (int a = 0; a < d_ && !increments_have_halos_; ++a)
-    for (const int base : {v_new_base_, v_base_}) layout_.fill_halo(bases_[static_cast<std::size_t>(base + a)]);
+    for (const int first : {v_new_base_, v_base_}) layout_.fill_halo(base(first + a));
   // A step goes on from the outputs of its last iterate: what is taken here from the accepted row goes elsewhere, or a
   // run would depend on when it was looked at.
   if (!scratch_.rows() && residual_rows() > 0) scratch_ = RowBuffer(layout_, residual_rows());

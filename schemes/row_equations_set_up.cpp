@@ -106,9 +106,7 @@ void RowEquations::build_sums() {
   }
   E_base_ = next;
   v_new_base_ = next + d_;
-  y_known_base_ = v_new_base_ + d_;
-  own_bases_.resize(static_cast<std::size_t>(y_known_base_) + 1);
-  bases_ = own_bases_.data();
+  own_.bases.resize(static_cast<std::size_t>(v_new_base_ + d_));
 
   is_stored_ = solver_[1] || !equations_.exceptional.empty();
   for (int a = 0; a < d_; ++a) {
@@ -137,7 +135,7 @@ void RowEquations::build_sums() {
   if (is_one_loop()) return;
   if (solver_[0]->needs_work_rows() || equations_.correction_form) w_ = RowBuffer(layout_, d_);
   for (int a = 0; a < d_; ++a) w_rows_.push_back(w_.rows() ? w_.row(a) : nullptr);
-  increments_.resize(static_cast<std::size_t>(d_));
+  own_.increments.resize(static_cast<std::size_t>(d_));
 }
 
 /// Whether the term's brick is there, for an equation whose row + site has this parity.

@@ -33,11 +33,11 @@ inline double larger_or_nan(double a, double b) { return a > b || a != a ? a : b
 /// The largest |y| of a new row, and the largest |look|. The last parts − 1 packs look beyond the end, which is not
 /// there yet: these are left out.
 struct RowChange {
-  Pack largest = 0.0, change = 0.0;  ///< over each lane's sites
+  double largest = 0, change = 0;
 
   void take(const RowChange& other) {
-    largest = max_or_nan(other.largest, largest);
-    change = max_or_nan(other.change, change);
+    largest = larger_or_nan(other.largest, largest);
+    change = larger_or_nan(other.change, change);
   }
 };
 
@@ -130,7 +130,7 @@ class IncrementPass {
     y.store(y_ + at);
     return y;
   }
-  RowChange result() const { return {largest_ + 0.0 * sum_, change_}; }
+  RowChange result() const { return {max_or_nan(largest_ + 0.0 * sum_), max_or_nan(change_)}; }
 
  private:
   const double *v_before_, *y_before_, *expected_;

@@ -47,9 +47,9 @@ struct Argument {
 /// A row of arguments m = u + known_weight · known, or of pairs (u, known): what is known of them, and u, which stands
 /// in `unknown`, or is extrapolated to there from the rows before it,
 ///
-///     u = Σ_j coefficients[j] (the row j before `newest`),      j = 0 … past_rows − 1,
+///     u = Σ_j coefficients[j] past[j],      j = 0 … past_rows − 1,
 ///
-/// which lie in a ring: each `stride` before the next, and the one before `first` is `last`.
+/// the newest first.
 struct ArgumentRow {
   static constexpr int most_past_rows = 8;  ///< a loop for each: more would take compilers long
   const RowLayout* layout;
@@ -61,8 +61,7 @@ struct ArgumentRow {
   double time_step = 0, space_step = 0;
   int past_rows = 0;  ///< 2 … most_past_rows; none: u stands
   const double* coefficients = nullptr;
-  const double *first = nullptr, *last = nullptr, *newest = nullptr;
-  std::ptrdiff_t stride = 0;  ///< in doubles
+  const double* const* past = nullptr;
 };
 
 /// A step where the matrix is one number: at a row of arguments the output E' is evaluated, and with it

@@ -31,6 +31,17 @@ RowLayout::RowLayout(const Lattice& lattice, int halo, int aligned)
   if (lattice.is_circle()) find_halo_packs();
 }
 
+void RowLayout::fill_halo_turned(double* row, double turn) const {
+  if (!by_packs_) {
+    for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * turn;
+    return;
+  }
+  for (const HaloPack& h : before_)
+    (from_lane_below(either(row, h, far_before_)) + turn * turns_before_).store(row + h.to);
+  for (const HaloPack& h : after_)
+    (from_lane_above(either(row, h, far_after_)) + turn * turns_after_).store(row + h.to);
+}
+
 /// Arc l overlaps the one before it by b_l sites: beside its first pack stands pack M − b_l − 1 of that arc, beside its
 /// last one pack b_{l+1} of the next. Where more than two b_l occur, or arcs are shorter than halos, slots are copied
 /// one by one.

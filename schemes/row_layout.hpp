@@ -48,16 +48,14 @@ class RowLayout {
   /// Fills halo slots from the sites they repeat, adding `turn` for every time round the circle; on an interval the
   /// slots beyond a wall repeat the wall, so that they stay finite.
   void fill_halo(double* row, double turn = 0) const {
-    if (by_packs_) {
-      for (const HaloPack& h : before_)
-        turned(from_lane_below(either(row, h, far_before_)), turn, turns_before_).store(row + h.to);
-      for (const HaloPack& h : after_)
-        turned(from_lane_above(either(row, h, far_after_)), turn, turns_after_).store(row + h.to);
-    } else if (turn == 0) {
-      for (const Copy& c : halo_copies_) row[c.to] = row[c.from];
-    } else {
-      for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * turn;
-    }
+    if (!by_packs_ || turn != 0) fill_halo_turned(row, turn);
+    else fill_halo_before(row), fill_halo_after(row);
+  }
+  /// Of what only sites on one side read, if that side alone can be filled.
+  void fill_halo(double* row, bool before, bool after) const {
+    if (!by_packs_) return fill_halo(row);
+    if (before) fill_halo_before(row);
+    if (after) fill_halo_after(row);
   }
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {
@@ -86,7 +84,13 @@ class RowLayout {
     const Pack near = Pack::load(row + h.near);
     return h.far == h.near ? near : Pack{is_far.v != 0 ? Pack::load(row + h.far).v : near.v};
   }
-  static Pack turned(Pack y, double turn, Pack turns) { return turn == 0 ? y : y + turn * turns; }
+  void fill_halo_before(double* row) const {
+    for (const HaloPack& h : before_) from_lane_below(either(row, h, far_before_)).store(row + h.to);
+  }
+  void fill_halo_after(double* row) const {
+    for (const HaloPack& h : after_) from_lane_above(either(row, h, far_after_)).store(row + h.to);
+  }
+  void fill_halo_turned(double* row, double turn) const;
   void find_halo_packs();
 
   int sites_, packs_, halo_;

@@ -31,6 +31,7 @@ struct RowStepper::Impl {
   RowEquations equations;
   RowSeed seed;
   std::optional<RowTeam> team;
+  bool can_go_in_place = false;
   double gain = 0, weight = 1;  ///< of the equations, for contraction
   double contracted = -1;       ///< by which one more iteration's change would be less; negative: not known yet
 
@@ -62,6 +63,7 @@ struct RowStepper::Impl {
     const bool goes_in_one = equations.is_streamed() || equations.goes_straight();
     if (equations.reads_unknown_row() && !(iterative && goes_in_one)) equations.candidate().hold_whole();
     if (iterative) gain = equations.gain(), weight = equations.least_weight();
+    can_go_in_place = iterative && !stiff && equations.can_go_in_place();
     if (o.threads > 1 && equations.is_one_loop())
       team.emplace(o.threads), squares_of_parts.resize(static_cast<std::size_t>(o.threads));
   }
@@ -110,7 +112,7 @@ struct RowStepper::Impl {
       }
       value = follow_root();
     }
-    if (iterative && !stiff && iterations == 1 && equations.can_go_in_place()) keep();
+    if (can_go_in_place && iterations == 1) keep();
     else kept_row = -1;
     return value;
   }
@@ -123,7 +125,7 @@ struct RowStepper::Impl {
   [[gnu::noinline]] bool step_in_place(double& value) {
     equations.begin(n, true);
     rows_known = 0;
-    const RowEquations::Advance moved = advance_straight();
+    const RowChange moved = advance_straight();
     const double next_change = contraction_now();
     iterations = 1;
     value = moved.largest;
@@ -228,7 +230,7 @@ struct RowStepper::Impl {
     if (equations.correction_form()) take_increment_of_candidate();
   }
   /// What w corrects.
-  void take_increment_of_candidate() {
+  [[gnu::noinline]] void take_increment_of_candidate() {
     for (int a = 0; a < d; ++a) {
       double* const v = rows.v(n + 1, a);
       const double *y = equations.candidate().row(a), *before = rows.y(n, a);
@@ -260,15 +262,15 @@ struct RowStepper::Impl {
     return change <= weight * enough || (estimates() && next_change * change <= enough);
   }
 
-  [[gnu::noinline]] RowEquations::Advance advance_streamed(int order) {
+  [[gnu::noinline]] RowChange advance_streamed(int order) {
     return equations.advance_streamed(
         [this, order](PackRange packs) { seed.find(n, order, equations.candidate().rows(), packs); });
   }
   /// From a seed of order 1, rows that outgrow the cache.
-  RowEquations::Advance advance_straight() {
+  RowChange advance_straight() {
     return equations.goes_straight() ? equations.advance_straight() : advance_streamed(1);
   }
-  RowEquations::Advance advance(int order) {
+  RowChange advance(int order) {
     const bool first = iterations == 1;
     if (mixture) return first ? equations.advance_extrapolated(order) : equations.advance_again();
     if (equations.is_streamed()) return first ? advance_streamed(order) : equations.advance_streamed({});
@@ -287,7 +289,7 @@ struct RowStepper::Impl {
     bool is_row_before_kept = false;
     while (iterations < options.max_iterations) {
       ++iterations;
-      const RowEquations::Advance moved = advance(order);
+      const RowChange moved = advance(order);
       value = moved.largest;
       const double change = moved.change;
       // A field that overflowed has no root to look for.
@@ -308,8 +310,8 @@ struct RowStepper::Impl {
     return false;
   }
 
-  /// Returns the largest |y| of the row found.
-  double follow_root() {
+  /// Returns the largest |y| of the row found. Out of line, like all that only some steps come to.
+  [[gnu::noinline]] double follow_root() {
     const Window past = rows.window(n + 1 - history, n);
     const NewtonResult result = solve_slab(system, plan, past, options.tolerance, options.max_iterations);
     iterations += result.iterations;
@@ -327,7 +329,7 @@ struct RowStepper::Impl {
     return value;
   }
 
-  [[noreturn]] void report_not_finite() {
+  [[noreturn, gnu::noinline]] void report_not_finite() {
     // Implicit steps spread an overflow over the whole row: it is where the field was largest.
     const std::vector<double> row = rows.row(n + 1), before = rows.row(n);
     const auto fine = [](double x) { return !overflowed(std::abs(x)); };

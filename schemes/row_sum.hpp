@@ -22,11 +22,18 @@ namespace delf {
 class RowSum {
  public:
   /// `row` is an index into the rows that bind() is given; `shift` in sites.
-  void add_difference(int row, int shift, double coefficient) { differences_.push_back({row, shift, coefficient, row}); }
-  void add(int row, int shift, double coefficient) { plain_.push_back({row, shift, coefficient, row}); }
+  void add_difference(int row, int shift, double coefficient) {
+    differences_.insert(shift > 0 ? differences_.begin() : differences_.end(), {row, shift, coefficient, row});
+    find_form();
+  }
+  void add(int row, int shift, double coefficient) {
+    plain_.push_back({row, shift, coefficient, row});
+    find_form();
+  }
   /// Of the row since `before`.
   void add_change(int row, int before, int shift, double coefficient) {
     changes_.push_back({row, shift, coefficient, before, shift});
+    find_form();
   }
   void add_constant(double c) { constant_ += c; }
   /// Multiplies every coefficient.
@@ -35,8 +42,11 @@ class RowSum {
   /// Sums are taken of these rows from here on: a pass reads from the list where they are.
   void bind(const double* const* rows) { rows_ = rows; }
 
-  /// Every second pack, v where v + `phase` is odd, takes the other sum, as bricks do.
-  void take_turns_with(const RowSum& other, int phase) { other_ = &other, phase_ = phase; }
+  /// Every second pack, v where v + `phase` is odd, takes the other sum, as bricks do. That has all its terms.
+  void take_turns_with(const RowSum& other, int phase) {
+    phase_ = phase;
+    if (other_ != &other) other_ = &other, find_form();
+  }
 
   template <class Consume>
   [[gnu::always_inline]] Consume pass(const RowLayout& layout, PackRange packs, Consume consume) const;
@@ -61,10 +71,10 @@ class RowSum {
     return rows_[t.from] + static_cast<std::ptrdiff_t>(t.from_shift) * lanes;
   }
   const RowSum& of(int pack) const { return other_ && (pack + phase_) % 2 != 0 ? *other_ : *this; }
-  /// Differences are those to the sites on either side.
+  /// Differences are those to the sites on either side, the next one first.
   bool are_to_both_sides() const {
     return differences_.size() == 2 && differences_[0].row == differences_[1].row &&
-           differences_[0].shift + differences_[1].shift == 0 && std::abs(differences_[0].shift) == 1;
+           differences_[0].shift == 1 && differences_[1].shift == -1;
   }
   /// Changes are those of one row at a site, or at it and on either side of it.
   bool are_around_site() const {
@@ -83,6 +93,15 @@ class RowSum {
            other.are_around_site() &&
            (changes_.empty() || (changes_[0].row == other.changes_[0].row && changes_[0].from == other.changes_[0].from));
   }
+  /// Of sums that take turns, fewer terms are compiled.
+  static constexpr int most_plain = 8, most_in_turn = 3;
+  /// Found once, not by every pass: a dozen of these questions take as long as a pack.
+  void find_form() {
+    plain_count_ = static_cast<int>(plain_.size());
+    is_counted_ = are_around_site() && (other_ ? plain_count_ <= most_in_turn && are_like(*other_)
+                                               : plain_count_ <= most_plain &&
+                                                     (differences_.empty() || are_to_both_sides()));
+  }
   /// The terms of a counted pass, as a pass keeps them.
   template <int differences, int plain, int changes>
   struct Counted;
@@ -90,21 +109,21 @@ class RowSum {
   template <bool measured, class Consume>
   [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, int changes, class Consume>
-  [[gnu::always_inline]] bool dispatch_counted(const RowLayout&, PackRange, Consume&) const;
+  [[gnu::always_inline]] void dispatch_counted(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, bool in_turn, int differences, int plain, int changes, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, bool in_turn, int differences, int most, int changes, class Consume>
   [[gnu::always_inline]] void counted(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, class Consume>
   [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
-  /// Compiled; of sums that take turns.
-  static constexpr int most_plain = 8, most_in_turn = 3;
 
   std::vector<Term> differences_, plain_, changes_;
   const double* const* rows_ = nullptr;
   double constant_ = 0;
   const RowSum* other_ = nullptr;
   int phase_ = 0;
+  int plain_count_ = 0;
+  bool is_counted_ = true;  ///< there is a compiled pass
 };
 
 /// None or two differences: those to the next pack and to the one before it. Either is then the other's of the pack
@@ -125,8 +144,7 @@ struct RowSum::Counted {
       asm("" : "+r"(row[i]));
     }
     if constexpr (differences > 0) {
-      const std::size_t next = sum.differences_[0].shift > 0 ? 0 : 1;
-      of_next = sum.differences_[next].coefficient, of_last = sum.differences_[1 - next].coefficient;
+      of_next = sum.differences_[0].coefficient, of_last = sum.differences_[1].coefficient;
     }
     for (int i = 0; i < changes; ++i) {
       const Term& t = sum.changes_[static_cast<std::size_t>(i)];
@@ -139,7 +157,7 @@ struct RowSum::Counted {
 template <bool measured, bool in_turn, int differences, int plain, int changes, class Consume>
 inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
   using Terms = Counted<differences, plain, changes>;
-  const Terms first(of(packs.first)), second(in_turn ? of(packs.first + 1) : *this);
+  const Terms first(in_turn ? of(packs.first) : *this);
   std::ptrdiff_t at = layout.at(packs.first);
   const std::ptrdiff_t end = layout.at(packs.last);
   const double* const here = differences > 0 ? rows_[differences_[0].row] : nullptr;
@@ -178,6 +196,7 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
     at += lanes;
   };
   if constexpr (in_turn) {
+    const Terms second(of(packs.first + 1));
     while (at + lanes < end) take(first), take(second);
     if (at < end) take(first);
   } else {
@@ -209,35 +228,30 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
 template <bool measured, bool in_turn, int differences, int most, int changes, class Consume>
 inline void RowSum::counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
   [&]<int... plain>(std::integer_sequence<int, plain...>) __attribute__((always_inline)) {
-    const int count = static_cast<int>(plain_.size());
-    ((count == plain ? counted_pass<measured, in_turn, differences, plain, changes>(layout, packs, consume) : void()),
-     ...);
+    const auto done = [&]<int count>() __attribute__((always_inline)) {
+      if (plain_count_ != count) return false;
+      counted_pass<measured, in_turn, differences, count, changes>(layout, packs, consume);
+      return true;
+    };
+    (void)(done.template operator()<plain>() || ...);
   }
   (std::make_integer_sequence<int, most + 1>{});
 }
-/// False where the terms are not of the kinds that are compiled: nothing has been done then.
 template <bool measured, int changes, class Consume>
-inline bool RowSum::dispatch_counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  const int count = static_cast<int>(plain_.size());
-  if (other_) {
-    if (count > most_in_turn || !are_like(*other_)) return false;
-    counted<measured, true, 2, most_in_turn, changes>(layout, packs, consume);
-    return true;
-  }
-  if (count > most_plain || !(differences_.empty() || are_to_both_sides())) return false;
-  if (differences_.empty()) counted<measured, false, 0, most_plain, changes>(layout, packs, consume);
+inline void RowSum::dispatch_counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
+  if (other_) counted<measured, true, 2, most_in_turn, changes>(layout, packs, consume);
+  else if (differences_.empty()) counted<measured, false, 0, most_plain, changes>(layout, packs, consume);
   else counted<measured, false, 2, most_plain, changes>(layout, packs, consume);
-  return true;
 }
 template <bool measured, class Consume>
 inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  bool done = false;
-  if (changes_.empty()) done = dispatch_counted<measured, 0>(layout, packs, consume);
-  if constexpr (measured)  // changes are the unknown row's, which steps do not ask for
-    if (!changes_.empty() && are_around_site())
-      done = changes_.size() == 1 ? dispatch_counted<measured, 1>(layout, packs, consume)
-                                  : dispatch_counted<measured, 3>(layout, packs, consume);
-  if (!done) general_pass<measured>(layout, packs, consume);
+  // Changes are the unknown row's, which steps do not ask for.
+  if (!is_counted_ || (!measured && !changes_.empty())) return general_pass<measured>(layout, packs, consume);
+  if constexpr (measured) {
+    if (changes_.size() == 1) return dispatch_counted<measured, 1>(layout, packs, consume);
+    if (changes_.size() == 3) return dispatch_counted<measured, 3>(layout, packs, consume);
+  }
+  dispatch_counted<measured, 0>(layout, packs, consume);
 }
 
 template <class Consume>

@@ -194,7 +194,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   template <class Rows>
   MixtureSlope<D> slope(const Rows& rows, double known_weight) const {
     constexpr auto& point = map.quadrature[distinct.representative[0]];
-    return {lagrangian_.density, known_weight, Pack(rows.t + time_offset(map.shape, point) * rows.time_step),
+    return {lagrangian_.density, known_weight, rows.t + time_offset(map.shape, point) * rows.time_step,
             rows.positions, space_offset(map.shape, point) * rows.space_step};
   }
   MixtureSlope<D> slope(const ArgumentRow& row) const { return slope(row, row.known_weight); }

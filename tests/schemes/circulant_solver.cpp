@@ -77,8 +77,8 @@ struct Advance {
       right_sides.push_back(&sum);
     }
     const RowChange all = solver.advance(layout, d, right_sides.data(), rows.data(), w.data());
-    largest = max_or_nan(all.largest);
-    change = max_or_nan(all.change);
+    largest = all.largest;
+    change = all.change;
   }
   /// The largest look by hand, at all packs whose neighbours are none of the halo.
   double largest_look(const RowLook& at_what) const {
