@@ -83,6 +83,9 @@ void RowEquations::find_rows_at(std::int64_t place) {
   y_slots_.at(place);
   v_slots_.at(place);
   for (Outputs& o : outputs_) o.slots.at(place);
+  for (int row = 1; row >= 1 - history_; --row)
+    for (int a = 0; a < d_; ++a)
+      own_.values[static_cast<std::size_t>((1 - row) * d_ + a)] = rows_.y_at(y_slots_(-row), a);
   for (int a = 0; a < d_; ++a) {
     base(y_base_ + a) = rows_.y_at(y_slots_(0), a);
     base(E_base_ + a) = rows_.y_at(y_slots_(-1), a);
@@ -152,14 +155,13 @@ SlabRows RowEquations::slab_of(const double* const* values, std::int64_t row) co
 void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& given,
                             const RowsAhead& ahead) {
   const PackRange packs = packs_of(o, age, given);
-  y_slots_.at(rows_.place(n_));
   const int newest = o.reads_unknown_row(age) ? 1 : 0;
   for (int t = o.first_time; t <= o.last_time; ++t)
     for (int a = 0; a < d_; ++a) {
       const int row = std::clamp(age + t, 1 - history_, newest);
       slab_rows_[static_cast<std::size_t>((t - o.first_time) * d_ + a)] =
           row == 1 && which == At::candidate ? candidate_.row(a)
-                                             : rows_.y_at(y_slots_(-row), a);
+                                             : here_->values[static_cast<std::size_t>((1 - row) * d_ + a)];
     }
   SlabRows slab = slab_of(slab_rows_.data(), n_ + age);
   slab.ahead = ahead;
@@ -370,7 +372,7 @@ double RowEquations::value_at(const SiteEquation& special, bool unknown_too, dou
   double value = equation.constant + sign * equation.constant_alternating;
   for (const Term& t : equation.terms) {
     if (t.source == Source::unknown && !unknown_too) continue;
-    const double* row = base(index_of(t));
+    const double* row = base(index_of(t, unknown_too));
     const int beside = layout_.slot(std::clamp(special.site + t.shift, 0, layout_.sites() - 1));
     const double less = t.source == Source::difference ? row[own]
                         : t.source == Source::unknown
@@ -413,7 +415,7 @@ std::size_t RowEquations::output_bytes() const {
 std::size_t RowEquations::matrix_bytes() const { return solver_[0]->bytes() + (solver_[1] ? solver_[1]->bytes() : 0); }
 std::size_t RowEquations::work_bytes() const {
   std::size_t total = layout_.bytes();
-  total += places_.size() * (sizeof(StepRows) + own_.bases.size() * sizeof(double*) +
+  total += places_.size() * (sizeof(StepRows) + (own_.bases.size() + own_.values.size()) * sizeof(double*) +
                              own_.increments.size() * sizeof(RowIncrement));
   for (const RowBuffer* b : {&w_, &scratch_, &positions_, &edges_}) total += b->bytes();
   return total + window_bytes() + candidate_.bytes() + (arguments_ ? arguments_->bytes() : 0);

@@ -108,16 +108,20 @@ class RowEquations {
     int oldest = 0, newest = -1;        ///< anchors' rows that equations use, from n
     int first_time = 0, last_time = 0;  ///< of the pattern
     int lowest = 0, highest = 0;        ///< shifts at which equations read
-    int base = 0;                       ///< where its rows stand among the bases
+    int base = 0, measured_base = 0;    ///< where its rows stand among the bases; and those that residual() finds
     int held = 0;                       ///< rows of the ring
 
     int rows() const { return newest - oldest + 1; }
     bool reads_unknown_row(int age) const { return age + kernel->outputs_read_until() >= 1; }
+    /// The first age whose outputs do.
+    int oldest_measured() const { return std::max(oldest, 1 - kernel->outputs_read_until()); }
+    int measured_rows() const { return std::max(0, newest + 1 - oldest_measured()) * kernel->outputs(); }
   };
 
   /// Where all lies that a step from one place of the rings reads and makes.
   struct StepRows {
-    std::vector<double*> bases;  ///< y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E, d rows each
+    std::vector<double*> bases;   ///< y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E, d rows each
+    std::vector<double*> values;  ///< y_{n+1}, y_n, y_{n−1}, …, d rows each
     std::vector<RowIncrement> increments;
     double *known_values = nullptr, *output = nullptr;  ///< of arguments: y of their known_row, and what they give
   };
@@ -145,6 +149,7 @@ class RowEquations {
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
   int residual_rows() const;
+  void make_room_for_residual();
   void measure_sums(LargestTerms&);
   void measure_loop(LargestTerms*);  ///< one for each component, times right_side_scale()
   LargestTerms measure_loop(int a, const PackRange&, const double* slopes, LargestTerms) const;
@@ -163,8 +168,9 @@ class RowEquations {
   const double* base(int at) const { return here_->bases[static_cast<std::size_t>(at)]; }
   RowIncrement& increment(int a) { return here_->increments[static_cast<std::size_t>(a)]; }
   const RowIncrement& increment(int a) const { return here_->increments[static_cast<std::size_t>(a)]; }
-  int index_of(const Term&) const;
-  void add_term(RowSum&, const Term&, double coefficient) const;
+  /// Of a sum that is measured, with the outputs that residual() finds.
+  int index_of(const Term&, bool measured) const;
+  void add_term(RowSum&, const Term&, double coefficient, bool measured) const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
   PackRange where_read(const Outputs&) const;
   using RowsAhead = decltype(SlabRows::ahead);
@@ -184,6 +190,10 @@ class RowEquations {
   /// out_c of stencils anchored `age` rows after row n, where sums read it.
   double*& output(const Outputs& o, int age, int c = 0) {
     return base(o.base + (age - o.oldest) * o.kernel->outputs() + c);
+  }
+  /// The same as residual() finds it.
+  double*& measured_output(const Outputs& o, int age, int c = 0) {
+    return base(o.measured_base + (age - o.oldest_measured()) * o.kernel->outputs() + c);
   }
   /// Of the row before; null where equations read no such.
   double* old_output() { return outputs_[0].rows() > 1 ? output(outputs_[0], outputs_[0].newest - 1) : nullptr; }
@@ -246,6 +256,7 @@ class RowEquations {
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;
   std::vector<const double*> slab_rows_;
+  bool measures_w_beside_ = false;     ///< residual() reads increments at other sites
   bool increments_have_halos_ = true;  ///< or else who looks beyond the ends of arcs fills them: residual()
   bool is_streamed_ = false;
   bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row

@@ -27,21 +27,30 @@ double RowEquations::residual(std::int64_t n) {
   return size != 0 ? sum / size : 0;
 }
 
+/// A step goes on from the outputs of its last iterate: what is found of the accepted row goes elsewhere, or a run would
+/// depend on when it was looked at.
+void RowEquations::make_room_for_residual() {
+  if (scratch_.rows() || residual_rows() == 0) return;
+  scratch_ = RowBuffer(layout_, residual_rows());
+  const auto put = [this](StepRows& rows) {
+    int next = equations_.exceptional.empty() ? 0 : 2 * d_;
+    for (const Outputs& o : outputs_)
+      for (int r = 0; r < o.measured_rows(); ++r, ++next)
+        rows.bases[static_cast<std::size_t>(o.measured_base + r)] = scratch_.row(next);
+  };
+  put(own_);
+  std::ranges::for_each(places_, put);
+}
+
 void RowEquations::measure_sums(LargestTerms& all) {
+  if (!scratch_.rows()) make_room_for_residual();
   find_rows();
-  own_rows();
-  for (int a = 0; a < d_ && !increments_have_halos_; ++a)
-    for (const int first : {v_new_base_, v_base_}) layout_.fill_halo(base(first + a));
-  // A step goes on from the outputs of its last iterate: what is taken here from the accepted row goes elsewhere, or a
-  // run would depend on when it was looked at.
-  if (!scratch_.rows() && residual_rows() > 0) scratch_ = RowBuffer(layout_, residual_rows());
-  int next = equations_.exceptional.empty() ? 0 : 2 * d_;
+  if (measures_w_beside_ && !increments_have_halos_)
+    for (const int first : {v_new_base_, v_base_}) layout_.fill_halo(base(first));  // of one component
   for (const Outputs& o : outputs_)
-    for (int age = o.oldest; age <= o.newest; ++age) {
-      if (!o.reads_unknown_row(age)) continue;
-      for (int c = 0; c < o.kernel->outputs(); ++c, ++next)
-        output(o, age, c) = slab_out_[static_cast<std::size_t>(c)] = scratch_.row(next);
-      evaluate(o, age, slab_out_.data(), At::row, where_read(o));
+    for (int age = o.oldest_measured(); age <= o.newest; ++age) {
+      double* const* const out = &measured_output(o, age);
+      evaluate(o, age, out, At::row, where_read(o));
     }
 
   bind(measured_);
@@ -73,8 +82,7 @@ void RowEquations::measure_sums(LargestTerms& all) {
 int RowEquations::residual_rows() const {
   int rows = equations_.exceptional.empty() ? 0 : 2 * d_;
   for (const Outputs& o : outputs_)
-    for (int age = o.oldest; age <= o.newest; ++age)
-      if (o.reads_unknown_row(age) && !is_one_loop()) rows += o.kernel->outputs();
+    if (!is_one_loop()) rows += o.measured_rows();
   return rows;
 }
 

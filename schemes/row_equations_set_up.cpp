@@ -96,6 +96,7 @@ void RowEquations::build_sums() {
   };
   terms_of([&](const Term& t) {
     if (t.source == Source::increment) ages_ = std::max(ages_, t.age + 1);
+    if (t.source == Source::unknown && t.shift != 0) measures_w_beside_ = true;
   });
   y_base_ = 0;
   v_base_ = d_;
@@ -106,7 +107,13 @@ void RowEquations::build_sums() {
   }
   E_base_ = next;
   v_new_base_ = next + d_;
-  own_.bases.resize(static_cast<std::size_t>(v_new_base_ + d_));
+  next = v_new_base_ + d_;
+  for (Outputs& o : outputs_) {
+    o.measured_base = next;
+    next += o.measured_rows();
+  }
+  own_.bases.resize(static_cast<std::size_t>(next));
+  own_.values.resize(static_cast<std::size_t>((history_ + 1) * d_));
 
   is_stored_ = solver_[1] || !equations_.exceptional.empty();
   for (int a = 0; a < d_; ++a) {
@@ -117,8 +124,8 @@ void RowEquations::build_sums() {
       for (const Term& t : equation.terms) {
         if (bricks_ && !brick_exists(t, equation.shift, parity)) continue;
         const double coefficient = t.coefficient + sign * t.alternating;
-        add_term(all, t, coefficient);
-        if (t.source != Source::unknown) add_term(known, t, coefficient);
+        add_term(all, t, coefficient, true);
+        if (t.source != Source::unknown) add_term(known, t, coefficient, false);
       }
       for (RowSum* sum : {&all, &known}) sum->add_constant(equation.constant + sign * equation.constant_alternating);
       known.scale(is_stored_ ? -1 : -solver_[0]->right_side_scale(a));
@@ -145,7 +152,7 @@ bool RowEquations::brick_exists(const Term& t, int equation_shift, int parity) c
   return !bricks || (parity + t.age - 1 + equation_shift + t.shift) % 2 == 0;
 }
 
-int RowEquations::index_of(const Term& t) const {
+int RowEquations::index_of(const Term& t, bool measured) const {
   switch (t.source) {
     case Source::difference:
     case Source::value:
@@ -158,14 +165,17 @@ int RowEquations::index_of(const Term& t) const {
       break;
   }
   const Outputs& o = outputs_[static_cast<std::size_t>(t.family)];
+  if (measured && o.reads_unknown_row(t.age))
+    return o.measured_base + (t.age - o.oldest_measured()) * o.kernel->outputs() + t.output;
   return o.base + (t.age - o.oldest) * o.kernel->outputs() + t.output;
 }
 
-void RowEquations::add_term(RowSum& sum, const Term& t, double coefficient) const {
+void RowEquations::add_term(RowSum& sum, const Term& t, double coefficient, bool measured) const {
   if (coefficient == 0) return;
-  if (t.source == Source::unknown) sum.add_change(index_of(t), v_base_ + t.component, t.shift, coefficient);  // w
-  else if (t.source == Source::difference) sum.add_difference(index_of(t), t.shift, coefficient);
-  else sum.add(index_of(t), t.shift, coefficient);
+  const int row = index_of(t, measured);
+  if (t.source == Source::unknown) sum.add_change(row, v_base_ + t.component, t.shift, coefficient);  // w
+  else if (t.source == Source::difference) sum.add_difference(row, t.shift, coefficient);
+  else sum.add(row, t.shift, coefficient);
 }
 
 }  // namespace delf

@@ -445,10 +445,14 @@ const double* RowStepper::row_data(int back, int a) const {
   impl_->require_rows(back + 1);
   return impl_->rows.y(impl_->n - back, a);
 }
-const double* RowStepper::newest_increment(int a) const {
-  double* const v = impl_->rows.v(impl_->n, a);
-  impl_->layout().fill_halo(v);  // a loop leaves it
-  return v;
+void RowStepper::newest_pair(const double** rows) const {
+  Impl& s = *impl_;
+  s.require_rows(2);
+  for (int a = 0; a < s.d; ++a) {
+    double* const v = s.rows.v(s.n, a);
+    s.layout().fill_halo(v, false, true);  // a loop leaves it
+    rows[a] = s.rows.y(s.n - 1, a), rows[s.d + a] = v;
+  }
 }
 std::string RowStepper::solver_name() const { return impl_->equations.solver().name(); }
 bool RowStepper::iterates() const { return impl_->iterative; }

@@ -32,7 +32,7 @@ class RowStepper final : public StepMethod {
 
   const RowLayout* layout() const override;
   const double* row_data(int back, int component) const override;
-  const double* newest_increment(int component) const override;
+  void newest_pair(const double** rows) const override;
 
   bool iterates() const override;
   std::string solver_name() const override;

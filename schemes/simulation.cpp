@@ -66,6 +66,7 @@ struct Simulation::Impl {
   int whole_packs = 0;  ///< whose weights are all 1
   std::vector<const double*> monitored;
   int winding;
+  bool has_multipliers, moves;  ///< it has constraints; its mesh is a field too
   std::vector<std::string> conserved_names;
 
   Impl(const Problem& p, std::unique_ptr<FieldTheory> t, SchemeParts parts)
@@ -75,7 +76,9 @@ struct Simulation::Impl {
         evolution(make_evolution(std::move(parts), p)),
         stepper(evolution.stepper()),
         system(evolution.system()),
-        winding(p.winding) {
+        winding(p.winding),
+        has_multipliers(std::ranges::count(system.all_components(), Role::multiplier, &Component::role) > 0),
+        moves(system.fields() != theory->components()) {
     // Stencils of more than two rows would need rows that are no longer held.
     for (const LinearSymmetry& s : symmetries)
       if (system.height() <= 1) conserved_names.push_back(s.name);
@@ -85,8 +88,7 @@ struct Simulation::Impl {
 
   /// max |G| over the constraints at the newest row.
   double constraint() const {
-    const bool any = std::ranges::any_of(system.all_components(), [](const Component& c) { return c.role == Role::multiplier; });
-    if (!any || stepper.newest() < 2) return 0;
+    if (!has_multipliers || stepper.newest() < 2) return 0;
     double worst = 0;
     std::vector<LatticeSystem::Value> values;
     system.equations(stepper.window(3), stepper.newest(), values);
@@ -135,8 +137,39 @@ struct Simulation::Impl {
     return bytes(own, 2 * theory->components()) + own.bytes();
   }
 
-  void prepare_monitors() {
-    if (cell_weights.rows()) return;
+  /// What monitors look at, where steps do not go by rows.
+  void copy_newest_pair() {
+    const int C = system.components(), d = theory->components();
+    const std::vector<double> newest = stepper.row(0), before = stepper.row(1);
+    std::vector<double> value(static_cast<std::size_t>(problem.lattice.sites())), step(value.size());
+    for (int a = 0; a < d; ++a) {
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        const std::size_t at = i * static_cast<std::size_t>(C) + static_cast<std::size_t>(a);
+        value[i] = before[at];
+        step[i] = newest[at] - before[at];
+      }
+      own_layout->scatter(value, last_rows.row(a), 2 * std::numbers::pi * winding);
+      own_layout->scatter(step, last_rows.row(d + a));
+    }
+    for (int r = 0; r < 2 * d; ++r) monitored[static_cast<std::size_t>(r)] = last_rows.row(r);
+  }
+  double charge() const {
+    if (problem.lattice.is_circle()) return winding;
+    const int rows = own_layout ? theory->components() : system.components();
+    const double *const y = monitored[0], *const step = monitored[static_cast<std::size_t>(rows)];
+    const auto at = [&](int i) { return y[layout().slot(i)] + step[layout().slot(i)]; };
+    return (at(problem.lattice.sites() - 1) - at(0)) / (2 * std::numbers::pi);
+  }
+  void find_conserved(Monitors& monitors) const {
+    const Window window = stepper.window(2);
+    for (const LinearSymmetry& symmetry : symmetries) {
+      double scale = 0;
+      monitors.conserved.push_back(noether_charge(system, window, stepper.newest(), symmetry, &scale));
+      monitors.conserved_scale.push_back(scale);
+    }
+  }
+
+  [[gnu::noinline]] void prepare_monitors() {
     if (!stepper.layout()) own_layout = std::make_unique<RowLayout>(problem.lattice, 1);
     const RowLayout& layout = this->layout();
     cell_weights = RowBuffer(layout, 1);
@@ -145,7 +178,7 @@ struct Simulation::Impl {
     for (int i = 0; i < cells; ++i) cell_weights.row(0)[layout.slot(i)] = 1;
     while (whole_packs < layout.packs() && sum(Pack::load(cell_weights.row(0) + layout.at(whole_packs))) == lanes)
       ++whole_packs;
-    monitored.resize(static_cast<std::size_t>(2 * d));
+    monitored.resize(static_cast<std::size_t>(2 * std::max(d, system.components())));
     if (!theory->is_placed()) return;
     positions = RowBuffer(layout, 1);
     std::vector<double> x(static_cast<std::size_t>(N));
@@ -231,50 +264,19 @@ const std::vector<std::string>& Simulation::conserved_names() const { return imp
 
 Simulation::Monitors Simulation::monitors() const {
   Impl& s = *impl_;
-  s.prepare_monitors();
+  if (!s.cell_weights.rows()) s.prepare_monitors();
+  if (s.own_layout) s.copy_newest_pair();
+  else s.stepper.newest_pair(s.monitored.data());
   const RowLayout& layout = s.layout();
-  const int d = s.theory->components(), last = s.problem.lattice.sites() - 1;
-  const auto rows = [&](int r) -> const double*& { return s.monitored[static_cast<std::size_t>(r)]; };
-  if (s.stepper.layout()) {
-    for (int a = 0; a < d; ++a) rows(a) = s.stepper.row_data(1, a), rows(d + a) = s.stepper.newest_increment(a);
-  } else {
-    const int C = s.system.components();
-    const std::vector<double> newest = s.stepper.row(0), before = s.stepper.row(1);
-    std::vector<double> value(static_cast<std::size_t>(last + 1)), step(value.size());
-    for (int a = 0; a < d; ++a) {
-      for (std::size_t i = 0; i < value.size(); ++i) {
-        const std::size_t at = i * static_cast<std::size_t>(C) + static_cast<std::size_t>(a);
-        value[i] = before[at];
-        step[i] = newest[at] - before[at];
-      }
-      layout.scatter(value, s.last_rows.row(a), 2 * std::numbers::pi * s.winding);
-      layout.scatter(step, s.last_rows.row(d + a));
-    }
-    for (int r = 0; r < 2 * d; ++r) rows(r) = s.last_rows.row(r);
-  }
   const double h = s.problem.time_step;
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  const bool moving = s.system.fields() != d;
   const EnergyMomentum sums =
-      moving ? EnergyMomentum{none, none}
+      s.moves ? EnergyMomentum{none, none}
              : s.theory->energy_momentum({&layout, s.monitored.data(), s.positions.rows() ? s.positions.row(0) : nullptr,
                                  static_cast<double>(newest() - 1) * h, h, s.problem.lattice.space_step()},
                                 {s.cell_weights.row(0), s.whole_packs});
-  double charge = s.winding;
-  if (!s.problem.lattice.is_circle()) {
-    const double *const y = rows(0), *const step = rows(d);
-    const auto at = [&](int i) { return y[layout.slot(i)] + step[layout.slot(i)]; };
-    charge = (at(last) - at(0)) / (2 * std::numbers::pi);
-  }
-  Monitors monitors{sums.energy, sums.momentum, charge, s.constraint(), {}, {}};
-  if (!s.conserved_names.empty()) {
-    const Window window = s.stepper.window(2);
-    for (const LinearSymmetry& symmetry : s.symmetries) {
-      double scale = 0;
-      monitors.conserved.push_back(noether_charge(s.system, window, newest(), symmetry, &scale));
-      monitors.conserved_scale.push_back(scale);
-    }
-  }
+  Monitors monitors{sums.energy, sums.momentum, s.charge(), s.constraint(), {}, {}};
+  if (!s.conserved_names.empty()) s.find_conserved(monitors);
   return monitors;
 }
 

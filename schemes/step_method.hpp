@@ -53,7 +53,7 @@ class StepMethod {
 
   virtual const RowLayout* layout() const { return nullptr; }
   virtual const double* row_data(int, int) const { return nullptr; }
-  virtual const double* newest_increment(int) const { return nullptr; }
+  virtual void newest_pair(const double** /*rows*/) const {}
 
   virtual bool iterates() const = 0;
   virtual std::string solver_name() const = 0;

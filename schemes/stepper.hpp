@@ -53,10 +53,12 @@ class Stepper {
   /// Of the last step: evaluations of the nonlinear part; 0 if it was solved at once.
   int iterations() const { return method_->iterations(); }
 
-  /// Rows in the lanes' layout with halos, and v of the newest; null when stepped slab by slab.
+  /// Rows in the lanes' layout with halos; null when stepped slab by slab.
   const RowLayout* layout() const { return method_->layout(); }
   const double* row_data(int back, int component) const { return method_->row_data(back, component); }
-  const double* newest_increment(int component) const { return method_->newest_increment(component); }
+  /// Of each component the row before the newest, and then of each the increment from there to the newest, with what
+  /// comes after its end.
+  void newest_pair(const double** rows) const { method_->newest_pair(rows); }
 
   bool iterates() const { return method_->iterates(); }  ///< a step is not one solve
   std::string solver_name() const { return method_->solver_name(); }

@@ -44,8 +44,10 @@ Row difference(const Row& a, const Row& b) {
 }
 
 /// Adds to the newest increment at one site, and to all copies of it.
-void plant(const Stepper& stepper, int site, int a, double error) {
-  double* const v = const_cast<double*>(stepper.newest_increment(a));
+void plant(const Stepper& stepper, int d, int site, int a, double error) {
+  std::vector<const double*> pair(static_cast<std::size_t>(2 * d));
+  stepper.newest_pair(pair.data());
+  double* const v = const_cast<double*>(pair[static_cast<std::size_t>(d + a)]);
   for (int slot : stepper.layout()->slots_of(site)) v[slot] += error;
 }
 
@@ -65,13 +67,13 @@ void compare(const D& density, const std::vector<double>& mass, const auto& slop
         CHECK(stepper.residual() < 4e-15);
         const Row y = stepper.row(1), v_before = difference(y, stepper.row(2));
         Row v = difference(stepper.row(0), y);
-        plant(stepper, site, a, 1e-3);
+        plant(stepper, d, site, a, 1e-3);
         v[static_cast<std::size_t>(site * d + a)] += 1e-3;
         const auto slope = [&](int i, int b) { return slope_at(&y[static_cast<std::size_t>(i * d)], b); };
         const double found = stepper.residual(), expected = by_hand(mass, slope, y, v, v_before);
         CHECK(found > 1e-6);
         CHECK(std::abs(found - expected) < 1e-9 * expected);
-        plant(stepper, site, a, std::numeric_limits<double>::quiet_NaN());
+        plant(stepper, d, site, a, std::numeric_limits<double>::quiet_NaN());
         CHECK(std::isnan(stepper.residual()));
       }
 }
