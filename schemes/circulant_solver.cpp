@@ -163,16 +163,17 @@ RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* r
 class CirculantSolver::Stream final : public RowStream {
  public:
   Stream(const CirculantSolver& solver, const RowSum& right_side, const RowIncrement& rows)
-      : solver_(solver), right_side_(right_side), increment_(rows) {}
+      : solver_(solver), right_side_(right_side), rows_(rows) {}
   PackRange last_packs() const override;
   void begin(double* u) override;
-  int advance(int end, double* u) override;
-  double largest() const override { return increment_.result().largest; }
+  int advance(int end, double* u, const double* expected) override;
+  RowChange result() const override { return all_; }
 
  private:
   const CirculantSolver& solver_;
   const RowSum& right_side_;
-  IncrementPass<0, Order::descending, Look::row> increment_;
+  RowIncrement rows_;
+  RowChange all_;
   Pack last_ = 0.0, sums_ = 0.0, after_ = 0.0;
   int forward_ = 0, done_ = 0;
 };
@@ -195,7 +196,7 @@ void CirculantSolver::Stream::begin(double* u) {
   last_ = solver_.entering(u, Pack(0.0)).u;
 }
 
-int CirculantSolver::Stream::advance(int end, double* u) {
+int CirculantSolver::Stream::advance(int end, double* u, const double* expected) {
   const RowLayout& layout = *solver_.layout_;
   const int near = solver_.near_, packs = layout.packs();
   SummedRecurrence summed{{solver_.q_, u, last_}, solver_.backward_.row(0), sums_};
@@ -215,14 +216,24 @@ int CirculantSolver::Stream::advance(int end, double* u) {
   if (ready == done_) return done_;
   Pack x = end == packs ? after_ : Pack(0.0);
   const double q = solver_.q_;
-  int v = end - 1;
-  for (; v >= ready; --v) x = Pack::load(u + layout.at(v)) + q * x;
-  auto increment = increment_;
-  for (; v >= done_; --v) {
-    x = Pack::load(u + layout.at(v)) + q * x;
-    increment(layout.at(v), x);
-  }
-  increment_ = increment;
+  for (int v = end - 1; v >= ready; --v) x = Pack::load(u + layout.at(v)) + q * x;
+  rows_.look.expected = expected;
+  const std::ptrdiff_t last = layout.at(done_);
+  // w is this function's own: captured by reference it would go through memory from pack to pack.
+  const auto finish = [&layout, u, x, q, ready, last](auto pass) __attribute__((always_inline)) {
+    Pack w = x;
+    std::ptrdiff_t at = layout.at(ready - 1);
+    for (int unseen = pass.packs_unseen; unseen > 0 && at >= last; --unseen, at -= lanes) {
+      w = Pack::load(u + at) + q * w;
+      pass.unseen(at, w);
+    }
+    for (; at >= last; at -= lanes) {
+      w = Pack::load(u + at) + q * w;
+      pass(at, w);
+    }
+    return pass.result();
+  };
+  all_.take(with_increment_pass<Order::descending>(rows_, finish));
   return done_ = ready;
 }
 

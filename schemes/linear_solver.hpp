@@ -23,9 +23,10 @@ class RowStream {
   virtual PackRange last_packs() const = 0;
   virtual void begin(double* work) = 0;
   /// The right side is ready up to pack `end`. Returns up to where the new row is done: `work` has room from there
-  /// on, and holds what was put there.
-  virtual int advance(int end, double* work) = 0;
-  virtual double largest() const = 0;
+  /// on, and holds what was put there. What is looked at of the row is held against `expected`.
+  virtual int advance(int end, double* work, const double* expected) = 0;
+  /// Without the last `parts` − 1 packs of each advance(), which look beyond its end.
+  virtual RowChange result() const = 0;
 };
 
 /// A factored matrix over the unknowns of a slab: solves A w = rhs for whole rows, d rows each. In words: `name()`.

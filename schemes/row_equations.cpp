@@ -283,6 +283,8 @@ RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& f
   for (const Argument& look : looks_)
     for (const Argument::Part& part : look.parts) reach = std::max(reach, part.vertex.space);
 
+  RowLook& look = increment(0).look;
+  look.parts = looks_on_the_way_ ? static_cast<int>(looks_[0].parts.size()) : 0;
   const auto stream = solver_[0]->stream(layout_, right_side(0), increment(0));
   const PackRange last = stream->last_packs();
   const int window = window_packs(last);
@@ -333,7 +335,8 @@ RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& f
     evaluated = evaluated_until;
     double* const room = work(done, summed);
     summed = end;
-    done = stream->advance(end, room);
+    const int before = done;
+    done = stream->advance(end, room, candidate_.row(0));
     // Outputs take the place of those that are no longer read.
     const int keep_until = all ? read.last : end + o.lowest;
     for (int c = 0; c < count && in_place_; ++c) {
@@ -342,13 +345,17 @@ RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& f
                 output_places_[static_cast<std::size_t>(c)] + layout_.at(kept));
     }
     kept = keep_until;
-    if (!all && done - reach > changed) {
-      change = larger_or_nan(largest_change(looks_, {changed, done - reach}), change);
-      changed = done - reach;
+    // What is looked at on the way is that from one end of a strip to the next, and not beyond it.
+    const int seen = done - reach;
+    if (seen > (looks_on_the_way_ ? before : changed)) {
+      change = larger_or_nan(largest_change(looks_, {changed, looks_on_the_way_ ? before : seen}), change);
+      changed = seen;
     }
   }
   close_new_row();
-  return {stream->largest(), larger_or_nan(largest_change(looks_, {changed, packs}), change)};
+  RowChange result = stream->result();
+  result.change = larger_or_nan(larger_or_nan(largest_change(looks_, {changed, packs}), change), result.change);
+  return result;
 }
 
 /// The pass over whole rows has left the bulk's equation at these sites: puts their own sums in its place.

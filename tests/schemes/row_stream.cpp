@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <numbers>
 
+#include "schemes/row_equations.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -113,5 +114,43 @@ TEST_CASE("a step in place that would take a second iteration is taken again fro
     CHECK(runs.steps_of_one > 100);
     CHECK(runs.steps_of_more > 100);
     CHECK(same(row_of(runs.other), row_of(runs.looked_at)));
+  }
+}
+
+TEST_CASE("a stream sees every change that the whole row shows, at the ends of its strips too") {
+  for (const std::string scheme : {"rectangle", "rectangle-symmetric", "hexagon"}) {
+    CAPTURE(scheme);
+    const Problem p = problem(scheme);
+    const Evolution evolution = evolution_of(p, scheme, p.lattice, p.time_step);
+    SectionRows rows(evolution.system(), std::max(1, evolution.system().width()), 3, 2, 0);
+    RowEquations equations(evolution.system(), evolution.plan(), rows, 2);
+    REQUIRE(equations.is_streamed());
+    const RowLayout& layout = rows.layout();
+    const std::vector<Row> start = begin(p, 1, 0);
+    for (int n = 0; n < 2; ++n) rows.set_row(n, start[static_cast<std::size_t>(n)]);
+    rows.find_increment(1);
+    equations.begin(1);
+    equations.evaluate_outputs();
+    equations.candidate().hold_whole();
+    Row straight;
+    for (std::size_t i = 0; i < start[0].size(); ++i) straight.push_back(2 * start[1][i] - start[0][i]);
+    std::vector<int> packs{0, 1, 2, 2000, layout.packs() - 3, layout.packs() - 2, layout.packs() - 1};
+    for (int end : {1024, 2048})  // strips are done some packs before their ends
+      for (int pack = end - 190; pack < end + 3; ++pack) packs.push_back(pack);
+    for (int pack : packs) {
+      Row candidate = straight;
+      const int site = layout.start(3) + pack;
+      candidate[static_cast<std::size_t>(site)] += 1e-3;
+      CAPTURE(pack);
+      const auto put = [&] { layout.scatter(candidate, equations.candidate().row(0)); };
+      put();
+      equations.evaluate_unknown_outputs(RowEquations::At::candidate);
+      const RowChange whole = equations.advance(true);
+      put();
+      const RowChange streamed = equations.advance_streamed({});
+      CHECK(whole.change > 1e-4);
+      CHECK(streamed.change == Approx(whole.change).epsilon(1e-9));
+      CHECK(streamed.largest == Approx(whole.largest).epsilon(1e-14));
+    }
   }
 }
