@@ -47,7 +47,8 @@ ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int 
       mixture_(mixture),
       // One more than is read, to see what the highest order would have missed.
       ring_(layout, most_order + 2),
-      slots_(most_order + 2) {
+      slots_(most_order + 2),
+      most_order_(most_order) {
   row_.layout = &layout, row_.known_weight = mixture.known_weight;
   for (int twice = 0; twice < 2; ++twice)
     for (int slot = ring_.rows() - 1; slot >= 0; --slot) all_.push_back(ring_.row(slot));

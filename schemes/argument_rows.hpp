@@ -43,6 +43,10 @@ class ArgumentRows {
   ArgumentRows(const RowLayout&, const Mixture&, int most_order);
 
   const Mixture& mixture() const { return mixture_; }
+  /// Of all rows of arguments: x of each slot's site, if the family is placed, and the steps.
+  void put(const double* positions, double time_step, double space_step) {
+    row_.positions = positions, row_.time_step = time_step, row_.space_step = space_step;
+  }
   /// The step from row n; what follows is about it.
   void begin(std::int64_t n) {
     slots_.at(n + 1);
@@ -52,9 +56,9 @@ class ArgumentRows {
   }
   /// u_{n+1−back}: 0 is the one that is looked for. The oldest one lies where that will.
   double* row(int back) { return newest_first_[back]; }
-  /// u_{n+1} as it stands and what is known, with the row y of known_row; positions, t and steps are the caller's. It is
-  /// the same one in every step.
-  ArgumentRow& argument(const double* y) {
+  /// u_{n+1} as it stands and what is known, with the row y of known_row, for anchors at time t.
+  const ArgumentRow& argument(const double* y, double t) {
+    row_.t = t;
     row_.known = mixture_.is_known_alike ? row_.past[0] : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes;
     row_.past_rows = 0;
     return row_;
@@ -65,8 +69,7 @@ class ArgumentRows {
   ///
   /// From more rows than loops take, which only tolerances near rounding ask for, this is done at once.
   void extrapolate(int order) {
-    const auto highest = std::min(n_, static_cast<std::int64_t>(coefficients_.size()) - 1);
-    order = std::clamp(order, 1, static_cast<int>(highest));
+    order = std::clamp(order, 1, static_cast<int>(std::min<std::int64_t>(n_, most_order_)));
     if (order + 1 > ArgumentRow::most_past_rows) return put_extrapolated(coefficients_[static_cast<std::size_t>(order)]);
     row_.past_rows = order + 1;
     row_.coefficients = coefficients_[static_cast<std::size_t>(order)].data();
@@ -85,6 +88,7 @@ class ArgumentRows {
   std::vector<double*> all_;  ///< the ring's rows from the last to the first, twice: any slot's, and those before it
   double* const* newest_first_ = nullptr;
   std::int64_t n_ = 0;
+  int most_order_;
   ArgumentRow row_{};
   std::vector<std::vector<double>> coefficients_;  ///< by order
 };

@@ -186,7 +186,7 @@ class RowEquations {
   void find_arguments();
   void evaluate_arguments(At);
   const ArgumentRow& argument_row();
-  void place(ArgumentRow&) const;  ///< in time and space
+  double time_of_outputs() const { return static_cast<double>(n_ + outputs_[0].newest) * time_step_; }
   /// out_c of stencils anchored `age` rows after row n, where sums read it.
   double*& output(const Outputs& o, int age, int c = 0) {
     return base(o.base + (age - o.oldest) * o.kernel->outputs() + c);

@@ -9,6 +9,7 @@ namespace delf {
 
 void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   arguments_.emplace(layout_, mixture, most_order);
+  arguments_->put(positions_.rows() ? positions_.row(0) : nullptr, time_step_, space_step_);
   RowLook& look = increment(0).look;
   look.parts = mixture.parts;
   std::ranges::copy(mixture.weights, look.weights);
@@ -103,8 +104,11 @@ RowChange RowEquations::advance_straight() {
   ArgumentRow row{.layout = &layout_,
                   .unknown = nullptr,
                   .known = rows.y_before + static_cast<std::ptrdiff_t>(straight_->known_site) * lanes,
-                  .known_weight = straight_->known_weight};
-  place(row);
+                  .known_weight = straight_->known_weight,
+                  .positions = positions_.rows() ? positions_.row(0) : nullptr,
+                  .t = time_of_outputs(),
+                  .time_step = time_step_,
+                  .space_step = space_step_};
   Pack last(0.0);
   RowChange all = divide(row, newest_output(), &last);
   close_new_row();
@@ -122,14 +126,7 @@ void RowEquations::evaluate_arguments(At at) {
 }
 
 const ArgumentRow& RowEquations::argument_row() {
-  ArgumentRow& row = arguments_->argument(here_->known_values);
-  place(row);
-  return row;
-}
-void RowEquations::place(ArgumentRow& row) const {
-  if (positions_.rows()) row.positions = positions_.row(0);
-  row.t = static_cast<double>(n_ + outputs_[0].newest) * time_step_;
-  row.time_step = time_step_, row.space_step = space_step_;
+  return arguments_->argument(here_->known_values, time_of_outputs());
 }
 
 /// On a circle each stencil's output is found once: beyond the ends of arcs it is repeated.

@@ -50,7 +50,7 @@ struct Polynomials {
   }
   /// The largest difference between the row that an extrapolation of this order finds and the next one.
   double miss(int order) {
-    const ArgumentRow& row = rows.argument(known.row(0));
+    const ArgumentRow& row = rows.argument(known.row(0), t);
     rows.extrapolate(order);
     family->row_kernel()->evaluate_arguments(row, out.row(0), layout.all());
     double worst = 0;
@@ -156,8 +156,8 @@ TEST_CASE("arguments found from rows give the outputs that the rows themselves g
         CHECK(arguments.find(rows.row(r), layout.all()) == 0);
       }
       arguments.begin(unknown - 1);
-      ArgumentRow row = arguments.argument(rows.row(unknown - mixture->known_row));
-      row.positions = positions.row(0), row.t = t, row.time_step = h, row.space_step = k;
+      arguments.put(positions.row(0), h, k);
+      const ArgumentRow& row = arguments.argument(rows.row(unknown - mixture->known_row), t);
       for (int first : {0, 1}) {
         if (first == 1 && !bricks) continue;
         const PackRange packs{first, layout.packs(), bricks ? 2 : 1};
