@@ -139,7 +139,7 @@ TEST_CASE("a stream sees every change that the whole row shows, at the ends of i
       for (int pack = end - 190; pack < end + 3; ++pack) packs.push_back(pack);
     for (int pack : packs) {
       Row candidate = straight;
-      const int site = layout.start(3) + pack;
+      const int site = layout.start(lanes - 1) + pack;
       candidate[static_cast<std::size_t>(site)] += 1e-3;
       CAPTURE(pack);
       const auto put = [&] { layout.scatter(candidate, equations.candidate().row(0)); };
