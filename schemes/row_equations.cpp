@@ -74,8 +74,10 @@ RowEquations::StepRows& RowEquations::own_rows() {
 /// The new row and its increment take the place of the old ones.
 void RowEquations::go_in_place() {
   StepRows& rows = own_rows();
-  for (int a = 0; a < d_; ++a) rows.increments[static_cast<std::size_t>(a)].y = base(y_base_ + a);
-  for (int a = 0; a < d_; ++a) rows.increments[static_cast<std::size_t>(a)].v = base(v_base_ + a);
+  for (int a = 0; a < d_; ++a) {
+    RowIncrement& increment = rows.increments[static_cast<std::size_t>(a)];
+    increment.y = base(y_base_ + a), increment.v = base(v_base_ + a);
+  }
 }
 
 void RowEquations::find_rows_at(std::int64_t place) {
@@ -147,7 +149,7 @@ PackRange RowEquations::where_read(const Outputs& o) const {
 }
 
 SlabRows RowEquations::slab_of(const double* const* values, std::int64_t row) const {
-  return {&layout_, values, positions_.rows() ? positions_.row(0) : nullptr, static_cast<double>(row) * time_step_,
+  return {&layout_, values, positions(), static_cast<double>(row) * time_step_,
           time_step_, space_step_};
 }
 

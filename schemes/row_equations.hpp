@@ -116,6 +116,11 @@ class RowEquations {
     /// The first age whose outputs do.
     int oldest_measured() const { return std::max(oldest, 1 - kernel->outputs_read_until()); }
     int measured_rows() const { return std::max(0, newest + 1 - oldest_measured()) * kernel->outputs(); }
+    /// Where out_c of the stencils anchored `age` rows after row n stands among the bases; and that of residual().
+    int index(int age, int c) const { return base + (age - oldest) * kernel->outputs() + c; }
+    int measured_index(int age, int c) const {
+      return measured_base + (age - oldest_measured()) * kernel->outputs() + c;
+    }
   };
 
   /// Where all lies that a step from one place of the rings reads and makes.
@@ -188,13 +193,7 @@ class RowEquations {
   const ArgumentRow& argument_row();
   double time_of_outputs() const { return static_cast<double>(n_ + outputs_[0].newest) * time_step_; }
   /// out_c of stencils anchored `age` rows after row n, where sums read it.
-  double*& output(const Outputs& o, int age, int c = 0) {
-    return base(o.base + (age - o.oldest) * o.kernel->outputs() + c);
-  }
-  /// The same as residual() finds it.
-  double*& measured_output(const Outputs& o, int age, int c = 0) {
-    return base(o.measured_base + (age - o.oldest_measured()) * o.kernel->outputs() + c);
-  }
+  double*& output(const Outputs& o, int age, int c = 0) { return base(o.index(age, c)); }
   /// Of the row before; null where equations read no such.
   double* old_output() { return outputs_[0].rows() > 1 ? output(outputs_[0], outputs_[0].newest - 1) : nullptr; }
   /// Where those of the unknown row go: in steps in place, over those of the row before.
@@ -211,6 +210,8 @@ class RowEquations {
   const double* edge(int part, int parts, int side, int a) const;
   /// Rows of stencils anchored at this row.
   SlabRows slab_of(const double* const* values, std::int64_t row) const;
+  /// x of each slot's site; null where no family is placed.
+  const double* positions() const { return positions_.rows() ? positions_.row(0) : nullptr; }
   const RowSum& right_side(int a) const { return *right_sides_[static_cast<std::size_t>(a)]; }
   /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
   double* stored_right_side(int a) { return base(E_base_ + a); }

@@ -9,7 +9,7 @@ namespace delf {
 
 void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   arguments_.emplace(layout_, mixture, most_order);
-  arguments_->put(positions_.rows() ? positions_.row(0) : nullptr, time_step_, space_step_);
+  arguments_->put(positions(), time_step_, space_step_);
   RowLook& look = increment(0).look;
   look.parts = mixture.parts;
   std::ranges::copy(mixture.weights, look.weights);
@@ -105,7 +105,7 @@ RowChange RowEquations::advance_straight() {
                   .unknown = nullptr,
                   .known = rows.y_before + static_cast<std::ptrdiff_t>(straight_->known_site) * lanes,
                   .known_weight = straight_->known_weight,
-                  .positions = positions_.rows() ? positions_.row(0) : nullptr,
+                  .positions = positions(),
                   .t = time_of_outputs(),
                   .time_step = time_step_,
                   .space_step = space_step_};

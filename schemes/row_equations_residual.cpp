@@ -30,7 +30,7 @@ double RowEquations::residual(std::int64_t n) {
 /// A step goes on from the outputs of its last iterate: what is found of the accepted row goes elsewhere, or a run would
 /// depend on when it was looked at.
 void RowEquations::make_room_for_residual() {
-  if (scratch_.rows() || residual_rows() == 0) return;
+  if (residual_rows() == 0) return;
   scratch_ = RowBuffer(layout_, residual_rows());
   const auto put = [this](StepRows& rows) {
     int next = equations_.exceptional.empty() ? 0 : 2 * d_;
@@ -49,7 +49,7 @@ void RowEquations::measure_sums(LargestTerms& all) {
     for (const int first : {v_new_base_, v_base_}) layout_.fill_halo(base(first));  // of one component
   for (const Outputs& o : outputs_)
     for (int age = o.oldest_measured(); age <= o.newest; ++age) {
-      double* const* const out = &measured_output(o, age);
+      double* const* const out = &base(o.measured_index(age, 0));
       evaluate(o, age, out, At::row, where_read(o));
     }
 

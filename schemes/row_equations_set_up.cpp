@@ -165,9 +165,7 @@ int RowEquations::index_of(const Term& t, bool measured) const {
       break;
   }
   const Outputs& o = outputs_[static_cast<std::size_t>(t.family)];
-  if (measured && o.reads_unknown_row(t.age))
-    return o.measured_base + (t.age - o.oldest_measured()) * o.kernel->outputs() + t.output;
-  return o.base + (t.age - o.oldest) * o.kernel->outputs() + t.output;
+  return measured && o.reads_unknown_row(t.age) ? o.measured_index(t.age, t.output) : o.index(t.age, t.output);
 }
 
 void RowEquations::add_term(RowSum& sum, const Term& t, double coefficient, bool measured) const {
