@@ -127,6 +127,18 @@ template <int by, int... l>
 inline Pack rotated(Pack a, std::integer_sequence<int, l...>) {
   return {__builtin_shufflevector(a.v, a.v, ((l + by) % lanes)...)};
 }
+/// The same within each half.
+template <int by, int... l>
+inline Pack rotated_halves(Pack a, std::integer_sequence<int, l...>) {
+  constexpr int half = lanes / 2;
+  return {__builtin_shufflevector(a.v, a.v, (l / half * half + (l + by) % half)...)};
+}
+/// One half of a, and of b.
+template <int which, int... l>
+inline Pack halves(Pack a, Pack b, std::integer_sequence<int, l...>) {
+  constexpr int half = lanes / 2;
+  return {__builtin_shufflevector(a.v, b.v, (l / half * lanes + l % half + which * half)...)};
+}
 }  // namespace detail
 /// Lane l of what lane l + 1, or l − 1, was; round the end.
 inline Pack from_lane_above(Pack a) { return detail::rotated<1>(a, std::make_integer_sequence<int, lanes>()); }
@@ -145,6 +157,17 @@ inline double max_or_nan(Pack a) {
   if constexpr (lanes > 4) a = detail::larger(a, detail::rotated<4>(a, all));
   if constexpr (lanes > 2) a = detail::larger(a, detail::rotated<2>(a, all));
   return detail::larger(a, detail::rotated<1>(a, all))[0];
+}
+/// Of two at once: each takes half of the lanes.
+inline std::pair<double, double> both_max_or_nan(Pack a, Pack b) {
+  constexpr auto all = std::make_integer_sequence<int, lanes>();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (detail::any_above(a, infinity) || detail::any_above(b, infinity)) [[unlikely]]
+    return {max_or_nan(a), max_or_nan(b)};
+  Pack both = detail::larger(detail::halves<0>(a, b, all), detail::halves<1>(a, b, all));
+  if constexpr (lanes > 4) both = detail::larger(both, detail::rotated_halves<2>(both, all));
+  if constexpr (lanes > 2) both = detail::larger(both, detail::rotated_halves<1>(both, all));
+  return {both[0], both[lanes / 2]};
 }
 
 }  // namespace delf

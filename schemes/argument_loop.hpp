@@ -90,6 +90,7 @@ template <int past_rows, int stride, class Output>
              [&](std::ptrdiff_t at, const auto& argument) __attribute__((always_inline)) {
                output(argument, at).store(out + at);
              });
+  given.layout->fill_halo(out, given.is_read_before, given.is_read_after);
 }
 
 template <int stride, class Output>

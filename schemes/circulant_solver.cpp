@@ -23,6 +23,8 @@ CirculantSolver::CirculantSolver(const RowLayout& layout, double centre, double 
   // Arcs overlap by at most two sites or so: the index that the arc before needs is small.
   const int deepest = layout.packs() - 1 - *std::ranges::min_element(gap_);
   near_ = std::min(layout.packs(), near_ + deepest);
+  const int read_by_sums = (near_ + sums_at_once - 1) / sums_at_once * sums_at_once;
+  are_far_apart_ = read_by_sums < layout.packs() && layout.finds_halos_by_packs();
   while (static_cast<int>(forward_.size()) < near_) forward_.push_back(0);
   build_closure();
 }
@@ -48,6 +50,7 @@ void CirculantSolver::build_closure() {
       K(l, l) += power * forward_[static_cast<std::size_t>(v)];
     }
   }
+  for (int l = 0; l < lanes; ++l) x_from_u_.v[l] = K(l, l);
   const Square from_ends = U.inverse(), from_sums = X.inverse() * next, both = from_sums * K * from_ends;
   for (int m = 0; m < lanes; ++m)
     for (int l = 0; l < lanes; ++l) {
@@ -83,14 +86,6 @@ struct SummedRecurrence {
 
 }  // namespace
 
-CirculantSolver::Entering CirculantSolver::forward(const RowSum& right_side, double* u) const {
-  const RowLayout& layout = *layout_;
-  SummedRecurrence near{{q_, u}, backward_.row(0)};
-  right_side.pass_on(layout, {0, near_}, near);
-  if (near_ < layout.packs()) right_side.pass_on(layout, {near_, layout.packs()}, near.recurrence);
-  return entering(u, near.sums);
-}
-
 CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) const {
   const RowLayout& layout = *layout_;
   // Two sums of each: a sum waits for itself.
@@ -106,25 +101,59 @@ CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) 
   return {part[0].u + part[1].u, (part[0].x + part[1].x) + (x_by_ends[0] + x_by_ends[1])};
 }
 
+/// Σ weight · u over the first packs.
+inline Pack CirculantSolver::sum_of_first(const double* u) const {
+  Pack part[sums_at_once];  // a sum waits for itself
+  for (Pack& sum : part) sum = 0.0;
+  const double* const weights = backward_.row(0);
+  const std::ptrdiff_t end = layout_->at(near_);
+  for (std::ptrdiff_t at = layout_->at(0); at < end; at += sums_at_once * lanes)
+    for (int p = 0; p < sums_at_once; ++p)
+      part[p] += Pack::load(weights + at + p * lanes) * Pack::load(u + at + p * lanes);
+  return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
+/// X_l = s_m + K_m U_m,  m = l + 1
+inline Pack CirculantSolver::entering_far(Pack sums, Pack entering_u) const {
+  return from_lane_above(sums + x_from_u_ * entering_u);
+}
+
+// Inlined, as the pass is: what enters would go through memory.
+[[gnu::always_inline]] inline CirculantSolver::Entering CirculantSolver::forward(const RowSum& right_side, double* u) const {
+  const RowLayout& layout = *layout_;
+  if (are_far_apart_) {
+    right_side.pass(layout, layout.all(), Recurrence{q_, u});
+    const Pack entering_u = layout.before_first(u);
+    return {entering_u, entering_far(sum_of_first(u), entering_u)};
+  }
+  SummedRecurrence both{{q_, u}, backward_.row(0)};
+  right_side.pass_on(layout, layout.all(), both);
+  return entering(u, both.sums);
+}
+
 template <class Sink>
 [[gnu::always_inline]] inline void CirculantSolver::backward(const Entering& entering, const double* u, Sink& sink) const {
-  const RowLayout& layout = *layout_;
-  Pack x = entering.x;
   const Pack entering_u = entering.u;
   const double q = q_;
-  const double* const powers = forward_.data();
-  const int near = near_;
-  const auto far = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
-    return x = Pack::load(u + at) + q * x;
-  };
-  const auto close = [&](std::ptrdiff_t at, int v) __attribute__((always_inline)) {
-    return x = (Pack::load(u + at) + powers[v] * entering_u) + q * x;
-  };
-  int v = layout.packs() - 1;
-  for (const int seen = v - Sink::packs_unseen; v > seen; --v)
-    sink.unseen(layout.at(v), v < near ? close(layout.at(v), v) : far(layout.at(v)));
-  for (; v >= near; --v) sink(layout.at(v), far(layout.at(v)));
-  for (; v >= 0; --v) sink(layout.at(v), close(layout.at(v), v));
+  // Counted here: the layout, which stores could change for all that compilers know, is not asked in loops.
+  const std::ptrdiff_t first = layout_->at(0), near_end = layout_->at(near_);
+  const double* power = forward_.data() + near_;
+  std::ptrdiff_t at = layout_->at(layout_->packs() - 1);
+  Pack x = entering.x;
+  for (int unseen = Sink::packs_unseen; unseen > 0; --unseen, at -= lanes) {
+    Pack r = Pack::load(u + at);
+    if (at < near_end) r += *--power * entering_u;
+    x = r + q * x;
+    sink.unseen(at, x);
+  }
+  for (; at >= near_end; at -= lanes) {
+    x = Pack::load(u + at) + q * x;
+    sink(at, x);
+  }
+  for (; at >= first; at -= lanes) {
+    x = (Pack::load(u + at) + *--power * entering_u) + q * x;
+    sink(at, x);
+  }
 }
 
 namespace {
@@ -142,20 +171,21 @@ struct Storing {
 void CirculantSolver::solve(const double* const* rhs, double* const* w) const {
   RowSum scaled;
   scaled.add(0, 0, scale_);
-  scaled.bind(rhs);
+  const RowSum::Rows rows{rhs};
+  scaled.bind(rows);
   double* const x = w[0];
   Storing storing{x};
   backward(forward(scaled, x), x, storing);
 }
 
-RowChange CirculantSolver::advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
+RowChange CirculantSolver::advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
                                    double* const* w) const {
   // u stands where the new increment will, unless that is made from itself.
   double* const u = rows[0].v == rows[0].v_before ? w[0] : rows[0].v;
   const Entering entering = forward(*right_sides[0], u);
   return with_increment_pass<Order::descending>(rows[0], [&](auto pass) __attribute__((always_inline)) {
     backward(entering, u, pass);
-    return pass.result();
+    return pass.closed(layout, rows[0]);
   });
 }
 
@@ -181,7 +211,7 @@ class CirculantSolver::Stream final : public RowStream {
 /// The ends of arcs must be far apart against what is felt of them.
 std::unique_ptr<RowStream> CirculantSolver::stream(const RowLayout& layout, const RowSum& right_side,
                                                    const RowIncrement& rows) const {
-  if (layout.packs() < 4 * near_) return nullptr;
+  if (!are_far_apart_ || layout.packs() < 4 * near_) return nullptr;
   return std::make_unique<Stream>(*this, right_side, rows);
 }
 
@@ -193,7 +223,7 @@ PackRange CirculantSolver::Stream::last_packs() const {
 
 void CirculantSolver::Stream::begin(double* u) {
   right_side_.pass(*solver_.layout_, last_packs(), Recurrence{solver_.q_, u});
-  last_ = solver_.entering(u, Pack(0.0)).u;
+  last_ = solver_.layout_->before_first(u);
 }
 
 int CirculantSolver::Stream::advance(int end, double* u, const double* expected) {
@@ -204,9 +234,7 @@ int CirculantSolver::Stream::advance(int end, double* u, const double* expected)
     summed = right_side_.pass(layout, {forward_, std::min(end, near)}, summed);
     forward_ = std::min(end, near);
     sums_ = summed.sums;
-    // What the arc before needs is in the first packs; round the circle nothing is left of it.
-    if (forward_ == near)
-      for (int l = 0; l < lanes; ++l) after_.v[l] = sums_[(l + 1) % lanes];
+    if (forward_ == near) after_ = from_lane_above(sums_);  // of u as it is: it has begun with what enters
   }
   last_ = right_side_.pass(layout, {forward_, end}, summed.recurrence).last;
   forward_ = end;

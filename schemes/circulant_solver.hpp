@@ -36,6 +36,8 @@ class CirculantSolver final : public LinearSolver {
     Pack u, x;  ///< u at the site before each arc, x at the site after it
   };
   Entering entering(const double* u, Pack sums) const;
+  Pack entering_far(Pack sums, Pack entering_u) const;
+  Pack sum_of_first(const double* u) const;
   Entering forward(const RowSum& right_side, double* u) const;
   /// The first Sink::packs_unseen go to sink.unseen().
   template <class Sink>
@@ -48,7 +50,11 @@ class CirculantSolver final : public LinearSolver {
   std::vector<double> forward_;  ///< q¹, q², …: what enters an arc at its packs
   RowBuffer backward_;           ///< q^(v−j): what pack v adds to x at the site of the arc that the arc before needs
   int gap_[lanes];               ///< the site before arc l has this index in arc l−1
+  /// What enters an arc is no longer felt in the next one: each then takes it from the arc beside it alone.
+  bool are_far_apart_ = false;
+  static constexpr int sums_at_once = 4;
   Matrix u_from_ends_, x_from_ends_, x_from_sums_;
+  Pack x_from_u_;  ///< K_l
 };
 
 }  // namespace delf

@@ -19,7 +19,9 @@ class DivisionByArguments {
   [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) const { return unknown_(at); }
   [[gnu::always_inline]] Pack known(std::ptrdiff_t at) const { return Pack::load(known_ + at); }
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w, Pack /*u*/) { pass_(at, w); }
-  RowChange result() const { return pass_.result(); }
+  RowChange closed(const DivisionRows& given, const RowIncrement& rows) {
+    return pass_.closed(*given.arguments.layout, rows);
+  }
 
  private:
   UnknownArgument<past_rows> unknown_;
@@ -60,9 +62,17 @@ class StraightDivision {
     seen_.take(pass_.unseen(at, w)), expected_.take(u);
     change_ = detail::larger_magnitude(change_, weights_.added(Pack(0.0), seen_) - expected_.oldest());
   }
-  RowChange result() const { return {pass_.result().largest, max_or_nan(change_)}; }
-  /// u of the last pack, which looks beyond the end.
-  Pack last_argument() const { return expected_.newest; }
+  RowChange closed(const DivisionRows& given, const RowIncrement& rows) {
+    const RowLayout& layout = *given.arguments.layout;
+    const double largest = pass_.closed(layout, rows).largest;
+    if constexpr (parts > 1) {  // the last pack looks beyond the end
+      Pack u(0.0);
+      for (int p = 0; p < parts; ++p)
+        u += rows.look.weights[p] * Pack::load(rows.y + layout.at(layout.packs() - 1 + p));
+      change_ = detail::larger_magnitude(change_, u - expected_.newest);
+    }
+    return {largest, max_or_nan(change_)};
+  }
 
  private:
   [[gnu::always_inline]] Pack straight(std::ptrdiff_t at) const { return Pack::load(y_ + at) + Pack::load(v_ + at); }
@@ -134,6 +144,7 @@ template <int old, int parts, class Output, class Division>
     ready = next;
   }
   make(ahead - lanes, ready);
+  layout.fill_halo(out, given.arguments.is_read_before, given.arguments.is_read_after);
   given_division = division;
 }
 
@@ -144,17 +155,15 @@ RowChange division_loop_for(const Output& output, const DivisionRows& given, con
   with_past_rows<most_past_rows_divided>(given.arguments.past_rows, [&]<int past_rows>() {
     DivisionByArguments<past_rows, parts> division(given, rows);
     division_loop<old, parts>(output, given, division);
-    all = division.result();
+    all = division.closed(given, rows);
   });
   return all;
 }
 template <int old, int parts, class Output>
-RowChange straight_division_loop(const Output& output, const DivisionRows& given, const RowIncrement& rows,
-                                 Pack& last_argument) {
+RowChange straight_division_loop(const Output& output, const DivisionRows& given, const RowIncrement& rows) {
   StraightDivision<parts> division(given, rows);
   division_loop<old, parts>(output, given, division);
-  last_argument = division.last_argument();
-  return division.result();
+  return division.closed(given, rows);
 }
 
 }  // namespace delf

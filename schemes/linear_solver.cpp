@@ -69,7 +69,7 @@ class ScalarSolver final : public LinearSolver {
                                                   const RowIncrement& rows) {
     Pass pass(rows);
     right_side.pass_on(layout, layout.all(), pass);
-    return pass.result();
+    return pass.closed(layout, rows);
   }
 
   const RowLayout* layout_;
@@ -168,9 +168,10 @@ RowChange LinearSolver::advance(const RowLayout& layout, int components, const R
   for (int a = 0; a < components; ++a) {
     const double* const from = w[a];
     layout.copy_overlaps(w[a]);  // solvers need not fill them
-    all.take(with_increment_pass<Order::ascending>(rows[a], [&layout, from](auto pass) __attribute__((always_inline)) {
+    const RowIncrement& row = rows[a];
+    all.take(with_increment_pass<Order::ascending>(row, [&layout, &row, from](auto pass) __attribute__((always_inline)) {
       for (int v = 0; v < layout.packs(); ++v) pass(layout.at(v), Pack::load(from + layout.at(v)));
-      return pass.result();
+      return pass.closed(layout, row);
     }));
   }
   return all;

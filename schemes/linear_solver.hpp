@@ -25,7 +25,7 @@ class RowStream {
   /// The right side is ready up to pack `end`. Returns up to where the new row is done: `work` has room from there
   /// on, and holds what was put there. What is looked at of the row is held against `expected`.
   virtual int advance(int end, double* work, const double* expected) = 0;
-  /// Without the last `parts` − 1 packs of each advance(), which look beyond its end.
+  /// Without the last `parts` − 1 packs of each advance(), which look beyond its end. The row is not closed.
   virtual RowChange result() const = 0;
 };
 
@@ -36,7 +36,7 @@ class LinearSolver {
   /// w may be rhs. Halos of w are not filled.
   virtual void solve(const double* const* rhs, double* const* w) const = 0;
   /// The step itself: w from right sides that are summed on the way, and with it the new row. The right sides are those
-  /// of A w times right_side_scale(); `w` is work space. Overlaps and halos of the new row are the caller's business.
+  /// of A w times right_side_scale(); `w` is work space. The new row is closed: overlaps, halos and looks beyond its end.
   virtual RowChange advance(const RowLayout&, int components, const RowSum* const* right_sides,
                             const RowIncrement* rows, double* const* w) const;
   /// A is one number: w is the right side times right_side_scale().

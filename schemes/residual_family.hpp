@@ -128,8 +128,8 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     if constexpr (divided) return division_loop_for<0, 1>(PartOfPair{stencil_}, given, rows);
     else return {};
   }
-  RowChange divide_straight(const DivisionRows& given, const RowIncrement& rows, Pack& last_argument) const override {
-    if constexpr (divided) return straight_division_loop<0, 1>(PartOfPair{stencil_}, given, rows, last_argument);
+  RowChange divide_straight(const DivisionRows& given, const RowIncrement& rows) const override {
+    if constexpr (divided) return straight_division_loop<0, 1>(PartOfPair{stencil_}, given, rows);
     else return {};
   }
 

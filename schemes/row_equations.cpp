@@ -40,8 +40,7 @@ void RowEquations::begin(std::int64_t n, bool in_place) {
   if (is_one_loop()) return;
   find_rows();
   if (in_place) go_in_place();
-  bind(sums_);
-  for (RowSum& sum : stored_) sum.bind(here_->bases.data());
+  let_sums_read_here();
   if (!arguments_) return;
   arguments_->begin(n);
   increment(0).look.argument = arguments_->row(0);
@@ -55,14 +54,9 @@ void RowEquations::find_rows() {
   if (is_streamed_) own_rows();
 }
 
-/// Sums of bricks are those of the equations' row.
-void RowEquations::bind(std::vector<RowSum>& sums) {
-  for (RowSum& sum : sums) sum.bind(here_->bases.data());
-  if (bricks_) take_turns(sums);
-}
-void RowEquations::take_turns(std::vector<RowSum>& sums) const {
-  const int phase = (n_ + 1 - equations_.bulk[0].shift) % 2 != 0 ? 1 : 0;
-  for (std::size_t first = 0; first < sums.size(); first += 2) sums[first].take_turns_with(sums[first + 1], phase);
+/// Bricks are those of the equations' row.
+void RowEquations::let_sums_read_here() {
+  summed_ = {here_->bases.data(), static_cast<int>((n_ + 1 - equations_.bulk[0].shift) & 1)};
 }
 
 /// Before something is sent elsewhere for once.
@@ -123,23 +117,6 @@ void RowEquations::build_places() {
   }
   period_ = RingSlots(period);
   places_ = std::move(places);
-}
-
-double RowEquations::close_new_row() {
-  const bool halos_first = layout_.halos_come_first();
-  const auto copy_overlaps = [&](const RowIncrement& rows) {
-    layout_.copy_overlaps(rows.v);
-    layout_.copy_overlaps(rows.y);
-  };
-  for (const RowIncrement& rows : here_->increments) {
-    if (!halos_first) copy_overlaps(rows);
-    if (increments_have_halos_) layout_.fill_halo(rows.v);
-    layout_.fill_halo(rows.y, turn_);
-  }
-  double change = 0;
-  if (arguments_) change = look_beyond_end(increment(0));
-  if (halos_first) std::ranges::for_each(here_->increments, copy_overlaps);
-  return change;
 }
 
 /// Wherever the equations of a pack read outputs: beyond the ends of arcs too.
@@ -210,31 +187,11 @@ void RowEquations::store_right_sides() {
   }
 }
 
-/// v_{n+1} and y_{n+1} but for their overlaps and halos.
 RowChange RowEquations::make_new_row() {
   if (is_stored_) store_right_sides();
   if (!equations_.exceptional.empty()) set_exceptional_sites();
   const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
   return solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides_.data(), here_->increments.data(), w_rows_.data());
-}
-
-/// What the last packs of a new row look at. Returns the largest change.
-double RowEquations::look_beyond_end(const RowIncrement& rows) const {
-  const RowLook& look = rows.look;
-  if (look.parts < 2) return 0;
-  Pack change(0.0);
-  for (int v = layout_.packs() + 1 - look.parts; v < layout_.packs(); ++v) {
-    const std::ptrdiff_t at = layout_.at(v);
-    Pack u(0.0);
-    for (int p = 0; p < look.parts; ++p) {
-      const std::ptrdiff_t beside = at + p * lanes;
-      const Pack y = Pack::load(rows.y + beside);
-      u += look.weights[p] * (look.argument ? y : y - Pack::load(look.expected + beside));
-    }
-    change = largest_magnitude(change, look.argument ? u - Pack::load(look.argument + at) : u);
-    if (look.argument) u.store(look.argument + at);
-  }
-  return max_or_nan(change);
 }
 
 RowChange RowEquations::advance(bool compared) {
@@ -245,9 +202,7 @@ RowChange RowEquations::advance(bool compared) {
     look.expected = candidate_.row(a);
   }
   RowChange all = make_new_row();
-  close_new_row();
   if (compared && !on_the_way) all.change = largest_change(looks_);
-  for (int a = 0; a < d_ && on_the_way; ++a) all.change = larger_or_nan(look_beyond_end(increment(a)), all.change);
   return all;
 }
 
@@ -354,7 +309,7 @@ RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& f
       changed = seen;
     }
   }
-  close_new_row();
+  increment(0).close(layout_, [] {});
   RowChange result = stream->result();
   result.change = larger_or_nan(larger_or_nan(largest_change(looks_, {changed, packs}), change), result.change);
   return result;

@@ -84,9 +84,6 @@ class RowEquations {
   /// The largest change of y_{n+1} for a change of 1 in what the outputs look at, if ∂E/∂(y_{n+1}) of the nonlinear part sums
   /// to 1: an exact ∞-norm, by the response to an impulse. 0 where it is not known: several components, walls.
   double gain();
-  /// Overlaps and halos of v_{n+1}, y_{n+1}; and the arguments that could not be found before. Returns their change.
-  double close_new_row();
-
   /// max |E| / max Σ |terms| over the sites for row n+1 as it is. Leaves nothing changed that a step reads.
   double residual(std::int64_t n);
   /// Outputs are the whole residual: w must be corrected by −A₊⁻¹E instead of set to it.
@@ -146,11 +143,9 @@ class RowEquations {
   [[gnu::noinline]] void find_rows_at(std::int64_t place);
   [[gnu::noinline]] StepRows& own_rows();
   [[gnu::noinline]] void go_in_place();
-  [[gnu::noinline]] void take_turns(std::vector<RowSum>& sums) const;
   std::size_t first_sum(int a) const { return static_cast<std::size_t>(bricks_ ? 2 * a : a); }
-  void bind(std::vector<RowSum>& sums);
+  void let_sums_read_here();
   void evaluate_newest_known_outputs();
-  double look_beyond_end(const RowIncrement&) const;
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
   int residual_rows() const;
@@ -201,9 +196,8 @@ class RowEquations {
     const Outputs& o = outputs_[0];
     return output(o, o.newest - (in_place_ && o.rows() > 1 ? 1 : 0), c);
   }
-  RowChange divide(const ArgumentRow&, double* output, Pack* last_argument);
+  RowChange divide(const ArgumentRow&, double* output, bool along_straight_lines);
   void evaluate_at(const ArgumentRow&);
-  void fill_halo_of_output(double* out) const { layout_.fill_halo(out, outputs_[0].lowest < 0, outputs_[0].highest > 0); }
   RowChange advance_at(const ArgumentRow&);
   RowChange make_new_row();
   int first_of_part(int part, int parts) const;
@@ -242,6 +236,7 @@ class RowEquations {
   /// −E times the solver's scale, for each component; of bricks two that take turns, the first for packs whose site and
   /// equation's row are both even or both odd.
   std::vector<RowSum> sums_, stored_, measured_;
+  RowSum::Rows summed_;  ///< what all of them read
   std::vector<const RowSum*> right_sides_;
   bool has_known_outputs_ = false;  ///< that each step must evaluate
   bool is_stored_ = false;  ///< right sides are summed to a row first: walls, and solvers that alternate
@@ -258,7 +253,6 @@ class RowEquations {
   std::vector<double*> w_rows_, slab_out_;
   std::vector<const double*> slab_rows_;
   bool measures_w_beside_ = false;     ///< residual() reads increments at other sites
-  bool increments_have_halos_ = true;  ///< or else who looks beyond the ends of arcs fills them: residual()
   bool is_streamed_ = false;
   bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row
 

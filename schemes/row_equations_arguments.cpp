@@ -13,9 +13,10 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   RowLook& look = increment(0).look;
   look.parts = mixture.parts;
   std::ranges::copy(mixture.weights, look.weights);
-  increments_have_halos_ = std::ranges::any_of(equations_.bulk[0].terms, [](const Term& t) {
+  increment(0).v_has_halo = std::ranges::any_of(equations_.bulk[0].terms, [](const Term& t) {
     return t.source == Source::increment && t.shift != 0;
   });
+  arguments_->set_read(outputs_[0].lowest < 0, outputs_[0].highest > 0);
   // Rows of 415 sites and less stay in the first level of the cache: two loops after each other then take a sixth less
   // than one that has more in hand than there are registers for.
   constexpr int packs_in_cache = 52;
@@ -62,29 +63,19 @@ RowChange RowEquations::advance_extrapolated(int order) {
 }
 
 RowChange RowEquations::advance_at(const ArgumentRow& row) {
-  RowChange all;
-  if (!division_ || row.past_rows > most_past_rows_divided) {
-    evaluate_at(row);
-    all = make_new_row();
-  } else {
-    all = divide(row, here_->output, nullptr);
-  }
-  all.change = larger_or_nan(close_new_row(), all.change);
-  return all;
+  if (division_ && row.past_rows <= most_past_rows_divided) return divide(row, here_->output, false);
+  evaluate_at(row);
+  return make_new_row();
 }
 
-/// Along straight lines if the last argument is asked for.
-RowChange RowEquations::divide(const ArgumentRow& row, double* output, Pack* last_argument) {
+RowChange RowEquations::divide(const ArgumentRow& row, double* output, bool along_straight_lines) {
   const RowKernel& kernel = *outputs_[0].kernel;
   const RowIncrement& rows = increment(0);
   division_->arguments = row;
   division_->y = rows.y_before;
   division_->output = output;
   division_->old_output = old_output();
-  const RowChange all = last_argument ? kernel.divide_straight(*division_, rows, *last_argument)
-                                      : kernel.divide(*division_, rows);
-  fill_halo_of_output(output);
-  return all;
+  return along_straight_lines ? kernel.divide_straight(*division_, rows) : kernel.divide(*division_, rows);
 }
 
 /// Where rows outgrow the cache and the matrix is one number: what the nonlinear part looks at is worked out from y_n
@@ -108,16 +99,10 @@ RowChange RowEquations::advance_straight() {
                   .positions = positions(),
                   .t = time_of_outputs(),
                   .time_step = time_step_,
-                  .space_step = space_step_};
-  Pack last(0.0);
-  RowChange all = divide(row, newest_output(), &last);
-  close_new_row();
-  if (straight_->parts > 1) {  // the last pack looks beyond the end
-    for (int p = 0; p < straight_->parts; ++p)
-      last -= straight_->weights[p] * Pack::load(rows.y + layout_.at(layout_.packs() - 1 + p));
-    all.change = larger_or_nan(max_or_nan(abs(last)), all.change);
-  }
-  return all;
+                  .space_step = space_step_,
+                  .is_read_before = outputs_[0].lowest < 0,
+                  .is_read_after = outputs_[0].highest > 0};
+  return divide(row, newest_output(), true);
 }
 
 void RowEquations::evaluate_arguments(At at) {
@@ -132,9 +117,7 @@ const ArgumentRow& RowEquations::argument_row() {
 /// On a circle each stencil's output is found once: beyond the ends of arcs it is repeated.
 void RowEquations::evaluate_at(const ArgumentRow& row) {
   const Outputs& o = outputs_[0];
-  double* const out = here_->output;
-  o.kernel->evaluate_arguments(row, out, packs_of(o, o.newest, layout_.all()));
-  fill_halo_of_output(out);
+  o.kernel->evaluate_arguments(row, here_->output, packs_of(o, o.newest, layout_.all()));
 }
 
 }  // namespace delf

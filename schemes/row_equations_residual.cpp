@@ -45,7 +45,7 @@ void RowEquations::make_room_for_residual() {
 void RowEquations::measure_sums(LargestTerms& all) {
   if (!scratch_.rows()) make_room_for_residual();
   find_rows();
-  if (measures_w_beside_ && !increments_have_halos_)
+  if (measures_w_beside_ && !increment(0).v_has_halo)
     for (const int first : {v_new_base_, v_base_}) layout_.fill_halo(base(first));  // of one component
   for (const Outputs& o : outputs_)
     for (int age = o.oldest_measured(); age <= o.newest; ++age) {
@@ -53,7 +53,7 @@ void RowEquations::measure_sums(LargestTerms& all) {
       evaluate(o, age, out, At::row, where_read(o));
     }
 
-  bind(measured_);
+  let_sums_read_here();
   const auto measure = [&](int a, const auto& consume) {
     return measured_[first_sum(a)].measure(layout_, layout_.all(), consume);
   };

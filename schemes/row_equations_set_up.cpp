@@ -137,12 +137,18 @@ void RowEquations::build_sums() {
     stored.add(E_base_ + a, 0, solver_[0]->right_side_scale(a));
     stored_.push_back(std::move(stored));
   }
+  for (auto* sums : {&sums_, &stored_, &measured_})
+    for (RowSum& sum : *sums) sum.bind(summed_);
+  for (auto* sums : {&sums_, &measured_})
+    for (std::size_t first = 0; bricks_ && first < sums->size(); first += 2)
+      (*sums)[first].take_turns_with((*sums)[first + 1]);
   for (int a = 0; a < d_; ++a)
     right_sides_.push_back(is_stored_ ? &stored_[static_cast<std::size_t>(a)] : &sums_[first_sum(a)]);
   if (is_one_loop()) return;
   if (solver_[0]->needs_work_rows() || equations_.correction_form) w_ = RowBuffer(layout_, d_);
   for (int a = 0; a < d_; ++a) w_rows_.push_back(w_.rows() ? w_.row(a) : nullptr);
   own_.increments.resize(static_cast<std::size_t>(d_));
+  for (RowIncrement& rows : own_.increments) rows.turn = turn_;
 }
 
 /// Whether the term's brick is there, for an equation whose row + site has this parity.

@@ -25,13 +25,32 @@ struct RowIncrement {
   const double *v_before, *y_before;
   double *v, *y;
   RowLook look = {};
+  double turn = 0;         ///< y is more by that for every time round the circle
+  bool v_has_halo = true;  ///< or else who reads v across the ends of arcs fills it
+
+  /// When all packs have been made: halos and overlaps, and before these `look_beyond`, which reads the halo of y
+  /// after the row.
+  template <class Look>
+  [[gnu::always_inline]] void close(const RowLayout& layout, const Look& look_beyond) const {
+    const bool halos_first = layout.halos_come_first();
+    if (!halos_first) copy_overlaps(layout);
+    if (v_has_halo) layout.fill_halo(v);
+    layout.fill_halo(y, turn);
+    look_beyond();
+    if (halos_first) copy_overlaps(layout);
+  }
+
+ private:
+  void copy_overlaps(const RowLayout& layout) const {
+    layout.copy_overlaps(v);
+    layout.copy_overlaps(y);
+  }
 };
 
 /// The larger of two; a NaN stays one.
 inline double larger_or_nan(double a, double b) { return a > b || a != a ? a : b; }
 
-/// The largest |y| of a new row, and the largest |look|. The last parts − 1 packs look beyond the end, which is not
-/// there yet: these are left out.
+/// The largest |y| of a new row, and the largest |look|.
 struct RowChange {
   double largest = 0, change = 0;
 
@@ -130,7 +149,28 @@ class IncrementPass {
     y.store(y_ + at);
     return y;
   }
-  RowChange result() const { return {max_or_nan(largest_ + 0.0 * sum_), max_or_nan(change_)}; }
+  /// When all packs have been handed over: closes the row, and looks beyond its end.
+  [[gnu::always_inline]] RowChange closed(const RowLayout& layout, const RowIncrement& rows) {
+    rows.close(layout, [&]() __attribute__((always_inline)) {
+      for (int v = layout.packs() + 1 - parts; v < layout.packs(); ++v) {
+        const std::ptrdiff_t at = layout.at(v);
+        Pack u(0.0);
+        for (int p = 0; p < parts; ++p) {
+          const std::ptrdiff_t beside = at + p * lanes;
+          const Pack y = Pack::load(y_ + beside);
+          u += rows.look.weights[p] * (look == Look::row ? y - Pack::load(expected_ + beside) : y);
+        }
+        change_ = detail::larger_magnitude(change_, look == Look::row ? u : u - Pack::load(argument_ + at));
+        if (look == Look::argument) u.store(argument_ + at);
+      }
+    });
+    return result();
+  }
+  /// Without the packs that look beyond the last one handed over.
+  RowChange result() const {
+    const auto [largest, change] = both_max_or_nan(largest_ + 0.0 * sum_, change_);
+    return {largest, change};
+  }
 
  private:
   const double *v_before_, *y_before_, *expected_;

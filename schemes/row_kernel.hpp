@@ -62,6 +62,7 @@ struct ArgumentRow {
   int past_rows = 0;  ///< 2 … most_past_rows; none: u stands
   const double* coefficients = nullptr;
   const double* const* past = nullptr;
+  bool is_read_before = false, is_read_after = false;  ///< across the ends of arcs: halos of outputs are filled there
 };
 
 /// A step where the matrix is one number: at a row of arguments the output E' is evaluated, and with it
@@ -110,7 +111,7 @@ class RowKernel {
   void evaluate(const SlabRows& rows, double* const* out) const { evaluate(rows, out, rows.layout->all()); }
 
   /// Whether there is one output, a function of one argument, or of the values of two rows at a site; and that output
-  /// for a row of arguments, or of such pairs.
+  /// for a row of arguments, or of such pairs, halos too.
   virtual bool evaluates_arguments() const { return false; }
   virtual void evaluate_arguments(const ArgumentRow&, double* /*out*/, const PackRange&) const {}
 
@@ -119,10 +120,8 @@ class RowKernel {
   virtual bool divides(int /*old*/, int /*parts*/) const { return false; }
   virtual RowChange divide(const DivisionRows&, const RowIncrement&) const { return {}; }
   /// The same where u is that of straight lines, y_n + v_n in the place of y_{n+1}: there are no rows of it, and the
-  /// new row, its increment and E' may be written over the old ones. `last_argument`: u of the last pack.
-  virtual RowChange divide_straight(const DivisionRows&, const RowIncrement&, Pack& /*last_argument*/) const {
-    return {};
-  }
+  /// new row, its increment and E' may be written over the old ones.
+  virtual RowChange divide_straight(const DivisionRows&, const RowIncrement&) const { return {}; }
 
   /// Where the nonlinear part of the equation at a site is that of its own value alone, a step is one loop:
   ///

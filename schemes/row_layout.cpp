@@ -36,10 +36,11 @@ void RowLayout::fill_halo_turned(double* row, double turn) const {
     for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * turn;
     return;
   }
-  for (const HaloPack& h : before_)
-    (from_lane_below(either(row, h, far_before_)) + turn * turns_before_).store(row + h.to);
-  for (const HaloPack& h : after_)
-    (from_lane_above(either(row, h, far_after_)) + turn * turns_after_).store(row + h.to);
+  for (std::ptrdiff_t by = 0; by < at(0); by += lanes) {
+    const std::ptrdiff_t back = -(by + lanes);
+    (before_.pack(row, back) + turn * turns_before_).store(row + before_.to + back);
+    (after_.pack(row, by) + turn * turns_after_).store(row + after_.to + by);
+  }
 }
 
 /// Arc l overlaps the one before it by b_l sites: beside its first pack stands pack M − b_l − 1 of that arc, beside its
@@ -55,13 +56,11 @@ void RowLayout::find_halo_packs() {
   if (!by_packs_) return;
   // Set by copy_overlaps() are the last b_{l+1} packs of arc l: no halo is taken from these where arcs are long enough.
   halos_come_first_ = 2 * most + halo_ <= packs_;
-  const auto offset = [this](int v) { return static_cast<int>(at(v)); };
-  for (int e = 1; e <= halo_; ++e)
-    before_.push_back({offset(-e), offset(packs_ - least - e), offset(packs_ - most - e)});
-  for (int e = 0; e < halo_; ++e) after_.push_back({offset(packs_ + e), offset(least + e), offset(most + e)});
+  before_ = {.to = at(0), .from = at(packs_ - least), .from_others = at(packs_ - most)};
+  after_ = {.to = at(packs_), .from = at(least), .from_others = at(most)};
   for (int l = 0; l < lanes; ++l) {
-    far_before_.v[l] = overlap[(l + 1) % lanes] == most ? 1 : 0;
-    far_after_.v[l] = overlap[l] == most ? 1 : 0;
+    before_.is_other.v[l] = overlap[(l + 1) % lanes] == most ? 1 : 0;
+    after_.is_other.v[l] = overlap[l] == most ? 1 : 0;
   }
   turns_before_.v[0] = -1;
   turns_after_.v[lanes - 1] = 1;

@@ -57,6 +57,9 @@ class RowLayout {
     if (before) fill_halo_before(row);
     if (after) fill_halo_after(row);
   }
+  /// Whether packs of a halo are packs of the row, moved by a lane; and then the one before the first.
+  bool finds_halos_by_packs() const { return by_packs_; }
+  Pack before_first(const double* row) const { return before_.pack(row, -lanes); }
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {
     for (const Copy& c : overlap_copies_) row[c.to] = row[c.from];
@@ -76,20 +79,24 @@ class RowLayout {
   struct Copy {
     int to, from, turns;
   };
-  /// A pack of a halo is a pack of the row, moved by a lane: the packs differ where arcs overlap by one site more.
-  struct HaloPack {
-    int to, near, far;
+  /// What lies beside arcs on one side of them. A pack of it is a pack of the row, moved by a lane: another one where
+  /// arcs overlap by one site more.
+  template <Pack (*moved)(Pack)>
+  struct Beside {
+    std::ptrdiff_t to = 0, from = 0, from_others = 0;
+    Pack is_other = 0.0;  ///< 1 in their lanes, before they are moved
+
+    Pack pack(const double* row, std::ptrdiff_t by) const {
+      const Pack one = Pack::load(row + from + by), other = Pack::load(row + from_others + by);
+      return moved(Pack{is_other.v != 0 ? other.v : one.v});
+    }
+    /// The packs from `by` on. A copy of it is worked with, which stores cannot change.
+    void fill(double* row, std::ptrdiff_t by, std::ptrdiff_t end) const {
+      for (const Beside own = *this; by < end; by += lanes) own.pack(row, by).store(row + own.to + by);
+    }
   };
-  static Pack either(const double* row, const HaloPack& h, Pack is_far) {
-    const Pack near = Pack::load(row + h.near);
-    return h.far == h.near ? near : Pack{is_far.v != 0 ? Pack::load(row + h.far).v : near.v};
-  }
-  void fill_halo_before(double* row) const {
-    for (const HaloPack& h : before_) from_lane_below(either(row, h, far_before_)).store(row + h.to);
-  }
-  void fill_halo_after(double* row) const {
-    for (const HaloPack& h : after_) from_lane_above(either(row, h, far_after_)).store(row + h.to);
-  }
+  void fill_halo_before(double* row) const { before_.fill(row, -at(0), 0); }
+  void fill_halo_after(double* row) const { after_.fill(row, 0, at(0)); }
   void fill_halo_turned(double* row, double turn) const;
   void find_halo_packs();
 
@@ -97,8 +104,8 @@ class RowLayout {
   std::vector<int> start_;
   std::vector<Copy> halo_copies_, overlap_copies_;
   bool by_packs_ = false, halos_come_first_ = false;
-  std::vector<HaloPack> before_, after_;
-  Pack far_before_ = 0.0, far_after_ = 0.0;  ///< 1 in the lanes that read `far`, before they are moved
+  Beside<from_lane_below> before_;
+  Beside<from_lane_above> after_;
   Pack turns_before_ = 0.0, turns_after_ = 0.0;
 };
 

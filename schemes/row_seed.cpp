@@ -50,6 +50,7 @@ RowSeed::RowSeed(SectionRows& rows, double time_step, int most_order, const std:
     RowSum sum;
     sum.add(0, 0, 1);
     for (int m = 1; m <= order; ++m) sum.add(m, 0, extrapolation_weight(order, m));
+    sum.bind(summed_);
     sums_.push_back(std::move(sum));
   }
 }
@@ -65,7 +66,6 @@ void RowSeed::find(std::int64_t n, int order, double* const* candidate, const Pa
     int slot = v_slots_(0);
     for (int m = 1; m <= order; ++m, slot = v_slots_.before(slot))
       bases_[static_cast<std::size_t>(m)] = rows_.v_at(slot, a);
-    sum.bind(bases_.data());
     double* const to = candidate[a];
     sum.pass(
         layout, packs, [to](std::ptrdiff_t at, Pack y) __attribute__((always_inline)) { y.store(to + at); });

@@ -23,6 +23,7 @@ class RowSeed {
   /// Where steps extrapolate `arguments`, these are read in the place of increments.
   RowSeed(SectionRows&, double time_step, int most_order, const std::vector<Argument>& looks,
           ArgumentRows* arguments = nullptr);
+  RowSeed(const RowSeed&) = delete;
   /// How many increments to hold for a seed from `seed_order` rows: fewer where rows outgrow the cache.
   static int rows_for(int seed_order, int sites);
   static bool fits_cache(int sites);  ///< some twenty rows do
@@ -67,6 +68,7 @@ class RowSeed {
   std::vector<RowSum> sums_;  ///< by order
   std::vector<Argument> looks_;
   std::vector<const double*> bases_;
+  const RowSum::Rows summed_{bases_.data()};
   ArgumentRows* arguments_;
 };
 

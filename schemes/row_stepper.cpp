@@ -24,6 +24,10 @@ struct RowStepper::Impl {
   const StepOptions options;
   const int d, history, rows_held;
   const bool iterative;
+  const double tolerance;
+  /// The smallest tolerances ask for all that rounding allows: there nothing is left to an estimate.
+  const bool estimates;
+  static constexpr double smallest_estimated = 0.99e-13;
   std::optional<Contraction> contraction;  ///< of an iteration
   const bool stiff;
   const std::optional<Mixture> mixture;  ///< that is extrapolated in the place of y
@@ -53,6 +57,8 @@ struct RowStepper::Impl {
         history(std::max(p.forward + p.backward, 2)),
         rows_held(history + 1),
         iterative(!solved_at_once(s, p)),
+        tolerance(std::max(o.tolerance, 4 * std::numeric_limits<double>::epsilon())),
+        estimates(o.tolerance >= smallest_estimated),
         contraction(iterative ? std::optional(Contraction(s, p)) : std::nullopt),
         stiff(iterative && contraction->is_stiff()),
         mixture(iterative && RowSeed::fits_cache(s.lattice().sites()) ? Mixture::of(s) : std::nullopt),
@@ -238,11 +244,9 @@ struct RowStepper::Impl {
     }
   }
 
-  static constexpr double smallest_estimated = 0.99e-13;
-
   /// What the tolerance allows: relative to what the field spans, for where it has drifted to says nothing, but not below
   /// what rounding leaves at its size.
-  double within(double tolerance, double size) const {
+  double allowed(double size) const {
     const double span = seed.span() > 0 ? std::min(seed.span(), size) : size;
     return std::max(tolerance * span, 4 * std::numeric_limits<double>::epsilon() * size);
   }
@@ -253,13 +257,10 @@ struct RowStepper::Impl {
       contracted = contraction->next_change(largest[0], weight, gain);
     return contracted;
   }
-  double tolerance() const { return std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon()); }
-  /// The smallest tolerances ask for all that rounding allows: there nothing is left to an estimate.
-  bool estimates() const { return options.tolerance >= smallest_estimated; }
   /// One more iteration would change the row by no more than what it makes of the last change.
   bool is_enough(double change, double next_change, double value) const {
-    const double enough = within(tolerance(), std::max({value, largest[0], largest[1]}));
-    return change <= weight * enough || (estimates() && next_change * change <= enough);
+    const double enough = allowed(std::max({value, largest[0], largest[1]}));
+    return change <= weight * enough || (estimates && next_change * change <= enough);
   }
 
   [[gnu::noinline]] RowChange advance_streamed(int order) {
@@ -270,42 +271,56 @@ struct RowStepper::Impl {
   RowChange advance_straight() {
     return equations.goes_straight() ? equations.advance_straight() : advance_streamed(1);
   }
-  RowChange advance(int order) {
-    const bool first = iterations == 1;
-    if (mixture) return first ? equations.advance_extrapolated(order) : equations.advance_again();
-    if (equations.is_streamed()) return first ? advance_streamed(order) : equations.advance_streamed({});
-    if (equations.goes_straight() && first && order == 1) return equations.advance_straight();
-    if (first) take_seed(order);
+  /// From a seed of this order.
+  RowChange advance_first(int order) { return mixture ? equations.advance_extrapolated(order) : advance_seeded(order); }
+  [[gnu::noinline]] RowChange advance_seeded(int order) {
+    if (equations.is_streamed()) return advance_streamed(order);
+    if (equations.goes_straight() && order == 1) return equations.advance_straight();
+    take_seed(order);
+    return advance_from_candidate();
+  }
+  RowChange advance_again() {
+    if (mixture) return equations.advance_again();
+    if (equations.is_streamed()) return equations.advance_streamed({});
+    return advance_from_candidate();
+  }
+  RowChange advance_from_candidate() {
     equations.evaluate_unknown_outputs(RowEquations::At::candidate);
     return equations.advance(true);
   }
 
-  /// Simplified Newton with the constant part. False when it does not contract, or not fast enough.
+  /// Simplified Newton with the constant part. False when it does not contract, or not fast enough. One iteration is
+  /// what most steps take.
   bool iterate(double& value) {
-    double next_change = contraction_now();
-    seed.choose(n, tolerance(), next_change, estimates() ? next_change : 1 / weight);
-    const int order = seed.order();
-    double before = std::numeric_limits<double>::infinity();
-    bool is_row_before_kept = false;
+    const double next_change = contraction_now();
+    seed.choose(n, tolerance, next_change, estimates ? next_change : 1 / weight);
+    iterations = 1;
+    const RowChange moved = advance_first(seed.order());
+    value = moved.largest;
+    // A field that overflowed has no root to look for.
+    if (overflowed(value)) report_not_finite();
+    return is_enough(moved.change, next_change, value) || iterate_on(value, moved.change, next_change);
+  }
+  /// After the first, whose change was not small enough.
+  [[gnu::noinline]] bool iterate_on(double& value, double change, double next_change) {
     while (iterations < options.max_iterations) {
+      const double before = change;
+      // Arguments go on by themselves: the row is wanted only where one iteration more may not be the last.
+      const bool is_row_before_kept = !mixture || !estimates || !is_enough(weight * next_change * change, next_change, value);
+      if (is_row_before_kept) equations.make_row_the_candidate();
       ++iterations;
-      const RowChange moved = advance(order);
-      value = moved.largest;
-      const double change = moved.change;
-      // A field that overflowed has no root to look for.
+      const RowChange moved = advance_again();
+      value = moved.largest, change = moved.change;
       if (overflowed(value)) report_not_finite();
       if (is_enough(change, next_change, value)) return true;
-      if (estimates() && is_row_before_kept)
+      if (estimates && is_row_before_kept) {
         next_change = std::min(next_change, 2 * equations.whole_change() / before);
-      if (is_enough(change, next_change, value)) return true;
+        if (is_enough(change, next_change, value)) return true;
+      }
       // Changes that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
       if (iterations >= 3 && change > 0.25 * before)
         return change <=
                64 * std::numeric_limits<double>::epsilon() * std::max({value, largest[0], largest[1]});
-      before = change;
-      // Arguments go on by themselves: the row is wanted only where one iteration more may not be the last.
-      is_row_before_kept = !mixture || !estimates() || !is_enough(weight * next_change * change, next_change, value);
-      if (is_row_before_kept) equations.make_row_the_candidate();
     }
     return false;
   }

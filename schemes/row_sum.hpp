@@ -21,7 +21,13 @@ namespace delf {
 /// std::for_each it works with a copy of `consume` and returns it: what that carries along stays in registers.
 class RowSum {
  public:
-  /// `row` is an index into the rows that bind() is given; `shift` in sites.
+  /// What sums are taken of: rows, and which packs take the other sum where two take turns, v where v + `phase` is odd.
+  struct Rows {
+    const double* const* row = nullptr;
+    int phase = 0;
+  };
+
+  /// `row` is an index into Rows::row; `shift` in sites.
   void add_difference(int row, int shift, double coefficient) {
     differences_.insert(shift > 0 ? differences_.begin() : differences_.end(), {row, shift, coefficient, row});
     find_form();
@@ -39,13 +45,13 @@ class RowSum {
   /// Multiplies every coefficient.
   void scale(double factor);
 
-  /// Sums are taken of these rows from here on: a pass reads from the list where they are.
-  void bind(const double* const* rows) { rows_ = rows; }
+  /// Sums are taken of what stands there when a pass begins.
+  void bind(const Rows& rows) { rows_ = &rows; }
 
-  /// Every second pack, v where v + `phase` is odd, takes the other sum, as bricks do. That has all its terms.
-  void take_turns_with(const RowSum& other, int phase) {
-    phase_ = phase;
-    if (other_ != &other) other_ = &other, find_form();
+  /// Every second pack takes the other sum, as bricks do. That has all its terms, and is bound too.
+  void take_turns_with(const RowSum& other) {
+    other_ = &other;
+    find_form();
   }
 
   template <class Consume>
@@ -65,12 +71,13 @@ class RowSum {
     double coefficient;
     int from, from_shift = 0;
   };
+  const double* row(int r) const { return rows_->row[r]; }
   /// The row from `shift` sites further on, and what it is less.
-  const double* shifted(const Term& t) const { return rows_[t.row] + static_cast<std::ptrdiff_t>(t.shift) * lanes; }
+  const double* shifted(const Term& t) const { return row(t.row) + static_cast<std::ptrdiff_t>(t.shift) * lanes; }
   const double* subtracted(const Term& t) const {
-    return rows_[t.from] + static_cast<std::ptrdiff_t>(t.from_shift) * lanes;
+    return row(t.from) + static_cast<std::ptrdiff_t>(t.from_shift) * lanes;
   }
-  const RowSum& of(int pack) const { return other_ && (pack + phase_) % 2 != 0 ? *other_ : *this; }
+  const RowSum& of(int pack) const { return other_ && (pack + rows_->phase) % 2 != 0 ? *other_ : *this; }
   /// Differences are those to the sites on either side, the next one first.
   bool are_to_both_sides() const {
     return differences_.size() == 2 && differences_[0].row == differences_[1].row &&
@@ -118,10 +125,9 @@ class RowSum {
   [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
 
   std::vector<Term> differences_, plain_, changes_;
-  const double* const* rows_ = nullptr;
+  const Rows* rows_ = nullptr;
   double constant_ = 0;
   const RowSum* other_ = nullptr;
-  int phase_ = 0;
   int plain_count_ = 0;
   bool is_counted_ = true;  ///< there is a compiled pass
 };
@@ -160,11 +166,11 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
   const Terms first(in_turn ? of(packs.first) : *this);
   std::ptrdiff_t at = layout.at(packs.first);
   const std::ptrdiff_t end = layout.at(packs.last);
-  const double* const here = differences > 0 ? rows_[differences_[0].row] : nullptr;
+  const double* const here = differences > 0 ? row(differences_[0].row) : nullptr;
   Pack value = differences > 0 ? Pack::load(here + at) : Pack(0.0);
   Pack last = differences > 0 ? value - Pack::load(here + at - lanes) : Pack(0.0);
-  const double* const changed = changes > 0 ? rows_[changes_[0].row] : nullptr;
-  const double* const before = changes > 0 ? rows_[changes_[0].from] : nullptr;
+  const double* const changed = changes > 0 ? row(changes_[0].row) : nullptr;
+  const double* const before = changes > 0 ? row(changes_[0].from) : nullptr;
   const auto change_at = [=](std::ptrdiff_t to) __attribute__((always_inline)) {
     return Pack::load(changed + to) - Pack::load(before + to);
   };

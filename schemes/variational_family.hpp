@@ -170,9 +170,8 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     if constexpr (d == 1 && stride == 1) return division_loop_for<2, 2>(slope(given.arguments), given, rows);
     else return {};
   }
-  RowChange divide_straight(const DivisionRows& given, const RowIncrement& rows, Pack& last_argument) const override {
-    if constexpr (d == 1 && stride == 1)
-      return straight_division_loop<2, 2>(slope(given.arguments), given, rows, last_argument);
+  RowChange divide_straight(const DivisionRows& given, const RowIncrement& rows) const override {
+    if constexpr (d == 1 && stride == 1) return straight_division_loop<2, 2>(slope(given.arguments), given, rows);
     else return {};
   }
 

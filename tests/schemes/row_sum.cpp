@@ -25,6 +25,7 @@ struct Sums {
   std::vector<Row> values;
   RowBuffer rows{layout, rows_given};
   std::vector<const double*> bases;
+  RowSum::Rows read;  ///< these
   std::vector<TestTerm> differences, plain, changes;
   double constant = 0;
   Random random{5};
@@ -35,6 +36,7 @@ struct Sums {
       layout.scatter(values.back(), rows.row(r));
       bases.push_back(rows.row(r));
     }
+    read.row = bases.data();
   }
   /// So many random terms of either kind.
   void choose(int of_differences, int of_plain) {
@@ -139,7 +141,7 @@ void for_each_sum(const auto& check) {
           else sums.choose(differences, plain);
           sums.choose_changes(shifts, of_one_row);
           RowSum sum = sums.sum();
-          sum.bind(sums.bases.data());
+          sum.bind(sums.read);
           for (const PackRange range : ranges(sums.layout)) {
             CAPTURE(differences, plain, shifts, of_one_row, range.first, range.last);
             check(sums, sum, range);
@@ -169,11 +171,11 @@ TEST_CASE("a pass whose number of terms is compiled agrees with one whose number
         return [&packs](std::ptrdiff_t, Pack p) { packs.push_back(p); };
       };
       RowSum sum = sums.sum();
-      sum.bind(sums.bases.data());
+      sum.bind(sums.read);
       sum.pass(sums.layout, sums.layout.all(), into(compiled));
       for (int n = plain; n < 9; ++n) sum.add(0, 0, 0);
       for (int n = differences; n < 4; ++n) sum.add_difference(0, 1, 0);
-      sum.bind(sums.bases.data());
+      sum.bind(sums.read);
       sum.pass(sums.layout, sums.layout.all(), into(counted));
       CAPTURE(differences, plain);
       REQUIRE(compiled.size() == counted.size());
@@ -224,18 +226,19 @@ TEST_CASE("two sums that take turns give each pack its own, whichever comes firs
         for (TestTerm& t : other.changes) t.coefficient = other.random(-2, 2);
         other.values = one.values;
         RowSum even = one.sum(), odd = other.sum();
-        even.bind(one.bases.data()), odd.bind(one.bases.data());
+        even.bind(one.read), odd.bind(one.read);
+        even.take_turns_with(odd);
         for (int phase : {0, 1})
           for (const PackRange range : ranges(one.layout)) {
             CAPTURE(differences, plain, more, phase, range.first, range.last);
-            even.take_turns_with(odd, phase);
+            one.read.phase = phase;
             const Pick summed = even.pass(one.layout, range, Pick(one, other, range, phase));
             CHECK(summed.packs() == count(range));
             CHECK(summed.worst() < rounding);
             const Pick measured = even.measure(one.layout, range, Pick(one, other, range, phase));
             CHECK(measured.worst() < rounding);
             if (count(range) == 0 || (differences == 0 && plain == 0)) continue;
-            even.take_turns_with(odd, 1 - phase);  // the wrong one
+            one.read.phase = 1 - phase;  // the wrong one
             CHECK(even.pass(one.layout, range, Pick(one, other, range, phase)).worst() > 1e-3);
           }
       }
@@ -253,8 +256,8 @@ TEST_CASE("sums that take turns may have changes of other rows, or at other site
     for (TestTerm& t : other.changes) t.row = 2, t.before = 3;
     other.values = one.values;
     RowSum even = one.sum(), odd = other.sum();
-    even.bind(one.bases.data()), odd.bind(one.bases.data());
-    even.take_turns_with(odd, 0);
+    even.bind(one.read), odd.bind(one.read);
+    even.take_turns_with(odd);
     Collect seen[2] = {{one, one.layout.all()}, {other, one.layout.all()}};
     int next = 0;
     even.measure(one.layout, one.layout.all(), [&](std::ptrdiff_t at, Pack sum, Pack) {
@@ -281,7 +284,7 @@ TEST_CASE("measure gives the sum and the sum of absolute values") {
   });
 }
 
-TEST_CASE("a scaled sum is scaled with its constant, and rows may be bound anew") {
+TEST_CASE("a scaled sum is scaled with its constant, and is that of the rows which stand where it reads") {
   Sums sums;
   for (int differences : {0, 2, 3}) {
     sums.choose(differences, 3);
@@ -291,13 +294,14 @@ TEST_CASE("a scaled sum is scaled with its constant, and rows may be bound anew"
     for (auto* terms : {&sums.differences, &sums.plain, &sums.changes})
       for (TestTerm& t : *terms) t.coefficient *= -2.5;
     sums.constant *= -2.5;
-    sum.bind(sums.bases.data());
+    RowSum::Rows read{sums.bases.data()};
+    sum.bind(read);
     CHECK(sum.pass(sums.layout, sums.layout.all(), Collect(sums, sums.layout.all())).worst < rounding * 2.5);
     std::vector<const double*> turned(sums.bases);
     std::ranges::rotate(turned, turned.begin() + 1);
     std::vector<Row> kept = sums.values;
     std::ranges::rotate(sums.values, sums.values.begin() + 1);
-    sum.bind(turned.data());
+    read.row = turned.data();
     CHECK(sum.pass(sums.layout, sums.layout.all(), Collect(sums, sums.layout.all())).worst < rounding * 2.5);
     sums.values = kept;
     CHECK(sum.pass(sums.layout, sums.layout.all(), Collect(sums, sums.layout.all())).worst > 0.01);  // of other rows
@@ -307,7 +311,7 @@ TEST_CASE("a scaled sum is scaled with its constant, and rows may be bound anew"
 TEST_CASE("the comparison of sums can fail: each term matters, and so do its shift and the constant") {
   Sums sums;
   const auto off = [&](RowSum sum) {
-    sum.bind(sums.bases.data());
+    sum.bind(sums.read);
     return sum.pass(sums.layout, sums.layout.all(), Collect(sums, sums.layout.all())).worst;
   };
   for (int differences : {0, 1, 2, 4, next_first, last_first})
