@@ -51,8 +51,9 @@ Pairing pair(const Side& a, const Side& b, int repeats) {
   return {spread_of(of_a).median, spread_of(of_b).median, spread_of(ratios)};
 }
 
-Spread alone(const Side& side, int repeats) {
-  const long steps = steps_of_a_chunk(side);
+Spread alone(const Side& side, int repeats) { return alone(side, repeats, steps_of_a_chunk(side)); }
+
+Spread alone(const Side& side, int repeats, long steps) {
   std::vector<double> times;
   for (int n = 0; n < repeats; ++n) times.push_back(ns_per_step(side, steps));
   return spread_of(times);

@@ -27,7 +27,8 @@ struct Pairing {
 /// A ratio is taken within its repetition, where the machine is likely to be in one mood.
 Pairing pair(const Side& a, const Side& b, int repeats);
 
-/// One side alone: ns for each step.
+/// One side alone: ns for each step, of so many after each restart, or as many as last 30 ms.
+Spread alone(const Side& side, int repeats, long steps);
 Spread alone(const Side& side, int repeats);
 
 }  // namespace delf::bench

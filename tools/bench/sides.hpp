@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "schemes/flush_denormals.hpp"
 #include "tools/bench/collision.hpp"
@@ -10,8 +12,8 @@ namespace delf::bench {
 
 /// Anything that starts from two rows and steps.
 template <class Stepped>
-Side side_of(std::shared_ptr<Stepped> stepped, const Collision& collision) {
-  return {[stepped, rows = collision.rows()] {
+Side side_of(std::shared_ptr<Stepped> stepped, std::vector<std::vector<double>> two_rows) {
+  return {[stepped, rows = std::move(two_rows)] {
             if constexpr (requires { stepped->start(rows); }) stepped->start(rows);
             else stepped->start(rows[0], rows[1]);
           },
@@ -23,6 +25,11 @@ Side side_of(std::shared_ptr<Stepped> stepped, const Collision& collision) {
               for (long n = 0; n < steps; ++n) stepped->step();
             }
           }};
+}
+
+template <class Stepped>
+Side side_of(std::shared_ptr<Stepped> stepped, const Collision& collision) {
+  return side_of(std::move(stepped), collision.rows());
 }
 
 inline Side textbook_side(const Collision& collision) {
