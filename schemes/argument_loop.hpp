@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "schemes/row_kernel.hpp"
@@ -9,25 +8,47 @@
 
 namespace delf {
 
+/// Σ_j coefficients[j] past[j] over the newest `count` rows. One member each: arrays would go through memory.
+template <int count>
+class PastRows {
+ public:
+  explicit PastRows(const ArgumentRow& given)
+      : newer_(given), row_(given.past[count - 1]), coefficient_(given.coefficients[count - 1]) {}
+  [[gnu::always_inline]] Pack operator()(std::ptrdiff_t at) const {
+    const Pack own = Pack::load(row_ + at);
+    if constexpr (count == 1) return coefficient_ * own;
+    else return newer_(at) + coefficient_ * own;
+  }
+
+ private:
+  PastRows<count - 1> newer_;
+  const double* row_;
+  double coefficient_;
+};
+template <>
+class PastRows<0> {
+ public:
+  explicit PastRows(const ArgumentRow&) {}
+};
+
 /// The unknown part u of arguments, pack by pack: as it stands, or extrapolated from so many rows, and put there.
 template <int past_rows>
 class UnknownArgument {
  public:
-  explicit UnknownArgument(const ArgumentRow& given) : unknown_(given.unknown) {
-    for (int j = 0; j < past_rows; ++j) past_[j] = given.past[j], coefficients_[j] = given.coefficients[j];
-  }
+  explicit UnknownArgument(const ArgumentRow& given) : unknown_(given.unknown), past_(given) {}
   [[gnu::always_inline]] Pack operator()(std::ptrdiff_t at) const {
-    if constexpr (past_rows == 0) return Pack::load(unknown_ + at);
-    Pack u = coefficients_[0] * Pack::load(past_[0] + at);
-    for (int j = 1; j < past_rows; ++j) u += coefficients_[j] * Pack::load(past_[j] + at);
-    u.store(unknown_ + at);
-    return u;
+    if constexpr (past_rows == 0) {
+      return Pack::load(unknown_ + at);
+    } else {
+      const Pack u = past_(at);
+      u.store(unknown_ + at);
+      return u;
+    }
   }
 
  private:
   double* unknown_;
-  std::array<const double*, past_rows + 1> past_;
-  std::array<double, past_rows + 1> coefficients_;
+  PastRows<past_rows> past_;
 };
 
 /// `run` with past_rows, none or 2 … most, as a constant.
@@ -72,31 +93,32 @@ template <class Find, class Evaluate>
 }
 
 /// out = output(output.argument(u, known), at) for the packs of a row of arguments: where u is extrapolated, that is done
-/// while the output is worked out.
-template <int past_rows, int stride, class Output>
-[[gnu::flatten]] void argument_loop(const Output& given_output, const ArgumentRow& given, double* out,
+/// while the output is worked out. `make_output` makes it here: what is stored through others cannot change it then, so
+/// that it stays in registers.
+template <int past_rows, int stride, class Make>
+[[gnu::flatten]] void argument_loop(const Make& make_output, const ArgumentRow& given, double* out,
                                     const PackRange& packs) {
-  // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
-  const Output output = given_output;
+  const auto output = make_output();
   const UnknownArgument<past_rows> found(given);
   const double* const known = given.known;
-  // Where bricks are missing, packs in between are extrapolated too: steps compare u everywhere.
-  const std::ptrdiff_t between = packs.first % 2 == 0 ? lanes : -lanes;
   const auto find = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
-    if constexpr (stride == 2 && past_rows > 0) found(at + between);
     return output.argument(found(at), Pack::load(known + at));
   };
+  // Where bricks are missing, packs in between are extrapolated too: steps compare u everywhere.
+  const std::ptrdiff_t between = packs.first % 2 == 0 ? lanes : -lanes;
   find_ahead(given.layout->at(packs.first), given.layout->at(packs.last), stride * lanes, find,
              [&](std::ptrdiff_t at, const auto& argument) __attribute__((always_inline)) {
+               if constexpr (stride == 2 && past_rows > 0) found(at + between);
                output(argument, at).store(out + at);
              });
-  given.layout->fill_halo(out, given.is_read_before, given.is_read_after);
+  given.layout->fill_halo(out, given.read_before, given.read_after);
 }
 
-template <int stride, class Output>
-void argument_loop_for(const Output& output, const ArgumentRow& row, double* out, const PackRange& packs) {
+template <int stride, class Make>
+[[gnu::always_inline]] inline void argument_loop_for(const Make& make_output, const ArgumentRow& row, double* out,
+                                                     const PackRange& packs) {
   with_past_rows<ArgumentRow::most_past_rows>(
-      row.past_rows, [&]<int past_rows>() { argument_loop<past_rows, stride>(output, row, out, packs); });
+      row.past_rows, [&]<int past_rows>() { argument_loop<past_rows, stride>(make_output, row, out, packs); });
 }
 
 /// ∂ℓ/∂φ at the mixture m = u + known_weight · known; t, and x from the anchor's, are those of the arguments.

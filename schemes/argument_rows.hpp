@@ -47,8 +47,8 @@ class ArgumentRows {
   void put(const double* positions, double time_step, double space_step) {
     row_.positions = positions, row_.time_step = time_step, row_.space_step = space_step;
   }
-  /// What comes of them is read so, across the ends of arcs.
-  void set_read(bool before, bool after) { row_.is_read_before = before, row_.is_read_after = after; }
+  /// What comes of them is read so many packs across the ends of arcs.
+  void set_read(int before, int after) { row_.read_before = before, row_.read_after = after; }
   /// The step from row n; what follows is about it.
   void begin(std::int64_t n) {
     slots_.at(n + 1);

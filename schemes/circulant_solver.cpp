@@ -7,6 +7,13 @@
 
 namespace delf {
 
+namespace {
+
+/// What enters an arc is felt as long as q^i of it is more than a fifth of what rounding leaves.
+constexpr double smallest_felt = 1e-17;
+
+}  // namespace
+
 CirculantSolver::CirculantSolver(const RowLayout& layout, double centre, double side) : layout_(&layout) {
   // b = c(1 + q²), a = −cq: the root inside the unit circle, in the form that does not cancel (the other root
   // formula costs two digits).
@@ -14,10 +21,11 @@ CirculantSolver::CirculantSolver(const RowLayout& layout, double centre, double 
   q_ = 2 * ratio / (1 + std::sqrt(1 - 4 * ratio * ratio));
   scale_ = (1 + q_ * q_) / centre;
   double power = q_;
-  for (int v = 0; v < layout.packs() && std::abs(power) > 1e-19; ++v, power *= q_) forward_.push_back(power);
+  for (int v = 0; v < layout.packs() && std::abs(power) > smallest_felt; ++v, power *= q_) forward_.push_back(power);
   for (int l = 0; l < lanes; ++l) {
     const int before = (l + lanes - 1) % lanes;
     gap_[l] = layout.start(l) + (l == 0 ? layout.sites() : 0) - layout.start(before) - 1;
+    ends_[l] = layout.at(gap_[l]) + before;
   }
   near_ = static_cast<int>(forward_.size());
   // Arcs overlap by at most two sites or so: the index that the arc before needs is small.
@@ -86,14 +94,13 @@ struct SummedRecurrence {
 
 }  // namespace
 
-CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) const {
-  const RowLayout& layout = *layout_;
+[[gnu::always_inline]] inline CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) const {
   // Two sums of each: a sum waits for itself.
   Entering part[2] = {{Pack(0.0), Pack(0.0)}, {Pack(0.0), Pack(0.0)}};
   Pack x_by_ends[2] = {Pack(0.0), Pack(0.0)};
   for (int m = 0; m < lanes; ++m) {
     const auto at = static_cast<std::size_t>(m);
-    const Pack end(u[layout.at(gap_[m]) + (m + lanes - 1) % lanes]);
+    const Pack end(u[ends_[m]]);
     part[m % 2].u += u_from_ends_[at] * end;
     x_by_ends[m % 2] += x_from_ends_[at] * end;
     part[m % 2].x += x_from_sums_[at] * Pack(sums[m]);

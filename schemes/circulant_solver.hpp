@@ -50,6 +50,7 @@ class CirculantSolver final : public LinearSolver {
   std::vector<double> forward_;  ///< q¹, q², …: what enters an arc at its packs
   RowBuffer backward_;           ///< q^(v−j): what pack v adds to x at the site of the arc that the arc before needs
   int gap_[lanes];               ///< the site before arc l has this index in arc l−1
+  std::ptrdiff_t ends_[lanes];   ///< and stands here in a row
   /// What enters an arc is no longer felt in the next one: each then takes it from the arc beside it alone.
   bool are_far_apart_ = false;
   static constexpr int sums_at_once = 4;

@@ -144,7 +144,7 @@ template <int old, int parts, class Output, class Division>
     ready = next;
   }
   make(ahead - lanes, ready);
-  layout.fill_halo(out, given.arguments.is_read_before, given.arguments.is_read_after);
+  layout.fill_halo(out, given.arguments.read_before, given.arguments.read_after);
   given_division = division;
 }
 

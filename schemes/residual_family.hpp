@@ -121,7 +121,7 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
 
   bool evaluates_arguments() const override { return pair.latest >= 0; }
   void evaluate_arguments(const ArgumentRow& row, double* out, const PackRange& packs) const override {
-    if constexpr (pair.latest >= 0) argument_loop_for<1>(PartOfPair{stencil_}, row, out, packs);
+    if constexpr (pair.latest >= 0) argument_loop_for<1>([&] { return PartOfPair{stencil_}; }, row, out, packs);
   }
   bool divides(int old, int parts) const override { return divided && old == 0 && parts == 1; }
   RowChange divide(const DivisionRows& given, const RowIncrement& rows) const override {

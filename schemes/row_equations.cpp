@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "schemes/row_equations_step.hpp"
+
 namespace delf {
 
 RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, SectionRows& rows, int history,
@@ -34,29 +36,11 @@ RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, S
   build_places();
 }
 
-void RowEquations::begin(std::int64_t n, bool in_place) {
-  n_ = n;
-  in_place_ = in_place;
-  if (is_one_loop()) return;
-  find_rows();
-  if (in_place) go_in_place();
+void RowEquations::begin_in_place(std::int64_t n) {
+  begin(n);
+  in_place_ = true;
+  go_in_place();
   let_sums_read_here();
-  if (!arguments_) return;
-  arguments_->begin(n);
-  increment(0).look.argument = arguments_->row(0);
-}
-
-void RowEquations::find_rows() {
-  const std::int64_t place = rows_.place(n_);
-  if (places_.empty()) return find_rows_at(place);
-  period_.at(place);
-  here_ = &places_[static_cast<std::size_t>(period_.slot())];
-  if (is_streamed_) own_rows();
-}
-
-/// Bricks are those of the equations' row.
-void RowEquations::let_sums_read_here() {
-  summed_ = {here_->bases.data(), static_cast<int>((n_ + 1 - equations_.bulk[0].shift) & 1)};
 }
 
 /// Before something is sent elsewhere for once.
@@ -185,13 +169,6 @@ void RowEquations::store_right_sides() {
       sum.store(E + at);
     });
   }
-}
-
-RowChange RowEquations::make_new_row() {
-  if (is_stored_) store_right_sides();
-  if (!equations_.exceptional.empty()) set_exceptional_sites();
-  const bool odd = solver_[1] && (n_ + 1) % 2 != 0;
-  return solver_[odd ? 1 : 0]->advance(layout_, d_, right_sides_.data(), here_->increments.data(), w_rows_.data());
 }
 
 RowChange RowEquations::advance(bool compared) {

@@ -30,9 +30,12 @@ class RowEquations {
                const std::optional<Mixture>& = std::nullopt, int most_order = 0);
   RowEquations(const RowEquations&) = delete;
 
-  /// Finds the rows for the step from row n. What follows is about this step. `in_place`: what it makes is written over
-  /// what it is made from, if can_go_in_place().
-  void begin(std::int64_t n, bool in_place = false);
+  // What is inline without a body here has it in row_equations_step.hpp.
+
+  /// Finds the rows for the step from row n. What follows is about this step.
+  inline void begin(std::int64_t n);
+  /// The same where what it makes is written over what it is made from, if can_go_in_place().
+  void begin_in_place(std::int64_t n);
 
   /// A step is one loop: no outputs, no matrix.
   bool is_one_loop() const { return one_loop_ != nullptr; }
@@ -64,8 +67,8 @@ class RowEquations {
   /// candidate, in what the nonlinear outputs look at; otherwise the change is zero.
   RowChange advance(bool compared);
   /// The same with the outputs that read row n+1, at arguments: extrapolated, or as the row makes them that was found.
-  RowChange advance_extrapolated(int order);
-  RowChange advance_again() { return advance_at(argument_row()); }
+  inline RowChange advance_extrapolated(int order);
+  inline RowChange advance_again();
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
   /// Or in one loop, from a candidate of order 1.
@@ -138,13 +141,14 @@ class RowEquations {
   void build_looks();
   void make_room_in_place();
   void build_places();
-  void find_rows();
+  inline void find_rows();
+  inline void begin_arguments();
   // Out of line, what few steps come to: all others would save registers for it.
   [[gnu::noinline]] void find_rows_at(std::int64_t place);
   [[gnu::noinline]] StepRows& own_rows();
   [[gnu::noinline]] void go_in_place();
   std::size_t first_sum(int a) const { return static_cast<std::size_t>(bricks_ ? 2 * a : a); }
-  void let_sums_read_here();
+  inline void let_sums_read_here();
   void evaluate_newest_known_outputs();
   double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
@@ -185,7 +189,7 @@ class RowEquations {
   void build_straight_lines();
   void find_arguments();
   void evaluate_arguments(At);
-  const ArgumentRow& argument_row();
+  inline const ArgumentRow& argument_row();
   double time_of_outputs() const { return static_cast<double>(n_ + outputs_[0].newest) * time_step_; }
   /// out_c of stencils anchored `age` rows after row n, where sums read it.
   double*& output(const Outputs& o, int age, int c = 0) { return base(o.index(age, c)); }
@@ -197,9 +201,9 @@ class RowEquations {
     return output(o, o.newest - (in_place_ && o.rows() > 1 ? 1 : 0), c);
   }
   RowChange divide(const ArgumentRow&, double* output, bool along_straight_lines);
-  void evaluate_at(const ArgumentRow&);
-  RowChange advance_at(const ArgumentRow&);
-  RowChange make_new_row();
+  inline void evaluate_at(const ArgumentRow&);
+  inline RowChange advance_at(const ArgumentRow&);
+  inline RowChange make_new_row();
   int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
   /// Rows of stencils anchored at this row.

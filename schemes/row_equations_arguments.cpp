@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "schemes/division_loop.hpp"
+#include "schemes/row_equations_step.hpp"
 
 namespace delf {
 
@@ -16,7 +17,7 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   increment(0).v_has_halo = std::ranges::any_of(equations_.bulk[0].terms, [](const Term& t) {
     return t.source == Source::increment && t.shift != 0;
   });
-  arguments_->set_read(outputs_[0].lowest < 0, outputs_[0].highest > 0);
+  arguments_->set_read(-outputs_[0].lowest, outputs_[0].highest);
   // Rows of 415 sites and less stay in the first level of the cache: two loops after each other then take a sixth less
   // than one that has more in hand than there are registers for.
   constexpr int packs_in_cache = 52;
@@ -56,18 +57,6 @@ void RowEquations::find_arguments() {
   arguments_->begin(n_);
 }
 
-RowChange RowEquations::advance_extrapolated(int order) {
-  const ArgumentRow& row = argument_row();
-  arguments_->extrapolate(order);
-  return advance_at(row);
-}
-
-RowChange RowEquations::advance_at(const ArgumentRow& row) {
-  if (division_ && row.past_rows <= most_past_rows_divided) return divide(row, here_->output, false);
-  evaluate_at(row);
-  return make_new_row();
-}
-
 RowChange RowEquations::divide(const ArgumentRow& row, double* output, bool along_straight_lines) {
   const RowKernel& kernel = *outputs_[0].kernel;
   const RowIncrement& rows = increment(0);
@@ -100,24 +89,14 @@ RowChange RowEquations::advance_straight() {
                   .t = time_of_outputs(),
                   .time_step = time_step_,
                   .space_step = space_step_,
-                  .is_read_before = outputs_[0].lowest < 0,
-                  .is_read_after = outputs_[0].highest > 0};
+                  .read_before = -outputs_[0].lowest,
+                  .read_after = outputs_[0].highest};
   return divide(row, newest_output(), true);
 }
 
 void RowEquations::evaluate_arguments(At at) {
   if (at == At::row) arguments_->find(increment(0).y, layout_.all());
   evaluate_at(argument_row());
-}
-
-const ArgumentRow& RowEquations::argument_row() {
-  return arguments_->argument(here_->known_values, time_of_outputs());
-}
-
-/// On a circle each stencil's output is found once: beyond the ends of arcs it is repeated.
-void RowEquations::evaluate_at(const ArgumentRow& row) {
-  const Outputs& o = outputs_[0];
-  o.kernel->evaluate_arguments(row, here_->output, packs_of(o, o.newest, layout_.all()));
 }
 
 }  // namespace delf

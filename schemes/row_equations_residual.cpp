@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "schemes/row_equations_step.hpp"
+
 namespace delf {
 
 /// max |E| / max Σ |terms|
@@ -53,7 +55,6 @@ void RowEquations::measure_sums(LargestTerms& all) {
       evaluate(o, age, out, At::row, where_read(o));
     }
 
-  let_sums_read_here();
   const auto measure = [&](int a, const auto& consume) {
     return measured_[first_sum(a)].measure(layout_, layout_.all(), consume);
   };

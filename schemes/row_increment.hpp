@@ -28,22 +28,25 @@ struct RowIncrement {
   double turn = 0;         ///< y is more by that for every time round the circle
   bool v_has_halo = true;  ///< or else who reads v across the ends of arcs fills it
 
-  /// When all packs have been made: halos and overlaps, and before these `look_beyond`, which reads the halo of y
-  /// after the row.
+  /// When all packs have been made: halos, then `look_beyond`, which reads that of y after the row, and overlaps.
   template <class Look>
   [[gnu::always_inline]] void close(const RowLayout& layout, const Look& look_beyond) const {
-    const bool halos_first = layout.halos_come_first();
-    if (!halos_first) copy_overlaps(layout);
-    if (v_has_halo) layout.fill_halo(v);
-    layout.fill_halo(y, turn);
-    look_beyond();
-    if (halos_first) copy_overlaps(layout);
+    if (layout.halos_come_first() && turn == 0) [[likely]] {
+      if (v_has_halo) layout.fill_halo(v);
+      layout.fill_halo(y);
+      look_beyond();
+      layout.copy_overlaps(v, y);
+    } else {
+      close_slowly(layout);
+      look_beyond();
+    }
   }
 
  private:
-  void copy_overlaps(const RowLayout& layout) const {
-    layout.copy_overlaps(v);
-    layout.copy_overlaps(y);
+  [[gnu::noinline]] void close_slowly(const RowLayout& layout) const {
+    layout.copy_overlaps(v, y);
+    if (v_has_halo) layout.fill_halo(v);
+    layout.fill_halo(y, turn);
   }
 };
 
@@ -152,8 +155,8 @@ class IncrementPass {
   /// When all packs have been handed over: closes the row, and looks beyond its end.
   [[gnu::always_inline]] RowChange closed(const RowLayout& layout, const RowIncrement& rows) {
     rows.close(layout, [&]() __attribute__((always_inline)) {
-      for (int v = layout.packs() + 1 - parts; v < layout.packs(); ++v) {
-        const std::ptrdiff_t at = layout.at(v);
+      const std::ptrdiff_t end = layout.at(layout.packs());
+      for (std::ptrdiff_t at = end - (parts - 1) * lanes; at < end; at += lanes) {
         Pack u(0.0);
         for (int p = 0; p < parts; ++p) {
           const std::ptrdiff_t beside = at + p * lanes;

@@ -62,7 +62,7 @@ struct ArgumentRow {
   int past_rows = 0;  ///< 2 … most_past_rows; none: u stands
   const double* coefficients = nullptr;
   const double* const* past = nullptr;
-  bool is_read_before = false, is_read_after = false;  ///< across the ends of arcs: halos of outputs are filled there
+  int read_before = 0, read_after = 0;  ///< so many packs across the ends of arcs: halos of outputs, filled
 };
 
 /// A step where the matrix is one number: at a row of arguments the output E' is evaluated, and with it

@@ -52,7 +52,7 @@ void RowLayout::find_halo_packs() {
     overlap[l] = packs_ - (start(l) - (l == 0 ? start(lanes - 1) - sites_ : start(l - 1)));
   const auto [least, most] = std::ranges::minmax(overlap);
   by_packs_ = std::ranges::all_of(overlap, [&](int b) { return b == least || b == most; }) && least >= 0 &&
-              most + halo_ <= packs_;
+              halo_ > 0 && most + halo_ <= packs_;
   if (!by_packs_) return;
   // Set by copy_overlaps() are the last b_{l+1} packs of arc l: no halo is taken from these where arcs are long enough.
   halos_come_first_ = 2 * most + halo_ <= packs_;

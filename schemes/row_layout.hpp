@@ -47,15 +47,19 @@ class RowLayout {
 
   /// Fills halo slots from the sites they repeat, adding `turn` for every time round the circle; on an interval the
   /// slots beyond a wall repeat the wall, so that they stay finite.
-  void fill_halo(double* row, double turn = 0) const {
-    if (!by_packs_ || turn != 0) fill_halo_turned(row, turn);
-    else fill_halo_before(row), fill_halo_after(row);
+  void fill_halo(double* row) const {
+    if (!by_packs_) fill_halo_turned(row, 0);
+    else before_.fill(row, -at(0), 0), after_.fill(row, 0, at(0));
   }
-  /// Of what only sites on one side read, if that side alone can be filled.
-  void fill_halo(double* row, bool before, bool after) const {
+  void fill_halo(double* row, double turn) const {
+    if (turn != 0) fill_halo_turned(row, turn);
+    else fill_halo(row);
+  }
+  /// Of what is read so many packs away, if these alone can be filled.
+  void fill_halo(double* row, int before, int after) const {
     if (!by_packs_) return fill_halo(row);
-    if (before) fill_halo_before(row);
-    if (after) fill_halo_after(row);
+    if (before > 0) before_.fill(row, -before * lanes, 0);
+    if (after > 0) after_.fill(row, 0, after * lanes);
   }
   /// Whether packs of a halo are packs of the row, moved by a lane; and then the one before the first.
   bool finds_halos_by_packs() const { return by_packs_; }
@@ -63,6 +67,9 @@ class RowLayout {
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {
     for (const Copy& c : overlap_copies_) row[c.to] = row[c.from];
+  }
+  void copy_overlaps(double* row, double* other) const {
+    for (const Copy& c : overlap_copies_) row[c.to] = row[c.from], other[c.to] = other[c.from];
   }
   /// Halos repeat no slot that copy_overlaps() sets. They are then better filled first, where a row has just been made: a
   /// pack cannot be loaded without waiting right after one of its slots was stored.
@@ -90,13 +97,14 @@ class RowLayout {
       const Pack one = Pack::load(row + from + by), other = Pack::load(row + from_others + by);
       return moved(Pack{is_other.v != 0 ? other.v : one.v});
     }
-    /// The packs from `by` on. A copy of it is worked with, which stores cannot change.
+    /// The packs from `by` on, at least one. A copy of it is worked with, which stores cannot change.
     void fill(double* row, std::ptrdiff_t by, std::ptrdiff_t end) const {
-      for (const Beside own = *this; by < end; by += lanes) own.pack(row, by).store(row + own.to + by);
+      const Beside own = *this;
+      do {
+        own.pack(row, by).store(row + own.to + by);
+      } while ((by += lanes) < end);
     }
   };
-  void fill_halo_before(double* row) const { before_.fill(row, -at(0), 0); }
-  void fill_halo_after(double* row) const { after_.fill(row, 0, at(0)); }
   void fill_halo_turned(double* row, double turn) const;
   void find_halo_packs();
 

@@ -13,7 +13,7 @@ namespace delf {
 namespace {
 
 // Looks are rare where steps in place, which keep no past rows, have to pause for them.
-constexpr int steps_between_looks = 64, where_rows_are_long = 256;
+constexpr int steps_between_looks = 128, where_rows_are_long = 256;
 constexpr int highest_order = 11;
 // A seed of order p misses (1 − e^{−iωh})^{p+1} of a wave e^{iωt}. What an accepted iteration leaves of that is in
 // phase with the wave's velocity, and damps it or feeds it step after step. Over 5000 collisions (N = 255, h = k/8,

@@ -12,7 +12,7 @@
 #include "schemes/contraction.hpp"
 #include "schemes/flush_denormals.hpp"
 #include "schemes/newton.hpp"
-#include "schemes/row_equations.hpp"
+#include "schemes/row_equations_step.hpp"
 #include "schemes/row_seed.hpp"
 #include "schemes/row_team.hpp"
 
@@ -92,7 +92,6 @@ struct RowStepper::Impl {
       if (!loop(looked_at)) report_not_finite();
     } else {
       if (looked_at || !may_step_in_place() || !step_in_place(value)) value = step_beside();
-      if (overflowed(value)) report_not_finite();
     }
     if (options.fibre == Fibre::circle) check_wrapped_differences();
     row_is_found(value);
@@ -110,16 +109,18 @@ struct RowStepper::Impl {
     equations.begin(n);
     equations.evaluate_known_outputs();
     double value = 0;
-    if (!iterative) value = solve_once();
-    else if (stiff || !iterate(value)) {
-      if (rows_known < history) {
-        step_again();
-        equations.begin(n);
-      }
-      value = follow_root();
-    }
+    if (!iterative || stiff || !iterate(value)) value = step_without_iterations();
     if (can_go_in_place && iterations == 1) keep();
     else kept_row = -1;
+    return value;
+  }
+  [[gnu::noinline]] double step_without_iterations() {
+    if (iterative && rows_known < history) {
+      step_again();
+      equations.begin(n);
+    }
+    const double value = iterative ? follow_root() : solve_once();
+    if (overflowed(value)) report_not_finite();
     return value;
   }
 
@@ -129,7 +130,7 @@ struct RowStepper::Impl {
   /// the new ones too. False if it would take a second iteration: nothing is changed then. Out of line, as all
   /// that steps through short rows do without: they would save registers and align the stack for it.
   [[gnu::noinline]] bool step_in_place(double& value) {
-    equations.begin(n, true);
+    equations.begin_in_place(n);
     rows_known = 0;
     const RowChange moved = advance_straight();
     const double next_change = contraction_now();
@@ -465,7 +466,7 @@ void RowStepper::newest_pair(const double** rows) const {
   s.require_rows(2);
   for (int a = 0; a < s.d; ++a) {
     double* const v = s.rows.v(s.n, a);
-    s.layout().fill_halo(v, false, true);  // a loop leaves it
+    s.layout().fill_halo(v, 0, s.layout().halo());  // a loop leaves it
     rows[a] = s.rows.y(s.n - 1, a), rows[s.d + a] = v;
   }
 }

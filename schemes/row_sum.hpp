@@ -101,13 +101,19 @@ class RowSum {
            (changes_.empty() || (changes_[0].row == other.changes_[0].row && changes_[0].from == other.changes_[0].from));
   }
   /// Of sums that take turns, fewer terms are compiled.
-  static constexpr int most_plain = 8, most_in_turn = 3;
+  static constexpr int most_plain = 8, most_in_turn = 3, general = -1;
+  /// Compiled passes by number: without differences, with them, and in turn, each by the number of plain terms.
+  static constexpr int with_differences = most_plain + 1, in_turn = 2 * with_differences, forms = in_turn + most_in_turn + 1;
   /// Found once, not by every pass: a dozen of these questions take as long as a pack.
   void find_form() {
-    plain_count_ = static_cast<int>(plain_.size());
-    is_counted_ = are_around_site() && (other_ ? plain_count_ <= most_in_turn && are_like(*other_)
-                                               : plain_count_ <= most_plain &&
-                                                     (differences_.empty() || are_to_both_sides()));
+    const int plain = static_cast<int>(plain_.size());
+    form_ = general;
+    if (!are_around_site()) return;
+    if (other_) {
+      if (plain <= most_in_turn && are_like(*other_)) form_ = in_turn + plain;
+    } else if (plain <= most_plain && (differences_.empty() || are_to_both_sides())) {
+      form_ = (differences_.empty() ? 0 : with_differences) + plain;
+    }
   }
   /// The terms of a counted pass, as a pass keeps them.
   template <int differences, int plain, int changes>
@@ -117,10 +123,8 @@ class RowSum {
   [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, int changes, class Consume>
   [[gnu::always_inline]] void dispatch_counted(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, bool in_turn, int differences, int plain, int changes, class Consume>
+  template <bool measured, bool takes_turns, int differences, int plain, int changes, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, bool in_turn, int differences, int most, int changes, class Consume>
-  [[gnu::always_inline]] void counted(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, class Consume>
   [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
 
@@ -128,8 +132,7 @@ class RowSum {
   const Rows* rows_ = nullptr;
   double constant_ = 0;
   const RowSum* other_ = nullptr;
-  int plain_count_ = 0;
-  bool is_counted_ = true;  ///< there is a compiled pass
+  int form_ = 0;
 };
 
 /// None or two differences: those to the next pack and to the one before it. Either is then the other's of the pack
@@ -145,9 +148,10 @@ struct RowSum::Counted {
   [[gnu::always_inline]] explicit Counted(const RowSum& sum) : constant(sum.constant_) {
     for (int i = 0; i < plain; ++i) {
       const Term& t = sum.plain_[static_cast<std::size_t>(i)];
-      row[i] = sum.shifted(t), coefficient[i] = t.coefficient;
+      const double* shifted = sum.shifted(t);
       // Hidden from compilers, which would find one row from another, and have too many registers to keep.
-      asm("" : "+r"(row[i]));
+      asm("" : "+r"(shifted));
+      row[i] = shifted, coefficient[i] = t.coefficient;
     }
     if constexpr (differences > 0) {
       of_next = sum.differences_[0].coefficient, of_last = sum.differences_[1].coefficient;
@@ -159,11 +163,12 @@ struct RowSum::Counted {
   }
 };
 
-/// `in_turn`: with the other sum, which is like this one. Packs follow each other.
-template <bool measured, bool in_turn, int differences, int plain, int changes, class Consume>
+/// `takes_turns`: with the other sum, which is like this one. Packs follow each other.
+template <bool measured, bool takes_turns, int differences, int plain, int changes, class Consume>
 inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
   using Terms = Counted<differences, plain, changes>;
-  const Terms first(in_turn ? of(packs.first) : *this);
+  const bool other_first = takes_turns && (packs.first + rows_->phase) % 2 != 0;
+  const Terms first(other_first ? *other_ : *this);
   std::ptrdiff_t at = layout.at(packs.first);
   const std::ptrdiff_t end = layout.at(packs.last);
   const double* const here = differences > 0 ? row(differences_[0].row) : nullptr;
@@ -201,8 +206,8 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
     else consume(at, sum);
     at += lanes;
   };
-  if constexpr (in_turn) {
-    const Terms second(of(packs.first + 1));
+  if constexpr (takes_turns) {
+    const Terms second(other_first ? *this : *other_);
     while (at + lanes < end) take(first), take(second);
     if (at < end) take(first);
   } else {
@@ -231,28 +236,23 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
 
 /// The numbers of terms of the usual schemes are compiled, differences being those to both sides: rows then stay in
 /// registers.
-template <bool measured, bool in_turn, int differences, int most, int changes, class Consume>
-inline void RowSum::counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  [&]<int... plain>(std::integer_sequence<int, plain...>) __attribute__((always_inline)) {
-    const auto done = [&]<int count>() __attribute__((always_inline)) {
-      if (plain_count_ != count) return false;
-      counted_pass<measured, in_turn, differences, count, changes>(layout, packs, consume);
-      return true;
-    };
-    (void)(done.template operator()<plain>() || ...);
-  }
-  (std::make_integer_sequence<int, most + 1>{});
-}
 template <bool measured, int changes, class Consume>
 inline void RowSum::dispatch_counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  if (other_) counted<measured, true, 2, most_in_turn, changes>(layout, packs, consume);
-  else if (differences_.empty()) counted<measured, false, 0, most_plain, changes>(layout, packs, consume);
-  else counted<measured, false, 2, most_plain, changes>(layout, packs, consume);
+  [&]<int... number>(std::integer_sequence<int, number...>) __attribute__((always_inline)) {
+    const auto done = [&]<int form>() __attribute__((always_inline)) {
+      if (form_ != form) return false;
+      counted_pass<measured, form >= in_turn, form >= with_differences ? 2 : 0, form % with_differences, changes>(
+          layout, packs, consume);
+      return true;
+    };
+    (void)(done.template operator()<number>() || ...);
+  }
+  (std::make_integer_sequence<int, forms>{});
 }
 template <bool measured, class Consume>
 inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
   // Changes are the unknown row's, which steps do not ask for.
-  if (!is_counted_ || (!measured && !changes_.empty())) return general_pass<measured>(layout, packs, consume);
+  if (form_ == general || (!measured && !changes_.empty())) return general_pass<measured>(layout, packs, consume);
   if constexpr (measured) {
     if (changes_.size() == 1) return dispatch_counted<measured, 1>(layout, packs, consume);
     if (changes_.size() == 3) return dispatch_counted<measured, 3>(layout, packs, consume);

@@ -161,7 +161,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
 
   bool evaluates_arguments() const override { return d == 1 && outputs_ == 1 && nonlinearity_ == Nonlinearity::values; }
   void evaluate_arguments(const ArgumentRow& row, double* out, const PackRange& packs) const override {
-    if constexpr (d == 1) argument_loop_for<stride>(slope(row), row, out, packs);
+    if constexpr (d == 1) argument_loop_for<stride>([&] { return slope(row); }, row, out, packs);
   }
   bool divides(int old, int parts) const override {
     return evaluates_arguments() && stride == 1 && old == 2 && parts == 2;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/contraction.hpp"
 
-#include "schemes/row_equations.hpp"
+#include "schemes/row_equations_step.hpp"
 #include "schemes/row_seed.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
