@@ -36,7 +36,7 @@ Measured measured(const std::string& scheme, int sites, double tolerance, int re
 /// rows, or a second iteration.
 double fixed_cost(const std::string& scheme, double tolerance, int repeats) {
   const Collision at_255{scheme, 255, tolerance};
-  constexpr long steps = 10'000;
+  constexpr long steps = 30'000;  // the first of them, which take more iterations, are few against these
   constexpr std::array waves{2, 3, 4, 5};
   double n = 0, t = 0, nn = 0, nt = 0;
   for (const int m : waves) {
