@@ -4,19 +4,18 @@
 
 namespace delf {
 
-/// In which slot of a ring of `held` rows a row lies: row modulo held, without a division when rows come one after the
-/// other, as they do in steps.
+/// In which slot of a ring of `held` rows a row lies: row modulo held, without a division for a row that is near the one
+/// asked for before.
 class RingSlots {
  public:
   explicit RingSlots(int held = 1) : held_(held) {}
 
+  int held() const { return held_; }
   void at(std::int64_t row) {
-    if (row == row_ + 1) {
-      slot_ = slot_ + 1 == held_ ? 0 : slot_ + 1;
-    } else if (row != row_) {
-      slot_ = static_cast<int>((row % held_ + held_) % held_);
-    }
+    const std::int64_t by = row - row_;
     row_ = row;
+    if (by > -held_ && by < held_) slot_ = (*this)(-static_cast<int>(by));
+    else slot_ = static_cast<int>((row % held_ + held_) % held_);
   }
   /// Of the row `back` before; −held < back < held.
   int operator()(int back) const {

@@ -63,9 +63,10 @@ void RowEquations::find_rows_at(std::int64_t place) {
   y_slots_.at(place);
   v_slots_.at(place);
   for (Outputs& o : outputs_) o.slots.at(place);
-  for (int row = 1; row >= 1 - history_; --row)
+  for (int row = oldest_value_; row <= newest_value_; ++row)
     for (int a = 0; a < d_; ++a)
-      own_.values[static_cast<std::size_t>((1 - row) * d_ + a)] = rows_.y_at(y_slots_(-row), a);
+      own_.values[value_index(row) + static_cast<std::size_t>(a)] =
+          rows_.y_at(y_slots_(-std::clamp(row, 1 - history_, 1)), a);
   for (int a = 0; a < d_; ++a) {
     base(y_base_ + a) = rows_.y_at(y_slots_(0), a);
     base(E_base_ + a) = rows_.y_at(y_slots_(-1), a);
@@ -103,32 +104,24 @@ void RowEquations::build_places() {
   places_ = std::move(places);
 }
 
-/// Wherever the equations of a pack read outputs: beyond the ends of arcs too.
-PackRange RowEquations::where_read(const Outputs& o) const {
-  if (turn_ != 0) return layout_.all();  // what is read across the seam is the site's own output, whatever the density
-  return {o.lowest, layout_.packs() + o.highest};
-}
-
 SlabRows RowEquations::slab_of(const double* const* values, std::int64_t row) const {
   return {&layout_, values, positions(), static_cast<double>(row) * time_step_,
           time_step_, space_step_};
 }
 
 /// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others.
-void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& given,
+void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& packs,
                             const RowsAhead& ahead) {
-  const PackRange packs = packs_of(o, age, given);
-  const int newest = o.reads_unknown_row(age) ? 1 : 0;
-  for (int t = o.first_time; t <= o.last_time; ++t)
-    for (int a = 0; a < d_; ++a) {
-      const int row = std::clamp(age + t, 1 - history_, newest);
-      slab_rows_[static_cast<std::size_t>((t - o.first_time) * d_ + a)] =
-          row == 1 && which == At::candidate ? candidate_.row(a)
-                                             : here_->values[static_cast<std::size_t>((1 - row) * d_ + a)];
-    }
-  SlabRows slab = slab_of(slab_rows_.data(), n_ + age);
+  const double* const* values = here_->values.data() + value_index(age + o.first_time);
+  if (which == At::candidate) {
+    const auto rows = static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_);
+    std::copy_n(values, rows, slab_rows_.begin());
+    for (int a = 0; a < d_; ++a) slab_rows_[static_cast<std::size_t>((1 - age - o.first_time) * d_ + a)] = candidate_.row(a);
+    values = slab_rows_.data();
+  }
+  SlabRows slab = slab_of(values, n_ + age);
   slab.ahead = ahead;
-  o.kernel->evaluate(slab, out, packs);
+  o.kernel->evaluate(slab, out, packs_of(o, age, packs));
   if (turn_ != 0)
     for (int c = 0; c < o.kernel->outputs(); ++c) layout_.fill_halo(out[c]);
 }

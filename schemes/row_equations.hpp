@@ -126,7 +126,7 @@ class RowEquations {
   /// Where all lies that a step from one place of the rings reads and makes.
   struct StepRows {
     std::vector<double*> bases;   ///< y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E, d rows each
-    std::vector<double*> values;  ///< y_{n+1}, y_n, y_{n−1}, …, d rows each
+    std::vector<double*> values;  ///< …, y_{n−1}, y_n, y_{n+1}, d rows each; for rows that none reads the next of these
     std::vector<RowIncrement> increments;
     double *known_values = nullptr, *output = nullptr;  ///< of arguments: y of their known_row, and what they give
   };
@@ -176,7 +176,13 @@ class RowEquations {
   int index_of(const Term&, bool measured) const;
   void add_term(RowSum&, const Term&, double coefficient, bool measured) const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
-  PackRange where_read(const Outputs&) const;
+  /// Wherever the equations of a pack read outputs: beyond the ends of arcs too.
+  PackRange where_read(const Outputs& o) const {
+    if (turn_ != 0) return layout_.all();  // what is read across the seam is the site's own output, whatever the density
+    return {o.lowest, layout_.packs() + o.highest};
+  }
+  /// Where the row so many after row n begins in StepRows::values.
+  std::size_t value_index(int row) const { return static_cast<std::size_t>((row - oldest_value_) * d_); }
   using RowsAhead = decltype(SlabRows::ahead);
   void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&, const RowsAhead& = {});
   void evaluate_in_ring(Outputs&, int age, At);
@@ -236,6 +242,7 @@ class RowEquations {
   StepRows* here_ = &own_;        ///< one of these
   RingSlots period_;
   int y_base_ = 0, v_base_ = 0, E_base_ = 0, v_new_base_ = 0;
+  int oldest_value_ = 0, newest_value_ = 1;  ///< of StepRows::values, from n
 
   /// −E times the solver's scale, for each component; of bricks two that take turns, the first for packs whose site and
   /// equation's row are both even or both odd.
@@ -256,7 +263,7 @@ class RowEquations {
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;
   std::vector<const double*> slab_rows_;
-  bool measures_w_beside_ = false;     ///< residual() reads increments at other sites
+  int measured_reach_ = 0;             ///< so many sites to either side, residual() reads increments
   bool is_streamed_ = false;
   bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row
 

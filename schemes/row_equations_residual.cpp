@@ -47,8 +47,11 @@ void RowEquations::make_room_for_residual() {
 void RowEquations::measure_sums(LargestTerms& all) {
   if (!scratch_.rows()) make_room_for_residual();
   find_rows();
-  if (measures_w_beside_ && !increment(0).v_has_halo)
-    for (const int first : {v_new_base_, v_base_}) layout_.fill_halo(base(first));  // of one component
+  if (measured_reach_ > 0 && !increment(0).v_has_halo) {  // of one component
+    layout_.fill_halo(base(v_new_base_), measured_reach_, measured_reach_);
+    if (residual_row_ != n_ - 1) layout_.fill_halo(base(v_base_), measured_reach_, measured_reach_);
+  }
+  residual_row_ = n_;
   for (const Outputs& o : outputs_)
     for (int age = o.oldest_measured(); age <= o.newest; ++age) {
       double* const* const out = &base(o.measured_index(age, 0));

@@ -96,7 +96,7 @@ void RowEquations::build_sums() {
   };
   terms_of([&](const Term& t) {
     if (t.source == Source::increment) ages_ = std::max(ages_, t.age + 1);
-    if (t.source == Source::unknown && t.shift != 0) measures_w_beside_ = true;
+    if (t.source == Source::unknown) measured_reach_ = std::max(measured_reach_, std::abs(t.shift));
   });
   y_base_ = 0;
   v_base_ = d_;
@@ -113,7 +113,12 @@ void RowEquations::build_sums() {
     next += o.measured_rows();
   }
   own_.bases.resize(static_cast<std::size_t>(next));
-  own_.values.resize(static_cast<std::size_t>((history_ + 1) * d_));
+  oldest_value_ = 1 - history_;
+  for (const Outputs& o : outputs_) {
+    oldest_value_ = std::min(oldest_value_, o.oldest + o.first_time);
+    newest_value_ = std::max(newest_value_, o.newest + o.last_time);
+  }
+  own_.values.resize(value_index(newest_value_ + 1));
 
   is_stored_ = solver_[1] || !equations_.exceptional.empty();
   for (int a = 0; a < d_; ++a) {

@@ -100,6 +100,15 @@ class RowSum {
            other.are_around_site() &&
            (changes_.empty() || (changes_[0].row == other.changes_[0].row && changes_[0].from == other.changes_[0].from));
   }
+  /// What is as far to either side has one coefficient, and so have all plain terms.
+  bool is_even() const {
+    for (const Term& t : plain_)
+      if (t.coefficient != plain_[0].coefficient) return false;
+    for (const Term& t : changes_)
+      for (const Term& u : changes_)
+        if (t.shift == -u.shift && t.coefficient != u.coefficient) return false;
+    return differences_.empty() || differences_[0].coefficient == differences_[1].coefficient;
+  }
   /// Of sums that take turns, fewer terms are compiled.
   static constexpr int most_plain = 8, most_in_turn = 3, general = -1;
   /// Compiled passes by number: without differences, with them, and in turn, each by the number of plain terms.
@@ -108,6 +117,7 @@ class RowSum {
   void find_form() {
     const int plain = static_cast<int>(plain_.size());
     form_ = general;
+    even_ = is_even() && (!other_ || other_->is_even());
     if (!are_around_site()) return;
     if (other_) {
       if (plain <= most_in_turn && are_like(*other_)) form_ = in_turn + plain;
@@ -121,9 +131,9 @@ class RowSum {
   // Inlined where they are used: what `consume` carries would else be copied through memory.
   template <bool measured, class Consume>
   [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, int changes, class Consume>
+  template <bool measured, bool even, int changes, class Consume>
   [[gnu::always_inline]] void dispatch_counted(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, bool takes_turns, int differences, int plain, int changes, class Consume>
+  template <bool measured, bool even, bool takes_turns, int differences, int plain, int changes, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, class Consume>
   [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
@@ -133,6 +143,7 @@ class RowSum {
   double constant_ = 0;
   const RowSum* other_ = nullptr;
   int form_ = 0;
+  bool even_ = true;
 };
 
 /// None or two differences: those to the next pack and to the one before it. Either is then the other's of the pack
@@ -164,7 +175,7 @@ struct RowSum::Counted {
 };
 
 /// `takes_turns`: with the other sum, which is like this one. Packs follow each other.
-template <bool measured, bool takes_turns, int differences, int plain, int changes, class Consume>
+template <bool measured, bool even, bool takes_turns, int differences, int plain, int changes, class Consume>
 inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
   using Terms = Counted<differences, plain, changes>;
   const bool other_first = takes_turns && (packs.first + rows_->phase) % 2 != 0;
@@ -173,7 +184,7 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
   const std::ptrdiff_t end = layout.at(packs.last);
   const double* const here = differences > 0 ? row(differences_[0].row) : nullptr;
   Pack value = differences > 0 ? Pack::load(here + at) : Pack(0.0);
-  Pack last = differences > 0 ? value - Pack::load(here + at - lanes) : Pack(0.0);
+  Pack last = differences > 0 ? value - Pack::load(here + at - lanes) : Pack(0.0), last_size = abs(last);
   const double* const changed = changes > 0 ? row(changes_[0].row) : nullptr;
   const double* const before = changes > 0 ? row(changes_[0].from) : nullptr;
   const auto change_at = [=](std::ptrdiff_t to) __attribute__((always_inline)) {
@@ -181,26 +192,51 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
   };
   Pack last_change = changes == 3 ? change_at(at - lanes) : Pack(0.0);
   Pack change = changes == 3 ? change_at(at) : Pack(0.0);
+  Pack last_change_size = abs(last_change), change_size = abs(change);
   const auto take = [&](const Terms& terms) __attribute__((always_inline)) {
     Pack sum = terms.constant, absolute(0.0);
-    const auto add = [&](double coefficient, Pack term) __attribute__((always_inline)) {
+    const auto add = [&](double coefficient, Pack term, Pack size) __attribute__((always_inline)) {
       sum += coefficient * term;
-      if constexpr (measured) absolute += std::abs(coefficient) * abs(term);
+      if constexpr (measured) absolute += std::abs(coefficient) * size;
     };
     if constexpr (differences > 0) {
-      const Pack next_value = Pack::load(here + at + lanes), next = next_value - value;
-      add(terms.of_next, next);
-      add(-terms.of_last, last);
-      value = next_value, last = next;
+      const Pack next_value = Pack::load(here + at + lanes), next = next_value - value, next_size = abs(next);
+      if constexpr (even) {
+        add(terms.of_next, next - last, next_size + last_size);
+      } else {
+        add(terms.of_next, next, next_size);
+        add(-terms.of_last, last, last_size);
+      }
+      value = next_value, last = next, last_size = next_size;
     }
-    for (int i = 0; i < plain; ++i) add(terms.coefficient[i], Pack::load(terms.row[i] + at));
-    if constexpr (changes == 1) add(terms.of_change[1], change_at(at));
+    if constexpr (even && plain > 0) {
+      Pack all = Pack::load(terms.row[0] + at), size = abs(all);
+      for (int i = 1; i < plain; ++i) {
+        const Pack term = Pack::load(terms.row[i] + at);
+        all += term, size += abs(term);
+      }
+      add(terms.coefficient[0], all, size);
+    } else {
+      for (int i = 0; i < plain; ++i) {
+        const Pack term = Pack::load(terms.row[i] + at);
+        add(terms.coefficient[i], term, abs(term));
+      }
+    }
+    if constexpr (changes == 1) {
+      const Pack term = change_at(at);
+      add(terms.of_change[1], term, abs(term));
+    }
     if constexpr (changes == 3) {
-      const Pack next_change = change_at(at + lanes);
-      add(terms.of_change[0], last_change);
-      add(terms.of_change[1], change);
-      add(terms.of_change[2], next_change);
-      last_change = change, change = next_change;
+      const Pack next = change_at(at + lanes), next_size = abs(next);
+      add(terms.of_change[1], change, change_size);
+      if constexpr (even) {
+        add(terms.of_change[0], last_change + next, last_change_size + next_size);
+      } else {
+        add(terms.of_change[0], last_change, last_change_size);
+        add(terms.of_change[2], next, next_size);
+      }
+      last_change = change, change = next;
+      last_change_size = change_size, change_size = next_size;
     }
     if constexpr (measured) consume(at, sum, absolute);
     else consume(at, sum);
@@ -236,12 +272,12 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
 
 /// The numbers of terms of the usual schemes are compiled, differences being those to both sides: rows then stay in
 /// registers.
-template <bool measured, int changes, class Consume>
+template <bool measured, bool even, int changes, class Consume>
 inline void RowSum::dispatch_counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
   [&]<int... number>(std::integer_sequence<int, number...>) __attribute__((always_inline)) {
     const auto done = [&]<int form>() __attribute__((always_inline)) {
       if (form_ != form) return false;
-      counted_pass<measured, form >= in_turn, form >= with_differences ? 2 : 0, form % with_differences, changes>(
+      counted_pass<measured, even, form >= in_turn, form >= with_differences ? 2 : 0, form % with_differences, changes>(
           layout, packs, consume);
       return true;
     };
@@ -254,10 +290,12 @@ inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& 
   // Changes are the unknown row's, which steps do not ask for.
   if (form_ == general || (!measured && !changes_.empty())) return general_pass<measured>(layout, packs, consume);
   if constexpr (measured) {
-    if (changes_.size() == 1) return dispatch_counted<measured, 1>(layout, packs, consume);
-    if (changes_.size() == 3) return dispatch_counted<measured, 3>(layout, packs, consume);
+    if (changes_.size() == 1 && even_) return dispatch_counted<measured, true, 1>(layout, packs, consume);
+    if (changes_.size() == 3 && even_) return dispatch_counted<measured, true, 3>(layout, packs, consume);
+    if (changes_.size() == 1) return dispatch_counted<measured, false, 1>(layout, packs, consume);
+    if (changes_.size() == 3) return dispatch_counted<measured, false, 3>(layout, packs, consume);
   }
-  dispatch_counted<measured, 0>(layout, packs, consume);
+  dispatch_counted<measured, false, 0>(layout, packs, consume);
 }
 
 template <class Consume>

@@ -9,7 +9,9 @@ SectionRows::SectionRows(const LatticeSystem& system, int halo, int rows, int in
       turn_(turn),
       layout_(system.lattice(), halo, system.placement() == Placement::brick_wall ? 2 : 1),
       y_(layout_, rows * d_),
-      v_(layout_, increments * d_) {}
+      v_(layout_, increments * d_),
+      y_slots_(rows),
+      v_slots_(increments) {}
 
 void SectionRows::find_increment(std::int64_t row) {
   for (int a = 0; a < d_; ++a) {

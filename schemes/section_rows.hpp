@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "schemes/lattice_system.hpp"
+#include "schemes/ring_slots.hpp"
 #include "schemes/row_layout.hpp"
 
 namespace delf {
@@ -20,11 +20,17 @@ class SectionRows {
   int sites() const { return layout_.sites(); }
   int components() const { return d_; }
   double turn() const { return turn_; }
-  int rows_held() const { return y_.rows() / d_; }
-  int increments_held() const { return v_.rows() / d_; }
+  int rows_held() const { return y_slots_.held(); }
+  int increments_held() const { return v_slots_.held(); }
 
-  double* y(std::int64_t row, int a) { return y_at(slot(row, rows_held()), a); }
-  double* v(std::int64_t row, int a) { return v_at(slot(row, increments_held()), a); }
+  double* y(std::int64_t row, int a) {
+    y_slots_.at(place(row));
+    return y_at(y_slots_.slot(), a);
+  }
+  double* v(std::int64_t row, int a) {
+    v_slots_.at(place(row));
+    return v_at(v_slots_.slot(), a);
+  }
   /// Lets the next row and its increment take the place of the newest instead of the oldest: the one before it is then
   /// gone.
   void overwrite_newest() { ++overwritten_; }
@@ -49,18 +55,12 @@ class SectionRows {
   std::size_t increment_bytes() const { return v_.bytes(); }
 
  private:
-  int slot(std::int64_t row, int held) const {
-    const std::int64_t r = place(row);
-    // A division of 64 bits takes several times as long.
-    if (r >= 0 && r < std::numeric_limits<std::uint32_t>::max())
-      return static_cast<int>(static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(held));
-    return static_cast<int>((r % held + held) % held);
-  }
   const Lattice* lattice_;
   int d_;
   double turn_;
   RowLayout layout_;
   RowBuffer y_, v_;
+  RingSlots y_slots_, v_slots_;
   std::int64_t overwritten_ = 0;  ///< rows that took the place of the one before
 };
 

@@ -74,7 +74,8 @@ class Simulation {
   /// an element scheme. Throws BadInput for other schemes.
   void start_legendre(std::span<const double> row0, std::span<const double> velocity);
 
-  /// One step. Throws NoConvergence or NotFinite; the rows held are then still the last good ones.
+  /// One step. Throws NoConvergence or NotFinite; the rows held are then still the last good ones. Throws
+  /// std::logic_error before a start.
   /// A row that is not to be `looked_at` costs an explicit step, or one through long rows, less memory traffic: the row
   /// before it is written over, and residual() and monitors() are not to be had.
   void step(bool looked_at = true);

@@ -37,6 +37,7 @@ void Stepper::start(const std::vector<std::vector<double>>& rows) {
       throw BadInput("initial.start", "a starting row of " + std::to_string(row.size()) + " values: the section has " +
                                           std::to_string(row_size_) + " in a row");
   method_->start(rows);
+  started_ = true;
 }
 
 }  // namespace delf

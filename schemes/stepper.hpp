@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -24,16 +25,21 @@ class Stepper {
   /// Row 0 and φ_t there; row 1 from the equation at row 0 with y₋₁ = y₁ − 2hφ_t (second order for every scheme).
   void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
     method_->start_centred(row0, velocity);
+    started_ = true;
   }
   /// Row 0 and the momenta of its vertices: row 1 from the discrete Legendre transform p₀ = −∂L/∂y₀.
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
     method_->start_legendre(row0, momenta);
+    started_ = true;
   }
 
-  /// Throws NoConvergence or NotFinite and then still holds the rows that it held before.
+  /// Throws NoConvergence or NotFinite and then still holds the rows that it held before; std::logic_error before a start.
   /// If the new row is not to be `looked_at`, an explicit step, or one through long rows, may write it over the old
   /// one: there is then no row before it (std::logic_error), and no residual (NaN).
-  void step(bool looked_at = true) { method_->step(looked_at); }
+  void step(bool looked_at = true) {
+    if (!started_) throw std::logic_error("a step needs rows to go on from: call start() first");
+    method_->step(looked_at);
+  }
 
   std::int64_t newest() const { return method_->newest(); }
   /// Of each component, so many rows before the newest row of fields is its newest that is known.
@@ -56,8 +62,8 @@ class Stepper {
   /// Rows in the lanes' layout with halos; null when stepped slab by slab.
   const RowLayout* layout() const { return method_->layout(); }
   const double* row_data(int back, int component) const { return method_->row_data(back, component); }
-  /// Of each component the row before the newest, and then of each the increment from there to the newest, with what
-  /// comes after its end.
+  /// Of each component the row before the newest, and then of each the increment from there to the newest, with the
+  /// pack after its end.
   void newest_pair(const double** rows) const { method_->newest_pair(rows); }
 
   bool iterates() const { return method_->iterates(); }  ///< a step is not one solve
@@ -74,6 +80,7 @@ class Stepper {
  private:
   std::unique_ptr<StepMethod> method_;
   std::size_t components_, row_size_;
+  bool started_ = false;
 };
 
 }  // namespace delf

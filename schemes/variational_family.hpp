@@ -239,17 +239,29 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     std::ptrdiff_t origin;
   };
 
-  /// Σ_l weights[l] y_l for the pack v of stencils and component a.
+  /// Σ_l weights[l] y_l for the pack v of stencils and component a. Equal weights, as those of means, are taken out of
+  /// the sum: additions and products take turns.
   template <std::size_t... l>
   [[gnu::always_inline]] static Pack weighted(const std::array<double, n>& weights, const LocalRows& rows, int a,
                                               std::ptrdiff_t at, std::index_sequence<l...>) {
+    const auto value = [&](std::size_t i) __attribute__((always_inline)) {
+      return Pack::load(rows.values[(map.shape.vertex(i).time - first_time) * d + a] + at +
+                        map.shape.vertex(i).space * lanes);
+    };
+    double weight = 0;
+    for (const double w : weights)
+      if (w != 0) weight = w;
+    const bool equal = ((weights[l] == 0 || weights[l] == weight) && ...);
     Pack sum(0.0);
-    ((weights[l] != 0
-          ? (void)(sum += weights[l] * Pack::load(rows.values[(map.shape.vertex(l).time - first_time) * d + a] + at +
-                                                  map.shape.vertex(l).space * lanes))
-          : (void)0),
-     ...);
-    return sum;
+    bool first = true;
+    const auto add = [&](std::size_t i) __attribute__((always_inline)) {
+      if (weights[i] == 0) return;
+      const Pack term = equal ? value(i) : weights[i] * value(i);
+      sum = first ? term : sum + term;
+      first = false;
+    };
+    (add(l), ...);
+    return equal ? weight * sum : sum;
   }
 
   template <class Number>
