@@ -268,7 +268,8 @@ int CirculantSolver::Stream::advance(int end, double* u, const double* expected)
     }
     return pass.result();
   };
-  all_.take(with_increment_pass<Order::descending>(rows_, finish));
+  all_.take(expected ? with_increment_pass<Order::descending>(rows_, finish)
+                     : finish(IncrementPass<1, Order::descending, Look::increment>(rows_)));
   return done_ = ready;
 }
 

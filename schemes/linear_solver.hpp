@@ -23,7 +23,8 @@ class RowStream {
   virtual PackRange last_packs() const = 0;
   virtual void begin(double* work) = 0;
   /// The right side is ready up to pack `end`. Returns up to where the new row is done: `work` has room from there
-  /// on, and holds what was put there. What is looked at of the row is held against `expected`.
+  /// on, and holds what was put there. What is looked at of the row is held against `expected`; null: what the row is
+  /// more than y_n + v_n, w itself.
   virtual int advance(int end, double* work, const double* expected) = 0;
   /// Without the last `parts` − 1 packs of each advance(), which look beyond its end. The row is not closed.
   virtual RowChange result() const = 0;

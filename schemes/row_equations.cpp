@@ -113,15 +113,17 @@ SlabRows RowEquations::slab_of(const double* const* values, std::int64_t row) co
 void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& packs,
                             const RowsAhead& ahead) {
   const double* const* values = here_->values.data() + value_index(age + o.first_time);
-  if (which == At::candidate) {
+  if (which != At::row) {
     const auto rows = static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_);
     std::copy_n(values, rows, slab_rows_.begin());
-    for (int a = 0; a < d_; ++a) slab_rows_[static_cast<std::size_t>((1 - age - o.first_time) * d_ + a)] = candidate_.row(a);
+    const double** const newest = slab_rows_.data() + (1 - age - o.first_time) * d_;
+    for (int a = 0; a < d_; ++a) newest[a] = which == At::candidate ? candidate_.row(a) : increment(a).y_before;
     values = slab_rows_.data();
   }
   SlabRows slab = slab_of(values, n_ + age);
   slab.ahead = ahead;
-  o.kernel->evaluate(slab, out, packs_of(o, age, packs));
+  if (which == At::straight_line) o.kernel->evaluate_straight(slab, increment(0).v_before, out, packs_of(o, age, packs));
+  else o.kernel->evaluate(slab, out, packs_of(o, age, packs));
   if (turn_ != 0)
     for (int c = 0; c < o.kernel->outputs(); ++c) layout_.fill_halo(out[c]);
 }
@@ -201,7 +203,8 @@ void RowEquations::make_room_in_place() {
   o.ring = RowBuffer(layout_, o.held * o.kernel->outputs());
 }
 
-RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& find) {
+RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& find) {
+  const bool straight = which == At::straight_line;
   Outputs& o = outputs_[0];
   const int packs = layout_.packs(), halo = layout_.halo(), count = o.kernel->outputs();
   const PackRange read = where_read(o);
@@ -243,7 +246,7 @@ RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& f
   hold_candidate(last.first - halo, 0);
   if (find) find({last.first - halo, packs + halo});
   hold_outputs(last.first + o.lowest, 0);
-  evaluate(o, o.newest, slab_out_.data(), At::candidate, {last.first + o.lowest, read.last});
+  evaluate(o, o.newest, slab_out_.data(), which, {last.first + o.lowest, read.last});
   stream->begin(work(last.first, last.first));
   hold_candidate(-halo, 0);
   if (find) find({-halo, halo});
@@ -257,13 +260,13 @@ RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& f
     found = end + halo;
     const int evaluated_until = all ? read.last : end + o.highest;
     hold_outputs(kept, evaluated);
-    evaluate(o, o.newest, slab_out_.data(), At::candidate, {evaluated, evaluated_until},
+    evaluate(o, o.newest, slab_out_.data(), which, {evaluated, evaluated_until},
              all ? RowsAhead{} : rows_after(found - evaluated));
     evaluated = evaluated_until;
     double* const room = work(done, summed);
     summed = end;
     const int before = done;
-    done = stream->advance(end, room, candidate_.row(0));
+    done = stream->advance(end, room, straight ? nullptr : candidate_.row(0));
     // Outputs take the place of those that are no longer read.
     const int keep_until = all ? read.last : end + o.lowest;
     for (int c = 0; c < count && in_place_; ++c) {
@@ -272,6 +275,7 @@ RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& f
                 output_places_[static_cast<std::size_t>(c)] + layout_.at(kept));
     }
     kept = keep_until;
+    if (straight) continue;
     // What is looked at on the way is that from one end of a strip to the next, and not beyond it.
     const int seen = done - reach;
     if (seen > (looks_on_the_way_ ? before : changed)) {
@@ -281,7 +285,8 @@ RowChange RowEquations::advance_streamed(const std::function<void(PackRange)>& f
   }
   increment(0).close(layout_, [] {});
   RowChange result = stream->result();
-  result.change = larger_or_nan(larger_or_nan(largest_change(looks_, {changed, packs}), change), result.change);
+  if (straight) result.change *= most_weight();
+  else result.change = larger_or_nan(larger_or_nan(largest_change(looks_, {changed, packs}), change), result.change);
   return result;
 }
 

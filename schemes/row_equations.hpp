@@ -54,7 +54,7 @@ class RowEquations {
   /// Evaluates the nonlinear outputs that do not read row n+1, and finds the arguments of the rows that are held; those
   /// outputs that do, of the candidate or of the row.
   void evaluate_outputs();
-  enum class At { candidate, row };
+  enum class At { candidate, row, straight_line };  ///< y_n + v_n in the place of y_{n+1}
   void evaluate_unknown_outputs(At);
   /// Evaluates the outputs that read rows up to n only and that no earlier step had to evaluate.
   void evaluate_known_outputs() {
@@ -71,18 +71,22 @@ class RowEquations {
   inline RowChange advance_again();
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
-  /// Or in one loop, from a candidate of order 1.
-  bool goes_straight() const { return straight_.has_value(); }
-  RowChange advance_straight();
+  /// From y_n + v_n, which need not be written down: strip by strip, or in one loop. The change of a stream is then a
+  /// bound: the largest of w, times the weights of what is looked at.
+  bool goes_straight() const {
+    return straight_.has_value() || (is_streamed_ && outputs_[0].kernel->evaluates_straight());
+  }
+  RowChange advance_straight() { return straight_ ? divide_straight() : stream(At::straight_line, {}); }
   /// Steps of one of these kinds read no rows before y_n, v_n and the newest outputs.
   bool can_go_in_place() const;
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
   /// stream through the rows. A candidate that is found on the way is not kept.
-  RowChange advance_streamed(const std::function<void(PackRange)>& find);
+  RowChange advance_streamed(const std::function<void(PackRange)>& find) { return stream(At::candidate, find); }
   /// The largest difference between the candidate and y_{n+1}.
   double whole_change() const { return largest_change(whole_); }
   /// What outputs look at, at the unknown row: mixtures of values whose weights sum to at least this.
   double least_weight() const;
+  double most_weight() const;  ///< and to no more than this
   const std::vector<Argument>& looks() const { return looks_; }
   /// The largest change of y_{n+1} for a change of 1 in what the outputs look at, if ∂E/∂(y_{n+1}) of the nonlinear part sums
   /// to 1: an exact ∞-norm, by the response to an impulse. 0 where it is not known: several components, walls.
@@ -207,6 +211,8 @@ class RowEquations {
     return output(o, o.newest - (in_place_ && o.rows() > 1 ? 1 : 0), c);
   }
   RowChange divide(const ArgumentRow&, double* output, bool along_straight_lines);
+  RowChange divide_straight();
+  RowChange stream(At, const std::function<void(PackRange)>& find);
   inline void evaluate_at(const ArgumentRow&);
   inline RowChange advance_at(const ArgumentRow&);
   inline RowChange make_new_row();

@@ -79,7 +79,7 @@ void RowEquations::build_straight_lines() {
   division_->known_increment = mixture->known_row - 1;
 }
 
-RowChange RowEquations::advance_straight() {
+RowChange RowEquations::divide_straight() {
   const RowIncrement& rows = increment(0);
   ArgumentRow row{.layout = &layout_,
                   .unknown = nullptr,

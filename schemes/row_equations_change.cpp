@@ -6,6 +6,16 @@
 
 namespace delf {
 
+namespace {
+
+double weight_of(const Argument& look) {
+  double sum = 0;
+  for (const Argument::Part& part : look.parts) sum += std::abs(part.weight);
+  return sum;
+}
+
+}  // namespace
+
 /// What outputs look at, at the unknown row, from the first of its vertices on; each alike but for a shift counts once.
 void RowEquations::build_looks() {
   if (!reads_unknown_row()) return;
@@ -52,12 +62,14 @@ void RowEquations::build_looks() {
 
 double RowEquations::least_weight() const {
   double least = 1;
-  for (const Argument& look : looks_) {
-    double sum = 0;
-    for (const Argument::Part& part : look.parts) sum += std::abs(part.weight);
-    least = std::min(least, sum);
-  }
+  for (const Argument& look : looks_) least = std::min(least, weight_of(look));
   return least;
+}
+
+double RowEquations::most_weight() const {
+  double most = 0;
+  for (const Argument& look : looks_) most = std::max(most, weight_of(look));
+  return most;
 }
 
 /// With E = Σ_c W_c * out_c, the change of y_{n+1} is at most Σ_c ‖A₊⁻¹ W_c‖₁ times that of the outputs; and the nonlinear

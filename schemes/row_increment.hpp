@@ -107,7 +107,8 @@ struct PackWeights<0> {
   [[gnu::always_inline]] Pack added(Pack sum, const LastPacks<0>&) const { return sum; }
 };
 
-enum class Look { row, argument };
+/// `increment`: against y_before + v_before, from which the row differs by w.
+enum class Look { row, argument, increment };
 
 /// A pass over all packs of a RowIncrement, one after the other; what it measures stays in registers. The first
 /// `parts` − 1 of them have nothing to be looked at with. Ascending passes leave them out by themselves: what they would
@@ -131,7 +132,9 @@ class IncrementPass {
   }
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) {
     unseen(at, w);
-    if constexpr (parts > 0) {
+    if constexpr (look == Look::increment) {
+      change_ = detail::larger_magnitude(change_, w);
+    } else if constexpr (parts > 0) {
       const Pack u = weights_.added(Pack(0.0), seen_);
       if constexpr (look == Look::row) {
         change_ = detail::larger_magnitude(change_, u);
@@ -147,7 +150,7 @@ class IncrementPass {
     const Pack v = Pack::load(v_before_ + at) + w, y = Pack::load(y_before_ + at) + v;
     largest_ = detail::larger_magnitude(largest_, y);
     sum_ += y;
-    if constexpr (parts > 0) seen_.take(look == Look::row ? y - Pack::load(expected_ + at) : y);
+    if constexpr (parts > 0 && look != Look::increment) seen_.take(look == Look::row ? y - Pack::load(expected_ + at) : y);
     v.store(v_ + at);
     y.store(y_ + at);
     return y;

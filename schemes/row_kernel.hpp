@@ -109,6 +109,10 @@ class RowKernel {
   /// business.
   virtual void evaluate(const SlabRows&, double* const* out, const PackRange&) const = 0;
   void evaluate(const SlabRows& rows, double* const* out) const { evaluate(rows, out, rows.layout->all()); }
+  /// The same along straight lines, where this kernel can: the newest row that outputs read is y_n + v_n, for which
+  /// y_n stands among the rows.
+  virtual bool evaluates_straight() const { return false; }
+  virtual void evaluate_straight(const SlabRows&, const double* /*v*/, double* const* /*out*/, const PackRange&) const {}
 
   /// Whether there is one output, a function of one argument, or of the values of two rows at a site; and that output
   /// for a row of arguments, or of such pairs, halos too.

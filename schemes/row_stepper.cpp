@@ -275,8 +275,8 @@ struct RowStepper::Impl {
   /// From a seed of this order.
   RowChange advance_first(int order) { return mixture ? equations.advance_extrapolated(order) : advance_seeded(order); }
   [[gnu::noinline]] RowChange advance_seeded(int order) {
+    if (order == 1 && equations.goes_straight()) return equations.advance_straight();
     if (equations.is_streamed()) return advance_streamed(order);
-    if (equations.goes_straight() && order == 1) return equations.advance_straight();
     take_seed(order);
     return advance_from_candidate();
   }

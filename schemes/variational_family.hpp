@@ -153,10 +153,16 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   using RowKernel::evaluate;
   void evaluate(const SlabRows& rows, double* const* out, const PackRange& packs) const override {
     if (nonlinearity_ == Nonlinearity::values) {
-      if constexpr (d == 1 && distinct.count == 1) evaluate_value(rows, out[0], packs);
+      if constexpr (sees_one_value) evaluate_value<false>(rows, nullptr, out[0], packs);
       else evaluate_values(rows, out, packs);
     }
     if (nonlinearity_ == Nonlinearity::all) evaluate_all(rows, out, packs);
+  }
+
+  bool evaluates_straight() const override { return sees_one_value && nonlinearity_ == Nonlinearity::values; }
+  void evaluate_straight(const SlabRows& rows, const double* v, double* const* out,
+                         const PackRange& packs) const override {
+    if constexpr (sees_one_value) evaluate_value<true>(rows, v, out[0], packs);
   }
 
   bool evaluates_arguments() const override { return d == 1 && outputs_ == 1 && nonlinearity_ == Nonlinearity::values; }
@@ -189,6 +195,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
 
  private:
   static constexpr int stride = map.shape.placement == Placement::every_site ? 1 : 2;
+  static constexpr bool sees_one_value = d == 1 && distinct.count == 1;
   /// At rows of arguments, or of values.
   template <class Rows>
   MixtureSlope<D> slope(const Rows& rows, double known_weight) const {
@@ -233,35 +240,39 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
       for (int i = 0; i < slab_rows * d; ++i) values[i] = r.values[i];
     }
     std::ptrdiff_t at(int v) const { return origin + static_cast<std::ptrdiff_t>(v) * lanes; }
+    [[gnu::always_inline]] Pack value(const Site& s, int a, std::ptrdiff_t at) const {
+      return Pack::load(values[(s.time - first_time) * d + a] + at + s.space * lanes);
+    }
     std::array<const double*, static_cast<std::size_t>(slab_rows* d)> values;
     const double* positions;
     double t, time_step, space_step;
     std::ptrdiff_t origin;
   };
 
-  /// Σ_l weights[l] y_l for the pack v of stencils and component a. Equal weights, as those of means, are taken out of
-  /// the sum: additions and products take turns.
-  template <std::size_t... l>
-  [[gnu::always_inline]] static Pack weighted(const std::array<double, n>& weights, const LocalRows& rows, int a,
-                                              std::ptrdiff_t at, std::index_sequence<l...>) {
-    const auto value = [&](std::size_t i) __attribute__((always_inline)) {
-      return Pack::load(rows.values[(map.shape.vertex(i).time - first_time) * d + a] + at +
-                        map.shape.vertex(i).space * lanes);
-    };
+  /// Σ_l weights[l] value(l). Equal weights, as those of means, are taken out of the sum: additions and products take
+  /// turns.
+  template <class Value>
+  [[gnu::always_inline]] static Pack weighted(const std::array<double, n>& weights, const Value& value) {
     double weight = 0;
-    for (const double w : weights)
-      if (w != 0) weight = w;
-    const bool equal = ((weights[l] == 0 || weights[l] == weight) && ...);
+    bool equal = true, first = true;
+    for (const double w : weights) {
+      if (w == 0) continue;
+      equal = equal && (weight == 0 || w == weight);
+      weight = w;
+    }
     Pack sum(0.0);
-    bool first = true;
-    const auto add = [&](std::size_t i) __attribute__((always_inline)) {
-      if (weights[i] == 0) return;
-      const Pack term = equal ? value(i) : weights[i] * value(i);
+    for_each_index<n>([&]<int l>() __attribute__((always_inline)) {
+      if (weights[l] == 0) return;
+      const Pack term = equal ? value(l) : weights[l] * value(l);
       sum = first ? term : sum + term;
       first = false;
-    };
-    (add(l), ...);
+    });
     return equal ? weight * sum : sum;
+  }
+  /// Of component a of the stencils of the pack at `at`.
+  [[gnu::always_inline]] static Pack weighted(const std::array<double, n>& weights, const LocalRows& rows, int a,
+                                              std::ptrdiff_t at) {
+    return weighted(weights, [&](int l) __attribute__((always_inline)) { return rows.value(map.shape.vertex(l), a, at); });
   }
 
   template <class Number>
@@ -272,17 +283,30 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     }
   }
 
-  /// out = ∂ℓ/∂φ at the one value of φ that a stencil sees
-  [[gnu::flatten]] void evaluate_value(const SlabRows& given, double* out, const PackRange& packs) const {
+  /// out = ∂ℓ/∂φ at the one value of φ that a stencil sees; `straight`: its newest row is more by v than the one given.
+  template <bool straight>
+  [[gnu::flatten]] void evaluate_value(const SlabRows& given, const double* v, double* out,
+                                       const PackRange& packs) const {
     const LocalRows rows(given);
     const MixtureSlope<D> output = slope(given, 0);
     const FetchAhead<stride> ahead(given);
     constexpr auto& weights = map.quadrature[distinct.representative[0]].phi;
+    constexpr int newest = [] {
+      int time = first_time;
+      for (int l = 0; l < n; ++l)
+        if (weights[l] != 0) time = std::max(time, map.shape.vertex(l).time);
+      return time;
+    }();
+    const auto value = [&](int l, std::ptrdiff_t at) __attribute__((always_inline)) {
+      const Site s = map.shape.vertex(l);
+      const Pack y = rows.value(s, 0, at);
+      return straight && s.time == newest ? y + Pack::load(v + at + s.space * lanes) : y;
+    };
     // A loop whose stride is known takes a tenth less.
     find_ahead(
         rows.at(packs.first), rows.at(packs.last), (stride == 1 ? 1 : packs.stride) * lanes,
         [&](std::ptrdiff_t at) __attribute__((always_inline)) {
-          return weighted(weights, rows, 0, at, std::make_index_sequence<n>{});
+          return weighted(weights, [&](int l) __attribute__((always_inline)) { return value(l, at); });
         },
         [&](std::ptrdiff_t at, Pack phi) __attribute__((always_inline)) {
           ahead.fetch(at);
@@ -302,7 +326,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
         constexpr int q = distinct.representative[c];
         JetFor<Number, D> jet;
         for (int a = 0; a < d; ++a) {
-          const Pack phi = weighted(map.quadrature[q].phi, rows, a, at, std::make_index_sequence<n>{});
+          const Pack phi = weighted(map.quadrature[q].phi, rows, a, at);
           component(jet.phi, a) = Number::variable(phi, a);
           component(jet.phi_t, a) = Number(0.0);
           component(jet.phi_x, a) = Number(0.0);
@@ -335,10 +359,9 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
         constexpr auto& p = map.quadrature[q];
         JetFor<Number, D> jet;
         for (int a = 0; a < d; ++a) {
-          constexpr auto all = std::make_index_sequence<n>{};
-          component(jet.phi, a) = Number::variable(weighted(p.phi, rows, a, at, all), a);
-          component(jet.phi_t, a) = Number::variable(per_h * weighted(p.phi_t, rows, a, at, all), d + a);
-          component(jet.phi_x, a) = Number::variable(per_k * weighted(p.phi_x, rows, a, at, all), 2 * d + a);
+          component(jet.phi, a) = Number::variable(weighted(p.phi, rows, a, at), a);
+          component(jet.phi_t, a) = Number::variable(per_h * weighted(p.phi_t, rows, a, at), d + a);
+          component(jet.phi_x, a) = Number::variable(per_k * weighted(p.phi_x, rows, a, at), 2 * d + a);
         }
         place<Number>(jet, rows, q, at);
         const Number l = density(jet);

@@ -154,3 +154,41 @@ TEST_CASE("a stream sees every change that the whole row shows, at the ends of i
     }
   }
 }
+
+TEST_CASE("a stream along straight lines makes the row of the candidate y + v, and bounds what is looked at of it") {
+  for (const std::string scheme : {"rectangle-symmetric", "hexagon"}) {
+    CAPTURE(scheme);
+    const Problem p = problem(scheme);
+    const Evolution evolution = evolution_of(p, scheme, p.lattice, p.time_step);
+    SectionRows rows(evolution.system(), std::max(1, evolution.system().width()), 3, 2, 0);
+    RowEquations equations(evolution.system(), evolution.plan(), rows, 2);
+    const RowLayout& layout = rows.layout();
+    REQUIRE(equations.is_streamed());
+    REQUIRE(equations.goes_straight());
+    // A spike in v, so that w has one: where strips end too, and at the seam.
+    for (int pack : {0, 500, 1023, 1024, 2000, layout.packs() - 1}) {
+      CAPTURE(pack);
+      std::vector<Row> start = begin(p, 1, 0);
+      start[1][static_cast<std::size_t>(layout.start(lanes - 1) + pack)] += 1e-3;
+      for (int n = 0; n < 2; ++n) rows.set_row(n, start[static_cast<std::size_t>(n)]);
+      rows.find_increment(1);
+      equations.begin(1);
+      equations.evaluate_outputs();
+      equations.candidate().hold_whole();
+      Row straight;
+      for (std::size_t i = 0; i < start[0].size(); ++i) straight.push_back(start[1][i] + (start[1][i] - start[0][i]));
+      layout.scatter(straight, equations.candidate().row(0));
+      const RowChange exact = equations.advance_streamed({});
+      const Row expected = rows.row(2);
+      const RowChange change = equations.advance_straight();
+      const Row found = rows.row(2);
+      CHECK(same(found, expected));
+      double w = 0;
+      for (std::size_t i = 0; i < found.size(); ++i) w = std::max(w, std::abs(found[i] - straight[i]));
+      CHECK(w > 1e-5);
+      CHECK(change.change == Approx(equations.most_weight() * w).epsilon(1e-9));
+      CHECK(change.change >= exact.change * (1 - 1e-12));
+      CHECK(change.largest == exact.largest);
+    }
+  }
+}
