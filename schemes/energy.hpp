@@ -212,13 +212,12 @@ template <Density D>
   }
 
   const double per_h = 0.5 / given_rows.time_step, per_k = 1 / given_rows.space_step;
-  EnergyMomentum total{-sum(at_rest), 0};
+  Pack energy = -at_rest, momentum(0.0);
   for (int a = 0; a < d; ++a) {
-    total.energy += 0.5 * (form.inertia[a] * per_h * per_h * sum(sums[a].tt) +
-                           form.tension[a] * per_k * per_k * sum(sums[a].xx));
-    total.momentum -= form.inertia[a] * per_h * per_k * sum(sums[a].tx);
+    energy += 0.5 * form.inertia[a] * per_h * per_h * sums[a].tt + 0.5 * form.tension[a] * per_k * per_k * sums[a].xx;
+    momentum -= form.inertia[a] * per_h * per_k * sums[a].tx;
   }
-  return {given_rows.space_step * total.energy, given_rows.space_step * total.momentum};
+  return {given_rows.space_step * sum(energy), given_rows.space_step * sum(momentum)};
 }
 
 }  // namespace delf

@@ -466,7 +466,7 @@ void RowStepper::newest_pair(const double** rows) const {
   s.require_rows(2);
   for (int a = 0; a < s.d; ++a) {
     double* const v = s.rows.v(s.n, a);
-    s.layout().fill_halo(v, 0, 1);  // a loop leaves it
+    s.layout().fill_first_after(v);  // a loop leaves it
     rows[a] = s.rows.y(s.n - 1, a), rows[s.d + a] = v;
   }
 }
