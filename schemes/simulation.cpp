@@ -214,6 +214,7 @@ void Simulation::start_legendre(std::span<const double> row0, std::span<const do
   const LatticeSystem& system = impl_->system;
   const Lattice& lattice = system.lattice();
   const int C = system.components(), N = lattice.sites();
+  for (const std::size_t values : {row0.size(), velocity.size()}) impl_->stepper.require_row(values);
   const double turn = 2 * std::numbers::pi * impl_->winding;
   std::vector<double> momenta(row0.size(), 0.0), phi, phi_t, p;
   bool any = false;

@@ -32,12 +32,27 @@ void Stepper::start(const std::vector<std::vector<double>>& rows) {
   if (static_cast<int>(rows.size()) < starting_rows())
     throw BadInput("initial.start", "a start of " + std::to_string(rows.size()) + " rows: this scheme needs " +
                                         std::to_string(starting_rows()));
-  for (const auto& row : rows)
-    if (row.size() != row_size_)
-      throw BadInput("initial.start", "a starting row of " + std::to_string(row.size()) + " values: the section has " +
-                                          std::to_string(row_size_) + " in a row");
+  for (const auto& row : rows) require_row(row.size());
   method_->start(rows);
   started_ = true;
+}
+
+void Stepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
+  require_row(row0.size()), require_row(velocity.size());
+  method_->start_centred(row0, velocity);
+  started_ = true;
+}
+
+void Stepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
+  require_row(row0.size()), require_row(momenta.size());
+  method_->start_legendre(row0, momenta);
+  started_ = true;
+}
+
+void Stepper::require_row(std::size_t values) const {
+  if (values == row_size_) return;
+  throw BadInput("initial.start", "a starting row of " + std::to_string(values) + " values: the section has " +
+                                      std::to_string(row_size_) + " in a row");
 }
 
 }  // namespace delf

@@ -23,15 +23,11 @@ class Stepper {
   /// read.
   void start(const std::vector<std::vector<double>>& rows);
   /// Row 0 and φ_t there; row 1 from the equation at row 0 with y₋₁ = y₁ − 2hφ_t (second order for every scheme).
-  void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
-    method_->start_centred(row0, velocity);
-    started_ = true;
-  }
+  void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity);
   /// Row 0 and the momenta of its vertices: row 1 from the discrete Legendre transform p₀ = −∂L/∂y₀.
-  void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
-    method_->start_legendre(row0, momenta);
-    started_ = true;
-  }
+  void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta);
+  /// Throws BadInput for a starting row that has not as many values as a row of the section.
+  void require_row(std::size_t values) const;
 
   /// Throws NoConvergence or NotFinite and then still holds the rows that it held before; std::logic_error before a start.
   /// If the new row is not to be `looked_at`, an explicit step, or one through long rows, may write it over the old

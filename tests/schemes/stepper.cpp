@@ -393,16 +393,22 @@ TEST_CASE("a start that is not finite is refused") {
   CHECK_THROWS_AS(evolution.stepper().start({Row(8, 0.0), bad}), NotFinite);
 }
 
-TEST_CASE("a step before a start is refused, however the scheme is stepped") {
+TEST_CASE("a step before a start is refused, and a start from rows of another size, however the scheme is stepped") {
   for (const char* method : {"multisymplectic", "composition", "spacetime"}) {
     CAPTURE(method);
     Problem p = problem_of("sine-gordon");
     p.method = method, p.time_step = p.lattice.space_step() / 8;
     Simulation simulation(p);
     CHECK_THROWS_AS(simulation.step(), std::logic_error);
-    const Row row(static_cast<std::size_t>(p.lattice.sites()), 0.1), at_rest(row.size(), 0.0);
-    if (p.method == "multisymplectic") simulation.start_centred(row, at_rest);
-    else simulation.start_legendre(row, at_rest);
+    const auto start = [&](std::size_t values) {
+      const Row row(values, 0.1), at_rest(values, 0.0);
+      if (p.method == "multisymplectic") simulation.start_centred(row, at_rest);
+      else simulation.start_legendre(row, at_rest);
+    };
+    const std::size_t values = static_cast<std::size_t>(p.lattice.sites()) * simulation.components().size();
+    for (const std::size_t wrong : {values - 1, values + 1}) CHECK_THROWS_AS(start(wrong), BadInput);
+    CHECK_THROWS_AS(simulation.step(), std::logic_error);
+    start(values);
     CHECK_NOTHROW(simulation.step());
   }
 }
