@@ -61,6 +61,26 @@ struct TwoRuns {
   }
 };
 
+/// Equations of a step from two rows.
+struct LongRows {
+  Problem p;
+  Evolution evolution;
+  SectionRows rows;
+  RowEquations equations;
+
+  explicit LongRows(const std::string& scheme)
+      : p(problem(scheme)),
+        evolution(evolution_of(p, scheme, p.lattice, p.time_step)),
+        rows(evolution.system(), std::max(1, evolution.system().width()), 3, 2, 0),
+        equations(evolution.system(), evolution.plan(), rows, 2) {}
+  void begin_with(const std::vector<Row>& start) {
+    for (int n = 0; n < 2; ++n) rows.set_row(n, start[static_cast<std::size_t>(n)]);
+    rows.find_increment(1);
+    equations.begin(1);
+    equations.evaluate_outputs();
+  }
+};
+
 }  // namespace
 
 TEST_CASE("streams through long rows write over the old ones without a bit's difference, unless someone looks") {
@@ -120,17 +140,12 @@ TEST_CASE("a step in place that would take a second iteration is taken again fro
 TEST_CASE("a stream sees every change that the whole row shows, at the ends of its strips too") {
   for (const std::string scheme : {"rectangle", "rectangle-symmetric", "hexagon"}) {
     CAPTURE(scheme);
-    const Problem p = problem(scheme);
-    const Evolution evolution = evolution_of(p, scheme, p.lattice, p.time_step);
-    SectionRows rows(evolution.system(), std::max(1, evolution.system().width()), 3, 2, 0);
-    RowEquations equations(evolution.system(), evolution.plan(), rows, 2);
+    LongRows long_rows(scheme);
+    auto& [p, evolution, rows, equations] = long_rows;
     REQUIRE(equations.is_streamed());
     const RowLayout& layout = rows.layout();
     const std::vector<Row> start = begin(p, 1, 0);
-    for (int n = 0; n < 2; ++n) rows.set_row(n, start[static_cast<std::size_t>(n)]);
-    rows.find_increment(1);
-    equations.begin(1);
-    equations.evaluate_outputs();
+    long_rows.begin_with(start);
     equations.candidate().hold_whole();
     Row straight;
     for (std::size_t i = 0; i < start[0].size(); ++i) straight.push_back(2 * start[1][i] - start[0][i]);
@@ -156,12 +171,10 @@ TEST_CASE("a stream sees every change that the whole row shows, at the ends of i
 }
 
 TEST_CASE("a stream along straight lines makes the row of the candidate y + v, and bounds what is looked at of it") {
-  for (const std::string scheme : {"rectangle-symmetric", "hexagon"}) {
+  for (const std::string scheme : {"rectangle", "rectangle-symmetric", "hexagon"}) {
     CAPTURE(scheme);
-    const Problem p = problem(scheme);
-    const Evolution evolution = evolution_of(p, scheme, p.lattice, p.time_step);
-    SectionRows rows(evolution.system(), std::max(1, evolution.system().width()), 3, 2, 0);
-    RowEquations equations(evolution.system(), evolution.plan(), rows, 2);
+    LongRows long_rows(scheme);
+    auto& [p, evolution, rows, equations] = long_rows;
     const RowLayout& layout = rows.layout();
     REQUIRE(equations.is_streamed());
     REQUIRE(equations.goes_straight());
@@ -170,10 +183,7 @@ TEST_CASE("a stream along straight lines makes the row of the candidate y + v, a
       CAPTURE(pack);
       std::vector<Row> start = begin(p, 1, 0);
       start[1][static_cast<std::size_t>(layout.start(lanes - 1) + pack)] += 1e-3;
-      for (int n = 0; n < 2; ++n) rows.set_row(n, start[static_cast<std::size_t>(n)]);
-      rows.find_increment(1);
-      equations.begin(1);
-      equations.evaluate_outputs();
+      long_rows.begin_with(start);
       equations.candidate().hold_whole();
       Row straight;
       for (std::size_t i = 0; i < start[0].size(); ++i) straight.push_back(start[1][i] + (start[1][i] - start[0][i]));
