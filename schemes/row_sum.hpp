@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -107,7 +108,7 @@ class RowSum {
     for (const Term& t : changes_)
       for (const Term& u : changes_)
         if (t.shift == -u.shift && t.coefficient != u.coefficient) return false;
-    return differences_.empty() || differences_[0].coefficient == differences_[1].coefficient;
+    return differences_.size() != 2 || differences_[0].coefficient == differences_[1].coefficient;
   }
   /// Of sums that take turns, fewer terms are compiled.
   static constexpr int most_plain = 8, most_in_turn = 3, general = -1;
@@ -135,6 +136,18 @@ class RowSum {
   [[gnu::always_inline]] void dispatch_counted(const RowLayout&, PackRange, Consume&) const;
   template <bool measured, bool even, bool takes_turns, int differences, int plain, int changes, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
+  /// A function of its own: one function with as many loops as there are forms takes the compilers of sanitizers minutes.
+  /// It works with a copy of `consume`, where that can be put back.
+  template <bool even, bool takes_turns, int differences, int plain, int changes, class Consume>
+  [[gnu::noinline]] void measured_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
+    if constexpr (std::is_copy_assignable_v<Consume>) {
+      Consume own = consume;
+      counted_pass<true, even, takes_turns, differences, plain, changes>(layout, packs, own);
+      consume = own;
+    } else {
+      counted_pass<true, even, takes_turns, differences, plain, changes>(layout, packs, consume);
+    }
+  }
   template <bool measured, class Consume>
   [[gnu::always_inline]] void general_pass(const RowLayout&, PackRange, Consume&) const;
 
@@ -277,8 +290,10 @@ inline void RowSum::dispatch_counted(const RowLayout& layout, PackRange packs, C
   [&]<int... number>(std::integer_sequence<int, number...>) __attribute__((always_inline)) {
     const auto done = [&]<int form>() __attribute__((always_inline)) {
       if (form_ != form) return false;
-      counted_pass<measured, even, form >= in_turn, form >= with_differences ? 2 : 0, form % with_differences, changes>(
-          layout, packs, consume);
+      constexpr bool takes_turns = form >= in_turn;
+      constexpr int differences = form >= with_differences ? 2 : 0, plain = form % with_differences;
+      if constexpr (measured) measured_pass<even, takes_turns, differences, plain, changes>(layout, packs, consume);
+      else counted_pass<false, even, takes_turns, differences, plain, changes>(layout, packs, consume);
       return true;
     };
     (void)(done.template operator()<number>() || ...);
@@ -287,15 +302,13 @@ inline void RowSum::dispatch_counted(const RowLayout& layout, PackRange packs, C
 }
 template <bool measured, class Consume>
 inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  // Changes are the unknown row's, which steps do not ask for.
-  if (form_ == general || (!measured && !changes_.empty())) return general_pass<measured>(layout, packs, consume);
-  if constexpr (measured) {
-    if (changes_.size() == 1 && even_) return dispatch_counted<measured, true, 1>(layout, packs, consume);
-    if (changes_.size() == 3 && even_) return dispatch_counted<measured, true, 3>(layout, packs, consume);
-    if (changes_.size() == 1) return dispatch_counted<measured, false, 1>(layout, packs, consume);
-    if (changes_.size() == 3) return dispatch_counted<measured, false, 3>(layout, packs, consume);
-  }
-  dispatch_counted<measured, false, 0>(layout, packs, consume);
+  // Changes are the unknown row's, which steps do not ask for, and residuals do.
+  if (form_ == general || measured == changes_.empty()) return general_pass<measured>(layout, packs, consume);
+  if constexpr (!measured) return dispatch_counted<false, false, 0>(layout, packs, consume);
+  else if (changes_.size() == 1 && even_) return dispatch_counted<true, true, 1>(layout, packs, consume);
+  else if (changes_.size() == 1) return dispatch_counted<true, false, 1>(layout, packs, consume);
+  else if (even_) return dispatch_counted<true, true, 3>(layout, packs, consume);
+  else return dispatch_counted<true, false, 3>(layout, packs, consume);
 }
 
 template <class Consume>
