@@ -80,14 +80,29 @@ class FetchAhead {
 /// evaluate(at, find(at)) from pack to pack. What is evaluated is found two packs ahead: evaluations that wait for theirs
 /// would keep others waiting. At the end the last one is found again.
 template <class Find, class Evaluate>
-[[gnu::always_inline]] inline void find_ahead(std::ptrdiff_t at, std::ptrdiff_t end, std::ptrdiff_t by, const Find& find,
-                                              const Evaluate& evaluate) {
+[[gnu::always_inline]] inline void find_ahead(std::ptrdiff_t at, std::ptrdiff_t end, std::ptrdiff_t by,
+                                              const Find& find, const Evaluate& evaluate) {
   if (at >= end) return;
   const std::ptrdiff_t last = at + (end - at - 1) / by * by;
   auto here = find(at), next = find(std::min(at + by, last));
   for (; at < end; at += by) {
     const auto ahead = find(std::min(at + 2 * by, last));
     evaluate(at, here);
+    here = next, next = ahead;
+  }
+}
+
+/// The same for a row of a circle, from its last two packs on: they are what stands before its first one, from which
+/// what follows may then begin while the others are still under way.
+template <class Find, class Evaluate>
+[[gnu::always_inline]] inline void find_ahead_around(std::ptrdiff_t first, std::ptrdiff_t end, std::ptrdiff_t by,
+                                                     const Find& find, const Evaluate& evaluate) {
+  const std::ptrdiff_t around = (end - first + by - 1) / by * by;
+  if (around <= by) return find_ahead(first, end, by, find, evaluate);
+  auto here = find(first + around - 2 * by), next = find(first + around - by);
+  for (std::ptrdiff_t at = first - 2 * by; at < first + around - 2 * by; at += by) {
+    const auto ahead = find(at + 2 * by);
+    evaluate(at < first ? at + around : at, here);
     here = next, next = ahead;
   }
 }
@@ -106,11 +121,12 @@ template <int past_rows, int stride, class Make>
   };
   // Where bricks are missing, packs in between are extrapolated too: steps compare u everywhere.
   const std::ptrdiff_t between = packs.first % 2 == 0 ? lanes : -lanes;
-  find_ahead(given.layout->at(packs.first), given.layout->at(packs.last), stride * lanes, find,
-             [&](std::ptrdiff_t at, const auto& argument) __attribute__((always_inline)) {
-               if constexpr (stride == 2 && past_rows > 0) found(at + between);
-               output(argument, at).store(out + at);
-             });
+  find_ahead_around(
+      given.layout->at(packs.first), given.layout->at(packs.last), stride * lanes,
+      find, [&](std::ptrdiff_t at, const auto& argument) __attribute__((always_inline)) {
+        if constexpr (stride == 2 && past_rows > 0) found(at + between);
+        output(argument, at).store(out + at);
+      });
   given.layout->fill_halo(out, given.read_before, given.read_after);
 }
 
