@@ -130,15 +130,19 @@ template <int past_rows, int stride, class Make>
   given.layout->fill_halo(out, given.read_before, given.read_after);
 }
 
+/// `make_output` makes an output of NearPacks or of Packs: `make_output.template operator()<Value>()`.
 template <int stride, class Make>
 [[gnu::always_inline]] inline void argument_loop_for(const Make& make_output, const ArgumentRow& row, double* out,
                                                      const PackRange& packs) {
+  const auto of_near = [&] { return make_output.template operator()<NearPack>(); };
+  const auto of_any = [&] { return make_output.template operator()<Pack>(); };
+  if (!row.near) return argument_loop<0, stride>(of_any, row, out, packs);
   with_past_rows<ArgumentRow::most_past_rows>(
-      row.past_rows, [&]<int past_rows>() { argument_loop<past_rows, stride>(make_output, row, out, packs); });
+      row.past_rows, [&]<int past_rows>() { argument_loop<past_rows, stride>(of_near, row, out, packs); });
 }
 
 /// ∂ℓ/∂φ at the mixture m = u + known_weight · known; t, and x from the anchor's, are those of the arguments.
-template <Density D>
+template <Density D, class Value = Pack>
 struct MixtureSlope {
   D density;
   double known_weight, t;
@@ -147,7 +151,7 @@ struct MixtureSlope {
 
   [[gnu::always_inline]] Pack argument(Pack u, Pack known) const { return u + known_weight * known; }
   [[gnu::always_inline]] Pack operator()(Pack m, std::ptrdiff_t at) const {
-    return density(value_jet<D>([m](int) { return m; }, Pack(t), positions + at, x_offset)).derivative(0);
+    return density(value_jet<D, Value>([m](int) { return m; }, Pack(t), positions + at, x_offset)).derivative(0);
   }
 };
 

@@ -2,6 +2,7 @@
 #include "schemes/argument_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "schemes/extrapolation.hpp"
 #include "schemes/lattice_system.hpp"
@@ -56,6 +57,7 @@ ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int 
     std::vector<double> of_rows;
     for (int j = 1; j <= order + 1; ++j) of_rows.push_back(extrapolation_weight(order + 1, j));
     coefficients_.push_back(std::move(of_rows));
+    growth_.push_back(std::exp2(order + 1) - 1);
   }
   begin(0);
 }

@@ -47,6 +47,8 @@ class ArgumentRows {
   void put(const double* positions, double time_step, double space_step) {
     row_.positions = positions, row_.time_step = time_step, row_.space_step = space_step;
   }
+  /// RowKernel::near_below()
+  void set_near_below(double bound) { near_below_ = bound; }
   /// What comes of them is read so many packs across the ends of arcs.
   void set_read(int before, int after) { row_.read_before = before, row_.read_after = after; }
   /// The step from row n; what follows is about it.
@@ -58,23 +60,29 @@ class ArgumentRows {
   }
   /// u_{n+1−back}: 0 is the one that is looked for. The oldest one lies where that will.
   double* row(int back) { return newest_first_[back]; }
-  /// u_{n+1} as it stands and what is known, with the row y of known_row, for anchors at time t.
+  /// u_{n+1} as it stands and what is known, with the row y of known_row, for anchors at time t. No bound is known.
   const ArgumentRow& argument(const double* y, double t) {
     row_.t = t;
     row_.known = mixture_.is_known_alike ? row_.past[0] : y + static_cast<std::ptrdiff_t>(mixture_.known_site) * lanes;
     row_.past_rows = 0;
+    row_.near = false;
     return row_;
   }
+  /// No |y| of the rows that argument() is made of is above this.
+  void set_largest(double y) { row_.near = y <= near_below_; }
   /// Lets u_{n+1} of argument() be extrapolated by a polynomial of this order, or the highest that there are rows for:
   ///
   ///     u_{n+1} ≈ Σ_{j=0}^{order} (−1)^j C(order + 1, j + 1) u_{n−j}
   ///
-  /// From more rows than loops take, which only tolerances near rounding ask for, this is done at once.
-  void extrapolate(int order) {
+  /// No |y| of these rows is above `largest`. From more rows than loops take, which only tolerances near rounding ask
+  /// for, this is done at once; and where arguments may be too large to be near.
+  void extrapolate(int order, double largest) {
     order = std::clamp(order, 1, static_cast<int>(std::min<std::int64_t>(n_, most_order_)));
-    if (order + 1 > ArgumentRow::most_past_rows) return put_extrapolated(coefficients_[static_cast<std::size_t>(order)]);
+    const std::vector<double>& coefficients = coefficients_[static_cast<std::size_t>(order)];
+    set_largest(largest * growth_[static_cast<std::size_t>(order)]);
+    if (!row_.near || order + 1 > ArgumentRow::most_past_rows) return put_extrapolated(coefficients);
     row_.past_rows = order + 1;
-    row_.coefficients = coefficients_[static_cast<std::size_t>(order)].data();
+    row_.coefficients = coefficients.data();
   }
   /// u_{n+1} of the row itself, whose halos are filled; returns the largest change.
   double find(const double* y, const PackRange&);
@@ -93,6 +101,8 @@ class ArgumentRows {
   int most_order_;
   ArgumentRow row_{};
   std::vector<std::vector<double>> coefficients_;  ///< by order
+  std::vector<double> growth_;                     ///< Σ |coefficients|
+  double near_below_ = -1;
 };
 
 }  // namespace delf

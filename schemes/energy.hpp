@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "jets/density.hpp"
+#include "jets/near_pack.hpp"
 #include "jets/structure.hpp"
 #include "schemes/row_kernel.hpp"
 
@@ -138,7 +139,9 @@ template <Density D>
 ///     φ = (m_i + m_{i+1})/2        φ_t = (v_i + v_{i+1})/(2h)        φ_x = (m_{i+1} − m_i)/k
 ///
 ///   H = k Σ (½ inertia φ_t² + ½ tension φ_x² − ℓ(φ, 0, 0))           P = −k Σ inertia φ_t φ_x
-template <Density D>
+///
+/// `Value`: what ℓ is evaluated on; NearPack if the rows are near.
+template <class Value, Density D>
 [[gnu::flatten]] EnergyMomentum energy_momentum(const D& given, const WaveForm<components_of<D>()>& form,
                                                 const SlabRows& given_rows, const CellWeights& weights) {
   constexpr int d = components_of<D>();
@@ -179,14 +182,14 @@ template <Density D>
     return phi;
   };
   const auto rest = [&](std::ptrdiff_t at, const Values& phi) __attribute__((always_inline)) {
-    JetFor<Pack, D> jet;
+    JetFor<Value, D> jet;
     for (int a = 0; a < d; ++a) {
       component(jet.phi, a) = phi[a];
       component(jet.phi_t, a) = 0.0;
       component(jet.phi_x, a) = 0.0;
     }
     if constexpr (is_placed<D>()) jet.t = t, jet.x = Pack::load(positions + at) + x_offset;
-    return density(jet);
+    return Pack(density(jet));
   };
   const auto all = [](Pack x) __attribute__((always_inline)) { return x; };
   const RowLayout& layout = *given_rows.layout;

@@ -28,8 +28,8 @@ inline constexpr auto neighbours_within = [] {
 /// written over the old one. Returns Σy² of the new values: infinite or NaN where squares overflow.
 ///
 /// `even`: stride is 1, and so far as one neighbour on either side is concerned linear(−1) = linear(1): a tenth less.
-/// `kept`: the slopes ∂ℓ/∂φ are.
-template <int reach, bool even, bool kept, Density D>
+/// `kept`: the slopes ∂ℓ/∂φ are. `Value`: what they are evaluated on.
+template <int reach, bool even, bool kept, class Value, Density D>
 [[gnu::flatten]] double explicit_loop(const D& given_density, const ExplicitRows& given, const PackRange& given_packs) {
   const PackRange packs = given_packs;
   constexpr int d = components_of<D>(), count = 2 * reach;
@@ -65,8 +65,8 @@ template <int reach, bool even, bool kept, Density D>
   Pack squares(0.0);
   // Of this pack, or of the next one.
   const auto slope = [&](int beside, std::ptrdiff_t at) __attribute__((always_inline)) {
-    return density(value_jet<D>([&](int a) __attribute__((always_inline)) { return y[a][reach + beside]; }, t,
-                                positions + at)).d;
+    return density(value_jet<D, Value>([&](int a) __attribute__((always_inline)) { return y[a][reach + beside]; }, t,
+                                       positions + at)).d;
   };
   const auto take = [&](const auto& incoming) __attribute__((always_inline)) {
     for (int a = 0; a < d; ++a) {
@@ -74,7 +74,7 @@ template <int reach, bool even, bool kept, Density D>
       y[a][2 * reach] = Pack::load(incoming(a));
     }
   };
-  const auto advance = [&](std::ptrdiff_t at, const std::array<Pack, d>& here_slope) __attribute__((always_inline)) {
+  const auto advance = [&](std::ptrdiff_t at, const std::array<Value, d>& here_slope) __attribute__((always_inline)) {
     for (int a = 0; a < d; ++a) {
       const Pack here = y[a][reach];
       if constexpr (kept) here_slope[a].store(slopes[a] + at);
@@ -103,10 +103,10 @@ template <int reach, bool even, bool kept, Density D>
   if (v >= packs.last) return 0;
   std::ptrdiff_t at = origin + static_cast<std::ptrdiff_t>(v) * lanes;
   take([&](int a) { return old_value(a, v + reach); });
-  std::array<Pack, d> here = slope(0, at);
+  std::array<Value, d> here = slope(0, at);
   const auto go_until = [&](int end, const auto& incoming) __attribute__((always_inline)) {
     for (; v < end; ++v, at += lanes) {
-      const std::array<Pack, d> next = slope(1, at + lanes);
+      const std::array<Value, d> next = slope(1, at + lanes);
       advance(at, here);
       here = next;
       take(incoming);
@@ -116,18 +116,6 @@ template <int reach, bool even, bool kept, Density D>
   go_until(packs.last - 1, [&](int a) { return old_value(a, v + 1 + reach); });
   advance(at, here);
   return sum(squares);
-}
-
-/// The loop that the coefficients allow.
-template <int reach, Density D>
-double explicit_loop_for(const D& density, const ExplicitRows& rows, const PackRange& packs) {
-  bool even = rows.stride == 1;
-  for (int a = 0; a < components_of<D>() && reach == 1; ++a) even = even && rows.linear[2 * a] == rows.linear[2 * a + 1];
-  if (rows.slopes)
-    return even ? explicit_loop<reach, true, true>(density, rows, packs)
-                : explicit_loop<reach, false, true>(density, rows, packs);
-  return even ? explicit_loop<reach, true, false>(density, rows, packs)
-              : explicit_loop<reach, false, false>(density, rows, packs);
 }
 
 /// The slopes ∂ℓ/∂φ(y(i)) of such a step alone.
@@ -143,6 +131,25 @@ template <Density D>
         density(value_jet<D>([&](int a) { return Pack::load(now.values[a] + at); }, t, now.positions + at));
     for (int a = 0; a < d; ++a) l.derivative(a).store(slopes[a] + at);
   }
+}
+
+/// The loop that the coefficients and the values allow. Few fields are too large to be near: for them slopes are kept by
+/// a loop of their own.
+template <int reach, Density D>
+double explicit_loop_for(const D& density, const ExplicitRows& rows, const PackRange& packs) {
+  bool even = rows.stride == 1;
+  for (int a = 0; a < components_of<D>() && reach == 1; ++a)
+    even = even && rows.linear[2 * a] == rows.linear[2 * a + 1];
+  if (!rows.now.near) {
+    if (rows.slopes) slope_loop(density, rows.now, rows.slopes, packs);
+    return even ? explicit_loop<reach, true, false, Pack>(density, rows, packs)
+                : explicit_loop<reach, false, false, Pack>(density, rows, packs);
+  }
+  if (rows.slopes)
+    return even ? explicit_loop<reach, true, true, NearPack>(density, rows, packs)
+                : explicit_loop<reach, false, true, NearPack>(density, rows, packs);
+  return even ? explicit_loop<reach, true, false, NearPack>(density, rows, packs)
+              : explicit_loop<reach, false, false, NearPack>(density, rows, packs);
 }
 
 }  // namespace delf

@@ -38,6 +38,8 @@ class FieldTheory {
   virtual std::vector<LinearSymmetry> symmetries() const = 0;
   /// A comparator; null if there is none of that name for this theory.
   virtual std::shared_ptr<const StencilFamily> comparator(const std::string& method, double h, double k) const = 0;
+  /// Up to this |φ| sums may be taken of `near` rows: near_below() of the density.
+  virtual double near_below() const = 0;
   /// Sums over the symmetric rectangle's jets between two rows.
   virtual EnergyMomentum energy_momentum(const SlabRows&, const CellWeights&) const = 0;
   /// At one jet; components() numbers each.
@@ -64,7 +66,8 @@ void for_each_stencil(Function&& f) {
 template <Density D>
 class TheoryOf final : public FieldTheory {
  public:
-  explicit TheoryOf(D density) : density_(std::move(density)), wave_form_(wave_form(density_)) {}
+  explicit TheoryOf(D density)
+      : density_(std::move(density)), wave_form_(wave_form(density_)), near_below_(delf::near_below(density_)) {}
 
   int components() const override { return components_of<D>(); }
   bool is_placed() const override { return delf::is_placed<D>(); }
@@ -102,8 +105,10 @@ class TheoryOf final : public FieldTheory {
     return nullptr;
   }
 
+  double near_below() const override { return near_below_; }
   EnergyMomentum energy_momentum(const SlabRows& rows, const CellWeights& weights) const override {
-    if (wave_form_) return delf::energy_momentum(density_, *wave_form_, rows, weights);
+    if (wave_form_ && rows.near) return delf::energy_momentum<NearPack>(density_, *wave_form_, rows, weights);
+    if (wave_form_) return delf::energy_momentum<Pack>(density_, *wave_form_, rows, weights);
     return delf::energy_momentum(density_, rows, weights);
   }
 
@@ -115,6 +120,7 @@ class TheoryOf final : public FieldTheory {
  private:
   D density_;
   std::optional<WaveForm<components_of<D>()>> wave_form_;
+  double near_below_;
 };
 
 }  // namespace delf

@@ -89,6 +89,11 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
       for (int l = 0; l < n; ++l)
         if (looked_at[l] && (R::shape.vertex(l).time == newest_time) == latest)
           arguments_.push_back({{{R::shape.vertex(l), 1.0}}});
+    near_below_ = bound_in_reach([this](double bound) {
+      std::array<Abstract, n> y;
+      for (int l = 0; l < n; ++l) y[l] = Abstract::variable(l, bound);
+      return part(stencil_, y);
+    });
     weights_.assign(n, 0.0);
     for (int l = 0; l < n; ++l) weights_[static_cast<std::size_t>(l)] = shares[l] * time_step * space_step;
   }
@@ -115,21 +120,23 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
 
   using RowKernel::evaluate;
   void evaluate(const SlabRows& rows, double* const* out, const PackRange& packs) const override {
-    if constexpr (pair.latest >= 0) evaluate_pair(rows, out[0], packs);
-    else evaluate_any(rows, out[0], packs);
+    if constexpr (pair.latest < 0) evaluate_any(rows, out[0], packs);
+    else if (rows.near) evaluate_pair<NearPack>(rows, out[0], packs);
+    else evaluate_pair<Pack>(rows, out[0], packs);
   }
 
   bool evaluates_arguments() const override { return pair.latest >= 0; }
   void evaluate_arguments(const ArgumentRow& row, double* out, const PackRange& packs) const override {
-    if constexpr (pair.latest >= 0) argument_loop_for<1>([&] { return PartOfPair{stencil_}; }, row, out, packs);
+    if constexpr (pair.latest >= 0)
+      argument_loop_for<1>([&]<class Value>() { return PartOfPair<Value>{stencil_}; }, row, out, packs);
   }
   bool divides(int old, int parts) const override { return divided && old == 0 && parts == 1; }
   RowChange divide(const DivisionRows& given, const RowIncrement& rows) const override {
-    if constexpr (divided) return division_loop_for<0, 1>(PartOfPair{stencil_}, given, rows);
+    if constexpr (divided) return division_loop_for<0, 1>(PartOfPair<NearPack>{stencil_}, given, rows);
     else return {};
   }
   RowChange divide_straight(const DivisionRows& given, const RowIncrement& rows) const override {
-    if constexpr (divided) return straight_division_loop<0, 1>(PartOfPair{stencil_}, given, rows);
+    if constexpr (divided) return straight_division_loop<0, 1>(PartOfPair<Pack>{stencil_}, given, rows);
     else return {};
   }
 
@@ -138,8 +145,9 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     constexpr auto& shape = R::shape;
     return rows.values[shape.vertex(l).time - first_time] + shape.vertex(l).space * lanes;
   }
+  template <class Value>
   [[gnu::flatten]] void evaluate_pair(const SlabRows& rows, double* out, const PackRange& packs) const {
-    const PartOfPair output{stencil_};
+    const PartOfPair<Value> output{stencil_};
     const FetchAhead<> ahead(rows);
     const double *const latest = row_of(rows, pair.latest), *const other = row_of(rows, pair.other);
     find_ahead(
@@ -167,6 +175,7 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     if constexpr (is_shared) return stencil.part(y);
     else return stencil.nonlinear(y);
   }
+  template <class Value>
   struct PartOfPair {
     R stencil;
     struct Values {
@@ -174,7 +183,7 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     };
     [[gnu::always_inline]] Values argument(Pack u, Pack known) const { return {u, known}; }
     [[gnu::always_inline]] Pack operator()(const Values& values, std::ptrdiff_t) const {
-      std::array<Pack, n> y{};
+      std::array<Value, n> y{};
       y[pair.latest] = values.latest, y[pair.other] = values.other;
       return part(stencil, y);
     }

@@ -122,6 +122,7 @@ void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At wh
   }
   SlabRows slab = slab_of(values, n_ + age);
   slab.ahead = ahead;
+  slab.near = largest_read_ <= o.kernel->near_below();
   if (which == At::straight_line) o.kernel->evaluate_straight(slab, increment(0).v_before, out, packs_of(o, age, packs));
   else o.kernel->evaluate(slab, out, packs_of(o, age, packs));
   if (turn_ != 0)

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -40,8 +42,8 @@ class RowEquations {
   /// A step is one loop: no outputs, no matrix.
   bool is_one_loop() const { return one_loop_ != nullptr; }
   /// Makes ready for the loop in so many parts of the row; `in_place`: the new row and its increment are written over the
-  /// old ones.
-  void begin_loop(int parts, bool in_place);
+  /// old ones; Σy² is that of the row that it goes from.
+  void begin_loop(int parts, bool in_place, double sum_of_squares);
   /// Rows have been set anew.
   void forget_rows() { loop_row_ = residual_row_ = slopes_row_ = -1; }
   /// A part of the new row by that loop; returns its Σy².
@@ -67,8 +69,9 @@ class RowEquations {
   /// candidate, in what the nonlinear outputs look at; otherwise the change is zero.
   RowChange advance(bool compared);
   /// The same with the outputs that read row n+1, at arguments: extrapolated, or as the row makes them that was found.
-  inline RowChange advance_extrapolated(int order);
-  inline RowChange advance_again();
+  /// No |y| of all rows so far is above `largest`.
+  inline RowChange advance_extrapolated(int order, double largest);
+  inline RowChange advance_again(double largest);
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
   /// From y_n + v_n, which need not be written down: strip by strip, or in one loop. The change of a stream is then a
@@ -76,7 +79,8 @@ class RowEquations {
   bool goes_straight() const {
     return straight_.has_value() || (is_streamed_ && outputs_[0].kernel->evaluates_straight());
   }
-  RowChange advance_straight() { return straight_ ? divide_straight() : stream(At::straight_line, {}); }
+  /// No |y| of all rows so far is above `largest`.
+  RowChange advance_straight(double largest);
   /// Steps of one of these kinds read no rows before y_n, v_n and the newest outputs.
   bool can_go_in_place() const;
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
@@ -92,7 +96,8 @@ class RowEquations {
   /// to 1: an exact ∞-norm, by the response to an impulse. 0 where it is not known: several components, walls.
   double gain();
   /// max |E| / max Σ |terms| over the sites for row n+1 as it is. Leaves nothing changed that a step reads.
-  double residual(std::int64_t n);
+  /// No |y| of the rows that it reads is above `largest`.
+  double residual(std::int64_t n, double largest);
   /// Outputs are the whole residual: w must be corrected by −A₊⁻¹E instead of set to it.
   bool correction_form() const { return equations_.correction_form; }
 
@@ -187,6 +192,8 @@ class RowEquations {
   }
   /// Where the row so many after row n begins in StepRows::values.
   std::size_t value_index(int row) const { return static_cast<std::size_t>((row - oldest_value_) * d_); }
+  /// Across the seam rows are more by turn_.
+  double with_turn(double largest) const { return largest + std::abs(turn_); }
   using RowsAhead = decltype(SlabRows::ahead);
   void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&, const RowsAhead& = {});
   void evaluate_in_ring(Outputs&, int age, At);
@@ -234,6 +241,7 @@ class RowEquations {
   const RowLayout& layout_;
   int d_, history_;
   double turn_, time_step_, space_step_;
+  double largest_read_ = std::numeric_limits<double>::infinity();  ///< no |y| that evaluate() reads is above this
   bool bricks_;
   AssembledEquations equations_;
   std::vector<Outputs> outputs_;
@@ -276,6 +284,7 @@ class RowEquations {
   const RowKernel* one_loop_ = nullptr;
   std::vector<double> loop_linear_, loop_nonlinear_;
   int loop_reach_ = 0;
+  double loop_near_squares_ = -1;  ///< up to this Σy² slopes may be evaluated on NearPacks
   std::vector<const double*> loop_now_, loop_before_, loop_after_, loop_v_before_;
   std::vector<double*> loop_y_, loop_v_, loop_slopes_;
   ExplicitRows loop_rows_{};    ///< these, for a loop in one part

@@ -2,6 +2,7 @@
 #include "schemes/row_equations.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "schemes/division_loop.hpp"
 #include "schemes/row_equations_step.hpp"
@@ -11,6 +12,7 @@ namespace delf {
 void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   arguments_.emplace(layout_, mixture, most_order);
   arguments_->put(positions(), time_step_, space_step_);
+  arguments_->set_near_below(outputs_[0].kernel->near_below());
   RowLook& look = increment(0).look;
   look.parts = mixture.parts;
   std::ranges::copy(mixture.weights, look.weights);
@@ -77,6 +79,14 @@ void RowEquations::build_straight_lines() {
   straight_ = mixture;
   std::ranges::copy(mixture->weights, increment(0).look.weights);
   division_->known_increment = mixture->known_row - 1;
+}
+
+RowChange RowEquations::advance_straight(double largest) {
+  if (straight_) return divide_straight();
+  largest_read_ = 3 * with_turn(largest);  // |y_n + v_n| = |2y_n − y_{n−1}|
+  const RowChange change = stream(At::straight_line, {});
+  largest_read_ = std::numeric_limits<double>::infinity();
+  return change;
 }
 
 RowChange RowEquations::divide_straight() {

@@ -35,6 +35,7 @@ void RowEquations::build_loop() {
   loop_linear_ = std::move(linear);
   loop_nonlinear_ = std::move(nonlinear);
   loop_reach_ = std::ranges::max(neighbours);
+  loop_near_squares_ = kernel.near_below() > 0 ? kernel.near_below() * kernel.near_below() : -1;
   for (auto* rows : {&loop_now_, &loop_before_, &loop_after_, &loop_v_before_}) rows->resize(static_cast<std::size_t>(d_));
   for (auto* rows : {&loop_y_, &loop_v_}) rows->resize(static_cast<std::size_t>(d_));
   loop_rows_ = {.now = slab_of(loop_now_.data(), 0),
@@ -60,9 +61,10 @@ const double* RowEquations::edge(int part, int parts, int side, int a) const {
   return edges_.row(0) + static_cast<std::ptrdiff_t>(((2 * part + side) * d_ + a) * loop_reach_) * lanes;
 }
 
-void RowEquations::begin_loop(int parts, bool in_place) {
+void RowEquations::begin_loop(int parts, bool in_place, double sum_of_squares) {
   if (in_place) rows_.overwrite_newest();
   loop_rows_.now.t = static_cast<double>(n_) * time_step_;
+  loop_rows_.now.near = sum_of_squares <= loop_near_squares_;
   const bool keeps_slopes = !in_place && !loop_slopes_.empty();
   loop_rows_.slopes = keeps_slopes ? loop_slopes_.data() : nullptr;
   if (keeps_slopes) slopes_row_ = n_;

@@ -9,7 +9,7 @@
 namespace delf {
 
 /// max |E| / max Σ |terms|
-double RowEquations::residual(std::int64_t n) {
+double RowEquations::residual(std::int64_t n, double largest) {
   n_ = n;
   in_place_ = false;
   double sum = 0, size = 0;
@@ -23,7 +23,9 @@ double RowEquations::residual(std::int64_t n) {
     for (int a = 0; a < d_; ++a) take(terms[a], 1 / std::abs(solver_[0]->right_side_scale(a)));
   } else {
     LargestTerms terms;
+    largest_read_ = with_turn(largest);
     measure_sums(terms);
+    largest_read_ = std::numeric_limits<double>::infinity();
     take(terms, 1);
   }
   return size != 0 ? sum / size : 0;

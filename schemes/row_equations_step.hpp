@@ -38,16 +38,20 @@ inline void RowEquations::let_sums_read_here() {
   summed_ = {here_->bases.data(), static_cast<int>((n_ + 1 - equations_.bulk[0].shift) & 1)};
 }
 
-[[gnu::always_inline]] inline RowChange RowEquations::advance_extrapolated(int order) {
+[[gnu::always_inline]] inline RowChange RowEquations::advance_extrapolated(int order, double largest) {
   const ArgumentRow& row = argument_row();
-  arguments_->extrapolate(order);
+  arguments_->extrapolate(order, with_turn(largest));
   return advance_at(row);
 }
 
-inline RowChange RowEquations::advance_again() { return advance_at(argument_row()); }
+inline RowChange RowEquations::advance_again(double largest) {
+  const ArgumentRow& row = argument_row();
+  arguments_->set_largest(with_turn(largest));
+  return advance_at(row);
+}
 
 [[gnu::always_inline]] inline RowChange RowEquations::advance_at(const ArgumentRow& row) {
-  if (division_ && row.past_rows <= most_past_rows_divided) return divide(row, here_->output, false);
+  if (division_ && row.near && row.past_rows <= most_past_rows_divided) return divide(row, here_->output, false);
   evaluate_at(row);
   return make_new_row();
 }

@@ -18,6 +18,7 @@ struct SlabRows {
   const double* positions;      ///< x of each slot's site; null unless the family is placed
   double t = 0;                 ///< of the anchors' row
   double time_step, space_step;
+  bool near = false;  ///< no |value|, and no sum that evaluate_straight() makes, is above RowKernel::near_below()
   /// Rows that will be wanted next, from where pack 0 begins them: fetched on the way; null: none.
   std::array<const double*, 3> ahead{};
 };
@@ -63,6 +64,7 @@ struct ArgumentRow {
   const double* coefficients = nullptr;
   const double* const* past = nullptr;
   int read_before = 0, read_after = 0;  ///< so many packs across the ends of arcs: halos of outputs, filled
+  bool near = false;  ///< nor is any of what arguments are mixtures of; else u stands
 };
 
 /// A step where the matrix is one number: at a row of arguments the output E' is evaluated, and with it
@@ -93,6 +95,8 @@ class RowKernel {
 
   Nonlinearity nonlinearity() const { return nonlinearity_; }
   int outputs() const { return outputs_; }
+  /// Outputs may be evaluated on NearPacks where no |value| at a vertex is above this; negative: nowhere.
+  double near_below() const { return near_below_; }
   /// The latest vertex time that outputs depend on: below the pattern's latest, they are known before a step.
   int outputs_read_until() const { return outputs_read_until_; }
   /// What the outputs are functions of, the same mixture for every component; empty where it is more than mixtures of
@@ -144,6 +148,7 @@ class RowKernel {
   int row_size_;
   Nonlinearity nonlinearity_ = Nonlinearity::all;
   int outputs_ = 0, outputs_read_until_ = 0;
+  double near_below_ = -1;
   std::vector<double> weights_;
   std::vector<Argument> arguments_;
 };

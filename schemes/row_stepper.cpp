@@ -41,6 +41,8 @@ struct RowStepper::Impl {
 
   std::int64_t n = -1;         ///< newest row
   double largest[2] = {0, 0};  ///< |y| of the newest two rows
+  double largest_ever = 0;     ///< |y| of all rows since the start; of explicit steps √ of:
+  double squares_ever = 0;     ///< Σy², the largest
   int iterations = 0;
   int rows_known = 0;  ///< newest rows that have not been written over
   std::vector<double> squares_of_parts;
@@ -101,6 +103,7 @@ struct RowStepper::Impl {
   void row_is_found(double value) {
     largest[1] = largest[0];
     largest[0] = value;
+    largest_ever = std::max(largest_ever, value);
     rows_known = std::min(rows_known + 1, rows_held);
   }
 
@@ -192,7 +195,7 @@ struct RowStepper::Impl {
   }
   bool loop_in_parts(bool in_place) {
     const int parts = loop_parts();
-    equations.begin_loop(parts, in_place);
+    equations.begin_loop(parts, in_place, squares_ever);
     double squares = 0;
     if (parts == 1) {
       squares = equations.loop(0, 1);
@@ -202,6 +205,7 @@ struct RowStepper::Impl {
       for (int part = 0; part < parts; ++part) squares += squares_of_parts[static_cast<std::size_t>(part)];
     }
     equations.close_loop();
+    squares_ever = std::max(squares_ever, squares);
     return !squares_overflowed(squares);
   }
 
@@ -270,18 +274,21 @@ struct RowStepper::Impl {
   }
   /// From a seed of order 1, rows that outgrow the cache.
   RowChange advance_straight() {
-    return equations.goes_straight() ? equations.advance_straight() : advance_streamed(1);
+    return equations.goes_straight() ? equations.advance_straight(largest_ever) : advance_streamed(1);
   }
   /// From a seed of this order.
-  RowChange advance_first(int order) { return mixture ? equations.advance_extrapolated(order) : advance_seeded(order); }
+  RowChange advance_first(int order) { 
+    return mixture ? equations.advance_extrapolated(order, largest_ever) : advance_seeded(order);
+  }
   [[gnu::noinline]] RowChange advance_seeded(int order) {
-    if (order == 1 && equations.goes_straight()) return equations.advance_straight();
+    if (order == 1 && equations.goes_straight()) return equations.advance_straight(largest_ever);
     if (equations.is_streamed()) return advance_streamed(order);
     take_seed(order);
     return advance_from_candidate();
   }
-  RowChange advance_again() {
-    if (mixture) return equations.advance_again();
+  /// `value`: the largest |y| of the row that was found.
+  RowChange advance_again(double value) {
+    if (mixture) return equations.advance_again(std::max(largest_ever, value));
     if (equations.is_streamed()) return equations.advance_streamed({});
     return advance_from_candidate();
   }
@@ -310,7 +317,7 @@ struct RowStepper::Impl {
       const bool is_row_before_kept = !mixture || !estimates || !is_enough(weight * next_change * change, next_change, value);
       if (is_row_before_kept) equations.make_row_the_candidate();
       ++iterations;
-      const RowChange moved = advance_again();
+      const RowChange moved = advance_again(value);
       value = moved.largest, change = moved.change;
       if (overflowed(value)) report_not_finite();
       if (is_enough(change, next_change, value)) return true;
@@ -398,7 +405,7 @@ struct RowStepper::Impl {
     const std::int64_t base = n - 1;
     if (base < history - 1) return 0;
     if (rows_known < 2) return std::numeric_limits<double>::quiet_NaN();
-    return equations.residual(base);
+    return equations.residual(base, largest_ever);
   }
 };
 
@@ -422,6 +429,12 @@ void RowStepper::start(const std::vector<std::vector<double>>& rows) {
     s.largest[1] = s.largest[0];
     s.largest[0] = 0;
     for (double x : rows[r]) s.largest[0] = std::max(s.largest[0], std::abs(x));
+  }
+  s.largest_ever = s.squares_ever = 0;
+  for (const auto& row : rows) {
+    double squares = 0;
+    for (double x : row) squares += x * x, s.largest_ever = std::max(s.largest_ever, std::abs(x));
+    s.squares_ever = std::max(s.squares_ever, squares);
   }
   s.n = static_cast<std::int64_t>(rows.size()) - 1;
   s.equations.begin(s.n);
@@ -469,6 +482,10 @@ void RowStepper::newest_pair(const double** rows) const {
     s.layout().fill_first_after(v);  // a loop leaves it
     rows[a] = s.rows.y(s.n - 1, a), rows[s.d + a] = v;
   }
+}
+double RowStepper::largest_value() const {
+  const double largest = impl_->equations.is_one_loop() ? std::sqrt(impl_->squares_ever) : impl_->largest_ever;
+  return largest + std::abs(impl_->options.turn);  // across the seam
 }
 std::string RowStepper::solver_name() const { return impl_->equations.solver().name(); }
 bool RowStepper::iterates() const { return impl_->iterative; }

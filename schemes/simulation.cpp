@@ -274,7 +274,8 @@ Simulation::Monitors Simulation::monitors() const {
   const EnergyMomentum sums =
       s.moves ? EnergyMomentum{none, none}
              : s.theory->energy_momentum({&layout, s.monitored.data(), s.positions.rows() ? s.positions.row(0) : nullptr,
-                                 static_cast<double>(newest() - 1) * h, h, s.problem.lattice.space_step()},
+                                 static_cast<double>(newest() - 1) * h, h, s.problem.lattice.space_step(),
+                                 s.stepper.largest_value() <= s.theory->near_below()},
                                 {s.cell_weights.row(0), s.whole_packs});
   Monitors monitors{sums.energy, sums.momentum, s.charge(), s.constraint(), {}, {}};
   if (!s.conserved_names.empty()) s.find_conserved(monitors);

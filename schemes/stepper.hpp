@@ -62,6 +62,9 @@ class Stepper {
   /// pack after its end.
   void newest_pair(const double** rows) const { method_->newest_pair(rows); }
 
+  /// No |y| of all rows since the start is above this.
+  double largest_value() const { return method_->largest_value(); }
+
   bool iterates() const { return method_->iterates(); }  ///< a step is not one solve
   std::string solver_name() const { return method_->solver_name(); }
   bool matrix_free() const { return method_->matrix_free(); }  ///< one number for all sites: no matrix is allocated

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include "jets/density.hpp"
+#include "jets/near_pack.hpp"
 
 namespace delf {
 
 /// The jet (φ, 0, 0) of a pack of sites, with ∂/∂φ: all that is asked of a density that is nonlinear in φ alone.
 /// `value(a)` is the component a of φ, called once for each; `positions` is x of the pack's sites, read if the density
-/// is placed, to which `x_offset` is added.
-template <Density D>
+/// is placed, to which `x_offset` is added. `Value`: Pack, or NearPack.
+template <Density D, class Value = Pack>
 [[gnu::always_inline]] inline auto value_jet(const auto& value, const Pack& t, const double* positions,
                                              double x_offset = 0) {
   constexpr int d = components_of<D>();
-  using Number = Dual<Pack, d>;
+  using Number = Dual<Value, d>;
   JetFor<Number, D> jet;
   for (int a = 0; a < d; ++a) {
     component(jet.phi, a) = Number::variable(value(a), a);
@@ -19,8 +20,8 @@ template <Density D>
     component(jet.phi_x, a) = Number(0.0);
   }
   if constexpr (is_placed<D>()) {
-    jet.t = Number(t);
-    jet.x = Number(Pack::load(positions) + x_offset);
+    jet.t = Number(Value(t));
+    jet.x = Number(Value(Pack::load(positions) + x_offset));
   }
   return jet;
 }

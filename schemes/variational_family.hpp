@@ -90,6 +90,13 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     if (nonlinearity_ == Nonlinearity::values) {
       // ∂L/∂y_l = Σ_q |Δ| w_q (∂ℓ/∂φ)(φ_q) ∂φ_q/∂y_l
       outputs_ = distinct.count * d;
+      double most = 0;  // |φ| ≤ Σ |weights| max |y|
+      for (const auto& point : map.quadrature) {
+        double sum = 0;
+        for (double weight : point.phi) sum += std::abs(weight);
+        most = std::max(most, sum);
+      }
+      near_below_ = delf::near_below(lagrangian_.density) / most;
       for (int c = 0; c < distinct.count; ++c) {
         Argument argument;
         for (int l = 0; l < n; ++l)
@@ -167,17 +174,18 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
 
   bool evaluates_arguments() const override { return d == 1 && outputs_ == 1 && nonlinearity_ == Nonlinearity::values; }
   void evaluate_arguments(const ArgumentRow& row, double* out, const PackRange& packs) const override {
-    if constexpr (d == 1) argument_loop_for<stride>([&] { return slope(row); }, row, out, packs);
+    if constexpr (d == 1)
+      argument_loop_for<stride>([&]<class Value>() { return slope<Value>(row); }, row, out, packs);
   }
   bool divides(int old, int parts) const override {
     return evaluates_arguments() && stride == 1 && old == 2 && parts == 2;
   }
   RowChange divide(const DivisionRows& given, const RowIncrement& rows) const override {
-    if constexpr (d == 1 && stride == 1) return division_loop_for<2, 2>(slope(given.arguments), given, rows);
+    if constexpr (d == 1 && stride == 1) return division_loop_for<2, 2>(slope<NearPack>(given.arguments), given, rows);
     else return {};
   }
   RowChange divide_straight(const DivisionRows& given, const RowIncrement& rows) const override {
-    if constexpr (d == 1 && stride == 1) return straight_division_loop<2, 2>(slope(given.arguments), given, rows);
+    if constexpr (d == 1 && stride == 1) return straight_division_loop<2, 2>(slope<Pack>(given.arguments), given, rows);
     else return {};
   }
 
@@ -197,13 +205,16 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   static constexpr int stride = map.shape.placement == Placement::every_site ? 1 : 2;
   static constexpr bool sees_one_value = d == 1 && distinct.count == 1;
   /// At rows of arguments, or of values.
-  template <class Rows>
-  MixtureSlope<D> slope(const Rows& rows, double known_weight) const {
+  template <class Value, class Rows>
+  MixtureSlope<D, Value> slope(const Rows& rows, double known_weight) const {
     constexpr auto& point = map.quadrature[distinct.representative[0]];
     return {lagrangian_.density, known_weight, rows.t + time_offset(map.shape, point) * rows.time_step,
             rows.positions, space_offset(map.shape, point) * rows.space_step};
   }
-  MixtureSlope<D> slope(const ArgumentRow& row) const { return slope(row, row.known_weight); }
+  template <class Value>
+  MixtureSlope<D, Value> slope(const ArgumentRow& row) const {
+    return slope<Value>(row, row.known_weight);
+  }
   /// ℓ(φ, 0, 0)
   struct ValuesOnly {
     static constexpr int components = d;
@@ -285,10 +296,15 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
 
   /// out = ∂ℓ/∂φ at the one value of φ that a stencil sees; `straight`: its newest row is more by v than the one given.
   template <bool straight>
-  [[gnu::flatten]] void evaluate_value(const SlabRows& given, const double* v, double* out,
-                                       const PackRange& packs) const {
+  void evaluate_value(const SlabRows& rows, const double* v, double* out, const PackRange& packs) const {
+    if (rows.near) evaluate_value_on<straight, NearPack>(rows, v, out, packs);
+    else evaluate_value_on<straight, Pack>(rows, v, out, packs);
+  }
+  template <bool straight, class Value>
+  [[gnu::flatten]] void evaluate_value_on(const SlabRows& given, const double* v, double* out,
+                                          const PackRange& packs) const {
     const LocalRows rows(given);
-    const MixtureSlope<D> output = slope(given, 0);
+    const auto output = slope<Value>(given, 0);
     const FetchAhead<stride> ahead(given);
     constexpr auto& weights = map.quadrature[distinct.representative[0]].phi;
     constexpr int newest = [] {

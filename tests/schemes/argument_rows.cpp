@@ -51,7 +51,7 @@ struct Polynomials {
   /// The largest difference between the row that an extrapolation of this order finds and the next one.
   double miss(int order) {
     const ArgumentRow& row = rows.argument(known.row(0), t);
-    rows.extrapolate(order);
+    rows.extrapolate(order, 1);
     family->row_kernel()->evaluate_arguments(row, out.row(0), layout.all());
     double worst = 0;
     for (int i = 0; i < N; ++i)

@@ -98,8 +98,11 @@ double difference_of_ways(const D& density, int N, double wrong = 0) {
   form->tension[0] += wrong;
   // Arcs overlap in their last packs: before these every slot is counted.
   const CellWeights weights{marks.row(0), N / lanes > 2 ? N / lanes - 2 : 0};
-  const EnergyMomentum plain = energy_momentum(density, *form, slab, weights),
+  const EnergyMomentum plain = energy_momentum<Pack>(density, *form, slab, weights),
                        differentiated = energy_momentum(density, slab, weights);
+  const EnergyMomentum near = energy_momentum<NearPack>(density, *form, slab, weights);
+  CHECK(near.energy == plain.energy);
+  CHECK(near.momentum == plain.momentum);
   return (std::abs(plain.energy - differentiated.energy) + std::abs(plain.momentum - differentiated.momentum)) /
          (std::abs(differentiated.energy) + std::abs(differentiated.momentum));
 }

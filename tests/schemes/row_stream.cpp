@@ -190,7 +190,7 @@ TEST_CASE("a stream along straight lines makes the row of the candidate y + v, a
       layout.scatter(straight, equations.candidate().row(0));
       const RowChange exact = equations.advance_streamed({});
       const Row expected = rows.row(2);
-      const RowChange change = equations.advance_straight();
+      const RowChange change = equations.advance_straight(10);
       const Row found = rows.row(2);
       CHECK(same(found, expected));
       double w = 0;

@@ -64,6 +64,7 @@ class Unplaced final : public FieldTheory {
     return s;
   }
   int components() const override { return theory_.components(); }
+  double near_below() const override { return theory_.near_below(); }
   bool is_placed() const override { return false; }
   std::shared_ptr<const StencilFamily> variational(const std::string&, double, double) const override { return {}; }
   std::shared_ptr<const StencilFamily> on_element(const Element&) const override { return {}; }

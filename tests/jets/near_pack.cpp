@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "jets/near_pack.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <string>
+
+#include "tests/catch.hpp"
+#include "tests/jets/random.hpp"
+
+using namespace delf;
+using delf::testing::Random;
+
+namespace {
+
+/// Lanes whose bits differ.
+int different(Pack a, Pack b) {
+  int count = 0;
+  for (int l = 0; l < lanes; ++l) count += std::bit_cast<std::uint64_t>(a[l]) != std::bit_cast<std::uint64_t>(b[l]);
+  return count;
+}
+Pack random_pack(Random& random, double bound) {
+  Pack x;
+  for (int l = 0; l < lanes; ++l) x.v[l] = random(-bound, bound);
+  return x;
+}
+
+/// Of random arguments within the bound: lanes in which f of NearPacks is not that of Packs.
+template <class Function>
+int differences(Function f, double bound) {
+  Random random(3);
+  int count = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const Pack x = random_pack(random, bound);
+    count += different(f(NearPack(x)), f(x));
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("in reach functions of NearPacks have the bits of those of Packs") {
+  CHECK(differences([](auto x) { return sin(x); }, 1e6) == 0);
+  CHECK(differences([](auto x) { return cos(x); }, 1e6) == 0);
+  CHECK(differences([](auto x) { return cosm1(x); }, 1e6) == 0);
+  CHECK(differences([](auto x) { return sinh(x); }, 700) == 0);
+  CHECK(differences([](auto x) { return cosh(x); }, 700) == 0);
+}
+
+TEST_CASE("beyond it they have not: nothing is asked") {
+  CHECK(differences([](auto x) { return sin(x); }, 1e18) > 1000);
+  CHECK(differences([](auto x) { return cos(x); }, 1e18) > 1000);
+  CHECK(differences([](auto x) { return cosm1(x); }, 1e18) > 1000);
+  CHECK(differences([](auto x) { return sinh(x); }, 1e4) > 1000);
+  CHECK(differences([](auto x) { return cosh(x); }, 1e4) > 1000);
+}
+
+TEST_CASE("functions that ask for other reasons, or nothing, are those of Packs anywhere") {
+  CHECK(differences([](auto x) { return exp(x); }, 800) == 0);
+  CHECK(differences([](auto x) { return tanh(x); }, 50) == 0);
+  CHECK(differences([](auto x) { return tan(x); }, 1e9) == 0);
+  CHECK(differences([](auto x) { return sinc(x); }, 1e9) == 0);
+  CHECK(differences([](auto x) { return sinc_slope(x); }, 1e9) == 0);
+  CHECK(differences([](auto x) { return sqrt(x * x + 1.0); }, 1e9) == 0);
+  CHECK(differences([](auto x) { return log(x * x + 1.0); }, 1e9) == 0);
+  CHECK(differences([](auto x) { return pow(x * x + 1.0, 1.5) / (2.0 - -x); }, 1e3) == 0);
+}
+
+TEST_CASE("derivatives by NearPacks are those by Packs") {
+  const auto f = [](const auto& u) {
+    return sin(2.0 * u) * cosm1(u) + exp(0.1 * u) / (2.0 + cos(u)) - sinc(u) * cosh(u);
+  };
+  Random random(8);
+  for (int n = 0; n < 500; ++n) {
+    const Pack x = random_pack(random, 10);
+    const auto near = f(Dual<NearPack, 1>::variable(x, 0));
+    const auto any = f(Dual<Pack, 1>::variable(x, 0));
+    CHECK(different(near.value, any.value) == 0);
+    CHECK(different(near.derivative(0), any.derivative(0)) == 0);
+  }
+}
