@@ -358,7 +358,8 @@ std::size_t RowEquations::work_bytes() const {
   total += places_.size() * (sizeof(StepRows) + (own_.bases.size() + own_.values.size()) * sizeof(double*) +
                              own_.increments.size() * sizeof(RowIncrement));
   for (const RowBuffer* b : {&w_, &scratch_, &positions_, &edges_}) total += b->bytes();
-  return total + window_bytes() + candidate_.bytes() + (arguments_ ? arguments_->bytes() : 0);
+  return total + window_bytes() + candidate_.bytes() + (arguments_ ? arguments_->bytes() : 0) +
+         (tiles_ ? tiles_->bytes() : 0);
 }
 
 }  // namespace delf

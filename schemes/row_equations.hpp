@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "schemes/argument_rows.hpp"
@@ -18,6 +19,7 @@
 #include "schemes/row_kernel.hpp"
 #include "schemes/row_sum.hpp"
 #include "schemes/section_rows.hpp"
+#include "schemes/time_tiles.hpp"
 
 namespace delf {
 
@@ -49,6 +51,12 @@ class RowEquations {
   /// A part of the new row by that loop; returns its Σy².
   double loop(int part, int parts) const;
   void close_loop();
+  /// Lets long rows be taken several steps on at once, in so many parts; and whether that is so.
+  void tile(int parts);
+  bool is_tiled() const { return tiles_.has_value(); }
+  /// The steps from row n on in place, one for each of `squares`, which become Σy² of their rows. False where one of
+  /// these is too large for the next step to be what it was taken for: the rows are then of no use.
+  bool loop_levels(std::span<double> squares, double sum_of_squares, RowTeam*);
 
   ArgumentRows* arguments() { return arguments_ ? &*arguments_ : nullptr; }
   CandidateRows& candidate() { return candidate_; }
@@ -282,6 +290,7 @@ class RowEquations {
   bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row
 
   const RowKernel* one_loop_ = nullptr;
+  std::optional<TimeTiles> tiles_;
   std::vector<double> loop_linear_, loop_nonlinear_;
   int loop_reach_ = 0;
   double loop_near_squares_ = -1;  ///< up to this Σy² slopes may be evaluated on NearPacks

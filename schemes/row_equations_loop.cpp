@@ -2,6 +2,7 @@
 #include "schemes/row_equations.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace delf {
 
@@ -183,6 +184,21 @@ LargestTerms RowEquations::measure_loop(int a, const PackRange& packs, const dou
 
 void RowEquations::close_loop() {
   for (int a = 0; a < d_; ++a) layout_.fill_halo(loop_y_[static_cast<std::size_t>(a)], turn_);
+}
+
+void RowEquations::tile(int parts) {
+  if (!is_one_loop() || turn_ != 0 || !TimeTiles::are_worth_while(layout_, loop_reach_, parts)) return;
+  tiles_.emplace(layout_, *one_loop_, d_, loop_reach_, parts);
+}
+
+bool RowEquations::loop_levels(std::span<double> squares, double sum_of_squares, RowTeam* team) {
+  begin_loop(1, true, sum_of_squares);
+  for (std::size_t level = 1; level < squares.size(); ++level) rows_.overwrite_newest();
+  loop_row_ = n_ + static_cast<std::int64_t>(squares.size());
+  tiles_->run(loop_rows_, n_, squares, team);
+  close_loop();
+  const double most = loop_rows_.now.near ? loop_near_squares_ : std::numeric_limits<double>::infinity();
+  return std::ranges::all_of(squares, [most](double sum) { return sum <= most; });
 }
 
 }  // namespace delf

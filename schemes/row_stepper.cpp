@@ -15,6 +15,7 @@
 #include "schemes/row_equations_step.hpp"
 #include "schemes/row_seed.hpp"
 #include "schemes/row_team.hpp"
+#include "schemes/time_tiles.hpp"
 
 namespace delf {
 
@@ -50,6 +51,7 @@ struct RowStepper::Impl {
   /// known when it was the newest.
   std::int64_t kept_row = -1, kept_overwritten = 0;
   double kept_largest[2] = {0, 0};
+  static constexpr std::int64_t steps_between = 1024;  ///< that are in place: as many may have to be taken again
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
       : system(s),
@@ -74,6 +76,7 @@ struct RowStepper::Impl {
     can_go_in_place = iterative && !stiff && equations.can_go_in_place();
     if (o.threads > 1 && equations.is_one_loop())
       team.emplace(o.threads), squares_of_parts.resize(static_cast<std::size_t>(o.threads));
+    if (o.fibre != Fibre::circle) equations.tile(loop_parts());
   }
 
   int seed_rows() const { return iterative ? RowSeed::rows_for(options.seed_order, system.lattice().sites()) : 2; }
@@ -175,7 +178,6 @@ struct RowStepper::Impl {
   /// Rows that are written over are gone. But a step that is not in place leaves the row before it where it is, until
   /// two more of its kind have been taken: at every time two good rows are there, or follow from that one.
   bool loop(bool looked_at) {
-    constexpr std::int64_t steps_between = 1024;  // that are in place: as many may have to be taken again
     const bool in_place = !looked_at && kept_row >= 0 && n > kept_row && n < kept_row + steps_between;
     if (in_place) rows_known = 0;
     bool fine = loop_in_parts(in_place);
@@ -186,6 +188,37 @@ struct RowStepper::Impl {
       keep();
     }
     return fine;
+  }
+
+  /// Explicit steps in place, several at once where rows outgrow the cache.
+  void steps(int count) {
+    while (count > 0) {
+      const std::int64_t room = kept_row >= 0 && n > kept_row ? kept_row + steps_between - n : 0;
+      const int levels = static_cast<int>(
+          std::min<std::int64_t>({equations.is_tiled() ? TimeTiles::most_levels : 1, count, room}));
+      if (levels > 1) take_levels(levels);
+      else step(false);
+      count -= std::max(levels, 1);
+    }
+  }
+  void take_levels(int levels) {
+    const FlushDenormals guard;
+    iterations = 0;
+    double squares[TimeTiles::most_levels];
+    const std::span<double> of_levels(squares, static_cast<std::size_t>(levels));
+    equations.begin(n);
+    const bool fine = equations.loop_levels(of_levels, squares_ever, team ? &*team : nullptr);
+    n += levels - 1;
+    rows_known = 0;
+    if (fine) {
+      squares_ever = std::max(squares_ever, std::ranges::max(of_levels));
+    } else {
+      const bool is_found = loop_again();
+      kept_row = -1;
+      if (!is_found) report_not_finite();
+    }
+    row_is_found(0);
+    ++n;
   }
 
   /// As many threads as there are rows enough for.
@@ -217,7 +250,7 @@ struct RowStepper::Impl {
     for (;; ++n) {
       equations.begin(n);
       const bool fine = loop_in_parts(false);
-      if (n == last) return fine;
+      if (n == last || !fine) return fine;
       row_is_found(0);
     }
   }
@@ -458,6 +491,8 @@ void RowStepper::start_centred(const std::vector<double>& row0, const std::vecto
 }
 
 void RowStepper::step(bool looked_at) { impl_->step(looked_at); }
+void RowStepper::steps(int count) { impl_->steps(count); }
+int RowStepper::steps_at_once() const { return impl_->equations.is_tiled() ? TimeTiles::most_levels : 1; }
 std::int64_t RowStepper::newest() const { return impl_->n; }
 std::vector<double> RowStepper::row(int back) const {
   impl_->require_rows(back + 1);

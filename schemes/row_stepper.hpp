@@ -23,6 +23,8 @@ class RowStepper final : public StepMethod {
   void start(const std::vector<std::vector<double>>& rows) override;
   void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) override;
   void step(bool looked_at) override;
+  void steps(int count) override;
+  int steps_at_once() const override;
 
   std::int64_t newest() const override;
   std::vector<double> row(int back) const override;

@@ -208,6 +208,8 @@ void Simulation::start_centred(std::span<const double> row0, std::span<const dou
 }
 
 void Simulation::step(bool looked_at) { impl_->stepper.step(looked_at); }
+void Simulation::steps(int count) { impl_->stepper.steps(count); }
+int Simulation::steps_at_once() const { return impl_->stepper.steps_at_once(); }
 std::int64_t Simulation::newest() const { return impl_->stepper.newest(); }
 
 void Simulation::start_legendre(std::span<const double> row0, std::span<const double> velocity) {

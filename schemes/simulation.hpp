@@ -79,6 +79,9 @@ class Simulation {
   /// A row that is not to be `looked_at` costs an explicit step, or one through long rows, less memory traffic: the row
   /// before it is written over, and residual() and monitors() are not to be had.
   void step(bool looked_at = true);
+  /// The same as so many step(false), of which explicit ones through long rows take steps_at_once() together.
+  void steps(int count);
+  int steps_at_once() const;
 
   /// Index of the newest row.
   std::int64_t newest() const;

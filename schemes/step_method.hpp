@@ -44,6 +44,10 @@ class StepMethod {
     throw BadInput("initial.start", "initial.start = legendre: only for elements; use exact or centred");
   }
   virtual void step(bool looked_at) = 0;
+  virtual void steps(int count) {
+    for (; count > 0; --count) step(false);
+  }
+  virtual int steps_at_once() const { return 1; }
 
   virtual std::int64_t newest() const = 0;
   virtual std::vector<int> behind() const { return {}; }  ///< none: every component is known

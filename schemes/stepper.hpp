@@ -33,9 +33,17 @@ class Stepper {
   /// If the new row is not to be `looked_at`, an explicit step, or one through long rows, may write it over the old
   /// one: there is then no row before it (std::logic_error), and no residual (NaN).
   void step(bool looked_at = true) {
-    if (!started_) throw std::logic_error("a step needs rows to go on from: call start() first");
+    require_start();
     method_->step(looked_at);
   }
+
+  /// The same as so many step(false). Explicit steps through rows that outgrow the cache are taken steps_at_once() together,
+  /// which then cost what they do in the cache.
+  void steps(int count) {
+    require_start();
+    method_->steps(count);
+  }
+  int steps_at_once() const { return method_->steps_at_once(); }
 
   std::int64_t newest() const { return method_->newest(); }
   /// Of each component, so many rows before the newest row of fields is its newest that is known.
@@ -77,6 +85,10 @@ class Stepper {
   std::string memory_report(bool residual) const { return method_->memory_report(residual); }
 
  private:
+  void require_start() const {
+    if (!started_) throw std::logic_error("a step needs rows to go on from: call start() first");
+  }
+
   std::unique_ptr<StepMethod> method_;
   std::size_t components_, row_size_;
   bool started_ = false;

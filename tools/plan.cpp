@@ -51,7 +51,8 @@ Trial step_for(double limit, std::int64_t most, Simulation& simulation) {
   while (trial.steps < most && trial.seconds < limit) {
     const std::int64_t last = std::min(trial.steps + batch, most);
     const auto begin = Clock::now();
-    for (; trial.steps < last; ++trial.steps) simulation.step(false);
+    simulation.steps(static_cast<int>(last - trial.steps));
+    trial.steps = last;
     trial.seconds += seconds_since(begin);
     const double fitting = (limit - trial.seconds) / trial.seconds * static_cast<double>(trial.steps);
     batch = std::max<std::int64_t>(1, fitting < 2. * static_cast<double>(batch) ? std::llround(fitting) : 2 * batch);

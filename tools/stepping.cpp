@@ -112,8 +112,9 @@ void Stepping::record_and_step() {
   if (const std::int64_t last = std::min(newest_, scene_.steps); recorded_ != last) record(last);
 }
 
-// The rows held are still the last good ones.
+// The rows held are still the last good ones; of steps that were taken together some may be good.
 void Stepping::fail(const NumericalFailure& error) {
+  if (started_) newest_ = simulation_.newest();
   outcome_.status = status_of(error);
   const std::string what = error.what();
   const std::string where = what.starts_with("step ")
@@ -128,16 +129,20 @@ void Stepping::step_until(std::int64_t row, Progress& progress) {
   const FlushDenormals for_all_steps;  // each would set and restore it
   bool looked_at = true;  // as the row that an interruption leaves must be: it is recorded
   while (newest_ < row && !(looked_at && Interrupt::asked())) {
-    looked_at = newest_ + 1 == row || Interrupt::asked();
-    simulation_.step(looked_at);
-    ++newest_;
-    count_step();
+    const std::int64_t unseen = Interrupt::asked() ? 0 : row - 1 - newest_;
+    const auto count = static_cast<int>(std::clamp<std::int64_t>(unseen, 1, simulation_.steps_at_once()));
+    looked_at = unseen == 0;
+    if (looked_at) simulation_.step(true);
+    else simulation_.steps(count);
+    newest_ += count;
+    count_steps(count);
     progress.at(newest_);
   }
 }
 
-void Stepping::count_step() {
-  ++outcome_.steps_taken;
+// Steps that are taken together are explicit: they do not iterate.
+void Stepping::count_steps(int count) {
+  outcome_.steps_taken += count;
   last_iterations_ = simulation_.iterations();
   iterations_ += last_iterations_;
   outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);

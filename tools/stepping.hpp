@@ -24,7 +24,7 @@ class Stepping {
  private:
   void record_and_step();
   void step_until(std::int64_t row, Progress&);
-  void count_step();
+  void count_steps(int count);
   void record(std::int64_t row);
   void fail(const NumericalFailure&);
   bool to_be_recorded(std::int64_t row) const;

@@ -16,6 +16,7 @@ Side counting_side(const Collision& collision, double& mean) {
   side.advance = [simulation, &mean](long steps) {
     long iterations = 0;
     const FlushDenormals for_all_steps;  // as in `delf run`
+    if (simulation->steps_at_once() > 1) return simulation->steps(static_cast<int>(steps));  // explicit ones
     for (long n = 0; n < steps; ++n) {
       simulation->step(false);
       iterations += simulation->iterations();
