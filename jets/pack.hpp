@@ -112,16 +112,17 @@ inline Pack max_or_nan(Pack a, Pack b) {
   return {reinterpret_cast<Pack::Vector>(reinterpret_cast<Pack::Bits>(detail::larger(a, b).v) | (a.v != a.v))};
 #endif
 }
-/// The larger of |a| and |b|, where a is not negative; a NaN in either stays a NaN. As bits, magnitudes are in the order of
-/// integers, and NaNs above all of them: that takes turns with what is added and multiplied, which maxima of numbers
-/// would wait for.
-inline Pack largest_magnitude(Pack a, Pack b) {
+/// The larger of two that are not negative; a NaN in either stays a NaN. As bits, magnitudes are in the order of integers,
+/// and NaNs above all of them: that takes turns with what is added and multiplied, which maxima of numbers would wait for.
+inline Pack larger_size(Pack a, Pack b) {
 #if defined(__AVX512F__)
-  return {_mm512_castsi512_pd(_mm512_max_epu64(_mm512_castpd_si512(a.v), _mm512_castpd_si512(abs(b).v)))};
+  return {_mm512_castsi512_pd(_mm512_max_epu64(_mm512_castpd_si512(a.v), _mm512_castpd_si512(b.v)))};
 #else
-  return max_or_nan(abs(b), a);
+  return max_or_nan(b, a);
 #endif
 }
+/// The larger of |a| and |b|, where a is not negative; a NaN in either stays a NaN.
+inline Pack largest_magnitude(Pack a, Pack b) { return larger_size(a, abs(b)); }
 namespace detail {
 template <int by, int... l>
 inline Pack rotated(Pack a, std::integer_sequence<int, l...>) {

@@ -10,9 +10,10 @@ namespace delf {
 struct LargestTerms {
   Pack sum = 0.0, absolute = 0.0;
 
+  /// `a`: a sum of absolute values.
   [[gnu::always_inline]] void operator()(std::ptrdiff_t, Pack s, Pack a) {
     sum = largest_magnitude(sum, s);
-    absolute = largest_magnitude(absolute, a);
+    absolute = larger_size(absolute, a);
   }
 };
 

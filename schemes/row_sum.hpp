@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -110,6 +111,16 @@ class RowSum {
         if (t.shift == -u.shift && t.coefficient != u.coefficient) return false;
     return differences_.size() != 2 || differences_[0].coefficient == differences_[1].coefficient;
   }
+  /// Plain terms are those of rows at a site and at the one before it, as outputs of cells on either side are.
+  bool are_pairs() const {
+    const auto there = [this](int row, int shift) {
+      return std::ranges::count_if(plain_, [=](const Term& t) { return t.row == row && t.shift == shift; }) == 1;
+    };
+    return !plain_.empty() && !other_ &&
+           std::ranges::all_of(plain_, [&](const Term& t) { return there(t.row, 0) && there(t.row, -1); });
+  }
+  /// What coefficients and terms allow a measured pass to add before it multiplies.
+  enum class Alike { no, even, pairs };
   /// Of sums that take turns, fewer terms are compiled.
   static constexpr int most_plain = 8, most_in_turn = 3, general = -1;
   /// Compiled passes by number: without differences, with them, and in turn, each by the number of plain terms.
@@ -118,7 +129,8 @@ class RowSum {
   void find_form() {
     const int plain = static_cast<int>(plain_.size());
     form_ = general;
-    even_ = is_even() && (!other_ || other_->is_even());
+    const bool even = is_even() && (!other_ || other_->is_even());
+    alike_ = !even ? Alike::no : are_pairs() ? Alike::pairs : Alike::even;
     if (!are_around_site()) return;
     if (other_) {
       if (plain <= most_in_turn && are_like(*other_)) form_ = in_turn + plain;
@@ -127,25 +139,25 @@ class RowSum {
     }
   }
   /// The terms of a counted pass, as a pass keeps them.
-  template <int differences, int plain, int changes>
+  template <int differences, int plain, int changes, bool in_pairs>
   struct Counted;
   // Inlined where they are used: what `consume` carries would else be copied through memory.
   template <bool measured, class Consume>
   [[gnu::always_inline]] void dispatch(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, bool even, int changes, class Consume>
+  template <bool measured, Alike alike, int changes, class Consume>
   [[gnu::always_inline]] void dispatch_counted(const RowLayout&, PackRange, Consume&) const;
-  template <bool measured, bool even, bool takes_turns, int differences, int plain, int changes, class Consume>
+  template <bool measured, Alike alike, bool takes_turns, int differences, int plain, int changes, class Consume>
   [[gnu::always_inline]] void counted_pass(const RowLayout&, PackRange, Consume&) const;
   /// A function of its own: one function with as many loops as there are forms takes the compilers of sanitizers minutes.
   /// It works with a copy of `consume`, where that can be put back.
-  template <bool even, bool takes_turns, int differences, int plain, int changes, class Consume>
+  template <Alike alike, bool takes_turns, int differences, int plain, int changes, class Consume>
   [[gnu::noinline]] void measured_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
     if constexpr (std::is_copy_assignable_v<Consume>) {
       Consume own = consume;
-      counted_pass<true, even, takes_turns, differences, plain, changes>(layout, packs, own);
+      counted_pass<true, alike, takes_turns, differences, plain, changes>(layout, packs, own);
       consume = own;
     } else {
-      counted_pass<true, even, takes_turns, differences, plain, changes>(layout, packs, consume);
+      counted_pass<true, alike, takes_turns, differences, plain, changes>(layout, packs, consume);
     }
   }
   template <bool measured, class Consume>
@@ -156,12 +168,13 @@ class RowSum {
   double constant_ = 0;
   const RowSum* other_ = nullptr;
   int form_ = 0;
-  bool even_ = true;
+  Alike alike_ = Alike::no;
 };
 
 /// None or two differences: those to the next pack and to the one before it. Either is then the other's of the pack
-/// before: one subtraction for both. None, one or three changes, which go on to the next pack in the same way.
-template <int differences, int plain, int changes>
+/// before: one subtraction for both. None, one or three changes, which go on to the next pack in the same way. Of pairs
+/// the rows alone, and their sum goes on.
+template <int differences, int plain, int changes, bool in_pairs>
 struct RowSum::Counted {
   const double* row[plain + 1];
   double coefficient[plain + 1];
@@ -170,12 +183,14 @@ struct RowSum::Counted {
   Pack constant;
 
   [[gnu::always_inline]] explicit Counted(const RowSum& sum) : constant(sum.constant_) {
-    for (int i = 0; i < plain; ++i) {
+    for (int i = 0, next = 0; i < plain; ++i) {
       const Term& t = sum.plain_[static_cast<std::size_t>(i)];
+      if (in_pairs && t.shift != 0) continue;
       const double* shifted = sum.shifted(t);
       // Hidden from compilers, which would find one row from another, and have too many registers to keep.
       asm("" : "+r"(shifted));
-      row[i] = shifted, coefficient[i] = t.coefficient;
+      row[next] = shifted, coefficient[next] = t.coefficient;
+      ++next;
     }
     if constexpr (differences > 0) {
       of_next = sum.differences_[0].coefficient, of_last = sum.differences_[1].coefficient;
@@ -188,9 +203,10 @@ struct RowSum::Counted {
 };
 
 /// `takes_turns`: with the other sum, which is like this one. Packs follow each other.
-template <bool measured, bool even, bool takes_turns, int differences, int plain, int changes, class Consume>
+template <bool measured, RowSum::Alike alike, bool takes_turns, int differences, int plain, int changes, class Consume>
 inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consume& consume) const {
-  using Terms = Counted<differences, plain, changes>;
+  constexpr bool even = alike != Alike::no, in_pairs = alike == Alike::pairs && plain > 0;
+  using Terms = Counted<differences, plain, changes, in_pairs>;
   const bool other_first = takes_turns && (packs.first + rows_->phase) % 2 != 0;
   const Terms first(other_first ? *other_ : *this);
   std::ptrdiff_t at = layout.at(packs.first);
@@ -206,6 +222,16 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
   Pack last_change = changes == 3 ? change_at(at - lanes) : Pack(0.0);
   Pack change = changes == 3 ? change_at(at) : Pack(0.0);
   Pack last_change_size = abs(last_change), change_size = abs(change);
+  // Of rows at a site: their sum, and the sum of their sizes. The next pack adds them to its own.
+  const auto pairs_at = [](const Terms& terms, std::ptrdiff_t to, Pack& all, Pack& size) __attribute__((always_inline)) {
+    all = Pack::load(terms.row[0] + to), size = abs(all);
+    for (int i = 1; i < plain / 2; ++i) {
+      const Pack term = Pack::load(terms.row[i] + to);
+      all += term, size += abs(term);
+    }
+  };
+  Pack last_pairs(0.0), last_pairs_size(0.0);
+  if constexpr (in_pairs) pairs_at(first, at - lanes, last_pairs, last_pairs_size);
   const auto take = [&](const Terms& terms) __attribute__((always_inline)) {
     Pack sum = terms.constant, absolute(0.0);
     const auto add = [&](double coefficient, Pack term, Pack size) __attribute__((always_inline)) {
@@ -222,7 +248,12 @@ inline void RowSum::counted_pass(const RowLayout& layout, PackRange packs, Consu
       }
       value = next_value, last = next, last_size = next_size;
     }
-    if constexpr (even && plain > 0) {
+    if constexpr (in_pairs) {
+      Pack pairs, pairs_size;
+      pairs_at(terms, at, pairs, pairs_size);
+      add(terms.coefficient[0], pairs + last_pairs, pairs_size + last_pairs_size);
+      last_pairs = pairs, last_pairs_size = pairs_size;
+    } else if constexpr (even && plain > 0) {
       Pack all = Pack::load(terms.row[0] + at), size = abs(all);
       for (int i = 1; i < plain; ++i) {
         const Pack term = Pack::load(terms.row[i] + at);
@@ -285,15 +316,18 @@ inline void RowSum::general_pass(const RowLayout& layout, PackRange packs, Consu
 
 /// The numbers of terms of the usual schemes are compiled, differences being those to both sides: rows then stay in
 /// registers.
-template <bool measured, bool even, int changes, class Consume>
+template <bool measured, RowSum::Alike alike, int changes, class Consume>
 inline void RowSum::dispatch_counted(const RowLayout& layout, PackRange packs, Consume& consume) const {
   [&]<int... number>(std::integer_sequence<int, number...>) __attribute__((always_inline)) {
     const auto done = [&]<int form>() __attribute__((always_inline)) {
       if (form_ != form) return false;
       constexpr bool takes_turns = form >= in_turn;
       constexpr int differences = form >= with_differences ? 2 : 0, plain = form % with_differences;
-      if constexpr (measured) measured_pass<even, takes_turns, differences, plain, changes>(layout, packs, consume);
-      else counted_pass<false, even, takes_turns, differences, plain, changes>(layout, packs, consume);
+      // Pairs are of one row or two, beside differences.
+      constexpr bool may_be_pairs = differences > 0 && !takes_turns && (plain == 2 || plain == 4);
+      constexpr Alike here = alike == Alike::pairs && !may_be_pairs ? Alike::even : alike;
+      if constexpr (measured) measured_pass<here, takes_turns, differences, plain, changes>(layout, packs, consume);
+      else counted_pass<false, here, takes_turns, differences, plain, changes>(layout, packs, consume);
       return true;
     };
     (void)(done.template operator()<number>() || ...);
@@ -304,11 +338,16 @@ template <bool measured, class Consume>
 inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& consume) const {
   // Changes are the unknown row's, which steps do not ask for, and residuals do.
   if (form_ == general || measured == changes_.empty()) return general_pass<measured>(layout, packs, consume);
-  if constexpr (!measured) return dispatch_counted<false, false, 0>(layout, packs, consume);
-  else if (changes_.size() == 1 && even_) return dispatch_counted<true, true, 1>(layout, packs, consume);
-  else if (changes_.size() == 1) return dispatch_counted<true, false, 1>(layout, packs, consume);
-  else if (even_) return dispatch_counted<true, true, 3>(layout, packs, consume);
-  else return dispatch_counted<true, false, 3>(layout, packs, consume);
+  if constexpr (!measured) {
+    dispatch_counted<false, Alike::no, 0>(layout, packs, consume);
+  } else {
+    const auto with = [&]<int changes>() __attribute__((always_inline)) {
+      if (alike_ == Alike::no) dispatch_counted<true, Alike::no, changes>(layout, packs, consume);
+      else if (alike_ == Alike::even) dispatch_counted<true, Alike::even, changes>(layout, packs, consume);
+      else dispatch_counted<true, Alike::pairs, changes>(layout, packs, consume);
+    };
+    changes_.size() == 1 ? with.template operator()<1>() : with.template operator()<3>();
+  }
 }
 
 template <class Consume>
