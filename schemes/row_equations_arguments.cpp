@@ -20,9 +20,9 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
     return t.source == Source::increment && t.shift != 0;
   });
   arguments_->set_read(-outputs_[0].lowest, outputs_[0].highest);
-  // Rows of 415 sites and less stay in the first level of the cache: two loops after each other then take a sixth less
+  // Rows of 640 sites and less stay in the first level of the cache: two loops after each other then take a sixth less
   // than one that has more in hand than there are registers for.
-  constexpr int packs_in_cache = 52;
+  constexpr int packs_in_cache = 80;
   if (layout_.packs() > packs_in_cache) build_division(mixture);
 }
 

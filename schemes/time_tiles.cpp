@@ -8,7 +8,7 @@ namespace delf {
 namespace {
 
 /// y and v of a block, and of what lies between it and its last level, fit into half of a second-level cache.
-constexpr int block_packs = 512;
+constexpr int block_packs = 1024;
 /// What halos repeat lies so many packs from the ends of arcs: arcs overlap by a few sites at most.
 constexpr int deepest_overlap = 4;
 /// Rows of half a megabyte each.

@@ -110,8 +110,8 @@ TEST_CASE("where a step in one loop is given up for large fields, its rows are t
   const SineGordon theory{1.2};
   for (const double off : {0.0, 1e6 * 6.283185307179586}) {
     CAPTURE(off);
-    const Run near = run_of(triangle, theory, 600, 0.25, 1.0, off),
-              asked = run_of(triangle, AlwaysAsked{theory}, 600, 0.25, 1.0, off);
+    const Run near = run_of(triangle, theory, 900, 0.25, 1.0, off),
+              asked = run_of(triangle, AlwaysAsked{theory}, 900, 0.25, 1.0, off);
     REQUIRE(near.rows.size() == asked.rows.size());
     double worst = 0;
     for (std::size_t r = 0; r < near.rows.size(); ++r)
