@@ -136,8 +136,9 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     else return {};
   }
   RowChange divide_straight(const DivisionRows& given, const RowIncrement& rows) const override {
-    if constexpr (divided) return straight_division_loop<0, 1>(PartOfPair<Pack>{stencil_}, given, rows);
-    else return {};
+    if constexpr (!divided) return {};
+    else if (given.arguments.near) return straight_division_loop<0, 1>(PartOfPair<NearPack>{stencil_}, given, rows);
+    else return straight_division_loop<0, 1>(PartOfPair<Pack>{stencil_}, given, rows);
   }
 
  private:

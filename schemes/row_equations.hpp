@@ -226,7 +226,7 @@ class RowEquations {
     return output(o, o.newest - (in_place_ && o.rows() > 1 ? 1 : 0), c);
   }
   RowChange divide(const ArgumentRow&, double* output, bool along_straight_lines);
-  RowChange divide_straight();
+  RowChange divide_straight(double largest_straight);
   RowChange stream(At, const std::function<void(PackRange)>& find);
   inline void evaluate_at(const ArgumentRow&);
   inline RowChange advance_at(const ArgumentRow&);

@@ -82,14 +82,15 @@ void RowEquations::build_straight_lines() {
 }
 
 RowChange RowEquations::advance_straight(double largest) {
-  if (straight_) return divide_straight();
-  largest_read_ = 3 * with_turn(largest);  // |y_n + v_n| = |2y_n − y_{n−1}|
+  const double largest_straight = 3 * with_turn(largest);  // |y_n + v_n| = |2y_n − y_{n−1}|
+  if (straight_) return divide_straight(largest_straight);
+  largest_read_ = largest_straight;
   const RowChange change = stream(At::straight_line, {});
   largest_read_ = std::numeric_limits<double>::infinity();
   return change;
 }
 
-RowChange RowEquations::divide_straight() {
+RowChange RowEquations::divide_straight(double largest_straight) {
   const RowIncrement& rows = increment(0);
   ArgumentRow row{.layout = &layout_,
                   .unknown = nullptr,
@@ -100,7 +101,8 @@ RowChange RowEquations::divide_straight() {
                   .time_step = time_step_,
                   .space_step = space_step_,
                   .read_before = -outputs_[0].lowest,
-                  .read_after = outputs_[0].highest};
+                  .read_after = outputs_[0].highest,
+                  .near = largest_straight <= outputs_[0].kernel->near_below()};
   return divide(row, newest_output(), true);
 }
 

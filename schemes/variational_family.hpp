@@ -185,8 +185,9 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     else return {};
   }
   RowChange divide_straight(const DivisionRows& given, const RowIncrement& rows) const override {
-    if constexpr (d == 1 && stride == 1) return straight_division_loop<2, 2>(slope<Pack>(given.arguments), given, rows);
-    else return {};
+    if constexpr (d != 1 || stride != 1) return {};
+    else if (given.arguments.near) return straight_division_loop<2, 2>(slope<NearPack>(given.arguments), given, rows);
+    else return straight_division_loop<2, 2>(slope<Pack>(given.arguments), given, rows);
   }
 
   std::span<const int> explicit_neighbours() const override {
