@@ -93,6 +93,9 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
                                 "contracts; else the root is\n"
                                 "             followed from a small h by full Newton steps; else exit 3\n"
                               : "step         one solve, no iteration\n";
+  if (stepper.steps_at_once() > 1)
+    out += fmt::format("             between records {} at once, block by block: rows outgrow the cache\n",
+                       stepper.steps_at_once());
   out += fmt::format("matrix       {}{}\n", stepper.matrix_free() ? "none: " : "", stepper.solver_name());
   const Site bulk{0, lattice.sites() / 2 / 2 * 2};
   if (system.placement() == Placement::brick_wall) {

@@ -42,8 +42,8 @@ struct RowStepper::Impl {
 
   std::int64_t n = -1;         ///< newest row
   double largest[2] = {0, 0};  ///< |y| of the newest two rows
-  double largest_ever = 0;     ///< |y| of all rows since the start; of explicit steps √ of:
-  double squares_ever = 0;     ///< Σy², the largest
+  double largest_ever = 0;     ///< |y| of all rows since the start, where steps find it; others in one loop find
+  double squares_ever = 0;     ///< Σy² of each row: the largest since the start
   int iterations = 0;
   int rows_known = 0;  ///< newest rows that have not been written over
   std::vector<double> squares_of_parts;
@@ -190,7 +190,7 @@ struct RowStepper::Impl {
     return fine;
   }
 
-  /// Explicit steps in place, several at once where rows outgrow the cache.
+  /// Steps that no one looks at: explicit ones several at once where rows outgrow the cache.
   void steps(int count) {
     while (count > 0) {
       const std::int64_t room = kept_row >= 0 && n > kept_row ? kept_row + steps_between - n : 0;
@@ -201,13 +201,15 @@ struct RowStepper::Impl {
       count -= std::max(levels, 1);
     }
   }
+  /// If one of them fails, those before it are taken again, each beside the row before.
   void take_levels(int levels) {
     const FlushDenormals guard;
     iterations = 0;
     double squares[TimeTiles::most_levels];
     const std::span<double> of_levels(squares, static_cast<std::size_t>(levels));
     equations.begin(n);
-    const bool fine = equations.loop_levels(of_levels, squares_ever, team ? &*team : nullptr);
+    const bool fine = equations.loop_levels(of_levels, squares_ever, team ? &*team : nullptr) &&
+                      !squares_overflowed(std::ranges::max(of_levels));
     n += levels - 1;
     rows_known = 0;
     if (fine) {
@@ -310,7 +312,7 @@ struct RowStepper::Impl {
     return equations.goes_straight() ? equations.advance_straight(largest_ever) : advance_streamed(1);
   }
   /// From a seed of this order.
-  RowChange advance_first(int order) { 
+  RowChange advance_first(int order) {
     return mixture ? equations.advance_extrapolated(order, largest_ever) : advance_seeded(order);
   }
   [[gnu::noinline]] RowChange advance_seeded(int order) {
@@ -386,13 +388,17 @@ struct RowStepper::Impl {
   }
 
   [[noreturn, gnu::noinline]] void report_not_finite() {
-    // Implicit steps spread an overflow over the whole row: it is where the field was largest.
+    // Implicit steps spread an overflow over the whole row: it is where the field was largest. Of long rows Σy² overflows
+    // before any value does: it is where the field is largest.
     const std::vector<double> row = rows.row(n + 1), before = rows.row(n);
     const auto fine = [](double x) { return !overflowed(std::abs(x)); };
-    const bool everywhere = std::ranges::none_of(row, fine);
-    const auto bad = everywhere
-                         ? std::ranges::max_element(before, {}, [](double x) { return std::abs(x); }) - before.begin()
-                         : std::ranges::find_if_not(row, fine) - row.begin();
+    const auto largest_of = [](const std::vector<double>& values) {
+      return std::ranges::max_element(values, {}, [](double x) { return std::abs(x); }) - values.begin();
+    };
+    const bool everywhere = std::ranges::none_of(row, fine), nowhere = std::ranges::all_of(row, fine);
+    const auto bad = everywhere ? largest_of(before)
+                     : nowhere  ? largest_of(row)
+                                : std::ranges::find_if_not(row, fine) - row.begin();
     throw NotFinite(
         fmt::format("step {}, t = {:.6g}, site {}: the field is no longer finite: the scheme is unstable here; "
                     "reduce lattice.courant or lattice.time_step, or choose an implicit stencil",

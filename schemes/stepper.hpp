@@ -37,8 +37,8 @@ class Stepper {
     method_->step(looked_at);
   }
 
-  /// The same as so many step(false). Explicit steps through rows that outgrow the cache are taken steps_at_once() together,
-  /// which then cost what they do in the cache.
+  /// The same as so many step(false), with the same bits. Explicit steps through rows that outgrow the cache are taken
+  /// steps_at_once() together, and then cost what they do in the cache. If one of them throws, newest() is the row before.
   void steps(int count) {
     require_start();
     method_->steps(count);
