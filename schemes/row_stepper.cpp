@@ -16,6 +16,7 @@
 #include "schemes/row_seed.hpp"
 #include "schemes/row_team.hpp"
 #include "schemes/time_tiles.hpp"
+#include "schemes/wrapped_differences.hpp"
 
 namespace delf {
 
@@ -98,7 +99,7 @@ struct RowStepper::Impl {
     } else {
       if (looked_at || !may_step_in_place() || !step_in_place(value)) value = step_beside();
     }
-    if (options.fibre == Fibre::circle) check_wrapped_differences();
+    if (options.fibre == Fibre::circle) check_wrapped_differences(system, rows, n + 1);
     row_is_found(value);
     ++n;
   }
@@ -403,36 +404,6 @@ struct RowStepper::Impl {
         fmt::format("step {}, t = {:.6g}, site {}: the field is no longer finite: the scheme is unstable here; "
                     "reduce lattice.courant or lattice.time_step, or choose an implicit stencil",
                     n + 1, static_cast<double>(n + 1) * system.time_step(), bad / d));
-  }
-
-  /// S¹: wrapping says which way round only while differences on a stencil stay well below π. Looks at the stencils
-  /// whose top row is the new one, from their first vertex to each other.
-  [[gnu::noinline]] void check_wrapped_differences() {
-    for (const auto& family : system.families()) {
-      const auto& vertices = family->pattern().vertices;
-      const int top = std::ranges::max(vertices, {}, &Site::time).time;
-      for (const Site& vertex : vertices) {
-        const std::int64_t from = n + 1 - top + vertices[0].time, to = n + 1 - top + vertex.time;
-        if (std::min(from, to) < 0) continue;
-        for (int a = 0; a < d; ++a)
-          check_wrapped_difference(rows.y(from, a), rows.y(to, a),
-                                   static_cast<std::ptrdiff_t>(vertex.space - vertices[0].space) * lanes);
-      }
-    }
-  }
-  void check_wrapped_difference(const double* from, const double* to, std::ptrdiff_t shift) {
-    Pack most(0.0);
-    for (int p = 0; p < layout().packs(); ++p) {
-      const auto at = layout().at(p);
-      most = max_or_nan(abs(Pack::load(to + at + shift) - Pack::load(from + at)), most);
-    }
-    if (max_or_nan(most) <= largest_wrapped_difference) return;
-    int site = 0;
-    while (std::abs(to[layout().slot(site) + shift] - from[layout().slot(site)]) <= largest_wrapped_difference) ++site;
-    throw NotFinite(fmt::format(
-        "step {}, t = {:.6g}, site {}: on the fibre S1 a wrapped difference within a stencil is above 0.9 pi, where it "
-        "cannot be told from its complement; refine the lattice, reduce lattice.courant, or use theory.fibre = R",
-        n + 1, static_cast<double>(n + 1) * system.time_step(), site));
   }
 
   void require_rows(int count) const {
