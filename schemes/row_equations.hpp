@@ -44,7 +44,7 @@ class RowEquations {
   /// A step is one loop: no outputs, no matrix.
   bool is_one_loop() const { return one_loop_ != nullptr; }
   /// Makes ready for the loop in so many parts of the row; `in_place`: the new row and its increment are written over the
-  /// old ones; Σy² is that of the row that it goes from.
+  /// old ones. Σy² of the row that it goes from is no more than that given.
   void begin_loop(int parts, bool in_place, double sum_of_squares);
   /// Rows have been set anew.
   void forget_rows() { loop_row_ = residual_row_ = slopes_row_ = -1; }
