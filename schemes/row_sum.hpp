@@ -119,10 +119,10 @@ class RowSum {
     return !plain_.empty() && !other_ &&
            std::ranges::all_of(plain_, [&](const Term& t) { return there(t.row, 0) && there(t.row, -1); });
   }
-  /// What coefficients and terms allow a measured pass to add before it multiplies.
+  /// What coefficients and terms allow a pass to add before it multiplies.
   enum class Alike { no, even, pairs };
-  /// Of sums that take turns, fewer terms are compiled.
-  static constexpr int most_plain = 8, most_in_turn = 3, general = -1;
+  /// Of sums that take turns, fewer terms are compiled; and fewer in steps where terms are alike.
+  static constexpr int most_plain = 8, most_in_turn = 3, most_alike = 4, general = -1;
   /// Compiled passes by number: without differences, with them, and in turn, each by the number of plain terms.
   static constexpr int with_differences = most_plain + 1, in_turn = 2 * with_differences, forms = in_turn + most_in_turn + 1;
   /// Found once, not by every pass: a dozen of these questions take as long as a pack.
@@ -131,6 +131,7 @@ class RowSum {
     form_ = general;
     const bool even = is_even() && (!other_ || other_->is_even());
     alike_ = !even ? Alike::no : are_pairs() ? Alike::pairs : Alike::even;
+    adds_first_ = even && !differences_.empty() && plain <= most_alike;
     if (!are_around_site()) return;
     if (other_) {
       if (plain <= most_in_turn && are_like(*other_)) form_ = in_turn + plain;
@@ -169,6 +170,7 @@ class RowSum {
   const RowSum* other_ = nullptr;
   int form_ = 0;
   Alike alike_ = Alike::no;
+  bool adds_first_ = false;  ///< in a step too
 };
 
 /// None or two differences: those to the next pack and to the one before it. Either is then the other's of the pack
@@ -326,7 +328,8 @@ inline void RowSum::dispatch_counted(const RowLayout& layout, PackRange packs, C
       // Pairs are of one row or two, beside differences.
       constexpr bool may_be_pairs = differences > 0 && !takes_turns && (plain == 2 || plain == 4);
       constexpr Alike here = alike == Alike::pairs && !may_be_pairs ? Alike::even : alike;
-      if constexpr (measured) measured_pass<here, takes_turns, differences, plain, changes>(layout, packs, consume);
+      if constexpr (!measured && alike != Alike::no && (differences == 0 || plain > most_alike)) return false;
+      else if constexpr (measured) measured_pass<here, takes_turns, differences, plain, changes>(layout, packs, consume);
       else counted_pass<false, here, takes_turns, differences, plain, changes>(layout, packs, consume);
       return true;
     };
@@ -339,7 +342,9 @@ inline void RowSum::dispatch(const RowLayout& layout, PackRange packs, Consume& 
   // Changes are the unknown row's, which steps do not ask for, and residuals do.
   if (form_ == general || measured == changes_.empty()) return general_pass<measured>(layout, packs, consume);
   if constexpr (!measured) {
-    dispatch_counted<false, Alike::no, 0>(layout, packs, consume);
+    if (!adds_first_) dispatch_counted<false, Alike::no, 0>(layout, packs, consume);
+    else if (alike_ == Alike::even) dispatch_counted<false, Alike::even, 0>(layout, packs, consume);
+    else dispatch_counted<false, Alike::pairs, 0>(layout, packs, consume);
   } else {
     const auto with = [&]<int changes>() __attribute__((always_inline)) {
       if (alike_ == Alike::no) dispatch_counted<true, Alike::no, changes>(layout, packs, consume);
