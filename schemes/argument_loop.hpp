@@ -3,33 +3,54 @@
 #include <algorithm>
 #include <utility>
 
+#include "schemes/extrapolation.hpp"
 #include "schemes/row_kernel.hpp"
 #include "schemes/value_jet.hpp"
 
 namespace delf {
 
-/// Σ_j coefficients[j] past[j] over the newest `count` rows. One member each: arrays would go through memory.
+/// The newest `count` rows, or none. One member each: arrays would go through memory.
 template <int count>
 class PastRows {
  public:
-  explicit PastRows(const ArgumentRow& given)
-      : newer_(given), row_(given.past[count - 1]), coefficient_(given.coefficients[count - 1]) {}
-  [[gnu::always_inline]] Pack operator()(std::ptrdiff_t at) const {
-    const Pack own = Pack::load(row_ + at);
-    if constexpr (count == 1) return coefficient_ * own;
-    else return newer_(at) + coefficient_ * own;
+  explicit PastRows(const ArgumentRow& given) : newer_(given), row_(given.past[count - 1]) {}
+  /// That so many rows before the unknown one, 1 … count.
+  template <int back>
+  [[gnu::always_inline]] Pack row(std::ptrdiff_t at) const {
+    if constexpr (back == count) return Pack::load(row_ + at);
+    else return newer_.template row<back>(at);
   }
 
  private:
   PastRows<count - 1> newer_;
   const double* row_;
-  double coefficient_;
 };
 template <>
 class PastRows<0> {
  public:
   explicit PastRows(const ArgumentRow&) {}
 };
+
+/// u_{n+1} = Σ_{j=1}^{count} (−1)^{j+1} C(count, j) u_{n+1−j}. Rows j and count − j have the same binomial: they are added
+/// before they are multiplied, and the oldest row is not.
+template <int count>
+[[gnu::always_inline]] inline Pack extrapolated(const PastRows<count>& rows, std::ptrdiff_t at) {
+  const Pack oldest = rows.template row<count>(at);
+  Pack sum = count % 2 == 0 ? -oldest : oldest;
+  [&]<int... before>(std::integer_sequence<int, before...>) __attribute__((always_inline)) {
+    const auto add = [&]<int j>() __attribute__((always_inline)) {
+      Pack term = rows.template row<j>(at);
+      if constexpr (2 * j < count) {
+        const Pack other = rows.template row<count - j>(at);
+        term = count % 2 == 0 ? term + other : term - other;
+      }
+      sum += extrapolation_weight(count, j) * term;
+    };
+    (add.template operator()<count / 2 - before>(), ...);
+  }
+  (std::make_integer_sequence<int, count / 2>{});
+  return sum;
+}
 
 /// The unknown part u of arguments, pack by pack: as it stands, or extrapolated from so many rows, and put there.
 template <int past_rows>
@@ -40,7 +61,7 @@ class UnknownArgument {
     if constexpr (past_rows == 0) {
       return Pack::load(unknown_ + at);
     } else {
-      const Pack u = past_(at);
+      const Pack u = extrapolated(past_, at);
       u.store(unknown_ + at);
       return u;
     }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "schemes/extrapolation.hpp"
+#include "schemes/argument_loop.hpp"
 #include "schemes/lattice_system.hpp"
 
 namespace delf {
@@ -53,22 +53,15 @@ ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int 
   row_.layout = &layout, row_.known_weight = mixture.known_weight;
   for (int twice = 0; twice < 2; ++twice)
     for (int slot = ring_.rows() - 1; slot >= 0; --slot) all_.push_back(ring_.row(slot));
-  for (int order = 0; order <= most_order; ++order) {
-    std::vector<double> of_rows;
-    for (int j = 1; j <= order + 1; ++j) of_rows.push_back(extrapolation_weight(order + 1, j));
-    coefficients_.push_back(std::move(of_rows));
-    growth_.push_back(std::exp2(order + 1) - 1);
-  }
+  for (int order = 0; order <= most_order; ++order) growth_.push_back(std::exp2(order + 1) - 1);
   begin(0);
 }
 
-void ArgumentRows::put_extrapolated(const std::vector<double>& coefficients) {
-  for (int v = 0; v < layout_->packs(); ++v) {
-    Pack u(0.0);
-    for (std::size_t j = 0; j < coefficients.size(); ++j)
-      u += coefficients[j] * Pack::load(row_.past[j] + layout_->at(v));
-    u.store(row_.unknown + layout_->at(v));
-  }
+void ArgumentRows::put_extrapolated(int past_rows) {
+  with_past_rows<highest_order + 1>(past_rows, [&]<int rows>() {
+    const UnknownArgument<rows> found(row_);
+    for (int v = 0; v < layout_->packs(); ++v) found(layout_->at(v));
+  });
 }
 
 double ArgumentRows::find(const double* y, const PackRange& packs) {

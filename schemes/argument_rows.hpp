@@ -40,6 +40,7 @@ struct Mixture {
 /// write, to read at several sites and to compare the new row with.
 class ArgumentRows {
  public:
+  static constexpr int highest_order = 11;  ///< of a polynomial; `most_order` is no more
   ArgumentRows(const RowLayout&, const Mixture&, int most_order);
 
   const Mixture& mixture() const { return mixture_; }
@@ -70,26 +71,21 @@ class ArgumentRows {
   }
   /// No |y| of the rows that argument() is made of is above this.
   void set_largest(double y) { row_.near = y <= near_below_; }
-  /// Lets u_{n+1} of argument() be extrapolated by a polynomial of this order, or the highest that there are rows for:
-  ///
-  ///     u_{n+1} ≈ Σ_{j=0}^{order} (−1)^j C(order + 1, j + 1) u_{n−j}
-  ///
-  /// No |y| of these rows is above `largest`. From more rows than loops take, which only tolerances near rounding ask
-  /// for, this is done at once; and where arguments may be too large to be near.
+  /// Lets u_{n+1} of argument() be extrapolated by a polynomial of this order, or the highest that there are rows for, from
+  /// `order` + 1 rows. No |y| of these is above `largest`. From more rows than loops take, which only tolerances near
+  /// rounding ask for, this is done at once; and where arguments may be too large to be near.
   void extrapolate(int order, double largest) {
     order = std::clamp(order, 1, static_cast<int>(std::min<std::int64_t>(n_, most_order_)));
-    const std::vector<double>& coefficients = coefficients_[static_cast<std::size_t>(order)];
     set_largest(largest * growth_[static_cast<std::size_t>(order)]);
-    if (!row_.near || order + 1 > ArgumentRow::most_past_rows) return put_extrapolated(coefficients);
+    if (!row_.near || order + 1 > ArgumentRow::most_past_rows) return put_extrapolated(order + 1);
     row_.past_rows = order + 1;
-    row_.coefficients = coefficients.data();
   }
   /// u_{n+1} of the row itself, whose halos are filled; returns the largest change.
   double find(const double* y, const PackRange&);
   std::size_t bytes() const { return ring_.bytes(); }
 
  private:
-  void put_extrapolated(const std::vector<double>& coefficients);
+  void put_extrapolated(int past_rows);
 
   const RowLayout* layout_;
   Mixture mixture_;
@@ -100,8 +96,7 @@ class ArgumentRows {
   std::int64_t n_ = 0;
   int most_order_;
   ArgumentRow row_{};
-  std::vector<std::vector<double>> coefficients_;  ///< by order
-  std::vector<double> growth_;                     ///< Σ |coefficients|
+  std::vector<double> growth_;  ///< Σ |coefficients|, by order
   double near_below_ = -1;
 };
 

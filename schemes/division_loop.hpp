@@ -90,18 +90,18 @@ class StraightDivision {
 /// are registers enough for that in some of these loops only.
 template <int old, int parts, class Output, class Division>
 [[gnu::flatten]] void division_loop(const Output& given_output, const DivisionRows& given, Division& given_division) {
+  static_assert(old == 0 || old == 2);
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
   const Output output = given_output;
   Division division = given_division;
   const double *const y = given.y, *const old_row = given.old_output;
   double* const out = given.output;
-  const double before = given.before, after = given.after, of_output = given.of_output, of_old = given.of_old[0],
-               of_old_before = given.of_old[1];
+  const double of_neighbours = given.of_neighbours, of_outputs = given.of_outputs;
   const Pack constant(given.constant);
   const RowLayout& layout = *given.arguments.layout;
   const std::ptrdiff_t begin = layout.at(0);
   Pack here = Pack::load(y + begin), last = here - Pack::load(y + begin - lanes);
-  Pack last_old = old > 1 ? Pack::load(old_row + begin - lanes) : Pack(0.0);
+  Pack last_old = old == 2 ? Pack::load(old_row + begin - lanes) : Pack(0.0);
   struct Found {
     Pack u;
     decltype(output.argument(Pack(), Pack())) argument;
@@ -117,19 +117,18 @@ template <int old, int parts, class Output, class Division>
     Evaluated e;
     e.u = found.u;
     e.E = output(found.argument, at);
-    e.E_old = old > 0 ? Pack::load(old_row + at) : Pack(0.0);  // before it is written over
+    e.E_old = old == 2 ? Pack::load(old_row + at) : Pack(0.0);  // before it is written over
     e.E.store(out + at);
     return e;
   };
   const auto make = [&](std::ptrdiff_t at, const Evaluated& e) __attribute__((always_inline)) {
     const Pack next_value = Pack::load(y + at + lanes), next = next_value - here;
-    Pack w = constant + after * next;
-    w -= before * last;
+    const Pack w = constant + of_neighbours * (next - last);
     here = next_value, last = next;
-    if constexpr (old > 0) w += of_old * e.E_old;
-    if constexpr (old > 1) w += of_old_before * last_old;
+    Pack outputs = e.E;
+    if constexpr (old == 2) outputs = (e.E_old + last_old) + outputs;
     last_old = e.E_old;
-    division(at, w + of_output * e.E, e.u);
+    division(at, w + of_outputs * outputs, e.u);
   };
   const std::ptrdiff_t end = layout.at(layout.packs());
   Evaluated ready = evaluate(begin, find(begin));

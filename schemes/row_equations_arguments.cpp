@@ -2,6 +2,7 @@
 #include "schemes/row_equations.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 #include "schemes/division_loop.hpp"
@@ -31,24 +32,22 @@ void RowEquations::build_division(const Mixture& mixture) {
   const int newest = outputs_[0].newest;
   const double scale = -solver_[0]->right_side_scale(0);
   DivisionRows division{};
-  int old = 0;
-  const auto place_of = [&](const Term& t) -> double* {
-    if (t.source == Source::difference && t.shift == 1) return &division.after;
-    if (t.source == Source::difference && t.shift == -1) return &division.before;
-    if (t.source != Source::output) return nullptr;
-    if (t.age == newest && t.shift == 0) return &division.of_output;
-    if (t.age != newest - 1 || t.shift > 0 || t.shift < -1) return nullptr;
-    old = std::max(old, 1 - t.shift);
-    return division.of_old - t.shift;
-  };
+  int differences = 0, old = 0;
+  bool alike = true;
   for (const Term& t : equations_.bulk[0].terms) {
     if (t.source == Source::unknown) continue;
-    double* const place = place_of(t);
-    if (!place) return;
-    *place += scale * t.coefficient;
+    const bool beside = t.source == Source::difference && std::abs(t.shift) == 1;
+    const bool is_newest = t.source == Source::output && t.age == newest && t.shift == 0;
+    const bool is_old = t.source == Source::output && t.age == newest - 1 && (t.shift == 0 || t.shift == -1);
+    if (!beside && !is_newest && !is_old) return;
+    (beside ? differences : old) += !is_newest;
+    double& place = beside ? division.of_neighbours : division.of_outputs;
+    const double coefficient = scale * t.coefficient;
+    alike = alike && (place == 0 || place == coefficient);
+    place = coefficient;
   }
   division.constant = scale * equations_.bulk[0].constant;
-  if (outputs_[0].kernel->divides(old, mixture.parts)) division_ = division;
+  if (alike && differences == 2 && outputs_[0].kernel->divides(old, mixture.parts)) division_ = division;
 }
 
 void RowEquations::find_arguments() {

@@ -48,9 +48,7 @@ struct Argument {
 /// A row of arguments m = u + known_weight · known, or of pairs (u, known): what is known of them, and u, which stands
 /// in `unknown`, or is extrapolated to there from the rows before it,
 ///
-///     u = Σ_j coefficients[j] past[j],      j = 0 … past_rows − 1,
-///
-/// the newest first.
+///     u_{n+1} = Σ_{j=1}^{past_rows} (−1)^{j+1} C(past_rows, j) u_{n+1−j},      u_{n+1−j} = past[j − 1].
 struct ArgumentRow {
   static constexpr int most_past_rows = 8;  ///< a loop for each: more would take compilers long
   const RowLayout* layout;
@@ -61,7 +59,6 @@ struct ArgumentRow {
   double t = 0;                       ///< of the anchors' row
   double time_step = 0, space_step = 0;
   int past_rows = 0;  ///< 2 … most_past_rows; none: u stands
-  const double* coefficients = nullptr;
   const double* const* past = nullptr;
   int read_before = 0, read_after = 0;  ///< so many packs across the ends of arcs: halos of outputs, filled
   bool near = false;  ///< nor is any of what arguments are mixtures of; else u stands
@@ -69,16 +66,15 @@ struct ArgumentRow {
 
 /// A step where the matrix is one number: at a row of arguments the output E' is evaluated, and with it
 ///
-///     w(i) = constant + after (y(i + 1) − y(i)) + before (y(i − 1) − y(i))
-///            + of_output E'(i) + of_old[0] E(i) + of_old[1] E(i − 1)
+///     w(i) = constant + of_neighbours (y(i + 1) − 2y(i) + y(i − 1)) + of_outputs (E'(i) + E(i) + E(i − 1))
 ///
-/// from y and the output E of the row before, halos filled.
+/// from y and the output E of the row before, halos filled. Of `old` terms of E none, or both.
 struct DivisionRows {
   ArgumentRow arguments;
   const double* y;
   const double* old_output;
   double* output;
-  double constant = 0, before = 0, after = 0, of_output = 0, of_old[2] = {0, 0};
+  double constant = 0, of_neighbours = 0, of_outputs = 0;
   double known_increment = 0;  ///< of straight lines: what is known is less by so much of the increment
 };
 
@@ -123,7 +119,7 @@ class RowKernel {
   virtual bool evaluates_arguments() const { return false; }
   virtual void evaluate_arguments(const ArgumentRow&, double* /*out*/, const PackRange&) const {}
 
-  /// Whether there is a loop for DivisionRows with so many of_old, whose u is a mixture of so many parts; and that
+  /// Whether there is a loop for DivisionRows with so many terms of E, whose u is a mixture of so many parts; and that
   /// loop, which makes the new row.
   virtual bool divides(int /*old*/, int /*parts*/) const { return false; }
   virtual RowChange divide(const DivisionRows&, const RowIncrement&) const { return {}; }

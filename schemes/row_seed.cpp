@@ -14,7 +14,7 @@ namespace {
 
 // Looks are rare where steps in place, which keep no past rows, have to pause for them.
 constexpr int steps_between_looks = 128, where_rows_are_long = 256;
-constexpr int highest_order = 11;
+constexpr int highest_order = ArgumentRows::highest_order;
 // A seed of order p misses (1 − e^{−iωh})^{p+1} of a wave e^{iωt}. What an accepted iteration leaves of that is in
 // phase with the wave's velocity, and damps it or feeds it step after step. Over 5000 collisions (N = 255, h = k/8,
 // tolerance 6e-8) the energy 161.9 rose by 0.6, 0.0032 and 0.0010 with p = 2, 3 and 4; with 4 that is as much as the

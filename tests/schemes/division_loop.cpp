@@ -2,6 +2,7 @@
 #include "schemes/division_loop.hpp"
 
 #include "schemes/argument_rows.hpp"
+#include "schemes/extrapolation.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 constexpr double h = 0.2, k = 0.3;
 constexpr int N = 61, halo = 2;
 
-/// A step of division of a scheme, from random rows with random coefficients.
+/// A step of division of a scheme, from random rows with random coefficients. What is extrapolated is no larger than 1.
 struct RandomDivision {
   Lattice lattice = Lattice::circle(N, N * k);
   Evolution evolution;
@@ -22,7 +23,6 @@ struct RandomDivision {
   int parts, old;
   RowBuffer y{layout, 1}, v{layout, 1}, past{layout, most_past_rows_divided}, argument{layout, 1}, known{layout, 1},
       old_output{layout, 1}, output{layout, 1}, y_new{layout, 1}, v_new{layout, 1};
-  std::vector<double> seed;
   std::vector<const double*> past_rows_of_seed;
   DivisionRows rows{};
   RowIncrement increment{};
@@ -34,11 +34,9 @@ struct RandomDivision {
         old(scheme == "triangle" ? 2 : 0) {
     Random random(7);
     for (RowBuffer* row : {&y, &v, &past, &argument, &known, &old_output})
-      for (int r = 0; r < row->rows(); ++r) layout.scatter(random_rows(random, 1, N, 1)[0], row->row(r));
-    for (int j = 0; j < past_rows; ++j) {
-      seed.push_back(random(-1, 1));
-      past_rows_of_seed.push_back(past.row((j + 1) % past.rows()));
-    }
+      for (int r = 0; r < row->rows(); ++r)
+        layout.scatter(random_rows(random, 1, N, row == &past ? std::exp2(-past_rows) : 1)[0], row->row(r));
+    for (int j = 0; j < past_rows; ++j) past_rows_of_seed.push_back(past.row((j + 1) % past.rows()));
     rows = {.arguments = {.layout = &layout,
                           .unknown = argument.row(0),
                           .known = known.row(0),
@@ -47,7 +45,6 @@ struct RandomDivision {
                           .time_step = h,
                           .space_step = k,
                           .past_rows = past_rows,
-                          .coefficients = seed.data(),
                           .past = past_rows_of_seed.data(),
                           .read_before = halo,
                           .read_after = halo},
@@ -55,10 +52,8 @@ struct RandomDivision {
             .old_output = old_output.row(0),
             .output = output.row(0),
             .constant = random(-1, 1),
-            .before = random(-1, 1),
-            .after = random(-1, 1),
-            .of_output = random(-1, 1),
-            .of_old = {random(-1, 1), random(-1, 1)}};
+            .of_neighbours = random(-1, 1),
+            .of_outputs = random(-1, 1)};
     increment = {v.row(0), y.row(0), v_new.row(0), y_new.row(0), {}};
     increment.look.argument = argument.row(0);
     increment.look.parts = parts;
@@ -67,9 +62,10 @@ struct RandomDivision {
 
   /// What is extrapolated of the argument at a slot.
   double extrapolated(std::ptrdiff_t at) {
-    if (seed.empty()) return argument.row(0)[at];
+    const int count = static_cast<int>(past_rows_of_seed.size());
+    if (count == 0) return argument.row(0)[at];
     double u = 0;
-    for (std::size_t j = 0; j < seed.size(); ++j) u += seed[j] * past_rows_of_seed[j][at];
+    for (int j = 1; j <= count; ++j) u += extrapolation_weight(count, j) * past_rows_of_seed[j - 1][at];
     return u;
   }
 };
@@ -99,9 +95,9 @@ TEST_CASE("a division's loop evaluates, sums, makes the new row and looks at it 
       const double* const old_row = given.old_output.row(0);
       for (auto at = begin; at < end; ++at) {
         const DivisionRows& r = given.rows;
-        double w = r.constant + r.after * (y[at + lanes] - y[at]) + r.before * (y[at - lanes] - y[at]) +
-                   r.of_output * E.row(0)[at];
-        if (given.old > 0) w += r.of_old[0] * old_row[at] + r.of_old[1] * old_row[at - lanes];
+        double w = r.constant + r.of_neighbours * (y[at + lanes] - 2 * y[at] + y[at - lanes]) +
+                   r.of_outputs * E.row(0)[at];
+        if (given.old > 0) w += r.of_outputs * (old_row[at] + old_row[at - lanes]);
         hold(given.output.row(0)[at], E.row(0)[at]);
         hold(given.v_new.row(0)[at], given.v.row(0)[at] + w);
         hold(given.y_new.row(0)[at], y[at] + given.v.row(0)[at] + w);
