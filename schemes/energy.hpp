@@ -134,9 +134,9 @@ template <Density D>
   return {rows.space_step * sum(energy), rows.space_step * sum(momentum)};
 }
 
-/// The same for a density with a wave form. With the means m = y_j + ½v of the two rows,
+/// The same for a density with a wave form. With the sums s = y_j + y_{j+1} = 2y_j + v of the two rows,
 ///
-///     φ = (m_i + m_{i+1})/2        φ_t = (v_i + v_{i+1})/(2h)        φ_x = (m_{i+1} − m_i)/k
+///     φ = (s_i + s_{i+1})/4        φ_t = (v_i + v_{i+1})/(2h)        φ_x = (s_{i+1} − s_i)/(2k)
 ///
 ///   H = k Σ (½ inertia φ_t² + ½ tension φ_x² − ℓ(φ, 0, 0))           P = −k Σ inertia φ_t φ_x
 ///
@@ -153,30 +153,30 @@ template <class Value, Density D>
   const Pack t(given_rows.t + 0.5 * given_rows.time_step);
   const double x_offset = 0.5 * given_rows.space_step;
 
-  struct Means {
-    Pack v, mean;
+  struct AtSite {
+    Pack v, both;  ///< both: s
   };
   struct Sums {
     Pack tt = 0.0, xx = 0.0, tx = 0.0;
   };
-  std::array<Means, static_cast<std::size_t>(d)> left;
+  std::array<AtSite, static_cast<std::size_t>(d)> left;
   std::array<Sums, static_cast<std::size_t>(d)> sums;
   Pack at_rest(0.0);
   const auto load = [&](int a, std::ptrdiff_t at) __attribute__((always_inline)) {
-    const Pack v = Pack::load(rows[d + a] + at);
-    return Means{v, Pack::load(rows[a] + at) + 0.5 * v};
+    const Pack v = Pack::load(rows[d + a] + at), y = Pack::load(rows[a] + at);
+    return AtSite{v, y + (y + v)};
   };
   // φ of the next cells, which count by what `weigh` makes of them.
   using Values = std::array<Pack, static_cast<std::size_t>(d)>;
   const auto find = [&](std::ptrdiff_t at, const auto& weigh) __attribute__((always_inline)) {
     Values phi;
     for (int a = 0; a < d; ++a) {
-      const Means right = load(a, at + lanes);
-      const Pack by_t = left[a].v + right.v, by_x = right.mean - left[a].mean;
+      const AtSite right = load(a, at + lanes);
+      const Pack by_t = left[a].v + right.v, by_x = right.both - left[a].both;
       sums[a].tt += weigh(by_t) * by_t;
       sums[a].xx += weigh(by_x) * by_x;
       sums[a].tx += weigh(by_t) * by_x;
-      phi[a] = 0.5 * (left[a].mean + right.mean);
+      phi[a] = 0.25 * (left[a].both + right.both);
       left[a] = right;
     }
     return phi;
@@ -214,7 +214,7 @@ template <class Value, Density D>
     at_rest += weigh(rest(at, phi));
   }
 
-  const double per_h = 0.5 / given_rows.time_step, per_k = 1 / given_rows.space_step;
+  const double per_h = 0.5 / given_rows.time_step, per_k = 0.5 / given_rows.space_step;
   Pack energy = -at_rest, momentum(0.0);
   for (int a = 0; a < d; ++a) {
     energy += 0.5 * form.inertia[a] * per_h * per_h * sums[a].tt + 0.5 * form.tension[a] * per_k * per_k * sums[a].xx;
