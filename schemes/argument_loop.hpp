@@ -13,7 +13,7 @@ namespace delf {
 template <int count>
 class PastRows {
  public:
-  explicit PastRows(const ArgumentRow& given) : newer_(given), row_(given.past[count - 1]) {}
+  explicit PastRows(const double* const* past) : newer_(past), row_(past[count - 1]) {}
   /// That so many rows before the unknown one, 1 … count.
   template <int back>
   [[gnu::always_inline]] Pack row(std::ptrdiff_t at) const {
@@ -28,7 +28,7 @@ class PastRows {
 template <>
 class PastRows<0> {
  public:
-  explicit PastRows(const ArgumentRow&) {}
+  explicit PastRows(const double* const*) {}
 };
 
 /// u_{n+1} = Σ_{j=1}^{count} (−1)^{j+1} C(count, j) u_{n+1−j}. Rows j and count − j have the same binomial: they are added
@@ -56,7 +56,7 @@ template <int count>
 template <int past_rows>
 class UnknownArgument {
  public:
-  explicit UnknownArgument(const ArgumentRow& given) : unknown_(given.unknown), past_(given) {}
+  explicit UnknownArgument(const ArgumentRow& given) : unknown_(given.unknown), past_(given.past) {}
   [[gnu::always_inline]] Pack operator()(std::ptrdiff_t at) const {
     if constexpr (past_rows == 0) {
       return Pack::load(unknown_ + at);

@@ -58,9 +58,14 @@ ArgumentRows::ArgumentRows(const RowLayout& layout, const Mixture& mixture, int 
 }
 
 void ArgumentRows::put_extrapolated(int past_rows) {
-  with_past_rows<highest_order + 1>(past_rows, [&]<int rows>() {
-    const UnknownArgument<rows> found(row_);
-    for (int v = 0; v < layout_->packs(); ++v) found(layout_->at(v));
+  delf::put_extrapolated(*layout_, row_.past, past_rows, row_.unknown);
+}
+
+void put_extrapolated(const RowLayout& layout, const double* const* past, int past_rows, double* to) {
+  with_past_rows<ArgumentRows::highest_order + 1>(past_rows, [&]<int rows>() {
+    const PastRows<rows> read(past);
+    if constexpr (rows > 0)
+      for (int v = 0; v < layout.packs(); ++v) extrapolated(read, layout.at(v)).store(to + layout.at(v));
   });
 }
 

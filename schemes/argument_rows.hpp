@@ -36,6 +36,9 @@ struct Mixture {
   static std::optional<Mixture> of_pair(const RowKernel&);
 };
 
+/// Extrapolates a row from those before it, the newest first; not its halos.
+void put_extrapolated(const RowLayout&, const double* const* past, int past_rows, double* to);
+
 /// The newest rows u_r. A step extrapolates these instead of y: it reads as many past rows, but has no candidate for y to
 /// write, to read at several sites and to compare the new row with.
 class ArgumentRows {

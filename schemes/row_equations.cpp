@@ -85,6 +85,9 @@ void RowEquations::find_rows_at(std::int64_t place) {
   if (!arguments_) return;
   own_.known_values = rows_.y_at(y_slots_(arguments_->mixture().known_row - 1), 0);
   own_.output = newest_output();
+  const Outputs& o = outputs_[0];
+  for (int back = 1; back <= static_cast<int>(own_.past_outputs.size()); ++back)
+    own_.past_outputs[static_cast<std::size_t>(back - 1)] = o.ring.row(o.slots(back - o.newest));
 }
 
 /// The rings come round together after as many steps as their common multiple: where rows lie can be looked up then. To
@@ -93,8 +96,7 @@ void RowEquations::build_places() {
   if (is_one_loop()) return;
   int period = std::lcm(rows_.rows_held(), rows_.increments_held());
   for (const Outputs& o : outputs_) period = std::lcm(period, std::max(1, o.held));
-  constexpr int longest = 32;
-  if (!reads_unknown_row() || period > longest) return;
+  if (!reads_unknown_row() || period > longest_period) return;
   std::vector<StepRows> places;
   for (int place = 0; place < period; ++place) {
     find_rows_at(place);

@@ -79,6 +79,12 @@ class RowEquations {
   /// The same with the outputs that read row n+1, at arguments: extrapolated, or as the row makes them that was found.
   /// No |y| of all rows so far is above `largest`.
   inline RowChange advance_extrapolated(int order, double largest);
+  /// Whether there are outputs enough, of steps since the start, to extrapolate from `order` + 1 rows of them; and a step
+  /// with outputs so found: returns the largest |y|.
+  bool can_extrapolate_outputs(int order) const {
+    return order < static_cast<int>(here_->past_outputs.size()) && n_ + 1 - history_ > order;
+  }
+  double advance_from_outputs(int order);
   inline RowChange advance_again(double largest);
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
@@ -145,6 +151,7 @@ class RowEquations {
     std::vector<double*> bases;   ///< y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E, d rows each
     std::vector<double*> values;  ///< …, y_{n−1}, y_n, y_{n+1}, d rows each; for rows that none reads the next of these
     std::vector<RowIncrement> increments;
+    std::vector<const double*> past_outputs;  ///< before the newest ones, those first; none where none is extrapolated
     double *known_values = nullptr, *output = nullptr;  ///< of arguments: y of their known_row, and what they give
   };
 
@@ -157,6 +164,7 @@ class RowEquations {
   void build_arguments(const Mixture&, int most_order);
   void build_looks();
   void make_room_in_place();
+  static constexpr int longest_period = 32;  ///< of places_
   void build_places();
   inline void find_rows();
   inline void begin_arguments();
@@ -210,6 +218,7 @@ class RowEquations {
     if (o.family->pattern().placement != Placement::brick_wall) return packs;
     return {packs.first + static_cast<int>((packs.first + n_ + age) % 2 != 0), packs.last, 2};
   }
+  void make_room_for_past_outputs(int count);
   void build_division(const Mixture&);
   void build_straight_lines();
   void find_arguments();

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 
 #include "schemes/division_loop.hpp"
 #include "schemes/row_equations_step.hpp"
+#include "schemes/row_seed.hpp"
 
 namespace delf {
 
@@ -21,10 +23,23 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
     return t.source == Source::increment && t.shift != 0;
   });
   arguments_->set_read(-outputs_[0].lowest, outputs_[0].highest);
+  if (!bricks_ && outputs_[0].kernel->outputs() == 1)
+    make_room_for_past_outputs(std::min(most_order, RowSeed::highest_order_of_outputs) + 1);
   // Rows of 640 sites and less stay in the first level of the cache: two loops after each other then take a sixth less
   // than one that has more in hand than there are registers for.
   constexpr int packs_in_cache = 80;
   if (layout_.packs() > packs_in_cache) build_division(mixture);
+}
+
+/// Of bricks those of the next row stand elsewhere.
+void RowEquations::make_room_for_past_outputs(int count) {
+  Outputs& o = outputs_[0];
+  o.held = count + 1;
+  const int period = std::lcm(rows_.rows_held(), rows_.increments_held());
+  while (period <= longest_period && std::lcm(period, o.held) > longest_period) ++o.held;
+  o.slots = RingSlots(o.held);
+  o.ring = RowBuffer(layout_, o.held);
+  own_.past_outputs.resize(static_cast<std::size_t>(count));
 }
 
 void RowEquations::build_division(const Mixture& mixture) {
@@ -48,6 +63,13 @@ void RowEquations::build_division(const Mixture& mixture) {
   }
   division.constant = scale * equations_.bulk[0].constant;
   if (alike && differences == 2 && outputs_[0].kernel->divides(old, mixture.parts)) division_ = division;
+}
+
+double RowEquations::advance_from_outputs(int order) {
+  const Outputs& o = outputs_[0];
+  put_extrapolated(layout_, here_->past_outputs.data(), order + 1, here_->output);
+  layout_.fill_halo(here_->output, -o.lowest, o.highest);
+  return make_new_row().largest;
 }
 
 void RowEquations::find_arguments() {

@@ -31,17 +31,25 @@ class RowSeed {
   /// Forgets the order: rows have been set anew.
   void restart() { looked_at_ = -1; }
   int order() const { return order_; }
+  /// If one iteration from it is not expected to be enough, the order that outputs are best extrapolated with, three or
+  /// four; else 0.
+  int order_of_outputs() const { return order_of_outputs_; }
+  static constexpr int highest_order_of_outputs = 4;
   /// Whether neither the step from row n nor those that choose() will look back at from its next look read more than
   /// the newest increment.
   bool reads_one_increment(std::int64_t n) const {
     return order_ == 1 && looked_at_ >= 0 && n > most_order_ + 1 && n < looked_at_ + period_ - (most_order_ + 1);
   }
-  /// Chooses the order for the step from row n, now and then, by how well each would have foretold the newest row:
+  /// Chooses the order for the step from row n, now and then (true), by how well each would have foretold the newest row:
   /// each change is `contraction` times the last, until `weight` times it is below tolerance · span().
-  void choose(std::int64_t n, double tolerance, double contraction, double weight) {
-    if (looked_at_ < 0 || n >= looked_at_ + period_ || n <= most_order_ + 1) look(n, tolerance, contraction, weight);
+  bool choose(std::int64_t n, double tolerance, double contraction, double weight) {
+    const bool looks = looked_at_ < 0 || n >= looked_at_ + period_ || n <= most_order_ + 1;
+    if (looks) look(n, tolerance, contraction, weight);
+    return looks;
   }
-  void choose(std::int64_t n, double tolerance, double contraction) { choose(n, tolerance, contraction, contraction); }
+  bool choose(std::int64_t n, double tolerance, double contraction) {
+    return choose(n, tolerance, contraction, contraction);
+  }
   /// max y − min y over all components when last looked at.
   double span() const { return span_; }
   /// Puts the candidate of this order, or the highest there are rows for, into d rows, halos too.
@@ -61,7 +69,7 @@ class RowSeed {
   SectionRows& rows_;
   RingSlots y_slots_, v_slots_;
   double time_step_;
-  int most_order_, order_ = 1;
+  int most_order_, order_ = 1, order_of_outputs_ = 0;
   int period_;  ///< steps from look to look
   std::int64_t looked_at_ = -1;
   double span_ = 0;

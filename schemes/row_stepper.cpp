@@ -15,6 +15,7 @@
 #include "schemes/row_equations_step.hpp"
 #include "schemes/row_seed.hpp"
 #include "schemes/row_team.hpp"
+#include "schemes/seen_contraction.hpp"
 #include "schemes/time_tiles.hpp"
 #include "schemes/wrapped_differences.hpp"
 
@@ -40,6 +41,7 @@ struct RowStepper::Impl {
   bool can_go_in_place = false;
   double gain = 0, weight = 1;  ///< of the equations, for contraction
   double contracted = -1;       ///< by which one more iteration's change would be less; negative: not known yet
+  SeenContraction seen;         ///< of steps from extrapolated outputs, since the seed's last look
 
   std::int64_t n = -1;         ///< newest row
   double largest[2] = {0, 0};  ///< |y| of the newest two rows
@@ -312,9 +314,18 @@ struct RowStepper::Impl {
   RowChange advance_straight() {
     return equations.goes_straight() ? equations.advance_straight(largest_ever) : advance_streamed(1);
   }
-  /// From a seed of this order.
-  RowChange advance_first(int order) {
-    return mixture ? equations.advance_extrapolated(order, largest_ever) : advance_seeded(order);
+  /// From the seed. Where one iteration is not enough, it is the outputs that are extrapolated: the row made from these is
+  /// as good as from outputs evaluated where they are expected to look, and spares that.
+  RowChange advance_first() {
+    if (!mixture) return advance_seeded(seed.order());
+    if (extrapolates_outputs()) return advance_from_outputs();
+    return equations.advance_extrapolated(seed.order(), largest_ever);
+  }
+  bool extrapolates_outputs() const {
+    return mixture && seed.order_of_outputs() > 0 && equations.can_extrapolate_outputs(seed.order_of_outputs());
+  }
+  [[gnu::noinline]] RowChange advance_from_outputs() {
+    return advance_again(equations.advance_from_outputs(seed.order_of_outputs()));
   }
   [[gnu::noinline]] RowChange advance_seeded(int order) {
     if (order == 1 && equations.goes_straight()) return equations.advance_straight(largest_ever);
@@ -337,25 +348,31 @@ struct RowStepper::Impl {
   /// what most steps take.
   bool iterate(double& value) {
     const double next_change = contraction_now();
-    seed.choose(n, tolerance, next_change, estimates ? next_change : 1 / weight);
+    if (seed.choose(n, tolerance, next_change, estimates ? next_change : 1 / weight)) seen.forget();
     iterations = 1;
-    const RowChange moved = advance_first(seed.order());
+    const RowChange moved = advance_first();
     value = moved.largest;
     // A field that overflowed has no root to look for.
     if (overflowed(value)) report_not_finite();
-    return is_enough(moved.change, next_change, value) || iterate_on(value, moved.change, next_change);
+    return is_enough(moved.change, next_change, value) ||
+           (seen.is_like(moved.change) && is_enough(moved.change, seen.next_change(), value)) ||
+           iterate_on(value, moved.change, next_change);
   }
   /// After the first, whose change was not small enough.
   [[gnu::noinline]] bool iterate_on(double& value, double change, double next_change) {
     while (iterations < options.max_iterations) {
       const double before = change;
-      // Arguments go on by themselves: the row is wanted only where one iteration more may not be the last.
-      const bool is_row_before_kept = !mixture || !estimates || !is_enough(weight * next_change * change, next_change, value);
+      // Arguments go on by themselves: the row is wanted only where one iteration more may not be the last, or shows what
+      // the first one left.
+      const bool shows = estimates && iterations == 1 && extrapolates_outputs() && !seen.is_like(change);
+      const bool is_row_before_kept =
+          !mixture || !estimates || shows || !is_enough(weight * next_change * change, next_change, value);
       if (is_row_before_kept) equations.make_row_the_candidate();
       ++iterations;
       const RowChange moved = advance_again(value);
       value = moved.largest, change = moved.change;
       if (overflowed(value)) report_not_finite();
+      if (shows) seen.see(before, equations.whole_change());
       if (is_enough(change, next_change, value)) return true;
       if (estimates && is_row_before_kept) {
         next_change = std::min(next_change, 2 * equations.whole_change() / before);

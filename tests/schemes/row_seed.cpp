@@ -116,6 +116,23 @@ TEST_CASE("the order chosen is the lowest that spares an iteration, and below fo
   }
 }
 
+TEST_CASE("outputs are extrapolated where one iteration is not enough, with what misses less of orders three and four") {
+  for (int degree = 2; degree <= most + 3; ++degree) {
+    CAPTURE(degree);
+    Seeded seeded({degree, 1, 0}, 14);
+    seeded.seed.choose(14, 1e-16, contraction);
+    // Up to the highest order that there is nothing is missed.
+    CHECK((seeded.seed.order_of_outputs() > 0) == (degree > most));
+    if (degree > most) {
+      const bool four = seeded.miss({degree, 1, 0}, 4) < seeded.miss({degree, 1, 0}, 3);
+      CHECK(seeded.seed.order_of_outputs() == (four ? 4 : 3));
+    }
+    seeded.seed.restart();
+    seeded.seed.choose(14, 1e16, contraction);  // one iteration will do for whatever is missed
+    CHECK(seeded.seed.order_of_outputs() == 0);
+  }
+}
+
 TEST_CASE("orders below four serve where steps leave little in a unit of time") {
   const Polynomial field{8, 1, 0};
   const auto order = [&](double time_step, double tolerance) {
