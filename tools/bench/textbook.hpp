@@ -16,6 +16,7 @@ class Textbook {
   virtual void start(std::span<const double> row0, std::span<const double> row1) = 0;
   virtual void step() = 0;
   virtual std::span<const double> row() const = 0;  ///< the newest
+  virtual long iterations() const { return 0; }     ///< since the start; none of explicit schemes
 };
 
 /// The schemes that there is a textbook for, named as in scenes: stencils, then methods.

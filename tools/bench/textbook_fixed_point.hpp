@@ -16,12 +16,13 @@ struct Change {
   }
 };
 
-/// Stops when max |Δy| ≤ tolerance · max |y|, the latter over the newest three rows: as the engine does.
+/// Stops when max |Δy| ≤ tolerance · max |y|, the latter over the newest three rows.
 class FixedPoint {
  public:
   explicit FixedPoint(double tolerance) : tolerance_(tolerance) {}
 
   void start(std::span<const double> row0, std::span<const double> row1) {
+    passes_ = 0;
     largest_[1] = size(row0);
     largest_[0] = size(row1);
   }
@@ -30,11 +31,13 @@ class FixedPoint {
     Change last;
     for (int iterations = 1; iterations <= 50; ++iterations) {
       last = pass();
+      ++passes_;
       if (last.change <= tolerance_ * std::max({last.value, largest_[0], largest_[1]})) break;
     }
     largest_[1] = largest_[0];
     largest_[0] = last.value;
   }
+  long passes() const { return passes_; }  ///< since the start
 
  private:
   static double size(std::span<const double> row) {
@@ -43,6 +46,7 @@ class FixedPoint {
     return largest;
   }
   double tolerance_, largest_[2] = {0, 0};
+  long passes_ = 0;
 };
 
 }  // namespace delf::bench

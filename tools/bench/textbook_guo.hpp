@@ -16,6 +16,7 @@ class TextbookGuo final : public Textbook {
   void start(std::span<const double> row0, std::span<const double> row1) override;
   void step() override;
   std::span<const double> row() const override { return rows_.newest(); }
+  long iterations() const override { return fixed_point_.passes(); }
 
  private:
   double squared_ratio_, squared_step_;  ///< (h/k)², h²

@@ -18,6 +18,7 @@ class TextbookHexagon final : public Textbook {
   void start(std::span<const double> row0, std::span<const double> row1) override;
   void step() override;
   std::span<const double> row() const override { return rows_.newest(); }
+  long iterations() const override { return fixed_point_.passes(); }
 
  private:
   /// Sines of the bricks anchored at first, first + 2, … of the row `lower`.
