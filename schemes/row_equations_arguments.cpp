@@ -34,7 +34,7 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
 /// Of bricks those of the next row stand elsewhere.
 void RowEquations::make_room_for_past_outputs(int count) {
   Outputs& o = outputs_[0];
-  o.held = count + 1;
+  o.held = std::max(o.rows(), count + 1);
   const int period = std::lcm(rows_.rows_held(), rows_.increments_held());
   while (period <= longest_period && std::lcm(period, o.held) > longest_period) ++o.held;
   o.slots = RingSlots(o.held);
