@@ -132,7 +132,7 @@ template <class Find, class Evaluate>
 /// while the output is worked out. `make_output` makes it here: what is stored through others cannot change it then, so
 /// that it stays in registers.
 template <int past_rows, int stride, class Make>
-[[gnu::flatten]] void argument_loop(const Make& make_output, const ArgumentRow& given, double* out,
+[[gnu::__flatten__]] void argument_loop(const Make& make_output, const ArgumentRow& given, double* out,
                                     const PackRange& packs) {
   const auto output = make_output();
   const UnknownArgument<past_rows> found(given);

@@ -147,7 +147,7 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     return rows.values[shape.vertex(l).time - first_time] + shape.vertex(l).space * lanes;
   }
   template <class Value>
-  [[gnu::flatten]] void evaluate_pair(const SlabRows& rows, double* out, const PackRange& packs) const {
+  [[gnu::__flatten__]] void evaluate_pair(const SlabRows& rows, double* out, const PackRange& packs) const {
     const PartOfPair<Value> output{stencil_};
     const FetchAhead<> ahead(rows);
     const double *const latest = row_of(rows, pair.latest), *const other = row_of(rows, pair.other);
@@ -161,7 +161,7 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
           output(values, at).store(out + at);
         });
   }
-  [[gnu::flatten]] void evaluate_any(const SlabRows& rows, double* out, const PackRange& packs) const {
+  [[gnu::__flatten__]] void evaluate_any(const SlabRows& rows, double* out, const PackRange& packs) const {
     for (int v = packs.first; v < packs.last; v += packs.stride) {
       const std::ptrdiff_t at = rows.layout->at(v);
       std::array<Pack, n> y{};

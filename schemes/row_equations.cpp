@@ -113,7 +113,7 @@ SlabRows RowEquations::slab_of(const double* const* values, std::int64_t row) co
 
 /// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others.
 void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& packs,
-                            const RowsAhead& ahead) {
+                            const RowsAhead& ahead, double largest) {
   const double* const* values = here_->values.data() + value_index(age + o.first_time);
   if (which != At::row) {
     const auto rows = static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_);
@@ -124,7 +124,7 @@ void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At wh
   }
   SlabRows slab = slab_of(values, n_ + age);
   slab.ahead = ahead;
-  slab.near = largest_read_ <= o.kernel->near_below();
+  slab.near = largest <= o.kernel->near_below();
   if (which == At::straight_line) o.kernel->evaluate_straight(slab, increment(0).v_before, out, packs_of(o, age, packs));
   else o.kernel->evaluate(slab, out, packs_of(o, age, packs));
   if (turn_ != 0)
@@ -206,7 +206,7 @@ void RowEquations::make_room_in_place() {
   o.ring = RowBuffer(layout_, o.held * o.kernel->outputs());
 }
 
-RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& find) {
+RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& find, double largest) {
   const bool straight = which == At::straight_line;
   Outputs& o = outputs_[0];
   const int packs = layout_.packs(), halo = layout_.halo(), count = o.kernel->outputs();
@@ -249,7 +249,7 @@ RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& f
   hold_candidate(last.first - halo, 0);
   if (find) find({last.first - halo, packs + halo});
   hold_outputs(last.first + o.lowest, 0);
-  evaluate(o, o.newest, slab_out_.data(), which, {last.first + o.lowest, read.last});
+  evaluate(o, o.newest, slab_out_.data(), which, {last.first + o.lowest, read.last}, {}, largest);
   stream->begin(work(last.first, last.first));
   hold_candidate(-halo, 0);
   if (find) find({-halo, halo});
@@ -264,7 +264,7 @@ RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& f
     const int evaluated_until = all ? read.last : end + o.highest;
     hold_outputs(kept, evaluated);
     evaluate(o, o.newest, slab_out_.data(), which, {evaluated, evaluated_until},
-             all ? RowsAhead{} : rows_after(found - evaluated));
+             all ? RowsAhead{} : rows_after(found - evaluated), largest);
     evaluated = evaluated_until;
     double* const room = work(done, summed);
     summed = end;

@@ -179,7 +179,7 @@ class RowEquations {
   double largest_change(const std::vector<Argument>& looks, PackRange) const;
   int residual_rows() const;
   void make_room_for_residual();
-  void measure_sums(LargestTerms&);
+  void measure_sums(LargestTerms&, double largest);
   void measure_loop(LargestTerms*);  ///< one for each component, times right_side_scale()
   LargestTerms measure_loop(int a, const PackRange&, const double* slopes, LargestTerms) const;
   /// Of a stream, without the candidate's.
@@ -211,7 +211,10 @@ class RowEquations {
   /// Across the seam rows are more by turn_.
   double with_turn(double largest) const { return largest + std::abs(turn_); }
   using RowsAhead = decltype(SlabRows::ahead);
-  void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&, const RowsAhead& = {});
+  static constexpr double unknown_largest = std::numeric_limits<double>::infinity();
+  /// No |y| that is read is above `largest`.
+  void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&, const RowsAhead& = {},
+                double largest = unknown_largest);
   void evaluate_in_ring(Outputs&, int age, At);
   /// Those at which stencils anchored `age` rows after row n exist.
   PackRange packs_of(const Outputs& o, int age, PackRange packs) const {
@@ -236,11 +239,10 @@ class RowEquations {
   }
   RowChange divide(const ArgumentRow&, double* output, bool along_straight_lines);
   RowChange divide_straight(double largest_straight);
-  RowChange stream(At, const std::function<void(PackRange)>& find);
+  RowChange stream(At, const std::function<void(PackRange)>& find, double largest = unknown_largest);
   inline void evaluate_at(const ArgumentRow&);
   inline RowChange advance_at(const ArgumentRow&);
   inline RowChange make_new_row();
-  int first_of_part(int part, int parts) const;
   const double* edge(int part, int parts, int side, int a) const;
   /// Rows of stencils anchored at this row.
   SlabRows slab_of(const double* const* values, std::int64_t row) const;
@@ -258,7 +260,6 @@ class RowEquations {
   const RowLayout& layout_;
   int d_, history_;
   double turn_, time_step_, space_step_;
-  double largest_read_ = std::numeric_limits<double>::infinity();  ///< no |y| that evaluate() reads is above this
   bool bricks_;
   AssembledEquations equations_;
   std::vector<Outputs> outputs_;

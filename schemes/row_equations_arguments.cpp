@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <limits>
 #include <numeric>
 
 #include "schemes/division_loop.hpp"
@@ -104,11 +103,7 @@ void RowEquations::build_straight_lines() {
 
 RowChange RowEquations::advance_straight(double largest) {
   const double largest_straight = 3 * with_turn(largest);  // |y_n + v_n| = |2y_n − y_{n−1}|
-  if (straight_) return divide_straight(largest_straight);
-  largest_read_ = largest_straight;
-  const RowChange change = stream(At::straight_line, {});
-  largest_read_ = std::numeric_limits<double>::infinity();
-  return change;
+  return straight_ ? divide_straight(largest_straight) : stream(At::straight_line, {}, largest_straight);
 }
 
 RowChange RowEquations::divide_straight(double largest_straight) {

@@ -49,11 +49,6 @@ void RowEquations::build_loop() {
                 .nonlinear = loop_nonlinear_.data()};
 }
 
-int RowEquations::first_of_part(int part, int parts) const {
-  if (part == 0 || part == parts) return part == 0 ? 0 : layout_.packs();
-  return static_cast<int>(static_cast<long long>(part) * layout_.packs() / parts);
-}
-
 /// At the ends of the row that is its halo, which stays; in between it is a copy.
 const double* RowEquations::edge(int part, int parts, int side, int a) const {
   const double* const y = loop_now_[static_cast<std::size_t>(a)];
@@ -76,7 +71,7 @@ void RowEquations::begin_loop(int parts, bool in_place, double sum_of_squares) {
   if (edges_.bytes() < edge_doubles(parts) * sizeof(double)) edges_ = RowBuffer(edge_doubles(parts));
   for (int boundary = 1; boundary < parts; ++boundary)
     for (int a = 0; a < d_; ++a) {
-      const double* const y = loop_now_[static_cast<std::size_t>(a)] + layout_.at(first_of_part(boundary, parts));
+      const double* const y = loop_now_[static_cast<std::size_t>(a)] + layout_.at(layout_.first_of_part(boundary, parts));
       const int doubles_beside = loop_reach_ * lanes;
       std::copy_n(y, doubles_beside, const_cast<double*>(edge(boundary - 1, parts, 1, a)));
       std::copy_n(y - doubles_beside, doubles_beside, const_cast<double*>(edge(boundary, parts, 0, a)));
@@ -105,7 +100,7 @@ double RowEquations::loop(int part, int parts) const {
   for (int a = 0; a < d_; ++a) before[a] = edge(part, parts, 0, a), after[a] = edge(part, parts, 1, a);
   ExplicitRows rows = loop_rows_;
   rows.before = before, rows.after = after;
-  return one_loop_->explicit_step(rows, {first_of_part(part, parts), first_of_part(part + 1, parts)});
+  return one_loop_->explicit_step(rows, {layout_.first_of_part(part, parts), layout_.first_of_part(part + 1, parts)});
 }
 
 /// Slopes that the step has not kept are found again, some packs at a time. They are kept by the next steps where this

@@ -23,9 +23,7 @@ double RowEquations::residual(std::int64_t n, double largest) {
     for (int a = 0; a < d_; ++a) take(terms[a], 1 / std::abs(solver_[0]->right_side_scale(a)));
   } else {
     LargestTerms terms;
-    largest_read_ = with_turn(largest);
-    measure_sums(terms);
-    largest_read_ = std::numeric_limits<double>::infinity();
+    measure_sums(terms, with_turn(largest));
     take(terms, 1);
   }
   return size != 0 ? sum / size : 0;
@@ -46,7 +44,7 @@ void RowEquations::make_room_for_residual() {
   std::ranges::for_each(places_, put);
 }
 
-void RowEquations::measure_sums(LargestTerms& all) {
+void RowEquations::measure_sums(LargestTerms& all, double largest) {
   if (!scratch_.rows()) make_room_for_residual();
   find_rows();
   if (measured_reach_ > 0 && !increment(0).v_has_halo) {  // of one component
@@ -55,10 +53,8 @@ void RowEquations::measure_sums(LargestTerms& all) {
   }
   residual_row_ = n_;
   for (const Outputs& o : outputs_)
-    for (int age = o.oldest_measured(); age <= o.newest; ++age) {
-      double* const* const out = &base(o.measured_index(age, 0));
-      evaluate(o, age, out, At::row, where_read(o));
-    }
+    for (int age = o.oldest_measured(); age <= o.newest; ++age)
+      evaluate(o, age, &base(o.measured_index(age, 0)), At::row, where_read(o), {}, largest);
 
   const auto measure = [&](int a, const auto& consume) {
     return measured_[first_sum(a)].measure(layout_, layout_.all(), consume);

@@ -31,6 +31,10 @@ class RowLayout {
 
   int packs() const { return packs_; }  ///< M
   PackRange all() const { return {0, packs_}; }
+  /// Where one of so many parts of the row begins; part `parts` begins at its end.
+  int first_of_part(int part, int parts) const {
+    return static_cast<int>(static_cast<long long>(part) * packs_ / parts);
+  }
   int halo() const { return halo_; }
   int sites() const { return sites_; }
   std::size_t doubles() const { return static_cast<std::size_t>(packs_ + 2 * halo_) * lanes; }

@@ -32,10 +32,6 @@ bool TimeTiles::are_worth_while(const RowLayout& layout, int reach, int parts) {
   return layout.finds_halos_by_packs() && reach <= most_reach && layout.packs() >= std::max(long_row, parts * room);
 }
 
-int TimeTiles::begin_of(int part) const {
-  return static_cast<int>(static_cast<long long>(part) * layout_->packs() / parts_);
-}
-
 void TimeTiles::keep(int part, Edge side, int level, int first_pack) {
   for (int a = 0; a < d_; ++a)
     std::copy_n(row(a) + layout_->at(first_pack), reach_ * lanes, edge(part, side, level, a));

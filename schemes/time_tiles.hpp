@@ -41,7 +41,7 @@ class TimeTiles {
 
  private:
   enum Edge { left, right };
-  int begin_of(int part) const;
+  int begin_of(int part) const { return layout_->first_of_part(part, parts_); }
   double* edge(int part, Edge side, int level, int a) {
     return edges_.row(((part * 2 + side) * most_levels + level) * d_ + a);
   }

@@ -302,7 +302,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     else evaluate_value_on<straight, Pack>(rows, v, out, packs);
   }
   template <bool straight, class Value>
-  [[gnu::flatten]] void evaluate_value_on(const SlabRows& given, const double* v, double* out,
+  [[gnu::__flatten__]] void evaluate_value_on(const SlabRows& given, const double* v, double* out,
                                           const PackRange& packs) const {
     const LocalRows rows(given);
     const auto output = slope<Value>(given, 0);
@@ -332,14 +332,14 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   /// out_c = ∂ℓ/∂φ at the distinct values of φ
-  [[gnu::flatten]] void evaluate_values(const SlabRows& given, double* const* given_out, const PackRange& packs) const {
+  [[gnu::__flatten__]] void evaluate_values(const SlabRows& given, double* const* given_out, const PackRange& packs) const {
     using Number = Dual<Pack, d>;
     const LocalRows rows(given);
     const auto out = local<distinct.count * d>(given_out);
     const D density = lagrangian_.density;
     const auto pack = [&](int v) __attribute__((always_inline)) {
       const std::ptrdiff_t at = rows.at(v);
-      for_each_index<distinct.count>([&]<int c>() __attribute__((always_inline, flatten)) {
+      for_each_index<distinct.count>([&]<int c>() __attribute__((always_inline, __flatten__)) {
         constexpr int q = distinct.representative[c];
         JetFor<Number, D> jet;
         for (int a = 0; a < d; ++a) {
@@ -361,7 +361,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   /// out_i = rⁱ = ∂L/∂yⁱ
-  [[gnu::flatten]] void evaluate_all(const SlabRows& given, double* const* given_out, const PackRange& packs) const {
+  [[gnu::__flatten__]] void evaluate_all(const SlabRows& given, double* const* given_out, const PackRange& packs) const {
     using Number = Dual<Pack, 3 * d>;
     const LocalRows rows(given);
     const auto out = local<vertices_size>(given_out);
@@ -372,7 +372,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
       const std::ptrdiff_t at = rows.at(v);
       std::array<Pack, static_cast<std::size_t>(vertices_size)> r;
       r.fill(Pack(0.0));
-      for_each_index<map.points>([&]<int q>() __attribute__((always_inline, flatten)) {
+      for_each_index<map.points>([&]<int q>() __attribute__((always_inline, __flatten__)) {
         constexpr auto& p = map.quadrature[q];
         JetFor<Number, D> jet;
         for (int a = 0; a < d; ++a) {

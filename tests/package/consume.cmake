@@ -7,7 +7,9 @@ if(HOW STREQUAL "installed")
     OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
   set(find -D CMAKE_PREFIX_PATH=${WORK}/prefix)
 else()
-  set(find -D DELF_SOURCE=${DELF_SOURCE})
+  # All of delf is compiled again: as fast as compilers can, for it is how it is found and linked that is tested.
+  set(BUILD_TYPE Debug)
+  set(find -D DELF_SOURCE=${DELF_SOURCE} -D CMAKE_CXX_FLAGS_DEBUG=-O0)
 endif()
 
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G ${GENERATOR}
