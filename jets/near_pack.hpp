@@ -5,7 +5,8 @@
 namespace delf {
 
 /// A Pack whose functions take for granted that no lane lies beyond what their polynomials reach: none is asked, which
-/// is a tenth of a sine. In reach results are those of a Pack, to the bit; beyond they are any number. Loops evaluate
+/// is a tenth of a sine. In reach results are those of a Pack, to the bit; beyond they are any number. Of what is made of
+/// them, in a sum of two products compilers fuse the one or the other: that may differ by a rounding. Loops evaluate
 /// densities with these while |φ| ≤ near_below(density) (jets/structure.hpp).
 struct NearPack : Pack {
   using Pack::Pack;
