@@ -133,7 +133,7 @@ template <class Find, class Evaluate>
 /// that it stays in registers.
 template <int past_rows, int stride, class Make>
 [[gnu::__flatten__]] void argument_loop(const Make& make_output, const ArgumentRow& given, double* out,
-                                    const PackRange& packs) {
+                                        const PackRange& packs) {
   const auto output = make_output();
   const UnknownArgument<past_rows> found(given);
   const double* const known = given.known;

@@ -97,7 +97,8 @@ class StraightDivision {
 /// keep the evaluation of the next ones waiting. Arguments are found one pack ahead where a tenth is gained by it; there
 /// are registers enough for that in some of these loops only.
 template <int old, int parts, class Output, class Division>
-[[gnu::__flatten__]] void division_loop(const Output& given_output, const DivisionRows& given, Division& given_division) {
+[[gnu::__flatten__]] void division_loop(const Output& given_output, const DivisionRows& given,
+                                        Division& given_division) {
   static_assert(old == 0 || old == 2);
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
   const Output output = given_output;

@@ -143,7 +143,7 @@ template <Density D>
 /// `Value`: what ℓ is evaluated on; NearPack if the rows are near.
 template <class Value, Density D>
 [[gnu::__flatten__]] EnergyMomentum energy_momentum(const D& given, const WaveForm<components_of<D>()>& form,
-                                                const SlabRows& given_rows, const CellWeights& weights) {
+                                                    const SlabRows& given_rows, const CellWeights& weights) {
   constexpr int d = components_of<D>();
   // Copies of this function alone, which stay in registers.
   const D density = given;

@@ -30,7 +30,8 @@ inline constexpr auto neighbours_within = [] {
 /// `even`: stride is 1, and so far as one neighbour on either side is concerned linear(−1) = linear(1): a tenth less.
 /// `kept`: the slopes ∂ℓ/∂φ are. `Value`: what they are evaluated on.
 template <int reach, bool even, bool kept, class Value, Density D>
-[[gnu::__flatten__]] double explicit_loop(const D& given_density, const ExplicitRows& given, const PackRange& given_packs) {
+[[gnu::__flatten__]] double explicit_loop(const D& given_density, const ExplicitRows& given,
+                                            const PackRange& given_packs) {
   const PackRange packs = given_packs;
   constexpr int d = components_of<D>(), count = 2 * reach;
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
@@ -121,7 +122,7 @@ template <int reach, bool even, bool kept, class Value, Density D>
 /// The slopes ∂ℓ/∂φ(y(i)) of such a step alone.
 template <Density D>
 [[gnu::__flatten__]] void slope_loop(const D& given_density, const SlabRows& now, double* const* slopes,
-                                 const PackRange& packs) {
+                                     const PackRange& packs) {
   constexpr int d = components_of<D>();
   const D density = given_density;
   const Pack t(now.t);

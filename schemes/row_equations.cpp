@@ -113,7 +113,7 @@ SlabRows RowEquations::slab_of(const double* const* values, std::int64_t row) co
 
 /// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others.
 void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& packs,
-                            const RowsAhead& ahead, double largest) {
+                            double largest, const RowsAhead& ahead) {
   const double* const* values = here_->values.data() + value_index(age + o.first_time);
   if (which != At::row) {
     const auto rows = static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_);
@@ -249,7 +249,7 @@ RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& f
   hold_candidate(last.first - halo, 0);
   if (find) find({last.first - halo, packs + halo});
   hold_outputs(last.first + o.lowest, 0);
-  evaluate(o, o.newest, slab_out_.data(), which, {last.first + o.lowest, read.last}, {}, largest);
+  evaluate(o, o.newest, slab_out_.data(), which, {last.first + o.lowest, read.last}, largest);
   stream->begin(work(last.first, last.first));
   hold_candidate(-halo, 0);
   if (find) find({-halo, halo});
@@ -263,8 +263,8 @@ RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& f
     found = end + halo;
     const int evaluated_until = all ? read.last : end + o.highest;
     hold_outputs(kept, evaluated);
-    evaluate(o, o.newest, slab_out_.data(), which, {evaluated, evaluated_until},
-             all ? RowsAhead{} : rows_after(found - evaluated), largest);
+    evaluate(o, o.newest, slab_out_.data(), which, {evaluated, evaluated_until}, largest,
+             all ? RowsAhead{} : rows_after(found - evaluated));
     evaluated = evaluated_until;
     double* const room = work(done, summed);
     summed = end;

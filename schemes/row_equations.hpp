@@ -213,8 +213,8 @@ class RowEquations {
   using RowsAhead = decltype(SlabRows::ahead);
   static constexpr double unknown_largest = std::numeric_limits<double>::infinity();
   /// No |y| that is read is above `largest`.
-  void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&, const RowsAhead& = {},
-                double largest = unknown_largest);
+  void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&, double largest = unknown_largest,
+                const RowsAhead& = {});
   void evaluate_in_ring(Outputs&, int age, At);
   /// Those at which stencils anchored `age` rows after row n exist.
   PackRange packs_of(const Outputs& o, int age, PackRange packs) const {

@@ -71,7 +71,8 @@ void RowEquations::begin_loop(int parts, bool in_place, double sum_of_squares) {
   if (edges_.bytes() < edge_doubles(parts) * sizeof(double)) edges_ = RowBuffer(edge_doubles(parts));
   for (int boundary = 1; boundary < parts; ++boundary)
     for (int a = 0; a < d_; ++a) {
-      const double* const y = loop_now_[static_cast<std::size_t>(a)] + layout_.at(layout_.first_of_part(boundary, parts));
+      const std::ptrdiff_t first = layout_.at(layout_.first_of_part(boundary, parts));
+      const double* const y = loop_now_[static_cast<std::size_t>(a)] + first;
       const int doubles_beside = loop_reach_ * lanes;
       std::copy_n(y, doubles_beside, const_cast<double*>(edge(boundary - 1, parts, 1, a)));
       std::copy_n(y - doubles_beside, doubles_beside, const_cast<double*>(edge(boundary, parts, 0, a)));

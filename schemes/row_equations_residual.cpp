@@ -54,7 +54,7 @@ void RowEquations::measure_sums(LargestTerms& all, double largest) {
   residual_row_ = n_;
   for (const Outputs& o : outputs_)
     for (int age = o.oldest_measured(); age <= o.newest; ++age)
-      evaluate(o, age, &base(o.measured_index(age, 0)), At::row, where_read(o), {}, largest);
+      evaluate(o, age, &base(o.measured_index(age, 0)), At::row, where_read(o), largest);
 
   const auto measure = [&](int a, const auto& consume) {
     return measured_[first_sum(a)].measure(layout_, layout_.all(), consume);

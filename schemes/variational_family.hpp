@@ -303,7 +303,7 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
   template <bool straight, class Value>
   [[gnu::__flatten__]] void evaluate_value_on(const SlabRows& given, const double* v, double* out,
-                                          const PackRange& packs) const {
+                                              const PackRange& packs) const {
     const LocalRows rows(given);
     const auto output = slope<Value>(given, 0);
     const FetchAhead<stride> ahead(given);
@@ -332,7 +332,8 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   /// out_c = ∂ℓ/∂φ at the distinct values of φ
-  [[gnu::__flatten__]] void evaluate_values(const SlabRows& given, double* const* given_out, const PackRange& packs) const {
+  [[gnu::__flatten__]] void evaluate_values(const SlabRows& given, double* const* given_out,
+                                            const PackRange& packs) const {
     using Number = Dual<Pack, d>;
     const LocalRows rows(given);
     const auto out = local<distinct.count * d>(given_out);
@@ -361,7 +362,8 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   /// out_i = rⁱ = ∂L/∂yⁱ
-  [[gnu::__flatten__]] void evaluate_all(const SlabRows& given, double* const* given_out, const PackRange& packs) const {
+  [[gnu::__flatten__]] void evaluate_all(const SlabRows& given, double* const* given_out,
+                                         const PackRange& packs) const {
     using Number = Dual<Pack, 3 * d>;
     const LocalRows rows(given);
     const auto out = local<vertices_size>(given_out);
