@@ -18,7 +18,7 @@ class DivisionByArguments {
       : unknown_(given.arguments), known_(given.arguments.known), pass_(rows) {}
   [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) const { return unknown_(at); }
   [[gnu::always_inline]] Pack known(std::ptrdiff_t at) const { return Pack::load(known_ + at); }
-  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w, Pack /*u*/) { pass_(at, w); }
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) { pass_(at, w); }
   RowChange closed(const DivisionRows& given, const RowIncrement& rows) {
     return pass_.closed(*given.arguments.layout, rows);
   }
@@ -40,7 +40,8 @@ class DivisionByArguments {
 ///
 ///     u(i) = Σ_p weights[p] (y + v)(i + p),        known(i) = y(i + known_site) − known_increment v(i),
 ///
-/// and the new row may be written over the old one.
+/// and the new row may be written over the old one. It differs from the straight line by w, whose largest value is the
+/// change: what u changes by is no more than that times the sum of the weights.
 template <int parts>
 class StraightDivision {
  public:
@@ -52,7 +53,6 @@ class StraightDivision {
         known_increment_(given.known_increment),
         pass_(rows),
         weights_(rows.look.weights, 1) {
-    seen_.have_seen_nothing();
     const std::ptrdiff_t begin = given.arguments.layout->at(0);
     for (int p = 0; p + 1 < parts; ++p) ahead_.take(straight(begin + p * lanes));
   }
@@ -66,20 +66,9 @@ class StraightDivision {
     if constexpr (parts > 1) return y;
     else return y - known_increment_ * Pack::load(v_ + at);
   }
-  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w, Pack u) {
-    seen_.take(pass_.unseen(at, w)), expected_.take(u);
-    change_ = detail::larger_magnitude(change_, weights_.added(Pack(0.0), seen_) - expected_.oldest());
-  }
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) { pass_(at, w); }
   RowChange closed(const DivisionRows& given, const RowIncrement& rows) {
-    const RowLayout& layout = *given.arguments.layout;
-    const double largest = pass_.closed(layout, rows).largest;
-    if constexpr (parts > 1) {  // the last pack looks beyond the end
-      Pack u(0.0);
-      for (int p = 0; p < parts; ++p)
-        u += rows.look.weights[p] * Pack::load(rows.y + layout.at(layout.packs() - 1 + p));
-      change_ = detail::larger_magnitude(change_, u - expected_.newest);
-    }
-    return {largest, max_or_nan(change_)};
+    return pass_.closed(*given.arguments.layout, rows);
   }
 
  private:
@@ -87,10 +76,9 @@ class StraightDivision {
 
   const double *y_, *v_, *known_;
   double known_increment_;
-  IncrementPass<0, Order::ascending, Look::row> pass_;
+  IncrementPass<1, Order::ascending, Look::increment> pass_;
   PackWeights<parts> weights_;
-  LastPacks<parts> ahead_, seen_, expected_;
-  Pack change_ = 0.0;
+  LastPacks<parts> ahead_;
 };
 
 /// A step of DivisionRows in one loop. The new row is made one pack after its outputs: what waits for an output would
@@ -111,22 +99,17 @@ template <int old, int parts, class Output, class Division>
   const std::ptrdiff_t begin = layout.at(0);
   Pack here = Pack::load(y + begin), last = here - Pack::load(y + begin - lanes);
   Pack last_old = old == 2 ? Pack::load(old_row + begin - lanes) : Pack(0.0);
-  struct Found {
-    Pack u;
-    decltype(output.argument(Pack(), Pack())) argument;
-  };
   struct Evaluated {
-    Pack u, E, E_old;
+    Pack E, E_old;
   };
+  using Argument = decltype(output.argument(Pack(), Pack()));
   const auto find = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
-    const Pack u = division.unknown(at);
-    return Found{u, output.argument(u, division.known(at))};
+    return output.argument(division.unknown(at), division.known(at));
   };
-  const auto evaluate = [&](std::ptrdiff_t at, const Found& found) __attribute__((always_inline)) {
+  const auto evaluate = [&](std::ptrdiff_t at, const Argument& found) __attribute__((always_inline)) {
     if constexpr (Division::fetches) fetch_ahead(old_row, at);
     Evaluated e;
-    e.u = found.u;
-    e.E = output(found.argument, at);
+    e.E = output(found, at);
     e.E_old = old == 2 ? Pack::load(old_row + at) : Pack(0.0);  // before it is written over
     e.E.store(out + at);
     return e;
@@ -138,15 +121,15 @@ template <int old, int parts, class Output, class Division>
     Pack outputs = e.E;
     if constexpr (old == 2) outputs = (e.E_old + last_old) + outputs;
     last_old = e.E_old;
-    division(at, w + of_outputs * outputs, e.u);
+    division(at, w + of_outputs * outputs);
   };
   const std::ptrdiff_t end = layout.at(layout.packs());
   Evaluated ready = evaluate(begin, find(begin));
   std::ptrdiff_t ahead = begin + lanes;
-  Found found{};
+  Argument found{};
   if (Division::finds_ahead && ahead < end) found = find(ahead);
   for (; ahead < end; ahead += lanes) {
-    const Found sought = Division::finds_ahead ? found : find(ahead);
+    const Argument sought = Division::finds_ahead ? found : find(ahead);
     if (Division::finds_ahead && ahead + lanes < end) found = find(ahead + lanes);
     const Evaluated next = evaluate(ahead, sought);
     make(ahead - lanes, ready);

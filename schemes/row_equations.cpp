@@ -288,8 +288,8 @@ RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& f
   }
   increment(0).close(layout_, [] {});
   RowChange result = stream->result();
-  if (straight) result.change *= most_weight();
-  else result.change = larger_or_nan(larger_or_nan(largest_change(looks_, {changed, packs}), change), result.change);
+  if (!straight)
+    result.change = larger_or_nan(larger_or_nan(largest_change(looks_, {changed, packs}), change), result.change);
   return result;
 }
 

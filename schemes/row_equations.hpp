@@ -88,8 +88,8 @@ class RowEquations {
   inline RowChange advance_again(double largest);
   /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
   bool is_streamed() const { return is_streamed_; }
-  /// From y_n + v_n, which need not be written down: strip by strip, or in one loop. The change of a stream is then a
-  /// bound: the largest of w, times the weights of what is looked at.
+  /// From y_n + v_n, which need not be written down: strip by strip, or in one loop. The change is then a bound: the
+  /// largest of w, times the weights of what is looked at.
   bool goes_straight() const {
     return straight_.has_value() || (is_streamed_ && outputs_[0].kernel->evaluates_straight());
   }

@@ -103,7 +103,9 @@ void RowEquations::build_straight_lines() {
 
 RowChange RowEquations::advance_straight(double largest) {
   const double largest_straight = 3 * with_turn(largest);  // |y_n + v_n| = |2y_n − y_{n−1}|
-  return straight_ ? divide_straight(largest_straight) : stream(At::straight_line, {}, largest_straight);
+  RowChange w = straight_ ? divide_straight(largest_straight) : stream(At::straight_line, {}, largest_straight);
+  w.change *= most_weight();
+  return w;
 }
 
 RowChange RowEquations::divide_straight(double largest_straight) {

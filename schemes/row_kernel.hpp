@@ -124,7 +124,7 @@ class RowKernel {
   virtual bool divides(int /*old*/, int /*parts*/) const { return false; }
   virtual RowChange divide(const DivisionRows&, const RowIncrement&) const { return {}; }
   /// The same where u is that of straight lines, y_n + v_n in the place of y_{n+1}: there are no rows of it, and the
-  /// new row, its increment and E' may be written over the old ones.
+  /// new row, its increment and E' may be written over the old ones. The change is that from y_n + v_n: the largest of w.
   virtual RowChange divide_straight(const DivisionRows&, const RowIncrement&) const { return {}; }
 
   /// Where the nonlinear part of the equation at a site is that of its own value alone, a step is one loop:

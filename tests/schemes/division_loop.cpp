@@ -141,7 +141,8 @@ TEST_CASE("along straight lines a division's loop does the same without rows of 
       over.increment.v = over.v.row(0), over.increment.y = over.y.row(0);
       const RowChange found = beside.kernel.divide_straight(beside.rows, beside.increment);
       const RowChange in_place = over.kernel.divide_straight(over.rows, over.increment);
-      double worst = 0, difference = 0;
+      double worst = 0, difference = 0, w = 0, weights = 0;
+      for (int p = 0; p < apart.parts; ++p) weights += std::abs(apart.increment.look.weights[p]);
       const auto hold = [&](RowBuffer& right, RowBuffer& there, RowBuffer& there_in_place, std::ptrdiff_t at) {
         worst = std::max(worst, std::abs(right.row(0)[at] - there.row(0)[at]));
         difference = std::max(difference, std::abs(there.row(0)[at] - there_in_place.row(0)[at]));
@@ -150,11 +151,13 @@ TEST_CASE("along straight lines a division's loop does the same without rows of 
         hold(apart.y_new, beside.y_new, over.y, at);
         hold(apart.v_new, beside.v_new, over.v, at);
         hold(apart.output, beside.output, over.old_output, at);
+        w = std::max(w, std::abs(beside.v_new.row(0)[at] - beside.v.row(0)[at]));
       }
       CHECK(worst < 1e-14);
       CHECK(difference == 0);
       CHECK(found.largest == Approx(expected.largest).epsilon(1e-14));
-      CHECK(found.change == Approx(expected.change).epsilon(1e-13));
+      CHECK(found.change == Approx(w).epsilon(1e-13));
+      CHECK(expected.change <= weights * found.change * (1 + 1e-13));  // what is looked at changes by no more
       CHECK(in_place.change == found.change);
     }
 }
@@ -166,6 +169,8 @@ TEST_CASE("a division's loop shows what is not a number") {
       RandomDivision given(scheme, 3);
       given.v.row(0)[given.layout.at(v) + 2] = std::nan("");
       CHECK(std::isnan(given.kernel.divide(given.rows, given.increment).largest));
+      given.rows.arguments.known = given.y.row(0);
+      CHECK(std::isnan(given.kernel.divide_straight(given.rows, given.increment).largest));
     }
 }
 
