@@ -45,7 +45,7 @@ class DivisionByArguments {
 template <int parts>
 class StraightDivision {
  public:
-  static constexpr bool finds_ahead = parts > 1, fetches = parts > 1;
+  static constexpr bool finds_ahead = true, fetches = parts > 1;
   StraightDivision(const DivisionRows& given, const RowIncrement& rows)
       : y_(rows.y_before),
         v_(rows.v_before),

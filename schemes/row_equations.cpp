@@ -182,7 +182,7 @@ RowChange RowEquations::advance(bool compared) {
 }
 
 bool RowEquations::can_go_in_place() const {
-  if (!(is_streamed_ || straight_) || history_ > 2 || outputs_[0].rows() > 2) return false;
+  if (arguments_ || !(is_streamed_ || straight_) || history_ > 2 || outputs_[0].rows() > 2) return false;
   for (const Term& t : equations_.bulk[0].terms)
     if (t.source == Source::increment) return false;
   for (const Argument& argument : outputs_[0].kernel->arguments())

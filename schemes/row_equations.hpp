@@ -59,6 +59,8 @@ class RowEquations {
   bool loop_levels(std::span<double> squares, double sum_of_squares, RowTeam*);
 
   ArgumentRows* arguments() { return arguments_ ? &*arguments_ : nullptr; }
+  /// Those of the rows that are held: steps along straight lines make none.
+  void find_arguments();
   CandidateRows& candidate() { return candidate_; }
   void make_row_the_candidate();
   /// Evaluates the nonlinear outputs that do not read row n+1, and finds the arguments of the rows that are held; those
@@ -95,7 +97,7 @@ class RowEquations {
   }
   /// No |y| of all rows so far is above `largest`.
   RowChange advance_straight(double largest);
-  /// Steps of one of these kinds read no rows before y_n, v_n and the newest outputs.
+  /// Steps of one of these kinds, of rows beyond the cache, read no rows before y_n, v_n and the newest outputs.
   bool can_go_in_place() const;
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
   /// stream through the rows. A candidate that is found on the way is not kept.
@@ -223,8 +225,7 @@ class RowEquations {
   }
   void make_room_for_past_outputs(int count);
   void build_division(const Mixture&);
-  void build_straight_lines();
-  void find_arguments();
+  void build_straight_lines(const Mixture&);
   void evaluate_arguments(At);
   inline const ArgumentRow& argument_row();
   double time_of_outputs() const { return static_cast<double>(n_ + outputs_[0].newest) * time_step_; }
@@ -290,7 +291,7 @@ class RowEquations {
   PackWindow work_window_;                      ///< and its solver's work space
   std::optional<ArgumentRows> arguments_;
   std::optional<DivisionRows> division_;  ///< if a step at arguments is one loop
-  std::optional<Mixture> straight_;       ///< what is looked at along straight lines, if that is so for long rows
+  std::optional<Mixture> straight_;       ///< what is looked at along straight lines, where that is one loop
   std::vector<Argument> whole_{{{{Site{}, 1.0}}}},
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;

@@ -27,7 +27,7 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   // Rows of 640 sites and less stay in the first level of the cache: two loops after each other then take a sixth less
   // than one that has more in hand than there are registers for.
   constexpr int packs_in_cache = 80;
-  if (layout_.packs() > packs_in_cache) build_division(mixture);
+  if (layout_.packs() > packs_in_cache) build_division(mixture), build_straight_lines(mixture);
 }
 
 /// Of bricks those of the next row stand elsewhere.
@@ -89,16 +89,14 @@ RowChange RowEquations::divide(const ArgumentRow& row, double* output, bool alon
   return along_straight_lines ? kernel.divide_straight(*division_, rows) : kernel.divide(*division_, rows);
 }
 
-/// Where rows outgrow the cache and the matrix is one number: what the nonlinear part looks at is worked out from y_n
-/// and v_n on the way.
-void RowEquations::build_straight_lines() {
-  const auto mixture = Mixture::of(system_);
-  if (!mixture || mixture->is_known_alike || mixture->known_row > 2) return;
-  build_division(*mixture);
-  if (!division_) return;
+/// Where a step is one loop, what the nonlinear part looks at can be worked out from y_n and v_n on the way.
+void RowEquations::build_straight_lines(const Mixture& mixture) {
+  if (!division_ || mixture.is_known_alike || mixture.known_row > 2) return;
   straight_ = mixture;
-  std::ranges::copy(mixture->weights, increment(0).look.weights);
-  division_->known_increment = mixture->known_row - 1;
+  RowIncrement& rows = increment(0);
+  std::ranges::copy(mixture.weights, rows.look.weights);
+  rows.v_has_halo = rows.v_has_halo || mixture.parts > 1;
+  division_->known_increment = mixture.known_row - 1;
 }
 
 RowChange RowEquations::advance_straight(double largest) {

@@ -42,6 +42,8 @@ struct RowStepper::Impl {
   double gain = 0, weight = 1;  ///< of the equations, for contraction
   double contracted = -1;       ///< by which one more iteration's change would be less; negative: not known yet
   SeenContraction seen;         ///< of steps from extrapolated outputs, since the seed's last look
+  bool straight_is_enough = true;  ///< for one iteration, since then
+  std::int64_t arguments_until = -1;  ///< the newest row whose arguments are there, with those that a seed reads
 
   std::int64_t n = -1;         ///< newest row
   double largest[2] = {0, 0};  ///< |y| of the newest two rows
@@ -318,9 +320,19 @@ struct RowStepper::Impl {
   /// as good as from outputs evaluated where they are expected to look, and spares that.
   RowChange advance_first() {
     if (!mixture) return advance_seeded(seed.order());
+    if (goes_straight()) {
+      const RowChange moved = equations.advance_straight(largest_ever);
+      if (overflowed(moved.largest) || is_enough(moved.change, contraction_now(), moved.largest)) return moved;
+      straight_is_enough = false;
+    }
+    if (arguments_until != n) equations.find_arguments();
+    arguments_until = n + 1;
     if (extrapolates_outputs()) return advance_from_outputs();
     return equations.advance_extrapolated(seed.order(), largest_ever);
   }
+  /// Along straight lines no rows of arguments are read, and none are made: the seed's next look asks for those of some
+  /// steps before it.
+  bool goes_straight() const { return straight_is_enough && equations.goes_straight() && seed.reads_one_increment(n); }
   bool extrapolates_outputs() const {
     return mixture && seed.order_of_outputs() > 0 && equations.can_extrapolate_outputs(seed.order_of_outputs());
   }
@@ -348,7 +360,8 @@ struct RowStepper::Impl {
   /// what most steps take.
   bool iterate(double& value) {
     const double next_change = contraction_now();
-    if (seed.choose(n, tolerance, next_change, estimates ? next_change : 1 / weight)) seen.forget();
+    if (seed.choose(n, tolerance, next_change, estimates ? next_change : 1 / weight))
+      seen.forget(), straight_is_enough = true;
     iterations = 1;
     const RowChange moved = advance_first();
     value = moved.largest;
@@ -466,6 +479,7 @@ void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   s.n = static_cast<std::int64_t>(rows.size()) - 1;
   s.equations.begin(s.n);
   s.equations.evaluate_outputs();
+  s.arguments_until = s.n;
   s.seed.restart();
 }
 
