@@ -52,11 +52,11 @@ inline Pack times_sign(Pack x, Pack sign) {
 }
 
 /// Where reduction by two parts of π is as good as exact; beyond it the library's sine is used in that lane.
-inline constexpr double largest_reduced = 1e6;
+inline constexpr double largest_reduced = 3e6;
 
-// π = π₁ + π₂ + 7e-27, π₁ of 32 bits. For |x| ≤ 1e6 the n below has at most 20 bits (a half included), so nπ₁ is exact,
+// π = π₁ + π₂ + 7e-27, π₁ of 32 bits. For |x| ≤ 3e6 the n below has at most 21 bits (a half included), so nπ₁ is exact,
 // and so is x − nπ₁: a multiple of the last bit of x or of 2⁻³¹, and no larger than x or than 2. The error of nπ₂ is
-// below 3.2e5·(2⁻³³·2⁻⁵³ + 7e-27) = 7e-21: of the whole reduction only the last subtraction rounds. None of this needs
+// below 9.6e5·(2⁻³³·2⁻⁵³ + 7e-27) = 2e-20: of the whole reduction only the last subtraction rounds. None of this needs
 // a fused multiply–add, or is spoiled by one.
 inline constexpr double pi_1 = 0x1.921fb544p+1, pi_2 = 0x1.0b4611a626331p-33, over_pi = 0x1.45f306dc9c883p-2;
 
@@ -129,7 +129,7 @@ template <class Function>
 
 }  // namespace detail
 
-/// sin x = (−1)ⁿ sin(x − nπ), n the integer nearest to x/π. Error below 2.5e-16 absolute for |x| ≤ 1e6 (measured:
+/// sin x = (−1)ⁿ sin(x − nπ), n the integer nearest to x/π. Error below 2.5e-16 absolute for |x| ≤ 3e6 (measured:
 /// 1.9e-16 with fused multiply–adds, 2.2e-16 without). sin(−0) is +0.
 inline Pack sin(Pack x) {
   return detail::asked(x, detail::sine_in_reach(x), detail::largest_reduced, [](double y) { return std::sin(y); });
