@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "jets/pack_gather.hpp"
 #include "schemes/block_solver.hpp"
 #include "schemes/row_kernel.hpp"
 
@@ -226,10 +227,8 @@ void SlabEquations::evaluate(const Batch& b, const SectionRing& ring, std::int64
   double* const y = reinterpret_cast<double*>(y_.data());
   double* const r = reinterpret_cast<double*>(r_.data());
   for (int i = 0; i < b.size; ++i) {
-    const double* const row = ring.row(J + value_row_[b.first_value + at(i)]);
     const std::size_t n = b.first_read + at(i * b.padded + first);
-    Pack value;
-    for (int l = 0; l < lanes; ++l) value.v[l] = row[place_[n + at(l)]];
+    Pack value = delf::gather(ring.row(J + value_row_[b.first_value + at(i)]), place_.data() + n);
     if (!add_.empty())
       for (int l = 0; l < lanes; ++l) value.v[l] += add_[n + at(l)];
     y_[at(i)] = value;
@@ -248,19 +247,19 @@ void SlabEquations::evaluate(const Batch& b, const SectionRing& ring, std::int64
   }
 }
 
-/// E and `absolute` have one number more than there are equations, which takes what belongs to none.
+/// E and `absolute` have one number more than there are equations, which takes what belongs to none: what a pack repeats,
+/// too.
 void SlabEquations::add_residual(const Batch& b, const SectionRing& ring, std::int64_t J, double* E,
                                  double* absolute) const {
+  const auto add = [](Pack r, double* to, const int* equation) { scatter(delf::gather(to, equation) + r, to, equation); };
   for (int s = 0; s < b.padded; s += lanes) {
     evaluate(b, ring, J, s);
-    const double* const r = reinterpret_cast<const double*>(r_.data());
-    const int held = std::min(lanes, b.stencils - s);
     for (int i = 0; i < b.size; ++i) {
       if (!written_[b.first_value + at(i)]) continue;
+      // No two stencils of a row have the same equation at the same value.
       const int* const equation = equation_.data() + b.first_read + at(i * b.padded + s);
-      for (int l = 0; l < held; ++l) E[equation[l]] += r[i * lanes + l];
-      if (absolute)
-        for (int l = 0; l < held; ++l) absolute[equation[l]] += std::abs(r[i * lanes + l]);
+      add(r_[at(i)], E, equation);
+      if (absolute) add(abs(r_[at(i)]), absolute, equation);
     }
   }
 }

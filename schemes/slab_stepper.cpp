@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "jets/pack_gather.hpp"
 #include "schemes/extrapolation.hpp"
 #include "schemes/flush_denormals.hpp"
 #include "schemes/slab_extent.hpp"
@@ -48,13 +49,15 @@ std::vector<SlabStepper::Unknowns> SlabStepper::list_unknowns(const SlabEquation
   std::vector<Unknowns> lists;
   for (int n = 0; n < equations.size(); ++n) {
     const Node& u = equations.unknown(n);
-    const bool field = system_.component(u.component).role == Role::field;
-    auto list =
-        std::ranges::find_if(lists, [&](const Unknowns& l) { return l.time == u.site.time && l.field == field; });
-    if (list == lists.end()) list = lists.insert(list, {u.site.time, field, {}, {}});
+    const Role role = system_.component(u.component).role;
+    auto list = std::ranges::find_if(lists, [&](const Unknowns& l) { return l.time == u.site.time && l.role == role; });
+    if (list == lists.end()) list = lists.insert(list, {u.site.time, role, {}, {}});
     list->numbers.push_back(n);
     list->places.push_back(u.site.space * components_ + u.component);
   }
+  for (Unknowns& list : lists)
+    for (std::vector<int>* numbers : {&list.numbers, &list.places})
+      numbers->resize((numbers->size() + lanes - 1) / lanes * lanes, numbers->back());
   // Inner nodes that have no past take the value of their cell's vertex: fields come first.
   std::ranges::stable_partition(lists, &Unknowns::field);
   return lists;
@@ -112,7 +115,7 @@ void SlabStepper::seed(Parity& p, std::int64_t J, int most_order) {
   std::copy_n(ring_->row(J + future_ - 1), size, ring_->row(J + future_));
   for (const Unknowns& unknowns : p.unknowns) {
     // Starting rows hold the fields; multipliers and inner nodes are known from the slabs that were solved.
-    const std::int64_t available = unknowns.field ? J + unknowns.time : known_;
+    const std::int64_t available = unknowns.field() ? J + unknowns.time : known_;
     const int order = static_cast<int>(std::min<std::int64_t>(most_order, available - 1));
     if (order < 0) {
       seed_without_past(unknowns, J);
@@ -160,19 +163,22 @@ std::optional<int> SlabStepper::crossing(const double* row) const {
 SlabStepper::Change SlabStepper::take_change(const Parity& p, std::int64_t J) {
   // A field that passes through zero has the scale that it had before.
   Change result{.value = std::max(largest_[0], largest_[1])};
+  Pack most_change(0.0), most_y(0.0), most_asked(0.0);
   for (const Unknowns& unknowns : p.unknowns) {
     double* const row = ring_->row(J + unknowns.time);
-    for (std::size_t i = 0; i < unknowns.places.size(); ++i) {
-      double& y = row[unknowns.places[i]];
-      const double by = change_[static_cast<std::size_t>(unknowns.numbers[i])];
-      y -= by;
-      result.finite = result.finite && !overflowed(std::abs(y));
-      // Multipliers are not asked: they have no scale of their own, and converge with what they act on.
-      if (!unknowns.field && system_.component(unknowns.places[i] % components_).role == Role::multiplier) continue;
-      result.change = std::max(result.change, std::abs(by));
-      result.value = std::max(result.value, std::abs(y));
+    // Multipliers are not asked: they have no scale of their own, and converge with what they act on.
+    const bool asked = unknowns.role != Role::multiplier;
+    for (std::size_t i = 0; i < unknowns.places.size(); i += lanes) {
+      const Pack by = gather(change_.data(), unknowns.numbers.data() + i);
+      const Pack y = gather(row, unknowns.places.data() + i) - by;
+      scatter(y, row, unknowns.places.data() + i);
+      most_y = largest_magnitude(most_y, y);
+      if (asked) most_change = largest_magnitude(most_change, by), most_asked = largest_magnitude(most_asked, y);
     }
   }
+  result.finite = !overflowed(max_or_nan(most_y));
+  result.change = max_or_nan(most_change);
+  result.value = std::max(result.value, max_or_nan(most_asked));
   return result;
 }
 

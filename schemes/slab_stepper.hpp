@@ -44,9 +44,10 @@ class SlabStepper final : public StepMethod {
   /// Unknowns whose pasts are as long: those in one row of which as many slabs are known.
   struct Unknowns {
     int time;  ///< of their row, from J
-    bool field;
-    std::vector<int> numbers;  ///< of the slab
-    std::vector<int> places;   ///< site·C + component
+    Role role;
+    /// Of the slab, and site·C + component. Packs are whole: what the last one has too much repeats the last unknown.
+    std::vector<int> numbers, places;
+    bool field() const { return role == Role::field; }
   };
   enum class Matrix { none, constant, jacobian };
   struct Parity {
