@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "jets/pack_gather.hpp"
+
 namespace delf {
 
 std::unique_ptr<ArcSolver> ArcSolver::make(const SiteGroups& groups, Entries entries) {
@@ -248,12 +250,8 @@ template <int size>
 void ArcSolver::solve_groups_of(const double* rhs, double* x) const {
   const int b = size > 0 ? size : b_;
   Pack r[largest_group];
-  const auto gather = [&](int t) {
-    for (int i = 0; i < b; ++i)
-      for (int l = 0; l < lanes; ++l) r[i].v[l] = rhs[row_[at((t * b + i) * lanes + l)]];
-  };
   for (int t = 0; t < arc_; ++t) {
-    gather(t);
+    for (int i = 0; i < b; ++i) r[i] = gather(rhs, &row_[at((t * b + i) * lanes)]);
     const Pack *D = part(diagonal, t), *L = part(lower, t);
     Pack* const z = z_.data() + t * b;
     if (t > 0)
@@ -276,7 +274,7 @@ void ArcSolver::solve_groups_of(const double* rhs, double* x) const {
     for (int i = 0; i < b; ++i) {
       Pack value = z_[at(t * b + i)];
       for (int m = 0; m < b; ++m) value -= P[i * b + m] * s_left[m] + Q[i * b + m] * s_right[m];
-      for (int l = 0; l < lanes; ++l) x[column_[at((t * b + i) * lanes + l)]] = value[l];
+      scatter(value, x, &column_[at((t * b + i) * lanes)]);
     }
   }
 }
