@@ -189,8 +189,8 @@ DensityStructure structure_of(const D& density) {
   return s;
 }
 
-/// The largest bound on |φ|, of 1, 10, …, 1e6 and 3e6, below which f(bound) is in reach of packs' polynomials; −1 if none
-/// is.
+/// The largest bound on |φ|, of 1, 10, …, 1e6 and 3e6, below which f(bound) is in reach of packs' polynomials; −1 if
+/// none is.
 template <class Function>
 double bound_in_reach(const Function& f) {
   if (f(detail::largest_reduced).in_reach) return detail::largest_reduced;
