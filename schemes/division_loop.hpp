@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cmath>
+
 #include "schemes/argument_loop.hpp"
+#include "schemes/largest_terms.hpp"
 #include "schemes/row_increment.hpp"
 #include "schemes/row_kernel.hpp"
 
@@ -13,7 +16,7 @@ inline constexpr int most_past_rows_divided = 5;
 template <int past_rows, int parts>
 class DivisionByArguments {
  public:
-  static constexpr bool finds_ahead = parts == 1, fetches = false;
+  static constexpr bool finds_ahead = parts == 1, fetches = false, measures = false, goes_by_two = false;
   DivisionByArguments(const DivisionRows& given, const RowIncrement& rows)
       : unknown_(given.arguments), known_(given.arguments.known), pass_(rows) {}
   [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) const { return unknown_(at); }
@@ -36,29 +39,25 @@ class DivisionByArguments {
   __builtin_prefetch(row + at + packs * lanes);
 }
 
-/// The same where the argument is that of straight lines in time, with no rows of its own,
+/// What is looked at where it has no rows of its own, of y = row, or along straight lines of y = row + v,
 ///
-///     u(i) = Σ_p weights[p] (y + v)(i + p),        known(i) = y(i + known_site) − known_increment v(i),
-///
-/// and the new row may be written over the old one. It differs from the straight line by w, whose largest value is the
-/// change: what u changes by is no more than that times the sum of the weights.
-template <int parts>
-class StraightDivision {
+///     u(i) = Σ_p weights[p] y(i + p),        known(i) = known row(i + known_site) − known_increment v(i).
+template <int parts, bool straight>
+class MixtureOnTheWay {
  public:
-  static constexpr bool finds_ahead = true, fetches = parts > 1;
-  StraightDivision(const DivisionRows& given, const RowIncrement& rows)
-      : y_(rows.y_before),
+  static constexpr bool fetches = straight && parts > 1, goes_by_two = true;
+  MixtureOnTheWay(const DivisionRows& given, const RowIncrement& rows, const double* row)
+      : row_(row),
         v_(rows.v_before),
         known_(given.arguments.known),
         known_increment_(given.known_increment),
-        pass_(rows),
         weights_(rows.look.weights, 1) {
     const std::ptrdiff_t begin = given.arguments.layout->at(0);
-    for (int p = 0; p + 1 < parts; ++p) ahead_.take(straight(begin + p * lanes));
+    for (int p = 0; p + 1 < parts; ++p) ahead_.take(value(begin + p * lanes));
   }
   [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) {
-    if constexpr (fetches) fetch_ahead(y_, at), fetch_ahead(v_, at);
-    ahead_.take(straight(at + (parts - 1) * lanes));
+    if constexpr (fetches) fetch_ahead(row_, at), fetch_ahead(v_, at);
+    ahead_.take(value(at + (parts - 1) * lanes));
     return weights_.added(Pack(0.0), ahead_);
   }
   [[gnu::always_inline]] Pack known(std::ptrdiff_t at) const {
@@ -66,19 +65,53 @@ class StraightDivision {
     if constexpr (parts > 1) return y;
     else return y - known_increment_ * Pack::load(v_ + at);
   }
+
+ private:
+  [[gnu::always_inline]] Pack value(std::ptrdiff_t at) const {
+    if constexpr (straight) return Pack::load(row_ + at) + Pack::load(v_ + at);
+    else return Pack::load(row_ + at);
+  }
+
+  const double *row_, *v_, *known_;
+  double known_increment_;
+  PackWeights<parts> weights_;
+  LastPacks<parts> ahead_;
+};
+
+/// The step along straight lines; the new row may be written over the old one. It differs from the straight line by w, whose
+/// largest value is the change: what u changes by is no more than that times the sum of the weights.
+template <int parts>
+class StraightDivision : public MixtureOnTheWay<parts, true> {
+ public:
+  static constexpr bool measures = false;
+  StraightDivision(const DivisionRows& given, const RowIncrement& rows)
+      : MixtureOnTheWay<parts, true>(given, rows, rows.y_before), pass_(rows) {}
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) { pass_(at, w); }
   RowChange closed(const DivisionRows& given, const RowIncrement& rows) {
     return pass_.closed(*given.arguments.layout, rows);
   }
 
  private:
-  [[gnu::always_inline]] Pack straight(std::ptrdiff_t at) const { return Pack::load(y_ + at) + Pack::load(v_ + at); }
-
-  const double *y_, *v_, *known_;
-  double known_increment_;
   IncrementPass<1, Order::ascending, Look::increment> pass_;
-  PackWeights<parts> weights_;
-  LastPacks<parts> ahead_;
+};
+
+/// No step: by how much the row that is there misses the w that its own outputs give, E = w − (v − v_before).
+template <int parts>
+class MeasuredDivision : public MixtureOnTheWay<parts, false> {
+ public:
+  static constexpr bool measures = true;
+  MeasuredDivision(const DivisionRows& given, const RowIncrement& rows)
+      : MixtureOnTheWay<parts, false>(given, rows, rows.y), v_before_(rows.v_before), v_(rows.v) {}
+  /// `absolute`: Σ |terms| of w.
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w, Pack absolute) {
+    const Pack change = Pack::load(v_ + at) - Pack::load(v_before_ + at);
+    largest_(at, w - change, absolute + abs(change));
+  }
+  const LargestTerms& largest() const { return largest_; }
+
+ private:
+  const double *v_before_, *v_;
+  LargestTerms largest_;
 };
 
 /// A step of DivisionRows in one loop. The new row is made one pack after its outputs: what waits for an output would
@@ -97,21 +130,21 @@ template <int old, int parts, class Output, class Division>
   const Pack constant(given.constant);
   const RowLayout& layout = *given.arguments.layout;
   const std::ptrdiff_t begin = layout.at(0);
-  Pack here = Pack::load(y + begin), last = here - Pack::load(y + begin - lanes);
-  Pack last_old = old == 2 ? Pack::load(old_row + begin - lanes) : Pack(0.0);
+  Pack here = Pack::load(y + begin), last = here - Pack::load(y + begin - lanes), last_size = abs(last);
+  Pack last_old = old == 2 ? Pack::load(old_row + begin - lanes) : Pack(0.0), last_old_size = abs(last_old);
   struct Evaluated {
     Pack E, E_old;
   };
-  using Argument = decltype(output.argument(Pack(), Pack()));
+  using Found = decltype(output.argument(Pack(), Pack()));
   const auto find = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
     return output.argument(division.unknown(at), division.known(at));
   };
-  const auto evaluate = [&](std::ptrdiff_t at, const Argument& found) __attribute__((always_inline)) {
+  const auto evaluate = [&](std::ptrdiff_t at, const Found& found) __attribute__((always_inline)) {
     if constexpr (Division::fetches) fetch_ahead(old_row, at);
     Evaluated e;
     e.E = output(found, at);
     e.E_old = old == 2 ? Pack::load(old_row + at) : Pack(0.0);  // before it is written over
-    e.E.store(out + at);
+    if constexpr (!Division::measures) e.E.store(out + at);
     return e;
   };
   const auto make = [&](std::ptrdiff_t at, const Evaluated& e) __attribute__((always_inline)) {
@@ -121,22 +154,57 @@ template <int old, int parts, class Output, class Division>
     Pack outputs = e.E;
     if constexpr (old == 2) outputs = (e.E_old + last_old) + outputs;
     last_old = e.E_old;
-    division(at, w + of_outputs * outputs);
+    if constexpr (Division::measures) {
+      const Pack next_size = abs(next), old_size = abs(e.E_old);
+      const Pack sizes = old == 2 ? (old_size + last_old_size) + abs(e.E) : abs(e.E);
+      division(at, w + of_outputs * outputs,
+               std::abs(of_neighbours) * (next_size + last_size) + std::abs(of_outputs) * sizes);
+      last_size = next_size, last_old_size = old_size;
+    } else {
+      division(at, w + of_outputs * outputs);
+    }
   };
   const std::ptrdiff_t end = layout.at(layout.packs());
-  Evaluated ready = evaluate(begin, find(begin));
-  std::ptrdiff_t ahead = begin + lanes;
-  Argument found{};
-  if (Division::finds_ahead && ahead < end) found = find(ahead);
-  for (; ahead < end; ahead += lanes) {
-    const Argument sought = Division::finds_ahead ? found : find(ahead);
-    if (Division::finds_ahead && ahead + lanes < end) found = find(ahead + lanes);
-    const Evaluated next = evaluate(ahead, sought);
-    make(ahead - lanes, ready);
-    ready = next;
+  std::ptrdiff_t at = begin;
+  if constexpr (Division::goes_by_two) {
+    constexpr std::ptrdiff_t two = 2 * lanes;
+    Found found = find(begin), found_next = find(begin + lanes);
+    Evaluated ready = evaluate(begin, found), ready_next = evaluate(begin + lanes, found_next);
+    at += two;
+    const auto find_two = [&](std::ptrdiff_t to) __attribute__((always_inline)) {
+      found = find(to), found_next = find(to + lanes);
+    };
+    const auto go_on = [&]<bool finds_more>() __attribute__((always_inline)) {
+      const Found sought = found, sought_next = found_next;
+      if (finds_more) find_two(at + two);
+      const Evaluated next = evaluate(at, sought), after_next = evaluate(at + lanes, sought_next);
+      make(at - two, ready);
+      make(at - lanes, ready_next);
+      ready = next, ready_next = after_next;
+      at += two;
+    };
+    if (at + lanes < end) find_two(at);
+    while (at + 3 * lanes < end) go_on.template operator()<true>();
+    if (at + lanes < end) go_on.template operator()<false>();
+    const Evaluated last_one = at < end ? evaluate(at, find(at)) : Evaluated{};
+    make(at - two, ready);
+    make(at - lanes, ready_next);
+    if (at < end) make(at, last_one);
+  } else {
+    Evaluated ready = evaluate(at, find(at));
+    at += lanes;
+    Found found{};
+    if (Division::finds_ahead && at < end) found = find(at);
+    for (; at < end; at += lanes) {
+      const Found sought = Division::finds_ahead ? found : find(at);
+      if (Division::finds_ahead && at + lanes < end) found = find(at + lanes);
+      const Evaluated next = evaluate(at, sought);
+      make(at - lanes, ready);
+      ready = next;
+    }
+    make(at - lanes, ready);
   }
-  make(ahead - lanes, ready);
-  layout.fill_halo(out, given.arguments.read_before, given.arguments.read_after);
+  if constexpr (!Division::measures) layout.fill_halo(out, given.arguments.read_before, given.arguments.read_after);
   given_division = division;
 }
 
@@ -156,6 +224,13 @@ RowChange straight_division_loop(const Output& output, const DivisionRows& given
   StraightDivision<parts> division(given, rows);
   division_loop<old, parts>(output, given, division);
   return division.closed(given, rows);
+}
+/// Of E' where the row stands; no row is made.
+template <int old, int parts, class Output>
+LargestTerms measured_division_loop(const Output& output, const DivisionRows& given, const RowIncrement& rows) {
+  MeasuredDivision<parts> division(given, rows);
+  division_loop<old, parts>(output, given, division);
+  return division.largest();
 }
 
 }  // namespace delf

@@ -140,6 +140,11 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     else if (given.arguments.near) return straight_division_loop<0, 1>(PartOfPair<NearPack>{stencil_}, given, rows);
     else return straight_division_loop<0, 1>(PartOfPair<Pack>{stencil_}, given, rows);
   }
+  LargestTerms measure_division(const DivisionRows& given, const RowIncrement& rows) const override {
+    if constexpr (!divided) return {};
+    else if (given.arguments.near) return measured_division_loop<0, 1>(PartOfPair<NearPack>{stencil_}, given, rows);
+    else return measured_division_loop<0, 1>(PartOfPair<Pack>{stencil_}, given, rows);
+  }
 
  private:
   static const double* row_of(const SlabRows& rows, int l) {

@@ -182,7 +182,7 @@ RowChange RowEquations::advance(bool compared) {
 }
 
 bool RowEquations::can_go_in_place() const {
-  if (arguments_ || !(is_streamed_ || straight_) || history_ > 2 || outputs_[0].rows() > 2) return false;
+  if (arguments_ || !(is_streamed_ || divides_straight()) || history_ > 2 || outputs_[0].rows() > 2) return false;
   for (const Term& t : equations_.bulk[0].terms)
     if (t.source == Source::increment) return false;
   for (const Argument& argument : outputs_[0].kernel->arguments())
@@ -338,7 +338,7 @@ std::size_t RowEquations::bytes_to_come(int parts, bool residual) const {
     const std::size_t window = static_cast<std::size_t>(window_packs(last)) * lanes;
     total += missing(RowBuffer::bytes_of(window) + RowBuffer::bytes_of(row), candidate_.bytes());
   }
-  if (straight_) total += missing(RowBuffer::bytes_of(row), candidate_.bytes());
+  if (divides_straight()) total += missing(RowBuffer::bytes_of(row), candidate_.bytes());
   return total;
 }
 

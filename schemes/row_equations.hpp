@@ -93,7 +93,7 @@ class RowEquations {
   /// From y_n + v_n, which need not be written down: strip by strip, or in one loop. The change is then a bound: the
   /// largest of w, times the weights of what is looked at.
   bool goes_straight() const {
-    return straight_.has_value() || (is_streamed_ && outputs_[0].kernel->evaluates_straight());
+    return divides_straight() || (is_streamed_ && outputs_[0].kernel->evaluates_straight());
   }
   /// No |y| of all rows so far is above `largest`.
   RowChange advance_straight(double largest);
@@ -224,8 +224,8 @@ class RowEquations {
     return {packs.first + static_cast<int>((packs.first + n_ + age) % 2 != 0), packs.last, 2};
   }
   void make_room_for_past_outputs(int count);
-  void build_division(const Mixture&);
-  void build_straight_lines(const Mixture&);
+  void build_division(const Mixture&, bool in_steps);
+  bool divides_straight() const { return divides_in_steps_ && on_the_way_; }
   void evaluate_arguments(At);
   inline const ArgumentRow& argument_row();
   double time_of_outputs() const { return static_cast<double>(n_ + outputs_[0].newest) * time_step_; }
@@ -238,8 +238,10 @@ class RowEquations {
     const Outputs& o = outputs_[0];
     return output(o, o.newest - (in_place_ && o.rows() > 1 ? 1 : 0), c);
   }
-  RowChange divide(const ArgumentRow&, double* output, bool along_straight_lines);
-  RowChange divide_straight(double largest_straight);
+  const DivisionRows& division(const ArgumentRow&, double* output);
+  RowChange divide(const ArgumentRow&, double* output);
+  /// Where arguments have no rows of their own; none of what is looked at is above `largest`.
+  ArgumentRow argument_on_the_way(double largest);
   RowChange stream(At, const std::function<void(PackRange)>& find, double largest = unknown_largest);
   inline void evaluate_at(const ArgumentRow&);
   inline RowChange advance_at(const ArgumentRow&);
@@ -290,8 +292,9 @@ class RowEquations {
   std::vector<double*> output_places_;          ///< and where it stands afterwards
   PackWindow work_window_;                      ///< and its solver's work space
   std::optional<ArgumentRows> arguments_;
-  std::optional<DivisionRows> division_;  ///< if a step at arguments is one loop
-  std::optional<Mixture> straight_;       ///< what is looked at along straight lines, where that is one loop
+  std::optional<DivisionRows> division_;  ///< if a step at arguments can be one loop
+  bool divides_in_steps_ = false;         ///< and is
+  std::optional<Mixture> on_the_way_;     ///< what is looked at, if such a loop can find it
   std::vector<Argument> whole_{{{{Site{}, 1.0}}}},
       looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
   std::vector<double*> w_rows_, slab_out_;

@@ -27,7 +27,7 @@ void RowEquations::build_arguments(const Mixture& mixture, int most_order) {
   // Rows of 640 sites and less stay in the first level of the cache: two loops after each other then take a sixth less
   // than one that has more in hand than there are registers for.
   constexpr int packs_in_cache = 80;
-  if (layout_.packs() > packs_in_cache) build_division(mixture), build_straight_lines(mixture);
+  build_division(mixture, layout_.packs() > packs_in_cache);
 }
 
 /// Of bricks those of the next row stand elsewhere.
@@ -41,7 +41,8 @@ void RowEquations::make_room_for_past_outputs(int count) {
   own_.past_outputs.resize(static_cast<std::size_t>(count));
 }
 
-void RowEquations::build_division(const Mixture& mixture) {
+/// What the nonlinear part looks at can then be worked out from y_n and v_n on the way, or from y_{n+1}.
+void RowEquations::build_division(const Mixture& mixture, bool in_steps) {
   if (bricks_ || is_stored_ || !solver_[0]->is_a_number()) return;
   const int newest = outputs_[0].newest;
   const double scale = -solver_[0]->right_side_scale(0);
@@ -61,7 +62,15 @@ void RowEquations::build_division(const Mixture& mixture) {
     place = coefficient;
   }
   division.constant = scale * equations_.bulk[0].constant;
-  if (alike && differences == 2 && outputs_[0].kernel->divides(old, mixture.parts)) division_ = division;
+  if (!alike || differences != 2 || !outputs_[0].kernel->divides(old, mixture.parts)) return;
+  division_ = division;
+  divides_in_steps_ = in_steps;
+  if (mixture.is_known_alike || mixture.known_row > 2) return;
+  on_the_way_ = mixture;
+  RowIncrement& rows = increment(0);
+  std::ranges::copy(mixture.weights, rows.look.weights);
+  rows.v_has_halo = rows.v_has_halo || (in_steps && mixture.parts > 1);
+  division_->known_increment = mixture.known_row - 1;
 }
 
 double RowEquations::advance_from_outputs(int order) {
@@ -79,47 +88,40 @@ void RowEquations::find_arguments() {
   arguments_->begin(n_);
 }
 
-RowChange RowEquations::divide(const ArgumentRow& row, double* output, bool along_straight_lines) {
-  const RowKernel& kernel = *outputs_[0].kernel;
-  const RowIncrement& rows = increment(0);
+const DivisionRows& RowEquations::division(const ArgumentRow& row, double* output) {
   division_->arguments = row;
-  division_->y = rows.y_before;
+  division_->y = increment(0).y_before;
   division_->output = output;
   division_->old_output = old_output();
-  return along_straight_lines ? kernel.divide_straight(*division_, rows) : kernel.divide(*division_, rows);
+  return *division_;
 }
 
-/// Where a step is one loop, what the nonlinear part looks at can be worked out from y_n and v_n on the way.
-void RowEquations::build_straight_lines(const Mixture& mixture) {
-  if (!division_ || mixture.is_known_alike || mixture.known_row > 2) return;
-  straight_ = mixture;
-  RowIncrement& rows = increment(0);
-  std::ranges::copy(mixture.weights, rows.look.weights);
-  rows.v_has_halo = rows.v_has_halo || mixture.parts > 1;
-  division_->known_increment = mixture.known_row - 1;
+RowChange RowEquations::divide(const ArgumentRow& row, double* output) {
+  return outputs_[0].kernel->divide(division(row, output), increment(0));
 }
 
 RowChange RowEquations::advance_straight(double largest) {
   const double largest_straight = 3 * with_turn(largest);  // |y_n + v_n| = |2y_n − y_{n−1}|
-  RowChange w = straight_ ? divide_straight(largest_straight) : stream(At::straight_line, {}, largest_straight);
+  RowChange w = divides_straight() ? outputs_[0].kernel->divide_straight(
+                                         division(argument_on_the_way(largest_straight), newest_output()), increment(0))
+                                   : stream(At::straight_line, {}, largest_straight);
   w.change *= most_weight();
   return w;
 }
 
-RowChange RowEquations::divide_straight(double largest_straight) {
+ArgumentRow RowEquations::argument_on_the_way(double largest) {
   const RowIncrement& rows = increment(0);
-  ArgumentRow row{.layout = &layout_,
-                  .unknown = nullptr,
-                  .known = rows.y_before + static_cast<std::ptrdiff_t>(straight_->known_site) * lanes,
-                  .known_weight = straight_->known_weight,
-                  .positions = positions(),
-                  .t = time_of_outputs(),
-                  .time_step = time_step_,
-                  .space_step = space_step_,
-                  .read_before = -outputs_[0].lowest,
-                  .read_after = outputs_[0].highest,
-                  .near = largest_straight <= outputs_[0].kernel->near_below()};
-  return divide(row, newest_output(), true);
+  return {.layout = &layout_,
+          .unknown = nullptr,
+          .known = rows.y_before + static_cast<std::ptrdiff_t>(on_the_way_->known_site) * lanes,
+          .known_weight = on_the_way_->known_weight,
+          .positions = positions(),
+          .t = time_of_outputs(),
+          .time_step = time_step_,
+          .space_step = space_step_,
+          .read_before = -outputs_[0].lowest,
+          .read_after = outputs_[0].highest,
+          .near = largest <= outputs_[0].kernel->near_below()};
 }
 
 void RowEquations::evaluate_arguments(At at) {

@@ -25,7 +25,7 @@ void RowEquations::build_looks() {
   if (d_ == 1 && equations_.exceptional.empty() && !solver_[1] && !equations_.correction_form && turn_ == 0 &&
       one_age && !arguments_ && layout_.packs() >= packs_in_cache) {
     is_streamed_ = solver_[0]->stream(layout_, right_side(0), {}) != nullptr;
-    if (const auto mixture = Mixture::of(system_)) build_division(*mixture), build_straight_lines(*mixture);
+    if (const auto mixture = Mixture::of(system_)) build_division(*mixture, true);
   }
   if (is_streamed_)
     for (int c = 0; c < outputs_[0].kernel->outputs(); ++c)

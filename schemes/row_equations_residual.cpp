@@ -21,6 +21,10 @@ double RowEquations::residual(std::int64_t n, double largest) {
     LargestTerms terms[RowKernel::most_components];
     measure_loop(terms);
     for (int a = 0; a < d_; ++a) take(terms[a], 1 / std::abs(solver_[0]->right_side_scale(a)));
+  } else if (on_the_way_) {
+    find_rows();
+    take(outputs_[0].kernel->measure_division(division(argument_on_the_way(with_turn(largest)), nullptr), increment(0)),
+         1 / std::abs(solver_[0]->right_side_scale(0)));
   } else {
     LargestTerms terms;
     measure_sums(terms, with_turn(largest));
@@ -84,7 +88,7 @@ void RowEquations::measure_sums(LargestTerms& all, double largest) {
 int RowEquations::residual_rows() const {
   int rows = equations_.exceptional.empty() ? 0 : 2 * d_;
   for (const Outputs& o : outputs_)
-    if (!is_one_loop()) rows += o.measured_rows();
+    if (!is_one_loop() && !on_the_way_) rows += o.measured_rows();
   return rows;
 }
 

@@ -51,7 +51,7 @@ inline RowChange RowEquations::advance_again(double largest) {
 }
 
 [[gnu::always_inline]] inline RowChange RowEquations::advance_at(const ArgumentRow& row) {
-  if (division_ && row.near && row.past_rows <= most_past_rows_divided) return divide(row, here_->output, false);
+  if (divides_in_steps_ && row.near && row.past_rows <= most_past_rows_divided) return divide(row, here_->output);
   evaluate_at(row);
   return make_new_row();
 }

@@ -6,6 +6,7 @@
 
 #include "jets/discrete_lagrangian.hpp"
 #include "jets/structure.hpp"
+#include "schemes/largest_terms.hpp"
 #include "schemes/row_increment.hpp"
 #include "schemes/row_layout.hpp"
 
@@ -126,6 +127,8 @@ class RowKernel {
   /// The same where u is that of straight lines, y_n + v_n in the place of y_{n+1}: there are no rows of it, and the
   /// new row, its increment and E' may be written over the old ones. The change is that from y_n + v_n: the largest of w.
   virtual RowChange divide_straight(const DivisionRows&, const RowIncrement&) const { return {}; }
+  /// How well the row that is there solves w = v − v_before, E' being evaluated at it and kept nowhere.
+  virtual LargestTerms measure_division(const DivisionRows&, const RowIncrement&) const { return {}; }
 
   /// Where the nonlinear part of the equation at a site is that of its own value alone, a step is one loop:
   ///

@@ -189,6 +189,11 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     else if (given.arguments.near) return straight_division_loop<2, 2>(slope<NearPack>(given.arguments), given, rows);
     else return straight_division_loop<2, 2>(slope<Pack>(given.arguments), given, rows);
   }
+  LargestTerms measure_division(const DivisionRows& given, const RowIncrement& rows) const override {
+    if constexpr (d != 1 || stride != 1) return {};
+    else if (given.arguments.near) return measured_division_loop<2, 2>(slope<NearPack>(given.arguments), given, rows);
+    else return measured_division_loop<2, 2>(slope<Pack>(given.arguments), given, rows);
+  }
 
   std::span<const int> explicit_neighbours() const override {
     if constexpr (goes_in_one_loop) return neighbours_within<reach>;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <array>
+
 #include "schemes/scheme.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
@@ -20,19 +22,21 @@ struct Uneven {
   }
 };
 
-/// The vertex scheme with masses m_a and slopes s_a of the potential, by hand:
-///     E_a = m_a ((h/k)² (y_{i+1} − 2y_i + y_{i−1}) − (v_{j+1} − v_j)) − h² s_a,        max |E| / max Σ |terms|
+/// A scheme with masses m_a and slopes s_a of the potential, which may be sums, by hand:
+///     E_a = m_a ((h/k)² (y_{i+1} − 2y_i + y_{i−1}) − (v_{j+1} − v_j)) − h² Σ s_a,        max |E| / max Σ |terms|
 double by_hand(const std::vector<double>& mass, const auto& slope, const Row& y, const Row& v, const Row& v_before) {
   const int d = static_cast<int>(mass.size()), N = static_cast<int>(y.size()) / d;
   double worst = 0, size = 0;
   for (int i = 0; i < N; ++i)
     for (int a = 0; a < d; ++a) {
       const auto at = [&](int site) { return static_cast<std::size_t>((site + N) % N * d + a); };
-      const double m = mass[static_cast<std::size_t>(a)], courant = h * h / (k * k), s = h * h * slope(i, a);
+      const double m = mass[static_cast<std::size_t>(a)], courant = h * h / (k * k);
       const double after = m * courant * (y[at(i + 1)] - y[at(i)]), before = m * courant * (y[at(i - 1)] - y[at(i)]),
                    w = m * (v[at(i)] - v_before[at(i)]);
-      worst = std::max(worst, std::abs(after + before - s - w));
-      size = std::max(size, std::abs(after) + std::abs(before) + std::abs(s) + std::abs(w));
+      double sum = after + before - w, absolute = std::abs(after) + std::abs(before) + std::abs(w);
+      for (const double s : slope(i, a)) sum -= h * h * s, absolute += std::abs(h * h * s);
+      worst = std::max(worst, std::abs(sum));
+      size = std::max(size, absolute);
     }
   return worst / size;
 }
@@ -69,7 +73,7 @@ void compare(const D& density, const std::vector<double>& mass, const auto& slop
         Row v = difference(stepper.row(0), y);
         plant(stepper, d, site, a, 1e-3);
         v[static_cast<std::size_t>(site * d + a)] += 1e-3;
-        const auto slope = [&](int i, int b) { return slope_at(&y[static_cast<std::size_t>(i * d)], b); };
+        const auto slope = [&](int i, int b) { return std::array{slope_at(&y[static_cast<std::size_t>(i * d)], b)}; };
         const double found = stepper.residual(), expected = by_hand(mass, slope, y, v, v_before);
         CHECK(found > 1e-6);
         CHECK(std::abs(found - expected) < 1e-9 * expected);
@@ -78,7 +82,58 @@ void compare(const D& density, const std::vector<double>& mass, const auto& slop
       }
 }
 
+/// One field of mass 1.3 in rows 0, 1 and 2 (the newest): the means of the triangles that touch site i in row 1, apex in
+/// the older row; and what (5.15) has in the place of sin φ.
+auto slopes_of(const std::string& scheme, const std::array<Row, 3>& rows) {
+  return [&, scheme](int i, int) {
+    const int N = static_cast<int>(rows[0].size());
+    const auto y = [&](int row, int site) {
+      return rows[static_cast<std::size_t>(row)][static_cast<std::size_t>((site + N) % N)];
+    };
+    const double m = 1.69;
+    if (scheme == "guo")
+      return std::vector{m * (std::cos(y(0, i)) - std::cos(y(2, i))) / (y(2, i) - y(0, i))};
+    std::vector<double> thirds;
+    for (const double mean : {y(1, i) + y(2, i) + y(2, i + 1), y(0, i) + y(1, i) + y(1, i + 1),
+                              y(0, i - 1) + y(1, i - 1) + y(1, i)})
+      thirds.push_back(m * std::sin(mean / 3) / 3);
+    return thirds;
+  };
+}
+
 }  // namespace
+
+TEST_CASE("the residual of a step that divides by a number is the scheme's by hand, wherever an error is planted") {
+  Random random(91);
+  for (const std::string scheme : {"triangle", "guo"})
+    for (const double height : {0.0, 4e6})  // beyond which sines are asked how far they are
+      for (const int N : {9, 24, 25, 37, 200, 1003})
+        for (const int site : {0, N / 2, N - 1}) {
+          CAPTURE(scheme, height, N, site);
+          Problem p = problem_of("sine-gordon");
+          p.mass = 1.3;
+          StepOptions options;
+          options.tolerance = 1e-13;
+          Evolution evolution = evolution_of(p, scheme, Lattice::circle(N, N * k), h, options);
+          Stepper& stepper = evolution.stepper();
+          std::vector<Row> start = random_rows(random, 2, N, 1);
+          for (Row& row : start)
+            for (double& y : row) y += height;
+          stepper.start(start);
+          for (int n = 0; n < 3; ++n) stepper.step();
+          CHECK(stepper.residual() < (height > 0 ? 1e-6 : 1e-12));
+          const std::array<Row, 3> rows{stepper.row(2), stepper.row(1), stepper.row(0)};
+          Row v = difference(rows[2], rows[1]);
+          plant(stepper, 1, site, 0, 1e-3);
+          v[static_cast<std::size_t>(site)] += 1e-3;
+          const double found = stepper.residual(),
+                       expected = by_hand({1}, slopes_of(scheme, rows), rows[1], v, difference(rows[1], rows[0]));
+          CHECK(found > 1e-4);
+          CHECK(std::abs(found - expected) < (height > 0 ? 1e-4 : 1e-9) * expected);
+          plant(stepper, 1, site, 0, std::numeric_limits<double>::quiet_NaN());
+          CHECK(std::isnan(stepper.residual()));
+        }
+}
 
 TEST_CASE("the residual of an explicit step is the scheme's by hand, wherever an error is planted") {
   compare(SineGordon{1.3}, {1}, [](const double* y, int) { return 1.69 * std::sin(y[0]); });
