@@ -95,8 +95,10 @@ std::vector<Case> cases() {
                  p.lattice = Lattice::circle(24, 2 * std::numbers::pi);
                }),
        true},
-      {"vu-quoc-li", problem(255, [](Problem& p) { p.method = "vu-quoc-li"; }), true}};
-  for (const char* stencil : {"rectangle", "rectangle-symmetric", "triangle", "nine-tuple"})
+      {"vu-quoc-li", problem(255, [](Problem& p) { p.method = "vu-quoc-li"; }), true},
+      {"guo", problem(255, [](Problem& p) { p.method = "guo"; }), false},
+      {"triangle", of_stencil(255, "triangle"), false}};
+  for (const char* stencil : {"rectangle", "rectangle-symmetric", "nine-tuple"})
     list.push_back({stencil, of_stencil(255, stencil), true});
   list.push_back({"hexagon", of_stencil(254, "hexagon"), true});
   for (const auto& [order, takes] : {std::pair(2, true), std::pair(6, false)})
