@@ -33,7 +33,7 @@ class DivisionByArguments {
 };
 
 /// From so many packs ahead. Processors that fetch ahead by themselves stop at the end of each page of memory: a tenth of a
-/// step of the triangle at 10⁶ sites. (5.15), which writes its rows beside the old ones, would lose by it.
+/// step of the triangle at 10⁶ sites. (5.15), with a sinc beside the sine, would not gain by it.
 [[gnu::always_inline]] inline void fetch_ahead(const double* row, std::ptrdiff_t at) {
   constexpr std::ptrdiff_t packs = 64;
   __builtin_prefetch(row + at + packs * lanes);
@@ -78,8 +78,8 @@ class MixtureOnTheWay {
   LastPacks<parts> ahead_;
 };
 
-/// The step along straight lines; the new row may be written over the old one. It differs from the straight line by w, whose
-/// largest value is the change: what u changes by is no more than that times the sum of the weights.
+/// The step along straight lines; the new row may be written over the old one. It differs from them by w, whose largest
+/// value is the change: what u changes by is no more than that times the sum of the weights.
 template <int parts>
 class StraightDivision : public MixtureOnTheWay<parts, true> {
  public:

@@ -185,10 +185,15 @@ bool RowEquations::can_go_in_place() const {
   if (arguments_ || !(is_streamed_ || divides_straight()) || history_ > 2 || outputs_[0].rows() > 2) return false;
   for (const Term& t : equations_.bulk[0].terms)
     if (t.source == Source::increment) return false;
-  for (const Argument& argument : outputs_[0].kernel->arguments())
-    for (const Argument::Part& part : argument.parts)
-      if (outputs_[0].newest + part.vertex.time < 0) return false;
-  return !outputs_[0].kernel->arguments().empty();
+  return !outputs_[0].kernel->arguments().empty() && (divides_straight() || !looks_back());
+}
+
+bool RowEquations::looks_back() const {
+  for (const Outputs& o : outputs_)
+    for (const Argument& argument : o.kernel->arguments())
+      for (const Argument::Part& part : argument.parts)
+        if (o.newest + part.vertex.time < 0) return true;
+  return false;
 }
 
 /// A stream's windows; and where steps in place write over the newest outputs, those of the row that can be gone back

@@ -99,6 +99,8 @@ class RowEquations {
   RowChange advance_straight(double largest);
   /// Steps of one of these kinds, of rows beyond the cache, read no rows before y_n, v_n and the newest outputs.
   bool can_go_in_place() const;
+  /// Outputs of the unknown row are those of a row before y_n too, which straight lines know from v_n.
+  bool looks_back() const;
   /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
   /// stream through the rows. A candidate that is found on the way is not kept.
   RowChange advance_streamed(const std::function<void(PackRange)>& find) { return stream(At::candidate, find); }

@@ -373,6 +373,11 @@ struct RowStepper::Impl {
   }
   /// After the first, whose change was not small enough.
   [[gnu::noinline]] bool iterate_on(double& value, double change, double next_change) {
+    if (rows_known < history && equations.looks_back()) {  // straight lines did not have to
+      step_again();
+      equations.begin(n);
+      change = advance_first().change;
+    }
     while (iterations < options.max_iterations) {
       const double before = change;
       // Arguments go on by themselves: the row is wanted only where one iteration more may not be the last, or shows what

@@ -97,7 +97,9 @@ std::vector<Case> cases() {
        true},
       {"vu-quoc-li", problem(255, [](Problem& p) { p.method = "vu-quoc-li"; }), true},
       {"guo", problem(255, [](Problem& p) { p.method = "guo"; }), false},
-      {"triangle", of_stencil(255, "triangle"), false}};
+      {"guo, a long row", problem(5000 * lanes + 1, [](Problem& p) { p.method = "guo"; }), false},
+      {"triangle", of_stencil(255, "triangle"), false},
+      {"triangle, a long row", of_stencil(5000 * lanes + 1, "triangle"), false}};
   for (const char* stencil : {"rectangle", "rectangle-symmetric", "nine-tuple"})
     list.push_back({stencil, of_stencil(255, stencil), true});
   list.push_back({"hexagon", of_stencil(254, "hexagon"), true});
