@@ -32,8 +32,8 @@ class DivisionByArguments {
   IncrementPass<parts, Order::ascending, Look::argument> pass_;
 };
 
-/// From so many packs ahead. Processors that fetch ahead by themselves stop at the end of each page of memory: a tenth of a
-/// step of the triangle at 10⁶ sites. (5.15), with a sinc beside the sine, would not gain by it.
+/// From so many packs ahead. Processors that fetch ahead by themselves stop at the end of each page of memory: a tenth of
+/// a step of the triangle at 10⁶ sites. (5.15), with a sinc beside the sine, would not gain by it.
 [[gnu::always_inline]] inline void fetch_ahead(const double* row, std::ptrdiff_t at) {
   constexpr std::ptrdiff_t packs = 64;
   __builtin_prefetch(row + at + packs * lanes);
@@ -115,8 +115,8 @@ class MeasuredDivision : public MixtureOnTheWay<parts, false> {
 };
 
 /// A step of DivisionRows in one loop. The new row is made one pack after its outputs: what waits for an output would
-/// keep the evaluation of the next ones waiting. Arguments are found one pack ahead where a tenth is gained by it; there
-/// are registers enough for that in some of these loops only.
+/// keep the evaluation of the next ones waiting. Arguments are found one pack ahead where a tenth is gained by it, and
+/// two packs evaluated beside each other where another tenth is: there are registers enough in some of these loops only.
 template <int old, int parts, class Output, class Division>
 [[gnu::__flatten__]] void division_loop(const Output& given_output, const DivisionRows& given,
                                         Division& given_division) {

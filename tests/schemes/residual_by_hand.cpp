@@ -82,8 +82,8 @@ void compare(const D& density, const std::vector<double>& mass, const auto& slop
       }
 }
 
-/// One field of mass 1.3 in rows 0, 1 and 2 (the newest): the means of the triangles that touch site i in row 1, apex in
-/// the older row; and what (5.15) has in the place of sin φ.
+/// One field of mass 1.3 in rows 0, 1 and 2 (the newest): sin φ at the means of the triangles that touch site i of row 1,
+/// one with two vertices in row 2, the others with one; and what (5.15) has in the place of sin φ.
 auto slopes_of(const std::string& scheme, const std::array<Row, 3>& rows) {
   return [&, scheme](int i, int) {
     const int N = static_cast<int>(rows[0].size());
