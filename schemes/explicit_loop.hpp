@@ -64,9 +64,9 @@ template <int reach, bool even, bool kept, class Value, Density D>
   std::array<Pack, d> last;
   for (int a = 0; a < d; ++a) last[a] = y[a][2 * reach] - y[a][2 * reach - 1];
   Pack squares(0.0);
-  // Of this pack, or of the next one.
-  const auto slope = [&](int beside, std::ptrdiff_t at) __attribute__((always_inline)) {
-    return density(value_jet<D, Value>([&](int a) __attribute__((always_inline)) { return y[a][reach + beside]; }, t,
+  // Of a pack that is not written over yet.
+  const auto slope = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
+    return density(value_jet<D, Value>([&](int a) __attribute__((always_inline)) { return Pack::load(now[a] + at); }, t,
                                        positions + at)).d;
   };
   const auto take = [&](const auto& incoming) __attribute__((always_inline)) {
@@ -99,22 +99,31 @@ template <int reach, bool even, bool kept, class Value, Density D>
       y_next.store(y_new[a] + at);
     }
   };
-  // Slopes are evaluated one pack ahead: what waits for them would keep the next ones waiting.
+  // Slopes are evaluated two packs ahead, two beside each other: what waits for them would keep the next ones waiting.
   int v = packs.first;
   if (v >= packs.last) return 0;
   std::ptrdiff_t at = origin + static_cast<std::ptrdiff_t>(v) * lanes;
-  take([&](int a) { return old_value(a, v + reach); });
-  std::array<Value, d> here = slope(0, at);
-  const auto go_until = [&](int end, const auto& incoming) __attribute__((always_inline)) {
-    for (; v < end; ++v, at += lanes) {
-      const std::array<Value, d> next = slope(1, at + lanes);
-      advance(at, here);
-      here = next;
-      take(incoming);
-    }
+  const auto incoming = [&](int a) { return old_value(a, v + reach); };
+  take(incoming);
+  const std::ptrdiff_t last_at = origin + static_cast<std::ptrdiff_t>(packs.last - 1) * lanes;
+  std::array<Value, d> here = slope(at), next = slope(std::min(at + lanes, last_at));
+  const auto step = [&](const std::array<Value, d>& of_here, const auto& source) __attribute__((always_inline)) {
+    advance(at, of_here);
+    ++v, at += lanes;
+    take(source);
   };
-  go_until(packs.last - 1 - reach, [&](int a) { return now[a] + at + (1 + reach) * lanes; });
-  go_until(packs.last - 1, [&](int a) { return old_value(a, v + 1 + reach); });
+  const auto inside = [&](int a) __attribute__((always_inline)) { return now[a] + at + reach * lanes; };
+  while (v < packs.last - 3 - reach) {
+    const std::array<Value, d> third = slope(at + 2 * lanes), fourth = slope(at + 3 * lanes);
+    step(here, inside);
+    step(next, inside);
+    here = third, next = fourth;
+  }
+  while (v < packs.last - 1) {
+    const std::array<Value, d> third = slope(std::min(at + 2 * lanes, last_at));
+    step(here, incoming);
+    here = next, next = third;
+  }
   advance(at, here);
   return sum(squares);
 }
