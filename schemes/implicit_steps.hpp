@@ -21,33 +21,29 @@ namespace delf {
 /// matrix from a seed, else by full Newton steps.
 class ImplicitSteps {
  public:
+  /// `seed_rows`: that seeds are extrapolated from. `iterative`: the unknown row enters nonlinearly.
   ImplicitSteps(SteppedRows& at, RowEquations& equations, const LatticeSystem& system, const SolvePlan& plan,
-                const StepOptions& options, int history)
+                const StepOptions& options, int history, bool iterative, int seed_rows)
       : at_(at),
         equations_(equations),
         system_(system),
         plan_(plan),
         options_(options),
         history_(history),
-        iterative_(!solved_at_once(system, plan)),
+        iterative_(iterative),
         tolerance_(std::max(options.tolerance, 4 * std::numeric_limits<double>::epsilon())),
         estimates_(options.tolerance >= smallest_estimated),
         has_arguments_(equations.arguments() != nullptr),
-        contraction_(iterative_ ? std::optional(Contraction(system, plan)) : std::nullopt),
-        stiff_(iterative_ && contraction_->is_stiff()),
-        seed_(at.rows, system.time_step(), seed_rows(system, plan, options), equations.looks(), equations.arguments()) {
+        contraction_(iterative ? std::optional(Contraction(system, plan)) : std::nullopt),
+        stiff_(iterative && contraction_->is_stiff()),
+        seed_(at.rows, system.time_step(), seed_rows, equations.looks(), equations.arguments()) {
     // Made now, so that memory that is short is told at the start.
     const bool goes_in_one = equations.is_streamed() || equations.goes_straight();
     if (equations.reads_unknown_row() && !(iterative_ && goes_in_one)) equations.candidate().hold_whole();
     if (iterative_) gain_ = equations.gain(), weight_ = equations.least_weight();
     can_go_in_place_ = iterative_ && !stiff_ && equations.can_go_in_place();
   }
-  /// Rows that seeds are extrapolated from.
-  static int seed_rows(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options) {
-    return solved_at_once(system, plan) ? 2 : RowSeed::rows_for(options.seed_order, system.lattice().sites());
-  }
 
-  bool iterates() const { return iterative_; }
   bool is_stiff() const { return stiff_; }
   /// Rows have been set anew, and outputs evaluated.
   void restart() {

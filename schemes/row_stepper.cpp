@@ -20,6 +20,8 @@ struct RowStepper::Impl {
   const SolvePlan& plan;
   const StepOptions options;
   const int d, history;
+  const bool iterative, fits_cache;
+  const int seed_rows;
   const std::optional<Mixture> mixture;  ///< that is extrapolated in the place of y
   SectionRows rows;
   RowEquations equations;
@@ -33,20 +35,22 @@ struct RowStepper::Impl {
         options(o),
         d(s.components()),
         history(std::max(p.forward + p.backward, 2)),
-        mixture(!solved_at_once(s, p) && RowSeed::fits_cache(s.lattice().sites()) ? Mixture::of(s) : std::nullopt),
+        iterative(!solved_at_once(s, p)),
+        fits_cache(RowSeed::fits_cache(s.lattice().sites())),
+        seed_rows(iterative ? RowSeed::rows_for(o.seed_order, s.lattice().sites()) : 2),
+        mixture(iterative && fits_cache ? Mixture::of(s) : std::nullopt),
         rows(s, std::max(1, s.width()), history + 1, increments(), o.turn),
-        equations(s, p, rows, history, mixture, ImplicitSteps::seed_rows(s, p, o)),
+        equations(s, p, rows, history, mixture, seed_rows),
         at{rows, s.time_step()},
         explicit_steps(at, equations, o.threads),
-        implicit_steps(at, equations, s, p, options, history) {
+        implicit_steps(at, equations, s, p, options, history, iterative, seed_rows) {
     if (o.fibre != Fibre::circle) equations.tile(explicit_steps.parts());
   }
 
   /// The new one too; and where steps in place may be followed by one that is not, that of the kept row besides.
   int increments() const {
-    const int read = std::max(history - 1, mixture ? 1 : ImplicitSteps::seed_rows(system, plan, options));
-    const bool may_be_in_place = !solved_at_once(system, plan) && !RowSeed::fits_cache(system.lattice().sites());
-    return (may_be_in_place ? std::max(read, 2) : read) + 1;
+    const int read = std::max(history - 1, mixture ? 1 : seed_rows);
+    return (iterative && !fits_cache ? std::max(read, 2) : read) + 1;
   }
 
   void step(bool looked_at) {
@@ -151,7 +155,7 @@ double RowStepper::largest_value() const {
   return largest + std::abs(impl_->options.turn);  // across the seam
 }
 std::string RowStepper::solver_name() const { return impl_->equations.solver().name(); }
-bool RowStepper::iterates() const { return impl_->implicit_steps.iterates(); }
+bool RowStepper::iterates() const { return impl_->iterative; }
 bool RowStepper::matrix_free() const { return impl_->equations.matrix_free(); }
 
 std::size_t RowStepper::bytes() const {
