@@ -18,9 +18,9 @@ struct NearPack : Pack {
   friend NearPack operator/(NearPack a, NearPack b) { return {a.v / b.v}; }
   friend NearPack operator-(NearPack a) { return {-a.v}; }
 
-  friend NearPack sin(NearPack x) { return detail::sine_in_reach(x); }
-  friend NearPack cos(NearPack x) { return detail::cosine_in_reach(x); }
-  friend NearPack cosm1(NearPack x) { return detail::cosm1_in_reach(x); }
+  friend NearPack sin(NearPack x) { return detail::sine_in_reach<Pack>(x); }
+  friend NearPack cos(NearPack x) { return detail::cosine_in_reach<Pack>(x); }
+  friend NearPack cosm1(NearPack x) { return detail::cosm1_in_reach<Pack>(x); }
   friend NearPack sinh(NearPack x) { return detail::sinh_in_reach(x); }
   friend NearPack cosh(NearPack x) { return detail::hyperbolic(abs(static_cast<Pack>(x))).cosh; }
 

@@ -60,22 +60,29 @@ inline constexpr double largest_reduced = 3e6;
 // a fused multiply–add, or is spoiled by one.
 inline constexpr double pi_1 = 0x1.921fb544p+1, pi_2 = 0x1.0b4611a626331p-33, over_pi = 0x1.45f306dc9c883p-2;
 
+/// What follows begins when x is there: nothing to see to for one pack.
+inline Pack side_by_side(Pack x) { return x; }
+/// Σ_j c_j s^j, the highest coefficient first.
+template <class P, class... Lower>
+[[gnu::always_inline]] inline P horner(P s, double highest, double next, Lower... lower) {
+  P p = highest * s + next;
+  ((p = side_by_side(p) * s + lower), ...);
+  return p;
+}
+
 /// (sin r − r)/r³ as a polynomial in s = r²; it gives sinc as well: sin(r)/r = 1 + s·(this). Minimax on |r| ≤ π/2 for
 /// the error of sin(r)/r, by Remez exchange in 60 digits; coefficients were rounded to double one after the other, from
 /// the lowest, and the rest fitted again each time. Degree 17 of the sine; error 2.8e-19 (degree 15: 1.2e-16). Summed by
 /// Horner's scheme: by pairs, in powers of s², the latency is half, and there is a product more, which costs loops more.
-inline Pack sine_cubic_part(Pack s) {
-  Pack p = 0x1.8850cd787a802p-49 * s - 0x1.ae44a1b917e47p-41;
-  p = p * s + 0x1.6123d13a54d59p-33;
-  p = p * s - 0x1.ae6454e47511dp-26;
-  p = p * s + 0x1.71de3a52c0e2fp-19;
-  p = p * s - 0x1.a01a01a01516fp-13;
-  p = p * s + 0x1.11111111110cbp-7;
-  return p * s - 0x1.5555555555555p-3;
+template <class P>
+inline P sine_cubic_part(P s) {
+  return horner(s, 0x1.8850cd787a802p-49, -0x1.ae44a1b917e47p-41, 0x1.6123d13a54d59p-33, -0x1.ae6454e47511dp-26,
+                0x1.71de3a52c0e2fp-19, -0x1.a01a01a01516fp-13, 0x1.11111111110cbp-7, -0x1.5555555555555p-3);
 }
 /// sin r, its sign turned where that of `sign` is set, which s need not wait for.
-inline Pack sine_near_zero(Pack r, Pack sign) {
-  const Pack s = r * r, turned = times_sign(r, sign);
+template <class P>
+inline P sine_near_zero(P r, P sign) {
+  const P s = r * r, turned = times_sign(r, sign);
   return (turned * s) * sine_cubic_part(s) + turned;
 }
 
@@ -89,35 +96,34 @@ inline Pack turned_about_where_odd(Pack c, Pack q, Pack rounded_with_magic) {
 #endif
 }
 /// (cos r − 1)/s for |r| ≤ π/2, s = r²: found, rounded and summed as the sine's; relative error 1.9e-17.
-inline Pack cosine_square_part(Pack s) {
-  Pack p = 0x1.a122a5193e8ebp-45 * s - 0x1.93639462df36bp-37;
-  p = p * s + 0x1.1eed27a7b79dap-29;
-  p = p * s - 0x1.27e4fa96974fap-22;
-  p = p * s + 0x1.a01a019e17765p-16;
-  p = p * s - 0x1.6c16c16c14a84p-10;
-  p = p * s + 0x1.555555555554p-5;
-  return p * s - 0.5;
+template <class P>
+inline P cosine_square_part(P s) {
+  return horner(s, 0x1.a122a5193e8ebp-45, -0x1.93639462df36bp-37, 0x1.1eed27a7b79dap-29, -0x1.27e4fa96974fap-22,
+                0x1.a01a019e17765p-16, -0x1.6c16c16c14a84p-10, 0x1.555555555554p-5, -0.5);
 }
 
-inline Pack sine_in_reach(Pack x) {
-  const Pack shifted = x * over_pi + round_magic;
-  const Pack n = shifted - round_magic;
-  const Pack r = (x - n * pi_1) - n * pi_2;
+template <class P>
+inline P sine_in_reach(P x) {
+  const P shifted = x * over_pi + round_magic;
+  const P n = shifted - round_magic;
+  const P r = (x - n * pi_1) - n * pi_2;
   return sine_near_zero(r, sign_of_parity(shifted));
 }
-inline Pack cosine_in_reach(Pack x) {
-  const Pack magnitude = abs(x);
-  const Pack shifted = (magnitude * over_pi - 0.5) + round_magic;
-  const Pack n = (shifted - round_magic) + 0.5;
-  const Pack r = (n * pi_1 - magnitude) + n * pi_2;
+template <class P>
+inline P cosine_in_reach(P x) {
+  const P magnitude = abs(x);
+  const P shifted = (magnitude * over_pi - 0.5) + round_magic;
+  const P n = (shifted - round_magic) + 0.5;
+  const P r = (n * pi_1 - magnitude) + n * pi_2;
   return sine_near_zero(r, sign_of_parity(shifted));
 }
 /// With q = cos r − 1, r = x − nπ as for sin x: q where n is even, −2 − q where it is odd.
-inline Pack cosm1_in_reach(Pack x) {
-  const Pack shifted = x * over_pi + round_magic;
-  const Pack n = shifted - round_magic;
-  const Pack r = (x - n * pi_1) - n * pi_2, s = r * r;
-  return turned_about_where_odd(-2.0, s * cosine_square_part(s), shifted);
+template <class P>
+inline P cosm1_in_reach(P x) {
+  const P shifted = x * over_pi + round_magic;
+  const P n = shifted - round_magic;
+  const P r = (x - n * pi_1) - n * pi_2, s = r * r;
+  return turned_about_where_odd(P(-2.0), s * cosine_square_part(s), shifted);
 }
 /// What was found in reach, but f in lanes beyond.
 template <class Function>

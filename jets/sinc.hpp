@@ -6,7 +6,7 @@ namespace delf {
 
 namespace detail {
 /// Below this the series are used; what they neglect first is 1e-17. Packs have a polynomial there.
-inline constexpr double sinc_series_below = 0.25;
+inline constexpr double sinc_series_below = 0.25, sinc_near_zero_below = sinc_series_below * sinc_series_below;
 inline double sinc_series(double s) {  // s = x²:  1 − s/3! + s²/5! − …
   return 1.0 + s * (-1. / 6 + s * (1. / 120 + s * (-1. / 5040 + s * (1. / 362880 + s * (-1. / 39916800)))));
 }
@@ -20,33 +20,19 @@ inline double sinc_slope_series(double x, double s) {  // −x/3 + x³/30 − x�
 // the error 5.3e-17, half of what rounding to a number near 1 makes. The others reach to π/2, with errors 2.8e-19 (sinc),
 // 1.9e-17 (slope) and 1.9e-17 (curvature). A pack that has a lane beyond takes the quotient too, out of line, for those
 // lanes only.
-inline Pack sinc_near_zero(Pack s) {
-  Pack p = 0x1.715b300d99672p-19 * s - 0x1.a019e61b343a5p-13;
-  p = p * s + 0x1.1111110ec9ecep-7;
-  p = p * s - 0x1.5555555555195p-3;
-  return p * s + 1.0;
+template <class P>
+inline P sinc_near_zero(P s) {
+  return horner(s, 0x1.715b300d99672p-19, -0x1.a019e61b343a5p-13, 0x1.1111110ec9ecep-7, -0x1.5555555555195p-3, 1.0);
 }
 inline constexpr double sinc_polynomial_below = 0x1.921fb54442d18p+0;
 inline Pack sinc_slope_part(Pack s) {  // (x cos x − sin x)/x³
-  Pack p = 0x1.861c78714c056p-45;
-  p = p * s - 0x1.7869c1b763d91p-37;
-  p = p * s + 0x1.08daa1cd3a322p-29;
-  p = p * s - 0x1.0cfeb453da835p-22;
-  p = p * s + 0x1.71de3a506f514p-16;
-  p = p * s - 0x1.381381380c769p-10;
-  p = p * s + 0x1.1111111111098p-5;
-  return p * s - 0x1.5555555555555p-2;
+  return horner(s, 0x1.861c78714c056p-45, -0x1.7869c1b763d91p-37, 0x1.08daa1cd3a322p-29, -0x1.0cfeb453da835p-22,
+                0x1.71de3a506f514p-16, -0x1.381381380c769p-10, 0x1.1111111111098p-5, -0x1.5555555555555p-2);
 }
 inline Pack sinc_curvature_part(Pack s) {
-  Pack p = -0x1.1f20e113e389fp-49;
-  p = p * s + 0x1.792fa32f3da0cp-41;
-  p = p * s - 0x1.32041b6b8fd07p-33;
-  p = p * s + 0x1.6c2d59b9fcc1ep-26;
-  p = p * s - 0x1.2e9e8c70238f9p-19;
-  p = p * s + 0x1.43a27309cc0d6p-13;
-  p = p * s - 0x1.86186186160dfp-8;
-  p = p * s + 0x1.9999999999954p-4;
-  return p * s - 0x1.5555555555555p-2;
+  return horner(s, -0x1.1f20e113e389fp-49, 0x1.792fa32f3da0cp-41, -0x1.32041b6b8fd07p-33, 0x1.6c2d59b9fcc1ep-26,
+                -0x1.2e9e8c70238f9p-19, 0x1.43a27309cc0d6p-13, -0x1.86186186160dfp-8, 0x1.9999999999954p-4,
+                -0x1.5555555555555p-2);
 }
 template <class Function>
 [[gnu::noinline]] Pack far_from_zero(Pack x, Pack near, Function f) {
@@ -55,7 +41,7 @@ template <class Function>
 /// Each lane as if it were alone: either polynomial or the quotient.
 [[gnu::noinline, gnu::const]] inline Pack sinc_of_any(Pack x) {
   const Pack s = x * x;
-  const Pack near{s.v <= sinc_series_below * sinc_series_below ? sinc_near_zero(s).v : (sine_cubic_part(s) * s + 1.0).v};
+  const Pack near{s.v <= sinc_near_zero_below ? sinc_near_zero(s).v : (sine_cubic_part(s) * s + 1.0).v};
   if (any_above(abs(x), sinc_polynomial_below))
     return far_from_zero(x, near, [](Pack y) { return sin(y) / y; });
   return near;
@@ -68,7 +54,7 @@ inline double sinc(double x) {
 }
 inline Pack sinc(Pack x) {
   const Pack s = x * x;
-  if (detail::any_above(s, detail::sinc_series_below * detail::sinc_series_below)) [[unlikely]]
+  if (detail::any_above(s, detail::sinc_near_zero_below)) [[unlikely]]
     return detail::sinc_of_any(x);
   return detail::sinc_near_zero(s);
 }

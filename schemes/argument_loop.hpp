@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "schemes/extrapolation.hpp"
@@ -132,8 +133,8 @@ template <class Find, class Evaluate>
 /// while the output is worked out. `make_output` makes it here: what is stored through others cannot change it then, so
 /// that it stays in registers.
 template <int past_rows, int stride, class Make>
-[[gnu::__flatten__]] void argument_loop(const Make& make_output, const ArgumentRow& given, double* out,
-                                        const PackRange& packs) {
+[[gnu::__flatten__, gnu::__noclone__]] void argument_loop(const Make& make_output, const ArgumentRow& given,
+                                                          double* out, const PackRange& packs) {
   const auto output = make_output();
   const UnknownArgument<past_rows> found(given);
   const double* const known = given.known;
@@ -162,17 +163,25 @@ template <int stride, class Make>
       row.past_rows, [&]<int past_rows>() { argument_loop<past_rows, stride>(of_near, row, out, packs); });
 }
 
-/// ∂ℓ/∂φ at the mixture m = u + known_weight · known; t, and x from the anchor's, are those of the arguments.
+/// ∂ℓ/∂φ at the mixture m = u + known_weight · known, of a Pack or of NearPacks; t, and x from the anchor's, are those of
+/// the arguments.
 template <Density D, class Value = Pack>
 struct MixtureSlope {
+  static constexpr bool near = std::is_same_v<Value, NearPack>;
   D density;
   double known_weight, t;
   const double* positions;
   double x_offset;
 
-  [[gnu::always_inline]] Pack argument(Pack u, Pack known) const { return u + known_weight * known; }
-  [[gnu::always_inline]] Pack operator()(Pack m, std::ptrdiff_t at) const {
-    return density(value_jet<D, Value>([m](int) { return m; }, Pack(t), positions + at, x_offset)).derivative(0);
+  template <class P>
+  [[gnu::always_inline]] P argument(const P& u, const P& known) const {
+    return u + known_weight * known;
+  }
+  template <class P>
+  [[gnu::always_inline]] P operator()(const P& m, std::ptrdiff_t at) const {
+    using Number = std::conditional_t<std::is_same_v<P, NearPacks>, NearPacks, Value>;
+    const auto phi = [&m](int) __attribute__((always_inline)) { return m; };
+    return density(value_jet<D, Number>(phi, Pack(t), positions + at, x_offset)).derivative(0);
   }
 };
 

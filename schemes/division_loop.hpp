@@ -16,7 +16,7 @@ inline constexpr int most_past_rows_divided = 5;
 template <int past_rows, int parts>
 class DivisionByArguments {
  public:
-  static constexpr bool finds_ahead = parts == 1, fetches = false, measures = false, goes_by_two = false;
+  static constexpr bool fetches = false, measures = false;
   DivisionByArguments(const DivisionRows& given, const RowIncrement& rows)
       : unknown_(given.arguments), known_(given.arguments.known), pass_(rows) {}
   [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) const { return unknown_(at); }
@@ -45,7 +45,7 @@ class DivisionByArguments {
 template <int parts, bool straight>
 class MixtureOnTheWay {
  public:
-  static constexpr bool fetches = straight && parts > 1, goes_by_two = true;
+  static constexpr bool fetches = straight && parts > 1;
   MixtureOnTheWay(const DivisionRows& given, const RowIncrement& rows, const double* row)
       : row_(row),
         v_(rows.v_before),
@@ -114,12 +114,11 @@ class MeasuredDivision : public MixtureOnTheWay<parts, false> {
   LargestTerms largest_;
 };
 
-/// A step of DivisionRows in one loop. The new row is made one pack after its outputs: what waits for an output would
-/// keep the evaluation of the next ones waiting. Arguments are found one pack ahead where a tenth is gained by it, and
-/// two packs evaluated beside each other where another tenth is: there are registers enough in some of these loops only.
+/// A step of DivisionRows in one loop. Outputs are evaluated side by side, and the new row is made a group of packs after
+/// them: what waits for an output would keep the evaluation of the next ones waiting. Arguments are found a group ahead.
 template <int old, int parts, class Output, class Division>
-[[gnu::__flatten__]] void division_loop(const Output& given_output, const DivisionRows& given,
-                                        Division& given_division) {
+[[gnu::__flatten__, gnu::__noclone__]] void division_loop(const Output& given_output, const DivisionRows& given,
+                                                          Division& given_division) {
   static_assert(old == 0 || old == 2);
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
   const Output output = given_output;
@@ -129,81 +128,65 @@ template <int old, int parts, class Output, class Division>
   const double of_neighbours = given.of_neighbours, of_outputs = given.of_outputs;
   const Pack constant(given.constant);
   const RowLayout& layout = *given.arguments.layout;
-  const std::ptrdiff_t begin = layout.at(0);
+  const std::ptrdiff_t begin = layout.at(0), end = layout.at(layout.packs());
   Pack here = Pack::load(y + begin), last = here - Pack::load(y + begin - lanes), last_size = abs(last);
   Pack last_old = old == 2 ? Pack::load(old_row + begin - lanes) : Pack(0.0), last_old_size = abs(last_old);
-  struct Evaluated {
-    Pack E, E_old;
-  };
-  using Found = decltype(output.argument(Pack(), Pack()));
-  const auto find = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
-    return output.argument(division.unknown(at), division.known(at));
-  };
-  const auto evaluate = [&](std::ptrdiff_t at, const Found& found) __attribute__((always_inline)) {
+  const auto make = [&](std::ptrdiff_t at, Pack E) __attribute__((always_inline)) {
     if constexpr (Division::fetches) fetch_ahead(old_row, at);
-    Evaluated e;
-    e.E = output(found, at);
-    e.E_old = old == 2 ? Pack::load(old_row + at) : Pack(0.0);  // before it is written over
-    if constexpr (!Division::measures) e.E.store(out + at);
-    return e;
-  };
-  const auto make = [&](std::ptrdiff_t at, const Evaluated& e) __attribute__((always_inline)) {
     const Pack next_value = Pack::load(y + at + lanes), next = next_value - here;
     const Pack w = constant + of_neighbours * (next - last);
-    here = next_value, last = next;
-    Pack outputs = e.E;
-    if constexpr (old == 2) outputs = (e.E_old + last_old) + outputs;
-    last_old = e.E_old;
+    Pack outputs = E;
+    if constexpr (old == 2) {
+      const Pack E_old = Pack::load(old_row + at);  // before it is written over
+      outputs = (E_old + last_old) + outputs;
+      last_old = E_old;
+    }
     if constexpr (Division::measures) {
-      const Pack next_size = abs(next), old_size = abs(e.E_old);
-      const Pack sizes = old == 2 ? (old_size + last_old_size) + abs(e.E) : abs(e.E);
+      const Pack next_size = abs(next), old_size = abs(last_old);
+      const Pack sizes = old == 2 ? (old_size + last_old_size) + abs(E) : abs(E);
       division(at, w + of_outputs * outputs,
                std::abs(of_neighbours) * (next_size + last_size) + std::abs(of_outputs) * sizes);
       last_size = next_size, last_old_size = old_size;
     } else {
+      E.store(out + at);
       division(at, w + of_outputs * outputs);
     }
+    here = next_value, last = next;
   };
-  const std::ptrdiff_t end = layout.at(layout.packs());
+  const auto find = [&]<class P>(std::ptrdiff_t from) __attribute__((always_inline)) {
+    const auto unknown = [&](std::ptrdiff_t to) __attribute__((always_inline)) { return division.unknown(to); };
+    const auto known = [&](std::ptrdiff_t to) __attribute__((always_inline)) { return division.known(to); };
+    return output.argument(of_packs<P>(from, unknown), of_packs<P>(from, known));
+  };
   std::ptrdiff_t at = begin;
-  if constexpr (Division::goes_by_two) {
-    constexpr std::ptrdiff_t two = 2 * lanes;
-    Found found = find(begin), found_next = find(begin + lanes);
-    Evaluated ready = evaluate(begin, found), ready_next = evaluate(begin + lanes, found_next);
-    at += two;
-    const auto find_two = [&](std::ptrdiff_t to) __attribute__((always_inline)) {
-      found = find(to), found_next = find(to + lanes);
-    };
-    const auto go_on = [&]<bool finds_more>() __attribute__((always_inline)) {
-      const Found sought = found, sought_next = found_next;
-      if (finds_more) find_two(at + two);
-      const Evaluated next = evaluate(at, sought), after_next = evaluate(at + lanes, sought_next);
-      make(at - two, ready);
-      make(at - lanes, ready_next);
-      ready = next, ready_next = after_next;
-      at += two;
-    };
-    if (at + lanes < end) find_two(at);
-    while (at + 3 * lanes < end) go_on.template operator()<true>();
-    if (at + lanes < end) go_on.template operator()<false>();
-    const Evaluated last_one = at < end ? evaluate(at, find(at)) : Evaluated{};
-    make(at - two, ready);
-    make(at - lanes, ready_next);
-    if (at < end) make(at, last_one);
-  } else {
-    Evaluated ready = evaluate(at, find(at));
-    at += lanes;
-    Found found{};
-    if (Division::finds_ahead && at < end) found = find(at);
-    for (; at < end; at += lanes) {
-      const Found sought = Division::finds_ahead ? found : find(at);
-      if (Division::finds_ahead && at + lanes < end) found = find(at + lanes);
-      const Evaluated next = evaluate(at, sought);
-      make(at - lanes, ready);
-      ready = next;
+  if constexpr (Output::near) {
+    constexpr std::ptrdiff_t group = NearPacks::count * lanes;
+    if (at + group <= end) {
+      auto found = find.template operator()<NearPacks>(at);
+      NearPacks ready = output(found, at);
+      at += group;
+      if (at + group <= end) found = find.template operator()<NearPacks>(at);
+      const auto go_on = [&]<bool finds_more>() __attribute__((always_inline)) {
+        const auto sought = found;
+        if constexpr (finds_more) found = find.template operator()<NearPacks>(at + group);
+        // Steps store what they make, and take longer where outputs are evaluated first: measuring takes longer where they
+        // are not.
+        if constexpr (Division::measures) {
+          const NearPacks E = output(sought, at);
+          for_each_pack(ready, at - group, make);
+          ready = E;
+        } else {
+          for_each_pack(ready, at - group, make);
+          ready = output(sought, at);
+        }
+        at += group;
+      };
+      while (at + 2 * group <= end) go_on.template operator()<true>();
+      if (at + group <= end) go_on.template operator()<false>();
+      for_each_pack(ready, at - group, make);
     }
-    make(at - lanes, ready);
   }
+  for (; at < end; at += lanes) make(at, output(find.template operator()<Pack>(at), at));
   if constexpr (!Division::measures) layout.fill_halo(out, given.arguments.read_before, given.arguments.read_after);
   given_division = division;
 }

@@ -100,7 +100,8 @@ struct CellWeights {
 /// For sine-Gordon H is k times the sum of Marsden–Patrick–Shkoller's footnote 4. The lattice breaks the symmetries
 /// behind both: they are measured, not conserved. rows.values: d rows at time j, then d rows of y_{j+1} − y_j.
 template <Density D>
-[[gnu::__flatten__]] EnergyMomentum energy_momentum(const D& given, const SlabRows& rows, const CellWeights& weights) {
+[[gnu::__flatten__, gnu::__noclone__]] EnergyMomentum energy_momentum(const D& given, const SlabRows& rows,
+                                                                      const CellWeights& weights) {
   constexpr int d = components_of<D>();
   using Number = Dual<Pack, d>;
   const D density = given;
@@ -142,8 +143,10 @@ template <Density D>
 ///
 /// `Value`: what ℓ is evaluated on; NearPack if the rows are near.
 template <class Value, Density D>
-[[gnu::__flatten__]] EnergyMomentum energy_momentum(const D& given, const WaveForm<components_of<D>()>& form,
-                                                    const SlabRows& given_rows, const CellWeights& weights) {
+[[gnu::__flatten__, gnu::__noclone__]] EnergyMomentum energy_momentum(const D& given,
+                                                                      const WaveForm<components_of<D>()>& form,
+                                                                      const SlabRows& given_rows,
+                                                                      const CellWeights& weights) {
   constexpr int d = components_of<D>();
   // Copies of this function alone, which stay in registers.
   const D density = given;

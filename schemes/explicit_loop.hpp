@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
+#include <utility>
 
 #include "jets/density.hpp"
 #include "schemes/row_kernel.hpp"
@@ -30,8 +32,8 @@ inline constexpr auto neighbours_within = [] {
 /// `even`: stride is 1, and so far as one neighbour on either side is concerned linear(−1) = linear(1): a tenth less.
 /// `kept`: the slopes ∂ℓ/∂φ are. `Value`: what they are evaluated on.
 template <int reach, bool even, bool kept, class Value, Density D>
-[[gnu::__flatten__]] double explicit_loop(const D& given_density, const ExplicitRows& given,
-                                            const PackRange& given_packs) {
+[[gnu::__flatten__, gnu::__noclone__]] double explicit_loop(const D& given_density, const ExplicitRows& given,
+                                                            const PackRange& given_packs) {
   const PackRange packs = given_packs;
   constexpr int d = components_of<D>(), count = 2 * reach;
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
@@ -64,10 +66,14 @@ template <int reach, bool even, bool kept, class Value, Density D>
   std::array<Pack, d> last;
   for (int a = 0; a < d; ++a) last[a] = y[a][2 * reach] - y[a][2 * reach - 1];
   Pack squares(0.0);
-  // Of a pack that is not written over yet.
-  const auto slope = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
-    return density(value_jet<D, Value>([&](int a) __attribute__((always_inline)) { return Pack::load(now[a] + at); }, t,
-                                       positions + at)).d;
+  // Of packs that are not written over yet.
+  const auto slopes_at = [&]<class Number>(std::ptrdiff_t from) __attribute__((always_inline)) {
+    const auto value = [&](int a) __attribute__((always_inline)) {
+      return of_packs<Number>(from, [&](std::ptrdiff_t to) __attribute__((always_inline)) {
+        return Pack::load(now[a] + to);
+      });
+    };
+    return density(value_jet<D, Number>(value, t, positions + from)).d;
   };
   const auto take = [&](const auto& incoming) __attribute__((always_inline)) {
     for (int a = 0; a < d; ++a) {
@@ -99,28 +105,48 @@ template <int reach, bool even, bool kept, class Value, Density D>
       y_next.store(y_new[a] + at);
     }
   };
-  // Slopes are evaluated two packs ahead, two beside each other: what waits for them would keep the next ones waiting.
   int v = packs.first;
   if (v >= packs.last) return 0;
   std::ptrdiff_t at = origin + static_cast<std::ptrdiff_t>(v) * lanes;
   const auto incoming = [&](int a) { return old_value(a, v + reach); };
   take(incoming);
-  const std::ptrdiff_t last_at = origin + static_cast<std::ptrdiff_t>(packs.last - 1) * lanes;
-  std::array<Value, d> here = slope(at), next = slope(std::min(at + lanes, last_at));
-  const auto step = [&](const std::array<Value, d>& of_here, const auto& source) __attribute__((always_inline)) {
-    advance(at, of_here);
+  const auto step = [&](const std::array<Value, d>& slope, const auto& source) __attribute__((always_inline)) {
+    advance(at, slope);
     ++v, at += lanes;
     take(source);
   };
-  const auto inside = [&](int a) __attribute__((always_inline)) { return now[a] + at + reach * lanes; };
-  while (v < packs.last - 3 - reach) {
-    const std::array<Value, d> third = slope(at + 2 * lanes), fourth = slope(at + 3 * lanes);
-    step(here, inside);
-    step(next, inside);
-    here = third, next = fourth;
+  // Slopes are evaluated ahead, and side by side: what waits for them would keep the next ones waiting.
+  if constexpr (std::is_same_v<Value, NearPack>) {
+    const auto inside = [&](int a) __attribute__((always_inline)) { return now[a] + at + reach * lanes; };
+    const auto step_all = [&](const std::array<NearPacks, d>& slopes_of_all) __attribute__((always_inline)) {
+      const auto step_one = [&](int i) __attribute__((always_inline)) {
+        std::array<Value, d> slope;
+        for (int a = 0; a < d; ++a) slope[a] = slopes_of_all[a].of[i];
+        step(slope, inside);
+      };
+      [&]<int... i>(std::integer_sequence<int, i...>) __attribute__((always_inline)) { (step_one(i), ...); }
+      (std::make_integer_sequence<int, NearPacks::count>{});
+    };
+    // All that is evaluated and comes in lies inside the row.
+    const auto go_on = [&] __attribute__((always_inline)) { return packs.last - v > 2 * NearPacks::count + reach; };
+    if (go_on()) {
+      std::array<NearPacks, d> here = slopes_at.template operator()<NearPacks>(at);
+      while (go_on()) {
+        const std::array<NearPacks, d> next =
+            slopes_at.template operator()<NearPacks>(at + NearPacks::count * lanes);
+        step_all(here);
+        here = next;
+      }
+      step_all(here);
+    }
   }
+  const std::ptrdiff_t last_at = origin + static_cast<std::ptrdiff_t>(packs.last - 1) * lanes;
+  const auto slope = [&](std::ptrdiff_t from) __attribute__((always_inline)) {
+    return slopes_at.template operator()<Value>(std::min(from, last_at));
+  };
+  std::array<Value, d> here = slope(at), next = slope(at + lanes);
   while (v < packs.last - 1) {
-    const std::array<Value, d> third = slope(std::min(at + 2 * lanes, last_at));
+    const std::array<Value, d> third = slope(at + 2 * lanes);
     step(here, incoming);
     here = next, next = third;
   }
@@ -130,8 +156,8 @@ template <int reach, bool even, bool kept, class Value, Density D>
 
 /// The slopes ∂ℓ/∂φ(y(i)) of such a step alone.
 template <Density D>
-[[gnu::__flatten__]] void slope_loop(const D& given_density, const SlabRows& now, double* const* slopes,
-                                     const PackRange& packs) {
+[[gnu::__flatten__, gnu::__noclone__]] void slope_loop(const D& given_density, const SlabRows& now,
+                                                       double* const* slopes, const PackRange& packs) {
   constexpr int d = components_of<D>();
   const D density = given_density;
   const Pack t(now.t);

@@ -50,7 +50,7 @@ class NodalKernel {
 /// where the sum is Σ_j linear(j) (D(i + j) − D(i − 1 − j)): half the operations, and still differences only.
 /// Returns √Σ next²: infinite or NaN where squares overflow.
 template <int reach, Density D>
-[[gnu::__flatten__]] double sub_step_loop(const D& given_density, const SubStepRows& given) {
+[[gnu::__flatten__, gnu::__noclone__]] double sub_step_loop(const D& given_density, const SubStepRows& given) {
   constexpr int d = components_of<D>();
   // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
   const D density = given_density;

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <type_traits>
 #include <utility>
 
 #include "schemes/division_loop.hpp"
@@ -152,7 +153,8 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     return rows.values[shape.vertex(l).time - first_time] + shape.vertex(l).space * lanes;
   }
   template <class Value>
-  [[gnu::__flatten__]] void evaluate_pair(const SlabRows& rows, double* out, const PackRange& packs) const {
+  [[gnu::__flatten__, gnu::__noclone__]] void evaluate_pair(const SlabRows& rows, double* out,
+                                                            const PackRange& packs) const {
     const PartOfPair<Value> output{stencil_};
     const FetchAhead<> ahead(rows);
     const double *const latest = row_of(rows, pair.latest), *const other = row_of(rows, pair.other);
@@ -166,7 +168,8 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
           output(values, at).store(out + at);
         });
   }
-  [[gnu::__flatten__]] void evaluate_any(const SlabRows& rows, double* out, const PackRange& packs) const {
+  [[gnu::__flatten__, gnu::__noclone__]] void evaluate_any(const SlabRows& rows, double* out,
+                                                           const PackRange& packs) const {
     for (int v = packs.first; v < packs.last; v += packs.stride) {
       const std::ptrdiff_t at = rows.layout->at(v);
       std::array<Pack, n> y{};
@@ -183,13 +186,20 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
   }
   template <class Value>
   struct PartOfPair {
+    static constexpr bool near = std::is_same_v<Value, NearPack>;
     R stencil;
+    template <class P>
     struct Values {
-      Pack latest, other;
+      P latest, other;
     };
-    [[gnu::always_inline]] Values argument(Pack u, Pack known) const { return {u, known}; }
-    [[gnu::always_inline]] Pack operator()(const Values& values, std::ptrdiff_t) const {
-      std::array<Value, n> y{};
+    template <class P>
+    [[gnu::always_inline]] Values<P> argument(const P& u, const P& known) const {
+      return {u, known};
+    }
+    template <class P>
+    [[gnu::always_inline]] P operator()(const Values<P>& values, std::ptrdiff_t) const {
+      std::array<std::conditional_t<std::is_same_v<P, NearPacks>, NearPacks, Value>, n> y;
+      y.fill(0.0);
       y[pair.latest] = values.latest, y[pair.other] = values.other;
       return part(stencil, y);
     }

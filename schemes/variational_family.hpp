@@ -307,8 +307,8 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
     else evaluate_value_on<straight, Pack>(rows, v, out, packs);
   }
   template <bool straight, class Value>
-  [[gnu::__flatten__]] void evaluate_value_on(const SlabRows& given, const double* v, double* out,
-                                              const PackRange& packs) const {
+  [[gnu::__flatten__, gnu::__noclone__]] void evaluate_value_on(const SlabRows& given, const double* v, double* out,
+                                                                const PackRange& packs) const {
     const LocalRows rows(given);
     const auto output = slope<Value>(given, 0);
     const FetchAhead<stride> ahead(given);
@@ -337,8 +337,8 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   /// out_c = ∂ℓ/∂φ at the distinct values of φ
-  [[gnu::__flatten__]] void evaluate_values(const SlabRows& given, double* const* given_out,
-                                            const PackRange& packs) const {
+  [[gnu::__flatten__, gnu::__noclone__]] void evaluate_values(const SlabRows& given, double* const* given_out,
+                                                              const PackRange& packs) const {
     using Number = Dual<Pack, d>;
     const LocalRows rows(given);
     const auto out = local<distinct.count * d>(given_out);
@@ -367,8 +367,8 @@ class VariationalFamily final : public StencilFamily, public RowKernel {
   }
 
   /// out_i = rⁱ = ∂L/∂yⁱ
-  [[gnu::__flatten__]] void evaluate_all(const SlabRows& given, double* const* given_out,
-                                         const PackRange& packs) const {
+  [[gnu::__flatten__, gnu::__noclone__]] void evaluate_all(const SlabRows& given, double* const* given_out,
+                                                           const PackRange& packs) const {
     using Number = Dual<Pack, 3 * d>;
     const LocalRows rows(given);
     const auto out = local<vertices_size>(given_out);
