@@ -83,8 +83,8 @@ struct NearPacks {
       return detail::turned_about_where_odd(c.of[i], q.of[i], rounded.of[i]);
     });
   }
-  /// Compilers would put the instructions of one after those of the other. None goes before this that needs what goes
-  /// into it, or after it that makes what comes out.
+  /// Compilers would put all instructions of one pack after those of another. What works x out goes before this, and
+  /// what needs x after it.
   friend NearPacks side_by_side(NearPacks x) {
 #if defined(__SSE2__)
     if constexpr (count == 4) asm("" : "+v"(x.of[0].v), "+v"(x.of[1].v), "+v"(x.of[2].v), "+v"(x.of[3].v));

@@ -3,9 +3,7 @@
 #include "jets/triangle_jet.hpp"
 #include "schemes/residual_family.hpp"
 #include "schemes/scheme.hpp"
-#include "schemes/theories/coupled_sine_gordon.hpp"
 #include "schemes/theories/sine_gordon.hpp"
-#include "schemes/theories/sine_gordon_impurity.hpp"
 #include "schemes/vu_quoc_li.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
@@ -22,18 +20,6 @@ struct AlwaysAsked {
   template <class T>
   T difference_quotient(const T& a, const T& b) const {
     return theory.difference_quotient(a, b) + 0.0 * sin(1e9 * (a + b));
-  }
-};
-
-/// The same of any density.
-template <Density D>
-struct Asked {
-  static constexpr int components = components_of<D>();
-  static constexpr bool placed = is_placed<D>();
-  D theory;
-  auto operator()(const auto& j) const {
-    if constexpr (components == 1) return theory(j) + 0.0 * sin(1e9 * j.phi);
-    else return theory(j) + 0.0 * sin(1e9 * j.phi[0]);
   }
 };
 
@@ -89,14 +75,6 @@ void check_same(const Run& a, const Run& b) {
   CHECK(a.end == b.end);
 }
 
-double largest_difference(const Run& a, const Run& b) {
-  REQUIRE(a.rows.size() == b.rows.size());
-  double worst = 0;
-  for (std::size_t r = 0; r < a.rows.size(); ++r)
-    for (std::size_t i = 0; i < a.rows[r].size(); ++i) worst = std::max(worst, std::abs(a.rows[r][i] - b.rows[r][i]));
-  return worst;
-}
-
 }  // namespace
 
 TEST_CASE("explicit steps have the same bits whether or not their functions are asked") {
@@ -106,21 +84,13 @@ TEST_CASE("explicit steps have the same bits whether or not their functions are 
                run_of(triangle_vertex, AlwaysAsked{theory}, 255, 0.5, size));
 }
 
-TEST_CASE("and in rows of any number of packs, of several components, and where the density depends on x") {
+TEST_CASE("and in rows of any number of packs") {
+  const SineGordon theory{1.2};
   for (int packs = 1; packs <= 24; ++packs) {
     const int sites = std::max(4, packs * lanes - 1);
     CAPTURE(sites);
-    const auto run = [&](const auto& density) { return run_of(triangle_vertex, density, sites, 0.5, 1.0, 0, 30); };
-    const SineGordon theory{1.2};
-    check_same(run(theory), run(AlwaysAsked{theory}));
-    // Where derivatives are sums of products, either of two may be fused with their sum.
-    const auto check_near = [&](const auto& density, const auto& another) {
-      const Run asked = run(Asked{density});
-      CHECK(largest_difference(run(density), asked) < 1e-13);
-      CHECK(largest_difference(run(another), asked) > 1e-13);
-    };
-    check_near(CoupledSineGordon{1.2, 0.7}, CoupledSineGordon{1.2, 0.7 + 1e-9});
-    check_near(SineGordonImpurity{1.2, 0.5, 0.9, 0.5}, SineGordonImpurity{1.2, 0.5, 0.9, 0.5 + 1e-9});
+    check_same(run_of(triangle_vertex, theory, sites, 0.5, 1.0, 0, 30),
+               run_of(triangle_vertex, AlwaysAsked{theory}, sites, 0.5, 1.0, 0, 30));
   }
 }
 
@@ -152,7 +122,12 @@ TEST_CASE("where a step in one loop is given up for large fields, its rows are t
     CAPTURE(off);
     const Run near = run_of(triangle, theory, 900, 0.25, 1.0, off),
               asked = run_of(triangle, AlwaysAsked{theory}, 900, 0.25, 1.0, off);
-    CHECK(largest_difference(near, asked) <= 1e-12 * (1 + off));
+    REQUIRE(near.rows.size() == asked.rows.size());
+    double worst = 0;
+    for (std::size_t r = 0; r < near.rows.size(); ++r)
+      for (std::size_t i = 0; i < near.rows[r].size(); ++i)
+        worst = std::max(worst, std::abs(near.rows[r][i] - asked.rows[r][i]));
+    CHECK(worst <= 1e-12 * (1 + off));
     for (double residual : near.residuals) CHECK(residual < 1e-14 * (1 + off));
   }
 }
