@@ -7,8 +7,7 @@ namespace delf {
 
 /// The jet (φ, 0, 0) of a pack of sites, with ∂/∂φ: all that is asked of a density that is nonlinear in φ alone.
 /// `value(a)` is the component a of φ, called once for each; `positions` is x of the pack's sites, read if the density
-/// is placed, to which `x_offset` is added. `Value`: Pack, NearPack, or NearPacks: of
-/// packs that follow each other.
+/// is placed, to which `x_offset` is added. `Value`: Pack, NearPack, or NearPacks, of packs that follow each other.
 template <Density D, class Value = Pack>
 [[gnu::always_inline]] inline auto value_jet(const auto& value, const Pack& t, const double* positions,
                                              double x_offset = 0) {

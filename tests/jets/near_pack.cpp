@@ -1,29 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "jets/near_pack.hpp"
 
-#include <bit>
-#include <cstdint>
 #include <string>
 
 #include "tests/catch.hpp"
-#include "tests/jets/random.hpp"
+#include "tests/jets/pack_bits.hpp"
 
 using namespace delf;
-using delf::testing::Random;
+using namespace delf::testing;
 
 namespace {
-
-/// Lanes whose bits differ.
-int different(Pack a, Pack b) {
-  int count = 0;
-  for (int l = 0; l < lanes; ++l) count += std::bit_cast<std::uint64_t>(a[l]) != std::bit_cast<std::uint64_t>(b[l]);
-  return count;
-}
-Pack random_pack(Random& random, double bound) {
-  Pack x;
-  for (int l = 0; l < lanes; ++l) x.v[l] = random(-bound, bound);
-  return x;
-}
 
 /// Of random arguments within the bound: lanes in which f of NearPacks is not that of Packs.
 template <class Function>

@@ -1,31 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "jets/near_packs.hpp"
 
-#include <bit>
-#include <cstdint>
-
 #include "jets/dual.hpp"
 #include "tests/catch.hpp"
-#include "tests/jets/random.hpp"
+#include "tests/jets/pack_bits.hpp"
 
 using namespace delf;
-using delf::testing::Random;
+using namespace delf::testing;
 
 namespace {
 
 /// Lanes of all packs whose bits differ.
 int different(const NearPacks& a, const NearPacks& b) {
   int count = 0;
-  for (int i = 0; i < NearPacks::count; ++i)
-    for (int l = 0; l < lanes; ++l)
-      count += std::bit_cast<std::uint64_t>(a.of[i][l]) != std::bit_cast<std::uint64_t>(b.of[i][l]);
+  for (int i = 0; i < NearPacks::count; ++i) count += testing::different(a.of[i], b.of[i]);
   return count;
 }
 NearPacks random_packs(Random& random, double bound) {
-  NearPacks x;
-  for (NearPack& one : x.of)
-    for (int l = 0; l < lanes; ++l) one.v[l] = random(-bound, bound);
-  return x;
+  return NearPacks::each([&](int) { return random_pack(random, bound); });
 }
 
 /// Of random arguments within the bound: lanes in which f side by side is not f of one after the other.

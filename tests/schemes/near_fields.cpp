@@ -31,11 +31,11 @@ struct Run {
 
 /// Steps from two rows of size `size`, looked at now and then.
 Run run_of(Evolution& evolution, double size, double off = 0, int steps = 400) {
-  const int values = evolution.system().lattice().sites() * evolution.system().components();
+  const int N = evolution.system().lattice().sites();
   std::vector<Row> start(2);
-  for (int i = 0; i < values; ++i)
+  for (int i = 0; i < N; ++i)
     for (int n = 0; n < 2; ++n)
-      start[static_cast<std::size_t>(n)].push_back(size * std::sin(6.3 * i / values + 0.01 * n) + 0.3 * std::cos(i) + off);
+      start[static_cast<std::size_t>(n)].push_back(size * std::sin(6.3 * i / N + 0.01 * n) + 0.3 * std::cos(i) + off);
   Stepper& stepper = evolution.stepper();
   stepper.start(start);
   Run run;
