@@ -70,19 +70,43 @@ template <class P, class... Lower>
   return p;
 }
 
+/// p(s) = c₀ + s(E(y) + s O(y)), y = s², of degree 7, with the roots −q₁ and −q₀ of O divided out of both:
+///
+///     p(s) = c₀ + s(((c₇ y + c₆ s + b)(y + q₁) + r₁)(y + q₀) + r₀)
+///
+/// Eve's form (Numer. Math. 6, 17, 1964) of all but the last step of Horner's scheme: a product less, two sums more, and
+/// the result waits for five steps in place of seven, which is what loops of sines take their time for.
+template <class P>
+[[gnu::always_inline]] inline P eve(P s, double c7, double c6, double b, double q1, double r1, double q0, double r0,
+                                    double c0) {
+  const P y = s * s;
+  P p = side_by_side(c6 * s + b);
+  const P y1 = y + q1, y0 = y + q0;
+  p = side_by_side(c7 * y + p);
+  p = side_by_side(p * y1 + r1);
+  p = side_by_side(p * y0 + r0);
+  return p * s + c0;
+}
+
 /// (sin r − r)/r³ as a polynomial in s = r²; it gives sinc as well: sin(r)/r = 1 + s·(this). Minimax on |r| ≤ π/2 for
-/// the error of sin(r)/r, by Remez exchange in 60 digits; coefficients were rounded to double one after the other, from
-/// the lowest, and the rest fitted again each time. Degree 17 of the sine; error 2.8e-19 (degree 15: 1.2e-16). Summed by
-/// Horner's scheme: by pairs, in powers of s², the latency is half, and there is a product more, which costs loops more.
+/// the error of sin(r)/r, by Remez exchange in 60 digits, brought into Eve's form, and its coefficients rounded to doubles
+/// that together keep the error. Degree 17 of the sine; error 4.6e-19 (degree 15: 1.2e-16).
 template <class P>
 inline P sine_cubic_part(P s) {
-  return horner(s, 0x1.8850cd787a802p-49, -0x1.ae44a1b917e47p-41, 0x1.6123d13a54d59p-33, -0x1.ae6454e47511dp-26,
-                0x1.71de3a52c0e2fp-19, -0x1.a01a01a01516fp-13, 0x1.11111111110cbp-7, -0x1.5555555555555p-3);
+  return eve(s, 0x1.8850cd787a7fcp-49, -0x1.ae44a1b917e49p-41, 0x1.39d9eda06dc4ep-34, 0x1.a26f6d65d45e1p+13,
+             -0x1.3762b99d9a13ap-22, 0x1.2eee01fe67467p+14, -0x1.2b781bd6e3607p-8, -0x1.5555555555555p-3);
 }
+/// (cos r − 1)/s for |r| ≤ π/2, s = r²: found, rounded and summed as the sine's; relative error 1.9e-17.
+template <class P>
+inline P cosine_square_part(P s) {
+  return eve(s, 0x1.a122a5193e8c0p-45, -0x1.93639462df370p-37, 0x1.0be005726eac6p-30, 0x1.c17ee5d418a4dp+12,
+             -0x1.1c06c7cfb6acfp-18, 0x1.0730643e526dfp+14, -0x1.4e2b58e1a52fdp-8, -0.5);
+}
+
 /// sin r, its sign turned where that of `sign` is set, which s need not wait for.
 template <class P>
-inline P sine_near_zero(P r, P sign) {
-  const P s = r * r, turned = times_sign(r, sign);
+inline P sine_near_zero(P r, P s, P sign) {
+  const P turned = times_sign(r, sign);
   return (turned * s) * sine_cubic_part(s) + turned;
 }
 
@@ -95,19 +119,32 @@ inline Pack turned_about_where_odd(Pack c, Pack q, Pack rounded_with_magic) {
   return {(reinterpret_cast<Pack::Bits>(rounded_with_magic.v) & 1) != 0 ? (c - q).v : q.v};
 #endif
 }
-/// (cos r − 1)/s for |r| ≤ π/2, s = r²: found, rounded and summed as the sine's; relative error 1.9e-17.
+/// n + round_magic, n the integer nearest to x/π.
 template <class P>
-inline P cosine_square_part(P s) {
-  return horner(s, 0x1.a122a5193e8ebp-45, -0x1.93639462df36bp-37, 0x1.1eed27a7b79dap-29, -0x1.27e4fa96974fap-22,
-                0x1.a01a019e17765p-16, -0x1.6c16c16c14a84p-10, 0x1.555555555554p-5, -0.5);
+inline P multiple_of_pi(P x) {
+  return x * over_pi + round_magic;
+}
+/// r = x − nπ.
+template <class P>
+inline P rest_of_pi(P x, P shifted) {
+  const P n = shifted - round_magic;
+  return (x - n * pi_1) - n * pi_2;
+}
+/// cos x − 1 from r, s = r². With q = cos r − 1: q where n is even, −2 − q where it is odd.
+template <class P>
+inline P cosm1_near_multiple(P s, P shifted) {
+  return turned_about_where_odd(P(-2.0), s * cosine_square_part(s), shifted);
 }
 
 template <class P>
 inline P sine_in_reach(P x) {
-  const P shifted = x * over_pi + round_magic;
-  const P n = shifted - round_magic;
-  const P r = (x - n * pi_1) - n * pi_2;
-  return sine_near_zero(r, sign_of_parity(shifted));
+  const P shifted = multiple_of_pi(x), r = rest_of_pi(x, shifted);
+  return sine_near_zero(r, P(r * r), sign_of_parity(shifted));
+}
+template <class P>
+inline P cosm1_in_reach(P x) {
+  const P shifted = multiple_of_pi(x), r = rest_of_pi(x, shifted);
+  return cosm1_near_multiple(P(r * r), shifted);
 }
 template <class P>
 inline P cosine_in_reach(P x) {
@@ -115,15 +152,7 @@ inline P cosine_in_reach(P x) {
   const P shifted = (magnitude * over_pi - 0.5) + round_magic;
   const P n = (shifted - round_magic) + 0.5;
   const P r = (n * pi_1 - magnitude) + n * pi_2;
-  return sine_near_zero(r, sign_of_parity(shifted));
-}
-/// With q = cos r − 1, r = x − nπ as for sin x: q where n is even, −2 − q where it is odd.
-template <class P>
-inline P cosm1_in_reach(P x) {
-  const P shifted = x * over_pi + round_magic;
-  const P n = shifted - round_magic;
-  const P r = (x - n * pi_1) - n * pi_2, s = r * r;
-  return turned_about_where_odd(P(-2.0), s * cosine_square_part(s), shifted);
+  return sine_near_zero(r, P(r * r), sign_of_parity(shifted));
 }
 /// What was found in reach, but f in lanes beyond.
 template <class Function>
@@ -136,7 +165,7 @@ template <class Function>
 }  // namespace detail
 
 /// sin x = (−1)ⁿ sin(x − nπ), n the integer nearest to x/π. Error below 2.5e-16 absolute for |x| ≤ 3e6 (measured:
-/// 1.9e-16 with fused multiply–adds, 2.2e-16 without). sin(−0) is +0.
+/// 2.1e-16 with fused multiply–adds, 2.3e-16 without). sin(−0) is +0.
 inline Pack sin(Pack x) {
   return detail::asked(x, detail::sine_in_reach(x), detail::largest_reduced, [](double y) { return std::sin(y); });
 }
@@ -169,8 +198,9 @@ struct ExpParts {
 };
 
 /// By polynomials of degree 10 and 11, minimax on |r| ≤ ½ log 2 and rounded as the sine's above; the error of the even
-/// part is 3.6e-18, that of the odd one 2.7e-19 of r.
-inline ExpParts exp_parts(Pack x) {
+/// part is 3.6e-18, that of the odd one 2.7e-19 of r. Always inline: a product that it returns is rounded then nowhere, or
+/// everywhere, where what it is added to may be fused with it.
+[[gnu::always_inline]] inline ExpParts exp_parts(Pack x) {
   const Pack shifted = x * over_log2 + round_magic;
   const Pack n = shifted - round_magic;
   const Pack coarse = x - n * log2_1, r = coarse - n * log2_2, low = (coarse - r) - n * log2_2;
