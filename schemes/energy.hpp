@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
 #include "jets/density.hpp"
-#include "jets/near_pack.hpp"
+#include "jets/reduced_pack.hpp"
 #include "jets/structure.hpp"
 #include "schemes/row_kernel.hpp"
 
@@ -98,7 +97,8 @@ struct CellWeights {
 ///   H = k Σ (φ_t ∂ℓ/∂φ_t − ℓ)                 P = −k Σ φ_x ∂ℓ/∂φ_t
 ///
 /// For sine-Gordon H is k times the sum of Marsden–Patrick–Shkoller's footnote 4. The lattice breaks the symmetries
-/// behind both: they are measured, not conserved. rows.values: d rows at time j, then d rows of y_{j+1} − y_j.
+/// behind both: they are measured, not conserved. rows.values: the d rows y_j, the d rows y_{j+1}, and d rows of what v =
+/// y_{j+1} − y_j is without the rounding of a difference.
 template <Density D>
 [[gnu::__flatten__, gnu::__noclone__]] EnergyMomentum energy_momentum(const D& given, const SlabRows& rows,
                                                                       const CellWeights& weights) {
@@ -112,7 +112,7 @@ template <Density D>
     JetFor<Number, D> jet;
     std::array<Pack, static_cast<std::size_t>(d)> by_t, by_x;
     for (int a = 0; a < d; ++a) {
-      const double *y = rows.values[a] + at, *step = rows.values[d + a] + at;
+      const double *y = rows.values[a] + at, *step = rows.values[2 * d + a] + at;
       const Pack y_0 = Pack::load(y), y_1 = Pack::load(y + lanes);
       const Pack v_0 = Pack::load(step), v_1 = Pack::load(step + lanes);
       by_t[a] = per_h * (v_0 + v_1);
@@ -135,13 +135,13 @@ template <Density D>
   return {rows.space_step * sum(energy), rows.space_step * sum(momentum)};
 }
 
-/// The same for a density with a wave form. With the sums s = y_j + y_{j+1} = 2y_j + v of the two rows,
+/// The same for a density with a wave form. With the sums s = y_j + y_{j+1} of the two rows,
 ///
 ///     φ = (s_i + s_{i+1})/4        φ_t = (v_i + v_{i+1})/(2h)        φ_x = (s_{i+1} − s_i)/(2k)
 ///
 ///   H = k Σ (½ inertia φ_t² + ½ tension φ_x² − ℓ(φ, 0, 0))           P = −k Σ inertia φ_t φ_x
 ///
-/// `Value`: what ℓ is evaluated on; NearPack if the rows are near.
+/// `Value`: what ℓ is evaluated on; ReducedPack if the rows are near.
 template <class Value, Density D>
 [[gnu::__flatten__, gnu::__noclone__]] EnergyMomentum energy_momentum(const D& given,
                                                                       const WaveForm<components_of<D>()>& form,
@@ -150,8 +150,9 @@ template <class Value, Density D>
   constexpr int d = components_of<D>();
   // Copies of this function alone, which stay in registers.
   const D density = given;
-  std::array<const double*, static_cast<std::size_t>(2 * d)> rows;
-  std::copy_n(given_rows.values, 2 * d, rows.begin());
+  std::array<const double*, static_cast<std::size_t>(d)> before, after, increment;
+  for (int a = 0; a < d; ++a)
+    before[a] = given_rows.values[a], after[a] = given_rows.values[d + a], increment[a] = given_rows.values[2 * d + a];
   const double* const positions = given_rows.positions;
   const Pack t(given_rows.t + 0.5 * given_rows.time_step);
   const double x_offset = 0.5 * given_rows.space_step;
@@ -166,8 +167,8 @@ template <class Value, Density D>
   std::array<Sums, static_cast<std::size_t>(d)> sums;
   Pack at_rest(0.0);
   const auto load = [&](int a, std::ptrdiff_t at) __attribute__((always_inline)) {
-    const Pack v = Pack::load(rows[d + a] + at), y = Pack::load(rows[a] + at);
-    return AtSite{v, y + (y + v)};
+    const Pack v = Pack::load(increment[a] + at), y = Pack::load(before[a] + at);
+    return AtSite{v, y + Pack::load(after[a] + at)};
   };
   // φ of the next cells, which count by what `weigh` makes of them.
   using Values = std::array<Pack, static_cast<std::size_t>(d)>;
@@ -184,7 +185,13 @@ template <class Value, Density D>
     }
     return phi;
   };
-  const auto rest = [&](std::ptrdiff_t at, const Values& phi) __attribute__((always_inline)) {
+  using Begun = std::array<Value, static_cast<std::size_t>(d)>;
+  const auto begin = [](const Values& phi) __attribute__((always_inline)) {
+    Begun values;
+    for (int a = 0; a < d; ++a) values[a] = phi[a];
+    return values;
+  };
+  const auto rest = [&](std::ptrdiff_t at, const Begun& phi) __attribute__((always_inline)) {
     JetFor<Value, D> jet;
     for (int a = 0; a < d; ++a) {
       component(jet.phi, a) = phi[a];
@@ -199,21 +206,23 @@ template <class Value, Density D>
   std::ptrdiff_t at = layout.at(0);
   const std::ptrdiff_t whole = layout.at(weights.whole), end = layout.at(layout.packs());
   for (int a = 0; a < d; ++a) left[a] = load(a, at);
-  // φ is found two packs ahead, as arguments are in argument_loop().
+  // φ is found two packs ahead, as arguments are in argument_loop(), and its sine is begun one ahead.
   if (at + lanes < whole) {
-    Values here = find(at, all), next = find(at + lanes, all);
+    Begun here = begin(find(at, all));
+    Values next = find(at + lanes, all);
     for (; at + 2 * lanes < whole; at += lanes) {
       const Values ahead = find(at + 2 * lanes, all);
-      at_rest += rest(at, here);
-      here = next, next = ahead;
+      const Pack resting = rest(at, here);
+      here = begin(next), next = ahead;
+      at_rest += resting;
     }
-    at_rest += rest(at, here) + rest(at + lanes, next);
+    at_rest += rest(at, here) + rest(at + lanes, begin(next));
     at += 2 * lanes;
   }
   for (; at < end; at += lanes) {
     const auto weigh = [weight = Pack::load(weights.row + at)](Pack x)
                            __attribute__((always_inline)) { return weight * x; };
-    const Values phi = find(at, weigh);
+    const Begun phi = begin(find(at, weigh));
     at_rest += weigh(rest(at, phi));
   }
 

@@ -107,7 +107,7 @@ class TheoryOf final : public FieldTheory {
 
   double near_below() const override { return near_below_; }
   EnergyMomentum energy_momentum(const SlabRows& rows, const CellWeights& weights) const override {
-    if (wave_form_ && rows.near) return delf::energy_momentum<NearPack>(density_, *wave_form_, rows, weights);
+    if (wave_form_ && rows.near) return delf::energy_momentum<ReducedPack>(density_, *wave_form_, rows, weights);
     if (wave_form_) return delf::energy_momentum<Pack>(density_, *wave_form_, rows, weights);
     return delf::energy_momentum(density_, rows, weights);
   }

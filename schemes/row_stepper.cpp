@@ -141,18 +141,16 @@ const double* RowStepper::row_data(int back, int a) const {
   impl_->at.require(back + 1);
   return impl_->rows.y(impl_->at.n - back, a);
 }
-void RowStepper::newest_pair(const double** rows) const {
+double RowStepper::newest_pair(const double** rows) const {
   Impl& s = *impl_;
   s.at.require(2);
   for (int a = 0; a < s.d; ++a) {
     double* const v = s.rows.v(s.at.n, a);
     s.rows.layout().fill_first_after(v);  // a loop leaves it
-    rows[a] = s.rows.y(s.at.n - 1, a), rows[s.d + a] = v;
+    rows[a] = s.rows.y_before(s.at.n, a), rows[s.d + a] = s.rows.y(s.at.n, a), rows[2 * s.d + a] = v;
   }
-}
-double RowStepper::largest_value() const {
-  const double largest = impl_->equations.is_one_loop() ? std::sqrt(impl_->at.squares_ever) : impl_->at.largest_ever;
-  return largest + std::abs(impl_->options.turn);  // across the seam
+  const double largest = s.equations.is_one_loop() ? std::sqrt(s.at.squares_ever) : s.at.largest_ever;
+  return largest + std::abs(s.options.turn);  // across the seam
 }
 std::string RowStepper::solver_name() const { return impl_->equations.solver().name(); }
 bool RowStepper::iterates() const { return impl_->iterative; }

@@ -34,8 +34,7 @@ class RowStepper final : public StepMethod {
 
   const RowLayout* layout() const override;
   const double* row_data(int back, int component) const override;
-  void newest_pair(const double** rows) const override;
-  double largest_value() const override;
+  double newest_pair(const double** rows) const override;
 
   bool iterates() const override;
   std::string solver_name() const override;

@@ -27,6 +27,11 @@ class SectionRows {
     y_slots_.at(place(row));
     return y_at(y_slots_.slot(), a);
   }
+  /// Of the row before.
+  double* y_before(std::int64_t row, int a) {
+    y_slots_.at(place(row));
+    return y_at(y_slots_.before(y_slots_.slot()), a);
+  }
   double* v(std::int64_t row, int a) {
     v_slots_.at(place(row));
     return v_at(v_slots_.slot(), a);

@@ -66,6 +66,7 @@ struct Simulation::Impl {
   int whole_packs = 0;  ///< whose weights are all 1
   std::vector<const double*> monitored;
   int winding;
+  double near_below;  ///< of the theory
   bool has_multipliers, moves;  ///< it has constraints; its mesh is a field too
   std::vector<std::string> conserved_names;
 
@@ -77,6 +78,7 @@ struct Simulation::Impl {
         stepper(evolution.stepper()),
         system(evolution.system()),
         winding(p.winding),
+        near_below(theory->near_below()),
         has_multipliers(std::ranges::count(system.all_components(), Role::multiplier, &Component::role) > 0),
         moves(system.fields() != theory->components()) {
     // Stencils of more than two rows would need rows that are no longer held.
@@ -134,30 +136,32 @@ struct Simulation::Impl {
     };
     if (stepper.layout()) return bytes(*stepper.layout(), 0);
     const RowLayout own(problem.lattice, 1);
-    return bytes(own, 2 * theory->components()) + own.bytes();
+    return bytes(own, 3 * theory->components()) + own.bytes();
   }
 
   /// What monitors look at, where steps do not go by rows.
   void copy_newest_pair() {
     const int C = system.components(), d = theory->components();
     const std::vector<double> newest = stepper.row(0), before = stepper.row(1);
-    std::vector<double> value(static_cast<std::size_t>(problem.lattice.sites())), step(value.size());
+    std::vector<double> before_newest(static_cast<std::size_t>(problem.lattice.sites())), value(before_newest),
+        step(before_newest);
     for (int a = 0; a < d; ++a) {
       for (std::size_t i = 0; i < value.size(); ++i) {
         const std::size_t at = i * static_cast<std::size_t>(C) + static_cast<std::size_t>(a);
-        value[i] = before[at];
+        before_newest[i] = before[at], value[i] = newest[at];
         step[i] = newest[at] - before[at];
       }
-      own_layout->scatter(value, last_rows.row(a), 2 * std::numbers::pi * winding);
-      own_layout->scatter(step, last_rows.row(d + a));
+      own_layout->scatter(before_newest, last_rows.row(a), 2 * std::numbers::pi * winding);
+      own_layout->scatter(value, last_rows.row(d + a), 2 * std::numbers::pi * winding);
+      own_layout->scatter(step, last_rows.row(2 * d + a));
     }
-    for (int r = 0; r < 2 * d; ++r) monitored[static_cast<std::size_t>(r)] = last_rows.row(r);
+    for (int r = 0; r < 3 * d; ++r) monitored[static_cast<std::size_t>(r)] = last_rows.row(r);
   }
   double charge() const {
     if (problem.lattice.is_circle()) return winding;
     const int rows = own_layout ? theory->components() : system.components();
-    const double *const y = monitored[0], *const step = monitored[static_cast<std::size_t>(rows)];
-    const auto at = [&](int i) { return y[layout().slot(i)] + step[layout().slot(i)]; };
+    const double* const newest = monitored[static_cast<std::size_t>(rows)];
+    const auto at = [&](int i) { return newest[layout().slot(i)]; };
     return (at(problem.lattice.sites() - 1) - at(0)) / (2 * std::numbers::pi);
   }
   void find_conserved(Monitors& monitors) const {
@@ -174,11 +178,11 @@ struct Simulation::Impl {
     const RowLayout& layout = this->layout();
     cell_weights = RowBuffer(layout, 1);
     const int N = problem.lattice.sites(), cells = problem.lattice.cells(), d = theory->components();
-    if (!stepper.layout()) last_rows = RowBuffer(layout, 2 * d);
+    if (!stepper.layout()) last_rows = RowBuffer(layout, 3 * d);
     for (int i = 0; i < cells; ++i) cell_weights.row(0)[layout.slot(i)] = 1;
     while (whole_packs < layout.packs() && sum(Pack::load(cell_weights.row(0) + layout.at(whole_packs))) == lanes)
       ++whole_packs;
-    monitored.resize(static_cast<std::size_t>(2 * std::max(d, system.components())));
+    monitored.resize(static_cast<std::size_t>(3 * std::max(d, system.components())));
     if (!theory->is_placed()) return;
     positions = RowBuffer(layout, 1);
     std::vector<double> x(static_cast<std::size_t>(N));
@@ -268,8 +272,9 @@ const std::vector<std::string>& Simulation::conserved_names() const { return imp
 Simulation::Monitors Simulation::monitors() const {
   Impl& s = *impl_;
   if (!s.cell_weights.rows()) s.prepare_monitors();
+  double largest = std::numeric_limits<double>::infinity();
   if (s.own_layout) s.copy_newest_pair();
-  else s.stepper.newest_pair(s.monitored.data());
+  else largest = s.stepper.newest_pair(s.monitored.data());
   const RowLayout& layout = s.layout();
   const double h = s.problem.time_step;
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -277,7 +282,7 @@ Simulation::Monitors Simulation::monitors() const {
       s.moves ? EnergyMomentum{none, none}
              : s.theory->energy_momentum({&layout, s.monitored.data(), s.positions.rows() ? s.positions.row(0) : nullptr,
                                  static_cast<double>(newest() - 1) * h, h, s.problem.lattice.space_step(),
-                                 s.stepper.largest_value() <= s.theory->near_below()},
+                                 largest <= s.near_below},
                                 {s.cell_weights.row(0), s.whole_packs});
   Monitors monitors{sums.energy, sums.momentum, s.charge(), s.constraint(), {}, {}};
   if (!s.conserved_names.empty()) s.find_conserved(monitors);

@@ -58,8 +58,7 @@ class StepMethod {
 
   virtual const RowLayout* layout() const { return nullptr; }
   virtual const double* row_data(int, int) const { return nullptr; }
-  virtual void newest_pair(const double** /*rows*/) const {}
-  virtual double largest_value() const { return std::numeric_limits<double>::infinity(); }
+  virtual double newest_pair(const double** /*rows*/) const { return std::numeric_limits<double>::infinity(); }
 
   virtual bool iterates() const = 0;
   virtual std::string solver_name() const = 0;

@@ -66,12 +66,9 @@ class Stepper {
   /// Rows in the lanes' layout with halos; null when stepped slab by slab.
   const RowLayout* layout() const { return method_->layout(); }
   const double* row_data(int back, int component) const { return method_->row_data(back, component); }
-  /// Of each component the row before the newest, and then of each the increment from there to the newest, with the
-  /// pack after its end.
-  void newest_pair(const double** rows) const { method_->newest_pair(rows); }
-
-  /// No |y| of all rows since the start is above this.
-  double largest_value() const { return method_->largest_value(); }
+  /// Of each component the row before the newest, then of each the newest, and of each the increment from one to the
+  /// other, all with the pack after the end. No |y| of all rows since the start is above what is returned.
+  double newest_pair(const double** rows) const { return method_->newest_pair(rows); }
 
   bool iterates() const { return method_->iterates(); }  ///< a step is not one solve
   std::string solver_name() const { return method_->solver_name(); }

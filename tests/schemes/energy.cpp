@@ -83,11 +83,14 @@ double difference_of_ways(const D& density, int N, double wrong = 0) {
   const Lattice ring = Lattice::circle(N, 10);
   const RowLayout layout(ring, 1);
   Random random(5);
-  RowBuffer rows(layout, 2 * d), marks(layout, 2);
+  RowBuffer rows(layout, 3 * d), marks(layout, 2);
   std::vector<const double*> values;
-  for (int r = 0; r < 2 * d; ++r) {
-    layout.scatter(random_row(random, N, r < d ? 2 : 0.1), rows.row(r));
-    values.push_back(rows.row(r));
+  for (int r = 0; r < 3 * d; ++r) values.push_back(rows.row(r));
+  for (int a = 0; a < d; ++a) {
+    const Row y = random_row(random, N, 2), v = random_row(random, N, 0.1);
+    Row y_next;
+    for (int i = 0; i < N; ++i) y_next.push_back(y[i] + v[i]);
+    layout.scatter(y, rows.row(a)), layout.scatter(y_next, rows.row(d + a)), layout.scatter(v, rows.row(2 * d + a));
   }
   Row x;
   for (int i = 0; i < N; ++i) x.push_back(ring.position(i)), marks.row(0)[layout.slot(i)] = 1;
@@ -100,7 +103,7 @@ double difference_of_ways(const D& density, int N, double wrong = 0) {
   const CellWeights weights{marks.row(0), N / lanes > 2 ? N / lanes - 2 : 0};
   const EnergyMomentum plain = energy_momentum<Pack>(density, *form, slab, weights),
                        differentiated = energy_momentum(density, slab, weights);
-  const EnergyMomentum near = energy_momentum<NearPack>(density, *form, slab, weights);
+  const EnergyMomentum near = energy_momentum<ReducedPack>(density, *form, slab, weights);
   CHECK(near.energy == plain.energy);
   CHECK(near.momentum == plain.momentum);
   return (std::abs(plain.energy - differentiated.energy) + std::abs(plain.momentum - differentiated.momentum)) /

@@ -49,9 +49,9 @@ Row difference(const Row& a, const Row& b) {
 
 /// Adds to the newest increment at one site, and to all copies of it.
 void plant(const Stepper& stepper, int d, int site, int a, double error) {
-  std::vector<const double*> pair(static_cast<std::size_t>(2 * d));
+  std::vector<const double*> pair(static_cast<std::size_t>(3 * d));
   stepper.newest_pair(pair.data());
-  double* const v = const_cast<double*>(pair[static_cast<std::size_t>(d + a)]);
+  double* const v = const_cast<double*>(pair[static_cast<std::size_t>(2 * d + a)]);
   for (int slot : stepper.layout()->slots_of(site)) v[slot] += error;
 }
 

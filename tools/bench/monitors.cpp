@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include "schemes/flush_denormals.hpp"
 #include "tools/bench/commands.hpp"
 #include "tools/bench/sides.hpp"
 #include "tools/bench/table.hpp"
@@ -15,6 +16,7 @@ Side watched(const Collision& collision, Look look) {
   const auto simulation = engine(collision);
   Side side = side_of(simulation, collision);
   side.advance = [simulation, look](long steps) {
+    const FlushDenormals for_all_steps;  // as in `delf run`
     for (long n = 0; n < steps; ++n) {
       simulation->step(true);
       look(*simulation);
