@@ -173,6 +173,7 @@ struct MixtureSlope {
   const double* positions;
   double x_offset;
 
+  [[gnu::always_inline]] MixtureSlope copy() const { return {density, known_weight, t, positions, x_offset}; }
   template <class P>
   [[gnu::always_inline]] P argument(const P& u, const P& known) const {
     return u + known_weight * known;

@@ -22,7 +22,7 @@ class DivisionByArguments {
   [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) const { return unknown_(at); }
   [[gnu::always_inline]] Pack known(std::ptrdiff_t at) const { return Pack::load(known_ + at); }
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) { pass_(at, w); }
-  RowChange closed(const DivisionRows& given, const RowIncrement& rows) {
+  RowChange result(const DivisionRows& given, const RowIncrement& rows) {
     return pass_.closed(*given.arguments.layout, rows);
   }
 
@@ -87,7 +87,7 @@ class StraightDivision : public MixtureOnTheWay<parts, true> {
   StraightDivision(const DivisionRows& given, const RowIncrement& rows)
       : MixtureOnTheWay<parts, true>(given, rows, rows.y_before), pass_(rows) {}
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) { pass_(at, w); }
-  RowChange closed(const DivisionRows& given, const RowIncrement& rows) {
+  RowChange result(const DivisionRows& given, const RowIncrement& rows) {
     return pass_.closed(*given.arguments.layout, rows);
   }
 
@@ -107,7 +107,7 @@ class MeasuredDivision : public MixtureOnTheWay<parts, false> {
     const Pack change = Pack::load(v_ + at) - Pack::load(v_before_ + at);
     largest_(at, w - change, absolute + abs(change));
   }
-  const LargestTerms& largest() const { return largest_; }
+  LargestTerms result(const DivisionRows&, const RowIncrement&) const { return largest_; }
 
  private:
   const double *v_before_, *v_;
@@ -118,13 +118,15 @@ class MeasuredDivision : public MixtureOnTheWay<parts, false> {
 /// them: what waits for an output would keep the evaluation of the next ones waiting. Whether arguments are found a group
 /// ahead, and whether outputs are evaluated before the last group is made or after it, is what takes each of these loops
 /// the least time, by a tenth.
-template <int old, int parts, class Output, class Division>
-[[gnu::__flatten__, gnu::__noclone__]] void division_loop(const Output& given_output, const DivisionRows& given,
-                                                          Division& given_division) {
+///
+/// Output and division are made here, number by number: what is stored through others cannot change them, so that they
+/// stay in registers; copied as a whole they would wait for all that has just been stored (15 ns).
+template <class Division, int old, class Output>
+[[gnu::__flatten__, gnu::__noclone__]] auto division_loop(const Output& given_output, const DivisionRows& given,
+                                                          const RowIncrement& rows) {
   static_assert(old == 0 || old == 2);
-  // Copies of this function alone: what is stored through others cannot change them, so that they stay in registers.
-  const Output output = given_output;
-  Division division = given_division;
+  const Output output = given_output.copy();
+  Division division(given, rows);
   const double *const y = given.y, *const old_row = given.old_output;
   double* const out = given.output;
   const double of_neighbours = given.of_neighbours, of_outputs = given.of_outputs;
@@ -191,7 +193,7 @@ template <int old, int parts, class Output, class Division>
   }
   for (; at < end; at += lanes) make(at, output(find.template operator()<Pack>(at), at));
   if constexpr (!Division::measures) layout.fill_halo(out, given.arguments.read_before, given.arguments.read_after);
-  given_division = division;
+  return division.result(given, rows);
 }
 
 /// The loop for so many past rows, none or 2 … most.
@@ -199,24 +201,18 @@ template <int old, int parts, class Output>
 RowChange division_loop_for(const Output& output, const DivisionRows& given, const RowIncrement& rows) {
   RowChange all;
   with_past_rows<most_past_rows_divided>(given.arguments.past_rows, [&]<int past_rows>() {
-    DivisionByArguments<past_rows, parts> division(given, rows);
-    division_loop<old, parts>(output, given, division);
-    all = division.closed(given, rows);
+    all = division_loop<DivisionByArguments<past_rows, parts>, old>(output, given, rows);
   });
   return all;
 }
 template <int old, int parts, class Output>
 RowChange straight_division_loop(const Output& output, const DivisionRows& given, const RowIncrement& rows) {
-  StraightDivision<parts> division(given, rows);
-  division_loop<old, parts>(output, given, division);
-  return division.closed(given, rows);
+  return division_loop<StraightDivision<parts>, old>(output, given, rows);
 }
 /// Of E' where the row stands; no row is made.
 template <int old, int parts, class Output>
 LargestTerms measured_division_loop(const Output& output, const DivisionRows& given, const RowIncrement& rows) {
-  MeasuredDivision<parts> division(given, rows);
-  division_loop<old, parts>(output, given, division);
-  return division.largest();
+  return division_loop<MeasuredDivision<parts>, old>(output, given, rows);
 }
 
 }  // namespace delf
