@@ -81,6 +81,26 @@ TEMPLATE_TEST_CASE("derivatives of functions of NearPacks have the bits of those
   CHECK(differences_of([](const auto& u) { return cosh(u); }) == 0);
 }
 
+TEMPLATE_TEST_CASE("products of them have the bits of those of Packs, and show an argument moved by a few roundings", "",
+                   NearPack, ReducedPack) {
+  const auto f = [](const auto& u) {
+    return sin(2.0 * u) * cosm1(u) * exp(0.1 * u) / (2.0 + cos(u)) * sinc(u) * cosh(u);
+  };
+  const auto values_that_differ = [&](double moved) {
+    Random random(8);
+    int count = 0;
+    for (int n = 0; n < 500; ++n) {
+      const Pack x = random_pack(random, 10);
+      const auto near = f(Dual<TestType, 1>::variable(x, 0));
+      const auto any = f(Dual<Pack, 1>::variable(x * (1 + moved), 0));
+      count += different(near.value, any.value);
+    }
+    return count;
+  };
+  CHECK(values_that_differ(0) == 0);
+  CHECK(values_that_differ(1e-15) > 0);
+}
+
 // Of a sum of two products, as this one is, and as the derivative of every product is, compilers fuse the one or the
 // other, and not the same in both.
 TEMPLATE_TEST_CASE("what is made of them, and its derivative, is the same but for which product of a sum is fused", "",
