@@ -16,7 +16,7 @@ inline constexpr int most_past_rows_divided = 5;
 template <int past_rows, int parts>
 class DivisionByArguments {
  public:
-  static constexpr bool finds_ahead = parts > 1, evaluates_first = false, fetches = false, measures = false;
+  static constexpr bool fetches = false, measures = false, adds_constant = true;
   DivisionByArguments(const DivisionRows& given, const RowIncrement& rows)
       : unknown_(given.arguments), known_(given.arguments.known), pass_(rows) {}
   [[gnu::always_inline]] Pack unknown(std::ptrdiff_t at) const { return unknown_(at); }
@@ -45,7 +45,7 @@ class DivisionByArguments {
 template <int parts, bool straight>
 class MixtureOnTheWay {
  public:
-  static constexpr bool finds_ahead = parts > 1, evaluates_first = true, fetches = straight && parts > 1;
+  static constexpr bool fetches = straight && parts > 1;
   MixtureOnTheWay(const DivisionRows& given, const RowIncrement& rows, const double* row)
       : row_(row),
         v_(rows.v_before),
@@ -83,7 +83,7 @@ class MixtureOnTheWay {
 template <int parts>
 class StraightDivision : public MixtureOnTheWay<parts, true> {
  public:
-  static constexpr bool measures = false;
+  static constexpr bool measures = false, adds_constant = true;
   StraightDivision(const DivisionRows& given, const RowIncrement& rows)
       : MixtureOnTheWay<parts, true>(given, rows, rows.y_before), pass_(rows) {}
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) { pass_(at, w); }
@@ -95,29 +95,42 @@ class StraightDivision : public MixtureOnTheWay<parts, true> {
   IncrementPass<1, Order::ascending, Look::increment> pass_;
 };
 
-/// No step: by how much the row that is there misses the w that its own outputs give, E = w − (v − v_before).
-template <int parts>
+/// No step: by how much the row that is there misses the w that its own outputs give, E = w − (v − v_before), in units of
+/// an output. Where there is no constant a sum less is noticed.
+template <int parts, bool adds>
 class MeasuredDivision : public MixtureOnTheWay<parts, false> {
  public:
-  static constexpr bool measures = true;
+  static constexpr bool measures = true, adds_constant = adds;
   MeasuredDivision(const DivisionRows& given, const RowIncrement& rows)
-      : MixtureOnTheWay<parts, false>(given, rows, rows.y), v_before_(rows.v_before), v_(rows.v) {}
+      : MixtureOnTheWay<parts, false>(given, rows, rows.y),
+        v_before_(rows.v_before),
+        v_(rows.v),
+        in_outputs_(1 / given.of_outputs) {}
   /// `absolute`: Σ |terms| of w.
   [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w, Pack absolute) {
     const Pack change = Pack::load(v_ + at) - Pack::load(v_before_ + at);
-    largest_(at, w - change, absolute + abs(change));
+    largest_(at, w - in_outputs_ * change, absolute + std::abs(in_outputs_) * abs(change));
   }
   LargestTerms result(const DivisionRows&, const RowIncrement&) const { return largest_; }
 
  private:
   const double *v_before_, *v_;
+  double in_outputs_;
   LargestTerms largest_;
 };
 
-/// A step of DivisionRows in one loop. Outputs are evaluated side by side, and the new row is made a group of packs after
-/// them: what waits for an output would keep the evaluation of the next ones waiting. Whether arguments are found a group
-/// ahead, and whether outputs are evaluated before the last group is made or after it, is what takes each of these loops
-/// the least time, by a tenth.
+/// What the outputs at a pack, or at a group of them, are evaluated at. A function, and no closure that a loop keeps: what
+/// closures refer to stays in memory.
+template <class P, class Output, class Division>
+[[gnu::always_inline]] inline auto argument_at(const Output& output, Division& division, std::ptrdiff_t at) {
+  const auto unknown = [&](std::ptrdiff_t to) __attribute__((always_inline)) { return division.unknown(to); };
+  const auto known = [&](std::ptrdiff_t to) __attribute__((always_inline)) { return division.known(to); };
+  return output.argument(of_packs<P>(at, unknown), of_packs<P>(at, known));
+}
+
+/// A step of DivisionRows in one loop. Outputs are evaluated side by side, at what was found a group of packs ahead, and
+/// the new row is made a group after them: what waits for an output would keep the evaluation of the next ones waiting.
+/// That arguments are found between the two, when the ones before are used up, leaves registers for the outputs.
 ///
 /// Output and division are made here, number by number: what is stored through others cannot change them, so that they
 /// stay in registers; copied as a whole they would wait for all that has just been stored (15 ns).
@@ -129,8 +142,10 @@ template <class Division, int old, class Output>
   Division division(given, rows);
   const double *const y = given.y, *const old_row = given.old_output;
   double* const out = given.output;
-  const double of_neighbours = given.of_neighbours, of_outputs = given.of_outputs;
-  const Pack constant(given.constant);
+  // Of w, or of w / of_outputs where it is measured, for which an output counts once.
+  const double unit = Division::measures ? given.of_outputs : 1;
+  const double of_neighbours = given.of_neighbours / unit, of_outputs = given.of_outputs;
+  const Pack constant(given.constant / unit);
   const RowLayout& layout = *given.arguments.layout;
   const std::ptrdiff_t begin = layout.at(0), end = layout.at(layout.packs());
   Pack here = Pack::load(y + begin), last = here - Pack::load(y + begin - lanes), last_size = abs(last);
@@ -138,7 +153,7 @@ template <class Division, int old, class Output>
   const auto make = [&](std::ptrdiff_t at, Pack E) __attribute__((always_inline)) {
     if constexpr (Division::fetches) fetch_ahead(old_row, at);
     const Pack next_value = Pack::load(y + at + lanes), next = next_value - here;
-    const Pack w = constant + of_neighbours * (next - last);
+    const Pack neighbours = of_neighbours * (next - last), w = Division::adds_constant ? constant + neighbours : neighbours;
     Pack outputs = E;
     if constexpr (old == 2) {
       const Pack E_old = Pack::load(old_row + at);  // before it is written over
@@ -148,8 +163,7 @@ template <class Division, int old, class Output>
     if constexpr (Division::measures) {
       const Pack next_size = abs(next), old_size = abs(last_old);
       const Pack sizes = old == 2 ? (old_size + last_old_size) + abs(E) : abs(E);
-      division(at, w + of_outputs * outputs,
-               std::abs(of_neighbours) * (next_size + last_size) + std::abs(of_outputs) * sizes);
+      division(at, w + outputs, std::abs(of_neighbours) * (next_size + last_size) + sizes);
       last_size = next_size, last_old_size = old_size;
     } else {
       E.store(out + at);
@@ -157,33 +171,19 @@ template <class Division, int old, class Output>
     }
     here = next_value, last = next;
   };
-  const auto find = [&]<class P>(std::ptrdiff_t from) __attribute__((always_inline)) {
-    const auto unknown = [&](std::ptrdiff_t to) __attribute__((always_inline)) { return division.unknown(to); };
-    const auto known = [&](std::ptrdiff_t to) __attribute__((always_inline)) { return division.known(to); };
-    return output.argument(of_packs<P>(from, unknown), of_packs<P>(from, known));
-  };
   std::ptrdiff_t at = begin;
   if constexpr (Output::near) {
     constexpr std::ptrdiff_t group = NearPacks::count * lanes;
-    const auto find_all = [&](std::ptrdiff_t from) __attribute__((always_inline)) {
-      return find.template operator()<NearPacks>(from);
-    };
     if (at + group <= end) {
-      auto found = find_all(at);
+      auto found = argument_at<NearPacks>(output, division, at);
       NearPacks ready = output(found, at);
       at += group;
-      if (Division::finds_ahead && at + group <= end) found = find_all(at);
+      if (at + group <= end) found = argument_at<NearPacks>(output, division, at);
       const auto go_on = [&]<bool finds_more>() __attribute__((always_inline)) {
-        const auto sought = Division::finds_ahead ? found : find_all(at);
-        if constexpr (Division::finds_ahead && finds_more) found = find_all(at + group);
-        if constexpr (Division::evaluates_first) {
-          const NearPacks E = output(sought, at);
-          for_each_pack(ready, at - group, make);
-          ready = E;
-        } else {
-          for_each_pack(ready, at - group, make);
-          ready = output(sought, at);
-        }
+        const NearPacks E = output(found, at);
+        if constexpr (finds_more) found = argument_at<NearPacks>(output, division, at + group);
+        for_each_pack(ready, at - group, make);
+        ready = E;
         at += group;
       };
       while (at + 2 * group <= end) go_on.template operator()<true>();
@@ -191,7 +191,7 @@ template <class Division, int old, class Output>
       for_each_pack(ready, at - group, make);
     }
   }
-  for (; at < end; at += lanes) make(at, output(find.template operator()<Pack>(at), at));
+  for (; at < end; at += lanes) make(at, output(argument_at<Pack>(output, division, at), at));
   if constexpr (!Division::measures) layout.fill_halo(out, given.arguments.read_before, given.arguments.read_after);
   return division.result(given, rows);
 }
@@ -212,7 +212,8 @@ RowChange straight_division_loop(const Output& output, const DivisionRows& given
 /// Of E' where the row stands; no row is made.
 template <int old, int parts, class Output>
 LargestTerms measured_division_loop(const Output& output, const DivisionRows& given, const RowIncrement& rows) {
-  return division_loop<MeasuredDivision<parts>, old>(output, given, rows);
+  if (given.constant != 0) return division_loop<MeasuredDivision<parts, true>, old>(output, given, rows);
+  return division_loop<MeasuredDivision<parts, false>, old>(output, given, rows);
 }
 
 }  // namespace delf

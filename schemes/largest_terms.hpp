@@ -6,13 +6,14 @@
 
 namespace delf {
 
-/// How well a row of equations is solved: max |E| and max Σ |terms|, pack by pack; a NaN stays one.
+/// How well a row of equations is solved: max |E| and max Σ |terms|, pack by pack. A NaN among the terms stays one in the
+/// second: it is E only where that is finite.
 struct LargestTerms {
   Pack sum = 0.0, absolute = 0.0;
 
   /// `a`: a sum of absolute values.
   [[gnu::always_inline]] void operator()(std::ptrdiff_t, Pack s, Pack a) {
-    sum = largest_magnitude(sum, s);
+    sum = detail::larger_magnitude(sum, s);
     absolute = larger_size(absolute, a);
   }
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "schemes/row_equations_step.hpp"
 
@@ -24,12 +25,13 @@ double RowEquations::residual(std::int64_t n, double largest) {
   } else if (on_the_way_) {
     find_rows();
     take(outputs_[0].kernel->measure_division(division(argument_on_the_way(with_turn(largest)), nullptr), increment(0)),
-         1 / std::abs(solver_[0]->right_side_scale(0)));
+         1);  // in whatever unit: there is nothing else
   } else {
     LargestTerms terms;
     measure_sums(terms, with_turn(largest));
     take(terms, 1);
   }
+  if (!std::isfinite(size)) return std::numeric_limits<double>::quiet_NaN();
   return size != 0 ? sum / size : 0;
 }
 

@@ -175,6 +175,59 @@ TEST_CASE("along straight lines a division's loop does the same without rows of 
     }
 }
 
+TEST_CASE("what is measured of a row is by how much it misses the step that its own outputs give") {
+  for (const std::string scheme : {"triangle", "guo"})
+    for (const auto& [form, sites] : every_pair({0, 1, 2, 3}, sizes)) {
+      const bool near = form % 2 != 0, has_constant = form >= 2;
+      CAPTURE(scheme, sites, near, has_constant);
+      RandomDivision given(scheme, 0, sites);
+      const RowLayout& layout = given.layout;
+      DivisionRows& r = given.rows;
+      r.arguments.near = near;
+      r.arguments.known = given.y.row(0);
+      r.known_increment = given.old > 0 ? 0 : 1;
+      if (!has_constant) r.constant = 0;
+      Random random(11);
+      for (RowBuffer* row : {&given.y_new, &given.v_new})
+        layout.scatter(random_rows(random, 1, sites, 1)[0], row->row(0));
+      // Rows of the argument by its formula, and the outputs by the loop that does nothing else.
+      RowBuffer E(layout, 1);
+      const double *const y = given.y.row(0), *const v = given.v.row(0);
+      for (auto at = layout.at(0); at < layout.at(layout.packs()); ++at) {
+        given.argument.row(0)[at] = 0;
+        for (int p = 0; p < given.parts; ++p)
+          given.argument.row(0)[at] += given.increment.look.weights[p] * given.y_new.row(0)[at + p * lanes];
+        given.known.row(0)[at] = y[at] - r.known_increment * v[at];
+      }
+      ArgumentRow apart = r.arguments;
+      apart.known = given.known.row(0);
+      given.kernel.evaluate_arguments(apart, E.row(0), layout.all());
+
+      const auto measured = [&] {
+        const LargestTerms terms = given.kernel.measure_division(r, given.increment);
+        return std::pair(max_or_nan(terms.sum) * std::abs(r.of_outputs),
+                         max_or_nan(terms.absolute) * std::abs(r.of_outputs));
+      };
+      const auto [sum, absolute] = measured();
+      double largest = 0, size = 0;
+      const double* const old_row = given.old_output.row(0);
+      for (auto at = layout.at(0); at < layout.at(layout.packs()); ++at) {
+        const double next = y[at + lanes] - y[at], last = y[at] - y[at - lanes], w = given.v_new.row(0)[at] - v[at];
+        double outputs = E.row(0)[at], sizes = std::abs(outputs);
+        if (given.old > 0)
+          outputs += old_row[at] + old_row[at - lanes], sizes += std::abs(old_row[at]) + std::abs(old_row[at - lanes]);
+        largest = std::max(largest, std::abs(r.constant + r.of_neighbours * (next - last) + r.of_outputs * outputs - w));
+        size = std::max(size, std::abs(r.of_neighbours) * (std::abs(next) + std::abs(last)) +
+                                  std::abs(r.of_outputs) * sizes + std::abs(w));
+      }
+      CHECK(sum == Approx(largest).epsilon(1e-13));
+      CHECK(absolute == Approx(size).epsilon(1e-13));
+
+      given.v_new.row(0)[layout.at(layout.packs() - 1) + 1] = std::nan("");
+      CHECK(std::isnan(measured().second));  // which says that nothing can be said of the first
+    }
+}
+
 TEST_CASE("a division's loop shows what is not a number") {
   for (const std::string scheme : {"triangle", "guo"})
     for (int v : {0, 3, 7}) {
