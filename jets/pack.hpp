@@ -159,15 +159,12 @@ inline double max_or_nan(Pack a) {
   if constexpr (lanes > 2) a = detail::larger(a, detail::rotated<2>(a, all));
   return detail::larger(a, detail::rotated<1>(a, all))[0];
 }
-/// Of two at once: each takes half of the lanes.
-inline std::pair<double, double> both_max_or_nan(Pack a, Pack b) {
+/// Of two at once that are not negative: each takes half of the lanes.
+inline std::pair<double, double> both_largest_sizes(Pack a, Pack b) {
   constexpr auto all = std::make_integer_sequence<int, lanes>();
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (detail::any_above(a, infinity) || detail::any_above(b, infinity)) [[unlikely]]
-    return {max_or_nan(a), max_or_nan(b)};
-  Pack both = detail::larger(detail::halves<0>(a, b, all), detail::halves<1>(a, b, all));
-  if constexpr (lanes > 4) both = detail::larger(both, detail::rotated_halves<2>(both, all));
-  if constexpr (lanes > 2) both = detail::larger(both, detail::rotated_halves<1>(both, all));
+  Pack both = larger_size(detail::halves<0>(a, b, all), detail::halves<1>(a, b, all));
+  if constexpr (lanes > 4) both = larger_size(both, detail::rotated_halves<2>(both, all));
+  if constexpr (lanes > 2) both = larger_size(both, detail::rotated_halves<1>(both, all));
   return {both[0], both[lanes / 2]};
 }
 

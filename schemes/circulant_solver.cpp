@@ -129,8 +129,8 @@ inline Pack CirculantSolver::entering_far(Pack sums, Pack entering_u) const {
 [[gnu::always_inline]] inline CirculantSolver::Entering CirculantSolver::forward(const RowSum& right_side, double* u) const {
   const RowLayout& layout = *layout_;
   if (are_far_apart_) {
-    right_side.pass(layout, layout.all(), Recurrence{q_, u});
-    const Pack entering_u = layout.before_first(u);
+    const Pack last = right_side.pass(layout, layout.all(), Recurrence{q_, u}).last;
+    const Pack entering_u = layout.before_first(u, last);
     return {entering_u, entering_far(sum_of_first(u), entering_u)};
   }
   SummedRecurrence both{{q_, u}, backward_.row(0)};

@@ -291,7 +291,7 @@ RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& f
       changed = seen;
     }
   }
-  increment(0).close(layout_, [] {});
+  increment(0).close(layout_, [](const auto&) {});
   RowChange result = stream->result();
   if (!straight)
     result.change = larger_or_nan(larger_or_nan(largest_change(looks_, {changed, packs}), change), result.change);

@@ -28,17 +28,20 @@ struct RowIncrement {
   double turn = 0;         ///< y is more by that for every time round the circle
   bool v_has_halo = true;  ///< or else who reads v across the ends of arcs fills it
 
-  /// When all packs have been made: halos, then `look_beyond`, which reads that of y after the row, and overlaps.
+  /// When all packs have been made: halos, overlaps, and `look_beyond`, which is given what finds pack j of y after the
+  /// row: of the row itself where that can be, for halos that have just been stored would be waited for.
   template <class Look>
   [[gnu::always_inline]] void close(const RowLayout& layout, const Look& look_beyond) const {
     if (layout.halos_come_first() && turn == 0) [[likely]] {
+      look_beyond([&layout, row = y](int j) __attribute__((always_inline)) { return layout.after_last(row, j); });
       if (v_has_halo) layout.fill_halo(v);
       layout.fill_halo(y);
-      look_beyond();
       layout.copy_overlaps(v, y);
     } else {
       close_slowly(layout);
-      look_beyond();
+      look_beyond([&layout, row = y](int j) __attribute__((always_inline)) {
+        return Pack::load(row + layout.at(layout.packs() + j));
+      });
     }
   }
 
@@ -145,36 +148,48 @@ class IncrementPass {
       }
     }
   }
+  /// What is looked at of y.
+  [[gnu::always_inline]] Pack looked_at(std::ptrdiff_t at, Pack y) const {
+    return look == Look::row ? y - Pack::load(expected_ + at) : y;
+  }
   /// Returns y.
   [[gnu::always_inline]] Pack unseen(std::ptrdiff_t at, Pack w) {
     const Pack v = Pack::load(v_before_ + at) + w, y = Pack::load(y_before_ + at) + v;
     largest_ = detail::larger_magnitude(largest_, y);
     sum_ += y;
-    if constexpr (parts > 0 && look != Look::increment) seen_.take(look == Look::row ? y - Pack::load(expected_ + at) : y);
+    if constexpr (parts > 0 && look != Look::increment) seen_.take(looked_at(at, y));
     v.store(v_ + at);
     y.store(y_ + at);
     return y;
   }
   /// When all packs have been handed over: closes the row, and looks beyond its end.
   [[gnu::always_inline]] RowChange closed(const RowLayout& layout, const RowIncrement& rows) {
-    rows.close(layout, [&]() __attribute__((always_inline)) {
-      const std::ptrdiff_t end = layout.at(layout.packs());
-      for (std::ptrdiff_t at = end - (parts - 1) * lanes; at < end; at += lanes) {
-        Pack u(0.0);
-        for (int p = 0; p < parts; ++p) {
-          const std::ptrdiff_t beside = at + p * lanes;
-          const Pack y = Pack::load(y_ + beside);
-          u += rows.look.weights[p] * (look == Look::row ? y - Pack::load(expected_ + beside) : y);
+    rows.close(layout, [&](const auto& after_last) __attribute__((always_inline)) {
+      if constexpr (parts > 1 && look != Look::increment) {
+        const std::ptrdiff_t end = layout.at(layout.packs());
+        // The last packs, and those after them. A descending pass has only just made the first of these: it is added last.
+        constexpr int newest = parts - 1;
+        Pack beside[2 * (parts - 1)];
+        for (int p = 0; p < parts - 1; ++p) {
+          beside[p] = looked_at(end - (parts - 1 - p) * lanes, Pack::load(y_ + end - (parts - 1 - p) * lanes));
+          beside[parts - 1 + p] = looked_at(end + p * lanes, after_last(p));
         }
-        change_ = detail::larger_magnitude(change_, look == Look::row ? u : u - Pack::load(argument_ + at));
-        if (look == Look::argument) u.store(argument_ + at);
+        for (int i = 0; i < parts - 1; ++i) {
+          Pack u(0.0);
+          for (int p = 0; p < parts; ++p)
+            if (i + p != newest) u += rows.look.weights[p] * beside[i + p];
+          u += rows.look.weights[newest - i] * beside[newest];
+          double* const here = argument_ + end - (parts - 1 - i) * lanes;
+          change_ = detail::larger_magnitude(change_, look == Look::row ? u : u - Pack::load(here));
+          if (look == Look::argument) u.store(here);
+        }
       }
     });
     return result();
   }
   /// Without the packs that look beyond the last one handed over.
   RowChange result() const {
-    const auto [largest, change] = both_max_or_nan(largest_ + 0.0 * sum_, change_);
+    const auto [largest, change] = both_largest_sizes(largest_ + 0.0 * sum_, change_);
     return {largest, change};
   }
 

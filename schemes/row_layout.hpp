@@ -73,6 +73,13 @@ class RowLayout {
   /// Whether packs of a halo are packs of the row, moved by a lane; and then the one before the first.
   bool finds_halos_by_packs() const { return by_packs_; }
   Pack before_first(const double* row) const { return before_.pack(row, -lanes); }
+  /// Where the last pack is at hand: what has just been stored is waited for.
+  Pack before_first(const double* row, Pack last) const {
+    const std::ptrdiff_t at_last = at(packs_ - 1);
+    return before_.pack_of([=](std::ptrdiff_t from) { return from == at_last ? last : Pack::load(row + from); }, -lanes);
+  }
+  /// That number `j` after the last.
+  Pack after_last(const double* row, int j) const { return after_.pack(row, static_cast<std::ptrdiff_t>(j) * lanes); }
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {
     for (const Copy& c : overlap_copies_) row[c.to] = row[c.from];
@@ -103,7 +110,11 @@ class RowLayout {
     Pack is_other = 0.0;  ///< 1 in their lanes, before they are moved
 
     Pack pack(const double* row, std::ptrdiff_t by) const {
-      const Pack one = Pack::load(row + from + by), other = Pack::load(row + from_others + by);
+      return pack_of([row](std::ptrdiff_t at) { return Pack::load(row + at); }, by);
+    }
+    template <class Read>
+    Pack pack_of(const Read& read, std::ptrdiff_t by) const {
+      const Pack one = read(from + by), other = read(from_others + by);
       return moved(Pack{is_other.v != 0 ? other.v : one.v});
     }
     /// The packs from `by` on, at least one. A copy of it is worked with, which stores cannot change.

@@ -113,17 +113,19 @@ TEST_CASE("the maximum over lanes is found wherever it is") {
   }
 }
 
-TEST_CASE("two maxima at once are the two, and a NaN shows in its own alone") {
+TEST_CASE("two largest sizes at once are the two, and a NaN shows in its own alone") {
   for (int l = 0; l < lanes; ++l)
-    for (int other = 0; other < lanes; ++other) {
-      const Pack a = with(ramp(-1, -0.5), l, 3), b = with(Pack(-7.0), other, -6);
-      CHECK(both_max_or_nan(a, b) == std::pair(3.0, -6.0));
-      CHECK(both_max_or_nan(b, a) == std::pair(-6.0, 3.0));
-      const auto [of_a, of_b] = both_max_or_nan(with(a, other, not_a_number), b);
-      CHECK((std::isnan(of_a) && of_b == -6));
-      const auto [of_b_first, of_a_last] = both_max_or_nan(b, with(a, other, not_a_number));
-      CHECK((of_b_first == -6 && std::isnan(of_a_last)));
-    }
+    for (int other = 0; other < lanes; ++other)
+      for (double sign : {1.0, -1.0}) {
+        const double nan = std::copysign(not_a_number, sign);
+        const Pack a = with(ramp(1, 0.5), l, 30), b = with(Pack(0.25), other, 6);
+        CHECK(both_largest_sizes(a, b) == std::pair(30.0, 6.0));
+        CHECK(both_largest_sizes(b, a) == std::pair(6.0, 30.0));
+        const auto [of_a, of_b] = both_largest_sizes(with(a, other, nan), b);
+        CHECK((std::isnan(of_a) && of_b == 6));
+        const auto [of_b_first, of_a_last] = both_largest_sizes(b, with(a, other, nan));
+        CHECK((of_b_first == 6 && std::isnan(of_a_last)));
+      }
 }
 
 TEST_CASE("abs clears the sign, that of -0 too") {

@@ -2,6 +2,7 @@
 #include "schemes/row_layout.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "tests/catch.hpp"
@@ -83,6 +84,31 @@ TEST_CASE("a halo that was not filled shows: the neighbour is the one before") {
   CHECK(row.row(0)[layout.slot(0) - lanes] == 8);
   layout.fill_halo(row.row(0));
   CHECK(row.row(0)[layout.slot(0) - lanes] == 80);
+}
+
+TEST_CASE("packs beside a row are found from the row alone, and from its last pack where that is in no memory") {
+  const auto same = [](Pack a, Pack b) {
+    for (int l = 0; l < lanes; ++l)
+      if (a[l] != b[l]) return false;
+    return true;
+  };
+  for (int N : {61, 64, 66, 127, 128}) {
+    constexpr int halo = 2;
+    const RowLayout layout(Lattice::circle(N, 1), halo);
+    CAPTURE(N);
+    REQUIRE(layout.finds_halos_by_packs());
+    RowBuffer filled(layout, 1), bare(layout, 1);
+    layout.scatter(numbered(N), filled.row(0));
+    const auto first = layout.at(0), last = layout.at(layout.packs() - 1), end = layout.at(layout.packs());
+    for (std::size_t s = 0; s < layout.doubles(); ++s) bare.row(0)[s] = std::nan("");
+    for (auto s = first; s < end; ++s) bare.row(0)[s] = filled.row(0)[s];
+    for (int j = 0; j < halo; ++j)
+      CHECK(same(layout.after_last(bare.row(0), j), Pack::load(filled.row(0) + end + j * lanes)));
+    CHECK(same(layout.before_first(bare.row(0)), Pack::load(filled.row(0) + first - lanes)));
+    for (auto s = last; s < end; ++s) bare.row(0)[s] = std::nan("");
+    CHECK(same(layout.before_first(bare.row(0), Pack::load(filled.row(0) + last)),
+               Pack::load(filled.row(0) + first - lanes)));
+  }
 }
 
 TEST_CASE("copy_overlaps makes every slot of a site equal to its own") {
