@@ -130,7 +130,10 @@ inline Pack CirculantSolver::entering_far(Pack sums, Pack entering_u) const {
   const RowLayout& layout = *layout_;
   if (are_far_apart_) {
     const Pack last = right_side.pass(layout, layout.all(), Recurrence{q_, u}).last;
-    const Pack entering_u = layout.before_first(u, last);
+    const std::ptrdiff_t at_last = layout.at(layout.packs() - 1);
+    const Pack entering_u = layout.before_first([=](std::ptrdiff_t at) __attribute__((always_inline)) {
+      return at == at_last ? last : Pack::load(u + at);
+    });
     return {entering_u, entering_far(sum_of_first(u), entering_u)};
   }
   SummedRecurrence both{{q_, u}, backward_.row(0)};

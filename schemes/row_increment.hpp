@@ -29,18 +29,18 @@ struct RowIncrement {
   bool v_has_halo = true;  ///< or else who reads v across the ends of arcs fills it
 
   /// When all packs have been made: halos, overlaps, and `look_beyond`, which is given what finds pack j of y after the
-  /// row: of the row itself where that can be, for halos that have just been stored would be waited for.
+  /// row from packs that `read` gives: those of the row itself where that can be.
   template <class Look>
   [[gnu::always_inline]] void close(const RowLayout& layout, const Look& look_beyond) const {
     if (layout.halos_come_first() && turn == 0) [[likely]] {
-      look_beyond([&layout, row = y](int j) __attribute__((always_inline)) { return layout.after_last(row, j); });
+      look_beyond([&](const auto& read, int j) __attribute__((always_inline)) { return layout.after_last(read, j); });
       if (v_has_halo) layout.fill_halo(v);
       layout.fill_halo(y);
       layout.copy_overlaps(v, y);
     } else {
       close_slowly(layout);
-      look_beyond([&layout, row = y](int j) __attribute__((always_inline)) {
-        return Pack::load(row + layout.at(layout.packs() + j));
+      look_beyond([&](const auto&, int j) __attribute__((always_inline)) {
+        return Pack::load(y + layout.at(layout.packs() + j));
       });
     }
   }
@@ -166,13 +166,21 @@ class IncrementPass {
   [[gnu::always_inline]] RowChange closed(const RowLayout& layout, const RowIncrement& rows) {
     rows.close(layout, [&](const auto& after_last) __attribute__((always_inline)) {
       if constexpr (parts > 1 && look != Look::increment) {
-        const std::ptrdiff_t end = layout.at(layout.packs());
+        const std::ptrdiff_t begin = layout.at(0), end = layout.at(layout.packs());
+        // What a descending pass has made last is still at hand.
+        const auto read = [&](std::ptrdiff_t at) __attribute__((always_inline)) {
+          if constexpr (order == Order::descending && look == Look::argument) {
+            if (at == begin) return seen_.newest;
+            if (at == begin + lanes) return seen_.older.newest;
+          }
+          return Pack::load(y_ + at);
+        };
         // The last packs, and those after them. A descending pass has only just made the first of these: it is added last.
         constexpr int newest = parts - 1;
         Pack beside[2 * (parts - 1)];
         for (int p = 0; p < parts - 1; ++p) {
           beside[p] = looked_at(end - (parts - 1 - p) * lanes, Pack::load(y_ + end - (parts - 1 - p) * lanes));
-          beside[parts - 1 + p] = looked_at(end + p * lanes, after_last(p));
+          beside[parts - 1 + p] = looked_at(end + p * lanes, after_last(read, p));
         }
         for (int i = 0; i < parts - 1; ++i) {
           Pack u(0.0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <concepts>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -73,13 +74,16 @@ class RowLayout {
   /// Whether packs of a halo are packs of the row, moved by a lane; and then the one before the first.
   bool finds_halos_by_packs() const { return by_packs_; }
   Pack before_first(const double* row) const { return before_.pack(row, -lanes); }
-  /// Where the last pack is at hand: what has just been stored is waited for.
-  Pack before_first(const double* row, Pack last) const {
-    const std::ptrdiff_t at_last = at(packs_ - 1);
-    return before_.pack_of([=](std::ptrdiff_t from) { return from == at_last ? last : Pack::load(row + from); }, -lanes);
+  /// The same, and number `j` after the last, of packs that `read(at)` gives: what has just been stored would be waited for.
+  template <class Read>
+    requires std::invocable<Read, std::ptrdiff_t>
+  Pack before_first(const Read& read) const {
+    return before_.pack_of(read, -lanes);
   }
-  /// That number `j` after the last.
-  Pack after_last(const double* row, int j) const { return after_.pack(row, static_cast<std::ptrdiff_t>(j) * lanes); }
+  template <class Read>
+  Pack after_last(const Read& read, int j) const {
+    return after_.pack_of(read, static_cast<std::ptrdiff_t>(j) * lanes);
+  }
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {
     for (const Copy& c : overlap_copies_) row[c.to] = row[c.from];
@@ -113,7 +117,7 @@ class RowLayout {
       return pack_of([row](std::ptrdiff_t at) { return Pack::load(row + at); }, by);
     }
     template <class Read>
-    Pack pack_of(const Read& read, std::ptrdiff_t by) const {
+    [[gnu::always_inline]] Pack pack_of(const Read& read, std::ptrdiff_t by) const {
       const Pack one = read(from + by), other = read(from_others + by);
       return moved(Pack{is_other.v != 0 ? other.v : one.v});
     }
