@@ -173,6 +173,7 @@ struct MixtureSlope {
   const double* positions;
   double x_offset;
 
+  /// Member by member (division_loop() says why).
   [[gnu::always_inline]] MixtureSlope copy() const { return {density, known_weight, t, positions, x_offset}; }
   template <class P>
   [[gnu::always_inline]] P argument(const P& u, const P& known) const {

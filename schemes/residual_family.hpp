@@ -192,6 +192,7 @@ class ResidualFamily final : public StencilFamily, public RowKernel {
     struct Values {
       P latest, other;
     };
+    /// Member by member (division_loop() says why).
     [[gnu::always_inline]] PartOfPair copy() const { return {stencil}; }
     template <class P>
     [[gnu::always_inline]] Values<P> argument(const P& u, const P& known) const {

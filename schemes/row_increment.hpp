@@ -138,14 +138,7 @@ class IncrementPass {
     if constexpr (look == Look::increment) {
       change_ = detail::larger_magnitude(change_, w);
     } else if constexpr (parts > 0) {
-      const Pack u = weights_.added(Pack(0.0), seen_);
-      if constexpr (look == Look::row) {
-        change_ = detail::larger_magnitude(change_, u);
-      } else {
-        double* const here = argument_ + at - (order == Order::ascending ? (parts - 1) * lanes : 0);
-        change_ = detail::larger_magnitude(change_, u - Pack::load(here));
-        u.store(here);
-      }
+      look_at(weights_.added(Pack(0.0), seen_), at - (order == Order::ascending ? (parts - 1) * lanes : 0));
     }
   }
   /// What is looked at of y.
@@ -187,9 +180,7 @@ class IncrementPass {
           for (int p = 0; p < parts; ++p)
             if (i + p != newest) u += rows.look.weights[p] * beside[i + p];
           u += rows.look.weights[newest - i] * beside[newest];
-          double* const here = argument_ + end - (parts - 1 - i) * lanes;
-          change_ = detail::larger_magnitude(change_, look == Look::row ? u : u - Pack::load(here));
-          if (look == Look::argument) u.store(here);
+          look_at(u, end - (parts - 1 - i) * lanes);
         }
       }
     });
@@ -202,6 +193,16 @@ class IncrementPass {
   }
 
  private:
+  /// Takes in how far u is from what was expected of it; an argument gives way to it.
+  [[gnu::always_inline]] void look_at(Pack u, std::ptrdiff_t at) {
+    if constexpr (look == Look::row) {
+      change_ = detail::larger_magnitude(change_, u);
+    } else {
+      change_ = detail::larger_magnitude(change_, u - Pack::load(argument_ + at));
+      u.store(argument_ + at);
+    }
+  }
+
   const double *v_before_, *y_before_, *expected_;
   double *v_, *y_, *argument_;
   PackWeights<parts> weights_;
