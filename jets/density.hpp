@@ -3,7 +3,7 @@
 #include <concepts>
 #include <type_traits>
 
-#include "jets/dual.hpp"
+#include "jets/numbers/dual.hpp"
 #include "jets/jet.hpp"
 
 namespace delf {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "jets/density.hpp"
-#include "jets/jet_table.hpp"
+#include "jets/tables/jet_table.hpp"
 
 namespace delf {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "jets/discrete_lagrangian.hpp"
-#include "jets/dual.hpp"
+#include "jets/numbers/dual.hpp"
 #include "lattice/stencil_shape.hpp"
 
 namespace delf {

@@ -3,10 +3,10 @@
 #include <memory>
 #include <utility>
 
-#include "schemes/evolution.hpp"
-#include "schemes/lagrangian_family.hpp"
-#include "schemes/variational_family.hpp"
-#include "schemes/vertex_constraint.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/families/lagrangian_family.hpp"
+#include "schemes/families/variational_family.hpp"
+#include "schemes/families/vertex_constraint.hpp"
 
 namespace delf {
 

@@ -9,12 +9,12 @@
 #include <numbers>
 
 #include "lattice/error.hpp"
-#include "schemes/conserved.hpp"
-#include "schemes/evolution.hpp"
-#include "schemes/field_theory.hpp"
-#include "schemes/method_registry.hpp"
-#include "schemes/plan_report.hpp"
-#include "schemes/theory_registry.hpp"
+#include "schemes/system/conserved.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/methods/method_registry.hpp"
+#include "schemes/system/plan_report.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "schemes/unknown_name.hpp"
 
 namespace delf {

@@ -9,7 +9,7 @@
 
 #include "jets/symmetry.hpp"
 #include "lattice/lattice.hpp"
-#include "schemes/lattice_system.hpp"
+#include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 

@@ -9,8 +9,8 @@
 
 #include "tools/commands.hpp"
 #include "tools/help.hpp"
-#include "tools/keys.hpp"
-#include "tools/scene_text.hpp"
+#include "tools/scene/keys.hpp"
+#include "tools/scene/scene_text.hpp"
 
 namespace delf {
 

@@ -9,13 +9,13 @@
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/plan.hpp"
-#include "tools/run.hpp"
-#include "tools/scene.hpp"
-#include "tools/shipped_scenes.hpp"
-#include "tools/stability.hpp"
-#include "tools/suggestion.hpp"
-#include "tools/verify.hpp"
-#include "tools/workprecision.hpp"
+#include "tools/run/run.hpp"
+#include "tools/scene/scene.hpp"
+#include "tools/scene/shipped_scenes.hpp"
+#include "tools/stability/stability.hpp"
+#include "tools/scene/suggestion.hpp"
+#include "tools/verify/verify.hpp"
+#include "tools/workprecision/workprecision.hpp"
 
 namespace delf {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/failure.hpp"
-#include "tools/settings.hpp"
+#include "tools/scene/settings.hpp"
 
 namespace delf {
 

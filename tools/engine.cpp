@@ -7,7 +7,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "tools/in_words.hpp"
+#include "tools/run/in_words.hpp"
 
 namespace delf {
 

@@ -4,7 +4,7 @@
 
 #include "schemes/simulation.hpp"
 #include "tools/failure.hpp"
-#include "tools/scene.hpp"
+#include "tools/scene/scene.hpp"
 
 namespace delf {
 

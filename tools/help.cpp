@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/commands.hpp"
-#include "tools/keys.hpp"
+#include "tools/scene/keys.hpp"
 
 namespace delf {
 

@@ -7,8 +7,8 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
-#include "tools/shipped_scenes.hpp"
-#include "tools/suggestion.hpp"
+#include "tools/scene/shipped_scenes.hpp"
+#include "tools/scene/suggestion.hpp"
 
 namespace delf {
 

@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "tools/engine.hpp"
-#include "tools/in_words.hpp"
-#include "tools/initial_rows.hpp"
-#include "tools/outcome.hpp"
-#include "tools/seconds_since.hpp"
-#include "tools/stepping.hpp"
+#include "tools/run/in_words.hpp"
+#include "tools/scene/initial_rows.hpp"
+#include "tools/run/outcome.hpp"
+#include "tools/run/seconds_since.hpp"
+#include "tools/run/stepping.hpp"
 
 namespace delf {
 

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "lattice/error.hpp"
-#include "schemes/field_theory.hpp"
-#include "schemes/method_registry.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 
 namespace delf {

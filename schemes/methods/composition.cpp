@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include "jets/pair_element.hpp"
-#include "jets/splitting.hpp"
+#include "jets/tables/pair_element.hpp"
+#include "jets/tables/splitting.hpp"
 #include "lattice/error.hpp"
-#include "schemes/field_theory.hpp"
-#include "schemes/method_registry.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 
 namespace delf {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "lattice/error.hpp"
-#include "schemes/field_theory.hpp"
-#include "schemes/method_registry.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/unknown_name.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/r_adaptive.hpp"
+#include "schemes/families/r_adaptive.hpp"
 
 #include "lattice/error.hpp"
-#include "schemes/lagrangian_family.hpp"
-#include "schemes/field_theory.hpp"
-#include "schemes/method_registry.hpp"
+#include "schemes/families/lagrangian_family.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 
 namespace delf {

@@ -3,10 +3,10 @@
 
 #include <utility>
 
-#include "jets/spacetime_element.hpp"
+#include "jets/tables/spacetime_element.hpp"
 #include "lattice/error.hpp"
-#include "schemes/field_theory.hpp"
-#include "schemes/method_registry.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 
 namespace delf {

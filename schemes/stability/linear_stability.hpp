@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "schemes/lattice_system.hpp"
+#include "schemes/system/lattice_system.hpp"
 #include "schemes/stability/symbol.hpp"
 
 namespace delf {

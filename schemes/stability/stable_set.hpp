@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "schemes/lattice_system.hpp"
+#include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 

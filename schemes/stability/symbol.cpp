@@ -13,7 +13,7 @@
 #include <tuple>
 
 #include "lattice/error.hpp"
-#include "lattice/sigma_method.hpp"
+#include "lattice/plan/sigma_method.hpp"
 
 namespace delf {
 namespace {

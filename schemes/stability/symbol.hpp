@@ -3,7 +3,7 @@
 #include <complex>
 #include <vector>
 
-#include "schemes/lattice_system.hpp"
+#include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 

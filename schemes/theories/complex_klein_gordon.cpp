@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/theories/complex_klein_gordon.hpp"
 
-#include "schemes/field_theory.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/simulation.hpp"
-#include "schemes/theory_registry.hpp"
+#include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 

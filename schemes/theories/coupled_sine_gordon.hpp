@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "jets/dual.hpp"
+#include "jets/numbers/dual.hpp"
 
 namespace delf {
 

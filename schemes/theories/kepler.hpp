@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "jets/dual.hpp"
+#include "jets/numbers/dual.hpp"
 #include "jets/symmetry.hpp"
 
 namespace delf {

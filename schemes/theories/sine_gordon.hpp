@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "jets/sinc.hpp"
+#include "jets/numbers/sinc.hpp"
 
 namespace delf {
 

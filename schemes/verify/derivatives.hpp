@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "schemes/lattice_system.hpp"
+#include "schemes/system/lattice_system.hpp"
 #include "schemes/verify/check.hpp"
 
 namespace delf {

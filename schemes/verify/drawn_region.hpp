@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "lattice/region_shapes.hpp"
-#include "lattice/solve_plan.hpp"
-#include "schemes/lattice_system.hpp"
+#include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 

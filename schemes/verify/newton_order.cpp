@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "schemes/block_solver.hpp"
-#include "schemes/slab_equations.hpp"
-#include "schemes/slab_extent.hpp"
+#include "schemes/solvers/block_solver.hpp"
+#include "schemes/system/slab_equations.hpp"
+#include "schemes/system/slab_extent.hpp"
 
 namespace delf {
 namespace {

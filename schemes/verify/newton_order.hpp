@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "lattice/solve_plan.hpp"
-#include "schemes/lattice_system.hpp"
+#include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/lattice_system.hpp"
 #include "schemes/verify/check.hpp"
 
 namespace delf {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "schemes/conserved.hpp"
+#include "schemes/system/conserved.hpp"
 #include "schemes/verify/drawn_region.hpp"
 
 namespace delf {

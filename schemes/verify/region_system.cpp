@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "jets/forms.hpp"
-#include "schemes/conserved.hpp"
+#include "schemes/system/conserved.hpp"
 
 namespace delf {
 

@@ -8,8 +8,8 @@
 
 #include "jets/symmetry.hpp"
 #include "lattice/region.hpp"
-#include "lattice/solve_plan.hpp"
-#include "schemes/lattice_system.hpp"
+#include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/lattice_system.hpp"
 #include "schemes/verify/check.hpp"
 
 namespace delf {

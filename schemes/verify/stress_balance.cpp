@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "schemes/field_theory.hpp"
+#include "schemes/theories/field_theory.hpp"
 
 namespace delf {
 namespace {

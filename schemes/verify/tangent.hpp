@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lattice/region.hpp"
-#include "lattice/solve_plan.hpp"
-#include "schemes/lattice_system.hpp"
+#include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 

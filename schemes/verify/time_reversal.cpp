@@ -9,8 +9,8 @@
 #include <string>
 
 #include "lattice/error.hpp"
-#include "schemes/evolution.hpp"
-#include "schemes/lattice_system.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/system/lattice_system.hpp"
 #include "schemes/simulation.hpp"
 
 namespace delf {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "jets/symmetry.hpp"
-#include "lattice/solve_plan.hpp"
-#include "schemes/lattice_system.hpp"
+#include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/lattice_system.hpp"
 #include "schemes/verify/check.hpp"
 
 namespace delf {

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "schemes/stencil_family.hpp"
+#include "schemes/families/stencil_family.hpp"
 
 namespace delf {
 

@@ -2,10 +2,10 @@
 #pragma once
 #include <tuple>
 
-#include "jets/hexagon_jet.hpp"
-#include "jets/rectangle_jet.hpp"
-#include "jets/triangle_jet.hpp"
-#include "jets/tuple_jets.hpp"
+#include "jets/tables/hexagon_jet.hpp"
+#include "jets/tables/rectangle_jet.hpp"
+#include "jets/tables/triangle_jet.hpp"
+#include "jets/tables/tuple_jets.hpp"
 #include "schemes/theories/double_sine_gordon.hpp"
 #include "schemes/theories/klein_gordon.hpp"
 #include "schemes/theories/phi4.hpp"

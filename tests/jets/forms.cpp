@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "jets/discrete_lagrangian.hpp"
-#include "schemes/guo.hpp"
-#include "schemes/residual_family.hpp"
-#include "schemes/vu_quoc_li.hpp"
+#include "schemes/families/guo.hpp"
+#include "schemes/families/residual_family.hpp"
+#include "schemes/families/vu_quoc_li.hpp"
 #include "tests/catch.hpp"
 #include "tests/jets/catalogue.hpp"
 #include "tests/jets/random.hpp"

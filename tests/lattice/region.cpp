@@ -7,13 +7,13 @@
 #include <set>
 
 #include "lattice/error.hpp"
-#include "lattice/hexagon.hpp"
-#include "lattice/nine_tuple.hpp"
-#include "lattice/rectangle.hpp"
-#include "lattice/six_tuple.hpp"
-#include "lattice/triangle.hpp"
+#include "lattice/shapes/hexagon.hpp"
+#include "lattice/shapes/nine_tuple.hpp"
+#include "lattice/shapes/rectangle.hpp"
+#include "lattice/shapes/six_tuple.hpp"
+#include "lattice/shapes/triangle.hpp"
 #include "tests/catch.hpp"
-#include "tests/lattice/systems.hpp"
+#include "tests/lattice/plan/systems.hpp"
 
 using namespace delf;
 using testing::pick;

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "tests/catch.hpp"
-#include "tests/lattice/systems.hpp"
+#include "tests/lattice/plan/systems.hpp"
 
 using namespace delf;
 using testing::pick;

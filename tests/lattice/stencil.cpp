@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "lattice/error.hpp"
-#include "lattice/hexagon.hpp"
-#include "lattice/rectangle.hpp"
-#include "lattice/triangle.hpp"
+#include "lattice/shapes/hexagon.hpp"
+#include "lattice/shapes/rectangle.hpp"
+#include "lattice/shapes/triangle.hpp"
 #include "tests/catch.hpp"
 
 using namespace delf;

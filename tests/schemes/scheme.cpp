@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "jets/hexagon_jet.hpp"
-#include "lattice/rectangle.hpp"
+#include "jets/tables/hexagon_jet.hpp"
+#include "lattice/shapes/rectangle.hpp"
 #include "schemes/theories/phi4.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"

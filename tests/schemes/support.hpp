@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/evolution.hpp"
-#include "schemes/field_theory.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/simulation.hpp"
-#include "schemes/theory_registry.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "tests/jets/random.hpp"
 #include "tests/row_distance.hpp"
 

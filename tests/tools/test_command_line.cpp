@@ -4,7 +4,7 @@
 #include "tests/tools/program.hpp"
 #include "tests/tools/refused.hpp"
 #include "tools/failure.hpp"
-#include "tools/keys.hpp"
+#include "tools/scene/keys.hpp"
 
 using namespace delf::testing;
 

@@ -4,8 +4,8 @@
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
-#include "tools/in_words.hpp"
-#include "tools/stepping.hpp"
+#include "tools/run/in_words.hpp"
+#include "tools/run/stepping.hpp"
 
 using namespace delf;
 using namespace delf::testing;

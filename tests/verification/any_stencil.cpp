@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/evolution.hpp"
-#include "schemes/lagrangian_family.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/families/lagrangian_family.hpp"
 #include "tests/catch.hpp"
-#include "tests/schemes/random_stencil.hpp"
+#include "tests/schemes/families/random_stencil.hpp"
 #include "tests/verification/patch.hpp"
 
 using namespace delf;

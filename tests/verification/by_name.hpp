@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "schemes/conserved.hpp"
+#include "schemes/system/conserved.hpp"
 #include "schemes/scheme.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"

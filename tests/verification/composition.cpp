@@ -3,9 +3,9 @@
 #include <cmath>
 #include <random>
 
-#include "jets/pair_element.hpp"
-#include "jets/splitting.hpp"
-#include "schemes/element_family.hpp"
+#include "jets/tables/pair_element.hpp"
+#include "jets/tables/splitting.hpp"
+#include "schemes/families/element_family.hpp"
 #include "schemes/theories/phi4.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"

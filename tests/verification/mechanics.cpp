@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "jets/point_jets.hpp"
+#include "jets/tables/point_jets.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/by_name.hpp"
 

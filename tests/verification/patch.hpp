@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "lattice/region_shapes.hpp"
-#include "schemes/field_theory.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/simulation.hpp"
-#include "schemes/theory_registry.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "schemes/verify/region_system.hpp"
 #include "tests/verification/experiment.hpp"
 

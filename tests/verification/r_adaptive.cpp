@@ -4,9 +4,9 @@
 
 #include "tests/catch.hpp"
 #include "lattice/lattice.hpp"
-#include "schemes/evolution.hpp"
-#include "schemes/lagrangian_family.hpp"
-#include "schemes/r_adaptive.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/families/lagrangian_family.hpp"
+#include "schemes/families/r_adaptive.hpp"
 #include "tests/verification/r_adaptive_rows.hpp"
 
 using namespace delf;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "jets/rectangle_jet.hpp"
+#include "jets/tables/rectangle_jet.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/by_name.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "jets/spacetime_element.hpp"
+#include "jets/tables/spacetime_element.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "jets/rectangle_jet.hpp"
-#include "schemes/element_family.hpp"
-#include "schemes/lagrangian_family.hpp"
-#include "schemes/r_adaptive.hpp"
+#include "jets/tables/rectangle_jet.hpp"
+#include "schemes/families/element_family.hpp"
+#include "schemes/families/lagrangian_family.hpp"
+#include "schemes/families/r_adaptive.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "schemes/theories/wave_map.hpp"
-#include "schemes/variational_family.hpp"
-#include "schemes/vertex_constraint.hpp"
+#include "schemes/families/variational_family.hpp"
+#include "schemes/families/vertex_constraint.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/patch.hpp"
 

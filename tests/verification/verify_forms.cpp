@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/evolution.hpp"
-#include "schemes/field_theory.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "schemes/verify/form_check.hpp"

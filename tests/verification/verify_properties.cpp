@@ -15,21 +15,21 @@
 #include <utility>
 #include <vector>
 
-#include "jets/rectangle_jet.hpp"
-#include "jets/spacetime_element.hpp"
+#include "jets/tables/rectangle_jet.hpp"
+#include "jets/tables/spacetime_element.hpp"
 #include "lattice/error.hpp"
-#include "schemes/element_family.hpp"
-#include "schemes/evolution.hpp"
-#include "schemes/lagrangian_family.hpp"
-#include "schemes/slab_extent.hpp"
+#include "schemes/families/element_family.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/families/lagrangian_family.hpp"
+#include "schemes/system/slab_extent.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "schemes/theories/wave_map.hpp"
-#include "schemes/variational_family.hpp"
+#include "schemes/families/variational_family.hpp"
 #include "schemes/verify/form_check.hpp"
 #include "schemes/verify/wrong_sign.hpp"
-#include "schemes/vertex_constraint.hpp"
+#include "schemes/families/vertex_constraint.hpp"
 #include "tests/catch.hpp"
-#include "tests/schemes/random_stencil.hpp"
+#include "tests/schemes/families/random_stencil.hpp"
 #include "tests/verification/patch.hpp"
 
 using namespace delf;

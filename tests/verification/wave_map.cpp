@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "jets/rectangle_jet.hpp"
-#include "jets/triangle_jet.hpp"
+#include "jets/tables/rectangle_jet.hpp"
+#include "jets/tables/triangle_jet.hpp"
 #include "schemes/theories/wave_map.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/by_name.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include "jets/pack_math.hpp"
-#include "jets/rectangle_jet.hpp"
-#include "jets/triangle_jet.hpp"
+#include "jets/simd/pack_math.hpp"
+#include "jets/tables/rectangle_jet.hpp"
+#include "jets/tables/triangle_jet.hpp"
 #include "schemes/scheme.hpp"
 #include "tools/bench/commands.hpp"
 #include "tools/bench/sides.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tools/bench/leapfrog_by_hand.hpp"
 
-#include "jets/pack_math.hpp"
-#include "schemes/flush_denormals.hpp"
+#include "jets/simd/pack_math.hpp"
+#include "schemes/stepping/flush_denormals.hpp"
 
 namespace delf::bench {
 

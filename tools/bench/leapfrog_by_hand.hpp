@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "schemes/row_layout.hpp"
+#include "schemes/stepping/rows/row_layout.hpp"
 
 namespace delf::bench {
 

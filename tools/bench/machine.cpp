@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "jets/pack.hpp"
+#include "jets/simd/pack.hpp"
 
 #ifndef DELF_BENCH_FLAGS
 #define DELF_BENCH_FLAGS "not told"

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "jets/pack_math.hpp"
-#include "schemes/row_layout.hpp"
+#include "jets/simd/pack_math.hpp"
+#include "schemes/stepping/rows/row_layout.hpp"
 #include "tools/bench/pairing.hpp"
 #include "tools/bench/textbook_autovectorised.hpp"
 

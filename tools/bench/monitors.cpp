@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include "schemes/flush_denormals.hpp"
+#include "schemes/stepping/flush_denormals.hpp"
 #include "tools/bench/commands.hpp"
 #include "tools/bench/sides.hpp"
 #include "tools/bench/table.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "schemes/flush_denormals.hpp"
+#include "schemes/stepping/flush_denormals.hpp"
 #include "tools/bench/collision.hpp"
 #include "tools/bench/pairing.hpp"
 

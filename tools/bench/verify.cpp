@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "schemes/evolution.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "schemes/verify/equation_check.hpp"
 #include "schemes/verify/form_check.hpp"
 #include "tools/bench/commands.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "jets/pack_math.hpp"
+#include "jets/simd/pack_math.hpp"
 #include "tools/peers/wave_equation.hpp"
 
 namespace delf::peers {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "jets/pack.hpp"
+#include "jets/simd/pack.hpp"
 
 namespace delf::peers {
 

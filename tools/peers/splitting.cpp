@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "jets/splitting.hpp"
+#include "jets/tables/splitting.hpp"
 
 namespace delf::peers {
 namespace {

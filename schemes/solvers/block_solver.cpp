@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/solvers/block_solver.hpp"
+
+#include <Eigen/Dense>
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "lattice/plan/block_order.hpp"
+#include "schemes/solvers/arc_solver.hpp"
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+/// A block that is too large to be dense.
+struct BlockSolver::Large {
+  int size;
+  std::unique_ptr<ArcSolver> arcs;
+  bool by_arcs = false;
+  Eigen::SparseMatrix<double> matrix;
+  std::vector<int> where;  ///< of the entries, in matrix.valuePtr()
+  std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> sparse;
+  mutable Eigen::VectorXd x;
+
+  Large(int n, Entries entries, const std::vector<int>& row_sites, const std::vector<int>& column_sites) : size(n) {
+    if (row_sites.empty()) return;
+    auto groups = SiteGroups::of(row_sites, column_sites, entries);
+    // Row n is solved for column n: it may as well lie where its column does.
+    if (!groups) groups = SiteGroups::of(column_sites, column_sites, entries);
+    if (groups) arcs = ArcSolver::make(*groups, entries);
+    by_arcs = arcs != nullptr;
+  }
+
+  bool factor(const std::vector<double>& values, Entries entries) {
+    by_arcs = arcs && arcs->factor(values, entries);
+    if (by_arcs) return true;
+    if (!sparse) prepare(entries);
+    for (std::size_t e = 0; e < entries.size(); ++e) matrix.valuePtr()[where[e]] = values[at(entries[e].place)];
+    sparse->factorize(matrix);
+    return sparse->info() == Eigen::Success;
+  }
+
+  void prepare(Entries entries) {
+    std::vector<Eigen::Triplet<double>> triplets;
+    for (const Entry& e : entries) triplets.emplace_back(e.row, e.column, 1.0);
+    matrix.resize(size, size);
+    matrix.setFromTriplets(triplets.begin(), triplets.end());
+    matrix.makeCompressed();
+    for (const Entry& e : entries) {
+      const int* first = matrix.innerIndexPtr() + matrix.outerIndexPtr()[e.column];
+      const int* last = matrix.innerIndexPtr() + matrix.outerIndexPtr()[e.column + 1];
+      where.push_back(static_cast<int>(std::lower_bound(first, last, e.row) - matrix.innerIndexPtr()));
+    }
+    sparse = std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
+    sparse->analyzePattern(matrix);
+  }
+
+  /// `part`: b, then x behind it.
+  void solve(double* part) const {
+    if (by_arcs) {
+      arcs->solve(part, part + size);
+      return;
+    }
+    x = sparse->solve(Eigen::Map<const Eigen::VectorXd>(part, size));
+    std::copy_n(x.data(), size, part + size);
+  }
+
+  std::size_t bytes() const {
+    std::size_t total = arcs ? arcs->bytes() : 0;
+    if (sparse)
+      total += static_cast<std::size_t>(matrix.nonZeros() + sparse->nnzL() + sparse->nnzU()) *
+               (sizeof(double) + sizeof(int));
+    return total;
+  }
+};
+
+BlockSolver::~BlockSolver() = default;
+BlockSolver::BlockSolver(BlockSolver&&) noexcept = default;
+BlockSolver& BlockSolver::operator=(BlockSolver&&) noexcept = default;
+
+BlockSolver::BlockSolver(int n, const std::vector<std::pair<int, int>>& places, const std::vector<char>& present,
+                         bool matched, const Sites& sites) {
+  std::vector<std::vector<int>> members;
+  if (matched) {
+    std::vector<std::pair<int, int>> edges;
+    for (std::size_t p = 0; p < places.size(); ++p)
+      if (present[p]) edges.push_back(places[p]);
+    members = blocks_in_order(n, edges);
+  } else {
+    members.emplace_back(at(n));
+    std::iota(members[0].begin(), members[0].end(), 0);
+  }
+  for (const auto& block : members) {
+    const int size = static_cast<int>(block.size());
+    blocks_.push_back({.first = static_cast<int>(members_.size()), .size = size});
+    largest_ = std::max(largest_, size);
+    members_.insert(members_.end(), block.begin(), block.end());
+  }
+  list_entries(n, places, present);
+  pivots_.resize(members_.size());
+  part_.resize(at(2 * largest_));
+  std::size_t factors = 0;
+  for (Block& b : blocks_) {
+    b.factors = factors;
+    if (b.size <= largest_dense) {
+      factors += at(b.size * b.size);
+      continue;
+    }
+    std::vector<int> row_sites, column_sites;
+    for (int i = 0; i < b.size && !sites.of_row.empty(); ++i) {
+      row_sites.push_back(sites.of_row[at(members_[at(b.first + i)])]);
+      column_sites.push_back(sites.of_column[at(members_[at(b.first + i)])]);
+    }
+    b.large = static_cast<int>(large_.size());
+    large_.push_back(std::make_unique<Large>(b.size, Entries(inside_).subspan(b.inside, b.inside_end - b.inside),
+                                             row_sites, column_sites));
+  }
+  factors_.resize(factors);
+}
+
+/// Entries block by block, those within and those that couple a block to what was solved before it.
+void BlockSolver::list_entries(int n, const std::vector<std::pair<int, int>>& places,
+                               const std::vector<char>& present) {
+  std::vector<int> block(at(n)), position(at(n));
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (int i = 0; i < blocks_[b].size; ++i) {
+      const int member = members_[at(blocks_[b].first + i)];
+      block[at(member)] = static_cast<int>(b);
+      position[at(member)] = i;
+    }
+  const auto for_each = [&](const auto& visit) {
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      if (!present[p]) continue;
+      const auto [row, column] = places[p];
+      visit(blocks_[at(block[at(row)])], block[at(row)] == block[at(column)], static_cast<int>(p), row, column);
+    }
+  };
+  for_each([](Block& b, bool inside, int, int, int) { ++(inside ? b.inside_end : b.outside_end); });
+  std::size_t inside = 0, outside = 0;
+  for (Block& b : blocks_) {
+    b.inside = inside, b.outside = outside;
+    inside += b.inside_end, outside += b.outside_end;
+    b.inside_end = b.inside, b.outside_end = b.outside;
+  }
+  inside_.resize(inside), outside_.resize(outside);
+  for_each([&](Block& b, bool is_inside, int p, int row, int column) {
+    if (is_inside) inside_[b.inside_end++] = {position[at(row)], position[at(column)], p};
+    else outside_[b.outside_end++] = {position[at(row)], column, p};
+  });
+}
+
+bool BlockSolver::factor(const std::vector<double>& values) {
+  values_ = values;
+  for (const Block& b : blocks_) {
+    const Entries entries = Entries(inside_).subspan(b.inside, b.inside_end - b.inside);
+    if (!(b.large >= 0 ? large_[at(b.large)]->factor(values, entries) : factor_dense(b, values))) return false;
+  }
+  return true;
+}
+
+/// L and U in place, row by row, rows exchanged for the largest pivot; 1/U_pp on the diagonal.
+bool BlockSolver::factor_dense(const Block& block, const std::vector<double>& values) {
+  const int n = block.size;
+  double* const a = factors_.data() + block.factors;
+  std::fill_n(a, n * n, 0.0);
+  for (std::size_t e = block.inside; e < block.inside_end; ++e)
+    a[inside_[e].row * n + inside_[e].column] = values[at(inside_[e].place)];
+  for (int p = 0; p < n; ++p) {
+    int best = p;
+    for (int i = p + 1; i < n; ++i)
+      if (std::abs(a[i * n + p]) > std::abs(a[best * n + p])) best = i;
+    pivots_[at(block.first + p)] = best;
+    if (best != p) std::swap_ranges(a + p * n, a + (p + 1) * n, a + best * n);
+    const double pivot = a[p * n + p];
+    if (pivot == 0 || !std::isfinite(pivot)) return false;
+    a[p * n + p] = 1 / pivot;
+    for (int i = p + 1; i < n; ++i) {
+      const double by = a[i * n + p] *= a[p * n + p];
+      if (by == 0) continue;
+      for (int c = p + 1; c < n; ++c) a[i * n + c] -= by * a[p * n + c];
+    }
+  }
+  return true;
+}
+
+void BlockSolver::solve_dense(const Block& block) const {
+  const int n = block.size;
+  const double* const a = factors_.data() + block.factors;
+  double* const x = part_.data();
+  for (int p = 0; p < n; ++p) std::swap(x[p], x[pivots_[at(block.first + p)]]);
+  for (int i = 1; i < n; ++i)
+    for (int c = 0; c < i; ++c) x[i] -= a[i * n + c] * x[c];
+  for (int i = n - 1; i >= 0; --i) {
+    for (int c = i + 1; c < n; ++c) x[i] -= a[i * n + c] * x[c];
+    x[i] *= a[i * n + i];
+  }
+}
+
+void BlockSolver::solve(const std::vector<double>& rhs, std::vector<double>& x) const {
+  x.resize(members_.size());
+  for (const Block& b : blocks_) {
+    const int* const member = members_.data() + b.first;
+    for (int i = 0; i < b.size; ++i) part_[at(i)] = rhs[at(member[i])];
+    for (std::size_t e = b.outside; e < b.outside_end; ++e)
+      part_[at(outside_[e].row)] -= values_[at(outside_[e].place)] * x[at(outside_[e].column)];
+    const double* result = part_.data();
+    if (b.large >= 0) large_[at(b.large)]->solve(part_.data()), result += b.size;
+    else solve_dense(b);
+    for (int i = 0; i < b.size; ++i) x[at(member[i])] = result[i];
+  }
+}
+
+std::size_t BlockSolver::bytes() const {
+  std::size_t total = (values_.size() + factors_.size() + part_.size()) * sizeof(double) +
+                      (members_.size() + pivots_.size()) * sizeof(int) +
+                      (inside_.size() + outside_.size()) * sizeof(Entry) + blocks_.size() * sizeof(Block);
+  for (const auto& large : large_) total += large->bytes();
+  return total;
+}
+
+std::string BlockSolver::name() const {
+  const bool sparse = std::ranges::any_of(large_, [](const auto& large) { return !large->by_arcs; });
+  const std::string kind = largest_ <= largest_dense ? "dense" : sparse ? "sparse" : "block tridiagonal";
+  const std::string size = std::to_string(largest_);
+  if (blocks() == 1) return kind + " LU of " + size + " unknowns";
+  return std::to_string(blocks()) + " blocks in turn, " +
+         (largest_ == 1 ? "a division each" : kind + " LU of at most " + size + " unknowns each");
+}
+
+}  // namespace delf

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/stepping/composition_stepper.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "schemes/stepping/flush_denormals.hpp"
+#include "schemes/stepping/rows/row_increment.hpp"
+#include "schemes/families/row_kernel.hpp"
+
+namespace delf {
+
+std::unique_ptr<CompositionStepper> CompositionStepper::make(const LatticeSystem& system, const StepOptions& options) {
+  if (system.families().size() != 1 || !system.lattice().is_circle() || options.fibre == Fibre::circle) return nullptr;
+  const NodalKernel* const kernel = system.families()[0]->nodal_kernel();
+  if (!kernel || system.fields() > RowKernel::most_components) return nullptr;
+  std::unique_ptr<CompositionStepper> stepper(new CompositionStepper(system, options, *kernel));
+  return stepper->assemble() ? std::move(stepper) : nullptr;
+}
+
+CompositionStepper::CompositionStepper(const LatticeSystem& system, const StepOptions& options,
+                                       const NodalKernel& kernel)
+    : system_(system),
+      options_(options),
+      kernel_(kernel),
+      d_(system.fields()),
+      S_(system.components() / system.fields()),
+      reach_(kernel.reach()),
+      layout_(system.lattice(), kernel.reach()),
+      size_(layout_.doubles()) {}
+
+/// The numbers of the equation at node s, from the elements that read it: all of them, or those above it alone.
+CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_below, bool& fits) const {
+  const StencilFamily& family = *system_.families()[0];
+  const Cell cell{system_.time_step(), system_.lattice().space_step(), 0, 0};
+  const auto n = static_cast<std::size_t>(family.size()), d = static_cast<std::size_t>(d_);
+  std::vector<double> J(n * n);
+  kernel_.linear_part(cell, J);
+
+  SubStep step{std::vector(d * static_cast<std::size_t>(reach_), 0.0), std::vector(d, 0.0), 0,
+               system_.component(s * d_).at.time * cell.time_step};
+  std::vector<double> above(d, 0.0), sum(d, 0.0), size(d, 0.0);
+  std::vector<double> left(step.linear);
+  std::map<std::pair<int, int>, double> stray;  // what must cancel
+  for (int i = 0; i < family.size(); ++i) {
+    const auto [vertex, component] = family.values()[static_cast<std::size_t>(i)];
+    if (component / d_ != s || (!from_below && family.site(i).time != 0)) continue;
+    const auto a = static_cast<std::size_t>(component % d_);
+    step.nonlinear[a] += kernel_.weight(cell, i);
+    for (int j = 0; j < family.size(); ++j) {
+      const double entry = J[static_cast<std::size_t>(i) * n + static_cast<std::size_t>(j)];
+      if (entry == 0) continue;
+      const int other = family.values()[static_cast<std::size_t>(j)].component;
+      const int rows = (family.site(j).time - family.site(i).time) * S_ + other / d_ - s;
+      const int shift = family.site(j).space - family.site(i).space;
+      sum[a] += entry, size[a] += std::abs(entry);
+      if (rows == 0 && shift != 0 && other % d_ == component % d_)
+        (shift > 0 ? step.linear
+                   : left)[a * static_cast<std::size_t>(reach_) + static_cast<std::size_t>(std::abs(shift) - 1)] +=
+            entry;
+      else if (rows == 1 && shift == 0 && other % d_ == component % d_) above[a] += entry;
+      else if (!(rows <= 0 && rows >= -1 && shift == 0 && other % d_ == component % d_))
+        stray[{rows * 64 + shift, static_cast<int>(a) * system_.components() + other}] += entry;
+    }
+  }
+  const double largest = *std::ranges::max_element(size);
+  for (std::size_t a = 0; a < d; ++a) {
+    // Differences alone: what is left of a constant is the nonlinear part's.
+    fits = fits && std::abs(sum[a]) <= 1e-12 * size[a] && above[a] != 0 && above[a] == above[0];
+  }
+  for (std::size_t m = 0; m < left.size(); ++m) fits = fits && std::abs(left[m] - step.linear[m]) <= 1e-12 * largest;
+  for (const auto& [where, entry] : stray) fits = fits && std::abs(entry) <= 1e-12 * largest;
+  if (fits) step.stride = -1 / above[0];
+  const auto reach = static_cast<std::size_t>(reach_);
+  for (std::size_t a = 0; a < d; ++a)
+    for (std::size_t j = reach - 1; j-- > 0;) step.linear[a * reach + j] += step.linear[a * reach + j + 1];
+  return step;
+}
+
+bool CompositionStepper::assemble() {
+  if (S_ * d_ != system_.components()) return false;
+  for (int c = 0; c < system_.components(); ++c)
+    if (system_.component(c).role == Role::multiplier || system_.component(c).at.space != 0) return false;
+  bool fits = true;
+  for (int s = 0; s < S_; ++s) steps_.push_back(read_sub_step(s, true, fits));
+  first_ = read_sub_step(0, false, fits);
+  if (!fits) return false;
+
+  // K: the strides of a step add up to h.
+  double strides = 0;
+  for (const SubStep& s : steps_) strides += s.stride;
+  scale_ = system_.time_step() / strides;
+  for (SubStep* step : [&] {
+         std::vector<SubStep*> all{&first_};
+         for (SubStep& s : steps_) all.push_back(&s);
+         return all;
+       }()) {
+    for (double& g : step->linear) g /= scale_;
+    for (double& b : step->nonlinear) b /= scale_;
+    step->stride *= scale_;
+  }
+  newest_ = RowBuffer(static_cast<std::size_t>(d_) * size_);
+  differences_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
+  velocity_ = RowBuffer(static_cast<std::size_t>(d_) * size_);
+  slabs_ = RowBuffer(static_cast<std::size_t>(d_) * size_, slabs_held * S_);
+  saved_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
+  if (system_.families()[0]->is_placed()) {
+    std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
+    for (int i = 0; i < layout_.sites(); ++i) site[static_cast<std::size_t>(i)] = system_.lattice().position(i);
+    positions_ = RowBuffer(layout_, 1);
+    layout_.scatter(site, positions_.row(0));
+  }
+  return true;
+}
+
+double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const double* from, const double* differences,
+                                    double* to, double* next_differences, double* velocity) const {
+  constexpr int most = RowKernel::most_components;
+  const double *now[most], *D[most];
+  double *u[most], *y[most], *next_D[most];
+  for (int a = 0; a < d_; ++a) {
+    const std::size_t at = static_cast<std::size_t>(a) * size_;
+    now[a] = from + at, D[a] = differences + at, u[a] = velocity + at, y[a] = to + at,
+    next_D[a] = next_differences + at;
+  }
+  const double largest = kernel_.step({&layout_, now, y, D, next_D, u, positions_.rows() ? positions_.row(0) : nullptr,
+                                       static_cast<double>(n) * system_.time_step() + step.time, step.linear.data(),
+                                       step.nonlinear.data(), step.stride});
+  const std::ptrdiff_t last = layout_.at(layout_.packs() - 1);
+  for (int a = 0; a < d_; ++a) {
+    layout_.fill_halo(y[a], options_.turn);
+    (Pack::load(y[a] + last + lanes) - Pack::load(y[a] + last)).store(next_D[a] + last);
+    layout_.fill_halo(next_D[a]);
+  }
+  return largest;
+}
+
+void CompositionStepper::find_differences(const double* row, double* differences) const {
+  for (int a = 0; a < d_; ++a) {
+    const double* const y = row + static_cast<std::size_t>(a) * size_;
+    double* const D = differences + static_cast<std::size_t>(a) * size_;
+    for (int v = 0; v < layout_.packs(); ++v)
+      (Pack::load(y + layout_.at(v + 1)) - Pack::load(y + layout_.at(v))).store(D + layout_.at(v));
+    layout_.fill_halo(D);
+  }
+}
+
+/// The sub-steps from row n on; in place if no one looks. Returns √Σy² of the new row.
+double CompositionStepper::advance(const SubStep& first, bool looked_at) {
+  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  double* const newest = newest_row();
+  if (looked_at) std::copy_n(newest, doubles, node(n_, 0));
+  double largest = 0;
+  for (int s = 0; s < S_; ++s, at_ = 1 - at_) {
+    const double* const from = looked_at ? node(n_, s) : newest;
+    double* const to = looked_at && s + 1 < S_ ? node(n_, s + 1) : newest;
+    largest = sub_step(n_, s == 0 ? first : steps_[static_cast<std::size_t>(s)], from, differences_.row(at_), to,
+                       differences_.row(1 - at_), velocity_.row(0));
+  }
+  return largest;
+}
+
+std::vector<int> CompositionStepper::behind() const {
+  std::vector<int> rows(static_cast<std::size_t>(S_ * d_), 1);
+  std::fill_n(rows.begin(), d_, 0);
+  return rows;
+}
+
+/// The fields of a section, by lanes.
+void CompositionStepper::set(RowBuffer& rows, const std::vector<double>& section, double turn) {
+  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
+  for (int a = 0; a < d_; ++a) {
+    for (std::size_t i = 0; i < site.size(); ++i)
+      site[i] = section[i * static_cast<std::size_t>(system_.components()) + static_cast<std::size_t>(a)];
+    if (std::ranges::any_of(site, [](double x) { return overflowed(std::abs(x)); }))
+      throw NotFinite("the rows of the start are not finite");
+    layout_.scatter(site, rows.row(0) + static_cast<std::size_t>(a) * size_, turn);
+  }
+}
+
+void CompositionStepper::start(const std::vector<std::vector<double>>& rows) {
+  if (S_ > 1)
+    throw BadInput("initial.start",
+                   "the rows between the sub-steps of a composition follow from row 0 and its momenta alone; use "
+                   "initial.start = legendre and a state that knows its velocity");
+  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  n_ = static_cast<std::int64_t>(rows.size()) - 1;
+  set(newest_, rows[rows.size() - 2], options_.turn);
+  std::copy_n(newest_row(), doubles, node(n_ - 1, 0));
+  set(newest_, rows.back(), options_.turn);
+  // u = (y₁ − y₀)/stride
+  for (std::size_t at = 0; at < doubles; ++at)
+    velocity_.row(0)[at] = (newest_row()[at] - node(n_ - 1, 0)[at]) / steps_[0].stride;
+  find_differences(newest_row(), differences_.row(at_));
+  known_ = 1;
+  save();
+}
+
+void CompositionStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
+  set(newest_, row0, options_.turn);
+  set(velocity_, momenta, 0);
+  for (std::size_t at = 0; at < static_cast<std::size_t>(d_) * size_; ++at) velocity_.row(0)[at] /= scale_;
+  n_ = 0;
+  known_ = 0;
+  const FlushDenormals guard;
+  find_differences(newest_row(), differences_.row(at_));
+  if (overflowed(advance(first_, true)))
+    throw NotFinite(
+        "step 1: the field is no longer finite: the scheme is unstable here; reduce lattice.courant or "
+        "lattice.time_step");
+  n_ = known_ = 1;
+  save();
+}
+
+void CompositionStepper::step(bool looked_at) {
+  constexpr std::int64_t steps_between = 64;
+  const FlushDenormals guard;
+  if (n_ >= saved_row_ + steps_between) save();
+  if (overflowed(advance(steps_[0], looked_at))) fail();
+  known_ = looked_at ? std::min(known_ + 1, slabs_held - 1) : 0;
+  ++n_;
+}
+
+void CompositionStepper::save() {
+  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  std::copy_n(newest_row(), doubles, saved_.row(0));
+  std::copy_n(velocity_.row(0), doubles, saved_.row(1));
+  saved_row_ = n_;
+}
+
+/// Goes back to the saved row, and from there to the last good one: its bits are the same.
+void CompositionStepper::fail() {
+  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  std::vector<double> bad(newest_row(), newest_row() + doubles);
+  const std::int64_t last = n_;
+  std::copy_n(saved_.row(0), doubles, newest_row());
+  std::copy_n(saved_.row(1), doubles, velocity_.row(0));
+  find_differences(newest_row(), differences_.row(at_));
+  // The row saved is itself good, and so is all that follows up to the last one. A slab is held of it where there is one.
+  for (n_ = saved_row_; n_ < last; ++n_) {
+    advance(steps_[0], n_ + 1 >= last - 1);
+    known_ = n_ + 1 >= last - 1 ? std::min(known_ + 1, slabs_held - 1) : 0;
+  }
+  int site = 0;
+  const auto fine = [&](int i) {
+    for (int a = 0; a < d_; ++a)
+      if (overflowed(std::abs(bad[static_cast<std::size_t>(a) * size_ + static_cast<std::size_t>(layout_.slot(i))])))
+        return false;
+    return true;
+  };
+  while (site + 1 < layout_.sites() && fine(site)) ++site;
+  throw NotFinite(
+      fmt::format("step {}, t = {:.6g}, site {}: the field is no longer finite: the scheme is unstable here; "
+                  "reduce lattice.courant or lattice.time_step, or choose an implicit stencil",
+                  last + 1, static_cast<double>(last + 1) * system_.time_step(), site));
+}
+
+void CompositionStepper::require(int slabs) const {
+  if (slabs > known_)
+    throw std::logic_error("delf: rows before the newest were written over by step(false), or not stepped yet");
+}
+
+/// Components first_component … + d − 1 of a section, from a row of nodes.
+void CompositionStepper::copy_components(const double* rows, int first_component, std::vector<double>& section) const {
+  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
+  for (int a = 0; a < d_; ++a) {
+    layout_.gather(rows + static_cast<std::size_t>(a) * size_, site);
+    for (std::size_t i = 0; i < site.size(); ++i)
+      section[i * static_cast<std::size_t>(system_.components()) + static_cast<std::size_t>(first_component + a)] =
+          site[i];
+  }
+}
+
+/// Nodes as they were found together with the row; before there are any, the row itself.
+std::vector<double> CompositionStepper::row(int back) const {
+  require(back);
+  std::vector<double> section(static_cast<std::size_t>(layout_.sites() * system_.components()));
+  const double* const fields = back == 0 ? newest_row() : node(n_ - back, 0);
+  copy_components(fields, 0, section);
+  for (int s = 1; s < S_; ++s) copy_components(back < known_ ? node(n_ - back - 1, s) : fields, s * d_, section);
+  return section;
+}
+
+Window CompositionStepper::window(int rows) const {
+  require(rows - 1);
+  std::vector<std::vector<double>> sections;
+  for (std::int64_t r = n_ - rows + 1; r <= n_; ++r) {
+    sections.emplace_back(static_cast<std::size_t>(layout_.sites() * system_.components()));
+    for (int s = 0; s < S_; ++s) copy_components(r == n_ ? newest_row() : node(r, s), s * d_, sections.back());
+  }
+  return system_.window(n_ - rows + 1, std::move(sections), options_.turn);
+}
+
+/// E/K = (y_s − y_{s−1})/stride_{s−1} + w_s − (y_{s+1} − y_s)/stride_s over the nodes of the newest slab.
+double CompositionStepper::residual() const {
+  const int first = known_ >= 2 ? 0 : 1;
+  if (known_ == 0) return std::numeric_limits<double>::quiet_NaN();
+  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  if (!scratch_.rows() && scratch_rows() > 0) scratch_ = RowBuffer(doubles, scratch_rows());
+  // The next step that is looked at writes over these.
+  const auto room = [&](int r) {
+    return r < S_ ? slabs_.row(static_cast<int>(n_ % slabs_held) * S_ + r) : scratch_.row(r - S_);
+  };
+  double *const w = room(0), *const differences = room(1), *const to = room(2);
+  double worst = 0, size = 0;
+  for (int s = first; s < S_; ++s) {
+    const double* const before = s > 0 ? node(n_ - 1, s - 1) : node(n_ - 2, S_ - 1);
+    const double *const here = node(n_ - 1, s), *const next = s + 1 < S_ ? node(n_ - 1, s + 1) : newest_row();
+    std::fill_n(w, doubles, 0.0);
+    find_differences(here, differences);
+    sub_step(n_ - 1, steps_[static_cast<std::size_t>(s)], here, differences, to, differences_.row(1 - at_), w);
+    const double below = steps_[static_cast<std::size_t>(s > 0 ? s - 1 : S_ - 1)].stride,
+                 above = steps_[static_cast<std::size_t>(s)].stride;
+    for (int a = 0; a < d_; ++a)
+      for (int v = 0; v < layout_.packs(); ++v)
+        for (int l = 0; l < lanes; ++l) {
+          const std::size_t at = static_cast<std::size_t>(a) * size_ + static_cast<std::size_t>(layout_.at(v) + l);
+          const double from_below = (here[at] - before[at]) / below, to_above = (next[at] - here[at]) / above;
+          worst = larger_or_nan(std::abs(from_below + w[at] - to_above), worst);
+          size = larger_or_nan(std::abs(from_below) + std::abs(w[at]) + std::abs(to_above), size);
+        }
+  }
+  return size != 0 ? worst / size : 0;
+}
+
+std::size_t CompositionStepper::bytes() const {
+  return newest_.bytes() + velocity_.bytes() + differences_.bytes() + slabs_.bytes() + saved_.bytes() +
+         scratch_.bytes() + positions_.bytes() + layout_.bytes();
+}
+std::size_t CompositionStepper::bytes_to_come(bool residual) const {
+  if (!residual || scratch_.rows()) return 0;
+  return RowBuffer::bytes_of(static_cast<std::size_t>(d_) * size_, scratch_rows());
+}
+std::string CompositionStepper::memory_report(bool residual) const {
+  return fmt::format(
+      "rows of the field {} B, differences {} B, momenta {} B, rows between sub-steps {} B, work space {} B",
+      newest_.bytes(), differences_.bytes(), velocity_.bytes(), slabs_.bytes(),
+      saved_.bytes() + scratch_.bytes() + positions_.bytes() + layout_.bytes() + bytes_to_come(residual));
+}
+
+}  // namespace delf

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "schemes/system/lattice_system.hpp"
+#include "schemes/families/nodal_kernel.hpp"
+#include "schemes/stepping/step_method.hpp"
+
+namespace delf {
+
+/// Steps an element whose nodes form rows above each other, each determined explicitly by the two before: a composition of
+/// sub-steps over pairs of sites. With P_s = −c_s (y_{s+1} − y_s), the momenta that a sub-step hands on,
+///
+///     P_s = P_{s−1} + Σ_m g_m (y_s(i + m) − 2y_s(i) + y_s(i − m)) + b_s ∂ℓ/∂φ(y_s),     y_{s+1} = y_s − P_s/c_s,
+///
+/// where all numbers come from the constant part of the element's Jacobian. A step that no one looks at writes rows over
+/// each other; one that is looked at keeps those between its sub-steps.
+class CompositionStepper final : public StepMethod {
+ public:
+  /// Nothing if the equations are not of this kind.
+  static std::unique_ptr<CompositionStepper> make(const LatticeSystem&, const StepOptions&);
+
+  int starting_rows() const override { return 2; }
+  /// Throws BadInput where there are rows between the sub-steps: they follow from momenta alone.
+  void start(const std::vector<std::vector<double>>& rows) override;
+  void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
+  void step(bool looked_at) override;
+
+  std::int64_t newest() const override { return n_; }
+  std::vector<int> behind() const override;
+  std::vector<double> row(int back) const override;
+  Window window(int rows) const override;
+  double residual() const override;
+  int iterations() const override { return 0; }
+
+  bool iterates() const override { return false; }
+  std::string solver_name() const override { return "explicit sub-steps, row by row"; }
+  bool matrix_free() const override { return true; }
+  std::size_t bytes() const override;
+  std::size_t bytes_to_come(bool residual) const override;
+  std::string memory_report(bool residual) const override;
+
+ private:
+  /// One sub-step from the row of a node.
+  struct SubStep {
+    std::vector<double> linear;     ///< Σ_{m > j} g_m / K at [a · reach + j]
+    std::vector<double> nonlinear;  ///< b / K
+    double stride = 0;              ///< −K / c
+    double time = 0;                ///< of the row, from that of the step
+  };
+
+  CompositionStepper(const LatticeSystem&, const StepOptions&, const NodalKernel&);
+  /// False where an equation is not of the form above.
+  bool assemble();
+  SubStep read_sub_step(int s, bool from_below, bool& fits) const;
+  double sub_step(std::int64_t n, const SubStep&, const double* from, const double* differences, double* to,
+                  double* next_differences, double* velocity) const;
+  void find_differences(const double* row, double* differences) const;
+  double* newest_row() { return newest_.row(0); }
+  const double* newest_row() const { return newest_.row(0); }
+  double advance(const SubStep& first, bool looked_at);
+  double* node(std::int64_t row, int s) { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
+  const double* node(std::int64_t row, int s) const { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
+  void copy_components(const double* rows, int first_component, std::vector<double>& section) const;
+  void set(RowBuffer& rows, const std::vector<double>& section, double turn);
+  void save();
+  [[noreturn]] void fail();
+  /// Of the rows that the residual is worked out in: the others are those of a slab that is not held any more.
+  int scratch_rows() const { return S_ < 3 ? 3 - S_ : 0; }
+  void require(int slabs) const;
+
+  static constexpr int slabs_held = 4;
+  const LatticeSystem& system_;
+  StepOptions options_;
+  const NodalKernel& kernel_;
+  int d_, S_, reach_;
+  double scale_ = 1;  ///< K: velocities are P/K
+  RowLayout layout_;
+  std::size_t size_;  ///< of a row of d components
+  std::vector<SubStep> steps_;
+  SubStep first_;  ///< from row 0, with nothing below
+  RowBuffer positions_;
+  // Each "row" has the rows of its d components one after the other.
+  RowBuffer newest_, velocity_;  ///< y_n; P/K of the sub-step before it
+  mutable RowBuffer differences_;  ///< of y_n to its neighbours, and others, by turns
+  int at_ = 0;                   ///< which are those of y_n
+  mutable RowBuffer slabs_;      ///< of the newest steps: S nodes each; the oldest is room to work in
+  RowBuffer saved_;              ///< y and P/K, now and then: a row that overflows is found again from there
+  mutable RowBuffer scratch_;    ///< of the residual, where S nodes are too few
+  std::int64_t n_ = 0, saved_row_ = -1;
+  int known_ = 0;  ///< newest slabs that are held
+};
+
+}  // namespace delf

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "schemes/stepping/newton.hpp"
+
+namespace delf {
+
+/// What one more iteration of a step's fixed point would change, at most, for fields up to a size: found anew when
+/// fields outgrow the last one.
+class Contraction {
+ public:
+  Contraction(const LatticeSystem& system, const SolvePlan& plan)
+      : system_(&system), plan_(&plan), bound_(fixed_point_bound(system, plan, amplitude_)) {}
+
+  /// From here on a step may have several roots.
+  bool is_stiff() const { return bound_ && bound_->nonlinear > 0.9 * bound_->dominance; }
+
+  /// Whether next_change() must be asked anew for fields of this size.
+  bool is_outgrown(double largest) const { return largest > amplitude_ && largest < 1e100; }
+
+  /// The next change of y_{n+1} over the last change of what the nonlinear part looks at, whose weights at the unknown
+  /// row sum to `weight`; four times the worst case, and infinite where nothing is known. `gain` is the row equations'
+  /// own sharper 1/dominance, if it is not zero.
+  double next_change(double largest, double weight, double gain) {
+    if (!bound_) return std::numeric_limits<double>::infinity();
+    if (is_outgrown(largest)) {
+      amplitude_ = 2 * largest;
+      if (const auto wider = fixed_point_bound(*system_, *plan_, amplitude_))
+        bound_->nonlinear = std::max(bound_->nonlinear, wider->nonlinear);
+    }
+    const double crude =
+        bound_->dominance > 0 ? 1 / (bound_->dominance * weight) : std::numeric_limits<double>::infinity();
+    return 4 * bound_->nonlinear * (gain > 0 ? std::min(gain, crude) : crude);
+  }
+
+ private:
+  const LatticeSystem* system_;
+  const SolvePlan* plan_;
+  double amplitude_ = std::numbers::pi;
+  std::optional<FixedPointBound> bound_;
+};
+
+}  // namespace delf

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/lattice_system.hpp"
+
+namespace delf {
+
+struct NewtonResult {
+  bool converged = false;
+  int iterations = 0;
+  std::vector<double> row;  ///< the unknown row, row[i·d + a]
+};
+
+/// Solves the slab whose unknown row follows `past` (its last row is the newest known) where the equations may have
+/// several roots. The one is wanted that h → 0 leads to: it is followed from a small h by full Newton steps, each
+/// stride taken once and in two halves that must agree, and given up where the Jacobian's determinant changes sign,
+/// because there the path turns back. Never another root in silence.
+NewtonResult solve_slab(const LatticeSystem&, const SolvePlan&, const Window& past, double tolerance,
+                        int max_iterations);
+
+/// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t. By Newton from y₀ + hφ_t, or, where the
+/// equations are `stiff` or that does not converge, followed from a small h as above.
+NewtonResult solve_centred_start(const LatticeSystem&, const SolvePlan&, const Window& row0,
+                                 const std::vector<double>& velocity, bool stiff, double tolerance,
+                                 int max_iterations);
+
+/// How the fixed point with the constant part A₊ of a step's Jacobian J contracts: by nonlinear/dominance at worst, in
+/// the largest norm, of what y_{n+1} differs.
+struct FixedPointBound {
+  double nonlinear = 0;  ///< max Σ_j |J_ij − A_ij|, over uniform fields up to an amplitude
+  double dominance = 0;  ///< min |A_ii| − Σ_{j≠i} |A_ij|
+};
+/// Uniform fields from −amplitude to amplitude are looked at. Nothing for a density that is nonlinear in its
+/// derivatives: it has no scale of its own to sample, and is judged by how its steps contract.
+std::optional<FixedPointBound> fixed_point_bound(const LatticeSystem&, const SolvePlan&, double amplitude);
+
+}  // namespace delf

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/stepping/stepper.hpp"
+
+#include "schemes/stepping/composition_stepper.hpp"
+#include "schemes/system/equation_terms.hpp"
+#include "schemes/stepping/rows/row_stepper.hpp"
+#include "schemes/stepping/slab_stepper.hpp"
+
+namespace delf {
+namespace {
+
+std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options) {
+  if (goes_by_rows(system, plan)) {
+    try {
+      return std::make_unique<RowStepper>(system, plan, options);
+    } catch (const NoConvergence&) {
+      // No constant part to iterate with: Newton's method takes the Jacobian where the field is.
+    }
+  }
+  if (auto stepper = CompositionStepper::make(system, options)) return stepper;
+  return std::make_unique<SlabStepper>(system, plan, options);
+}
+
+}  // namespace
+
+Stepper::Stepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
+    : method_(choose(system, plan, options)),
+      components_(static_cast<std::size_t>(system.components())),
+      row_size_(static_cast<std::size_t>(system.lattice().sites() * system.components())) {}
+
+void Stepper::start(const std::vector<std::vector<double>>& rows) {
+  if (static_cast<int>(rows.size()) < starting_rows())
+    throw BadInput("initial.start", "a start of " + std::to_string(rows.size()) + " rows: this scheme needs " +
+                                        std::to_string(starting_rows()));
+  for (const auto& row : rows) require_row(row.size());
+  method_->start(rows);
+  started_ = true;
+}
+
+void Stepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
+  require_row(row0.size()), require_row(velocity.size());
+  method_->start_centred(row0, velocity);
+  started_ = true;
+}
+
+void Stepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
+  require_row(row0.size()), require_row(momenta.size());
+  method_->start_legendre(row0, momenta);
+  started_ = true;
+}
+
+void Stepper::require_row(std::size_t values) const {
+  if (values == row_size_) return;
+  throw BadInput("initial.start", "a starting row of " + std::to_string(values) + " values: the section has " +
+                                      std::to_string(row_size_) + " in a row");
+}
+
+}  // namespace delf

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lattice/plan/solve_plan.hpp"
+#include "schemes/stepping/step_method.hpp"
+
+namespace delf {
+
+/// Steps a system as its plan says: by whole rows where every unknown of a slab lies in one row and the equations have
+/// a regular constant part (RowStepper), slab by slab otherwise (SlabStepper).
+class Stepper {
+ public:
+  /// Throws BadInput for a component that cannot be stepped.
+  Stepper(const LatticeSystem&, const SolvePlan&, const StepOptions&);
+
+  int starting_rows() const { return method_->starting_rows(); }
+  /// Rows 0 … starting_rows()−1, each row[i·C + c] of all C components; what is not known yet (multipliers) is not
+  /// read.
+  void start(const std::vector<std::vector<double>>& rows);
+  /// Row 0 and φ_t there; row 1 from the equation at row 0 with y₋₁ = y₁ − 2hφ_t (second order for every scheme).
+  void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity);
+  /// Row 0 and the momenta of its vertices: row 1 from the discrete Legendre transform p₀ = −∂L/∂y₀.
+  void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta);
+  /// Throws BadInput for a starting row that has not as many values as a row of the section.
+  void require_row(std::size_t values) const;
+
+  /// Throws NoConvergence or NotFinite and then still holds the rows that it held before; std::logic_error before a start.
+  /// If the new row is not to be `looked_at`, an explicit step, or one through long rows, may write it over the old
+  /// one: there is then no row before it (std::logic_error), and no residual (NaN).
+  void step(bool looked_at = true) {
+    require_start();
+    method_->step(looked_at);
+  }
+
+  /// The same as so many step(false), with the same bits. Explicit steps through rows that outgrow the cache are taken
+  /// steps_at_once() together, and then cost what they do in the cache. If one of them throws, newest() is the row before.
+  void steps(int count) {
+    require_start();
+    method_->steps(count);
+  }
+  int steps_at_once() const { return method_->steps_at_once(); }
+
+  std::int64_t newest() const { return method_->newest(); }
+  /// Of each component, so many rows before the newest row of fields is its newest that is known.
+  std::vector<int> behind() const {
+    std::vector<int> rows = method_->behind();
+    rows.resize(components_, 0);
+    return rows;
+  }
+  /// The newest row, or one before it: fields at that row, multipliers and inner nodes as they were found with it.
+  std::vector<double> row(int back) const { return method_->row(back); }
+  /// The newest rows, every component at its own row: for checks.
+  Window window(int rows) const { return method_->window(rows); }
+  /// The residual of the field equations that were solved for the newest row: max |Σ terms| / max Σ |terms| over the
+  /// sites (a vacuum has no scale of its own). Costs about a step; half an explicit one where it is asked for after each
+  /// of them: their slopes are then kept, a row more for each field, which bytes_to_come() does not foresee.
+  double residual() const { return method_->residual(); }
+  /// Of the last step: evaluations of the nonlinear part; 0 if it was solved at once.
+  int iterations() const { return method_->iterations(); }
+
+  /// Rows in the lanes' layout with halos; null when stepped slab by slab.
+  const RowLayout* layout() const { return method_->layout(); }
+  const double* row_data(int back, int component) const { return method_->row_data(back, component); }
+  /// Of each component the row before the newest, then of each the newest, and of each the increment from one to the
+  /// other, all with the pack after the end. No |y| of all rows since the start is above what is returned.
+  double newest_pair(const double** rows) const { return method_->newest_pair(rows); }
+
+  bool iterates() const { return method_->iterates(); }  ///< a step is not one solve
+  std::string solver_name() const { return method_->solver_name(); }
+  bool matrix_free() const { return method_->matrix_free(); }  ///< one number for all sites: no matrix is allocated
+  /// Allocated now: rows, matrices, work space.
+  std::size_t bytes() const { return method_->bytes(); }
+  /// What comes on top while it steps, and by residual() if it is asked for. What depends on the data is not foreseen:
+  /// see Simulation::bytes_of_run.
+  std::size_t bytes_to_come(bool residual) const { return method_->bytes_to_come(residual); }
+  /// Both, in parts.
+  std::string memory_report(bool residual) const { return method_->memory_report(residual); }
+
+ private:
+  void require_start() const {
+    if (!started_) throw std::logic_error("a step needs rows to go on from: call start() first");
+  }
+
+  std::unique_ptr<StepMethod> method_;
+  std::size_t components_, row_size_;
+  bool started_ = false;
+};
+
+}  // namespace delf

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/system/lattice_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <random>
+#include <tuple>
+#include <utility>
+
+#include "lattice/error.hpp"
+#include "lattice/stencil.hpp"
+#include "schemes/families/row_kernel.hpp"
+
+namespace delf {
+namespace {
+
+Cell cell_at(const Lattice& lattice, std::int64_t row, int i, double time_step) {
+  const int home = lattice.is_circle() ? lattice.wrapped(i) : i;
+  return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, lattice.position(home)};
+}
+
+}  // namespace
+
+std::vector<Component> fields(int d) {
+  std::vector<Component> result;
+  for (int a = 0; a < d; ++a) result.push_back({d == 1 ? "phi" : "phi" + std::to_string(a + 1)});
+  return result;
+}
+
+double Window::operator()(std::int64_t row, int i, int a) const {
+  const auto& values = rows[static_cast<std::size_t>(std::clamp(row, first_row, last_row()) - first_row)];
+  if (!lattice->is_circle()) return values[static_cast<std::size_t>(i * components + a)];
+  const int home = lattice->wrapped(i);
+  const double value = values[static_cast<std::size_t>(home * components + a)];
+  return a < turning ? value + (i - home) / lattice->sites() * turn : value;
+}
+
+LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families,
+                             double time_step, std::vector<Component> components)
+    : lattice_(lattice), families_(std::move(families)), time_step_(time_step), names_(std::move(components)) {
+  int read = 0;
+  for (const auto& family : families_) {
+    for (const VertexValue& value : family->values()) read = std::max(read, value.component + 1);
+    if (family->pattern().placement == Placement::brick_wall) placement_ = Placement::brick_wall;
+    const auto [least, most] = std::ranges::minmax(family->pattern().vertices, {}, &Site::space);
+    width_ = std::max(width_, most.space - least.space);
+    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+    height_ = std::max(height_, high.time - low.time);
+    if (!lattice_.is_circle() && most.space - least.space >= lattice_.sites())
+      throw BadInput("lattice.stencil",
+                     lattice_.space() == Space::point
+                         ? "lattice.stencil: this stencil has sites side by side, and on lattice.space = point there is "
+                           "one; use midpoint, trapezoidal or vertex"
+                         : "lattice.stencil: the interval is shorter than the stencil; raise lattice.sites");
+  }
+  if (names_.empty()) names_ = delf::fields(read);
+  if (read > this->components())
+    throw BadInput("lattice.stencil", "lattice.stencil: a stencil reads component " + std::to_string(read - 1) +
+                                          " of " + std::to_string(this->components()) + "; name every component");
+  require_closing(lattice_, placement_);
+}
+
+bool is_variational(const LatticeSystem& system) {
+  return std::ranges::all_of(system.families(), [](const auto& family) { return family->is_variational(); });
+}
+
+int LatticeSystem::fields() const {
+  return static_cast<int>(std::ranges::count(names_, Role::field, &Component::role));
+}
+
+std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice, Site site, int component) const {
+  std::vector<Touch> result;
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    const StencilFamily& family = *families_[f];
+    for (int i = 0; i < family.size(); ++i) {
+      if (family.values()[static_cast<std::size_t>(i)].component != component) continue;
+      const Site vertex = family.site(i), offset{-vertex.time, -vertex.space}, anchor = site + offset;
+      if (delf::has_stencil(lattice, family.pattern(), anchor))
+        result.push_back({&family, offset, i, static_cast<int>(f)});
+    }
+  }
+  return result;
+}
+
+std::vector<Coefficient> LatticeSystem::linearised(const Lattice& lattice, Site site, int component) const {
+  if (lattice.is_fixed(site.space) && this->component(component).at.space == 0) return {};
+  // Fields of order one suit most densities; where one is not defined there (a root, a logarithm), smaller ones do.
+  for (double amplitude = 2; amplitude > 1e-8; amplitude /= 10)
+    if (auto coefficients = linearised(lattice, site, component, amplitude)) return *coefficients;
+  throw BadInput("theory.name",
+                 "the density has no finite second derivatives near the zero field; shift the field so that "
+                 "zero is a state of the theory");
+}
+
+std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice& lattice, Site site, int component,
+                                                                  double amplitude) const {
+  struct Sum {
+    double scale = 0, at[3] = {0, 0, 0};
+    void add(int s, double J) { at[s] += J, scale += std::abs(J); }
+    double most() const { return *std::max_element(at, at + 3); }
+    double least() const { return *std::min_element(at, at + 3); }
+    double round_off() const { return 1e-13 * scale; }
+    bool is_constant() const { return most() - least() <= round_off(); }
+  };
+  // On fine lattices what varies is of the size of h² beside constants, and soon of that of rounding: it is looked for on
+  // a cell of the same shape whose longer side is 1 too. Derivatives' part is the same there.
+  struct Sample {
+    double constant = 0;
+    Sum here, wide;
+  };
+  std::map<std::tuple<Site, int>, Sample> samples;
+  std::mt19937_64 engine(20250901);
+  const auto number = [&] { return amplitude * (2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0); };
+  // One random value for each unknown near the site, the same for all stencils that contain it.
+  std::map<std::tuple<Site, int>, std::array<double, 3>> field;
+  for (const Touch& touch : touching(lattice, site, component)) {
+    const int size = touch.family->size();
+    std::vector<double> y(static_cast<std::size_t>(size)), J(y.size() * y.size()), r0(y.size());
+    // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
+    const Cell cell = cell_at(lattice, site.time + touch.anchor.time, site.space + touch.anchor.space, time_step_);
+    const double widened = 1 / std::min(1.0, std::max(cell.time_step, cell.space_step));
+    Cell wide = cell;
+    wide.time_step *= widened, wide.space_step *= widened;
+    const auto key = [&](int m) {
+      const Site vertex = touch.family->site(m);
+      return std::tuple{touch.anchor + Site{vertex.time, vertex.space},
+                        touch.family->values()[static_cast<std::size_t>(m)].component};
+    };
+    const std::size_t from = static_cast<std::size_t>(touch.index * size);
+    if (const RowKernel* kernel = touch.family->row_kernel()) {
+      kernel->linear_part(cell, J, r0);
+      for (int m = 0; m < size; ++m) samples[key(m)].constant += J[from + static_cast<std::size_t>(m)];
+    }
+    for (int s = 0; s < 3; ++s) {
+      for (int m = 0; m < size; ++m) {
+        auto [where, fresh] = field.try_emplace(key(m));
+        if (fresh) where->second = {number(), number(), number()};
+        y[static_cast<std::size_t>(m)] = where->second[static_cast<std::size_t>(s)];
+      }
+      touch.family->jacobian(cell, y, J);
+      for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[from + static_cast<std::size_t>(m)]);
+      touch.family->jacobian(wide, y, J);
+      for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[from + static_cast<std::size_t>(m)]);
+    }
+  }
+  std::vector<Coefficient> result;
+  for (const auto& [where, sample] : samples) {
+    const Sum& here = sample.here;
+    if (!std::isfinite(here.scale)) return std::nullopt;
+    const bool constant = here.is_constant() && (sample.wide.is_constant() || !std::isfinite(sample.wide.scale));
+    if (constant && std::max(std::abs(here.least()), std::abs(here.most())) <= here.round_off()) continue;
+    const double value = std::abs(sample.constant) <= here.round_off() ? 0.0 : sample.constant;
+    result.push_back(
+        {std::get<0>(where), std::get<1>(where), value, constant ? Dependence::linear : Dependence::nonlinear});
+  }
+  return result;
+}
+
+SystemPattern LatticeSystem::pattern() const {
+  SystemPattern pattern;
+  pattern.components = components();
+  pattern.width = std::max(width_, 1);
+  pattern.placement = placement_;
+  for (const Component& component : names_) pattern.names.push_back(component.name);
+  // Round a circle the sites are alike, but for their parity in a brick wall.
+  using Known = std::map<std::pair<int, int>, std::vector<Coupling>>;
+  pattern.equations = [this, known = std::make_shared<Known>()](const Lattice& lattice, Site site, int component) {
+    const auto find = [&] {
+      std::vector<Coupling> couplings;
+      for (const Coefficient& c : linearised(lattice, site, component))
+        couplings.push_back({c.offset, c.component, c.dependence});
+      return couplings;
+    };
+    if (!lattice.is_circle()) return find();
+    const bool bricks = placement_ == Placement::brick_wall;
+    const auto [at, fresh] = known->try_emplace({component, bricks ? (site.time + site.space) & 1 : 0});
+    if (fresh) at->second = find();
+    return at->second;
+  };
+  return pattern;
+}
+
+Window LatticeSystem::window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const {
+  Window window{&lattice_, components(), turn, first_row, std::move(rows)};
+  for (int c = components() - 1; c >= 0 && component(c).role == Role::multiplier; --c) window.turning = c;
+  return window;
+}
+
+bool LatticeSystem::has_stencil(const StencilFamily& family, std::int64_t row, int site) const {
+  return delf::has_stencil(lattice_, family.pattern(), {static_cast<int>(row & 1), site});
+}
+
+Cell LatticeSystem::gather(const StencilFamily& family, const Window& window, std::int64_t row, int site,
+                           double time_step, std::vector<double>& y) const {
+  y.clear();
+  for (int i = 0; i < family.size(); ++i) {
+    const Site vertex = family.site(i);
+    y.push_back(window(row + vertex.time, site + vertex.space, family.values()[static_cast<std::size_t>(i)].component));
+  }
+  return cell_at(lattice_, row, site, time_step);
+}
+
+void LatticeSystem::equations(const Window& window, std::int64_t row, std::vector<Value>& values) const {
+  const int d = components(), N = lattice_.sites();
+  values.assign(static_cast<std::size_t>(N) * static_cast<std::size_t>(d), {});
+  std::vector<double> y, r;
+  for (const auto& family : families_) {
+    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+    for (std::int64_t anchor = row - high.time; anchor <= row - low.time; ++anchor)
+      for (int i = 0; i < N; ++i) {
+        if (!has_stencil(*family, anchor, i)) continue;
+        const Cell cell = gather(*family, window, anchor, i, time_step_, y);
+        r.resize(y.size());
+        family->residual(cell, y, r);
+        for (int m = 0; m < family->size(); ++m) {
+          const Site vertex = family->site(m);
+          if (anchor + vertex.time != row) continue;
+          const int x = i + vertex.space, home = lattice_.is_circle() ? lattice_.wrapped(x) : x;
+          Value& value = values[static_cast<std::size_t>(
+              home * d + family->values()[static_cast<std::size_t>(m)].component)];
+          value.sum += r[static_cast<std::size_t>(m)];
+          value.absolute += std::abs(r[static_cast<std::size_t>(m)]);
+        }
+      }
+  }
+}
+
+LatticeSystem::Value LatticeSystem::equation(const Window& window, std::int64_t row, int site, int component,
+                                             double time_step) const {
+  Value value;
+  std::vector<double> y, r;
+  for (const Touch& touch : touching({static_cast<int>(row & 1), site}, component)) {
+    const Cell cell =
+        gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space, time_step, y);
+    r.resize(y.size());
+    touch.family->residual(cell, y, r);
+    const double term = r[static_cast<std::size_t>(touch.index)];
+    value.sum += term;
+    value.absolute += std::abs(term);
+  }
+  return value;
+}
+
+void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, int component, std::int64_t unknown_row,
+                             double time_step, std::vector<Entry>& entries) const {
+  const int d = components();
+  std::vector<double> y, J;
+  for (const Touch& touch : touching({static_cast<int>(row & 1), site}, component)) {
+    const Cell cell =
+        gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space, time_step, y);
+    const int size = touch.family->size();
+    J.resize(y.size() * y.size());
+    touch.family->jacobian(cell, y, J);
+    for (int m = 0; m < size; ++m) {
+      const Site vertex = touch.family->site(m);
+      if (row + touch.anchor.time + vertex.time != unknown_row) continue;
+      const int i = site + touch.anchor.space + vertex.space, home = lattice_.is_circle() ? lattice_.wrapped(i) : i;
+      const double value = J[static_cast<std::size_t>(touch.index * size + m)];
+      if (value != 0)
+        entries.push_back(
+            {site * d + component, home * d + touch.family->values()[static_cast<std::size_t>(m)].component, value});
+    }
+  }
+}
+
+}  // namespace delf

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "jets/tables/element.hpp"
+#include "lattice/plan/incidence.hpp"
+#include "lattice/lattice.hpp"
+#include "schemes/families/stencil_family.hpp"
+
+namespace delf {
+
+/// What a component of the section is.
+enum class Role {
+  field,      ///< at the vertices of the lattice: what rows record
+  inner,      ///< a field at a node inside the cells
+  multiplier  ///< of a constraint: its equation is the constraint
+};
+struct Component {
+  std::string name = "phi";
+  Role role = Role::field;
+  NodePosition at = {};  ///< in the cell, as fractions of h and k
+  bool position = false;  ///< of the sites themselves, which move: it grows along every row
+};
+/// d fields at the vertices: "phi", or "phi1", "phi2", …
+std::vector<Component> fields(int d);
+
+/// Consecutive rows of a section in the order of sites, row[i·d + a]; what lies beyond the circle's ends is found by
+/// going round, 2π·winding higher or lower each time.
+struct Window {
+  const Lattice* lattice;
+  int components = 1;
+  double turn = 0;             ///< φ(x + L) − φ(x); multipliers are periodic
+  std::int64_t first_row = 0;  ///< index of rows[0]
+  std::vector<std::vector<double>> rows;
+  int turning = 1 << 30;  ///< components from here on are periodic
+
+  /// Rows beyond the window read as its nearest row: stencils may reach there without depending on it.
+  double operator()(std::int64_t row, int i, int a) const;
+  std::int64_t last_row() const { return first_row + static_cast<std::int64_t>(rows.size()) - 1; }
+};
+
+/// An entry of the linearised field equation: ∂E/∂y at the site `offset` away, component `component`.
+struct Coefficient {
+  Site offset;
+  int component = 0;
+  double value = 0;
+  Dependence dependence = Dependence::linear;
+};
+
+class LatticeSystem;
+/// Every residual is the gradient of a Lagrangian: there is an action.
+bool is_variational(const LatticeSystem&);
+
+/// The discrete Euler–Lagrange field equations of some stencil families on a lattice, one stencil at a time: what
+/// plans, starting rows, Newton steps and checks are made of. Steps themselves go by whole rows (Stepper).
+///
+///     E(site) = Σ_families Σ_{l: Δˡ = site} rˡ(y_Δ) = 0                   Marsden–Patrick–Shkoller (5.2)
+///
+/// one for each component: actions, constraints and whatever else there is are families alike.
+class LatticeSystem {
+ public:
+  /// `components` names what the families' values are; without it they are fields at the vertices. Throws BadInput: a
+  /// component without a name, a brick wall that does not close, a stencil that finds no place on the lattice.
+  LatticeSystem(const Lattice&, std::vector<std::shared_ptr<const StencilFamily>>, double time_step,
+                std::vector<Component> components = {});
+
+  const Lattice& lattice() const { return lattice_; }
+  int components() const { return static_cast<int>(names_.size()); }
+  const Component& component(int a) const { return names_[static_cast<std::size_t>(a)]; }
+  const std::vector<Component>& all_components() const { return names_; }
+  /// Components that are fields at the vertices: they come first.
+  int fields() const;
+  /// The component keeps its value in this column: a fixed wall, where a node inside the cell lies on the wall or not.
+  bool is_held(int column, int component) const {
+    return lattice_.is_fixed(column) && names_[static_cast<std::size_t>(component)].at.space == 0;
+  }
+  double time_step() const { return time_step_; }
+  int width() const { return width_; }  ///< the largest space offset between two sites of one equation
+  int height() const { return height_; }  ///< the same in time
+  Placement placement() const { return placement_; }
+  std::span<const std::shared_ptr<const StencilFamily>> families() const { return families_; }
+
+  /// One stencil that reads a component at a site: which family, its anchor relative to that site, as which value.
+  struct Touch {
+    const StencilFamily* family;
+    Site anchor;
+    int index;
+    int family_index;
+  };
+  /// The stencils of `lattice` that read the component at `site`, whose row matters by its parity.
+  std::vector<Touch> touching(const Lattice& lattice, Site site, int component) const;
+  std::vector<Touch> touching(Site site, int component) const { return touching(lattice_, site, component); }
+
+  /// The linearised equation at a site, assembled: coefficients that cancel in the sum are absent, those that are the
+  /// same at three seeded random fields are linear, and their value is that of the constant part.
+  std::vector<Coefficient> linearised(const Lattice& lattice, Site site, int component) const;
+  std::vector<Coefficient> linearised(Site site, int component) const { return linearised(lattice_, site, component); }
+
+  /// What the plan is made of.
+  SystemPattern pattern() const;
+
+  /// Rows of all components, to be looked at: `turn` is φ(x + L) − φ(x), and multipliers are periodic.
+  Window window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const;
+
+  /// Whether a family has a stencil at (row, site), whose row matters by its parity.
+  bool has_stencil(const StencilFamily&, std::int64_t row, int site) const;
+  /// The stencil of a family anchored at (row, site): its cell and, into y, the values of the window on it.
+  Cell gather(const StencilFamily&, const Window&, std::int64_t row, int site, double time_step,
+              std::vector<double>& y) const;
+
+  struct Value {
+    double sum = 0, absolute = 0;  ///< Σ rˡ and Σ |rˡ|
+  };
+  /// E of every site and component of a row, [i·C + c], whether it is an equation there or not: each stencil that
+  /// touches the row is evaluated once for every row of it.
+  void equations(const Window&, std::int64_t row, std::vector<Value>& values) const;
+  /// E(site) for a window around it; h may differ from the system's own (continuation).
+  Value equation(const Window&, std::int64_t row, int site, int component, double time_step) const;
+
+  struct Entry {
+    int row, column;
+    double value;
+  };
+  /// ∂E(row, site, component)/∂y(unknown_row, ·) appended as entries with row and column site·d + component.
+  void jacobian(const Window&, std::int64_t row, int site, int component, std::int64_t unknown_row, double time_step,
+                std::vector<Entry>& entries) const;
+
+ private:
+  /// Nothing if the second derivatives are not finite at random fields of this amplitude.
+  std::optional<std::vector<Coefficient>> linearised(const Lattice&, Site, int component, double amplitude) const;
+
+  Lattice lattice_;
+  std::vector<std::shared_ptr<const StencilFamily>> families_;
+  double time_step_;
+  std::vector<Component> names_;
+  int width_ = 0, height_ = 0;
+  Placement placement_ = Placement::every_site;
+};
+
+}  // namespace delf

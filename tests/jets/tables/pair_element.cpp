@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "jets/tables/pair_element.hpp"
+
+#include <cmath>
+
+#include "jets/tables/splitting.hpp"
+#include "tests/catch.hpp"
+
+using namespace delf;
+
+namespace {
+
+/// Σ_m m²β_m (f(m) − 2f(0) + f(−m))/m² for f = x^degree: what the pairs make of f″(0).
+double second_derivative(int p, int degree) {
+  const auto weights = pair_weights(p);
+  double sum = 0;
+  for (int m = 1; m <= p; ++m) sum += weights[static_cast<std::size_t>(m - 1)] * 2 * std::pow(m, degree) / (m * m);
+  return sum;
+}
+/// One step of the pendulum q″ = −sin q by kicks and drifts.
+void pendulum_step(const Splitting& splitting, double h, long double& q, long double& p) {
+  for (std::size_t s = 0; s < splitting.kicks.size(); ++s) {
+    p -= static_cast<long double>(splitting.kicks[s]) * h * std::sin(q);
+    if (s < splitting.drifts.size()) q += static_cast<long double>(splitting.drifts[s]) * h * p;
+  }
+}
+long double pendulum_at_1(const Splitting& splitting, int steps) {
+  long double q = 0.3L, p = 1.2L;
+  for (int n = 0; n < steps; ++n) pendulum_step(splitting, 1.0 / steps, q, p);
+  return q;
+}
+
+}  // namespace
+
+TEST_CASE("pairs up to p sites apart find second derivatives to order 2p, and no further") {
+  for (int p = 1; p <= widest_pair; ++p) {
+    CAPTURE(p);
+    double total = 0;
+    for (const double w : pair_weights(p)) total += w;
+    CHECK(std::abs(total - 1) < 1e-14);
+    CHECK(std::abs(second_derivative(p, 2) - 2) < 1e-13);
+    for (int degree = 4; degree <= 2 * p; degree += 2)
+      CHECK(std::abs(second_derivative(p, degree)) < 1e-12 * std::pow(p, degree));
+    CHECK(std::abs(second_derivative(p, 2 * p + 2)) > 1);
+  }
+}
+
+TEST_CASE(
+    "the weights of splittings are palindromes, sum to 1, and make a pendulum's steps of their order and no more") {
+  const long double exact = pendulum_at_1(splitting_of_order(8), 64);
+  for (int order = 2; order <= highest_splitting_order; order += 2) {
+    const Splitting splitting = splitting_of_order(order);
+    CAPTURE(order);
+    REQUIRE(splitting.kicks.size() == splitting.drifts.size() + 1);
+    for (const auto* weights : {&splitting.kicks, &splitting.drifts}) {
+      double sum = 0;
+      for (std::size_t s = 0; s < weights->size(); ++s) {
+        sum += (*weights)[s];
+        CHECK(std::abs((*weights)[s] - (*weights)[weights->size() - 1 - s]) < 1e-15);
+      }
+      CHECK(std::abs(sum - 1) < 1e-14);
+    }
+    const int steps = order == 8 ? 3 : 4;
+    const auto error = [&](int n) { return std::abs(static_cast<double>(pendulum_at_1(splitting, n) - exact)); };
+    const double found = std::log2(error(steps) / error(2 * steps));
+    CAPTURE(found);
+    CHECK(found > order - 0.3);
+    CHECK(found < order + 0.4);
+    // one weight that is off is seen
+    Splitting off = splitting;
+    off.kicks[1] += 1e-4, off.kicks[off.kicks.size() - 2] += 1e-4;
+    if (order > 2)
+      CHECK(std::log2(std::abs(static_cast<double>((pendulum_at_1(off, steps) - exact) /
+                                                   (pendulum_at_1(off, 2 * steps) - exact)))) < 1);
+  }
+  CHECK(splitting_of_order(3).drifts.empty());
+  CHECK(splitting_of_order(10).drifts.empty());
+}
+
+TEST_CASE(
+    "the element of a composition lists its rows one above the other, and weighs its points by signed fractions") {
+  const Splitting splitting = splitting_of_order(8);
+  const auto& fractions = splitting.drifts;
+  const Element element = pair_element(splitting, 3);
+  CHECK(element.nodes.size() == fractions.size());
+  CHECK(element.pattern.size() == static_cast<int>(4 * (fractions.size() + 1)));
+  CHECK(element.points.size() == fractions.size() * 3 * 4);
+  double total = 0;
+  for (const ElementPoint& p : element.points) total += p.weight;
+  CHECK(std::abs(total - 1) < 1e-13);
+  CHECK(element.nodes[3].time < element.nodes[2].time);  // the third sub-step goes back
+  // A row's points weigh what its kick does: φ alone, at all vertices of node 2.
+  double kick = 0;
+  for (const ElementPoint& p : element.points)
+    for (std::size_t l = 0; l < p.phi.size(); ++l)
+      if (element.pattern.vertices[l].time == 0 && element.pattern.vertices[l].node == 2) kick += p.weight * p.phi[l];
+  CHECK(std::abs(kick - splitting.kicks[2]) < 1e-14);
+  // On the affine field 2 + 3t + 5x every point finds φ_t = 3 and φ_x = 5.
+  for (const ElementPoint& p : element.points) {
+    double phi = 0, phi_t = 0, phi_x = 0;
+    for (std::size_t l = 0; l < p.phi.size(); ++l) {
+      const Site v = element.pattern.vertices[l];
+      const double y = 2 + 3 * (v.time + element.nodes[static_cast<std::size_t>(v.node)].time) + 5 * v.space;
+      phi += p.phi[l] * y, phi_t += p.phi_t[l] * y, phi_x += p.phi_x[l] * y;
+    }
+    CHECK(std::abs(phi - (2 + 3 * p.time + 5 * p.space)) < 1e-13);
+    CHECK(std::abs(phi_t - 3) < 1e-13);
+    CHECK(std::abs(phi_x - 5) < 1e-13);
+  }
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/stepping/rows/row_team.hpp"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <thread>
+
+#include "schemes/stepping/flush_denormals.hpp"
+#include "tests/catch.hpp"
+
+using namespace delf;
+
+TEST_CASE("a team does every part once, the first in the calling thread, and returns when all are done") {
+  for (int threads : {1, 2, 3, 5}) {
+    RowTeam team(threads);
+    CHECK(team.size() == threads);
+    for (int parts = 1; parts <= threads; ++parts) {
+      CAPTURE(threads, parts);
+      std::vector<int> times(static_cast<std::size_t>(threads), 0);
+      std::vector<std::thread::id> by(static_cast<std::size_t>(threads));
+      bool right = true;
+      for (int round = 1; round <= 300; ++round) {
+        team.run(parts, [&](int part) {
+          ++times[static_cast<std::size_t>(part)];
+          by[static_cast<std::size_t>(part)] = std::this_thread::get_id();
+        });
+        for (int part = 0; part < threads; ++part)
+          right = right && times[static_cast<std::size_t>(part)] == (part < parts ? round : 0);
+      }
+      CHECK(right);
+      CHECK(by[0] == std::this_thread::get_id());
+      CHECK(std::set<std::thread::id>(by.begin(), by.begin() + parts).size() == static_cast<std::size_t>(parts));
+    }
+  }
+}
+
+TEST_CASE("parts work at the same time, and see what was written before the round") {
+  RowTeam team(3);
+  for (int round = 0; round < 20; ++round) {
+    std::atomic<int> begun{0};
+    int written = round;
+    std::array<int, 3> seen{};
+    team.run(3, [&](int part) {
+      seen[static_cast<std::size_t>(part)] = written;
+      ++begun;
+      while (begun < 3) std::this_thread::yield();  // would hang if one part waited for another
+    });
+    CHECK(seen == std::array<int, 3>{round, round, round});
+  }
+}
+
+TEST_CASE("a team that has gone to sleep wakes up, and one that never worked ends") {
+  RowTeam idle(4);
+  RowTeam team(2);
+  for (int round = 0; round < 3; ++round) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    std::atomic<int> done{0};
+    team.run(2, [&](int part) {
+      if (part == 1) std::this_thread::sleep_for(std::chrono::milliseconds(10));  // the caller sleeps too
+      ++done;
+    });
+    CHECK(done == 2);
+  }
+}
+
+TEST_CASE("parts of other threads treat denormal numbers as the calling thread does under its guard") {
+  const FlushDenormals guard;
+  RowTeam team(3);
+  std::array<double, 3> halves{};
+  volatile double small = std::numeric_limits<double>::min();
+  team.run(3, [&](int part) { halves[static_cast<std::size_t>(part)] = small / 2; });
+  CHECK(halves[1] == halves[0]);
+  CHECK(halves[2] == halves[0]);
+}
+
+TEST_CASE("the count of parts can fail: a team of one does not do two") {
+  // what the first case would see if parts were left out
+  std::vector<int> times(2, 0);
+  RowTeam team(2);
+  team.run(1, [&](int part) { ++times[static_cast<std::size_t>(part)]; });
+  CHECK(times == std::vector<int>{1, 0});
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/state.hpp"
+#include "schemes/verify/time_reversal.hpp"
+#include "tests/catch.hpp"
+#include "tests/verification/r_adaptive_rows.hpp"
+
+using namespace delf;
+
+namespace {
+
+constexpr double tolerance = 1e-11;
+using Rows = std::vector<std::vector<double>>;
+
+/// Rows 0 and 1 of a state, with zeros for multipliers.
+Rows start_rows(Problem& p, const std::string& name) {
+  StateRequest request;
+  request.name = name, request.theory = p.theory;
+  if (name == "breather" || name == "kink") request.speed = 0.3;
+  const auto state = make_state(request, p.lattice);
+  if (p.lattice.is_circle()) p.winding = state->winding();
+  const auto d = static_cast<std::size_t>(state->components()), N = static_cast<std::size_t>(p.lattice.sites());
+  const std::size_t C = Simulation(p).components().size();
+  Rows rows(2, std::vector<double>(C * N));
+  std::vector<double> y(d * N);
+  for (std::size_t r = 0; r < 2; ++r) {
+    state->values(static_cast<double>(r) * p.time_step, p.lattice, y);
+    for (std::size_t n = 0; n < y.size(); ++n) rows[r][n / d * C + n % d] = y[n];
+  }
+  return rows;
+}
+
+std::optional<Reversal> there_and_back(Problem p, const std::string& state, std::int64_t steps) {
+  const Rows rows = start_rows(p, state);
+  return time_reversal([&] { return std::make_unique<Simulation>(p); }, rows, steps, tolerance);
+}
+
+Problem sine_gordon(const std::string& stencil, const std::string& method = "multisymplectic") {
+  Problem p;
+  p.stencil = stencil, p.method = method;
+  p.lattice = Lattice::circle(100, 30);
+  p.time_step = 0.5 * p.lattice.space_step();
+  return p;
+}
+
+bool reversible_equations(const Problem& p) { return reversible(Simulation(p).evolution().system(), 7); }
+
+void returns(const Problem& p, const std::string& state, std::int64_t steps) {
+  CAPTURE(p.theory, p.stencil, p.method, state);
+  CHECK(reversible_equations(p));
+  const auto reversal = there_and_back(p, state, steps);
+  REQUIRE(reversal);
+  CHECK(reversal->promised);
+  CAPTURE(reversal->check.value, reversal->check.failure, reversal->distance, reversal->growth);
+  CHECK(reversal->check.name == "time reversal");
+  CHECK(reversal->check.passed());
+  CHECK(reversal->check.count > 0);
+  CHECK(reversal->check.tolerance == tolerance);
+  CHECK(reversal->steps.back() == steps);
+  CHECK(reversal->steps.size() == reversal->distance.size());
+  for (const double distance : reversal->distance) CHECK(distance < 1e-9);
+  CHECK(reversal->growth < 3);
+}
+
+/// The same problem, but what is built after the first simulation is built by `change`d.
+template <class Change>
+Reversal another_way_back(Problem p, const std::string& state, Change change) {
+  const Rows rows = start_rows(p, state);
+  int built = 0;
+  const auto reversal = time_reversal(
+      [&] {
+        if (built++ == 1) change(p);
+        return std::make_unique<Simulation>(p);
+      },
+      rows, 8, tolerance);
+  REQUIRE(reversal);
+  return *reversal;
+}
+
+}  // namespace
+
+TEST_CASE("schemes that are their own inverse come back to their start") {
+  for (const char* stencil : {"rectangle", "rectangle-symmetric", "triangle-vertex"})
+    for (const char* state : {"breather", "kink"}) returns(sine_gordon(stencil), state, 64);
+  Problem angle = sine_gordon("rectangle");
+  angle.circle_valued = true;
+  returns(angle, "kink", 64);
+  for (const char* method : {"guo", "vu-quoc-li"}) returns(sine_gordon("", method), "breather", 64);
+}
+
+TEST_CASE("bricks come back to their start after an even number of steps, also around a circle that winds") {
+  for (const char* state : {"breather", "kink"}) returns(sine_gordon("hexagon"), state, 64);
+  const auto reversal = there_and_back(sine_gordon("hexagon"), "breather", 7);
+  REQUIRE(reversal);
+  CHECK(reversal->steps == std::vector<std::int64_t>{2, 4});
+  CHECK_FALSE(there_and_back(sine_gordon("hexagon"), "breather", 1));
+}
+
+TEST_CASE("wave maps with their multiplier and bodies at a point come back to their start") {
+  Problem p;
+  p.theory = "wave-map", p.lattice = Lattice::circle(32, 2 * std::numbers::pi);
+  p.time_step = 0.5 * p.lattice.space_step();
+  for (const char* stencil : {"rectangle", "triangle-vertex"}) {
+    p.stencil = stencil;
+    returns(p, "great-circle", 32);
+  }
+  p.lattice = Lattice::point(), p.time_step = 0.05;
+  for (const char* stencil : {"midpoint", "trapezoidal", "vertex"}) {
+    p.stencil = stencil;
+    p.theory = "pendulum", returns(p, "pendulum-swing", 64);
+    p.theory = "kepler", returns(p, "kepler-orbit", 64);
+  }
+}
+
+// A moving kink's tail changes at fixed walls from row 0 to row 1; at a natural wall on its right the triangle of
+// footnote 3 has no inertia, and gives the wall a value that the starting rows do not have.
+TEST_CASE("schemes come back to their start between walls, which the starting rows do not fit") {
+  for (const char* stencil : {"rectangle", "rectangle-symmetric", "triangle-vertex"})
+    for (const Wall left : {Wall::fixed, Wall::natural})
+      for (const Wall right : {Wall::fixed, Wall::natural}) {
+        Problem p = sine_gordon(stencil);
+        p.lattice = Lattice::interval(101, 30, left, right);
+        returns(p, "kink", 64);
+      }
+}
+
+TEST_CASE("the distances are those of 1, 2, 4 and so on steps, and of the whole way") {
+  const auto reversal = there_and_back(sine_gordon("rectangle"), "breather", 21);
+  REQUIRE(reversal);
+  CHECK(reversal->steps == std::vector<std::int64_t>{1, 2, 4, 8, 16, 21});
+  CHECK(reversal->check.value == reversal->distance[0]);
+  CHECK(std::isfinite(reversal->growth));
+  const auto brief = there_and_back(sine_gordon("rectangle"), "breather", 2);
+  REQUIRE(brief);
+  CHECK(brief->check.value == brief->distance[0]);
+  CHECK(std::isnan(brief->growth));
+}
+
+TEST_CASE("the triangle is not reversible: nothing is promised, its distance is measured") {
+  CHECK_FALSE(reversible_equations(sine_gordon("triangle")));
+  const auto reversal = there_and_back(sine_gordon("triangle"), "breather", 16);
+  REQUIRE(reversal);
+  CHECK_FALSE(reversal->promised);
+  CHECK(reversal->check.name.empty());
+  REQUIRE(reversal->distance.size() == 5);
+  CHECK(reversal->distance[3] > 1e-9);
+}
+
+TEST_CASE("friction has no Lagrangian to excuse it: the way back misses the start") {
+  const Problem p = sine_gordon("", "damped");
+  CHECK_FALSE(reversible_equations(p));
+  const auto reversal = there_and_back(p, "breather", 16);
+  REQUIRE(reversal);
+  CHECK(reversal->promised);
+  CAPTURE(reversal->check.value, reversal->check.failure);
+  CHECK_FALSE(reversal->check.passed());
+  CHECK(reversal->check.value > 1e-4);
+  CHECK(reversal->check.failure.find("after 1 step: the scheme is not its own inverse") != std::string::npos);
+}
+
+TEST_CASE("the check can fail: another scheme on the way back, or another step, misses the start") {
+  const auto other =
+      another_way_back(sine_gordon("rectangle"), "breather", [](Problem& p) { p.stencil = "rectangle-symmetric"; });
+  const auto longer = another_way_back(sine_gordon("rectangle"), "breather", [](Problem& p) { p.time_step *= 1.001; });
+  for (const Reversal& reversal : {other, longer}) {
+    CAPTURE(reversal.check.value, reversal.check.failure);
+    CHECK(reversal.promised);
+    CHECK_FALSE(reversal.check.passed());
+    CHECK(reversal.check.value > 1e-6);
+  }
+}
+
+TEST_CASE("a step back that fails is a check that fails, and says how") {
+  const auto reversal =
+      another_way_back(sine_gordon("rectangle-symmetric"), "breather", [](Problem& p) { p.max_iterations = 1; });
+  CHECK(reversal.promised);
+  CHECK_FALSE(reversal.check.passed());
+  CHECK(std::isnan(reversal.check.value));
+  CAPTURE(reversal.check.failure);
+  CHECK(reversal.check.failure.find("the way back after 1 step ends: ") == 0);
+}
+
+TEST_CASE("moving meshes with their multipliers come back to their start") {
+  namespace given = r_adaptive_rows;
+  Problem p;
+  p.method = "r-adaptive", p.alpha = given::alpha;
+  p.lattice = Lattice::interval(17, 25), p.time_step = given::time_step;
+  CHECK(reversible_equations(p));
+  Rows rows(2);
+  for (std::size_t i = 0; i < 17; ++i) {
+    rows[0].insert(rows[0].end(), {given::y0[i], given::X0[i], 0});
+    rows[1].insert(rows[1].end(), {given::y1[i], given::X1[i], 0});
+  }
+  const auto reversal = time_reversal([&] { return std::make_unique<Simulation>(p); }, rows, 8, tolerance);
+  REQUIRE(reversal);
+  CAPTURE(reversal->check.value, reversal->check.failure, reversal->distance);
+  CHECK(reversal->promised);
+  CHECK(reversal->check.passed());
+}
+
+TEST_CASE("elements of more nodes than a row holds are not asked") {
+  Problem element = sine_gordon("", "spacetime");
+  element.time_step = element.lattice.space_step();
+  const Simulation simulation(element);
+  CHECK_FALSE(time_reversal([&] { return std::make_unique<Simulation>(element); },
+                            Rows(2, std::vector<double>(simulation.components().size() * 100)), 8, tolerance));
+}
+
+TEST_CASE("a vacuum stays where it is, forward and back") {
+  const Problem p = sine_gordon("rectangle-symmetric");
+  const auto reversal =
+      time_reversal([&] { return std::make_unique<Simulation>(p); }, Rows(2, std::vector<double>(100)), 8, tolerance);
+  REQUIRE(reversal);
+  CHECK(reversal->check.value == 0);
+  CHECK(reversal->check.passed());
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "tests/catch.hpp"
+#include "tests/tools/figures/has_gnuplot.hpp"
+#include "tests/tools/program.hpp"
+#include "tools/figures/figure_style.hpp"
+#include "tools/figures/film.hpp"
+#include "tools/run/trace.hpp"
+
+using namespace delf::testing;
+using delf::Film;
+using delf::Trace;
+
+TEST_CASE("figures are drawn as PNG and as SVG, and nothing else is left beside them") {
+  if (!has_gnuplot()) return;
+  const Folder folder;
+  const auto scene = GENERATE(as<std::string>(), "collision --run.until=30", "phi4-kink --run.until=5",
+                              "kink --run.until=2 --output.times=0,1,1.7 --output.every=3",
+                              "collision --lattice.stencil=triangle --lattice.courant=1.2 --run.until=400",
+                              "collision --run.until=300 --output.every=100");
+  INFO(scene);
+  const Ran ran = delf_program(folder, "run " + scene + " --out 'with blank'");
+  INFO(ran.err);
+  CHECK_FALSE(contains(ran.err, "figures"));
+  for (const char* name : {"spacetime", "waveforms", "energy"}) {
+    CHECK(read(folder / (std::string("with blank/figures/") + name + ".png")).starts_with("\x89PNG"));
+    const std::string svg = read(folder / (std::string("with blank/figures/") + name + ".svg"));
+    CHECK(contains(svg, "<svg"));
+    CHECK(contains(svg, "</svg>"));
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "with blank"))
+    CHECK_FALSE(entry.path().filename().string().starts_with("."));
+}
+
+TEST_CASE("without gnuplot a run succeeds, and says which package is missing") {
+  const Folder folder;
+  const Ran ran = delf_program(folder, "run kink --run.until=1 --out here", "PATH=/nowhere");
+  CHECK(ran.code == 0);
+  REQUIRE(lines(ran.err).size() == 1);
+  CHECK(contains(ran.err, "gnuplot-nox"));
+  CHECK(std::filesystem::exists(folder / "here/summary.json"));
+  CHECK_FALSE(std::filesystem::exists(folder / "here/figures"));
+}
+
+TEST_CASE("a film keeps the first and the last row, few enough, and evenly spaced but for the last") {
+  const auto lattice = delf::Lattice::circle(2000, 10);
+  Film film(lattice, 5000);
+  for (int f = 0; f < 5000; ++f) film.append(f, std::vector<double>(2000, f));
+  film.finish();
+  CHECK(film.frames() <= 601);
+  CHECK(film.space().size() <= 600);
+  CHECK(film.time(0) == 0);
+  CHECK(film.time(film.frames() - 1) == 4999);
+  CHECK(film.frame(film.frames() - 1)[3] == 4999);
+  CHECK(film.even_frames() == film.frames() - 1);
+  CHECK(film.time(2) - film.time(1) == film.time(film.even_frames() - 1) - film.time(film.even_frames() - 2));
+}
+
+TEST_CASE("a trace keeps every extreme in bounded memory") {
+  Trace trace;
+  for (int i = 0; i < 1000000; ++i) trace.append(i, i == 123456 ? 7.0 : i == 765432 ? -3.0 : 0.0);
+  CHECK(trace.intervals().size() <= 2000);
+  double least = 0, most = 0;
+  for (const auto& interval : trace.intervals()) {
+    least = std::min(least, interval.least);
+    most = std::max(most, interval.most);
+  }
+  CHECK(most == 7);
+  CHECK(least == -3);
+  CHECK(trace.intervals().front().begin == 0);
+  CHECK(trace.intervals().back().end == 999999);
+}
+
+TEST_CASE("a colour scale is symmetric for what swings about zero, and wide enough for what is constant") {
+  const auto swinging = delf::colour_scale(std::vector<double>{-0.9, 0, 1});
+  CHECK(swinging.swings);
+  CHECK(swinging.least == -swinging.most);
+  CHECK_FALSE(delf::colour_scale(std::vector<double>{0, 1, 2}).swings);
+  const auto constant = delf::colour_scale(std::vector<double>{3, 3, 3});
+  CHECK(constant.least < 3);
+  CHECK(constant.most > 3);
+  CHECK(delf::nice_step(40, 5) == 10);
+  CHECK(delf::nice_step(5, 8) == 1);
+}

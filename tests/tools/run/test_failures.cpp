@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+#include "tools/files/fields_reader.hpp"
+
+using namespace delf::testing;
+using delf::FieldsReader;
+
+namespace {
+
+std::string status(const Folder& folder, const std::string& results) {
+  return nlohmann::json::parse(read(folder / (results + "/summary.json")))["status"];
+}
+
+}  // namespace
+
+TEST_CASE("a blow-up ends with exit code 3, its step, time and site, and the last finite state saved") {
+  const Folder folder;
+  const auto every = GENERATE(as<std::string>(), "1", "1000", "0");
+  const Ran ran = delf_program(folder,
+                               "run collision --lattice.stencil=triangle --lattice.courant=1.2 --run.until=400 "
+                               "--output.figures=off --out up --output.every=" +
+                                   every);
+  INFO(ran.err);
+  CHECK(ran.code == 3);
+  REQUIRE(lines(ran.err).size() == 1);
+  CHECK(contains(ran.err, "step "));
+  CHECK(contains(ran.err, "t = "));
+  CHECK(contains(ran.err, "site "));
+  CHECK(status(folder, "up") == "not-finite");
+
+  const auto json = nlohmann::json::parse(read(folder / "up/summary.json"));
+  CHECK(json["failure"].is_string());
+  const FieldsReader fields(folder / "up/fields.h5");
+  const auto last = fields.row(fields.frames() - 1);  // throws unless finite
+  CHECK(*fields.time(fields.frames() - 1) == json["time"]);
+  CHECK(lines(read(folder / "up/series.csv")).back().starts_with(std::to_string(json["steps"].get<int>()) + ","));
+}
+
+TEST_CASE("an implicit step that cannot be solved ends with exit code 3") {
+  const Folder folder;
+  folder.write("hard.ini", small_scene());
+  const Ran ran = delf_program(folder,
+                               "run hard.ini --initial.state=noise --initial.amplitude=3 --theory.mass=40 "
+                               "--lattice.stencil=rectangle --scheme.max_iterations=1 --out hard");
+  INFO(ran.err);
+  CHECK(ran.code == 3);
+  CHECK(lines(ran.err).size() == 1);
+  CHECK(status(folder, "hard") == "no-convergence");
+  CHECK(lines(read(folder / "hard/series.csv")).size() >= 2);
+}
+
+TEST_CASE("a mesh that crosses itself ends with exit code 3, and the last mesh in order is saved") {
+  const Folder folder;
+  const Ran ran = delf_program(folder,
+                               "run r-adaptive --lattice.time_step=0.2 --run.steps=100 --output.every=1 "
+                               "--output.figures=off --out out");
+  INFO(ran.err);
+  CHECK(ran.code == 3);
+  CHECK(contains(ran.err, "of the mesh pass each other"));
+  CHECK(status(folder, "out") == "mesh-crossing");
+  const FieldsReader fields(folder / "out/fields.h5");
+  const auto last = fields.row(fields.frames() - 1);  // phi, X site by site
+  for (std::size_t n = 1; n + 2 < last.size(); n += 2) CHECK(last[n] < last[n + 2]);
+}
+
+TEST_CASE("a mesh that is not in order from the start is bad input") {
+  const Folder folder;
+  std::string rows = "row,site,phi,X\n";
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 5; ++i)
+      rows += std::to_string(j) + "," + std::to_string(i) + ",0," + std::to_string(i == 2 && j == 1 ? 3.5 : i) + "\n";
+  folder.write("rows.csv", rows);
+  const std::string scene = folder.write("scene.ini",
+                                         "[theory]\nname = sine-gordon\n[lattice]\nspace = interval\nlength = 4\n"
+                                         "sites = 5\ntime_step = 0.01\n[scheme]\nmethod = r-adaptive\n"
+                                         "[initial]\nstate = file\nfile = rows.csv\n[run]\nsteps = 3\n");
+  const Ran ran = delf_program(folder, "run " + scene);
+  INFO(ran.err);
+  CHECK(ran.code == 2);
+  CHECK(contains(ran.err, "sites 2 and 3 of the mesh are not in order in row 1"));
+}
+
+TEST_CASE("an interrupted run writes all so far, and ends with exit code 130") {
+  const Folder folder;
+  const auto signal = GENERATE(as<std::string>(), "INT", "TERM");
+  const auto stencil = GENERATE(as<std::string>(), "rectangle-symmetric", "triangle-vertex");
+  const Ran ran =
+      shell(folder, "'" DELF_PROGRAM
+                    "' run collision --run.until=1e7 --output.every=5000 --output.figures=off --out cut "
+                    "--lattice.stencil=" +
+                        stencil + " & p=$!; while [ ! -s cut/fields.h5 ]; do sleep 0.05; done; sleep 0.3; kill -" +
+                        signal + " $p; wait $p");
+  INFO(ran.err);
+  CHECK(ran.code == 130);
+  CHECK(contains(ran.out, "interrupted"));
+  const auto json = nlohmann::json::parse(read(folder / "cut/summary.json"));
+  CHECK(json["status"] == "interrupted");
+  CHECK(json["steps"] > 0);
+  const FieldsReader fields(folder / "cut/fields.h5");
+  CHECK(*fields.time(fields.frames() - 1) == json["time"]);
+  CHECK(lines(read(folder / "cut/series.csv")).size() == static_cast<std::size_t>(fields.frames()) + 1);
+}
+
+TEST_CASE("a full disk ends with exit code 4 and one line, and what fitted stays readable") {
+  const Folder folder;
+  const int blocks = GENERATE(1, 16, 200, 3000);  // of 512 bytes: scene.ini, series.csv and fields.h5 do not fit
+  const Ran ran = delf_program(folder, "run collision --run.until=200 --output.every=5 --output.figures=off --out full",
+                               // HDF5 forgets a buffer when it fails
+                               "ulimit -f " + std::to_string(blocks) + "; ASAN_OPTIONS=detect_leaks=0");
+  INFO(ran.err);
+  CHECK(ran.code == 4);
+  CHECK(ran.out.empty());
+  CHECK(lines(ran.err).size() == 1);
+  CHECK(contains(ran.err, "full/"));
+  if (blocks == 3000) {
+    CHECK(status(folder, "full") == "system-failure");
+    CHECK(FieldsReader(folder / "full/fields.h5").frames() > 100);
+  }
+}
+
+TEST_CASE("results that cannot be put anywhere end with exit code 4") {
+  const Folder folder;
+  folder.write("file", "");
+  for (const char* out : {"file", "file/below", "/dev/null/below", "/proc/delf"}) {
+    const Ran ran = delf_program(folder, std::string("run kink --run.steps=3 --out ") + out);
+    INFO(ran.err);
+    CHECK(ran.code == 4);
+    CHECK(lines(ran.err).size() == 1);
+  }
+  CHECK(delf_program(folder, "list > /dev/full").code == 4);
+}
+
+TEST_CASE("a lattice that fits into no memory ends with exit code 4, and says how much it asked for") {
+#ifdef __SANITIZE_ADDRESS__
+  const std::string limit;  // it would keep the sanitizer itself from starting
+#else
+  const std::string limit = "ulimit -v 4000000;";
+#endif
+  const Folder folder;
+  const Ran ran = delf_program(folder, "run collision --lattice.sites=2147483647 --run.steps=2", limit);
+  INFO(ran.err);
+  CHECK(ran.code == 4);
+  CHECK(lines(ran.err).size() == 1);
+  CHECK(contains(ran.err, "137 GB"));
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include <sstream>
+
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+#include "tools/scene/shipped_scenes.hpp"
+
+using namespace delf::testing;
+
+namespace {
+
+// The lines `# $ delf …` that a scene opens with.
+std::vector<std::string> commands_of(const std::filesystem::path& scene) {
+  std::vector<std::string> commands;
+  const std::string mark = "# $ delf ";
+  for (const std::string& line : lines(read(scene)))
+    if (line.starts_with(mark)) commands.push_back(line.substr(mark.size()));
+  return commands;
+}
+
+// The same command with few steps, and no figures.
+std::string shortened(const std::string& command) {
+  std::istringstream words(command);
+  std::string out;
+  for (std::string word; words >> word;)
+    if (!word.starts_with("--run.until=") && !word.starts_with("--run.steps=")) out += word + " ";
+  return out + "--run.steps=12 --output.figures=off --out out";
+}
+
+}  // namespace
+
+TEST_CASE("the scenes of the issue are shipped, each with its equation and the commands that run it") {
+  std::vector<std::string> names;
+  for (const auto& scene : delf::shipped_scenes()) {
+    names.push_back(scene.name);
+    INFO(scene.name);
+    CHECK_FALSE(scene.title.empty());
+    CHECK(contains(read(scene.file), "_tt "));
+    CHECK(contains(read(scene.file), "# Source: "));
+    const auto commands = commands_of(scene.file);
+    REQUIRE_FALSE(commands.empty());
+    CHECK(commands.front() == "run " + scene.name);
+  }
+  CHECK(names == std::vector<std::string>{"breather", "collision", "complex-klein-gordon", "coupled-sine-gordon",
+                                          "fast-kink", "interval", "kepler", "kink", "kink-train", "pendulum",
+                                          "phi4-kink", "r-adaptive", "spacetime-element", "wave-map", "wave-packet",
+                                          "workprecision-breather"});
+}
+
+TEST_CASE("every command that a scene names runs, and warns of nothing") {
+  const Folder folder;
+  for (const auto& scene : delf::shipped_scenes())
+    for (const std::string& command : commands_of(scene.file)) {
+      const Ran ran = delf_program(folder, shortened(command));
+      INFO(command << "\n" << ran.err);
+      CHECK(ran.code == 0);
+      CHECK(ran.err.empty());
+    }
+}
+
+TEST_CASE("every shipped scene runs to its end") {
+  const Folder folder;
+  for (const auto& scene : delf::shipped_scenes()) {
+    const Ran ran = delf_program(folder, "run " + scene.name + " --output.figures=off --out " + scene.name);
+    INFO(scene.name << "\n" << ran.err);
+    CHECK(ran.code == 0);
+    CHECK(contains(read(folder / (scene.name + "/summary.json")), "\"status\": \"done\""));
+  }
+}

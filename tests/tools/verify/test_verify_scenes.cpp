@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+#include "tools/scene/shipped_scenes.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+TEST_CASE("every shipped scene is what theory promises, and with a planted fault it is not", "[slow]") {
+  int regions = 0;
+  for (const ShippedScene& scene : shipped_scenes()) {
+    const Folder folder;
+    const Ran ran = delf_program(folder, "verify " + scene.name + " --output.figures=off --out out");
+    CAPTURE(scene.name, ran.out, ran.err);
+    CHECK(ran.code == 0);
+    const auto json = nlohmann::json::parse(read(folder / "out/verify.json"));
+    CHECK(json["passed"] == true);
+    CHECK(json["checks"].size() >= 8);
+    for (const auto& check : json["checks"])
+      if (std::string(check["name"]).starts_with("form formula")) {
+        CHECK(check["value"] <= 1e-13);
+        ++regions;
+      }
+    CHECK(delf_program(folder, "verify " + scene.name + " --output.figures=off --verify.fault=sign --out out").code ==
+          1);
+  }
+  CHECK(regions > 50);
+}

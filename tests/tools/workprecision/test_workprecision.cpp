@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/tools/figures/has_gnuplot.hpp"
+#include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
+#include "tools/scene/keys.hpp"
+
+using namespace delf::testing;
+using Json = nlohmann::json;
+
+namespace {
+
+// A folder with a scene: a breather on 64 sites for two time units, exact; its steps take microseconds.
+struct WithScene : Folder {
+  WithScene() {
+    write("small.ini",
+          "[theory]\nname = sine-gordon\n[lattice]\nlength = 40\nsites = 64\ncourant = 0.5\n"
+          "[initial]\nstate = breather\n[run]\nuntil = 2\n[output]\nfigures = off\n");
+  }
+};
+
+Json compared(const Folder& folder, const std::string& arguments, int code = 0) {
+  std::filesystem::remove_all(folder / "out");
+  const Ran ran = delf_program(folder, "workprecision " + arguments + " --workprecision.peers=off --out out");
+  INFO(arguments << "\n" << ran.out << ran.err);
+  CHECK(ran.code == code);
+  REQUIRE(std::filesystem::exists(folder / "out/workprecision.json"));
+  CHECK_FALSE(contains(ran.out, "nan"));
+  return Json::parse(read(folder / "out/workprecision.json"));
+}
+
+const std::string two =
+    " --workprecision.schemes=rectangle-symmetric,triangle-vertex --workprecision.sites=64,128 "
+    "--workprecision.repeats=2 ";
+
+}  // namespace
+
+TEST_CASE("workprecision runs a ladder of two schemes, and writes every field of every run") {
+  const WithScene folder;
+  const Json json = compared(folder, "small.ini" + two);
+  CHECK(json["status"] == "done");
+  CHECK(json["reference"] == "the exact solution");
+  REQUIRE(json["runs"].size() == 4);
+  for (const Json& run : json["runs"]) {
+    CAPTURE(run.dump());
+    CHECK(run["peer"] == false);
+    CHECK((run["sites"] == 64 || run["sites"] == 128));
+    CHECK(std::abs(run["time_step"].get<double>() * run["steps"].get<double>() - 2) < 1e-14);  // the end is met exactly
+    CHECK(run["repeats"] == 2);
+    CHECK(run["seconds"] > 0);
+    CHECK(run["seconds_min"] <= run["seconds"]);
+    CHECK(run["seconds"] <= run["seconds_max"]);
+    CHECK(run["seconds_setup"] > 0);
+    CHECK(run["error_linf"] > 1e-6);
+    CHECK(run["error_l2"] > 1e-6);
+    CHECK(run["energy_error_max"] >= 0);
+    CHECK(run["position_error"] < 1e-9);  // a breather at rest stays where it is
+    CHECK(run["velocity_error"] < 1e-6);
+  }
+  CHECK(json["cheapest"].size() == 9);
+  CHECK(json["left_out"].empty());
+  const auto csv = lines(read(folder / "out/workprecision.csv"));
+  REQUIRE(csv.size() == 5);
+  CHECK(csv[0].starts_with("scheme,peer,sites,time_step,steps,error_linf,error_l2,energy_error_max,"));
+  CHECK(csv[1].starts_with("rectangle-symmetric,0,"));
+}
+
+TEST_CASE("errors of workprecision are those of a run, to the last bit") {
+  const WithScene folder;
+  const auto stencil = GENERATE(as<std::string>(), "rectangle-symmetric", "triangle-vertex", "hexagon");
+  const Json json = compared(folder,
+                             "small.ini --workprecision.repeats=2 --workprecision.sites=64 "
+                             "--workprecision.courants=0.5 --workprecision.schemes=" +
+                                 stencil);
+  REQUIRE(json["runs"].size() == 1);
+  const Json& run = json["runs"][0];
+  const Ran ran = delf_program(folder, "run small.ini --lattice.stencil=" + stencil +
+                                           " --lattice.time_step=" + run["time_step"].dump() +
+                                           " --run.steps=" + run["steps"].dump() + " --output.every=1 --out run");
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  const Json summary = Json::parse(read(folder / "run/summary.json"));
+  CHECK(run["error_linf"] == summary["error_linf"]);
+  CHECK(run["error_l2"] == summary["error_l2"]);
+  CHECK(run["energy_error_max"].get<double>() <= summary["energy_error_max"].get<double>() * (1 + 1e-12));
+  CHECK(run["energy_error_max"].get<double>() > 0.3 * summary["energy_error_max"].get<double>());
+}
+
+TEST_CASE("a kink's position and velocity errors fall with the square of the step") {
+  const Folder folder;
+  const Json json = compared(folder,
+                             "kink --run.until=4 --output.figures=off --workprecision.schemes=triangle-vertex "
+                             "--workprecision.sites=256,512 --workprecision.repeats=1");
+  REQUIRE(json["runs"].size() == 2);
+  const auto of = [&](int sites, const char* name) {
+    for (const Json& run : json["runs"])
+      if (run["sites"] == sites) return run[name].get<double>();
+    return std::nan("");
+  };
+  for (const char* name : {"position_error", "velocity_error"}) {
+    CAPTURE(name, of(256, name), of(512, name));
+    CHECK(of(256, name) > 1e-6);
+    CHECK(std::abs(of(256, name) / of(512, name) - 4) < 0.6);
+  }
+}
+
+TEST_CASE("a scheme that cannot be built or run is left out with its reason, and the others are there") {
+  const WithScene folder;
+  const Json json = compared(folder,
+                             "small.ini --workprecision.schemes=triangle-vertex,midpoint,hexagon "
+                             "--workprecision.sites=63 --workprecision.repeats=1");
+  REQUIRE(json["runs"].size() == 1);
+  CHECK(json["runs"][0]["scheme"] == "triangle-vertex");
+  REQUIRE(json["left_out"].size() == 2);  // once each
+  for (const Json& one : json["left_out"]) CHECK(one["reason"].get<std::string>().size() > 20);
+
+  const Json unstable = compared(folder,
+                                 "small.ini --run.until=400 --workprecision.schemes=triangle-vertex "
+                                 "--workprecision.sites=64 --workprecision.courants=1.5",
+                                 3);
+  REQUIRE(unstable["left_out"].size() == 1);
+  CHECK(contains(unstable["left_out"][0]["reason"].get<std::string>(), "finite"));
+  CHECK(unstable["runs"].empty());
+}
+
+TEST_CASE("without an exact solution runs are compared with a finer one, and come nearer to it") {
+  const Folder folder;
+  const Json json = compared(folder,
+                             "collision --run.until=4 --output.figures=off "
+                             "--workprecision.schemes=triangle-vertex --workprecision.courants=0.5 "
+                             "--workprecision.sites=64,128 --workprecision.repeats=1 --workprecision.budget=100");
+  CHECK(json["reference"] != "the exact solution");
+  CHECK(json["reference_error"] > 0);
+  REQUIRE(json["runs"].size() == 2);
+  // Runs are listed by how long they took, which hangs on what else the machine does.
+  const std::size_t of_64 = json["runs"][0]["sites"] == 64 ? 0 : 1;
+  const double coarse = json["runs"][of_64]["error_linf"], fine = json["runs"][1 - of_64]["error_linf"];
+  CAPTURE(coarse, fine, json["reference"]);
+  CHECK(json["runs"][of_64]["sites"] == 64);
+  CHECK(json["runs"][1 - of_64]["sites"] == 128);
+  CHECK(coarse > 2 * fine);
+  CHECK(fine > 10 * json["reference_error"].get<double>());
+  CHECK(json["runs"][0]["position_error"].is_null());
+}
+
+TEST_CASE("a ladder that workprecision chooses ends at the accuracy that is asked for") {
+  const WithScene folder;
+  const Json json = compared(folder,
+                             "small.ini --workprecision.schemes=triangle-vertex --workprecision.repeats=1 "
+                             "--workprecision.accuracies=1e-2,1e-4 --workprecision.budget=100");
+  REQUIRE(json["cheapest"].size() == 2);
+  REQUIRE_FALSE(json["runs"].empty());
+  CHECK(json["cheapest"][1]["accuracy"] == 1e-4);
+  CHECK(json["cheapest"][1]["engine"]["error_linf"] <= 1e-4);
+  CHECK(json["cheapest"][1]["peer"].is_null());
+  CHECK(json["cheapest"][1]["ratio"].is_null());
+  const auto least = std::ranges::min(json["runs"], {}, [](const Json& r) { return r["error_linf"].get<double>(); });
+  CHECK(least["error_linf"] > 5e-6);  // it stops there
+  CHECK(json["tried"] >= json["runs"].size());
+  CHECK(json["schemes"][0]["slope"].is_number());  // its value hangs on how long runs of microseconds happen to take
+}
+
+TEST_CASE("an interrupted comparison writes what it has, and ends with exit code 130") {
+  const WithScene folder;
+  const Ran ran =
+      shell(folder, "'" DELF_PROGRAM
+                    "' workprecision small.ini --run.until=50 --workprecision.budget=1e9 --out cut "
+                    // the first run is over at once, however slow the machine, and the second never
+                    "--workprecision.sites=32,400000 --workprecision.schemes=rectangle-symmetric & p=$!; sleep 2; "
+                    "kill -INT $p; wait $p");
+  INFO(ran.err);
+  CHECK(ran.code == 130);
+  CHECK(contains(ran.out, "not finished (interrupted)"));
+  const Json json = Json::parse(read(folder / "cut/workprecision.json"));
+  CHECK(json["status"] == "interrupted");
+  REQUIRE_FALSE(json["runs"].empty());
+  CHECK(json["runs"][0]["repeats"] == 0);  // each has run once, untimed
+  CHECK(json["runs"][0]["seconds"] > 0);
+}
+
+TEST_CASE("keys of workprecision that say nothing are refused in one line") {
+  const WithScene folder;
+  const auto refused = [&](const std::string& arguments, const std::string& reason) {
+    const Ran ran = delf_program(folder, "workprecision " + arguments + " --out refused");
+    INFO(arguments);
+    check_refused(ran, {reason});
+    CHECK_FALSE(std::filesystem::exists(folder / "refused"));
+  };
+  refused("small.ini --workprecision.schemes=triangle-vertx", "triangle-vertx is no scheme here; did you mean");
+  refused("small.ini --workprecision.sites=64,1", "1 is no number of sites");
+  refused("small.ini --workprecision.sites=64,x", "\"x\" is no positive number");
+  refused("small.ini --workprecision.courants=-1", "\"-1\" is no positive number");
+  refused("small.ini --workprecision.budget=0", "must be above 0");
+  refused("small.ini --run.until=0", "use more");
+  refused("pendulum --workprecision.sites=3", "a point has no sites");
+}
+
+TEST_CASE("help workprecision tells every key of its section") {
+  const Folder folder;
+  const Ran ran = delf_program(folder, "help workprecision");
+  CHECK(ran.code == 0);
+  int keys = 0;
+  for (const auto& key : delf::keys())
+    if (key.name.starts_with("workprecision.")) {
+      ++keys;
+      CHECK(contains(ran.out, std::string(key.name)));
+    }
+  CHECK(keys == 7);
+}
+
+TEST_CASE("workprecision draws its figure, with a line for each scheme and its slope") {
+  if (!has_gnuplot()) return;
+  const WithScene folder;
+  const Ran ran = delf_program(folder, "workprecision small.ini" + two + "--output.figures=on --out out");
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK(read(folder / "out/figures/workprecision.png").starts_with("\x89PNG"));
+  const std::string svg = read(folder / "out/figures/workprecision.svg");
+  for (const char* part : {"</svg>", "rectangle-symmetric", "triangle-vertex", "lower envelope"})
+    CHECK(contains(svg, part));
+
+  const Ran without =
+      delf_program(folder, "workprecision small.ini" + two + "--output.figures=on --out out", "PATH=/nowhere");
+  CHECK(without.code == 0);
+  CHECK(contains(without.err, "gnuplot"));
+  CHECK_FALSE(std::filesystem::exists(folder / "out/figures/workprecision.svg"));
+}
+
+#ifdef DELF_HAS_PEERS
+TEST_CASE("peers are in the same run as the engine, and the tables compare them") {
+  const WithScene folder;
+  const Ran ran = delf_program(folder,
+                               "workprecision small.ini --workprecision.schemes=triangle-vertex,peers "
+                               "--workprecision.sites=256 --workprecision.courants=0.1 "
+                               "--workprecision.repeats=2 --out out");
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  const Json json = Json::parse(read(folder / "out/workprecision.json"));
+  const auto peers = std::ranges::count_if(json["runs"], [](const Json& run) { return run["peer"] == true; });
+  CHECK(peers > 0);
+  CHECK(peers + 1 == static_cast<std::ptrdiff_t>(json["runs"].size()));
+  for (const Json& run : json["runs"]) {
+    CAPTURE(run.dump());
+    CHECK(run["error_linf"] < 0.05);  // the same solution
+    CHECK(run["energy_error_max"] < 0.01);
+  }
+  CHECK(json["cheapest"][0]["ratio"] > 0);
+  CHECK(contains(ran.out, "cheapest peer"));
+
+  // there is no peer for another equation
+  const Ran other = delf_program(folder,
+                                 "workprecision interval --run.until=1 --workprecision.repeats=1 --out other "
+                                 "--workprecision.schemes=rectangle-symmetric,peers --workprecision.sites=65 "
+                                 "--workprecision.budget=100 --output.figures=off");
+  INFO(other.err);
+  CHECK(other.code == 0);
+  CHECK(Json::parse(read(folder / "other/workprecision.json"))["runs"].size() == 1);
+}
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "tools/figures/energy_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/figures/figure_style.hpp"
+#include "tools/scene/text_file.hpp"
+
+namespace delf {
+
+std::string energy_figure(const FigureSource& source, const std::filesystem::path& scratch) {
+  const auto& intervals = source.energy_errors.intervals();
+  if (intervals.size() < 2) return {};
+  double largest = 0;
+  for (const auto& i : intervals) largest = std::max({largest, std::abs(i.least), std::abs(i.most)});
+
+  // An error beyond the energy itself grows through many powers of ten: |E − E₀| on a logarithmic axis. Others have a
+  // sign, and a linear axis in units of the power of ten that they have.
+  const bool grown = largest > 10, round_off = largest < 1e-12;
+  const double power = grown ? 0 : largest > 0 ? std::floor(std::log10(largest)) : -16;
+  const auto shown = [&](double error) {
+    return grown ? std::max(std::abs(error), 1e-17) : error / std::pow(10, power);
+  };
+  std::string table;
+  for (const auto& i : intervals) {
+    table += fmt::format("{} {}\n", i.begin, shown(i.least));
+    if (i.most != i.least) table += fmt::format("{} {}\n", i.end, shown(i.most));
+  }
+  write_text_file(scratch / "energy", table);
+
+  const std::string axis = grown         ? "set logscale y\nset format y '10^{%T}'\n"
+                           : largest > 0 ? "set xzeroaxis lc rgb '#999999' lt 1 lw 1\n"
+                                         : "set yrange [-1:1]\n";
+  const std::string label =
+      grown ? "|E − E_0| / |E_0|" : fmt::format("(E − E_0) / |E_0|   in units of 10^{{{}}}", power);
+  return figure_title(fmt::format("{}: the energy error{}", source.scene, round_off ? " is round-off" : ""),
+                      fmt::format("{}, {}", source.theory, source.scheme)) +
+         fmt::format(
+             "set lmargin at screen {}\nset rmargin at screen 0.965\n"
+             "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
+             "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\n{}"
+             "set xlabel 'time t'\n"
+             "set label 103 '{}' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
+             "set xrange [{}:{}]\nplot 'energy' using 1:2 with lines lw 1.3 lc rgb '{}'\n",
+             grown ? 0.13 : 0.105, axis, label, intervals.front().begin, intervals.back().end, line_colour);
+}
+
+}  // namespace delf

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lattice/lattice.hpp"
+#include "tools/figures/film.hpp"
+#include "tools/scene/row_names.hpp"
+#include "tools/run/trace.hpp"
+
+namespace delf {
+
+/// What the figures of a run are drawn from.
+struct FigureSource {
+  std::string scene, theory;
+  std::string scheme;  ///< one line: stencil, method, sites, steps
+  bool angle;          ///< the field is an angle, and is shown as φ/2π
+  const Lattice& lattice;
+  int winding;
+  const Film& film;
+  const Trace& energy_errors;
+  std::vector<double> times;  ///< of the waveforms; empty: evenly spread
+  RowNames names = {};
+};
+
+/// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into
+/// `folder`/figures, each as PNG and as SVG. Returns what is missing, in one line, or an empty string.
+std::string draw_figures(const FigureSource&, const std::filesystem::path& folder);
+
+/// The positions that are drawn: those of the film, and on a circle the first site once more, at x = L; where the mesh
+/// is a field, some 400 evenly spaced ones.
+std::vector<double> drawn_space(const FigureSource&);
+/// A component of a frame at those positions, in units of 2π if it is an angle. On a mesh that is a field itself the
+/// values are those of the piecewise linear function.
+std::vector<double> drawn_frame(const FigureSource&, int frame, std::size_t component = 0);
+/// A component at every site of the film, and on a circle at the first one once more.
+std::vector<double> drawn_sites(const FigureSource&, int frame, std::size_t component);
+/// "φ", or the name of the component where there are several.
+std::string drawn_name(const FigureSource&, std::size_t component);
+
+/// How many frames, from the first one, have not blown up: a scale made for the others would hide these.
+int tame_frames(const FigureSource&);
+
+/// The names of the figures, without ending.
+std::vector<std::string> figure_names();
+
+}  // namespace delf

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "tools/figures/figures.hpp"
+
+namespace delf {
+
+/// The field over space and time, time upwards, as colours.
+/// Returns gnuplot commands; their data is written to `scratch`. Empty if there is nothing to show.
+std::string spacetime_figure(const FigureSource&, const std::filesystem::path& scratch);
+
+}  // namespace delf

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "tools/figures/figures.hpp"
+
+namespace delf {
+
+/// Mechanics on a point: the coordinates over time. Returns gnuplot commands; their data is written to `scratch`. Empty
+/// for a field in space.
+std::string trajectory_figure(const FigureSource&, const std::filesystem::path& scratch);
+/// Of two coordinates, the second over the first.
+std::string orbit_figure(const FigureSource&, const std::filesystem::path& scratch);
+
+}  // namespace delf

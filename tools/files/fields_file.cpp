@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "tools/files/fields_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "tools/failure.hpp"
+
+namespace delf {
+
+namespace {
+
+bool write_text(hid_t object, const char* name, const std::string& text) {
+  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+  H5Tset_size(type, std::max<std::size_t>(1, text.size()));
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  const Hdf5Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  return attribute && H5Awrite(attribute, type, text.c_str()) >= 0;
+}
+
+bool write_integer(hid_t object, const char* name, int value) {
+  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle attribute(H5Acreate2(object, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  return attribute && H5Awrite(attribute, H5T_NATIVE_INT, &value) >= 0;
+}
+
+// No times of creation, so that a rerun gives the same bytes.
+Hdf5Handle timeless() {
+  Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
+  return properties;
+}
+
+// A dataset that grows along its first axis, one chunk at a time, each written at once: a disk that is full is noticed
+// before anything on it refers to what did not fit.
+Hdf5Handle growing(hid_t file, const char* name, std::vector<hsize_t> chunk) {
+  const int rank = static_cast<int>(chunk.size());
+  std::vector<hsize_t> now = chunk, most = chunk;
+  now[0] = 0;
+  most[0] = H5S_UNLIMITED;
+  if (rank > 1) chunk[1] = std::min<hsize_t>(chunk[1], 1 << 20);
+  const Hdf5Handle space(H5Screate_simple(rank, now.data(), most.data()), H5Sclose);
+  const Hdf5Handle properties = timeless();
+  H5Pset_chunk(properties, rank, chunk.data());
+  const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  H5Pset_chunk_cache(access, 1, 0, H5D_CHUNK_CACHE_W0_DEFAULT);
+  return {H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, access), H5Dclose};
+}
+
+// {frames, sites, …}
+std::vector<hsize_t> block_of(hsize_t frames, const std::vector<hsize_t>& shape) {
+  std::vector<hsize_t> block{frames};
+  block.insert(block.end(), shape.begin(), shape.end());
+  return block;
+}
+
+bool append_block(hid_t dataset, hsize_t old, const std::vector<hsize_t>& block, const double* data) {
+  const int rank = static_cast<int>(block.size());
+  std::vector<hsize_t> now = block, offset(block.size());
+  now[0] = old + block[0];
+  offset[0] = old;
+  if (H5Dset_extent(dataset, now.data()) < 0) return false;
+  const Hdf5Handle target(H5Dget_space(dataset), H5Sclose),
+      source(H5Screate_simple(rank, block.data(), nullptr), H5Sclose);
+  return H5Sselect_hyperslab(target, H5S_SELECT_SET, offset.data(), nullptr, block.data(), nullptr) >= 0 &&
+         H5Dwrite(dataset, H5T_NATIVE_DOUBLE, source, target, H5P_DEFAULT, data) >= 0;
+}
+
+}  // namespace
+
+FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double> space, std::int64_t expected_frames,
+                       const std::string& scene, int winding, const RowNames& names)
+    : path_(path), sites_(space.size()), names_(names) {
+  constexpr std::size_t block = 1 << 17;  // doubles: 1 MiB
+  const std::size_t columns = std::max({names.field.size(), names.inner.size(), names.multiplier.size()});
+  frames_per_block_ = std::clamp<std::size_t>(block / (sites_ * columns), 1, 1024);
+  frames_per_block_ = std::min(frames_per_block_, static_cast<std::size_t>(std::max<std::int64_t>(1, expected_frames)));
+  quiet_hdf5();
+  file_ = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
+  require(static_cast<bool>(file_), "cannot be created");
+
+  const hsize_t sites = sites_;
+  const Hdf5Handle extent(H5Screate_simple(1, &sites, nullptr), H5Sclose), properties = timeless();
+  const Hdf5Handle positions(H5Dcreate2(file_, "space", H5T_IEEE_F64LE, extent, H5P_DEFAULT, properties, H5P_DEFAULT),
+                             H5Dclose);
+  time_ = growing(file_, "time", {frames_per_block_});
+  field_ = rows("field", {sites, names.field.size()});
+  if (!names.inner.empty()) inner_ = rows("inner", {sites, names.inner.size()});
+  if (!names.multiplier.empty()) multiplier_ = rows("multiplier", {sites, names.multiplier.size()});
+  if (names.mesh) mesh_ = rows("mesh", {sites});
+  require(positions && time_ && field_.dataset &&
+              H5Dwrite(positions, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, space.data()) >= 0 &&
+              write_text(positions, "units", "dimensionless") && write_text(time_, "units", "dimensionless") &&
+              write_text(field_.dataset, "units", "dimensionless") && write_text(file_, "scene", scene) &&
+              write_text(file_, "version", DELF_VERSION) && write_integer(file_, "winding", winding),
+          "cannot be written");
+  const auto describe = [&](const Rows& of, const std::vector<std::string>& components) {
+    if (!of.dataset) return;
+    const bool units = &of == &field_ || write_text(of.dataset, "units", "dimensionless");
+    require(units && write_text(of.dataset, "components", fmt::format("{}", fmt::join(components, ","))),
+            "cannot be written");
+  };
+  if (!names.plain()) {
+    describe(field_, names.field);
+    describe(inner_, names.inner);
+    describe(multiplier_, names.multiplier);
+    if (names.mesh) describe(mesh_, {names.field[*names.mesh]});
+  }
+  require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
+  times_.reserve(frames_per_block_);
+}
+
+FieldsFile::Rows FieldsFile::rows(const char* name, std::vector<hsize_t> shape) const {
+  Rows made{growing(file_, name, block_of(frames_per_block_, shape)), std::move(shape), {}};
+  hsize_t values = frames_per_block_;
+  for (const hsize_t n : made.shape) values *= n;
+  made.waiting.reserve(values);
+  return made;
+}
+
+FieldsFile::~FieldsFile() = default;
+
+void FieldsFile::append(double time, const RecordedRow& row) {
+  times_.push_back(time);
+  const auto add = [](Rows& to, std::span<const double> values) {
+    to.waiting.insert(to.waiting.end(), values.begin(), values.end());
+  };
+  add(field_, row.field);
+  if (inner_.dataset) add(inner_, row.inner);
+  if (multiplier_.dataset) add(multiplier_, row.multiplier);
+  if (mesh_.dataset)
+    for (std::size_t i = *names_.mesh; i < row.field.size(); i += names_.field.size())
+      mesh_.waiting.push_back(row.field[i]);
+  if (times_.size() == frames_per_block_) write_block();
+}
+
+void FieldsFile::write_block() {
+  if (times_.empty()) return;
+  const hsize_t frames = times_.size();
+  bool written = append_block(time_, frames_written_, {frames}, times_.data());
+  for (Rows* rows : {&field_, &inner_, &multiplier_, &mesh_})
+    if (rows->dataset)
+      written =
+          written && append_block(rows->dataset, frames_written_, block_of(frames, rows->shape), rows->waiting.data());
+  require(written && H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
+  frames_written_ += frames;
+  times_.clear();
+  for (Rows* rows : {&field_, &inner_, &multiplier_, &mesh_}) rows->waiting.clear();
+}
+
+void FieldsFile::close() {
+  if (!file_) return;
+  write_block();
+  bool datasets = time_.close();
+  for (Rows* rows : {&field_, &inner_, &multiplier_, &mesh_}) datasets = rows->dataset.close() && datasets;
+  require(file_.close() && datasets, "cannot be closed");
+}
+
+void FieldsFile::require(bool went_well, const char* what) {
+  if (went_well) return;
+  // closing would write a header that promises more than there is; without it the last flush stays readable
+  for (Hdf5Handle* handle : {&time_, &field_.dataset, &inner_.dataset, &multiplier_.dataset, &mesh_.dataset, &file_})
+    handle->abandon();
+  throw SystemFailure(fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), what));
+}
+
+}  // namespace delf

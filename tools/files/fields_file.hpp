@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/files/hdf5_handle.hpp"
+#include "tools/run/record.hpp"
+#include "tools/scene/row_names.hpp"
+
+namespace delf {
+
+/// The recorded rows as fields.h5:
+///
+///     /time   frames                       attribute units
+///     /space  sites                        attribute units
+///     /field  frames × sites × fields      values as they are, not reduced modulo 2π
+///     /inner, /multiplier                  the same of nodes inside the cells, and of multipliers; if there are any
+///     /mesh   frames × sites               of a mesh that is a field: its positions
+/// Where there is more than one field at the vertices, each has an attribute `components`: names, comma separated.
+///
+///     /       attributes scene (the resolved scene), version, winding
+///
+/// Rows are written in blocks, and each block is flushed: what has been written stays readable. Throws SystemFailure.
+class FieldsFile {
+ public:
+  FieldsFile(const std::filesystem::path&, std::span<const double> space, std::int64_t expected_frames,
+             const std::string& scene, int winding, const RowNames& = {});
+  ~FieldsFile();
+
+  void append(double time, const RecordedRow&);
+  /// Writes what is still waiting. Until then it may be missing on the disk.
+  void close();
+
+ private:
+  struct Rows {
+    Hdf5Handle dataset;
+    std::vector<hsize_t> shape;  ///< sites, or sites × components
+    std::vector<double> waiting;
+  };
+  Rows rows(const char* name, std::vector<hsize_t> shape) const;
+  void write_block();
+  void require(bool went_well, const char* what);
+
+  std::filesystem::path path_;
+  std::size_t sites_, frames_per_block_;
+  hsize_t frames_written_ = 0;
+  std::vector<double> times_;  ///< waiting
+  RowNames names_;
+  Hdf5Handle file_, time_;  ///< closed in the other order
+  Rows field_, inner_, multiplier_, mesh_;
+};
+
+}  // namespace delf

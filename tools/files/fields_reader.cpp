@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "tools/files/fields_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lattice/error.hpp"
+
+namespace delf {
+
+namespace {
+
+BadInput bad_file(const std::string& what) { return {"initial.file", what}; }
+
+int rank_of(hid_t dataset) {
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  return H5Sget_simple_extent_ndims(space);
+}
+
+bool read_slice(hid_t dataset, int rank, const hsize_t* offset, const hsize_t* count, double* out) {
+  if (rank_of(dataset) != rank) return false;  // or HDF5 would read past the ends of offset and count
+  const Hdf5Handle source(H5Dget_space(dataset), H5Sclose), target(H5Screate_simple(rank, count, nullptr), H5Sclose);
+  return H5Sselect_hyperslab(source, H5S_SELECT_SET, offset, nullptr, count, nullptr) >= 0 &&
+         H5Dread(dataset, H5T_NATIVE_DOUBLE, target, source, H5P_DEFAULT, out) >= 0;
+}
+
+// frames × sites × components; nothing for any other rank
+std::optional<std::array<hsize_t, 3>> extent_of(hid_t dataset) {
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  std::array<hsize_t, 3> extent{};
+  if (H5Sget_simple_extent_ndims(space) != 3 || H5Sget_simple_extent_dims(space, extent.data(), nullptr) != 3)
+    return std::nullopt;
+  return extent;
+}
+
+bool fits(const std::array<hsize_t, 3>& extent) {
+  constexpr hsize_t most = std::numeric_limits<int>::max();
+  return extent[2] >= 1 && extent[0] <= most && extent[1] <= most && extent[2] <= most;
+}
+
+}  // namespace
+
+const char* dataset_name(Role role) {
+  return role == Role::field ? "field" : role == Role::inner ? "inner" : "multiplier";
+}
+
+FieldsReader::FieldsReader(const std::filesystem::path& path) {
+  quiet_hdf5();
+  file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+  if (!file_) throw bad_file("is not an HDF5 file that can be read; name the fields.h5 of a run");
+  time_ = {H5Dopen2(file_, "time", H5P_DEFAULT), H5Dclose};
+  for (const Role role : {Role::field, Role::inner, Role::multiplier}) {
+    const bool needed = role == Role::field;
+    Hdf5Handle dataset(H5Dopen2(file_, dataset_name(role), H5P_DEFAULT), H5Dclose);
+    if (needed && !dataset) throw bad_file("has no dataset /field; name the fields.h5 of a run");
+    const auto extent = extent_of(dataset);
+    if (needed && !extent) throw bad_file("/field is not frames x sites x components; name the fields.h5 of a run");
+    if (needed && !fits(*extent))
+      throw bad_file(
+          fmt::format("/field is {} x {} x {}; name the fields.h5 of a run", (*extent)[0], (*extent)[1], (*extent)[2]));
+    if (!extent || !fits(*extent)) continue;
+    parts_[static_cast<std::size_t>(role)] = {
+        std::move(dataset),
+        {static_cast<int>((*extent)[0]), static_cast<int>((*extent)[1]), static_cast<int>((*extent)[2])}};
+  }
+}
+
+std::optional<double> FieldsReader::time(int frame) const {
+  if (!time_) return std::nullopt;
+  const auto offset = static_cast<hsize_t>(frame);
+  const hsize_t one = 1;
+  double t = 0;
+  if (!read_slice(time_, 1, &offset, &one, &t)) throw bad_file(fmt::format("/time has no frame {}", frame));
+  return t;
+}
+
+std::vector<double> FieldsReader::values(Role role, int frame) const {
+  const auto& [dataset, shape] = part(role);
+  std::vector<double> values(static_cast<std::size_t>(shape.sites) * static_cast<std::size_t>(shape.components));
+  const std::array<hsize_t, 3> offset{static_cast<hsize_t>(frame), 0, 0},
+      count{1, static_cast<hsize_t>(shape.sites), static_cast<hsize_t>(shape.components)};
+  if (!read_slice(dataset, 3, offset.data(), count.data(), values.data()))
+    throw bad_file(fmt::format("frame {} cannot be read; the file is damaged", frame));
+  return values;
+}
+
+std::vector<double> FieldsReader::row(int frame) const {
+  if (frame >= frames())
+    throw BadInput("initial.frame", fmt::format("frame {} is needed, and the file has {} of them; record more rows, "
+                                                "with output.every = 1",
+                                                frame, frames()));
+  const std::vector<double> row = values(Role::field, frame);
+  for (std::size_t i = 0; i < row.size(); ++i)
+    if (!std::isfinite(row[i]))
+      throw bad_file(fmt::format("frame {} is not finite at site {}; take an earlier frame", frame,
+                                 i / static_cast<std::size_t>(components())));
+  return row;
+}
+
+std::optional<int> FieldsReader::winding() const {
+  const Hdf5Handle attribute(H5Aopen(file_, "winding", H5P_DEFAULT), H5Aclose);
+  int value = 0;
+  return attribute && H5Aread(attribute, H5T_NATIVE_INT, &value) >= 0 ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace delf

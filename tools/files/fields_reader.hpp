@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "schemes/system/lattice_system.hpp"
+#include "tools/files/hdf5_handle.hpp"
+#include "tools/files/rows_file.hpp"
+
+namespace delf {
+
+/// The dataset of fields.h5 that holds the components of a role: "field", "inner" or "multiplier".
+const char* dataset_name(Role);
+
+/// The rows of a fields.h5, one frame at a time. A run starts from its fields at the vertices; what looks at a run
+/// reads the nodes inside the cells and the multipliers too.
+class FieldsReader final : public RowsFile {
+ public:
+  explicit FieldsReader(const std::filesystem::path&);
+
+  int sites() const override { return shape(Role::field).sites; }
+  int frames() const override { return shape(Role::field).frames; }
+  int components() const override { return shape(Role::field).components; }
+  std::optional<double> time(int frame) const override;
+  std::vector<double> row(int frame) const override;
+  std::optional<int> winding() const override;
+
+  struct Shape {
+    int frames = 0, sites = 0, components = 0;
+  };
+  /// Of the dataset of a role; all zero if there is none, or none of three axes.
+  const Shape& shape(Role role) const { return part(role).shape; }
+  /// A frame of it as it is, finite or not: [i·components + c]. Throws BadInput, key initial.file.
+  std::vector<double> values(Role, int frame) const;
+
+ private:
+  struct Part {
+    Hdf5Handle dataset;
+    Shape shape;
+  };
+  const Part& part(Role role) const { return parts_[static_cast<std::size_t>(role)]; }
+
+  Hdf5Handle file_, time_;
+  std::array<Part, 3> parts_;  ///< by role; held open, so that HDF5 keeps the block that a frame is in
+};
+
+}  // namespace delf

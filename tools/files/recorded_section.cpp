@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "tools/files/recorded_section.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace delf {
+
+namespace {
+
+constexpr std::array roles{Role::field, Role::inner, Role::multiplier};
+
+std::string counted(int n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
+// A reader's errors name a key of a scene; here the file comes from the command line.
+FieldsReader opened(const std::filesystem::path& path, const std::string& place) {
+  if (!std::filesystem::exists(path))
+    throw BadScene(place + ": no such file; name the fields.h5 of a run, or a file of the same layout");
+  try {
+    return FieldsReader(path);
+  } catch (const BadInput& bad) {
+    throw BadScene(place + ": " + bad.what() + ", or a file of the same layout");
+  }
+}
+
+}  // namespace
+
+RecordedSection::RecordedSection(const std::filesystem::path& path, const LatticeSystem& system,
+                                 const std::vector<int>& back, double time_step, const char* option)
+    : place_(fmt::format("command line: {} {}", option, path.string())), file_(opened(path, place_)) {
+  std::array<int, 3> count{};
+  for (std::size_t c = 0; c < back.size(); ++c) {
+    const Role role = system.all_components()[c].role;
+    columns_.push_back({role, count[static_cast<std::size_t>(role)]++, back[c]});
+  }
+  if (const int here = file_.sites(), there = system.lattice().sites(); here != there)
+    throw wrong(fmt::format("has {}, and the lattice has {}; use lattice.sites = {}, or another file",
+                            counted(here, "site"), there, here));
+  for (const Role role : roles)
+    if (count[static_cast<std::size_t>(role)] > 0) check_shape(system, role);
+  check_times(time_step);
+}
+
+BadScene RecordedSection::wrong(const std::string& what) const { return BadScene(place_ + ": " + what); }
+
+void RecordedSection::check_shape(const LatticeSystem& system, Role role) const {
+  std::string names;
+  int components = 0;
+  for (const Component& c : system.all_components())
+    if (c.role == role) names += (components++ == 0 ? "" : ", ") + c.name;
+  const auto& [frames, sites, here] = file_.shape(role);
+  if (frames == rows() && sites == file_.sites() && here == components) return;
+  if (role == Role::field)
+    throw wrong(
+        fmt::format("has {}, and the scheme has {} ({}); give as many", counted(here, "field"), components, names));
+  const std::string needed =
+      fmt::format("frames x sites x components = {} x {} x {} ({})", rows(), file_.sites(), components, names);
+  if (here == 0)
+    throw wrong(fmt::format("has no dataset /{}, which the scheme needs; write {}", dataset_name(role), needed));
+  throw wrong(fmt::format("/{} is {} x {} x {}; write {}", dataset_name(role), frames, sites, here, needed));
+}
+
+void RecordedSection::check_times(double time_step) const {
+  constexpr const char* layout = "write the time of each frame there";
+  std::optional<double> before;
+  for (int frame = 0; frame < rows(); ++frame) {
+    std::optional<double> now;
+    try {
+      now = file_.time(frame);
+    } catch (const BadInput& bad) {
+      throw wrong(fmt::format("{}; {}", bad.what(), layout));
+    }
+    if (!now) throw wrong(fmt::format("has no dataset /time; {}", layout));
+    const double slack = 1e-9 * time_step + 1e-15 * std::abs(*now);  // times far from 0 are rounded
+    if (before && !(std::abs(*now - *before - time_step) <= slack))
+      throw wrong(
+          fmt::format("frames {} and {} are {:.10g} apart, and the time step is {:.10g}; record every row "
+                      "(output.every = 1), and use the same step",
+                      frame - 1, frame, *now - *before, time_step));
+    before = now;
+  }
+}
+
+void RecordedSection::check_finite(const std::vector<double>& values, Role role, int frame) const {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw wrong(fmt::format("/{} is not finite in frame {} at site {}; leave out the frames from there on",
+                              dataset_name(role), frame, i / static_cast<std::size_t>(file_.shape(role).components)));
+}
+
+void RecordedSection::read(Role role, int back, std::int64_t j, std::vector<double>& row) const {
+  if (j + back >= rows()) return;
+  const int frame = static_cast<int>(j + back);
+  std::vector<double> values;
+  try {
+    values = file_.values(role, frame);
+  } catch (const BadInput& bad) {
+    throw wrong(bad.what());
+  }
+  check_finite(values, role, frame);
+  const std::size_t in_file = static_cast<std::size_t>(file_.shape(role).components), all = columns_.size();
+  for (std::size_t c = 0; c < all; ++c)
+    if (const Column& column = columns_[c]; column.role == role && column.back == back)
+      for (std::size_t i = 0; i * all < row.size(); ++i)
+        row[i * all + c] = values[i * in_file + static_cast<std::size_t>(column.index)];
+}
+
+std::vector<double> RecordedSection::row(std::int64_t j) const {
+  if (j < 0 || j >= rows())
+    throw wrong(fmt::format("row {} is needed, and the file has {}; record more", j, counted(rows(), "frame")));
+  std::vector<double> row(static_cast<std::size_t>(file_.sites()) * columns_.size());
+  std::set<std::pair<Role, int>> reads;  // each frame of a dataset is read once
+  for (const Column& column : columns_) reads.emplace(column.role, column.back);
+  for (const auto& [role, back] : reads) read(role, back, j, row);
+  return row;
+}
+
+}  // namespace delf

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/failure.hpp"
+#include "tools/files/fields_reader.hpp"
+
+namespace delf {
+
+/// The rows of a file in the layout of fields.h5, of a run or of any other program, as a section of a system's
+/// components: the first frame is row 0, and the next frames are the next rows.
+///
+/// What is wrong with the file is thrown as BadScene: "command line: OPTION FILE: what; remedy".
+class RecordedSection {
+ public:
+  /// `back`, of each component: the rows that its value in a frame lies behind the fields there. Multipliers and inner
+  /// nodes are recorded with the row that they were found with.
+  RecordedSection(const std::filesystem::path&, const LatticeSystem&, const std::vector<int>& back, double time_step,
+                  const char* option);
+
+  int rows() const { return file_.frames(); }
+  /// What the field gains around the circle, in units of 2π, if the file says so.
+  std::optional<int> winding() const { return file_.winding(); }
+  /// All components, each at row j: [i·C + c]. Those that no frame has, because they would have been found with rows
+  /// after the last, are zero.
+  std::vector<double> row(std::int64_t j) const;
+
+ private:
+  struct Column {
+    Role role;
+    int index;  ///< in the dataset of its role
+    int back;
+  };
+  BadScene wrong(const std::string& what) const;
+  void check_shape(const LatticeSystem&, Role) const;
+  void check_times(double time_step) const;
+  void check_finite(const std::vector<double>& values, Role, int frame) const;
+  /// The columns of this role that frame j + back has, into a row.
+  void read(Role, int back, std::int64_t j, std::vector<double>& row) const;
+
+  std::string place_;
+  FieldsReader file_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace delf

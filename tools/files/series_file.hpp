@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/run/record.hpp"
+#include "tools/scene/text_file.hpp"
+
+namespace delf {
+
+/// The records as series.csv: step,time,energy,energy_error,momentum,charge,iterations,residual,
+/// and what the scheme has further.
+class SeriesFile {
+ public:
+  SeriesFile(const std::filesystem::path&, const std::vector<std::string>& further);
+  void append(const Record&);
+  void close() { file_.close(); }
+
+ private:
+  TextFile file_;
+};
+
+}  // namespace delf

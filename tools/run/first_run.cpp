@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "lattice/error.hpp"
+#include "tools/scene/initial_rows.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/workprecision/resolution_search.hpp"
+#include "tools/run/seconds_since.hpp"
+
+namespace delf {
+
+TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants, std::size_t which,
+                  const Resolution& r, double until, const ComparedSolution& solution) {
+  using Clock = std::chrono::steady_clock;
+  const Lattice lattice = lattice_of(scene, r.sites);
+  const Contestant& contestant = contestants[which];
+  TriedRun tried{which,
+                 r,
+                 {.scheme = contestant.name,
+                  .peer = contestant.peer,
+                  .sites = r.sites,
+                  .space_step = lattice.space_step(),
+                  .time_step = r.time_step,
+                  .steps = r.steps}};
+  WorkPrecisionRun& run = tried.result;
+  const auto begin = Clock::now();
+  tried.racer = contestant.start(r);
+  const auto& racer = tried.racer;
+  run.seconds_setup = seconds_since(begin);
+  if (racer->newest() >= r.steps - 1) throw BadInput("run.until", "too few steps to be timed");
+
+  constexpr std::int64_t records = 50;
+  const double energy0 = racer->energy();
+  double largest = 0, seconds = 0;
+  const auto step_to = [&](std::int64_t row) {
+    const auto from = Clock::now();
+    racer->advance(row - racer->newest());
+    seconds += seconds_since(from);
+    const double error = std::abs(racer->energy() - energy0) / std::abs(energy0);
+    if (!(error <= largest)) largest = error;
+  };
+  const std::int64_t every = std::max<std::int64_t>(1, r.steps / records);
+  for (std::int64_t row = racer->newest() + every; row < r.steps - 1 && !Interrupt::asked(); row += every) step_to(row);
+  const auto d = static_cast<std::size_t>(solution.components());
+  std::vector<double> before(static_cast<std::size_t>(r.sites) * d), last(before.size());
+  if (racer->newest() < r.steps - 1) step_to(r.steps - 1);
+  racer->copy(before);
+  step_to(r.steps);
+  racer->copy(last);
+  if (racer->newest() != r.steps) return tried;  // Ctrl-C
+  run.seconds = run.seconds_min = run.seconds_max = seconds;
+  run.energy_error_max = largest;
+
+  const std::vector<double> there = solution.at(lattice, until);
+  const FieldError error = field_error(last, there, lattice.space_step());
+  run.error_linf = error.linf, run.error_l2 = error.l2;
+  if (!solution.is_exact() || scene.initial.name == "file") return tried;
+  // the same of the exact field, at the same sites and times
+  const double turn = 2 * std::numbers::pi * InitialRows(scene).winding();
+  const int fields = solution.components();
+  const auto centre = [&](const std::vector<double>& field) { return gradient_centre(lattice, field, fields, turn); };
+  const double off = separation(lattice, centre(last), centre(there));
+  const double off_before = separation(lattice, centre(before), centre(solution.at(lattice, until - r.time_step)));
+  run.position_error = std::abs(off);
+  run.velocity_error = std::abs(off - off_before) / r.time_step;
+  return tried;
+}
+
+}  // namespace delf

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/further_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/verify/stress_balance.hpp"
+#include "schemes/verify/time_reversal.hpp"
+#include "tools/engine.hpp"
+#include "tools/scene/initial_rows.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/scene/section_source.hpp"
+
+namespace delf {
+
+namespace {
+
+// The scene at half of its steps in time and space.
+Scene refined(const Scene& scene) {
+  Scene fine = scene;
+  const Lattice& lattice = scene.problem.lattice;
+  if (lattice.is_circle()) fine.problem.lattice = Lattice::circle(2 * lattice.sites(), lattice.length());
+  else if (lattice.space() == Space::interval)
+    fine.problem.lattice =
+        Lattice::interval(2 * lattice.sites() - 1, lattice.length(), lattice.left(), lattice.right());
+  fine.problem.time_step = scene.problem.time_step / 2;
+  return fine;
+}
+
+}  // namespace
+
+void measure_orders(const Scene& scene, int winding, std::vector<Measured> balances, std::int64_t rows,
+                    Verdict& verdict) {
+  try {
+    if (scene.initial.name == "file") throw BadInput("initial.file", "its rows come from a file");
+    const Scene fine = refined(scene);
+    const InitialRows initial(fine);
+    Simulation simulation = build(fine, winding);
+    initial.start(simulation);
+    StressBalance balance(simulation.theory(), fine.problem.lattice, fine.problem.time_step,
+                          2 * std::numbers::pi * winding);
+    ComputedRows source(simulation, 2 * (rows - 1) + 1);
+    for (std::int64_t j = 0; auto row = source.next(); ++j) {
+      balance.add(j, fields_of(simulation.evolution().system(), *row));
+      if (Interrupt::asked()) break;
+    }
+    balances = with_orders(std::move(balances), balance.results());
+  } catch (const Error& error) {
+    verdict.left_out.push_back(
+        fmt::format("order of the balances: the scene cannot be run at half of its steps ({})", error.what()));
+  }
+  for (Measured& measured : balances) verdict.measured.push_back(std::move(measured));
+}
+
+void reverse_time(const Scene& scene, int winding, const std::vector<std::vector<double>>& first_rows, double tolerance,
+                  Verdict& verdict) {
+  const auto fresh = [&] { return std::make_unique<Simulation>(build(scene, winding)); };
+  const bool by_rows = fresh()->evolution().stepper().layout() != nullptr;
+  const std::int64_t most = most_updates / (by_rows ? 1 : 40) / scene.problem.lattice.sites();
+  const std::int64_t steps = std::clamp<std::int64_t>(scene.steps, 8, std::max<std::int64_t>(8, most));
+  const auto reversal = time_reversal(fresh, first_rows, steps, tolerance);
+  if (!reversal) {
+    verdict.left_out.emplace_back("time reversal: two rows of fields are not the whole state of this scheme");
+    return;
+  }
+  verdict.reversal = {reversal->steps, reversal->distance};
+  if (reversal->promised) verdict.checks.push_back(reversal->check);
+  if (reversal->distance.empty()) return;
+  std::string remark = std::isfinite(reversal->growth) ? fmt::format("grows like steps^{:.2g}", reversal->growth)
+                                                       : "too few steps to see it grow";
+  if (!reversal->promised) remark += "; these equations change under t -> -t";
+  if (!reversal->end.empty()) remark += "; " + reversal->end;
+  verdict.measured.push_back({.name = "time reversal, distance",
+                              .region = fmt::format("{} steps forward and back", reversal->steps.back()),
+                              .value = reversal->distance.back(),
+                              .remark = remark});
+}
+
+}  // namespace delf

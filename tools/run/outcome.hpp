@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// A sum that a symmetry conserves, over the recorded rows.
+struct Conserved {
+  std::string name;
+  double initial, final;
+  double error_max;  ///< the largest |J - J_0|, relative to |J_0| unless that is 0
+};
+
+/// What a run came to: all that summary.json and the report on stdout tell.
+struct Outcome {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+  std::string status = "done";  ///< done, interrupted, no-convergence, not-finite, mesh-crossing or system-failure
+  std::string failure;          ///< in words, if it failed
+  std::string state, solve, solve_kind;
+  std::string threads;  ///< in words, if the scene asks for more than one
+  StartRule start = StartRule::exact;
+  int winding = 0;
+  std::size_t bytes = 0;
+
+  std::int64_t steps = 0;        ///< the last row
+  std::int64_t steps_taken = 0;  ///< without the starting rows
+  std::int64_t records = 0;
+  double time = 0;
+  double seconds = 0;  ///< of the steps alone
+  double iterations_mean = 0, residual_max = 0;
+  int iterations_max = 0;
+  double energy_initial = unknown, energy_final = unknown, energy_error_max = unknown;
+  double momentum_initial = unknown, momentum_final = unknown, charge_final = unknown;
+  double constraint_max = unknown;  ///< the largest |G|, if the scheme has constraints
+  std::vector<Conserved> conserved;
+  double error_linf = unknown, error_l2 = unknown;
+
+  double ns_per_site_step(int sites) const {
+    return steps_taken == 0 ? unknown : 1e9 * seconds / (static_cast<double>(steps_taken) * sites);
+  }
+};
+
+/// summary.json; what is not a number is null.
+std::string summary_json(const Scene&, const Outcome&);
+/// The same for people, in a dozen lines.
+std::string report(const Scene&, const Outcome&);
+/// "rectangle-symmetric, N = 255, h/k = 0.125"; on a point "midpoint, h = 0.01"
+std::string scheme_in_words(const Problem&);
+
+}  // namespace delf

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/recorder.hpp"
+
+#include <cmath>
+
+namespace delf {
+
+Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, const std::string& resolved_scene,
+                   int winding, const RowNames& names)
+    : series_(folder / "series.csv", names.further) {
+  const Lattice& lattice = scene.problem.lattice;
+  const std::int64_t expected = scene.every == 0 ? 1 : scene.steps / scene.every + 2;
+  if (scene.fields) {
+    std::vector<double> space;
+    for (int i = 0; i < lattice.sites(); ++i) space.push_back(lattice.position(i));
+    fields_.emplace(folder / "fields.h5", space, expected, resolved_scene, winding, names);
+  }
+  if (scene.figures) film_.emplace(lattice, expected, names.field.size());
+}
+
+void Recorder::append(const Record& record, const RecordedRow& row) {
+  series_.append(record);
+  if (fields_) fields_->append(record.time, row);
+  if (film_) film_->append(record.time, row.field);
+  if (std::isfinite(record.energy_error)) energy_errors_.append(record.time, record.energy_error);
+  const double error = std::abs(record.energy_error);
+  if (std::isnan(error) || error > largest_energy_error_) largest_energy_error_ = error;  // not a number stays so
+}
+
+void Recorder::close() {
+  if (film_) film_->finish();
+  try {
+    if (fields_) fields_->close();
+  } catch (...) {
+    series_.close();
+    throw;
+  }
+  series_.close();
+}
+
+}  // namespace delf

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "tools/files/fields_file.hpp"
+#include "tools/figures/film.hpp"
+#include "tools/run/record.hpp"
+#include "tools/scene/row_names.hpp"
+#include "tools/scene/scene.hpp"
+#include "tools/files/series_file.hpp"
+#include "tools/run/trace.hpp"
+
+namespace delf {
+
+/// Where the recorded rows of a run go: series.csv; fields.h5 and the film for figures, if the scene wants them.
+class Recorder {
+ public:
+  Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
+           const RowNames&);
+
+  void append(const Record&, const RecordedRow&);
+  /// Writes all that waits. What fails does not keep the rest from being written; the first failure is then thrown.
+  void close();
+
+  const Film* film() const noexcept { return film_ ? &*film_ : nullptr; }
+  const Trace& energy_errors() const noexcept { return energy_errors_; }
+  double largest_energy_error() const noexcept { return largest_energy_error_; }
+
+ private:
+  SeriesFile series_;
+  std::optional<FieldsFile> fields_;
+  std::optional<Film> film_;
+  Trace energy_errors_;
+  double largest_energy_error_ = 0;
+};
+
+}  // namespace delf

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/run/in_words.hpp"
+#include "tools/run/outcome.hpp"
+
+namespace delf {
+
+std::string scheme_in_words(const Problem& p) {
+  std::string scheme = p.method == "multisymplectic" ? p.stencil : p.method;
+  const bool point = p.lattice.space() == Space::point;
+  if (p.method == "spacetime")
+    scheme += fmt::format(" of degrees {} and {}, {}", p.degree_time, p.degree_space, p.quadrature);
+  if (p.method == "r-adaptive") scheme += fmt::format(", alpha = {:g}", p.alpha);
+  if (point) return fmt::format("{}, h = {:.6g}", scheme, p.time_step);
+  return fmt::format("{}, N = {}, h/k = {:.4g}", scheme, p.lattice.sites(), p.time_step / p.lattice.space_step());
+}
+
+std::string report(const Scene& scene, const Outcome& o) {
+  const Problem& p = scene.problem;
+  const bool point = p.lattice.space() == Space::point;
+  const std::string where =
+      point ? "a point"
+            : fmt::format("{} of length {:g}", p.lattice.is_circle() ? "a circle" : "an interval", p.lattice.length());
+  std::string text =
+      fmt::format("{}: {} on {}{}\n", scene.name, p.theory, where, p.circle_valued ? ", values in S1" : "");
+  const auto line = [&](const char* name, const std::string& what) {
+    text += fmt::format("  {:<10} {}\n", name, what);
+  };
+  line("state", o.state);
+  line("scheme", scheme_in_words(p) + (point ? "" : fmt::format(", h = {:.6g}", p.time_step)));
+  line("solve", o.solve);
+  line("steps", fmt::format("{} to t = {:.6g}", o.steps, o.time));
+  if (o.steps_taken > 0)
+    line("speed", fmt::format("{} for the steps, {}", duration_in_words(o.seconds),
+                              cost_in_words(o.ns_per_site_step(p.lattice.sites()))));
+  if (!o.threads.empty()) line("threads", o.threads);
+  const std::string iterations =
+      o.iterations_max == 0 ? "none" : fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max);
+  line("iterations", iterations + fmt::format("; residual {:.2g} at most", o.residual_max));
+  if (std::isfinite(o.energy_final))
+    line("energy", fmt::format("{:.10g}{}", o.energy_final,
+                               std::isfinite(o.energy_error_max)  // there is none relative to an energy of zero
+                                   ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
+                                   : ""));
+  for (const Conserved& c : o.conserved)
+    line("conserved", fmt::format("{} = {:.10g}; error {:.3g} at most", c.name, c.final, c.error_max));
+  if (std::isfinite(o.constraint_max)) line("constraint", fmt::format("{:.3g} at most", o.constraint_max));
+  if (std::isfinite(o.error_linf))
+    line("error",
+         fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));
+  line("status", o.status);
+  return text;
+}
+
+}  // namespace delf

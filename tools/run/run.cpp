@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "tools/engine.hpp"
+#include "tools/figures/figures.hpp"
+#include "tools/scene/initial_rows.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/outcome.hpp"
+#include "tools/run/recorder.hpp"
+#include "tools/run/stepping.hpp"
+#include "tools/scene/text_file.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Makes the folder, and takes away what an earlier run left there under the names that this one may write.
+void prepare(const fs::path& folder, const Scene& scene) {
+  std::error_code error;
+  for (const char* name : {"fields.h5", "series.csv"})
+    if (scene.initial.name == "file" && fs::equivalent(scene.initial_file, folder / name, error))
+      throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
+  make_results_folder(folder);
+  std::vector<fs::path> earlier;
+  for (const char* name : {"summary.json", "series.csv", "fields.h5", "scene.ini"}) earlier.push_back(folder / name);
+  for (const std::string& name : figure_names())
+    for (const char* ending : {".png", ".svg"}) earlier.push_back(folder / "figures" / (name + ending));
+  for (const fs::path& file : earlier) fs::remove(file, error);
+}
+
+// What the recorder keeps of the rows, as pictures. A figure that cannot be drawn fails no run.
+std::string drawn(const Scene& scene, int winding, const RowNames& names, const Recorder& recorder,
+                  const fs::path& folder) {
+  if (!recorder.film()) return {};
+  const std::string& theory = scene.problem.theory;
+  const bool angle =
+      scene.problem.circle_valued || theory == "pendulum" || theory.find("sine-gordon") != std::string::npos;
+  try {
+    return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding,
+                         *recorder.film(), recorder.energy_errors(), scene.times, names},
+                        folder);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+void say_what_is_there(const fs::path& folder) {
+  std::string names;
+  for (const char* name : {"summary.json", "series.csv", "scene.ini", "fields.h5", "figures"})
+    if (std::error_code none; fs::exists(folder / name, none)) names += std::string(" ") + name;
+  fmt::print("  {:<10} {}:{}\n", "files", folder.string(), names);
+}
+
+ExitCode run_in(const fs::path& folder, const Scene& scene) {
+  const Interrupt interrupt;
+  const InitialRows initial(scene);
+  Outcome outcome;
+  outcome.winding = initial.winding();
+  Simulation simulation = build(scene, outcome.winding);
+  outcome.state = initial.description();
+  outcome.start = initial.rule();
+  outcome.solve = simulation.solve_summary();
+  outcome.solve_kind = simulation.solve_kind();
+
+  const RowNames names(simulation);
+  Stepping stepping(scene, initial, simulation, names, outcome);
+  stepping.start();
+
+  prepare(folder, scene);
+  const std::string resolved = resolved_text(scene, outcome.start, outcome.state);
+  write_text_file(folder / "scene.ini", resolved);
+  Recorder recorder(scene, folder, resolved, outcome.winding, names);
+
+  std::exception_ptr failure;
+  const auto attempt = [&](auto&& part) {
+    try {
+      part();
+    } catch (const std::exception& error) {
+      if (failure) return;
+      failure = std::current_exception();
+      if (outcome.status == "done" && exit_code(error) == ExitCode::system_failed) {
+        outcome.status = "system-failure";
+        outcome.failure = error.what();
+      }
+    }
+  };
+  attempt([&] { stepping.run(recorder); });
+  outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
+  attempt([&] { recorder.close(); });
+  std::string missing;
+  if (outcome.status != "system-failure") missing = drawn(scene, outcome.winding, names, recorder, folder);
+  attempt([&] { write_text_file(folder / "summary.json", summary_json(scene, outcome)); });
+
+  if (outcome.status != "system-failure") {
+    fmt::print("{}", report(scene, outcome));
+    say_what_is_there(folder);
+  }
+  if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
+  if (failure) std::rethrow_exception(failure);
+  return outcome.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
+}
+
+}  // namespace
+
+ExitCode run(const Scene& scene, const fs::path& folder) {
+  return with_memory_for(scene, [&] { return run_in(folder, scene); });
+}
+
+}  // namespace delf

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/stepping.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/stepping/flush_denormals.hpp"
+#include "schemes/families/row_kernel.hpp"
+#include "tools/run/field_error.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/progress.hpp"
+#include "tools/run/seconds_since.hpp"
+
+namespace delf {
+
+namespace {
+
+// Adds the seconds of its life to a total, also when an exception ends it.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& total) : total_(total) {}
+  ~Stopwatch() { total_ += seconds_since(begin_); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& total_;
+  Clock::time_point begin_ = Clock::now();
+};
+
+// Whether a step is one explicit loop over the row, its nonlinear part at a site being that of the site's own value.
+bool is_one_loop(const Simulation& simulation) {
+  const Stepper& stepper = simulation.evolution().stepper();
+  const LatticeSystem& system = simulation.evolution().system();
+  if (!stepper.layout() || stepper.iterates() || !stepper.matrix_free()) return false;
+  if (!system.lattice().is_circle() || system.families().size() != 1) return false;
+  const RowKernel* kernel = system.families()[0]->row_kernel();
+  return kernel && kernel->nonlinearity() == Nonlinearity::values && !kernel->explicit_neighbours().empty();
+}
+
+}  // namespace
+
+std::string threads_in_words(const Simulation& simulation, int asked) {
+  constexpr int packs_for_each = 1024;  // as RowStepper shares them
+  if (asked == 1) return {};
+  if (!is_one_loop(simulation)) return fmt::format("1 of {}: only explicit steps of one loop are shared", asked);
+  const int used = std::clamp(simulation.evolution().stepper().layout()->packs() / packs_for_each, 1, asked);
+  if (used == asked) return fmt::to_string(asked);
+  return fmt::format("{} of {}: each takes {} sites or more", used, asked, packs_for_each * lanes);
+}
+
+Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,
+                   Outcome& outcome)
+    : scene_(scene), initial_(initial), simulation_(simulation), outcome_(outcome), names_(names) {
+  const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
+  row_.resize(sites * names.field.size());
+  inner_.resize(sites * names.inner.size());
+  multiplier_.resize(sites * names.multiplier.size());
+  for (const std::string& name : simulation.conserved_names())
+    outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+  outcome.threads = threads_in_words(simulation, scene.problem.threads);
+}
+
+void Stepping::start() {
+  try {
+    initial_.start(simulation_);
+  } catch (const NumericalFailure& error) {
+    return fail(error);
+  }
+  started_ = true;
+  newest_ = simulation_.newest();
+  const auto monitors = simulation_.monitors();
+  outcome_.energy_initial = monitors.energy;
+  outcome_.momentum_initial = monitors.momentum;
+  for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
+    const double initial = monitors.conserved[j];
+    outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0};
+  }
+  if (!names_.multiplier.empty()) outcome_.constraint_max = 0;
+}
+
+void Stepping::run(Recorder& recorder) {
+  recorder_ = &recorder;
+  try {
+    record_and_step();
+  } catch (const SystemFailure&) {
+    close_outcome();
+    throw;
+  }
+  close_outcome();
+  if (!outcome_.failure.empty()) throw NumericalFailure(outcome_.failure);
+}
+
+void Stepping::record_and_step() {
+  for (std::int64_t row = 0; started_ && row <= std::min(newest_, scene_.steps); ++row)
+    if (to_be_recorded(row)) record(row);
+  try {
+    Progress progress(scene_.steps);
+    while (started_ && newest_ < scene_.steps && !Interrupt::asked()) {
+      step_until(next_record(), progress);
+      if (to_be_recorded(newest_)) record(newest_);
+    }
+    if (started_ && newest_ < scene_.steps) outcome_.status = "interrupted";
+  } catch (const NumericalFailure& error) {
+    fail(error);
+  }
+  if (const std::int64_t last = std::min(newest_, scene_.steps); recorded_ != last) record(last);
+}
+
+// The rows held are still the last good ones; of steps that were taken together some may be good.
+void Stepping::fail(const NumericalFailure& error) {
+  if (started_) newest_ = simulation_.newest();
+  outcome_.status = status_of(error);
+  const std::string what = error.what();
+  const std::string where = what.starts_with("step ")
+                                ? ""
+                                : fmt::format("step {}, t = {:.6g}: ", newest_ + 1,
+                                              static_cast<double>(newest_ + 1) * scene_.problem.time_step);
+  outcome_.failure = fmt::format("{}{} (row {} is the last good one, and is saved)", where, what, newest_);
+}
+
+void Stepping::step_until(std::int64_t row, Progress& progress) {
+  const Stopwatch watch(outcome_.seconds);
+  const FlushDenormals for_all_steps;  // each would set and restore it
+  bool looked_at = true;  // as the row that an interruption leaves must be: it is recorded
+  while (newest_ < row && !(looked_at && Interrupt::asked())) {
+    const std::int64_t unseen = Interrupt::asked() ? 0 : row - 1 - newest_;
+    const auto count = static_cast<int>(std::clamp<std::int64_t>(unseen, 1, simulation_.steps_at_once()));
+    looked_at = unseen == 0;
+    if (looked_at) simulation_.step(true);
+    else simulation_.steps(count);
+    newest_ += count;
+    count_steps(count);
+    progress.at(newest_);
+  }
+}
+
+// Steps that are taken together are explicit: they do not iterate.
+void Stepping::count_steps(int count) {
+  outcome_.steps_taken += count;
+  last_iterations_ = simulation_.iterations();
+  iterations_ += last_iterations_;
+  outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);
+}
+
+bool Stepping::to_be_recorded(std::int64_t row) const {
+  return row == scene_.steps || (scene_.every > 0 && row % scene_.every == 0);
+}
+
+std::int64_t Stepping::next_record() const {
+  return scene_.every == 0 ? scene_.steps : std::min(scene_.steps, (newest_ / scene_.every + 1) * scene_.every);
+}
+
+void Stepping::record(std::int64_t row) {
+  Record record;
+  record.row = row;
+  record.time = static_cast<double>(row) * scene_.problem.time_step;
+  if (!started_) {
+    row_ = initial_.row0();
+    record.energy = record.energy_error = record.momentum = record.charge = Outcome::unknown;
+    record.further.assign(names_.further.size(), Outcome::unknown);
+  } else {
+    const int back = static_cast<int>(newest_ - row);
+    simulation_.copy_row(back, row_);
+    if (!inner_.empty()) simulation_.copy_row(back, inner_, Role::inner);
+    if (!multiplier_.empty()) simulation_.copy_row(back, multiplier_, Role::multiplier);
+    const auto monitors = simulation_.monitors();
+    record.energy = monitors.energy;
+    record.energy_error = (monitors.energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);
+    record.momentum = monitors.momentum;
+    record.charge = monitors.charge;
+    monitor(monitors, record);
+    record.iterations = last_iterations_;
+    record.residual = row == newest_ ? simulation_.residual() : 0;  // the starting rows solve no equation
+    if (!(record.residual <= outcome_.residual_max)) outcome_.residual_max = record.residual;
+  }
+  recorded_ = row;
+  outcome_.energy_final = record.energy;
+  outcome_.momentum_final = record.momentum;
+  outcome_.charge_final = record.charge;
+  recorder_->append(record, {row_, inner_, multiplier_});
+  ++outcome_.records;
+}
+
+// The constraint and the conserved sums.
+void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
+  if (!multiplier_.empty()) {
+    record.further.push_back(monitors.constraint);
+    if (!(monitors.constraint <= outcome_.constraint_max)) outcome_.constraint_max = monitors.constraint;
+  }
+  for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
+    Conserved& c = outcome_.conserved[j];
+    c.final = monitors.conserved[j];
+    record.further.push_back(c.final);
+    // relative to the sum of the absolute values of the terms: the sum itself may be zero
+    const double scale = monitors.conserved_scale[j];
+    const double error = std::abs(c.final - c.initial) / (scale > 0 ? scale : 1);
+    if (!(error <= c.error_max)) c.error_max = error;
+  }
+}
+
+void Stepping::close_outcome() {
+  outcome_.steps = std::max<std::int64_t>(0, recorded_);
+  outcome_.time = static_cast<double>(outcome_.steps) * scene_.problem.time_step;
+  if (outcome_.steps_taken > 0) outcome_.iterations_mean = iterations_ / static_cast<double>(outcome_.steps_taken);
+  outcome_.energy_error_max = recorder_->largest_energy_error();
+  measure_error();
+}
+
+// of the last row, which is still in row_
+void Stepping::measure_error() {
+  const State* exact = initial_.exact();
+  if (!exact || recorded_ < 0 || outcome_.time > exact->exact_until()) return;
+  std::vector<double> solution(row_.size());
+  exact->values(outcome_.time, scene_.problem.lattice, solution);
+  const FieldError error = field_error(row_, solution, scene_.problem.lattice.space_step());
+  outcome_.error_linf = error.linf;
+  outcome_.error_l2 = error.l2;
+}
+
+}  // namespace delf

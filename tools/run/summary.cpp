@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "tools/run/outcome.hpp"
+
+namespace delf {
+
+std::string summary_json(const Scene& scene, const Outcome& o) {
+  const Problem& p = scene.problem;
+  nlohmann::ordered_json json;
+  json["version"] = DELF_VERSION;
+  json["scene"] = scene.name;
+  json["status"] = o.status;
+  json["failure"] = o.failure.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(o.failure);
+  json["theory"] = p.theory;
+  json["fibre"] = p.circle_valued ? "S1" : "R";
+  json["stencil"] = p.stencil;
+  json["method"] = p.method;
+  json["space"] = p.lattice.space() == Space::point ? "point" : p.lattice.is_circle() ? "circle" : "interval";
+  json["length"] = p.lattice.length();
+  json["sites"] = p.lattice.sites();
+  json["space_step"] = p.lattice.space_step();
+  json["time_step"] = p.time_step;
+  json["winding"] = o.winding;
+  json["state"] = o.state;
+  json["start"] = to_string(o.start);
+  json["seed"] = scene.initial.seed;
+  json["steps"] = o.steps;
+  json["time"] = o.time;
+  json["records"] = o.records;
+  json["seconds"] = o.seconds;
+  json["ns_per_site_step"] = o.ns_per_site_step(p.lattice.sites());
+  json["solve"] = o.solve;
+  json["solve_kind"] = o.solve_kind;
+  json["bytes"] = o.bytes;
+  json["iterations_mean"] = o.iterations_mean;
+  json["iterations_max"] = o.iterations_max;
+  json["residual_max"] = o.residual_max;
+  json["energy_initial"] = o.energy_initial;
+  json["energy_final"] = o.energy_final;
+  json["energy_error_max"] = o.energy_error_max;
+  json["momentum_initial"] = o.momentum_initial;
+  json["momentum_final"] = o.momentum_final;
+  json["charge_final"] = o.charge_final;
+  json["constraint_max"] = o.constraint_max;
+  auto& conserved = json["conserved"] = nlohmann::ordered_json::array();
+  for (const Conserved& c : o.conserved)
+    conserved.push_back({{"name", c.name}, {"initial", c.initial}, {"final", c.final}, {"error_max", c.error_max}});
+  json["error_linf"] = o.error_linf;
+  json["error_l2"] = o.error_l2;
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace delf

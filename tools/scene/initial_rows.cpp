@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "tools/scene/initial_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace delf {
+
+InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
+  const Settings& settings = scene.settings;
+  try {
+    if (scene.initial.name != "file") {
+      state_ = make_state(scene.initial, scene.problem.lattice);
+      if (rule() == StartRule::exact && !state_->knows_second_row())
+        throw settings.error("initial.start", "the second row of this state is not known; use centred");
+      return;
+    }
+    file_ = open_rows(scene.initial_file);
+    if (scene.start && scene.start != StartRule::exact)
+      throw settings.error("initial.start", "a file has rows, but no velocities; leave initial.start out");
+    if (scene.problem.lattice.space() == Space::point && file_->sites() != 1)
+      throw settings.error("lattice.space", fmt::format("the file {} has {} sites, and a point is one",
+                                                        scene.initial_file.string(), file_->sites()));
+    if (file_->sites() != scene.problem.lattice.sites())
+      throw settings.error("lattice.sites", fmt::format("the file {} has {} sites; use as many",
+                                                        scene.initial_file.string(), file_->sites()));
+  } catch (const BadInput& bad) {
+    throw settings.located(bad);
+  }
+}
+
+int InitialRows::winding() const {
+  if (!scene_.problem.lattice.is_circle()) return 0;
+  if (scene_.initial.winding) return *scene_.initial.winding;
+  return state_ ? state_->winding() : file_->winding().value_or(0);
+}
+
+StartRule InitialRows::rule() const {
+  if (file_) return StartRule::exact;
+  if (!scene_.start && (scene_.problem.method == "spacetime" || scene_.problem.method == "composition"))
+    return StartRule::legendre;
+  return scene_.start.value_or(state_->knows_second_row() ? StartRule::exact : StartRule::centred);
+}
+
+std::string InitialRows::description() const {
+  return state_ ? state_->description()
+                : fmt::format("rows of {}, from {} {}", scene_.initial_file.string(),
+                              scene_.initial_file.extension() == ".csv" ? "row" : "frame", scene_.initial_frame);
+}
+
+void InitialRows::check(const Simulation& simulation) const {
+  const int here = state_ ? state_->components() : file_->components(), fields = simulation.count(Role::field);
+  if (here == fields) return;
+  std::string names;
+  for (const Component& c : simulation.components())
+    if (c.role == Role::field) names += (names.empty() ? "" : ", ") + c.name;
+  const auto counted = [](int n) { return fmt::format("{} field{}", n, n == 1 ? "" : "s"); };
+  const std::string mismatch = fmt::format("has {}, and the scheme has {} ({})", counted(here), counted(fields), names);
+  throw scene_.settings.error(file_ ? "initial.file" : "initial.state",
+                              mismatch + (file_ ? "; give as many" : "; give rows of all by initial.state = file"));
+}
+
+std::vector<double> InitialRows::row0() const {
+  return file_ ? file_->row(scene_.initial_frame) : values(&State::values, 0, scene_.problem.lattice);
+}
+
+std::vector<double> InitialRows::values(Writer write, double time, const Lattice& lattice) const {
+  std::vector<double> out(static_cast<std::size_t>(lattice.sites()) * static_cast<std::size_t>(state_->components()));
+  (state_.get()->*write)(time, lattice, out);
+  return out;
+}
+
+std::vector<double> InitialRows::section(const Simulation& simulation, Writer write, int row, bool with_times) const {
+  const auto& components = simulation.components();
+  const auto d = components.size(), fields = static_cast<std::size_t>(simulation.count(Role::field));
+  const auto sites = static_cast<std::size_t>(scene_.problem.lattice.sites());
+  const double h = scene_.problem.time_step, k = scene_.problem.lattice.space_step();
+  std::vector<double> out(sites * d), at_node;
+  NodePosition node{};
+  std::size_t inner = 0;
+  for (std::size_t c = 0; c < d; ++c) {
+    if (components[c].role == Role::multiplier) continue;
+    const std::size_t a = components[c].role == Role::inner ? inner++ % fields : c;
+    if (at_node.empty() || components[c].at.time != node.time || components[c].at.space != node.space) {
+      node = components[c].at;
+      if (file_) at_node = file_->row(scene_.initial_frame + row);
+      else
+        at_node =
+            values(write, (row + (with_times ? node.time : 0)) * h, scene_.problem.lattice.shifted(node.space * k));
+    }
+    for (std::size_t i = 0; i < sites; ++i) out[i * d + c] = at_node[i * fields + a];
+  }
+  return out;
+}
+
+std::vector<double> InitialRows::section(const Simulation& simulation, int row) const {
+  return section(simulation, &State::values, row, true);
+}
+
+void InitialRows::start(Simulation& simulation) const {
+  check(simulation);
+  const double h = scene_.problem.time_step;
+  try {
+    if (file_ && simulation.count(Role::inner) > 0)
+      throw BadInput("initial.state", "a file has no values at the nodes inside the cells; choose another state");
+    if (rule() == StartRule::centred)
+      return simulation.start_centred(section(simulation, 0), section(simulation, &State::velocities, 0, true));
+    if (rule() == StartRule::legendre)
+      return simulation.start_legendre(section(simulation, &State::values, 0, false),
+                                       section(simulation, &State::velocities, 0, false));
+    std::vector<std::vector<double>> rows;
+    for (int j = 0; j < simulation.starting_rows(); ++j) {
+      rows.push_back(section(simulation, j));
+      if (!file_ || j == 0) continue;
+      const int frame = scene_.initial_frame + j;
+      const auto before = file_->time(frame - 1), after = file_->time(frame);
+      if (before && after && !(std::abs(*after - *before - h) <= 1e-9 * h + 1e-15 * std::abs(*after)))
+        throw BadInput("initial.frame", fmt::format("frames {} and {} of the file are {:.10g} apart, and the time step "
+                                                    "is {:.10g}; record with output.every = 1, and use the same step",
+                                                    frame - 1, frame, *after - *before, h));
+    }
+    simulation.start(rows);
+  } catch (const BadInput& bad) {
+    throw scene_.settings.located(bad);
+  }
+}
+
+}  // namespace delf

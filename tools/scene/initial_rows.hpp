@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "schemes/simulation.hpp"
+#include "schemes/state.hpp"
+#include "tools/files/rows_file.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// The rows that a run starts from: those of a known state, or those of a file. Throws BadScene.
+class InitialRows {
+ public:
+  explicit InitialRows(const Scene&);
+
+  int winding() const;
+  StartRule rule() const;
+  std::string description() const;
+  /// Throws BadScene if these rows have other fields than the simulation.
+  void check(const Simulation&) const;
+  /// The fields of row 0, for when there is nothing else to show.
+  std::vector<double> row0() const;
+  void start(Simulation&) const;
+  /// The solution to compare with, or null.
+  const State* exact() const { return state_ && state_->exact() ? state_.get() : nullptr; }
+
+ private:
+  using Writer = void (State::*)(double, const Lattice&, std::span<double>) const;
+  /// A row of all components from what the state gives at their nodes; time fractions count only `with_times`.
+  std::vector<double> section(const Simulation&, Writer, int row, bool with_times) const;
+  std::vector<double> section(const Simulation&, int row) const;
+  std::vector<double> values(Writer, double time, const Lattice&) const;
+
+  const Scene& scene_;
+  std::unique_ptr<State> state_;  ///< one of these two
+  std::unique_ptr<RowsFile> file_;
+};
+
+}  // namespace delf

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "tools/scene/keys.hpp"
+#include "tools/scene/scene.hpp"
+#include "tools/scene/values.hpp"
+
+namespace delf {
+
+namespace {
+
+// The text that a key must have for the run to be repeated; empty if the key is better left out.
+std::string resolved(const Scene& scene, const Key& key, StartRule start) {
+  if (!why_without_effect(scene, key.name).empty()) return {};
+  // keys that a run does not read
+  for (const char* section : {"verify.", "workprecision.", "stability."})
+    if (key.name.starts_with(section) && !scene.settings.find(key.name)) return {};
+  if (key.name == "lattice.courant" || key.name == "run.until") return {};
+  if (key.name == "lattice.time_step") return fmt::format("{}", scene.problem.time_step);
+  if (key.name == "run.steps") return fmt::format("{}", scene.steps);
+  if (key.name == "output.every") return fmt::format("{}", scene.every);
+  if (key.name == "initial.start") return to_string(start);
+  if (key.name == "initial.file") return scene.initial_file.string();
+  return Values(scene.settings).text(key.name).value_or("");
+}
+
+}  // namespace
+
+std::string resolved_text(const Scene& scene, StartRule in_force, const std::string& state_in_words) {
+  const Problem& p = scene.problem;
+  std::string text = fmt::format(
+      "# All that was in force, as delf {} understood it: `delf run scene.ini` gives the same rows to the bit.\n"
+      "#\n# {}\n# space step {}, Courant number {:.6g}, time of the last row {:.10g}\n",
+      DELF_VERSION, state_in_words, p.lattice.space_step(), p.time_step / p.lattice.space_step(),
+      static_cast<double>(scene.steps) * p.time_step);
+  std::string_view section;
+  for (const Key& key : keys()) {
+    const std::string value = resolved(scene, key, in_force);
+    if (value.empty()) continue;
+    const auto dot = key.name.find('.');
+    if (section != key.name.substr(0, dot)) {
+      section = key.name.substr(0, dot);
+      text += fmt::format("\n[{}]\n", section);
+    }
+    text += fmt::format("{} = {}\n", key.name.substr(dot + 1), value);
+  }
+  return text;
+}
+
+}  // namespace delf

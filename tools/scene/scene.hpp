@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "schemes/simulation.hpp"
+#include "schemes/state.hpp"
+#include "tools/scene/settings.hpp"
+
+namespace delf {
+
+/// What gives row 1: the known solution; the field equation at row 0; the discrete Legendre transform there.
+enum class StartRule { exact, centred, legendre };
+const char* to_string(StartRule);
+
+/// A scene, read and resolved: nothing in it is left to guess, except what only the initial state knows.
+struct Scene {
+  explicit Scene(Settings given) : settings(std::move(given)) {}
+
+  Settings settings;
+  std::string name;                   ///< of its file, without the ending
+  std::vector<std::string> warnings;  ///< lines for stderr: keys that have no effect
+
+  Problem problem;       ///< [theory] [lattice] [scheme] run.threads; the winding is still to come from the state
+  StateRequest initial;  ///< [initial]; its name is "file" if the rows come from `initial_file`
+  std::filesystem::path initial_file;  ///< absolute
+  int initial_frame = 0;
+  std::optional<StartRule> start;  ///< if the scene gives it
+  std::int64_t steps = 0;          ///< after row 0
+  std::int64_t every = 1;          ///< 0: the last row only
+  bool figures = true, fields = true;
+  std::vector<double> times;  ///< of the waveforms; empty: evenly spread
+};
+
+/// Reads, checks and resolves the scene `file`; throws BadScene.
+Scene read_scene(const std::filesystem::path& file, const std::vector<Setting>& on_command_line);
+
+/// Why a key has no effect in this scene, or an empty string if it has one.
+std::string why_without_effect(const Scene&, std::string_view key);
+
+/// The scene with all that is in force written out, to be run again to the same bits.
+std::string resolved_text(const Scene&, StartRule in_force, const std::string& state_in_words);
+
+}  // namespace delf

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "tools/scene/settings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/program_options.hpp>
+#include <optional>
+#include <sstream>
+
+#include "tools/scene/keys.hpp"
+#include "tools/scene/scene_text.hpp"
+
+namespace delf {
+
+namespace {
+
+// The second pass: on which line each value stands. Boost.Program_options reads values, but does not tell their lines.
+std::vector<int> lines_of_values(const std::string& text, const std::string& file) {
+  std::vector<int> lines;
+  std::istringstream in(text);
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    const std::string content = trimmed(line.substr(0, line.find('#')));
+    if (content.empty() || (content.front() == '[' && content.back() == ']')) continue;
+    if (content.find('=') == std::string::npos)
+      throw BadScene(fmt::format("{}:{}: \"{}\" is neither a [section] nor key = value; correct it, or begin it with #",
+                                 file, number, content.substr(0, 60)));
+    lines.push_back(number);
+  }
+  return lines;
+}
+
+boost::program_options::parsed_options parsed(const std::string& text) {
+  namespace po = boost::program_options;
+  po::options_description known;
+  for (const Key& key : keys()) known.add_options()(std::string(key.name).c_str(), po::value<std::string>());
+  std::istringstream in(text);
+  return po::parse_config_file(in, known, true);  // unknown keys are kept, to be told with their line
+}
+
+std::string unknown_key(const std::string& key) {
+  const std::string meant = nearest_key(key);
+  return meant.empty() ? "unknown key; `delf help run` lists all keys"
+                       : fmt::format("unknown key; did you mean {}?", meant);
+}
+
+const Setting* given_twice(const std::vector<Setting>& settings, const Setting*& first) {
+  for (auto s = settings.begin(); s != settings.end(); ++s)
+    for (auto earlier = settings.begin(); earlier != s; ++earlier)
+      if (earlier->key == s->key) {
+        first = &*earlier;
+        return &*s;
+      }
+  return nullptr;
+}
+
+}  // namespace
+
+Settings::Settings(std::filesystem::path file, std::vector<Setting> in_file, std::vector<Setting> on_command_line)
+    : file_(std::move(file)), all_(std::move(on_command_line)) {
+  all_.insert(all_.end(), in_file.begin(), in_file.end());  // the first one found wins
+}
+
+const Setting* Settings::find(std::string_view key) const {
+  const auto found = std::find_if(all_.begin(), all_.end(), [&](const Setting& s) { return s.key == key; });
+  return found == all_.end() ? nullptr : &*found;
+}
+
+void Settings::keep_one_of(std::string_view key, std::string_view other, std::string_view remedy) {
+  const Setting *a = find(key), *b = find(other);
+  if (!a && !b) throw BadScene(fmt::format("{}: neither {} nor {} is given; {}", file_.string(), key, other, remedy));
+  if (!a || !b) return;
+  if ((a->line == 0) == (b->line == 0)) {
+    const std::string_view later = a->line > b->line ? key : other, earlier = a->line > b->line ? other : key;
+    throw error(later, fmt::format("{} is given too; keep one of them", earlier));
+  }
+  const std::string forgotten(a->line == 0 ? other : key);
+  std::erase_if(all_, [&](const Setting& s) { return s.key == forgotten; });
+}
+
+std::string Settings::place(std::string_view key) const {
+  const Setting* s = find(key);
+  if (!s) return file_.string();
+  return s->line == 0 ? std::string("command line") : fmt::format("{}:{}", file_.string(), s->line);
+}
+
+BadScene Settings::error(std::string_view key, std::string_view wrong) const {
+  const Setting* s = find(key);
+  if (!s) return BadScene(fmt::format("{}: {}: {}", place(key), key, wrong));
+  return BadScene(fmt::format("{}: {}{} = {}: {}", place(key), s->line == 0 ? "--" : "", key, s->value, wrong));
+}
+
+BadScene Settings::located(const BadInput& bad) const {
+  if (const auto* scene = dynamic_cast<const BadScene*>(&bad)) return *scene;
+  const std::string message = bad.what();
+  if (bad.key().empty()) return BadScene(fmt::format("{}: {}", file_.string(), message));
+  // "lattice.sites = 1: at least 2 …" repeats key and value: keep what comes after them
+  if (message.starts_with(bad.key() + " = "))
+    if (const auto colon = message.find(": "); colon != std::string::npos && find(bad.key()))
+      return error(bad.key(), message.substr(colon + 2));
+  if (message.starts_with(bad.key())) return BadScene(fmt::format("{}: {}", place(bad.key()), message));
+  return error(bad.key(), message);
+}
+
+Settings read_settings(const std::filesystem::path& file, const std::vector<Setting>& on_command_line) {
+  check_command_line(on_command_line);
+  const std::string text = read_scene_text(file);
+  const std::vector<int> lines = lines_of_values(text, file.string());
+  std::vector<Setting> in_file;
+  for (const auto& option : parsed(text).options) {
+    if (in_file.size() == lines.size()) break;
+    in_file.push_back({option.string_key, option.value.front(), lines[in_file.size()]});
+  }
+  if (in_file.empty())
+    throw BadScene(fmt::format("{}: the scene is empty; `delf list scenes` names some to copy", file.string()));
+  for (const Setting& s : in_file)
+    if (!find_key(s.key))
+      throw BadScene(fmt::format("{}:{}: {}: {}", file.string(), s.line, s.key, unknown_key(s.key)));
+  const Setting* first = nullptr;
+  if (const Setting* again = given_twice(in_file, first))
+    throw BadScene(fmt::format("{}:{}: {} = {}: line {} gives it already; keep one of them", file.string(), again->line,
+                               again->key, again->value, first->line));
+  return {file, std::move(in_file), on_command_line};
+}
+
+void check_command_line(const std::vector<Setting>& on_command_line) {
+  for (const Setting& s : on_command_line) {
+    if (!find_key(s.key)) throw BadScene(fmt::format("command line: --{}: {}", s.key, unknown_key(s.key)));
+    if (s.value.find_first_of("#\n\r") != std::string::npos)
+      throw BadScene(
+          fmt::format("command line: --{}: a value holds neither # nor line breaks, for no scene could "
+                      "repeat it; rename",
+                      s.key));
+  }
+  const Setting* first = nullptr;
+  if (const Setting* again = given_twice(on_command_line, first))
+    throw BadScene(fmt::format("command line: --{} = {}: given twice; keep one of them", again->key, again->value));
+}
+
+}  // namespace delf

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "tools/scene/text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "tools/failure.hpp"
+
+namespace delf {
+
+TextFile::TextFile(const std::filesystem::path& path)
+    : path_(path), file_(std::fopen(path.c_str(), "wb"), std::fclose) {
+  if (!file_) fail();
+}
+
+void TextFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) fail();
+}
+
+void TextFile::close() {
+  if (file_ && std::fclose(file_.release()) != 0) fail();
+}
+
+void TextFile::fail() const {
+  throw SystemFailure(
+      fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), std::strerror(errno)));
+}
+
+void write_text_file(const std::filesystem::path& path, std::string_view text) {
+  TextFile file(path);
+  file.write(text);
+  file.close();
+}
+
+void make_results_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder))
+    throw SystemFailure(fmt::format("{}: cannot be made ({}); choose another --out", folder.string(),
+                                    error ? error.message() : "it is no directory"));
+}
+
+}  // namespace delf

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "tools/scene/values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "tools/scene/suggestion.hpp"
+#include "tools/scene/scene_text.hpp"
+
+namespace delf {
+
+namespace {
+
+std::string_view unsigned_part(std::string_view text) {
+  return text.size() > 1 && text[0] == '+' && text[1] != '-' ? text.substr(1) : text;
+}
+
+// reads all of `text`, or says how far it is from a number
+template <class Number>
+std::errc read(std::string_view text, Number& value) {
+  text = unsigned_part(text);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end != text.data() + text.size() ? std::errc::invalid_argument : error;
+}
+
+std::string below(std::string_view key, const Limits& range, auto low) {
+  return fmt::format("must be {} {}; raise {}", range.open ? "above" : "at least", low, key);
+}
+std::string above(std::string_view key, auto high) { return fmt::format("must be at most {}; lower {}", high, key); }
+
+}  // namespace
+
+std::optional<std::string> Values::text(std::string_view key) const {
+  if (const Setting* s = settings_.find(key)) {
+    if (s->value.empty()) throw settings_.error(key, "no value is given; give one, or remove the key");
+    return s->value;
+  }
+  const Key* known = find_key(key);
+  return known && !known->fallback.empty() ? std::optional(std::string(known->fallback)) : std::nullopt;
+}
+
+std::string Values::required(std::string_view key) const {
+  if (auto value = text(key)) return *value;
+  throw settings_.error(key, fmt::format("must be given ({})", find_key(key)->meaning));
+}
+
+double Values::number(const Key& key, std::string_view text) const {
+  double value = 0;
+  const std::errc error = read(text, value);
+  if (error == std::errc::result_out_of_range)
+    throw settings_.error(key.name, "is outside the range of double precision; use a number that is in it");
+  if (error != std::errc()) throw settings_.error(key.name, "is not a number; write one like 0.125 or 1e-6");
+  if (!std::isfinite(value)) throw settings_.error(key.name, "is not a finite number; give one");
+  if (value < key.range.low || (key.range.open && value == key.range.low))
+    throw settings_.error(key.name, below(key.name, key.range, key.range.low));
+  if (value > key.range.high) throw settings_.error(key.name, above(key.name, key.range.high));
+  return value;
+}
+
+double Values::real(std::string_view key) const { return number(*find_key(key), required(key)); }
+
+std::optional<double> Values::maybe_real(std::string_view key) const {
+  return given(key) ? std::optional(real(key)) : std::nullopt;
+}
+
+std::int64_t Values::integer(std::string_view key) const {
+  const std::string value = required(key);
+  std::int64_t number = 0;
+  const std::errc error = read(value, number);
+  if (error == std::errc::result_out_of_range) throw settings_.error(key, "is too large; use a smaller integer");
+  if (error != std::errc()) throw settings_.error(key, "is not an integer; write one like 255");
+  const Limits& range = find_key(key)->range;
+  const auto low = static_cast<std::int64_t>(std::max(range.low, -9e15));
+  const auto high = static_cast<std::int64_t>(std::min(range.high, 9.1e15));
+  if (number < low) throw settings_.error(key, below(key, range, low));
+  if (number > high) throw settings_.error(key, above(key, high));
+  return number;
+}
+
+std::optional<std::int64_t> Values::maybe_integer(std::string_view key) const {
+  return given(key) ? std::optional(integer(key)) : std::nullopt;
+}
+
+bool Values::toggle(std::string_view key) const {
+  const std::string value = required(key);
+  for (const char* yes : {"on", "true", "yes", "1"})
+    if (value == yes) return true;
+  for (const char* no : {"off", "false", "no", "0"})
+    if (value == no) return false;
+  throw settings_.error(key, "must be on or off");
+}
+
+std::string Values::choice(std::string_view key) const {
+  const std::string value = required(key);
+  const auto known = find_key(key)->choices();
+  if (std::find(known.begin(), known.end(), value) == known.end())
+    throw settings_.error(key, "is not known" + suggestion(value, known));
+  return value;
+}
+
+std::vector<double> Values::times(std::string_view key) const {
+  std::vector<double> numbers;
+  const std::string list = text(key).value_or("");
+  for (std::size_t begin = 0; begin < list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    numbers.push_back(number(*find_key(key), trimmed(std::string_view(list).substr(begin, end - begin))));
+    begin = end + 1;
+  }
+  return numbers;
+}
+
+void Values::check(const Key& key) const {
+  if (!given(key.name)) return;
+  switch (key.type) {
+    case KeyType::real:
+      real(key.name);
+      break;
+    case KeyType::integer:
+      integer(key.name);
+      break;
+    case KeyType::toggle:
+      toggle(key.name);
+      break;
+    case KeyType::choice:
+      choice(key.name);
+      break;
+    case KeyType::times:
+      times(key.name);
+      break;
+    case KeyType::text:
+      text(key.name);
+      break;
+  }
+}
+
+}  // namespace delf

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/scene/keys.hpp"
+#include "tools/scene/settings.hpp"
+
+namespace delf {
+
+/// The values of settings, read as the table of keys says: the type, the range, the choices, and what is in force when
+/// a key is not given. Whatever cannot be read is a BadScene that names its place.
+class Values {
+ public:
+  explicit Values(const Settings& settings) : settings_(settings) {}
+
+  bool given(std::string_view key) const { return settings_.find(key) != nullptr; }
+  /// The text in force, if there is any.
+  std::optional<std::string> text(std::string_view key) const;
+
+  double real(std::string_view key) const;
+  std::int64_t integer(std::string_view key) const;
+  bool toggle(std::string_view key) const;
+  std::string choice(std::string_view key) const;
+  std::vector<double> times(std::string_view key) const;
+
+  std::optional<double> maybe_real(std::string_view key) const;
+  std::optional<std::int64_t> maybe_integer(std::string_view key) const;
+
+  /// Reads a key for its errors only.
+  void check(const Key&) const;
+
+ private:
+  std::string required(std::string_view key) const;
+  double number(const Key&, std::string_view text) const;
+  const Settings& settings_;
+};
+
+}  // namespace delf

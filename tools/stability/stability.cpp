@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "tools/stability/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "tools/stability/corner_list.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/progress.hpp"
+#include "tools/run/seconds_since.hpp"
+#include "tools/stability/stability_figures.hpp"
+#include "tools/stability/stability_map.hpp"
+#include "tools/scene/text_file.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void remove_figures(const fs::path& folder, std::size_t schemes) {
+  std::error_code error;
+  for (const std::string& name : stability_figure_names(schemes))
+    for (const char* ending : {".png", ".svg"}) fs::remove(folder / "figures" / (name + ending), error);
+}
+
+}  // namespace
+
+StabilityFindings find_stability(const StabilityRequest& request, const Problem& base) {
+  const auto begin = std::chrono::steady_clock::now();
+  StabilityFindings f;
+  f.most_courant = request.limit.most;
+  f.agreement = request.limit.agreement;
+  f.least_growth = request.limit.least_growth();
+  f.limit_sites = request.limit.sites;
+  f.seed = request.limit.seed;
+  f.dispersion_courant = base.time_step / base.lattice.space_step();
+  f.dispersion_mass = base.mass * base.lattice.space_step();
+
+  std::vector<Corner> all;
+  for (const std::string& group : request.corners)
+    for (Corner& corner : corners(group, request.schemes)) {
+      corner.state.seed = request.limit.seed;
+      all.push_back(std::move(corner));
+    }
+  const auto schemes = static_cast<std::int64_t>(request.schemes.size());
+  constexpr std::int64_t map_parts = 8;  // a map takes as long as so many limits
+  Progress progress(schemes * static_cast<std::int64_t>(request.mass_steps.size()) +
+                    (request.map ? schemes * map_parts : 0) + static_cast<std::int64_t>(all.size()));
+  std::int64_t done = 0;
+  const auto advance = [&](std::int64_t parts) { progress.at(done += parts); };
+
+  for (const NamedScheme& scheme : request.schemes)
+    for (const double mass_step : request.mass_steps) {
+      if (Interrupt::asked()) break;
+      f.limits.push_back(find_limit(scheme.name, scheme.problem, mass_step, request.limit));
+      advance(1);
+    }
+  for (const NamedScheme& scheme : request.schemes) {
+    if (Interrupt::asked()) break;
+    try {
+      f.dispersion.push_back(make_dispersion_curve(scheme));
+    } catch (const BadInput&) {  // told by the limits
+    }
+    if (!request.map) continue;
+    f.maps.push_back(make_stability_map(scheme, request.limit.most, request.limit.seed));
+    advance(map_parts);
+  }
+  for (Corner& corner : all) {
+    if (Interrupt::asked()) break;
+    CornerResult result = run_corner_apart(corner, request.budget);
+    if (Interrupt::asked()) break;  // what it says is of a run that was ended
+    f.corners.push_back({std::move(corner), std::move(result)});
+    advance(1);
+  }
+  if (Interrupt::asked()) f.status = "interrupted";
+  f.seconds = seconds_since(begin);
+  return f;
+}
+
+ExitCode stability(const Scene& scene, const fs::path& folder) {
+  const Interrupt interrupt;
+  const StabilityRequest request = read_stability_request(scene);
+  const StabilityFindings findings = find_stability(request, scene.problem);
+  make_results_folder(folder);  // what an earlier one left there stays until there is something new
+  write_text_file(folder / "stability.json", stability_json(scene, findings));
+  remove_figures(folder, findings.maps.size() + maps_in_a_figure);
+  std::string missing;
+  if (scene.figures) {
+    try {
+      missing = draw_stability(findings, scene.name, folder);
+    } catch (const std::exception& error) {  // a figure that cannot be drawn fails nothing
+      missing = error.what();
+    }
+  }
+  fmt::print("{}", stability_report(scene, findings));
+  fmt::print("{}: stability.json{}\n", folder.string(), scene.figures && missing.empty() ? " figures" : "");
+  if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
+  if (findings.status == "interrupted") return ExitCode::interrupted;
+  return findings.passed() ? ExitCode::done : ExitCode::check_failed;
+}
+
+}  // namespace delf

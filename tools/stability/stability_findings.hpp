@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/stability/corner.hpp"
+#include "tools/stability/observed_limit.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// How noise fares over Courant number and mh: rows of mh, from the least.
+struct StabilityMap {
+  std::string scheme;
+  std::vector<double> courants, mass_steps;
+  std::vector<Growth> grows;               ///< mass_steps × courants
+  std::vector<double> edge_masses;         ///< finer than the rows
+  std::vector<std::vector<double>> edges;  ///< theory: the Courant numbers where stability begins or ends
+};
+
+/// ω against the wave number, of one scheme.
+struct DispersionCurve {
+  std::string scheme;
+  std::vector<FrequencyPoint> points;
+};
+
+struct CornerFinding {
+  Corner corner;
+  CornerResult result;
+};
+
+/// What `delf stability` came to.
+struct StabilityFindings {
+  std::vector<Limit> limits;
+  std::vector<CornerFinding> corners;
+  std::vector<StabilityMap> maps;
+  std::vector<DispersionCurve> dispersion;
+  double dispersion_courant = 0, dispersion_mass = 0;  ///< of the dispersion curves: h/k and mk
+  double most_courant = 0, agreement = 0;
+  double least_growth = 0;  ///< LimitRequest::least_growth(), on a circle of
+  int limit_sites = 0;
+  std::uint64_t seed = 0;
+  double seconds = 0;
+  std::string status = "done";  ///< or interrupted
+
+  std::int64_t disagreements() const;
+  std::int64_t unresolved() const;   ///< Courant numbers of limits
+  std::int64_t must_not_be() const;  ///< corners of which that can be said
+  bool passed() const { return status == "done" && disagreements() == 0 && must_not_be() == 0; }
+};
+
+/// stability.json; what is not a finite number is null.
+std::string stability_json(const Scene&, const StabilityFindings&);
+/// The same for people: tables within 120 columns.
+std::string stability_report(const Scene&, const StabilityFindings&);
+
+}  // namespace delf

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/run/in_words.hpp"
+#include "tools/stability/stability_findings.hpp"
+#include "tools/files/text_columns.hpp"
+
+namespace delf {
+
+namespace {
+
+constexpr std::size_t widest_line = 120;
+
+std::string courant(const Limit& l, double value, double most) {
+  if (!l.left_out.empty() && std::isnan(value)) return "";
+  if (std::isnan(value)) return "not found";
+  return std::isinf(value) ? fmt::format("none to {:g}", most) : fmt::format("{:.6g}", value);
+}
+
+// What a limit has to say beyond its numbers.
+std::string remark(const Limit& l) {
+  std::string text;
+  const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
+  if (!l.left_out.empty()) add(l.left_out);
+  if (l.symbol.stable.size() > 1) {
+    std::string sets;
+    for (const CourantInterval& i : l.symbol.stable) sets += fmt::format(" [{:.4g}, {:.4g}]", i.from, i.to);
+    add("stable in" + sets);
+  }
+  for (const GhostMode& g : l.symbol.ghosts) add(g.words);
+  if (!l.unresolved.empty()) {
+    const Unresolved& first = l.unresolved.front();
+    add(fmt::format("{} h/k unresolved, as {:.4g}: theta = {:.4g}, |z| - 1 = {:.2g}", l.unresolved.size(),
+                    first.courant, first.theta, std::expm1(first.growth)));
+  }
+  if (l.even == Growth::linear && l.odd == Growth::bounded) add("runs: even N grows linearly, odd N does not");
+  return text;
+}
+
+std::string limits(const StabilityFindings& f) {
+  if (f.limits.empty()) return {};
+  std::vector<std::vector<std::string>> rows;
+  for (const Limit& l : f.limits)
+    rows.push_back({l.scheme, fmt::format("{:g}", l.mass_step), courant(l, l.theory, f.most_courant),
+                    courant(l, l.observed, f.most_courant),
+                    !l.agrees()           ? "FAILED"
+                    : !l.left_out.empty() ? "left out"
+                    : l.limit_unresolved  ? "unresolved"
+                                          : "ok",
+                    remark(l)});
+  std::string unresolved;
+  if (f.unresolved() > 0)
+    unresolved = fmt::format(
+        "\n  unresolved: waves that grow by theory, but too slowly, or too few of them, for a run of bearable length "
+        "to\n"
+        "  tell (on {} sites it needs |z| - 1 > {:.2g}). This is neither for nor against theory.\n",
+        f.limit_sites, std::expm1(f.least_growth));
+  return fmt::format("\n{}", text_table({{"stability limit of"},
+                                         {"mh", true},
+                                         {"h/k, theory", true},
+                                         {"by running", true},
+                                         {"verdict"},
+                                         {"ghosts and remarks", false, 0, true}},
+                                        rows, widest_line)) +
+         unresolved;
+}
+
+std::string cell(const CornerResult& r) {
+  std::string word;
+  switch (r.verdict) {
+    case CornerVerdict::stable:
+      word = "ok";
+      break;
+    case CornerVerdict::wrong:
+      word = "wrong";
+      break;
+    case CornerVerdict::diverged:
+      word = fmt::format("t={:.3g}", r.diverged_at);
+      break;
+    case CornerVerdict::refused:
+      word = "refused";
+      break;
+    case CornerVerdict::unstarted:
+      word = "-";
+      break;
+    default:
+      word = "FAILED";
+  }
+  return word + (std::isfinite(r.cut_at) && r.verdict != CornerVerdict::unstarted ? "…" : "");
+}
+
+// One row for each corner, one column for each scheme, whose names are numbers that the first line explains.
+std::string corner_table(const StabilityFindings& f) {
+  if (f.corners.empty()) return {};
+  std::vector<std::string> schemes;
+  for (const CornerFinding& c : f.corners)
+    if (std::ranges::find(schemes, c.corner.scheme) == schemes.end()) schemes.push_back(c.corner.scheme);
+  std::vector<TextColumn> columns{{"corner", false, 34}};
+  std::string key;
+  for (std::size_t s = 0; s < schemes.size(); ++s) {
+    columns.push_back({fmt::format("({})", s + 1)});
+    key += fmt::format("{}({}) {}", s == 0 ? "" : ", ", s + 1, schemes[s]);
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const CornerFinding& c : f.corners) {
+    if (rows.empty() || rows.back().front() != c.corner.name) {
+      rows.emplace_back(schemes.size() + 1);
+      rows.back().front() = c.corner.name;
+    }
+    const auto at = std::ranges::find(schemes, c.corner.scheme) - schemes.begin();
+    rows.back()[static_cast<std::size_t>(at) + 1] = cell(c.result);
+  }
+  std::string text = "\n";
+  for (const std::string& line : wrapped(key, widest_line - 2)) text += "  " + line + "\n";
+  text +=
+      "  ok: finite, right; wrong: finite, but not right; t=…: diverged then; refused: delf says that it cannot;\n"
+      "  …: cut, for lack of time; -: not started in time. Reasons are in stability.json.\n\n";
+  return text + text_table(columns, rows, widest_line);
+}
+
+std::string failures(const StabilityFindings& f) {
+  std::string text;
+  const auto add = [&](const std::string& words) {
+    for (const std::string& line : wrapped(words, widest_line - 2)) text += "  " + line + "\n";
+  };
+  for (const Limit& l : f.limits)
+    for (const std::string& d : l.disagreements) {
+      text += "\nFAILED: theory and runs disagree\n";
+      add(d);
+    }
+  for (const CornerFinding& c : f.corners) {
+    if (!must_not_be(c.result.verdict)) continue;
+    text += fmt::format("\nFAILED: {}: {}, {}\n", to_string(c.result.verdict), c.corner.scheme, c.corner.name);
+    add(c.result.reason);
+    std::string keys;
+    for (const Setting& k : keys_of(c.corner)) keys += fmt::format(" {}={}", k.key, k.value);
+    add("keys:" + keys);
+  }
+  return text;
+}
+
+std::string conclusion(const StabilityFindings& f) {
+  std::int64_t compared = 0, refused = 0, wrong = 0;
+  for (const Limit& l : f.limits) compared += l.left_out.empty();
+  for (const CornerFinding& c : f.corners) {
+    refused += c.result.verdict == CornerVerdict::refused;
+    wrong += c.result.verdict == CornerVerdict::wrong;
+  }
+  const std::string counts =
+      fmt::format("{} limits compared{}, {} corners ({} refused, {} bounded but wrong), in {}", compared,
+                  f.unresolved() > 0 ? fmt::format(" ({} h/k unresolved)", f.unresolved()) : "", f.corners.size(),
+                  refused, wrong, duration_in_words(f.seconds));
+  if (f.status != "done") return fmt::format("not finished ({}): {}\n", f.status, counts);
+  if (f.passed()) return fmt::format("passed: {}\n", counts);
+  return fmt::format("FAILED: {} disagreements with theory, {} corners that must not be; {}\n", f.disagreements(),
+                     f.must_not_be(), counts);
+}
+
+}  // namespace
+
+std::int64_t StabilityFindings::disagreements() const {
+  std::int64_t all = 0;
+  for (const Limit& l : limits) all += static_cast<std::int64_t>(l.disagreements.size());
+  return all;
+}
+
+std::int64_t StabilityFindings::unresolved() const {
+  std::int64_t all = 0;
+  for (const Limit& l : limits) all += static_cast<std::int64_t>(l.unresolved.size());
+  return all;
+}
+
+std::int64_t StabilityFindings::must_not_be() const {
+  return std::ranges::count_if(corners, [](const CornerFinding& c) { return delf::must_not_be(c.result.verdict); });
+}
+
+std::string stability_report(const Scene& scene, const StabilityFindings& f) {
+  return fmt::format("{}: stability of phi_tt - phi_xx + m^2 phi = 0, and corners; seed {}\n", scene.name, f.seed) +
+         limits(f) + corner_table(f) + failures(f) + "\n" + conclusion(f);
+}
+
+}  // namespace delf

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "tools/stability/stability_request.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "schemes/unknown_name.hpp"
+#include "tools/stability/corner_list.hpp"
+#include "tools/scene/suggestion.hpp"
+#include "tools/scene/values.hpp"
+
+namespace delf {
+
+namespace {
+
+std::vector<double> positive_numbers(const Scene& scene, const char* key, const std::vector<std::string>& words) {
+  std::vector<double> numbers;
+  for (const std::string& word : words) {
+    double x = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+    if (error != std::errc() || end != word.data() + word.size() || !(x > 0) || !std::isfinite(x))
+      throw scene.settings.error(key, fmt::format("{} is no positive number; write such as 0.1, 1, 2.3", word));
+    numbers.push_back(x);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<std::string> names_in_list(const std::string& text) {
+  std::vector<std::string> names;
+  std::string name;
+  int depth = 0;
+  const auto finish = [&] {
+    const std::size_t first = name.find_first_not_of(" \t"), last = name.find_last_not_of(" \t");
+    if (first != std::string::npos) names.push_back(name.substr(first, last - first + 1));
+    name.clear();
+  };
+  for (const char c : text) {
+    depth += (c == '(') - (c == ')');
+    if (c == ',' && depth <= 0) finish();
+    else name += c;
+  }
+  finish();
+  return names;
+}
+
+std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& asked, const Problem& base) {
+  const std::vector<NamedScheme> all = named_schemes(base);
+  if (asked.size() == 1 && asked.front() == "all") return all;
+  // one of each sort: explicit, implicit, from no Lagrangian, with nodes inside
+  static const std::vector<std::string> usual{
+      "triangle-vertex", "rectangle-symmetric", "rectangle", "hexagon",
+      "triangle",        "vu-quoc-li",          "guo",       "spacetime (2,2) gauss"};
+  std::vector<NamedScheme> chosen;
+  for (const std::string& name : asked.empty() ? usual : asked) {
+    const auto scheme = std::ranges::find(all, name, &NamedScheme::name);
+    if (scheme != all.end()) {
+      chosen.push_back(*scheme);
+      continue;
+    }
+    std::vector<std::string> names{"all"};
+    for (const NamedScheme& s : all) names.push_back(s.name);
+    throw unknown_name("stability.schemes", name, names);
+  }
+  return chosen;
+}
+
+const std::vector<std::string>& stability_faults() {
+  static const std::vector<std::string> all{"none", "limit"};
+  return all;
+}
+
+StabilityRequest read_stability_request(const Scene& scene) {
+  const Values values(scene.settings);
+  const auto list = [&](const char* key) { return names_in_list(values.text(key).value_or("")); };
+  StabilityRequest request;
+  if (scene.problem.lattice.space() == Space::point)
+    throw scene.settings.error("lattice.space",
+                               "a point has no Courant number; `delf stability` is for circles and "
+                               "intervals");
+  try {
+    request.schemes = chosen_schemes(list("stability.schemes"), scene.problem);
+  } catch (const BadInput& bad) {
+    throw scene.settings.located(bad);
+  }
+  if (const auto masses = positive_numbers(scene, "stability.mass_steps", list("stability.mass_steps"));
+      !masses.empty())
+    request.mass_steps = masses;
+  request.corners = list("stability.corners");
+  for (const std::string& group : request.corners)
+    if (group != "none" && std::ranges::find(corner_groups(), group) == corner_groups().end())
+      throw scene.settings.error("stability.corners",
+                                 fmt::format("{} is no group of corners{}", group, suggestion(group, corner_groups())));
+  if (request.corners.empty()) request.corners = corner_groups();
+  std::erase(request.corners, "none");
+  request.limit.most = values.real("stability.most_courant");
+  request.limit.steps = static_cast<int>(values.integer("stability.steps"));
+  request.limit.agreement = values.real("stability.agreement");
+  request.limit.seed = scene.initial.seed;
+  if (values.choice("stability.fault") == "limit") request.limit.theory_factor = 1.05;
+  request.budget = values.real("stability.budget");
+  request.map = values.toggle("stability.map");
+  return request;
+}
+
+}  // namespace delf

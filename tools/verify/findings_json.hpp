@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+// What the JSON of all that is found out about a scene has in common.
+
+using Json = nlohmann::ordered_json;
+
+inline Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
+inline Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+/// The head: which version found it, of which scene.
+inline Json json_head(const Scene& scene) { return {{"version", DELF_VERSION}, {"scene", scene.name}}; }
+
+/// Of each element what `json_of` makes of it.
+template <class Element, class JsonOf>
+Json json_list(const std::vector<Element>& all, JsonOf json_of) {
+  Json list = Json::array();
+  for (const Element& one : all) list.push_back(json_of(one));
+  return list;
+}
+
+/// As a file has it; bytes that are no UTF-8 are replaced.
+inline std::string json_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace delf

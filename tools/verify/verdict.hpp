@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "schemes/verify/check.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// The form formula on one region.
+struct RegionPoint {
+  std::string kind;  ///< rectangle, staircase, hole, wall, slab, random or given
+  std::int64_t stencils = 0;
+  double value = 0;   ///< the relative form formula residual
+  bool local = true;  ///< V, W from the null space of the linearised equations there; else evolved
+};
+
+/// A site of a region as it is drawn.
+struct DrawnSite {
+  int time = 0, space = 0, node = 0;
+  bool interior = false, boundary = false;
+  double weight = 0;  ///< |contribution| / normaliser at that site, 0 if none
+};
+
+/// The region where the form formula holds worst.
+struct WorstRegion {
+  std::string title;
+  std::vector<DrawnSite> sites;
+  double value = 0;
+};
+
+/// The residual of the equations over space and time, in bins.
+struct ResidualMap {
+  std::vector<double> time, space;  ///< centres of the bins, evenly spaced
+  std::vector<double> log10;        ///< rows × columns: of the largest |E| / normaliser; NaN if no equation is there
+};
+
+/// How far a run forth and back, of so many steps, ends from where it began.
+struct ReversalCurve {
+  std::vector<std::int64_t> steps;
+  std::vector<double> distance;
+};
+
+/// What `delf verify` came to: all that verify.json, the report on stdout and the figures tell.
+struct Verdict {
+  std::vector<Check> checks;
+  std::vector<Measured> measured;
+  std::vector<std::string> left_out;  ///< "noether: no symmetry is declared"
+  std::vector<RegionPoint> points;
+  WorstRegion worst;
+  ResidualMap map;
+  ReversalCurve reversal;
+  std::uint64_t seed = 0;
+  double seconds = 0;
+  std::int64_t stencils = 0;    ///< verified
+  std::string subject;          ///< "rows computed here" or "rows of FILE"
+  std::string status = "done";  ///< as in Outcome
+
+  std::int64_t failed() const {
+    return std::ranges::count_if(checks, [](const Check& check) { return !check.passed(); });
+  }
+  /// Every check was made and passed; where nothing was looked at, nothing has passed.
+  bool passed() const { return status == "done" && !(checks.empty() && measured.empty()) && failed() == 0; }
+};
+
+/// verify.json; what is not a finite number is null.
+std::string verdict_json(const Scene&, const Verdict&);
+/// The same for people: a table within 120 columns, and what each failure means.
+std::string verdict_report(const Scene&, const Verdict&);
+
+}  // namespace delf

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "tools/verify/findings_json.hpp"
+#include "tools/verify/verdict.hpp"
+
+namespace delf {
+
+namespace {
+
+Json json_of(const Check& c) {
+  return {{"name", c.name},           {"region", c.region},         {"value", c.value},
+          {"tolerance", c.tolerance}, {"normaliser", c.normaliser}, {"count", c.count},
+          {"samples", c.samples},     {"passed", c.passed()},       {"failure", c.passed() ? Json() : Json(c.failure)}};
+}
+
+Json json_of(const Measured& m) {
+  return {{"name", m.name},
+          {"region", m.region},
+          {"value", m.value},
+          {"normaliser", m.normaliser},
+          {"count", m.count},
+          {"order", m.order},
+          {"remark", text_or_null(m.remark)}};
+}
+
+Json json_of(const RegionPoint& p) {
+  return {
+      {"kind", p.kind}, {"stencils", p.stencils}, {"value", p.value}, {"variations", p.local ? "local" : "evolved"}};
+}
+
+constexpr auto of_each = [](const auto& one) { return json_of(one); };
+
+}  // namespace
+
+std::string verdict_json(const Scene& scene, const Verdict& v) {
+  const Problem& p = scene.problem;
+  Json json = json_head(scene);
+  json["theory"] = p.theory;
+  json["stencil"] = p.stencil;
+  json["method"] = p.method;
+  json["sites"] = p.lattice.sites();
+  json["time_step"] = p.time_step;
+  json["seed"] = v.seed;
+  json["subject"] = v.subject;
+  json["status"] = v.status;
+  json["seconds"] = v.seconds;
+  json["stencils"] = v.stencils;
+  json["passed"] = v.passed();
+  json["checks"] = json_list(v.checks, of_each);
+  json["measured"] = json_list(v.measured, of_each);
+  json["left_out"] = v.left_out;
+  json["regions"] = json_list(v.points, of_each);
+  json["reversal"] = {{"steps", v.reversal.steps}, {"distance", v.reversal.distance}};
+  return json_text(json);
+}
+
+}  // namespace delf

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/run/in_words.hpp"
+#include "tools/run/outcome.hpp"
+#include "tools/files/text_columns.hpp"
+#include "tools/verify/verdict.hpp"
+
+namespace delf {
+
+namespace {
+
+constexpr std::size_t widest_line = 120, widest_name = 44, widest_failure = 100;
+
+// "  name       what", and what does not fit below it.
+std::string header_line(const char* name, const std::string& what) {
+  std::string text;
+  for (const std::string& part : wrapped(what, widest_line - 13))
+    text += fmt::format("  {:<10} {}\n", text.empty() ? name : "", part);
+  return text;
+}
+
+std::string header(const Scene& scene, const Verdict& v) {
+  const Problem& p = scene.problem;
+  const bool point = p.lattice.space() == Space::point;
+  return fmt::format("{}: {}{}\n", scene.name, p.theory, p.circle_valued ? ", values in S1" : "") +
+         header_line("scheme", scheme_in_words(p) + (point ? "" : fmt::format(", h = {:.6g}", p.time_step))) +
+         header_line("subject", v.subject) +
+         header_line("verified",
+                     fmt::format("{} stencils in {}, seed {}", v.stencils, duration_in_words(v.seconds), v.seed)) +
+         header_line("status", v.status);
+}
+
+std::string number(double value) {
+  if (std::isnan(value)) return "no number";
+  return std::isinf(value) ? "infinite" : fmt::format("{:.3g}", value);
+}
+
+std::string table_of_checks(const Verdict& v) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Check& c : v.checks)
+    rows.push_back({c.name, number(c.value), fmt::format("{:.2g}", c.tolerance), fmt::format("{}", c.count), c.region,
+                    c.passed() ? "ok" : "FAILED"});
+  if (rows.empty()) return {};
+  return fmt::format("\n{}", text_table({{"check", false, widest_name},
+                                         {"largest", true},
+                                         {"tolerance", true},
+                                         {"count", true},
+                                         {"where", false, 0, true},
+                                         {"verdict"}},
+                                        rows, widest_line));
+}
+
+std::string table_of_measured(const Verdict& v) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Measured& m : v.measured)
+    rows.push_back({m.name, number(m.value), std::isfinite(m.order) ? fmt::format("{:.2f}", m.order) : "",
+                    m.region + (m.region.empty() || m.remark.empty() ? "" : "; ") + m.remark});
+  if (rows.empty()) return {};
+  return fmt::format("\n{}", text_table({{"measured, not promised", false, widest_name},
+                                         {"value", true},
+                                         {"order in h", true},
+                                         {"where", false, 0, true}},
+                                        rows, widest_line));
+}
+
+std::string left_out(const Verdict& v) {
+  std::string text;
+  for (const std::string& what : v.left_out) {
+    bool first = true;
+    for (const std::string& part : wrapped(what, widest_failure - 6)) {
+      text += (first ? "    " : "      ") + part + "\n";
+      first = false;
+    }
+  }
+  return text.empty() ? text : "\n  left out\n" + text;
+}
+
+std::string failures(const Verdict& v) {
+  std::string text;
+  for (const Check& c : v.checks) {
+    if (c.passed()) continue;
+    text += "\nFAILED: " + shortened(c.name, widest_line - 8) + "\n";
+    const std::string words = !c.failure.empty()    ? c.failure
+                              : std::isnan(c.value) ? "What was found is not a number."
+                                                    : fmt::format("{:.3g} is above {:.2g}.", c.value, c.tolerance);
+    for (const std::string& part : wrapped(words, widest_failure - 2)) text += "  " + part + "\n";
+  }
+  return text;
+}
+
+std::string conclusion(const Verdict& v) {
+  const auto all = static_cast<std::int64_t>(v.checks.size()), failed = v.failed();
+  if (failed > 0) return fmt::format("FAILED: {} of {} checks\n", failed, all);
+  if (v.status != "done") return fmt::format("not finished ({}): {} of {} checks passed so far\n", v.status, all, all);
+  if (all == 0)
+    return v.measured.empty() ? "FAILED: there was nothing to check\n"
+                              : "measured; nothing that is promised was checked\n";
+  return fmt::format("passed: {} of {} checks\n", all, all);
+}
+
+}  // namespace
+
+std::string verdict_report(const Scene& scene, const Verdict& v) {
+  return header(scene, v) + table_of_checks(v) + table_of_measured(v) + left_out(v) + failures(v) + "\n" +
+         conclusion(v);
+}
+
+}  // namespace delf

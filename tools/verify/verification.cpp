@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT
+#include "tools/verify/verification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <set>
+
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/verify/derivatives.hpp"
+#include "schemes/verify/newton_order.hpp"
+#include "schemes/verify/wrong_sign.hpp"
+#include "tools/engine.hpp"
+#include "tools/run/further_runs.hpp"
+#include "tools/scene/generator_text.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/progress.hpp"
+#include "tools/run/seconds_since.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> field_names(const LatticeSystem& system) {
+  std::vector<std::string> names;
+  for (const Component& c : system.all_components())
+    if (c.role == Role::field) names.push_back(c.name);
+  return names;
+}
+
+// The same families, with the first derivative of the first one's Lagrangian of the wrong sign.
+std::unique_ptr<LatticeSystem> with_wrong_sign(const LatticeSystem& right) {
+  std::vector<std::shared_ptr<const StencilFamily>> families(right.families().begin(), right.families().end());
+  families[0] = std::make_shared<WrongSign>(families[0], 0);
+  return std::make_unique<LatticeSystem>(right.lattice(), std::move(families), right.time_step(),
+                                         right.all_components());
+}
+
+}  // namespace
+
+Verification::Verification(const Scene& scene, const VerifyRequest& request, const std::optional<std::string>& fields,
+                           const std::vector<std::string>& nearby)
+    : scene_(scene),
+      request_(request),
+      initial_(scene),
+      winding_(initial_.winding()),
+      turn_(2 * std::numbers::pi * winding_),
+      simulation_(build(scene, winding_)),
+      faulty_(request.fault == "sign" ? with_wrong_sign(simulation_.evolution().system()) : nullptr),
+      system_(faulty_ ? *faulty_ : simulation_.evolution().system()),
+      plan_(simulation_.evolution().plan()),
+      random_(scene.initial.seed) {
+  verdict_.seed = scene.initial.seed;
+  verdict_.subject = fields ? "rows of " + *fields : "rows computed here";
+  if (fields) open_files(*fields, nearby);
+
+  moment_rows_ = FormCheck::rows_wanted(system_, plan_, request.regions);
+  drawer_.emplace(system_, Tangent::solved_rows(system_, plan_, moment_rows_));
+  const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
+  if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows());
+  if (request.wants("forms") && (!fields || request.chosen))
+    forms_.emplace(system_, plan_, moment_rows_,
+                   FormCheck::Options{request.regions, request.variations, request.tolerance, turn_,
+                                      request.fault == "variation"});
+  if (const auto all = symmetries(); request.wants("noether")) {
+    if (!all.empty()) noether_.emplace(system_, all, of_steps, request.force, seed());
+  }
+  if (!nearby.empty()) near_.emplace(request.tolerance);
+  require_interiors();
+  choose_moments();
+  if (fields) open_nearby(*fields, nearby);
+}
+
+void Verification::open_files(const std::string& fields, const std::vector<std::string>& nearby) {
+  const auto behind = simulation_.evolution().stepper().behind();
+  fields_ = std::make_unique<RecordedSection>(fields, system_, behind, scene_.problem.time_step, "--fields");
+  if (const auto winding = fields_->winding(); winding && system_.lattice().is_circle())
+    turn_ = 2 * std::numbers::pi * *winding;
+  if (nearby.size() % 2 != 0)
+    throw BadScene(
+        "command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
+        "directions; further pairs are the same at other sizes");
+  rows_ = fields_->rows() - std::ranges::max(behind);
+}
+
+// A region that is asked for and holds no equation would pass for verified.
+void Verification::require_interiors() const {
+  std::mt19937_64 unused;
+  for (const RegionRequest& request : request_.regions)
+    if (!request.kind && !drawer_->draw(request, unused))
+      throw scene_.settings.error("verify.regions", fmt::format("{} has no interior: every site of it is touched by a "
+                                                                "stencil that reaches out of it; make it larger",
+                                                                request.name.substr(request.name.find(' ') + 1)));
+}
+
+void Verification::choose_moments() {
+  if (!fields_) rows_ = std::max<std::int64_t>(scene_.steps + 1, moment_rows_);
+  const std::int64_t reach = equations_ ? equations_->reach() : 1;
+  if (rows_ < 2 * reach + 1)
+    throw BadScene(fmt::format(
+        "command line: --fields: of this scheme the file has {} whole row{}, and an equation reads {}; record more",
+        rows_, rows_ == 1 ? "" : "s", 2 * reach + 1));
+  held_rows_ = static_cast<int>(2 * reach + 1);
+  const bool regions = forms_ || noether_ || near_;
+  if (rows_ >= moment_rows_ && (regions || (!fields_ && request_.wants("newton")))) {
+    // Even rows, so that bricks keep their parity; the first and the last that fit among them.
+    std::set<std::int64_t> rows;
+    const std::int64_t last = rows_ - moment_rows_;
+    const std::int64_t moments = std::min<std::int64_t>(request_.moments, last / 2 + 1);
+    for (std::int64_t m = 0; m < moments; ++m) rows.insert(moments == 1 ? 0 : last * m / (moments - 1) / 2 * 2);
+    moments_.assign(rows.begin(), rows.end());
+    held_rows_ = std::max(held_rows_, moment_rows_);
+  } else if (regions) {
+    leave_out(fmt::format("regions: they take {} rows, and there are {}", moment_rows_, rows_));
+  }
+  if (equations_) bins_.emplace(system_.lattice(), scene_.problem.time_step, reach, rows_ - 2 * reach);
+  const FieldTheory& theory = simulation_.theory();
+  if (request_.wants("balance")) {
+    if (theory.components() != system_.fields()) leave_out("balance of energy and momentum: the sites move");
+    else {
+      balance_.emplace(theory, system_.lattice(), scene_.problem.time_step, turn_);
+      balance_rows_ = std::clamp<std::int64_t>(most_updates / 4 / system_.lattice().sites(), 3, rows_);
+    }
+  }
+}
+
+std::vector<LinearSymmetry> Verification::symmetries() const {
+  std::vector<LinearSymmetry> all = simulation_.symmetries();
+  if (!request_.generator.empty()) {
+    try {
+      all.push_back(read_generator(request_.generator, field_names(system_)));
+    } catch (const BadInput& bad) {
+      throw scene_.settings.located(bad);
+    }
+  }
+  if (!is_variational(system_)) all.clear();
+  return all;
+}
+
+// Read beside the rows themselves; how many of them are held is known by now.
+void Verification::open_nearby(const std::string& fields, const std::vector<std::string>& nearby) {
+  const auto behind = simulation_.evolution().stepper().behind();
+  for (const std::string& file : nearby) {
+    // A difference that is zero, or the same twice, keeps the form whatever the rows are.
+    for (std::size_t n = 0; n <= nearby_.size(); ++n)
+      if (std::error_code unreadable; fs::equivalent(file, n == 0 ? fields : nearby[n - 1], unreadable))
+        throw BadScene(fmt::format("command line: --nearby {}: is given twice; give solutions that differ", file));
+    nearby_.push_back(
+        std::make_unique<NearbyRows>(file, system_, behind, scene_.problem.time_step, turn_, held_rows_, equations_));
+    if (nearby_.back()->rows() != fields_->rows())
+      throw BadScene(
+          fmt::format("command line: --nearby {}: has {} rows, and the file of --fields has {}; give as many", file,
+                      nearby_.back()->rows(), fields_->rows()));
+  }
+}
+
+Window Verification::window(std::int64_t first, std::int64_t last) const {
+  const auto begin = held_.rows.begin() + (first - held_.first_row);
+  return system_.window(first, {begin, begin + (last - first + 1)}, turn_);
+}
+
+Verdict Verification::run() {
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    if (!fields_) initial_.start(simulation_);
+    pass_over_rows();
+    if (!Interrupt::asked()) {
+      if (!fields_ && balance_) {
+        measure_orders(scene_, winding_, balance_->results(), balance_rows_, verdict_);
+        balance_.reset();
+      }
+      if (!fields_ && request_.wants("reversal"))
+        reverse_time(scene_, winding_, first_rows_, std::max(request_.tolerance, 100 * scene_.problem.tolerance),
+                     verdict_);
+    }
+  } catch (const NumericalFailure& error) {
+    verdict_.status = status_of(error);
+    failure_ = std::current_exception();
+  }
+  if (Interrupt::asked()) verdict_.status = "interrupted";
+  collect();
+  verdict_.seconds = seconds_since(begin);
+  return std::move(verdict_);
+}
+
+void Verification::pass_over_rows() {
+  std::unique_ptr<SectionSource> source;
+  if (fields_) source = std::make_unique<RowsOfFile>(*fields_, rows_);
+  else source = std::make_unique<ComputedRows>(simulation_, rows_);
+  held_ = system_.window(0, {}, turn_);
+  Progress progress(rows_);
+  while (auto row = source->next()) {
+    take(std::move(*row));
+    progress.at(held_.last_row());
+    if (Interrupt::asked()) return;
+  }
+}
+
+void Verification::take(std::vector<double> row) {
+  const std::int64_t j = held_.first_row + static_cast<std::int64_t>(held_.rows.size());
+  if (request_.fault == "field" && j == rows_ / 2) {
+    double most = 0;
+    for (const double value : row) most = std::max(most, std::abs(value));
+    row[row.size() / static_cast<std::size_t>(2 * system_.components()) *
+        static_cast<std::size_t>(system_.components())] += 0.01 * (most > 0 ? most : 1);
+  }
+  if (first_rows_.size() < 2) first_rows_.push_back(row);
+  if (balance_ && j < balance_rows_) balance_->add(j, fields_of(system_, row));
+  held_.rows.push_back(std::move(row));
+  if (static_cast<int>(held_.rows.size()) > held_rows_) {
+    held_.rows.erase(held_.rows.begin());
+    ++held_.first_row;
+  }
+  if (equations_ && j >= 2 * equations_->reach()) {
+    const std::int64_t middle = j - equations_->reach();
+    equations_->at(held_, middle);
+    bins_->add(middle, equations_->newest(), system_.components());
+  }
+  for (const auto& nearby : nearby_) nearby->take(j);
+  if (next_moment_ < moments_.size() && j == moments_[next_moment_] + moment_rows_ - 1) {
+    look_at_moment();
+    ++next_moment_;
+  }
+}
+
+void Verification::look_at_moment() {
+  const Window rows = window(moments_[next_moment_], held_.last_row());
+  if (forms_) forms_->at(rows, random_);
+  if (noether_) noether_->at(rows, *drawer_, request_.regions, random_);
+  if (near_) look_at_nearby(rows);
+  if (!fields_ && request_.wants("newton") && next_moment_ + 1 == moments_.size()) {
+    if (auto check = check_newton(system_, plan_, rows, seed())) verdict_.checks.push_back(std::move(*check));
+  }
+}
+
+void Verification::look_at_nearby(const Window& rows) {
+  std::vector<Window> others;
+  for (const auto& nearby : nearby_) others.push_back(nearby->difference(rows));
+  for (const RegionRequest& request : request_.regions) {
+    const auto region = drawer_->draw(request, random_);
+    if (!region) continue;
+    const RegionSystem here(system_, *region, rows.first_row, turn_);
+    std::vector<RegionSystem::Pair> pairs;
+    for (std::size_t n = 0; n + 1 < others.size(); n += 2)
+      pairs.push_back({here.restricted(others[n]), here.restricted(others[n + 1])});
+    near_->at(request.name, here, here.restricted(rows), pairs);
+    verdict_.stencils += here.stencils();
+  }
+}
+
+void Verification::collect() {
+  std::vector<Check> later = std::move(verdict_.checks);
+  verdict_.checks.clear();
+  const auto add = [&](std::vector<Check> checks) {
+    verdict_.checks.insert(verdict_.checks.end(), std::make_move_iterator(checks.begin()),
+                           std::make_move_iterator(checks.end()));
+  };
+  if (equations_) {
+    add(equations_->checks());
+    verdict_.map = bins_->map();
+    verdict_.stencils += equations_->rows() * system_.lattice().sites();
+  }
+  if (forms_) {
+    add(forms_->checks());
+    for (const std::string& words : forms_->left_out()) leave_out(words);
+    for (const auto& p : forms_->points()) verdict_.points.push_back({p.kind, p.stencils, p.value, p.local});
+    const auto& worst = forms_->worst();
+    verdict_.worst.title = worst.words;
+    verdict_.worst.value = worst.value;
+    double total = 0;
+    for (const double weight : worst.weights) total += weight;
+    for (std::size_t n = 0; n < worst.sites.size(); ++n)
+      verdict_.worst.sites.push_back({worst.sites[n].time, worst.sites[n].space, worst.sites[n].node,
+                                      worst.interior[n] != 0, worst.boundary[n] != 0,
+                                      total > 0 ? worst.weights[n] / total : 0});
+    verdict_.stencils += forms_->stencils();
+  } else if (fields_) {
+    leave_out(
+        "form formula with exact first variations: it holds at any rows, and would test the scheme, not the file");
+  }
+  if (near_ && !moments_.empty() && near_->checks().empty() && near_->left_out().empty())
+    leave_out("form formula by differences: where regions were drawn, a nearby solution is the same as --fields");
+  for (const auto& nearby : nearby_) add(nearby->checks());
+  if (near_) {
+    add(near_->checks());
+    for (const std::string& words : near_->left_out()) leave_out(words);
+  } else if (fields_) leave_out("form formula by differences: give two nearby solutions, --nearby A.h5 --nearby B.h5");
+  if (noether_) add(noether_->checks());
+  else if (request_.wants("noether")) {
+    leave_out(is_variational(system_)
+                  ? "Noether: the theory declares no symmetry of its fields; try one by verify.generator"
+                  : "Noether: the scheme has no Lagrangian");
+  }
+  if (!fields_ && request_.wants("derivatives")) add(check_derivatives(system_, seed()));
+  add(std::move(later));
+  if (fields_ && request_.chosen)
+    for (const char* name : {"reversal", "derivatives", "newton"})
+      if (request_.wants(name)) leave_out(fmt::format("{}: of the scheme and not of rows; leave out --fields", name));
+  if (balance_) {  // without an order
+    for (Measured& m : balance_->results()) verdict_.measured.push_back(std::move(m));
+  }
+  // A fault that was planted where nobody looked must not pass for one that is not there.
+  if (request_.fault != "none" && verdict_.status == "done" && verdict_.failed() == 0)
+    verdict_.checks.push_back({.name = "planted fault: " + request_.fault,
+                               .region = "nowhere",
+                               .value = 1,
+                               .failure =
+                                   "The planted fault was not found: no check that was made looks for it. Ask for "
+                                   "more of them by verify.checks, or plant no fault."});
+}
+
+}  // namespace delf

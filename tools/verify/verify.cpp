@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "tools/verify/verify.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "tools/engine.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/outcome.hpp"
+#include "tools/scene/text_file.hpp"
+#include "tools/verify/verdict_figures.hpp"
+#include "tools/verify/verification.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void remove_figures(const fs::path& folder) {
+  std::error_code error;
+  for (const std::string& name : verdict_figure_names())
+    for (const char* ending : {".png", ".svg"}) fs::remove(folder / "figures" / (name + ending), error);
+}
+
+ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::optional<std::string>& fields,
+                   const std::vector<std::string>& nearby) {
+  const Interrupt interrupt;
+  const VerifyRequest request = read_verify_request(scene);
+  Verification verification(scene, request, fields, nearby);
+  make_results_folder(folder);  // what an earlier one left there stays until there is something new
+  const Verdict verdict = verification.run();
+  write_text_file(folder / "verify.json", verdict_json(scene, verdict));
+  remove_figures(folder);
+  std::string missing;
+  if (scene.figures) {
+    try {
+      missing = draw_verdict(verdict, scene.name, scheme_in_words(scene.problem), folder);
+    } catch (const std::exception& error) {  // a figure that cannot be drawn fails nothing
+      missing = error.what();
+    }
+  }
+  fmt::print("{}", verdict_report(scene, verdict));
+  fmt::print("{}: verify.json{}\n", folder.string(), scene.figures && missing.empty() ? " figures" : "");
+  if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
+  if (verification.failure()) std::rethrow_exception(verification.failure());
+  if (verdict.status == "interrupted") return ExitCode::interrupted;
+  return verdict.passed() ? ExitCode::done : ExitCode::check_failed;
+}
+
+}  // namespace
+
+ExitCode verify(const Scene& scene, const fs::path& folder, const std::optional<std::string>& fields,
+                const std::vector<std::string>& nearby) {
+  return with_memory_for(scene, [&] { return verify_in(folder, scene, fields, nearby); });
+}
+
+}  // namespace delf

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/failure.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// `delf verify`: checks the rows of a scene, or those of the file `fields`, and writes verify.json and figures into
+/// `folder`. A failed check is told by the exit code.
+ExitCode verify(const Scene&, const std::filesystem::path& folder, const std::optional<std::string>& fields,
+                const std::vector<std::string>& nearby);
+
+}  // namespace delf

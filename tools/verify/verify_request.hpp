@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "schemes/verify/drawn_region.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// The [verify] keys of a scene.
+struct VerifyRequest {
+  std::vector<RegionRequest> regions;
+  std::vector<std::string> checks;  ///< names of verify_checks()
+  bool chosen = false;              ///< the scene names its checks
+  int variations = 2;
+  int moments = 8;
+  double tolerance = 1e-13;
+  std::string generator;  ///< empty: none
+  bool force = false;
+  std::string fault;  ///< none, variation, sign, field
+
+  bool wants(std::string_view check) const;
+};
+
+/// What can be checked: forms, equations, noether, balance, reversal, derivatives, newton.
+const std::vector<std::string>& verify_checks();
+/// Faults that can be planted.
+const std::vector<std::string>& verify_faults();
+
+/// Throws BadScene.
+VerifyRequest read_verify_request(const Scene&);
+
+}  // namespace delf

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "tools/workprecision/contestant.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/scene/suggestion.hpp"
+
+namespace delf {
+
+Lattice lattice_of(const Scene& scene, int sites) {
+  const Lattice& given = scene.problem.lattice;
+  if (given.space() == Space::point) return Lattice::point();
+  if (given.is_circle()) return Lattice::circle(sites, given.length());
+  return Lattice::interval(sites, given.length(), given.left(), given.right());
+}
+
+std::vector<Contestant> contestants(const Scene& scene, const WorkPrecisionRequest& request) {
+  std::vector<Contestant> all = engine_contestants(scene);
+  if (request.peers)
+    for (Contestant& peer : peer_contestants(scene)) all.push_back(std::move(peer));
+  if (request.schemes.empty()) return all;
+  std::vector<bool> named(all.size());
+  for (const std::string& name : request.schemes) {
+    bool any = false;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      // "spacetime" names all of its degrees, "peers" all of the other programs
+      if (all[i].name == name || all[i].name.starts_with(name + " ") || (name == "peers" && all[i].peer))
+        named[i] = any = true;
+    if (any || name == "peers") continue;
+    std::vector<std::string> names;
+    for (const Contestant& one : all) names.push_back(one.name);
+    throw scene.settings.error("workprecision.schemes",
+                               fmt::format("{} is no scheme here{}", name, suggestion(name, names)));
+  }
+  std::vector<Contestant> chosen;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (named[i]) chosen.push_back(std::move(all[i]));
+  return chosen;
+}
+
+}  // namespace delf

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lattice/lattice.hpp"
+#include "tools/scene/scene.hpp"
+#include "tools/workprecision/workprecision_request.hpp"
+
+namespace delf {
+
+/// N and h of a run; `steps` of them end exactly at run.until.
+struct Resolution {
+  int sites = 0;
+  std::int64_t steps = 0;
+  double time_step = 0;
+};
+
+/// The scene's lattice with another number of sites.
+Lattice lattice_of(const Scene&, int sites);
+
+/// A scheme on a lattice, started: what is timed when it moves on.
+class Racer {
+ public:
+  virtual ~Racer() = default;
+  /// Back to its first rows.
+  virtual void restart() = 0;
+  /// Index of its newest row.
+  virtual std::int64_t newest() const = 0;
+  /// So many steps more, or fewer if Ctrl-C is pressed. Throws NumericalFailure.
+  virtual void advance(std::int64_t steps) = 0;
+  /// The fields of the newest row: out[i·d + a].
+  virtual void copy(std::span<double> out) const = 0;
+  /// Of the newest row; not a number if there is none.
+  virtual double energy() const = 0;
+};
+
+/// A scheme of the engine, or another program, that can run the scene at any resolution.
+struct Contestant {
+  std::string name;
+  bool peer = false;
+  int nodes = 1;  ///< that a cell has in space: how much coarser its lattices may begin
+  int rank = 0;   ///< the more, the sooner it is to be the reference; 0: never
+  /// Builds and starts it. Throws BadInput or NumericalFailure.
+  std::function<std::unique_ptr<Racer>(const Resolution&)> start;
+};
+
+/// Those that the request names, the engine's first: every scheme of the registry, and the peers that the scene has an
+/// equation for. They refer to the scene. Throws BadScene for names that there are none of.
+std::vector<Contestant> contestants(const Scene&, const WorkPrecisionRequest&);
+
+/// All schemes of the engine.
+std::vector<Contestant> engine_contestants(const Scene&);
+/// Programs by other people; empty if the scene has another equation than theirs, or this build has none.
+std::vector<Contestant> peer_contestants(const Scene&);
+
+}  // namespace delf

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "tools/workprecision/contestant.hpp"
+
+#ifdef DELF_HAS_PEERS
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "lattice/error.hpp"
+#include "schemes/state.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/peers/peer.hpp"
+
+namespace delf {
+
+namespace {
+
+using peers::WaveEquation;
+
+// The scene's equation in the peers' words, if it is one of theirs: a single field on a circle.
+std::optional<WaveEquation> equation_of(const Scene& scene) {
+  const Problem& p = scene.problem;
+  if (!p.lattice.is_circle() || p.circle_valued || scene.initial.name == "file") return std::nullopt;
+  WaveEquation equation{};
+  if (p.theory == "wave") equation.potential = WaveEquation::Potential::none;
+  else if (p.theory == "klein-gordon") equation.potential = WaveEquation::Potential::quadratic;
+  else if (p.theory == "sine-gordon") equation.potential = WaveEquation::Potential::sine_gordon;
+  else if (p.theory == "phi4") equation.potential = WaveEquation::Potential::phi4;
+  else return std::nullopt;
+  equation.mass = p.mass;
+  equation.lambda = p.lambda;
+  equation.length = p.lattice.length();
+  const auto state = make_state(scene.initial, p.lattice);
+  equation.turn = 2 * std::numbers::pi * scene.initial.winding.value_or(state->winding());
+  return equation;
+}
+
+double potential(const WaveEquation& e, double phi) {
+  switch (e.potential) {
+    case WaveEquation::Potential::quadratic:
+      return 0.5 * e.mass * e.mass * phi * phi;
+    case WaveEquation::Potential::sine_gordon:
+      return e.mass * e.mass * (1 - std::cos(phi));
+    case WaveEquation::Potential::phi4:
+      return 0.25 * e.lambda * (phi * phi - 1) * (phi * phi - 1);
+    default:
+      return 0;
+  }
+}
+
+class PeerRacer final : public Racer {
+ public:
+  PeerRacer(const Scene& scene, const WaveEquation& equation, const peers::PeerInfo& info, const Resolution& r)
+      : equation_(equation), h_(r.time_step), phi_(static_cast<std::size_t>(r.sites)), phi_t_(phi_.size()) {
+    equation_.sites = r.sites;
+    const Lattice lattice = lattice_of(scene, r.sites);
+    const auto state = make_state(scene.initial, lattice);
+    state->values(0, lattice, phi_);
+    state->velocities(0, lattice, phi_t_);
+    first_ = phi_, first_t_ = phi_t_;
+    try {
+      peer_ = info.make(equation_);
+    } catch (const std::invalid_argument& error) {
+      throw BadInput("", error.what());
+    }
+    PeerRacer::restart();
+  }
+  void restart() override {
+    peer_->start(first_, first_t_);
+    newest_ = 0;
+  }
+  std::int64_t newest() const override { return newest_; }
+  void advance(std::int64_t steps) override {
+    // in one call, unless it takes so long that Ctrl-C would have to wait
+    const std::int64_t most = std::max<std::int64_t>(1, 20000000 / equation_.sites);
+    while (steps > 0 && !Interrupt::asked()) {
+      const std::int64_t now = std::min(steps, most);
+      peer_->advance(h_, now);
+      newest_ += now, steps -= now;
+    }
+  }
+  void copy(std::span<double> out) const override {
+    peer_->copy(out, phi_t_);
+    for (const double v : out)
+      if (!std::isfinite(v)) throw NotFinite("the field is no longer finite");
+  }
+  // k Σ ½φ_t² + ½φ_x² + V, with φ_x by central differences of order eight
+  double energy() const override {
+    peer_->copy(phi_, phi_t_);
+    constexpr double weights[] = {4. / 5, -1. / 5, 4. / 105, -1. / 280};
+    const int N = equation_.sites;
+    const double k = equation_.length / N;
+    const auto phi = [&](int i) {
+      const int home = ((i % N) + N) % N;
+      return phi_[static_cast<std::size_t>(home)] + equation_.turn * ((i - home) / N);
+    };
+    double sum = 0;
+    for (int i = 0; i < N; ++i) {
+      double slope = 0;
+      for (int m = 1; m <= 4; ++m) slope += weights[m - 1] * (phi(i + m) - phi(i - m)) / k;
+      const double phi_t = phi_t_[static_cast<std::size_t>(i)];
+      sum += 0.5 * (phi_t * phi_t + slope * slope) + potential(equation_, phi(i));
+    }
+    return k * sum;
+  }
+
+ private:
+  WaveEquation equation_;
+  double h_;
+  mutable std::vector<double> phi_, phi_t_;
+  std::vector<double> first_, first_t_;
+  std::unique_ptr<peers::Peer> peer_;
+  std::int64_t newest_ = 0;
+};
+
+}  // namespace
+
+std::vector<Contestant> peer_contestants(const Scene& scene) {
+  std::vector<Contestant> all;
+  const auto equation = equation_of(scene);
+  if (!equation) return all;
+  for (const peers::PeerInfo& info : peers::peers())
+    all.push_back({info.name, true, 1, 0, [&scene, &info, equation = *equation](const Resolution& r) {
+                     return std::unique_ptr<Racer>(new PeerRacer(scene, equation, info, r));
+                   }});
+  return all;
+}
+
+}  // namespace delf
+
+#else
+
+namespace delf {
+
+std::vector<Contestant> peer_contestants(const Scene&) { return {}; }
+
+}  // namespace delf
+
+#endif

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "tools/workprecision/lower_envelope.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace delf {
+
+std::vector<std::size_t> lower_envelope(const std::vector<WorkPrecisionRun>& runs, std::span<const std::size_t> among) {
+  std::vector<std::size_t> sorted;
+  for (const std::size_t i : among)
+    if (std::isfinite(runs[i].error_linf) && std::isfinite(runs[i].seconds)) sorted.push_back(i);
+  std::ranges::sort(sorted, [&](std::size_t a, std::size_t b) {
+    return runs[a].seconds != runs[b].seconds ? runs[a].seconds < runs[b].seconds
+                                              : runs[a].error_linf < runs[b].error_linf;
+  });
+  std::vector<std::size_t> front;
+  for (const std::size_t i : sorted)
+    if (front.empty() || runs[i].error_linf < runs[front.back()].error_linf) front.push_back(i);
+  return front;
+}
+
+std::optional<std::size_t> cheapest(const std::vector<WorkPrecisionRun>& runs, std::span<const std::size_t> among,
+                                    double accuracy) {
+  std::optional<std::size_t> best;
+  for (const std::size_t i : among)
+    if (runs[i].error_linf <= accuracy && std::isfinite(runs[i].seconds) &&
+        (!best || runs[i].seconds < runs[*best].seconds))
+      best = i;
+  return best;
+}
+
+double slope_of(const std::vector<WorkPrecisionRun>& runs, std::span<const std::size_t> front) {
+  std::vector<std::size_t> rising(front.begin(), front.end());
+  while (rising.size() > 2 && runs[rising.back()].error_linf > 0.5 * runs[rising[rising.size() - 2]].error_linf)
+    rising.pop_back();
+  // the more accurate half, on the logarithmic scale: coarse runs are not asymptotic
+  if (rising.size() > 3) {
+    const double middle = std::sqrt(runs[rising.front()].error_linf * runs[rising.back()].error_linf);
+    std::vector<std::size_t> half;
+    for (const std::size_t i : rising)
+      if (runs[i].error_linf <= middle) half.push_back(i);
+    if (half.size() >= 2) rising = half;
+  }
+  if (rising.size() < 2) return WorkPrecisionRun::unknown;
+  double x = 0, y = 0, xx = 0, xy = 0;
+  const auto n = static_cast<double>(rising.size());
+  for (const std::size_t i : rising) {
+    const double s = std::log(runs[i].seconds), e = std::log(std::max(runs[i].error_linf, 1e-300));
+    x += s, y += e, xx += s * s, xy += s * e;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+void compare(WorkPrecisionOutcome& outcome, const std::vector<double>& accuracies) {
+  std::vector<WorkPrecisionRun>& runs = outcome.runs;
+  outcome.lines.clear(), outcome.costs.clear();
+  std::vector<std::size_t> sides[2];  // of the engine, of the peers
+  std::vector<std::vector<std::size_t>> members;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].on_envelope = false;
+    sides[runs[i].peer ? 1 : 0].push_back(i);
+    const auto line = std::ranges::find(outcome.lines, runs[i].scheme, &WorkPrecisionLine::scheme);
+    const auto at = static_cast<std::size_t>(line - outcome.lines.begin());
+    if (line == outcome.lines.end()) {
+      outcome.lines.push_back({runs[i].scheme, runs[i].peer, {}, WorkPrecisionRun::unknown});
+      members.emplace_back();
+    }
+    members[at].push_back(i);
+  }
+  for (std::size_t l = 0; l < members.size(); ++l) {
+    outcome.lines[l].front = lower_envelope(runs, members[l]);
+    outcome.lines[l].slope = slope_of(runs, outcome.lines[l].front);
+  }
+  for (const auto& side : sides)
+    for (const std::size_t i : lower_envelope(runs, side)) runs[i].on_envelope = true;
+  for (const double accuracy : accuracies) {
+    WorkPrecisionCost cost{accuracy, cheapest(runs, sides[0], accuracy), cheapest(runs, sides[1], accuracy),
+                           WorkPrecisionRun::unknown};
+    if (cost.engine && cost.peer) cost.ratio = runs[*cost.peer].seconds / runs[*cost.engine].seconds;
+    outcome.costs.push_back(cost);
+  }
+}
+
+}  // namespace delf

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "tools/workprecision/resolution_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <stdexcept>
+
+#include "lattice/error.hpp"
+#include "tools/run/interrupt.hpp"
+
+namespace delf {
+
+namespace {
+
+constexpr double coarsest = 8;  // the scene's N over the first, and the first h over the scene's
+// The seconds of two runs within this are taken for equal: they have been run once.
+constexpr double clearly = 0.7;
+constexpr double hopelessly = 0.03;
+constexpr double falling = 0.85;
+constexpr double unstable = 10;  // times the field
+constexpr double unknown = WorkPrecisionRun::unknown;
+constexpr double hardly_better = 1.1;  // rounding at the floor is no progress
+
+double refined(int times) { return std::pow(2.0, 0.5 * times); }
+
+}  // namespace
+
+ResolutionSearch::ResolutionSearch(const Scene& scene, const WorkPrecisionRequest& request,
+                                   const std::vector<Contestant>& contestants, const ComparedSolution& solution)
+    : scene_(scene),
+      request_(request),
+      contestants_(contestants),
+      solution_(solution),
+      reasons_(contestants.size()),
+      seen_(contestants.size()) {
+  const std::vector<double> there = solution.at(scene.problem.lattice, request.until);
+  const auto [least, most] = std::ranges::minmax(there);
+  field_scale_ = std::max(1e-300, std::max(std::abs(most), std::abs(least)));
+  for (std::size_t c = 0; c < contestants.size(); ++c) seed(c);
+}
+
+void ResolutionSearch::seed(std::size_t c) {
+  const double own = scene_.problem.time_step / scene_.problem.lattice.space_step();
+  std::vector<double> courants = request_.courants;
+  if (courants.empty()) courants = {request_.sites.empty() ? 0 : own};
+  for (const double courant : courants) {
+    if (request_.sites.empty()) push({c, 0, 0, courant, 0, 0, 0, unknown});
+    for (const int sites : request_.sites) push({c, 0, 0, courant, sites, 0, 0, unknown});
+  }
+}
+
+Resolution ResolutionSearch::resolution(const Next& next) const {
+  const Lattice& lattice = scene_.problem.lattice;
+  Resolution r;
+  double h = scene_.problem.time_step * coarsest / refined(next.time);
+  if (lattice.space() == Space::point) r.sites = 1;
+  else {
+    const double coarse = lattice.cells() / coarsest / contestants_[next.contestant].nodes;
+    // an even number of cells: stencils of brick walls close around a circle then
+    const auto cells = [&](int times) { return 2 * std::max(2L, std::lround(0.5 * coarse * refined(times))); };
+    const int ends = lattice.is_circle() ? 0 : 1;
+    r.sites = next.sites ? next.sites : static_cast<int>(cells(next.space)) + ends;
+    const double k = lattice_of(scene_, r.sites).space_step();
+    if (next.courant > 0) h = next.courant * k;
+  }
+  // until = steps · h, exactly
+  r.steps = std::max<std::int64_t>(1, std::llround(request_.until / h));
+  r.time_step = request_.until / static_cast<double>(r.steps);
+  return r;
+}
+
+void ResolutionSearch::push(const Next& next) {
+  const Resolution r = resolution(next);
+  auto& seen = seen_[next.contestant];
+  if (const std::pair place{r.sites, r.steps}; std::ranges::find(seen, place) == seen.end()) {
+    seen.push_back(place);
+    queue_.push_back(next);
+    if (next.sites) queue_.back().cost = static_cast<double>(r.sites) * static_cast<double>(r.steps) * 1e-8;
+  }
+}
+
+void ResolutionSearch::run(Clock::time_point until, const std::function<void()>& at) {
+  while (!queue_.empty() && !Interrupt::asked()) {
+    const auto cheapest = std::ranges::min_element(queue_, {}, &Next::cost);
+    const double left = std::chrono::duration<double>(until - Clock::now()).count();
+    if (cheapest->cost + cheapest->setup > left) {
+      out_of_time_ = true;
+      break;
+    }
+    const Next next = *cheapest;
+    queue_.erase(cheapest);
+    attempt(next);
+    at();
+  }
+}
+
+void ResolutionSearch::attempt(const Next& next) {
+  const Resolution r = resolution(next);
+  constexpr std::int64_t fewest_steps = 8;
+  if (r.steps < fewest_steps && !next.sites)
+    return push({next.contestant, next.space + 1, next.time + 1, next.courant, 0, next.cost, next.setup, unknown});
+  std::string& reason = reasons_[next.contestant];
+  const auto failed = [&](const std::string& why) {
+    if (reason.empty()) reason = why;
+  };
+  try {
+    TriedRun tried = run_once(scene_, contestants_, next.contestant, r, request_.until, solution_);
+    if (Interrupt::asked()) return;  // it is not at its end
+    if (!std::isfinite(tried.result.error_linf)) return failed("the field is no longer finite");
+    tried_.push_back(std::move(tried));
+    for (TriedRun& run : tried_)
+      if (run.contestant == next.contestant && run.racer && !worth(run)) run.racer.reset();
+    if (!next.sites) refine(next, tried_.back().result);
+  } catch (const BadInput& error) {
+    failed(error.what());
+    // a stencil may be too wide, or a wave too short, for few sites
+    if (!next.sites && r.sites < scene_.problem.lattice.sites())
+      push({next.contestant, next.space + 1, next.time + 1, next.courant, 0, next.cost, next.setup, unknown});
+  } catch (const NumericalFailure& error) {
+    failed(error.what());
+    // unstable, or without a solution: a smaller step may be neither
+    const double least = lattice_of(scene_, r.sites).space_step() / 64;
+    if (!next.sites && next.courant == 0 && r.time_step > least)
+      push({next.contestant, next.space, next.time + 1, 0, 0, 1.5 * next.cost, next.setup, unknown});
+  } catch (const std::bad_alloc&) {
+    failed(fmt::format("out of memory at N = {}", r.sites));
+  } catch (const std::length_error&) {
+    failed(fmt::format("out of memory at N = {}", r.sites));
+  }
+}
+
+// Errors as large as the field itself say nothing of how refining will change them.
+bool ResolutionSearch::too_coarse(const Next& next, const WorkPrecisionRun& run) const {
+  const Problem& p = scene_.problem;
+  const int scene_sites = p.lattice.sites() / contestants_[next.contestant].nodes;
+  return run.error_linf > 0.1 * field_scale_ && run.sites <= 2 * scene_sites &&
+         run.time_step >= (p.lattice.space() == Space::point ? p.time_step : run.space_step) / 16;
+}
+
+bool ResolutionSearch::beaten(const TriedRun& run, double share) const {
+  return std::ranges::any_of(tried_, [&](const TriedRun& other) {
+    return other.contestant == run.contestant && other.result.seconds < share * run.result.seconds &&
+           other.result.error_linf <= hardly_better * run.result.error_linf;
+  });
+}
+
+bool ResolutionSearch::worth(const TriedRun& run) const {
+  return !request_.sites.empty() || (run.result.error_linf <= field_scale_ && !beaten(run, clearly));
+}
+
+void ResolutionSearch::refine(const Next& next, const WorkPrecisionRun& run) {
+  if (run.error_linf <= 0.5 * request_.accuracies.back()) return;
+  const bool point = scene_.problem.lattice.space() == Space::point, free = next.courant == 0;
+  const auto further = [&](int space, int time, double before) {
+    push({next.contestant, next.space + space, next.time + time, next.courant, 0, run.seconds * refined(space + time),
+          run.seconds_setup * refined(space), before});
+  };
+  if (run.error_linf > unstable * field_scale_) return free ? further(0, 1, unknown) : void();
+  const bool single = (too_coarse(next, run) || !beaten(tried_.back(), clearly));
+  // Dispersion may cancel at one resolution: those after it fall short of it, but still get better.
+  const bool both = single || (run.error_linf < falling * next.before && !beaten(tried_.back(), hopelessly));
+  if (point) return both ? further(0, 1, run.error_linf) : void();
+  if (free && single) further(0, 1, unknown), further(1, 0, unknown);
+  if (both) further(1, 1, run.error_linf);
+}
+
+std::vector<TriedRun> ResolutionSearch::worth_timing() const {
+  std::vector<TriedRun> worth_timing;
+  for (const TriedRun& run : tried_)
+    if (worth(run)) worth_timing.push_back(run);
+  return worth_timing;
+}
+
+std::vector<WorkPrecisionOutcome::LeftOut> ResolutionSearch::left_out() const {
+  std::vector<WorkPrecisionOutcome::LeftOut> list;
+  for (std::size_t c = 0; c < contestants_.size(); ++c) {
+    if (std::ranges::any_of(tried_, [&](const TriedRun& run) { return run.contestant == c && worth(run); })) continue;
+    double least = std::numeric_limits<double>::infinity();
+    for (const TriedRun& run : tried_)
+      if (run.contestant == c) least = std::min(least, run.result.error_linf);
+    std::string reason = reasons_[c];
+    if (std::isfinite(least))
+      reason = fmt::format("no error below the field itself at what was run: {:.2g} at best", least);
+    else if (reason.empty())
+      reason = Interrupt::asked() ? "interrupted before it was run" : "the time was used up before it was run";
+    list.push_back({contestants_[c].name, reason});
+  }
+  return list;
+}
+
+}  // namespace delf

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/workprecision/contestant.hpp"
+#include "tools/run/solution_error.hpp"
+#include "tools/workprecision/workprecision_outcome.hpp"
+
+namespace delf {
+
+/// A resolution that a contestant has been run at, once, untimed.
+struct TriedRun {
+  std::size_t contestant;
+  Resolution resolution;
+  WorkPrecisionRun result;            ///< its seconds are those of this first run
+  std::shared_ptr<Racer> racer = {};  ///< kept while the run is worth timing: to build it may cost more than its steps
+};
+
+/// Runs contestants once at the resolutions that a request names, or at those that turn out to matter:
+///
+/// Coarse first. N and h are refined by √2: each alone and both together from every run that no cheaper one of the same
+/// scheme equals, and both together as long as that still helps; with given Courant numbers, both together. It ends for
+/// a scheme at its floor, or where the smallest accuracy asked for is reached. Of all schemes' next runs the one with
+/// the cheapest steps is taken first, so that each gets as far as any other for the same cost of a run, until the time
+/// is used up.
+class ResolutionSearch {
+ public:
+  using Clock = std::chrono::steady_clock;
+  ResolutionSearch(const Scene&, const WorkPrecisionRequest&, const std::vector<Contestant>&, const ComparedSolution&);
+
+  /// Until there is nothing left to run, `until` has come, or Ctrl-C. `at` is called after each run.
+  void run(Clock::time_point until, const std::function<void()>& at);
+
+  /// Those to be timed: all of a given ladder; of a chosen one, those that no other of the scheme clearly beats.
+  std::vector<TriedRun> worth_timing() const;
+  /// How many resolutions were run.
+  std::size_t tried() const { return tried_.size(); }
+  /// Schemes without any run worth timing, and why.
+  std::vector<WorkPrecisionOutcome::LeftOut> left_out() const;
+  bool out_of_time() const { return out_of_time_; }
+
+ private:
+  struct Next {
+    std::size_t contestant;
+    int space, time;     ///< times that N and h were refined by √2
+    double courant;      ///< 0: h is refined on its own
+    int sites;           ///< if given; else 0
+    double cost, setup;  ///< predicted, in seconds: of the steps, and before them
+    double before;       ///< the error before N and h were refined together; not a number if they were not
+  };
+  void seed(std::size_t contestant);
+  Resolution resolution(const Next&) const;
+  void attempt(const Next&);
+  void refine(const Next&, const WorkPrecisionRun&);
+  void push(const Next&);
+  /// Another run of the scheme, as accurate, took less than this share of the seconds.
+  bool worth(const TriedRun&) const;
+  bool beaten(const TriedRun&, double share) const;
+  bool too_coarse(const Next&, const WorkPrecisionRun&) const;
+
+  const Scene& scene_;
+  const WorkPrecisionRequest& request_;
+  const std::vector<Contestant>& contestants_;
+  const ComparedSolution& solution_;
+  double field_scale_ = 1;
+  std::vector<Next> queue_;
+  std::vector<TriedRun> tried_;
+  std::vector<std::string> reasons_;
+  std::vector<std::vector<std::pair<int, std::int64_t>>> seen_;
+  bool out_of_time_ = false;
+};
+
+/// Builds it and runs it once: errors against the solution, the energy at some fifty rows, and seconds that leave these
+/// out. Throws BadInput or NumericalFailure.
+TriedRun run_once(const Scene&, const std::vector<Contestant>&, std::size_t contestant, const Resolution&, double until,
+                  const ComparedSolution&);
+
+}  // namespace delf

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "tools/workprecision/workprecision.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "tools/engine.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/workprecision/lower_envelope.hpp"
+#include "tools/run/progress.hpp"
+#include "tools/run/reference_run.hpp"
+#include "tools/run/seconds_since.hpp"
+#include "tools/scene/text_file.hpp"
+#include "tools/workprecision/timed_rounds.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Shares of the budget: of the reference, and of all first runs.
+constexpr double reference_share = 0.1, search_share = 0.6;
+
+Clock::time_point after(Clock::time_point begin, double seconds) {
+  return begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+ExitCode workprecision_in(const fs::path& folder, const Scene& scene) {
+  const Interrupt interrupt;
+  const WorkPrecisionRequest request = read_workprecision_request(scene);
+  const WorkPrecisionOutcome outcome = compare_schemes(scene, request);
+  make_results_folder(folder);
+  write_text_file(folder / "workprecision.json", workprecision_json(scene, request, outcome));
+  write_text_file(folder / "workprecision.csv", workprecision_csv(outcome));
+  std::string missing;
+  std::error_code none;
+  for (const char* ending : {".png", ".svg"})
+    fs::remove(folder / "figures" / (std::string("workprecision") + ending), none);
+  if (scene.figures && !outcome.runs.empty()) {
+    try {
+      missing = draw_workprecision(scene, outcome, folder);
+    } catch (const std::exception& error) {  // a figure that cannot be drawn fails nothing
+      missing = error.what();
+    }
+  }
+  fmt::print("{}", workprecision_report(scene, request, outcome));
+  const bool drawn = fs::exists(folder / "figures" / "workprecision.svg", none);
+  fmt::print("{}: workprecision.json workprecision.csv{}\n", folder.string(), drawn ? " figures" : "");
+  if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
+  if (outcome.status == "interrupted") return ExitCode::interrupted;
+  return outcome.runs.empty() ? ExitCode::numerics_failed : ExitCode::done;
+}
+
+}  // namespace
+
+WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequest& request) {
+  const auto begin = Clock::now();
+  WorkPrecisionOutcome outcome;
+  const std::vector<Contestant> schemes = contestants(scene, request);
+  const Reference reference = find_reference(scene, request, after(begin, reference_share * request.budget));
+  outcome.reference = reference.words;
+  outcome.reference_error = reference.error;
+
+  constexpr double milli = 1e-3;
+  Progress progress(static_cast<std::int64_t>(request.budget / milli));
+  const auto tell = [&] {
+    progress.at(std::min(static_cast<std::int64_t>(seconds_since(begin) / milli),
+                         static_cast<std::int64_t>(request.budget / milli)));
+  };
+  ResolutionSearch search(scene, request, schemes, reference.solution);
+  search.run(after(Clock::now(), search_share * request.budget), tell);
+  outcome.left_out = search.left_out();
+  outcome.tried = search.tried();
+
+  std::vector<TriedRun> runs = search.worth_timing();
+  std::vector<double> costs;
+  for (const TriedRun& run : runs) costs.push_back(run.result.seconds);
+  const std::vector<int> repeats = shared_repeats(costs, request.repeats, request.budget - seconds_since(begin));
+  time_in_turn(runs, repeats, request.seed, after(begin, request.budget), tell);
+
+  outcome.fewer_repeats =
+      std::ranges::any_of(runs, [&](const TriedRun& run) { return run.result.repeats < request.repeats; });
+  for (TriedRun& run : runs) outcome.runs.push_back(std::move(run.result));
+  std::ranges::stable_sort(outcome.runs, [](const WorkPrecisionRun& a, const WorkPrecisionRun& b) {
+    if (a.peer != b.peer) return b.peer;
+    return a.scheme != b.scheme ? a.scheme < b.scheme : a.seconds < b.seconds;
+  });
+  compare(outcome, request.accuracies);
+  if (Interrupt::asked()) outcome.status = "interrupted";
+  outcome.seconds = seconds_since(begin);
+  return outcome;
+}
+
+ExitCode workprecision(const Scene& scene, const fs::path& folder) {
+  return with_memory_for(scene, [&] { return workprecision_in(folder, scene); });
+}
+
+}  // namespace delf

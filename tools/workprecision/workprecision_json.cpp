@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/verify/findings_json.hpp"
+#include "tools/workprecision/workprecision_outcome.hpp"
+
+namespace delf {
+
+namespace {
+
+Json json_of(const WorkPrecisionRun& r) {
+  return {{"scheme", r.scheme},
+          {"peer", r.peer},
+          {"sites", r.sites},
+          {"time_step", r.time_step},
+          {"courant", r.time_step / r.space_step},
+          {"steps", r.steps},
+          {"error_linf", r.error_linf},
+          {"error_l2", r.error_l2},
+          {"energy_error_max", r.energy_error_max},
+          {"position_error", r.position_error},
+          {"velocity_error", r.velocity_error},
+          {"seconds", r.seconds},
+          {"seconds_min", r.seconds_min},
+          {"seconds_max", r.seconds_max},
+          {"seconds_setup", r.seconds_setup},
+          {"repeats", r.repeats},
+          {"on_envelope", r.on_envelope}};
+}
+
+Json winner(const WorkPrecisionOutcome& o, const std::optional<std::size_t>& index) {
+  if (!index) return {};
+  const WorkPrecisionRun& r = o.runs[*index];
+  return {{"scheme", r.scheme},
+          {"sites", r.sites},
+          {"time_step", r.time_step},
+          {"error_linf", r.error_linf},
+          {"seconds", r.seconds}};
+}
+
+// A field of a line of CSV; names of schemes hold commas.
+std::string quoted(const std::string& text) {
+  return text.find_first_of(",\"") == std::string::npos ? text : "\"" + text + "\"";
+}
+
+}  // namespace
+
+std::string workprecision_json(const Scene& scene, const WorkPrecisionRequest& request, const WorkPrecisionOutcome& o) {
+  Json json = json_head(scene);
+  json["status"] = o.status;
+  json["theory"] = scene.problem.theory;
+  json["length"] = scene.problem.lattice.length();
+  json["until"] = request.until;
+  json["seed"] = request.seed;
+  json["repeats"] = request.repeats;
+  json["budget"] = request.budget;
+  json["reference"] = o.reference;
+  json["reference_error"] = o.reference_error;
+  json["seconds"] = o.seconds;
+  json["tried"] = o.tried;
+  json["runs"] = json_list(o.runs, [](const WorkPrecisionRun& run) { return json_of(run); });
+  json["schemes"] = json_list(o.lines, [](const WorkPrecisionLine& line) {
+    return Json{{"scheme", line.scheme}, {"peer", line.peer}, {"slope", line.slope}, {"front", line.front}};
+  });
+  json["cheapest"] = json_list(o.costs, [&](const WorkPrecisionCost& cost) {
+    return Json{{"accuracy", cost.accuracy},
+                {"engine", winner(o, cost.engine)},
+                {"peer", winner(o, cost.peer)},
+                {"ratio", cost.ratio}};
+  });
+  json["left_out"] =
+      json_list(o.left_out, [](const auto& one) { return Json{{"scheme", one.scheme}, {"reason", one.reason}}; });
+  return json_text(json);
+}
+
+std::string workprecision_csv(const WorkPrecisionOutcome& o) {
+  std::string text =
+      "scheme,peer,sites,time_step,steps,error_linf,error_l2,energy_error_max,position_error,velocity_error,seconds,"
+      "seconds_min,seconds_max,seconds_setup,repeats,on_envelope\n";
+  for (const WorkPrecisionRun& r : o.runs)
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.scheme), r.peer ? 1 : 0, r.sites,
+                        r.time_step, r.steps, r.error_linf, r.error_l2, r.energy_error_max, r.position_error,
+                        r.velocity_error, r.seconds, r.seconds_min, r.seconds_max, r.seconds_setup, r.repeats,
+                        r.on_envelope ? 1 : 0);
+  return text;
+}
+
+}  // namespace delf

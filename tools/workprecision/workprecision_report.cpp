@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/run/in_words.hpp"
+#include "tools/files/text_columns.hpp"
+#include "tools/workprecision/workprecision_outcome.hpp"
+
+namespace delf {
+
+namespace {
+
+constexpr std::size_t terminal = 110;
+
+std::string number(const char* format, double value) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "";
+}
+
+// "1.2 ms", so that a column of them is easily compared
+std::string milliseconds(double seconds) { return number("{:.3g}", 1e3 * seconds); }
+
+// Runs one by one: of a short ladder all, else those of the envelopes.
+std::string runs_table(const WorkPrecisionOutcome& o, bool all) {
+  std::vector<std::vector<std::string>> rows;
+  for (const WorkPrecisionRun& r : o.runs) {
+    if (!all && !r.on_envelope) continue;
+    rows.push_back(
+        {r.scheme + (r.peer ? " (peer)" : ""), std::to_string(r.sites), number("{:.3g}", r.time_step / r.space_step),
+         std::to_string(r.steps), number("{:.2e}", r.error_linf), number("{:.2e}", r.error_l2),
+         number("{:.1e}", r.energy_error_max), number("{:.1e}", r.position_error), milliseconds(r.seconds),
+         r.repeats == 0 ? "once" : fmt::format("{}-{}", milliseconds(r.seconds_min), milliseconds(r.seconds_max)),
+         r.on_envelope ? "*" : ""});
+  }
+  return text_table({{"scheme", false, 28},
+                     {"N", true},
+                     {"h/k", true},
+                     {"steps", true},
+                     {"L∞", true},
+                     {"L2", true},
+                     {"energy", true},
+                     {"position", true},
+                     {"ms", true},
+                     {"least-most", true},
+                     {""}},
+                    rows, terminal);
+}
+
+std::string lines_table(const WorkPrecisionOutcome& o) {
+  std::vector<std::vector<std::string>> rows;
+  for (const WorkPrecisionLine& line : o.lines) {
+    if (line.front.empty()) continue;
+    const auto runs = std::ranges::count(o.runs, line.scheme, &WorkPrecisionRun::scheme);
+    const WorkPrecisionRun& best = o.runs[line.front.back()];
+    std::vector<std::string> row{line.scheme + (line.peer ? " (peer)" : ""), std::to_string(runs),
+                                 number("{:.2f}", line.slope)};
+    for (const double accuracy : {1e-2, 1e-4, 1e-6, 1e-8}) {
+      const auto found = std::ranges::find_if(line.front, [&](auto i) { return o.runs[i].error_linf <= accuracy; });
+      row.push_back(found == line.front.end() ? "" : milliseconds(o.runs[*found].seconds));
+    }
+    row.push_back(number("{:.2e}", best.error_linf));
+    row.push_back(milliseconds(best.seconds));
+    rows.push_back(row);
+  }
+  return text_table({{"scheme", false, 32},
+                     {"runs", true},
+                     {"slope", true},
+                     {"ms to 1e-2", true},
+                     {"1e-4", true},
+                     {"1e-6", true},
+                     {"1e-8", true},
+                     {"least L∞", true},
+                     {"in ms", true}},
+                    rows, terminal);
+}
+
+std::string costs_table(const WorkPrecisionOutcome& o) {
+  std::vector<std::vector<std::string>> rows;
+  const auto cells = [&](std::vector<std::string>& row, const std::optional<std::size_t>& index) {
+    if (!index) return void(row.insert(row.end(), {"none gets there", "", "", ""}));
+    const WorkPrecisionRun& r = o.runs[*index];
+    row.insert(row.end(), {r.scheme, std::to_string(r.sites), number("{:.3g}", r.time_step / r.space_step),
+                           milliseconds(r.seconds)});
+  };
+  const bool peers = std::ranges::any_of(o.runs, &WorkPrecisionRun::peer);
+  for (const WorkPrecisionCost& cost : o.costs) {
+    std::vector<std::string> row{fmt::format("{:.0e}", cost.accuracy)};
+    cells(row, cost.engine);
+    if (peers) {
+      cells(row, cost.peer);
+      row.push_back(number("{:.2f}", cost.ratio));
+    }
+    rows.push_back(row);
+  }
+  std::vector<TextColumn> columns{
+      {"L∞ ≤", true}, {"cheapest scheme", false, 28}, {"N", true}, {"h/k", true}, {"ms", true}};
+  if (peers)
+    for (const TextColumn& column : std::vector<TextColumn>{
+             {"cheapest peer", false, 24}, {"N", true}, {"h/k", true}, {"ms", true}, {"ratio", true}})
+      columns.push_back(column);
+  return text_table(columns, rows, terminal);
+}
+
+}  // namespace
+
+std::string workprecision_report(const Scene& scene, const WorkPrecisionRequest& request,
+                                 const WorkPrecisionOutcome& o) {
+  std::string text = fmt::format("{}: {} to t = {:.6g}, error against {}\n", scene.name, scene.problem.theory,
+                                 request.until, o.reference);
+  text += fmt::format(
+      "  {} of {} resolutions tried are timed, {} times each{}, interleaved, in random order; median of the steps "
+      "alone\n",
+      o.runs.size(), o.tried, request.repeats, o.fewer_repeats ? ", the long ones less often" : "");
+  if (!o.runs.empty()) {
+    constexpr std::size_t few = 40;
+    const bool all = o.runs.size() <= few;
+    text += fmt::format("\n{}\n{}",
+                        all ? "runs (* no other is both cheaper and as accurate)"
+                            : "runs on the lower envelopes (all of them are in workprecision.csv)",
+                        runs_table(o, all));
+    text += "\nschemes (slope of log error over log time; nothing is interpolated)\n" + lines_table(o);
+    text +=
+        "\nthe cheapest run with at most an error; ratio: time of the peer over that of the engine\n" + costs_table(o);
+  }
+  if (!o.left_out.empty()) text += "\nleft out\n";
+  for (const auto& one : o.left_out) text += fmt::format("  {}: {}\n", one.scheme, one.reason);
+  if (o.reference_error > 0)
+    text += fmt::format("\nerrors below {:.1e} are no better known than the reference\n", o.reference_error);
+  if (o.status != "done") text += fmt::format("\nnot finished ({})\n", o.status);
+  return text + fmt::format("\n{} in all\n", duration_in_words(o.seconds));
+}
+
+}  // namespace delf
