@@ -22,9 +22,20 @@ constexpr bool is_placed() {
   else return false;
 }
 
+/// How many slots of the jet ℓ depends on: 3, or 6 with second derivatives, which it says by
+/// `static constexpr int jet_order = 2;`.
+template <class D>
+constexpr int slots_of() {
+  if constexpr (requires { D::jet_order; }) return D::jet_order == 2 ? 6 : 3;
+  else return 3;
+}
+
 /// The jet of numbers T that a density D is called with.
 template <class T, class D>
-using JetFor = std::conditional_t<is_placed<D>(), PlacedJet<T, components_of<D>()>, Jet<T, components_of<D>()>>;
+using PlainJetFor =
+    std::conditional_t<slots_of<D>() == 6, SecondJet<T, components_of<D>()>, Jet<T, components_of<D>()>>;
+template <class T, class D>
+using JetFor = std::conditional_t<is_placed<D>(), Placed<T, PlainJetFor<T, D>>, PlainJetFor<T, D>>;
 
 /// A Lagrangian density ℓ(φ, φ_t, φ_x): a function object that works for any kind of number, like
 ///
@@ -36,9 +47,9 @@ using JetFor = std::conditional_t<is_placed<D>(), PlacedJet<T, components_of<D>(
 ///     };
 ///
 /// If this concept fails: the operator must be const, take `const auto& j`, use only j.phi, j.phi_t, j.phi_x (arrays
-/// if it declares `static constexpr int components = n`; also j.t, j.x if it declares `placed = true`), arithmetic and
-/// sin, cos, cosm1 (cos x − 1), tan, exp, log, sqrt, sinh, cosh, tanh, pow(x, double), and return a number of the kind
-/// that it was given.
+/// if it declares `static constexpr int components = n`; also j.t, j.x if it declares `placed = true`; also j.phi_tt,
+/// j.phi_tx, j.phi_xx if it declares `jet_order = 2`), arithmetic and cos, cosm1 (cos x − 1), tan, exp, log, sqrt, sinh, cosh, tanh, pow(x, double), and return a number of the kind that
+/// it was given.
 template <class D>
 concept Density = requires(const D& density, const JetFor<double, D>& numbers, const JetFor<Dual<double, 3>, D>& duals,
                            const JetFor<Dual<Pack, 1>, D>& packs) {

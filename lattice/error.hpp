@@ -22,7 +22,7 @@ class BadInput : public Error {
   std::string key_;
 };
 
-/// The numerics failed (exit code 3); the last good rows are still held by whoever was stepping.
+/// The numerics failed (exit code 3); the stepper still holds the last good rows.
 struct NumericalFailure : Error {
   using Error::Error;
 };
@@ -32,12 +32,12 @@ struct NoConvergence : NumericalFailure {
   using NumericalFailure::NumericalFailure;
 };
 
-/// A value stopped being a finite number, or a wrapped difference left the range in which wrapping means anything.
+/// A value is not finite, or a wrapped difference left the range in which wrapping is unambiguous.
 struct NotFinite : NumericalFailure {
   using NumericalFailure::NumericalFailure;
 };
 
-/// Sites of a mesh that moves would pass each other.
+/// Sites of a moving mesh would cross.
 struct MeshCrossing : NumericalFailure {
   using NumericalFailure::NumericalFailure;
 };

@@ -5,7 +5,7 @@ namespace delf {
 
 enum class Space { circle, interval, point };
 
-/// What a wall of an interval asks of the field: `fixed` keeps the value it starts with (no equation there, V = 0);
+/// The condition at a wall of an interval: `fixed` keeps the initial value (no equation there, V = 0);
 /// `natural` varies it too, so that the equation is what the stencils inside the lattice give.
 enum class Wall { fixed, natural };
 
@@ -17,9 +17,9 @@ class Lattice {
   static Lattice circle(int sites, double length);
   static Lattice interval(int sites, double length, Wall left = Wall::fixed, Wall right = Wall::fixed);
 
-  /// One site, x = 0, L = k = 1: a stencil that has sites side by side finds no place on it.
+  /// One site, x = 0, L = k = 1: it has no stencils with neighbouring sites in space.
   static Lattice point();
-  /// The same lattice with site 0 at x₀: where the nodes inside the cells lie.
+  /// The same lattice with site 0 at x₀, for the positions of nodes inside the cells.
   Lattice shifted(double x_0) const {
     Lattice other = *this;
     other.origin_ = x_0;

@@ -8,10 +8,10 @@
 
 namespace delf {
 
-/// What regions may look like. Each is the union of the stencils that touch a set of centres of that form, so that
-/// every centre is interior and the region is regular.
+/// Kinds of regions. Each is the union of the stencils that touch a set of centres of that form, so that every
+/// centre is interior and the region is regular.
 enum class RegionKind {
-  box,        ///< "rectangle", a word that is taken
+  box,        ///< "rectangle", which is the name of a shape already
   staircase,  ///< rows that begin further and further along
   hole,       ///< a rectangle with sites inside that are not in U
   wall,       ///< a rectangle that ends at a wall of the interval
@@ -21,7 +21,7 @@ enum class RegionKind {
 const char* to_string(RegionKind);
 const std::vector<RegionKind>& region_kinds();
 
-/// What the centres may be taken from.
+/// Where centres may lie.
 struct RegionFrame {
   Range rows;                           ///< of the centres
   int reach_time = 1, reach_space = 1;  ///< how far apart two sites of one equation are

@@ -5,7 +5,7 @@
 namespace delf {
 
 /// A site of spacetime, or an offset between two. The paper writes (i, j) = (space, time); this is the one place where
-/// an order is chosen: time first. A lattice repeats a unit cell of one or more sites: `node` tells them apart, 0 is
+/// an order is chosen: time first. A lattice repeats a unit cell of one or more sites: `node` numbers them, 0 is
 /// the vertex of the cell and the only one of most lattices; the nodes inside an element have the others.
 struct Site {
   int time = 0, space = 0, node = 0;

@@ -7,7 +7,7 @@
 
 namespace delf {
 
-/// A finite set of sites, sorted by time, then space, in which a site is found fast: at once in a row without gaps.
+/// A finite set of sites, sorted by time, then space, with fast search: O(1) in a row without gaps.
 class SiteSet {
  public:
   SiteSet() = default;

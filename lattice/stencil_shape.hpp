@@ -39,7 +39,7 @@ concept StencilShape = requires(const S& shape) {
   { shape.placement } -> std::convertible_to<Placement>;  // every_site, or brick_wall
 };
 
-/// A stencil shape whose number of vertices is known at run time only: what regions, plans and checks work with.
+/// A stencil shape whose number of vertices is known at run time only; regions, plans and checks use it.
 struct StencilPattern {
   std::vector<Site> vertices;
   Placement placement = Placement::every_site;
@@ -51,7 +51,7 @@ struct StencilPattern {
     for (int l = 0; l < S::size(); ++l) vertices.push_back(shape.vertex(l));
   }
   int size() const { return static_cast<int>(vertices.size()); }
-  /// Whether a stencil of this pattern is anchored at `site`, walls apart.
+  /// Whether a stencil of this pattern is anchored at `site`, without regard to walls.
   bool placed_at(Site site) const {
     return placement == Placement::every_site || (site.time + site.space) % 2 == 0;
   }

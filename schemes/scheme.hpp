@@ -3,10 +3,12 @@
 #include <memory>
 #include <utility>
 
-#include "schemes/stepping/evolution.hpp"
+#include "jets/batch_of.hpp"
+#include "lattice/error.hpp"
+#include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
-#include "schemes/families/variational_family.hpp"
 #include "schemes/families/vertex_constraint.hpp"
+#include "schemes/stepping/evolution.hpp"
 
 namespace delf {
 
@@ -19,32 +21,39 @@ namespace delf {
 ///     evolution.stepper().step();
 ///
 /// A constraint that the density declares is kept by a multiplier, which is one more component.
-template <JetMap Map, Density D>
+template <Density D>
 class Scheme {
  public:
-  Scheme(Map, D density) : density_(std::move(density)) {}
+  template <JetMap Map>
+  Scheme(Map, D density) : Scheme(stencil_table(Map::table), std::move(density)) {}
+  /// With a table made at run time. Throws BadInput if its weights are not consistent.
+  Scheme(StencilTable table, D density) : table_(std::move(table)), density_(std::move(density)) {
+    if (!is_consistent(table_))
+      throw BadInput("lattice.stencil",
+                     "the weights of a table must sum to 1 and be exact on affine fields; correct the table");
+    batches_ = std::make_shared<BatchOf<D>>(density_);
+  }
 
   const D& density() const { return density_; }
-  DiscreteLagrangian<Map, D> lagrangian() const { return {density_}; }
+  const StencilTable& table() const { return table_; }
 
-  std::shared_ptr<const VariationalFamily<Map, D>> family(double time_step, double space_step) const {
-    return std::make_shared<VariationalFamily<Map, D>>(density_, time_step, space_step);
-  }
+  std::shared_ptr<const JetFamily> family() const { return std::make_shared<JetFamily>(table_, batches_); }
   Evolution on(const Lattice& lattice, double time_step, const StepOptions& options = {}) const {
+    std::vector<std::shared_ptr<const StencilFamily>> families{family()};
+    std::vector<Component> components = fields(components_of<D>());
     if constexpr (Constrained<D>) {
-      std::vector<Component> components = fields(components_of<D>());
+      families.push_back(std::make_shared<LagrangianFamily<VertexConstraint<D>>>(VertexConstraint<D>{density_}));
       components.push_back({"lambda", Role::multiplier, {}});
-      return {lattice,
-              {family(time_step, lattice.space_step()),
-               std::make_shared<LagrangianFamily<VertexConstraint<D>>>(VertexConstraint<D>{density_})},
-              time_step, options, std::move(components)};
-    } else {
-      return {lattice, {family(time_step, lattice.space_step())}, time_step, options};
     }
+    return {lattice, std::move(families), time_step, options, std::move(components)};
   }
 
  private:
+  StencilTable table_;
   D density_;
+  std::shared_ptr<const BatchDensity> batches_;
 };
+template <JetMap Map, Density D>
+Scheme(Map, D) -> Scheme<D>;
 
 }  // namespace delf

@@ -7,42 +7,30 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
+#include "jets/tables/named_tables.hpp"
 #include "lattice/error.hpp"
+#include "schemes/declared.hpp"
 #include "schemes/system/conserved.hpp"
+#include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/methods/method_registry.hpp"
-#include "schemes/system/plan_report.hpp"
+#include "schemes/stepping/plan_report.hpp"
+#include "schemes/system/momenta.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "schemes/unknown_name.hpp"
 
 namespace delf {
 namespace {
 
-std::unique_ptr<FieldTheory> make_theory(const Problem& problem) {
-  std::vector<std::string> names;
-  for (const TheoryEntry* entry : theory_entries()) {
-    if (problem.theory == entry->name) return entry->make(problem);
-    names.emplace_back(entry->name);
-  }
-  throw unknown_name("theory.name", problem.theory, names);
-}
-
 SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
   if (!(p.time_step > 0) || !std::isfinite(p.time_step))
     throw BadInput("lattice.time_step", "lattice.time_step must be a positive, finite number");
-  std::vector<std::string> names;
-  for (const MethodEntry* entry : method_entries()) {
-    if (p.method == entry->name) {
-      SchemeParts parts = entry->build(theory, p);
-      if (p.circle_valued && parts.components.size() > 1)
-        throw BadInput("theory.fibre", "theory.fibre = S1: for one field on a lattice without nodes inside; use R");
-      return parts;
-    }
-    names.emplace_back(entry->name);
-  }
-  throw unknown_name("scheme.method", p.method, names);
+  SchemeParts parts = find_method(p.method).build(theory, p);
+  if (p.circle_valued && parts.components.size() > 1)
+    throw BadInput("theory.fibre", "theory.fibre = S1: for one field on a lattice without nodes inside; use R");
+  return parts;
 }
 
 Evolution make_evolution(SchemeParts parts, const Problem& p) {
@@ -56,6 +44,7 @@ Evolution make_evolution(SchemeParts parts, const Problem& p) {
 
 struct Simulation::Impl {
   Problem problem;
+  const MethodEntry& method;
   std::unique_ptr<FieldTheory> theory;
   std::vector<LinearSymmetry> symmetries;
   Evolution evolution;
@@ -63,27 +52,36 @@ struct Simulation::Impl {
   const LatticeSystem& system;
   std::unique_ptr<RowLayout> own_layout;  ///< of the monitors, where steps do not go by rows
   RowBuffer cell_weights, positions, last_rows;
-  int whole_packs = 0;  ///< whose weights are all 1
   std::vector<const double*> monitored;
   int winding;
-  double near_below;  ///< of the theory
-  bool has_multipliers, moves;  ///< it has constraints; its mesh is a field too
+  bool has_multipliers;  ///< it has constraints
   std::vector<std::string> conserved_names;
 
   Impl(const Problem& p, std::unique_ptr<FieldTheory> t, SchemeParts parts)
       : problem(p),
+        method(find_method(p.method)),
         theory(std::move(t)),
         symmetries(std::move(parts.symmetries)),
         evolution(make_evolution(std::move(parts), p)),
         stepper(evolution.stepper()),
         system(evolution.system()),
         winding(p.winding),
-        near_below(theory->near_below()),
-        has_multipliers(std::ranges::count(system.all_components(), Role::multiplier, &Component::role) > 0),
-        moves(system.fields() != theory->components()) {
+        has_multipliers(std::ranges::count(system.all_components(), Role::multiplier, &Component::role) > 0) {
+    if (!method.energy && system.fields() != theory->components())
+      throw std::logic_error("scheme.method = " + method.name + ": has other fields than the theory, and no energy");
     // Stencils of more than two rows would need rows that are no longer held.
     for (const LinearSymmetry& s : symmetries)
       if (system.height() <= 1) conserved_names.push_back(s.name);
+  }
+
+  RowsInTime newest_rows() const { return {*theory, system, stepper.window(2), stepper.newest(), problem.time_step}; }
+  EnergyMomentum energy_momentum() const {
+    if (method.energy) return method.energy(newest_rows());
+    const double h = problem.time_step;
+    return delf::energy_momentum(theory->density(),
+                                 {&layout(), monitored.data(), positions.rows() ? positions.row(0) : nullptr,
+                                  static_cast<double>(stepper.newest() - 1) * h, h, problem.lattice.space_step()},
+                                 cell_weights.row(0));
   }
 
   const RowLayout& layout() const { return own_layout ? *own_layout : *stepper.layout(); }
@@ -147,7 +145,7 @@ struct Simulation::Impl {
         step(before_newest);
     for (int a = 0; a < d; ++a) {
       for (std::size_t i = 0; i < value.size(); ++i) {
-        const std::size_t at = i * static_cast<std::size_t>(C) + static_cast<std::size_t>(a);
+        const std::size_t at = i * static_cast<std::size_t>(C) + static_cast<std::size_t>(system.field_component(a));
         before_newest[i] = before[at], value[i] = newest[at];
         step[i] = newest[at] - before[at];
       }
@@ -159,8 +157,9 @@ struct Simulation::Impl {
   }
   double charge() const {
     if (problem.lattice.is_circle()) return winding;
-    const int rows = own_layout ? theory->components() : system.components();
-    const double* const newest = monitored[static_cast<std::size_t>(rows)];
+    // of the first field
+    const int first = own_layout ? theory->components() : system.components() + system.field_component(0);
+    const double* const newest = monitored[static_cast<std::size_t>(first)];
     const auto at = [&](int i) { return newest[layout().slot(i)]; };
     return (at(problem.lattice.sites() - 1) - at(0)) / (2 * std::numbers::pi);
   }
@@ -180,8 +179,6 @@ struct Simulation::Impl {
     const int N = problem.lattice.sites(), cells = problem.lattice.cells(), d = theory->components();
     if (!stepper.layout()) last_rows = RowBuffer(layout, 3 * d);
     for (int i = 0; i < cells; ++i) cell_weights.row(0)[layout.slot(i)] = 1;
-    while (whole_packs < layout.packs() && sum(Pack::load(cell_weights.row(0) + layout.at(whole_packs))) == lanes)
-      ++whole_packs;
     monitored.resize(static_cast<std::size_t>(3 * std::max(d, system.components())));
     if (!theory->is_placed()) return;
     positions = RowBuffer(layout, 1);
@@ -191,8 +188,9 @@ struct Simulation::Impl {
   }
 };
 
-Simulation::Simulation(const Problem& problem) {
-  auto theory = make_theory(problem);
+Simulation::Simulation(const Problem& given) {
+  const Problem problem = completed(given);
+  auto theory = find_theory(problem.theory).make(problem.parameters);
   SchemeParts parts = make_parts(*theory, problem);
   impl_ = std::make_unique<Impl>(problem, std::move(theory), std::move(parts));
 }
@@ -213,7 +211,6 @@ void Simulation::start_centred(std::span<const double> row0, std::span<const dou
 
 void Simulation::step(bool looked_at) { impl_->stepper.step(looked_at); }
 void Simulation::steps(int count) { impl_->stepper.steps(count); }
-int Simulation::steps_at_once() const { return impl_->stepper.steps_at_once(); }
 std::int64_t Simulation::newest() const { return impl_->stepper.newest(); }
 
 void Simulation::start_legendre(std::span<const double> row0, std::span<const double> velocity) {
@@ -250,14 +247,21 @@ void Simulation::start_legendre(std::span<const double> row0, std::span<const do
 
 void Simulation::copy_row(int back, std::span<double> out, Role role) const {
   const Impl& s = *impl_;
-  if (role == Role::field && s.system.components() == 1 && s.stepper.layout()) {
-    s.stepper.layout()->gather(s.stepper.row_data(back, 0), out);
-    return;
-  }
   const std::vector<double> row = s.stepper.row(back);
   std::size_t next = 0;
   for (std::size_t at = 0; at < row.size(); ++at)
     if (s.system.component(static_cast<int>(at) % s.system.components()).role == role) out[next++] = row[at];
+}
+
+std::vector<double> Simulation::momenta(int back) const {
+  const Stepper& stepper = impl_->stepper;
+  require_lagrangian(impl_->system);
+  // the newest row has no stencils above it yet; the row before it may have none below it that are still held
+  const int height = impl_->system.height();
+  const Side side = back == 0 || height > 1 ? Side::below : Side::above;
+  const int rows = back + 1 + (side == Side::below ? height : 0);
+  if (rows > stepper.newest() + 1) throw std::logic_error("momenta need rows before the first");
+  return delf::momenta(impl_->system, stepper.window(rows), stepper.newest() - back, side);
 }
 
 const Evolution& Simulation::evolution() const { return impl_->evolution; }
@@ -269,22 +273,20 @@ int Simulation::count(Role role) const {
 }
 const std::vector<std::string>& Simulation::conserved_names() const { return impl_->conserved_names; }
 
+std::vector<std::string> Simulation::monitor_names() const {
+  std::vector<std::string> names;
+  for (const Monitor& monitor : impl_->method.monitors) names.push_back(monitor.name);
+  return names;
+}
+
 Simulation::Monitors Simulation::monitors() const {
   Impl& s = *impl_;
   if (!s.cell_weights.rows()) s.prepare_monitors();
-  double largest = std::numeric_limits<double>::infinity();
   if (s.own_layout) s.copy_newest_pair();
-  else largest = s.stepper.newest_pair(s.monitored.data());
-  const RowLayout& layout = s.layout();
-  const double h = s.problem.time_step;
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  const EnergyMomentum sums =
-      s.moves ? EnergyMomentum{none, none}
-             : s.theory->energy_momentum({&layout, s.monitored.data(), s.positions.rows() ? s.positions.row(0) : nullptr,
-                                 static_cast<double>(newest() - 1) * h, h, s.problem.lattice.space_step(),
-                                 largest <= s.near_below},
-                                {s.cell_weights.row(0), s.whole_packs});
-  Monitors monitors{sums.energy, sums.momentum, s.charge(), s.constraint(), {}, {}};
+  else s.stepper.newest_pair(s.monitored.data());
+  const EnergyMomentum sums = s.energy_momentum();
+  Monitors monitors{sums.energy, sums.momentum, s.charge(), s.constraint(), {}, {}, {}};
+  for (const Monitor& monitor : s.method.monitors) monitors.of_method.push_back(monitor.value(s.newest_rows()));
   if (!s.conserved_names.empty()) s.find_conserved(monitors);
   return monitors;
 }
@@ -300,15 +302,18 @@ std::string Simulation::plan_report() const {
 std::size_t Simulation::bytes() const { return impl_->stepper.bytes() + impl_->monitor_bytes(); }
 std::size_t Simulation::bytes_of_run(Looks looks) const {
   const Stepper& stepper = impl_->stepper;
-  return stepper.bytes() + stepper.bytes_to_come(looks.residual) +
+  const StepReport report = stepper.report(looks.residual);
+  return report.bytes + report.bytes_to_come +
          (looks.monitors ? impl_->monitor_bytes_of_run() : impl_->monitor_bytes());
 }
 
 const std::vector<TheoryInfo>& theories() {
   static const std::vector<TheoryInfo> list = [] {
     std::vector<TheoryInfo> result;
-    for (const TheoryEntry* entry : theory_entries())
-      result.push_back({entry->name, entry->formula, entry->parameters, entry->make(Problem{})->components()});
+    for (const TheoryEntry* entry : theory_entries()) {
+      result.push_back({entry->name, entry->formula, {}, make_theory(*entry)->components()});
+      for (const Parameter& p : entry->parameters) result.back().parameters.push_back(p.key);
+    }
     return result;
   }();
   return list;
@@ -317,7 +322,7 @@ const std::vector<TheoryInfo>& theories() {
 const std::vector<NamedFormula>& stencils() {
   static const std::vector<NamedFormula> list = [] {
     std::vector<NamedFormula> result;
-    for_each_stencil([&](const char* name, const char* description, auto) { result.push_back({name, description}); });
+    for (const NamedTable& table : named_tables()) result.push_back({table.name, table.description});
     return result;
   }();
   return list;
@@ -330,6 +335,17 @@ const std::vector<NamedFormula>& methods() {
     return result;
   }();
   return list;
+}
+
+Problem completed(Problem p) {
+  complete(p.parameters, find_theory(p.theory).parameters);
+  complete(p.parameters, find_method(p.method).parameters);
+  return p;
+}
+
+std::string scheme_label(const Problem& p) {
+  const MethodEntry& method = find_method(p.method);
+  return method.label ? method.label(completed(p)) : method.name;
 }
 
 std::vector<NamedScheme> named_schemes(const Problem& base) {

@@ -9,6 +9,7 @@
 
 #include "jets/symmetry.hpp"
 #include "lattice/lattice.hpp"
+#include "schemes/parameter.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
@@ -19,28 +20,31 @@ class FieldTheory;
 /// What a scene states, in the engine's words.
 struct Problem {
   std::string theory = "sine-gordon";
-  double mass = 1, lambda = 1;                   ///< theory.mass, theory.lambda
-  double impurity_strength = 1, impurity_width = 1, impurity_position = 0;
   bool circle_valued = false;                    ///< theory.fibre = S1
   Lattice lattice = Lattice::circle(255, 40);
   int winding = 0;                               ///< φ(x + L) = φ(x) + 2π·winding
   std::string stencil = "rectangle-symmetric";
-  std::string method = "multisymplectic";        ///< or vu-quoc-li, guo
+  std::string method = "multisymplectic";
+  ParameterValues parameters;                    ///< of the theory and of the method; the others have their fallbacks
   double time_step = 0;
   double tolerance = 1e-14;                      ///< scheme.tolerance
   int seed_order = 8;                            ///< scheme.seed_order
   int max_iterations = 50;                       ///< scheme.max_iterations
-  int degree_time = 2, degree_space = 2;         ///< scheme.degree_time, scheme.degree_space: of an element
-  std::string quadrature = "gauss";              ///< scheme.quadrature: in time, gauss or lobatto
-  int order = 4, space_order = 4;                ///< scheme.order, lattice.space_order: of a composition, even
-  double alpha = 1;                              ///< scheme.alpha: of the arclength constraint
   int threads = 1;                               ///< run.threads: that explicit steps are shared by
 };
+
+/// The problem with the fallbacks of all parameters that its theory and its method read. Throws BadInput for unknown
+/// names and for values out of range.
+Problem completed(Problem);
+/// The scheme in reports, as its method declares it.
+std::string scheme_label(const Problem&);
 
 /// A scheme as a scene would name it: `problem` is what was asked for, with the keys that this scheme is made of.
 struct NamedScheme {
   std::string name;
   Problem problem;
+  int nodes = 1;  ///< in a cell of space
+  int rank = 0;   ///< as a reference solution: the highest is taken; 0: never
 };
 /// Every scheme of every method, for the lattice, the theory and the other keys of `base`; what cannot be built for them
 /// says so when it is built.
@@ -79,15 +83,17 @@ class Simulation {
   /// A row that is not to be `looked_at` costs an explicit step, or one through long rows, less memory traffic: the row
   /// before it is written over, and residual() and monitors() are not to be had.
   void step(bool looked_at = true);
-  /// The same as so many step(false), of which explicit ones through long rows take steps_at_once() together.
+  /// The same as so many step(false), for less where rows outgrow the cache.
   void steps(int count);
-  int steps_at_once() const;
 
   /// Index of the newest row.
   std::int64_t newest() const;
   /// The components of one role of the row `back` rows before the newest, back < starting_rows(): out[i·count + a].
   /// Multipliers and inner nodes are those that were found together with the row.
   void copy_row(int back, std::span<double> out, Role = Role::field) const;
+  /// The momenta at the row `back` rows before the newest, of all components, [i·C + c]: the half of the field equation
+  /// there (schemes/system/momenta.hpp). Throws BadInput for a scheme without a Lagrangian.
+  std::vector<double> momenta(int back = 0) const;
 
   /// k Σ (φ_t ∂ℓ/∂φ_t − ℓ) and −k Σ φ_x ∂ℓ/∂φ_t over the symmetric rectangle's jets of the last two rows; not a
   /// number where the sites move.
@@ -96,10 +102,13 @@ class Simulation {
     double constraint = 0;              ///< max |G| over the constraints that the last step solved
     std::vector<double> conserved;      ///< of conserved_names(): Noether's sums over a cut between two rows
     std::vector<double> conserved_scale;  ///< the sums of the absolute values of their terms
+    std::vector<double> of_method;        ///< of monitor_names()
   };
   Monitors monitors() const;
   /// Noether's conserved quantities of the symmetries that the theory declares (5.7).
   const std::vector<std::string>& conserved_names() const;
+  /// The monitors that the method declares.
+  std::vector<std::string> monitor_names() const;
 
   int iterations() const;        ///< of the last step; 0 when it was explicit
   double residual() const;       ///< of the last step's equations, relative to the sum of absolute values
@@ -124,7 +133,7 @@ class Simulation {
 
 struct TheoryInfo {
   std::string name, formula;
-  std::vector<std::string> parameters;   ///< scene keys that it reads, such as "theory.mass"
+  std::vector<std::string> parameters;   ///< keys that it reads, such as "theory.mass"
   int components = 1;
 };
 const std::vector<TheoryInfo>& theories();

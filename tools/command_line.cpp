@@ -64,7 +64,7 @@ Arguments taken_apart(const std::vector<std::string>& words) {
 void check_files_of_rows(const Command& command, const Arguments& arguments) {
   const bool nearby = !arguments.nearby.empty();
   if ((arguments.fields || nearby) && !command.reads_rows)
-    throw BadScene(fmt::format("command line: {}: `{}` looks at no recorded rows; leave it out",
+    throw BadScene(fmt::format("command line: {}: `{}` reads no recorded rows; leave it out",
                                arguments.fields ? "--fields" : "--nearby", command.name));
   if (nearby && !arguments.fields)
     throw BadScene("command line: --nearby: near to which rows? Give them too, as --fields FILE");
@@ -91,7 +91,7 @@ ExitCode carry_out(const std::vector<std::string>& words) {
 
 ExitCode run_program(const std::vector<std::string>& words) {
   ExitCode code = ExitCode::done;
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, not the end of the program
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is reported like a full disk, and does not kill the program
   try {
     code = carry_out(words);
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw SystemFailure("standard output cannot be written to");

@@ -7,7 +7,7 @@
 
 namespace delf {
 
-/// The program: takes the words after its name, does what they say, tells errors on stderr, returns what main returns.
+/// The program: takes its command line without the program's name, reports errors on stderr, returns the exit code.
 ExitCode run_program(const std::vector<std::string>& words);
 
 }  // namespace delf

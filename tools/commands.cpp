@@ -101,7 +101,7 @@ const std::vector<Command>& table() {
        "discrete multisymplectic form formula (5.6) on regions of all kinds, Noether's theorem (5.7), time reversal, the\n"
        "generated derivatives and Newton's method; energy and momentum balances are measured. Prints a table; into DIR\n"
        "(results/NAME of the scene, if not given) go verify.json and figures. Exit code 1 if a check fails.\n\n"
-       "  --fields FILE.h5   look at these rows, in the layout of fields.h5, every row recorded, instead of stepping\n"
+       "  --fields FILE.h5   verify these rows, in the layout of fields.h5, every row recorded, instead of stepping\n"
        "  --nearby FILE.h5   given twice: two solutions of the same program from nearby data, whose differences stand for\n"
        "                     first variations; further pairs of other sizes are extrapolated to size zero\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
@@ -117,9 +117,9 @@ const std::vector<Command>& table() {
        true, carry_out_workprecision, "workprecision"},
       {"stability", "delf stability SCENE [--out DIR] [--KEY=VALUE ...]",
        "where schemes are stable, by theory and by running",
-       "Stability limits from the symbol of each scheme and from runs, compared; runs at stiff and extreme corners, each\n"
+       "Stability limits from the symbol of each scheme and from runs, compared; stiff and extreme stress cases, each run\n"
        "with a verdict. Into DIR (results/NAME of the scene, if not given) go stability.json and figures. Exit code 1 if\n"
-       "runs disagree with theory, or a corner crashes, hangs or lies.\n\n"
+       "runs disagree with theory, or a stress case crashes, hangs, or reports a wrong result as valid.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_stability, "stability"},
       {"list", "delf list [theories|stencils|schemes|states|scenes]", "what there is",

@@ -10,12 +10,12 @@
 
 namespace delf {
 
-/// A command line, taken apart.
+/// A parsed command line.
 struct Arguments {
-  std::vector<std::string> words;     ///< the command, and what it is applied to
+  std::vector<std::string> words;     ///< the command and its operands
   std::vector<Setting> keys;          ///< --KEY=VALUE
   std::optional<std::string> out;     ///< --out
-  std::optional<std::string> fields;  ///< --fields: recorded rows to look at
+  std::optional<std::string> fields;  ///< --fields: recorded rows to verify
   std::vector<std::string> nearby;    ///< --nearby, as often as given: solutions near those rows
   bool help = false, version = false;
 };
@@ -28,9 +28,9 @@ struct Command {
   bool reads_rows = false;  ///< takes --fields and --nearby; they are refused before any other is carried out
 };
 
-/// What this version has.
+/// The commands of this version.
 std::span<const Command> commands();
-/// Throws BadScene: for a name that there is none of, with the nearest one; for one that a later version will have.
+/// Throws BadScene for an unknown name, with the nearest known one, and for a command of a later version.
 const Command& find_command(const std::string& name);
 
 }  // namespace delf

@@ -8,10 +8,10 @@
 
 namespace delf {
 
-/// The simulation of a scene. Throws BadScene, with the line of the key that it cannot be built for.
+/// The simulation of a scene. Throws BadScene with the line of the key that prevents it.
 Simulation build(const Scene&, int winding);
 
-/// Runs `work`; a lattice that does not fit into memory becomes a SystemFailure that says what it asked for.
+/// Runs `work`; a lattice that does not fit into memory becomes a SystemFailure that names the size requested.
 ExitCode with_memory_for(const Scene&, const std::function<ExitCode()>& work);
 
 }  // namespace delf

@@ -7,7 +7,7 @@
 
 namespace delf {
 
-/// A scene or a command line that asks for what cannot be. what() is the whole line, with file, line and key in it.
+/// A scene or a command line that cannot be met. what() is the whole line, with file, line and key.
 struct BadScene : BadInput {
   explicit BadScene(const std::string& line) : BadInput("", line) {}
 };
@@ -17,7 +17,7 @@ struct SystemFailure : Error {
   using Error::Error;
 };
 
-/// What the program returns. Nothing else in the program chooses a number.
+/// The exit codes. Nothing else in the program chooses one.
 enum class ExitCode {
   done = 0,
   check_failed = 1,
@@ -27,11 +27,11 @@ enum class ExitCode {
   interrupted = 130
 };
 
-/// The exit code of whatever was thrown.
+/// The exit code of an exception.
 ExitCode exit_code(const std::exception&);
-/// What summary.json and verify.json call it: not-finite, mesh-crossing or no-convergence.
+/// Its name in summary.json and verify.json: not-finite, mesh-crossing or no-convergence.
 const char* status_of(const NumericalFailure&);
-/// The one line that tells it on stderr.
+/// The one line for stderr.
 std::string error_line(const std::exception&);
 
 }  // namespace delf

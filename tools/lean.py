@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What the shipped scenes cost before they have taken many steps, as a table for the README. From the top folder:
+"""What the shipped scenes cost at their start: the table in tools/bench/README.md. From the top folder:
 
-    tools/lean.py                        prints the table
-    tools/lean.py --update README.md     puts it between the two markers there
-    tools/lean.py --check README.md      is what it says of scenes and what they leave out still so? if not, exit code 1
+    tools/lean.py                                  prints the table
+    tools/lean.py --update tools/bench/README.md   puts it between the two markers there
+    tools/lean.py --check tools/bench/README.md    exit code 1 unless its scenes, and what they leave out, still hold
 
 Files opened are counted by strace and are `?` without it; heap and libraries are read from /proc, so from Linux.
 """
@@ -323,11 +323,11 @@ def measured(program, scenes, repeats):
         files = program.files(*run_words(scene, FEW))
         row[3:7] = [kilobytes(heap - bare_heap), "?" if files is None else str(files), str(libraries),
                     spread(times[scene])]
-    note = (f"Made by `tools/lean.py --update README.md` on {processor()}. Scenes run with `{' '.join(QUIET)}`. "
-            f"Rows and other arrays are those that a run has at its end, as `delf plan` foretells them: those of "
-            f"monitors and of the residual of recorded rows too. Heap is the most that {FEW[12:]} recorded steps and "
-            f"their files need, in whole pages, "
-            f"over the {kilobytes(bare_heap)} kB of `delf --version`, which takes {spread(bare_times)} ms with its "
+    note = (f"Made by `tools/lean.py --update tools/bench/README.md` on {processor()}. "
+            f"Scenes run with `{' '.join(QUIET)}`. Rows and other arrays are those that a run has at its end, as "
+            f"`delf plan` predicts them: those of monitors and of the residual of recorded rows too. "
+            f"Heap is the most that {FEW[12:]} recorded steps and their files need, in whole pages, over "
+            f"the {kilobytes(bare_heap)} kB of `delf --version`, which takes {spread(bare_times)} ms with its "
             f"{bare_libraries} shared libraries, the loader among them. Start-up is a run of no steps, from starting "
             f"the program to its end: the median of {repeats}, and the quartiles.")
     return "\n\n".join([in_markdown(rows), wrapped(note), wrapped(line)])

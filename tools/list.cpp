@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "schemes/declared.hpp"
 #include "schemes/simulation.hpp"
-#include "schemes/state.hpp"
+#include "schemes/states/state_registry.hpp"
 #include "tools/scene/shipped_scenes.hpp"
 #include "tools/scene/suggestion.hpp"
 
@@ -25,14 +24,13 @@ void print_formulas(const std::vector<NamedFormula>& all) {
 void print_stencils() { print_formulas(stencils()); }
 void print_schemes() { print_formulas(methods()); }
 void print_states() {
-  for (const StateInfo& s : states()) {
-    fmt::print("  {:<22} {}\n", s.name, s.formula);
-    fmt::print("  {:<22}   reads {}; for {}\n", "", s.parameters.empty() ? "nothing" : s.parameters, s.theories);
+  for (const StateEntry* s : state_entries()) {
+    fmt::print("  {:<22} {}\n", s->name, s->formula);
+    for (const Parameter& p : s->parameters)
+      fmt::print("  {:<22}   {:<22} {} ({})\n", "", p.key, p.help,
+                 p.otherwise.empty() ? to_text(p.fallback) : p.otherwise);
+    fmt::print("  {:<22}   for {}\n", "", theories_in_words(*s));
   }
-  if (std::none_of(states().begin(), states().end(), [](const StateInfo& s) { return s.name == "file"; }))
-    fmt::print(
-        "  {:<22} rows of a fields.h5 or a .csv\n  {:<22}   reads initial.file, initial.frame; for all theories\n",
-        "file", "");
 }
 void print_scenes() {
   for (const ShippedScene& s : shipped_scenes()) fmt::print("  {:<22} {}\n", s.name, s.title);

@@ -42,8 +42,8 @@ struct Trial {
   double seconds = 0;
 };
 
-// Steps until so many are taken or so much time has passed, whichever is first. The clock is read between batches: a
-// look at it costs as much as a small step.
+// Steps until so many are taken or so much time has passed, whichever is first. The clock is read between
+// batches: reading it costs as much as a small step.
 Trial step_for(double limit, std::int64_t most, Simulation& simulation) {
   using Clock = std::chrono::steady_clock;
   Trial trial;
@@ -62,7 +62,7 @@ Trial step_for(double limit, std::int64_t most, Simulation& simulation) {
 
 // What the steps of a run will cost, from the first of them.
 std::string cost(const Scene& scene, const InitialRows& initial, Simulation& simulation) {
-  constexpr std::int64_t warming_steps = 16;  // seeds have reached their order, caches and pages are there
+  constexpr std::int64_t warming_steps = 16;  // predictors have reached their order, caches and pages are warm
   constexpr double limit = 0.05;
   try {
     initial.start(simulation);

@@ -5,8 +5,8 @@
 
 namespace delf {
 
-/// `delf plan`: what a run of the scene would solve, how, what it would write, what it leaves out, and what it would
-/// cost, by trial steps.
+/// `delf plan`: the equations that a run of the scene would solve, how, its files, what it leaves out, and its cost by
+/// trial steps.
 ExitCode plan(const Scene&);
 
 }  // namespace delf

@@ -112,6 +112,7 @@ inline Pack max_or_nan(Pack a, Pack b) {
   return {reinterpret_cast<Pack::Vector>(reinterpret_cast<Pack::Bits>(detail::larger(a, b).v) | (a.v != a.v))};
 #endif
 }
+inline double larger_or_nan(double a, double b) { return a > b || a != a ? a : b; }
 /// The larger of two that are not negative; a NaN in either stays a NaN. As bits, magnitudes are in the order of integers,
 /// and NaNs above all of them: that takes turns with what is added and multiplied, which maxima of numbers would wait for.
 inline Pack larger_size(Pack a, Pack b) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "jets/tables/element.hpp"
+#include "jets/tables/stencil_table.hpp"
 #include "jets/tables/splitting.hpp"
 
 namespace delf {
@@ -39,11 +39,11 @@ inline std::vector<double> pair_weights(int p) {
 ///     nodes      ∘ ○ ○
 ///     row 0      ● ○ ○
 ///
-inline Element pair_element(const Splitting& splitting, int p) {
+inline StencilTable pair_element(const Splitting& splitting, int p) {
   const std::vector<double>& fractions = splitting.drifts;
   const int S = static_cast<int>(fractions.size()), width = p + 1;
   const std::vector<double> pairs = pair_weights(p);
-  Element element;
+  StencilTable element{.pattern = {}, .points = {}, .nodes = {}};
   double time = 0;
   std::vector<double> times;
   for (const double fraction : fractions) {
@@ -65,28 +65,31 @@ inline Element pair_element(const Splitting& splitting, int p) {
     for (int m = 1; m <= p; ++m)
       for (const int row : {s, s + 1})
         for (const int end : {0, m}) {
-          ElementPoint point{(row == s ? lower : upper) * pairs[static_cast<std::size_t>(m - 1)] / 2,
-                             times[static_cast<std::size_t>(row)],
-                             static_cast<double>(end),
-                             std::vector(size, 0.0),
-                             std::vector(size, 0.0),
-                             std::vector(size, 0.0)};
-          point.phi[vertex(row, end)] = 1;
-          point.phi_t[vertex(s + 1, end)] = 1 / fraction;
-          point.phi_t[vertex(s, end)] = -1 / fraction;
-          point.phi_x[vertex(row, m)] = 1. / m;
-          point.phi_x[vertex(row, 0)] = -1. / m;
+          std::vector phi(size, 0.0), phi_t(size, 0.0), phi_x(size, 0.0);
+          phi[vertex(row, end)] = 1;
+          phi_t[vertex(s + 1, end)] = 1 / fraction;
+          phi_t[vertex(s, end)] = -1 / fraction;
+          phi_x[vertex(row, m)] = 1. / m;
+          phi_x[vertex(row, 0)] = -1. / m;
+          TablePoint point{.weight = (row == s ? lower : upper) * pairs[static_cast<std::size_t>(m - 1)] / 2,
+                           .time = times[static_cast<std::size_t>(row)],
+                           .space = static_cast<double>(end),
+                           .slots = {}};
+          point.set(JetSlot::phi, phi), point.set(JetSlot::phi_t, phi_t), point.set(JetSlot::phi_x, phi_x);
           element.points.push_back(std::move(point));
         }
   }
   for (int m = 1; m <= p; ++m)
     for (const int end : {0, m}) {
-      ElementPoint point{
-          pairs[static_cast<std::size_t>(m - 1)] / 2,        0,  static_cast<double>(end),
-          std::vector(static_cast<std::size_t>(width), 0.0), {}, std::vector(static_cast<std::size_t>(width), 0.0)};
-      point.phi[static_cast<std::size_t>(end)] = 1;
-      point.phi_x[static_cast<std::size_t>(m)] = 1. / m;
-      point.phi_x[0] = -1. / m;
+      std::vector phi(static_cast<std::size_t>(width), 0.0), phi_x = phi;
+      phi[static_cast<std::size_t>(end)] = 1;
+      phi_x[static_cast<std::size_t>(m)] = 1. / m;
+      phi_x[0] = -1. / m;
+      TablePoint point{.weight = pairs[static_cast<std::size_t>(m - 1)] / 2,
+                       .time = 0,
+                       .space = static_cast<double>(end),
+                       .slots = {}};
+      point.set(JetSlot::phi, phi), point.set(JetSlot::phi_x, phi_x);
       element.lower_side.push_back(std::move(point));
     }
   return element;

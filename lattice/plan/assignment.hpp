@@ -5,7 +5,7 @@
 
 namespace delf {
 
-/// What a pair is worth, compared in this order: as many allowed pairs as can be come first, whatever the rest costs.
+/// The weight of a pair, compared lexicographically: first the number of allowed pairs, at any cost of the rest.
 struct Weight {
   long long allowed = 0;   ///< 1 if the pair may be matched
   long long rows = 0;      ///< σ

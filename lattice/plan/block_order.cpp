@@ -13,7 +13,8 @@ std::vector<std::vector<int>> blocks_in_order(int n, const std::vector<std::pair
   std::vector<int> block(static_cast<std::size_t>(n));
   const int count = boost::strong_components(
       graph, boost::make_iterator_property_map(block.begin(), boost::get(boost::vertex_index, graph)));
-  // Tarjan's algorithm numbers a component after all that can be reached from it: what a block needs comes first.
+  // Tarjan's algorithm numbers a component after all that can be reached from it, so a block comes after those that it
+  // depends on.
   std::vector<std::vector<int>> blocks(static_cast<std::size_t>(count));
   for (int u = 0; u < n; ++u) blocks[static_cast<std::size_t>(block[static_cast<std::size_t>(u)])].push_back(u);
   return blocks;

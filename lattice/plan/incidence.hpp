@@ -24,9 +24,9 @@ struct Coupling {
 };
 
 /// All couplings of the equation of `component` at `site`. Empty: there is no equation, and the value there is data
-/// (a fixed wall, a multiplier of a cell that the interval does not have). The lattice asked about may be shorter than
-/// the real one: the answer may depend on it through its walls and the distance to them only, and on site.time
-/// through its parity only, and that for brick walls only.
+/// (a fixed wall, a multiplier of a cell that the interval does not have). The lattice passed may be shorter than the
+/// real one: the result may depend on its walls and the distance to them only, and on the parity of site.time for
+/// brick walls only.
 using Equations = std::function<std::vector<Coupling>(const Lattice&, Site site, int component)>;
 
 /// A system of equations, one for each unknown, that repeats along a lattice and in time.
@@ -61,7 +61,7 @@ struct StencilIncidence {
 };
 
 /// The equations Σ_{l: Δˡ = site} ∂L/∂yˡ = 0 (5.2), summed over the stencils of all families that lie in the lattice;
-/// none at a fixed wall. Coefficients that cancel in the sum are not noticed here: leave them out of the lists.
+/// none at a fixed wall. Coefficients that cancel in the sum are not detected here: leave them out of the lists.
 SystemPattern system_of(int components, std::vector<StencilIncidence> families);
 
 }  // namespace delf

@@ -96,7 +96,7 @@ int count_unknowns(const Quotient& quotient, const StructuralAnalysis& analysis,
   return count;
 }
 
-/// An analysed quotient, and how far it can be trusted to stand for the lattice.
+/// An analysed quotient, and whether it represents the lattice.
 struct Analysed {
   Quotient quotient;
   StructuralAnalysis analysis;
@@ -119,7 +119,7 @@ struct Analysed {
 
 enum class Agreement { none, rows, all };
 
-/// Whether some more periods between the walls change nothing but the number of sites between the walls.
+/// Whether further periods between the walls change only the number of sites there.
 Agreement compare(const Analysed& shorter, const Analysed& longer) {
   SolvePlan::Table extended = shorter.table;
   extended.lattice_sites = longer.quotient.sites;
@@ -184,8 +184,8 @@ void list_exceptions(const Quotient& quotient, SolvePlan& plan) {
 
 SolveKind classify(const SolvePlan& plan, const SlabGraph& slab, long long places) {
   if (!plan.table.regular || !plan.table.matched) return SolveKind::sparse;
-  // Round a circle no unknown of a row can wait for its neighbours in turn: where all are on their own, rows of them
-  // follow each other at most.
+  // Unknowns on a circle that are each a block of their own do not depend on their neighbours all the way round; at
+  // most one component depends on another.
   if (slab.edges.empty() || (plan.cyclic && plan.blocks == plan.unknowns)) return SolveKind::explicit_;
   if (plan.cyclic && places <= 2LL * std::max(plan.lower, plan.upper) + 1) return SolveKind::sparse;
   const bool one_way = plan.lower == 0 || plan.upper == 0;
@@ -199,7 +199,7 @@ bool grow_evenly(const Analysed& a, const Analysed& longer, const Analysed& long
 }
 
 /// The plan of a quotient. If it is shorter than the lattice, `longer` and `longest` are by one and two periods longer:
-/// every part of the lattice that is 2·width wide occurs in them, and they show how what is counted grows with it.
+/// every part of the lattice that is 2·width wide occurs in them, and they show how the counts grow with its length.
 SolvePlan planned(const Lattice& lattice, const SystemPattern& system, const Analysed& a,
                   const Analysed* longer = nullptr, const Analysed* longest = nullptr) {
   const Quotient& quotient = a.quotient;
@@ -250,7 +250,7 @@ SolvePlan make_plan(const Lattice& lattice, const SystemPattern& system) {
 
   // Between the walls equations repeat, and whatever repeats within 2·width sites fits into each period.
   const int period = 2 * std::max(system.width, 1);
-  // Walls are felt within one period as a rule; if not, look further.
+  // The influence of walls usually ends within one period; if not, try a longer quotient.
   for (const int zones : {1, 2, 4}) {
     const int least = 2 * zones * period + 1;
     const int sites = least + positive_mod(lattice.sites() - least, period);

@@ -20,7 +20,7 @@ namespace {
 int positive_mod(int a, int n) { return ((a % n) + n) % n; }
 int parities_of(const SystemPattern& system) { return system.placement == Placement::brick_wall ? 2 : 1; }
 
-/// Asks for the equation and checks that the lattice has what it contains.
+/// The couplings of an equation; checks that the lattice has all of its unknowns.
 std::vector<Coupling> checked(const SystemPattern& system, const Lattice& lattice, bool circle, Site site,
                               int component) {
   std::vector<Coupling> equation = system.equations(lattice, site, component);
@@ -67,7 +67,7 @@ void centre_offsets(const Quotient& quotient, const std::vector<int>& part, Stru
   }
 }
 
-/// Looks for offsets that between the walls are those of a circle, and nearest to them at the walls.
+/// Finds offsets that equal those of a circle between the walls, and are nearest to them at the walls.
 void extend_from_middle(const Quotient& quotient, const std::vector<Occurrence>& occurrences,
                         StructuralAnalysis& analysis) {
   const Quotient cell = quotient.middle();

@@ -36,16 +36,16 @@ class Quotient {
   /// In whole cells of a circle: how far a site is from the cell's own.
   int cell(int shifted_site) const { return circle ? (shifted_site - wrapped(shifted_site)) / sites : 0; }
   int wrapped(int shifted_site) const { return ((shifted_site % sites) + sites) % sites; }
-  /// A site as far from both walls as can be that is also the same one of its period in longer intervals.
+  /// A site as far from both walls as possible that keeps its place in its period in longer intervals.
   int centre() const { return sites / 2 < period ? sites / 2 : sites / 2 / period * period; }
 
   bool circle = true;
   int sites = 1, components = 1, parities = 1;
-  int period = 1;            ///< whatever repeats between the walls does so after this many sites
-  std::vector<char> solved;  ///< of each node: it has an equation; what has none is data
+  int period = 1;            ///< of the plan between the walls, in sites
+  std::vector<char> solved;  ///< of each node: it has an equation; a node without one is data
   std::vector<Edge> edges;   ///< between solved nodes
   std::vector<int> reach;    ///< of each node: the time of the oldest value in its equation, data too
-  bool linear = true;        ///< all of it
+  bool linear = true;        ///< all equations are
 
   /// The structural analysis of its solved nodes, in terms of nodes; match holds edges. Between the walls d is what it
   /// is on a circle, where that is possible; at the walls then as near to that as it can be.

@@ -8,7 +8,7 @@ namespace delf {
 struct Occurrence {
   int equation = 0, unknown = 0;
   int time = 0;
-  long long farness = 0;  ///< among equals, the equation is solved for what has the least
+  long long farness = 0;  ///< among equal matchings, the unknown of least farness is preferred
 };
 
 /// Pryce's Σ-method (BIT 41, 2001), with rows in the place of derivatives. σ(e, u) is the latest time at which equation

@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// How the unknowns of a slab hang together.
+/// How the unknowns of a slab are coupled.
 enum class SolveKind {
   explicit_,    ///< each equation contains its own unknown of the slab and no other: all sites at once
   chain,        ///< one direction only, on an interval: a sweep (rightwards if lower > 0, leftwards if upper > 0)
@@ -78,7 +78,7 @@ struct SolvePlan {
   /// Which equation determines what, where, and how: a few lines.
   std::string report() const;
 
-  /// What the plan says of one (site, component, parity of the row), as unknown and as equation.
+  /// The plan of one (site, component, parity of the row), as unknown and as equation.
   struct Entry {
     bool solved = false;
     int shift = 0, offset = 0;

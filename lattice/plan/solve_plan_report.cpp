@@ -53,7 +53,7 @@ std::string SolvePlan::describe() const {
 std::string SolvePlan::report() const {
   std::string text = describe() + "\n";
   for (int component = 0; component < components; ++component) {
-    // The innermost site speaks for the bulk.
+    // The innermost site represents the bulk.
     const int site = table.lattice_sites / 2;
     const Entry& e = node(site, component, 0);
     if (!e.solved) continue;

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "jets/numbers/differentiate.hpp"
+#include "jets/numbers/structure.hpp"
 #include "jets/stencil_lagrangian.hpp"
 #include "lattice/error.hpp"
 #include "schemes/families/stencil_family.hpp"
 
 namespace delf {
 
-/// A discrete Lagrangian on the values of a stencil: rⁱ = ∂L/∂yⁱ and its Jacobian ∂²L/∂yⁱ∂yʲ by differentiation.
+/// A discrete Lagrangian on the values of a stencil: rⁱ = ∂L/∂yⁱ and its Jacobian ∂²L/∂yⁱ∂yʲ by differentiation, for a
+/// pack of stencils at once.
 template <StencilLagrangian L>
 class LagrangianFamily final : public StencilFamily {
  public:
@@ -23,18 +26,108 @@ class LagrangianFamily final : public StencilFamily {
   }
 
   void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override {
-    gradient(at(cell), y, r);
+    gradient(in(cell), y, r);
   }
   void jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const override {
-    hessian(at(cell), y, J);
+    hessian(in(cell), y, J);
   }
   std::optional<double> lagrangian(const Cell& cell, std::span<const double> y) const override {
     return lagrangian_(y, cell);
   }
 
+  bool lagrangian(const StencilBatch& batch, double* values) const override {
+    std::vector<double> y(values_.size());
+    for (int s = 0; s < batch.count; ++s) {
+      Cell cell = batch.cell;
+      cell.x = batch.x[s];
+      for (int i = 0; i < size(); ++i) y[at(i)] = batch.y[i * batch.count + s];
+      values[s] = lagrangian_(std::span<const double>(y), cell);
+    }
+    return true;
+  }
+
+  /// A sweep of derivatives by eight values for every pack of stencils.
+  void residual(const StencilBatch& batch, double* r) const override {
+    if (placed_) return StencilFamily::residual(batch, r);
+    using Number = Dual<Pack, 8>;
+    thread_local std::vector<Number> y;
+    y.resize(values_.size());
+    for (int s = 0; s < batch.count; s += lanes) {
+      load(batch, s, y, [](Number& number) -> Pack& { return number.value; });
+      for (int first = 0; first < size(); first += 8) {
+        const int last = std::min(first + 8, size());
+        for (int i = first; i < last; ++i) y[at(i)].d[at(i - first)] = Pack(1.0);
+        const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
+        for (int i = first; i < last; ++i) {
+          value.d[at(i - first)].store(r + i * batch.count + s);
+          y[at(i)].d[at(i - first)] = Pack(0.0);
+        }
+      }
+    }
+  }
+  /// A sweep of second derivatives for each value of the shorter list, by four of the longer one: ∂²L is symmetric.
+  [[gnu::__flatten__]] void jacobian(const StencilBatch& batch, std::span<const int> equations,
+                                 std::span<const int> unknowns, double* J) const override {
+    if (placed_) return StencilFamily::jacobian(batch, equations, unknowns, J);
+    constexpr int chunk = 4;
+    using Number = Dual<Dual<Pack, chunk>, 1>;
+    thread_local std::vector<Number> y;
+    y.resize(values_.size());
+    const std::size_t U = unknowns.size();
+    const bool by_unknown = U < equations.size();
+    const std::span<const int> rows = by_unknown ? unknowns : equations, columns = by_unknown ? equations : unknowns;
+    for (int s = 0; s < batch.count; s += lanes) {
+      load(batch, s, y, [](Number& number) -> Pack& { return number.value.value; });
+      for (std::size_t first = 0; first < columns.size(); first += chunk) {
+        const std::size_t last = std::min(first + chunk, columns.size());
+        for (std::size_t m = first; m < last; ++m) y[at(columns[m])].value.d[m - first] = Pack(1.0);
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          y[at(rows[i])].d[0].value = Pack(1.0);
+          const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
+          y[at(rows[i])].d[0].value = Pack(0.0);
+          for (std::size_t m = first; m < last; ++m)
+            value.d[0].d[m - first].store(J + (by_unknown ? m * U + i : i * U + m) * at(batch.count) + at(s));
+        }
+        for (std::size_t m = first; m < last; ++m) y[at(columns[m])].value.d[m - first] = Pack(0.0);
+      }
+    }
+  }
+  /// The second derivatives that the form of L alone proves constant.
+  std::optional<ConstantPart> constant_part(const Cell& cell) const override {
+    if (placed_ || size() > Abstract::most_variables) return std::nullopt;
+    std::vector<Abstract> y;
+    for (int i = 0; i < size(); ++i) y.push_back(Abstract::variable(i));
+    const Abstract form = lagrangian_(std::span<const Abstract>(y), cell);
+    const std::vector<double> zero(values_.size(), 0.0);
+    ConstantPart part{std::vector<double>(zero.size() * zero.size()), std::vector<double>(zero.size()), true};
+    jacobian(cell, zero, part.J);
+    residual(cell, zero, part.r0);
+    for (int i = 0; i < size(); ++i)
+      for (int m = 0; m < size(); ++m) {
+        double& value = part.J[at(i * size() + m)];
+        const auto has = [&](const auto& bits) { return (bits[at(i)] >> m & 1u) != 0; };
+        if (has(form.varying)) part.is_all = false;
+        if (has(form.varying) || !has(form.nonzero)) value = 0;
+        if (!std::isfinite(value)) return std::nullopt;
+      }
+    for (double& value : part.r0)
+      if (!part.is_all) value = 0;
+      else if (!std::isfinite(value)) return std::nullopt;
+    return part;
+  }
+
  private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  /// Values of the pack of stencils from s on, without derivatives.
+  template <class Number, class Value>
+  void load(const StencilBatch& batch, int s, std::vector<Number>& y, Value value) const {
+    for (int i = 0; i < size(); ++i) {
+      y[at(i)] = Number(0.0);
+      value(y[at(i)]) = Pack::load(batch.y + i * batch.count + s);
+    }
+  }
   /// L as a function of y alone.
-  auto at(const Cell& cell) const {
+  auto in(const Cell& cell) const {
     return [this, &cell]<class T>(std::span<const T> y) -> T { return lagrangian_(y, cell); };
   }
 

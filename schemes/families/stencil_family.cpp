@@ -2,9 +2,55 @@
 #include "schemes/families/stencil_family.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace delf {
+namespace {
+
+/// One stencil as a batch: it stands in every lane.
+struct Alone {
+  std::vector<Pack> y;
+  Pack x;
+  StencilBatch batch;
+
+  Alone(const Cell& cell, std::span<const double> values) : y(values.size()), x(cell.x) {
+    for (std::size_t i = 0; i < values.size(); ++i) y[i] = Pack(values[i]);
+    batch = {cell, lanes, reinterpret_cast<const double*>(&x), reinterpret_cast<const double*>(y.data())};
+  }
+};
+
+}  // namespace
+
+int SourceTerms::Group::latest_time() const {
+  int latest = std::numeric_limits<int>::min();
+  for (const QuadratureValue& value : inputs)
+    for (const Part& part : value) latest = std::max(latest, part.vertex.time);
+  return latest;
+}
+
+void StencilFamily::residual(const Cell& cell, std::span<const double> y, std::span<double> r) const {
+  const Alone one(cell, y);
+  std::vector<Pack> out(y.size());
+  residual(one.batch, reinterpret_cast<double*>(out.data()));
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = out[i][0];
+}
+
+void StencilFamily::jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const {
+  const Alone one(cell, y);
+  std::vector<int> all(y.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<Pack> out(y.size() * y.size());
+  jacobian(one.batch, all, all, reinterpret_cast<double*>(out.data()));
+  for (std::size_t i = 0; i < J.size(); ++i) J[i] = out[i][0];
+}
+
+std::optional<double> StencilFamily::lagrangian(const Cell& cell, std::span<const double> y) const {
+  const Alone one(cell, y);
+  Pack L;
+  if (!lagrangian(one.batch, reinterpret_cast<double*>(&L))) return std::nullopt;
+  return L[0];
+}
 
 void StencilFamily::residual(const StencilBatch& batch, double* r) const {
   const auto size = static_cast<std::size_t>(this->size()), count = static_cast<std::size_t>(batch.count);
@@ -34,13 +80,6 @@ void StencilFamily::jacobian(const StencilBatch& batch, std::span<const int> equ
   }
 }
 
-std::optional<ConstantPart> StencilFamily::constant_part(const Cell& cell) const {
-  const auto size = static_cast<std::size_t>(this->size());
-  ConstantPart part{std::vector<double>(size * size), std::vector<double>(size)};
-  if (!constant_jacobian(cell, part.J)) return std::nullopt;
-  const std::vector<double> zero(size, 0.0);
-  residual(cell, zero, part.r0);
-  return part;
-}
+std::optional<ConstantPart> StencilFamily::constant_part(const Cell&) const { return std::nullopt; }
 
 }  // namespace delf

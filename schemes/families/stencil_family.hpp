@@ -5,13 +5,10 @@
 #include <vector>
 
 #include "jets/discrete_lagrangian.hpp"
-#include "jets/simd/pack.hpp"
+#include "jets/batch_density.hpp"
 #include "lattice/stencil_shape.hpp"
 
 namespace delf {
-
-class NodalKernel;
-class RowKernel;
 
 /// Some stencils of one family, whose cells differ in x alone. Arrays are aligned to packs.
 struct StencilBatch {
@@ -29,6 +26,37 @@ struct ConstantPart {
   bool is_all = false;     ///< there is nothing else
 };
 
+/// What a residual adds to its constant part, where that is a sum of functions of a few quadrature values:
+///
+///     r(y) = r0 + J y + hk Σ_c weights(c, ·) g_c(m),        m = Σ weight · y(vertex)
+///
+/// A row of stencils then evaluates each g_c once. The functions come in groups of the same inputs at one place.
+struct SourceTerms {
+  struct Part {
+    Site vertex;
+    int component;
+    double weight;
+  };
+  using QuadratureValue = std::vector<Part>;
+  struct Group {
+    std::vector<QuadratureValue> inputs;
+    double time = 0, space = 0;  ///< where it lies, from the anchor, in steps
+    /// The latest vertex time that it depends on: below the pattern's latest, it is known before a step.
+    int latest_time() const;
+  };
+  std::vector<Group> groups;
+  int outputs_per_group = 1;
+  /// [(g · outputs_per_group + c) · size + i], in units of hk. A direct residual may give its stencils shares of what r
+  /// itself has at one vertex: sums over stencils are alike.
+  std::vector<double> weights;
+
+  int outputs() const { return static_cast<int>(groups.size()) * outputs_per_group; }
+  double weight(int output, int i) const {
+    return weights[static_cast<std::size_t>(output) * (weights.size() / static_cast<std::size_t>(outputs())) +
+                   static_cast<std::size_t>(i)];
+  }
+};
+
 /// One kind of stencil all over the lattice. A stencil carries one residual rⁱ for each value that it reads, ∂L/∂yⁱ
 /// where there is a Lagrangian; solver, plan and checks see only r and its Jacobian.
 class StencilFamily {
@@ -44,39 +72,38 @@ class StencilFamily {
     return pattern_.vertices[static_cast<std::size_t>(values_[static_cast<std::size_t>(i)].vertex)];
   }
   bool is_variational() const { return variational_; }
+  /// r[i] enters the equation of y[i]. False for a value that is read but not varied: its equation is another family's.
+  bool is_varied(int i) const { return varied_.empty() || varied_[static_cast<std::size_t>(i)]; }
   bool is_placed() const { return placed_; }
 
-  /// r, for one stencil.
-  virtual void residual(const Cell&, std::span<const double> y, std::span<double> r) const = 0;
-  /// ∂r/∂y, row by row.
-  virtual void jacobian(const Cell&, std::span<const double> y, std::span<double> J) const = 0;
-  /// L, where there is one; the residual is its gradient.
-  virtual std::optional<double> lagrangian(const Cell&, std::span<const double> /*y*/) const { return std::nullopt; }
-  /// Elements: the momenta ∫ ∂ℓ/∂φ_t of the values at the element's lowest row (site(i).time = 0), in their order, for
-  /// the fields φ and φ_t there: what a start by the discrete Legendre transform needs. False for other families.
-  virtual bool momentum(const Cell&, std::span<const double> /*phi*/, std::span<const double> /*phi_t*/,
-                        std::span<double> /*p*/) const {
-    return false;
-  }
-  /// r of `lanes` stencils at once whose cells differ in x alone, lane by lane: y[i·lanes + l], r[i·lanes + l] and
-  /// x[l], aligned to packs. False for a family that has only the one above.
-  virtual bool residuals(const Cell&, const double* /*x*/, const double* /*y*/, double* /*r*/) const { return false; }
-  /// ∂r/∂y without the terms that depend on y, t or x: what an iteration with a fixed matrix takes for it. False for a
-  /// family that cannot tell which those are.
-  virtual bool constant_jacobian(const Cell&, std::span<double> /*J*/) const { return false; }
   /// r of a batch: r[i·count + s].
   virtual void residual(const StencilBatch&, double* r) const;
   /// ∂rᵉ/∂yᵘ of a batch for some equations e and unknowns u, both indices of values():
   /// J[(e·unknowns.size() + u)·count + s], where e and u count in the lists.
   virtual void jacobian(const StencilBatch&, std::span<const int> equations, std::span<const int> unknowns,
                         double* J) const;
-  /// Nothing if the family cannot tell it, or it is not finite.
+  /// L of a batch, where there is one; the residual is its gradient.
+  virtual bool lagrangian(const StencilBatch&, double* /*L*/) const { return false; }
+  /// Nothing where it is not finite.
   virtual std::optional<ConstantPart> constant_part(const Cell&) const;
 
-  /// The same for whole rows of stencils at once; null for a family that has only the two above.
-  virtual const RowKernel* row_kernel() const { return nullptr; }
-  /// For rows of nodes inside an element that follow each other explicitly; null where they do not.
-  virtual const NodalKernel* nodal_kernel() const { return nullptr; }
+  /// What r has besides its constant part; null if it is not of that form. And the functions g_c of a group.
+  virtual const SourceTerms* sources() const { return nullptr; }
+  virtual void evaluate_sources(int /*group*/, const JetBatch& /*inputs*/, double* const* /*g*/) const {}
+  /// ∂g_c/∂m_j: d[c·inputs + j][i]
+  virtual void differentiate_sources(int /*group*/, const JetBatch& /*inputs*/, double* const* /*d*/) const {}
+
+  /// Elements: the momenta ∫ ∂ℓ/∂φ_t of the values at the element's lowest row (site(i).time = 0), in their order, for
+  /// the fields φ and φ_t there: what a start by the discrete Legendre transform needs. False for other families.
+  virtual bool momentum(const Cell&, std::span<const double> /*phi*/, std::span<const double> /*phi_t*/,
+                        std::span<double> /*p*/) const {
+    return false;
+  }
+
+  /// For one stencil: r, ∂r/∂y row by row, and L.
+  virtual void residual(const Cell&, std::span<const double> y, std::span<double> r) const;
+  virtual void jacobian(const Cell&, std::span<const double> y, std::span<double> J) const;
+  virtual std::optional<double> lagrangian(const Cell&, std::span<const double> y) const;
 
  protected:
   StencilFamily(StencilPattern pattern, std::vector<VertexValue> values, bool variational)
@@ -84,14 +111,15 @@ class StencilFamily {
 
   StencilPattern pattern_;
   std::vector<VertexValue> values_;
+  std::vector<bool> varied_;  ///< [i]; empty: all
   bool variational_, placed_ = false;
 };
 
-/// d components at every vertex, vertex by vertex: i = l·d + a.
+/// d components at every vertex, vertex by vertex: i = l·d + a. Nodes inside a cell have components of their own.
 inline std::vector<VertexValue> values_at_every_vertex(const StencilPattern& pattern, int d) {
   std::vector<VertexValue> values;
   for (int l = 0; l < pattern.size(); ++l)
-    for (int a = 0; a < d; ++a) values.push_back({l, a});
+    for (int a = 0; a < d; ++a) values.push_back({l, pattern.vertices[static_cast<std::size_t>(l)].node * d + a});
   return values;
 }
 

@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include "lattice/error.hpp"
+#include "schemes/families/damped_leapfrog.hpp"
+#include "schemes/families/guo.hpp"
+#include "schemes/families/vu_quoc_li.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
@@ -9,8 +12,8 @@
 namespace delf {
 namespace {
 
-SchemeParts build(const FieldTheory& theory, const Problem& p) {
-  auto family = theory.comparator(p.method, p.time_step, p.lattice.space_step());
+SchemeParts build(const FieldTheory& theory, const Problem& p, DirectResidual stencil) {
+  auto family = theory.comparator(std::move(stencil));
   if (!family)
     throw BadInput("scheme.method", fmt::format("scheme.method = {}: not written for theory.name = {}, whose potential "
                                                 "depends on more than the field; use scheme.method = multisymplectic",
@@ -24,16 +27,17 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
     throw BadInput(
         p.lattice.left() == Wall::natural ? "boundary.left" : "boundary.right",
         fmt::format("a natural wall varies the action, and scheme.method = {} has none; use fixed walls", p.method));
-  return {{std::move(family)}, fields(1)};
+  return {{std::move(family)}, fields(theory.components())};
 }
 
 }  // namespace
 
 extern const MethodEntry vu_quoc_li_method, guo_method, damped_method;
 const MethodEntry vu_quoc_li_method{"vu-quoc-li", "comparator (5.14): conserves an energy, is not multisymplectic",
-                                    build};
-const MethodEntry guo_method{"guo", "comparator (5.15): conserves an energy, is not multisymplectic", build};
+                                    [](const FieldTheory& theory, const Problem& p) { return build(theory, p, vu_quoc_li()); }};
+const MethodEntry guo_method{"guo", "comparator (5.15): conserves an energy, is not multisymplectic",
+                             [](const FieldTheory& theory, const Problem& p) { return build(theory, p, guo()); }};
 const MethodEntry damped_method{"damped", "comparator: leapfrog with friction 0.1, loses energy; for checks to fail on",
-                                build};
+                                [](const FieldTheory& theory, const Problem& p) { return build(theory, p, damped_leapfrog()); }};
 
 }  // namespace delf

@@ -4,9 +4,9 @@
 #include "jets/tables/pair_element.hpp"
 #include "jets/tables/splitting.hpp"
 #include "lattice/error.hpp"
-#include "schemes/theories/field_theory.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/theories/field_theory.hpp"
 
 namespace delf {
 namespace {
@@ -21,28 +21,31 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
     throw BadInput("scheme.method",
                    "scheme.method = composition: this version has no constraints between sub-steps; "
                    "use scheme.method = multisymplectic");
-  const Splitting splitting = splitting_of_order(p.order);
+  const int order = p.parameters.get<int>("scheme.order"), space_order = p.parameters.get<int>("lattice.space_order");
+  const Splitting splitting = splitting_of_order(order);
   if (splitting.drifts.empty())
     throw BadInput("scheme.order",
-                   fmt::format("scheme.order = {}: compositions are of order 2, 4, 6 or 8; choose one", p.order));
-  const int pairs = p.space_order / 2;
-  if (p.space_order % 2 != 0 || pairs < 1 || pairs > widest_pair)
+                   fmt::format("scheme.order = {}: compositions are of order 2, 4, 6 or 8; choose one", order));
+  const int pairs = space_order / 2;
+  if (space_order % 2 != 0)
     throw BadInput("lattice.space_order",
                    fmt::format("lattice.space_order = {}: wide stencils are of order 2, 4, 6, 8, 10 or 12; choose one",
-                               p.space_order));
+                               space_order));
   if (p.lattice.sites() < 2 * pairs + 1)
     throw BadInput("lattice.sites",
                    fmt::format("lattice.sites = {}: a stencil of space order {} is {} sites wide; give more",
-                               p.lattice.sites(), p.space_order, 2 * pairs + 1));
-  const Element element = pair_element(splitting, pairs);
-  SchemeParts parts{{theory.on_element(element)}, fields(theory.components()), theory.symmetries()};
-  if (!parts.families[0]->nodal_kernel())
+                               p.lattice.sites(), space_order, 2 * pairs + 1));
+  const StencilTable element = pair_element(splitting, pairs);
+  // Between sub-steps momenta change by ∂ℓ/∂φ, linear or not.
+  SchemeParts parts{{theory.on_table(element, true)}, fields(theory.components()), theory.symmetries()};
+  if (theory.density().nonlinearity() == Nonlinearity::all)
     throw BadInput("theory.name", fmt::format("theory.name = {}: scheme.method = composition takes densities that are "
                                               "nonlinear in phi alone; use scheme.method = multisymplectic",
                                               p.theory));
   for (std::size_t s = 1; s < element.nodes.size(); ++s)
     for (const Component& field : fields(theory.components()))
-      parts.components.push_back({fmt::format("{} after {} sub-steps", field.name, s), Role::inner, element.nodes[s]});
+      parts.components.push_back({fmt::format("{} after {} sub-steps", field.name, s), Role::inner, element.nodes[s],
+                                  false, field.field});
   return parts;
 }
 
@@ -51,8 +54,9 @@ std::vector<NamedScheme> variants(const Problem& base) {
   for (int order = 2; order <= highest_splitting_order; order += 2)
     for (int space = 2; space <= 2 * widest_pair; space += 2) {
       schemes.push_back({fmt::format("composition ({},{})", order, space), base});
-      schemes.back().problem.order = order;
-      schemes.back().problem.space_order = space;
+      schemes.back().problem.parameters["scheme.order"] = order;
+      schemes.back().problem.parameters["lattice.space_order"] = space;
+      schemes.back().rank = 100 + order + space;
     }
   return schemes;
 }
@@ -61,7 +65,19 @@ std::vector<NamedScheme> variants(const Problem& base) {
 
 extern const MethodEntry composition_method;
 const MethodEntry composition_method{
-    "composition", "sub-steps of scheme.order over pairs of sites of lattice.space_order: explicit, any even order",
-    build, variants};
+    .name = "composition",
+    .formula = "sub-steps of scheme.order over pairs of sites of lattice.space_order: explicit, any even order",
+    .build = build,
+    .parameters = {{.key = "lattice.space_order",
+                    .fallback = 4,
+                    .help = "order in space: 2, 4, ..., 12",
+                    .range = {.low = 2, .high = 2 * widest_pair}},
+                   {.key = "scheme.order",
+                    .fallback = 4,
+                    .help = "order in time: 2, 4, 6, 8",
+                    .range = {.low = 2, .high = highest_splitting_order}}},
+    .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
+    .start = StartRule::legendre,
+    .variants = variants};
 
 }  // namespace delf

@@ -1,16 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/methods/method_registry.hpp"
 
+#include "schemes/unknown_name.hpp"
+
 namespace delf {
 
 extern const MethodEntry multisymplectic_method, vu_quoc_li_method, guo_method, spacetime_method, r_adaptive_method,
     damped_method, composition_method;
 
-const std::vector<const MethodEntry*>& method_entries() {
-  static const std::vector<const MethodEntry*> entries{&multisymplectic_method, &composition_method, &spacetime_method,
-                                                       &r_adaptive_method,      &vu_quoc_li_method,  &guo_method,
-                                                       &damped_method};
-  return entries;
+namespace {
+
+std::vector<const MethodEntry*>& entries() {
+  static std::vector<const MethodEntry*> all{&multisymplectic_method, &composition_method, &spacetime_method,
+                                             &r_adaptive_method,      &vu_quoc_li_method,  &guo_method,
+                                             &damped_method};
+  return all;
+}
+
+}  // namespace
+
+const std::vector<const MethodEntry*>& method_entries() { return entries(); }
+void register_method(const MethodEntry& entry) { entries().push_back(&entry); }
+
+const MethodEntry& find_method(const std::string& name) { return find_entry(method_entries(), "scheme.method", name); }
+
+const char* to_string(StartRule rule) {
+  return rule == StartRule::exact ? "exact" : rule == StartRule::centred ? "centred" : "legendre";
 }
 
 }  // namespace delf

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "jets/symmetry.hpp"
+#include "schemes/parameter.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 
 class FieldTheory;
+struct EnergyMomentum;
 struct NamedScheme;
 struct Problem;
 
@@ -20,19 +25,55 @@ struct SchemeParts {
       {};  ///< that the families have: the theory's, where it is its density that they carry
 };
 
-/// A scheme family that a scene can name by scheme.method: one constant of this type stands at the end of each file in
+/// What gives row 1: the known solution; the field equation at row 0; the discrete Legendre transform there.
+enum class StartRule { exact, centred, legendre };
+const char* to_string(StartRule);
+
+/// The last rows of a run, of all components.
+struct RowsInTime {
+  const FieldTheory& theory;
+  const LatticeSystem& system;
+  Window rows;          ///< the newest two
+  std::int64_t newest;  ///< index of the newest
+  double time_step;
+};
+
+/// A quantity that series.csv has a column for.
+struct Monitor {
+  std::string name;
+  double (*value)(const RowsInTime&);
+};
+
+/// A method that a scene can name by scheme.method: one constant of this type stands at the end of each file in
 /// schemes/methods/.
 struct MethodEntry {
-  const char* name;
-  const char* formula;
-  /// Throws BadInput for what the method cannot be built for.
+  std::string name;
+  std::string formula;
+  /// The problem has the values of all parameters. Throws BadInput for what the method cannot be built for.
   SchemeParts (*build)(const FieldTheory&, const Problem&);
-  /// The schemes that its keys tell apart; null where there is one, of the method's name. `base.method` is the
-  /// method's.
+
+  std::vector<Parameter> parameters = {};  ///< that it reads
+  bool reads_stencil = false;              ///< it reads lattice.stencil too
+  /// The scheme in reports, from the values of all parameters; null: the name.
+  std::string (*label)(const Problem&) = nullptr;
+
+  std::vector<StartRule> starts = {StartRule::exact, StartRule::centred};  ///< that it knows
+  /// When the scene gives none; empty: exact where the second row is known, or else centred.
+  std::optional<StartRule> start = {};
+
+  /// The energy and momentum of the newest two rows; null: the theory's, on the jets of the symmetric rectangle.
+  EnergyMomentum (*energy)(const RowsInTime&) = nullptr;
+  std::vector<Monitor> monitors = {};
+
+  /// The schemes that its keys tell apart; null: one, of the method's name. `base.method` is the method's.
   std::vector<NamedScheme> (*variants)(const Problem& base) = nullptr;
 };
 
-/// The list of all of them: a new method adds one line there.
+/// All methods, the built-in ones first: a new method adds one line there.
 const std::vector<const MethodEntry*>& method_entries();
+/// Adds a method of a program's own, before the first scene is read; the entry must outlive all use.
+void register_method(const MethodEntry&);
+/// Throws BadInput, with the nearest name, if there is none of that name.
+const MethodEntry& find_method(const std::string& name);
 
 }  // namespace delf

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "lattice/error.hpp"
-#include "schemes/theories/field_theory.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/unknown_name.hpp"
 
 namespace delf {
@@ -34,7 +34,7 @@ void check_walls(const Problem& p, const StencilFamily& family) {
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
-  SchemeParts parts{{theory.variational(p.stencil, p.time_step, p.lattice.space_step())},
+  SchemeParts parts{{theory.variational(p.stencil)},
                     fields(theory.components()),
                     theory.symmetries()};
   if (!parts.families[0]) {
@@ -55,6 +55,7 @@ std::vector<NamedScheme> variants(const Problem& base) {
   for (const NamedFormula& stencil : stencils()) {
     schemes.push_back({stencil.name, base});
     schemes.back().problem.stencil = stencil.name;
+    schemes.back().rank = stencil.name == "rectangle-symmetric" ? 1 : 0;
   }
   return schemes;
 }
@@ -62,7 +63,11 @@ std::vector<NamedScheme> variants(const Problem& base) {
 }  // namespace
 
 extern const MethodEntry multisymplectic_method;
-const MethodEntry multisymplectic_method{
-    "multisymplectic", "discrete Euler-Lagrange field equations of lattice.stencil (5.2)", build, variants};
+const MethodEntry multisymplectic_method{.name = "multisymplectic",
+                                         .formula = "discrete Euler-Lagrange field equations of lattice.stencil (5.2)",
+                                         .build = build,
+                                         .reads_stencil = true,
+                                         .label = [](const Problem& p) { return p.stencil; },
+                                         .variants = variants};
 
 }  // namespace delf

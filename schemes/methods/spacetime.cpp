@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
 #include "jets/tables/spacetime_element.hpp"
 #include "lattice/error.hpp"
-#include "schemes/theories/field_theory.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/theories/field_theory.hpp"
 
 namespace delf {
 namespace {
+
+struct Keys {
+  explicit Keys(const Problem& p)
+      : degree_time(p.parameters.get<int>("scheme.degree_time")),
+        degree_space(p.parameters.get<int>("scheme.degree_space")),
+        quadrature(p.parameters.get<std::string>("scheme.quadrature")) {}
+  int degree_time, degree_space;
+  std::string quadrature;
+};
 
 /// Every node of the unit cell carries the d fields: component = node · d + a.
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
@@ -22,17 +32,16 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
     throw BadInput("scheme.method",
                    "scheme.method = spacetime: this version has no constraints at the nodes of elements; "
                    "use scheme.method = multisymplectic");
-  if (p.quadrature != "gauss" && p.quadrature != "lobatto")
-    throw BadInput("scheme.quadrature",
-                   fmt::format("scheme.quadrature = {}: is gauss or lobatto; choose one", p.quadrature));
-  const Element element = spacetime_element(p.degree_time, p.degree_space,
-                                            p.quadrature == "gauss" ? TimeQuadrature::gauss : TimeQuadrature::lobatto);
-  SchemeParts parts{{theory.on_element(element)}, fields(theory.components()), theory.symmetries()};
+  const Keys keys(p);
+  const StencilTable element =
+      spacetime_element(keys.degree_time, keys.degree_space,
+                        keys.quadrature == "gauss" ? TimeQuadrature::gauss : TimeQuadrature::lobatto);
+  SchemeParts parts{{theory.on_table(element)}, fields(theory.components()), theory.symmetries()};
   for (std::size_t node = 1; node < element.nodes.size(); ++node)
     for (const Component& field : fields(theory.components()))
       parts.components.push_back(
           {fmt::format("{} at ({:.4g}, {:.4g})", field.name, element.nodes[node].time, element.nodes[node].space),
-           Role::inner, element.nodes[node]});
+           Role::inner, element.nodes[node], false, field.field});
   return parts;
 }
 
@@ -42,17 +51,43 @@ std::vector<NamedScheme> variants(const Problem& base) {
   for (const auto& [time, space] : {std::pair{1, 1}, {1, 2}, {2, 2}, {2, 3}, {3, 4}, {4, 6}})
     for (const char* quadrature : {"gauss", "lobatto"}) {
       schemes.push_back({fmt::format("spacetime ({},{}) {}", time, space, quadrature), base});
-      Problem& p = schemes.back().problem;
-      p.degree_time = time, p.degree_space = space, p.quadrature = quadrature;
+      ParameterValues& parameters = schemes.back().problem.parameters;
+      parameters["scheme.degree_time"] = time;
+      parameters["scheme.degree_space"] = space;
+      parameters["scheme.quadrature"] = quadrature;
+      schemes.back().nodes = space;
+      schemes.back().rank = quadrature == std::string_view("gauss") ? 10 + 2 * time : 0;
     }
   return schemes;
+}
+
+std::string label(const Problem& p) {
+  const Keys keys(p);
+  return fmt::format("spacetime of degrees {} and {}, {}", keys.degree_time, keys.degree_space, keys.quadrature);
 }
 
 }  // namespace
 
 extern const MethodEntry spacetime_method;
 const MethodEntry spacetime_method{
-    "spacetime", "spacetime Galerkin elements of scheme.degree_time, scheme.degree_space, Lobatto nodes", build,
-    variants};
+    .name = "spacetime",
+    .formula = "spacetime Galerkin elements of scheme.degree_time, scheme.degree_space, Lobatto nodes",
+    .build = build,
+    .parameters = {{.key = "scheme.degree_time",
+                    .fallback = 2,
+                    .help = "degree of an element in time",
+                    .range = {.low = 1, .high = 12}},
+                   {.key = "scheme.degree_space",
+                    .fallback = 2,
+                    .help = "degree of an element in space",
+                    .range = {.low = 1, .high = 12}},
+                   {.key = "scheme.quadrature",
+                    .fallback = "gauss",
+                    .help = "the quadrature in time",
+                    .choices = {"gauss", "lobatto"}}},
+    .label = label,
+    .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
+    .start = StartRule::legendre,
+    .variants = variants};
 
 }  // namespace delf

@@ -6,41 +6,75 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "lattice/plan/block_order.hpp"
-#include "schemes/solvers/arc_solver.hpp"
+#include "schemes/solvers/band_lu.hpp"
 
 namespace delf {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+/// The place of each unknown in an order in which coupled ones are near each other: Cuthill and McKee's, breadth first
+/// from a node at one end. Round a circle it is folded flat.
+std::vector<int> banded_places(int n, BlockSolver::Entries entries) {
+  std::vector<std::vector<int>> neighbours(at(n));
+  for (const auto& e : entries)
+    if (e.row != e.column) neighbours[at(e.row)].push_back(e.column), neighbours[at(e.column)].push_back(e.row);
+  for (auto& list : neighbours) {
+    std::ranges::sort(list);
+    list.erase(std::ranges::unique(list).begin(), list.end());
+  }
+  std::vector<int> order;
+  const auto from = [&](int start) {
+    std::vector<char> seen(at(n), false);
+    order.clear();
+    for (int next = -1; next < n; ++next) {
+      const int root = next < 0 ? start : next;
+      if (seen[at(root)]) continue;
+      seen[at(root)] = true, order.push_back(root);
+      for (std::size_t i = order.size() - 1; i < order.size(); ++i)
+        for (const int m : neighbours[at(order[i])])
+          if (!seen[at(m)]) seen[at(m)] = true, order.push_back(m);
+    }
+  };
+  // The node last found from the node last found lies at an end.
+  for (int start = 0, sweep = 0; sweep < 3; ++sweep, start = order.back()) from(start);
+  std::vector<int> places(at(n));
+  for (int i = 0; i < n; ++i) places[at(order[at(i)])] = i;
+  return places;
+}
+
 }  // namespace
 
-/// A block that is too large to be dense.
+/// A block that is too large to be dense: a band, or sparse where the band is too wide.
 struct BlockSolver::Large {
   int size;
-  std::unique_ptr<ArcSolver> arcs;
-  bool by_arcs = false;
+  std::vector<int> places;  ///< of the unknowns in the band
+  std::optional<BandLU> band;
   Eigen::SparseMatrix<double> matrix;
-  std::vector<int> where;  ///< of the entries, in matrix.valuePtr()
+  std::vector<int> where;  ///< of the entries, in the numbers of the band or of the matrix
   std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> sparse;
   mutable Eigen::VectorXd x;
 
-  Large(int n, Entries entries, const std::vector<int>& row_sites, const std::vector<int>& column_sites) : size(n) {
-    if (row_sites.empty()) return;
-    auto groups = SiteGroups::of(row_sites, column_sites, entries);
-    // Row n is solved for column n: it may as well lie where its column does.
-    if (!groups) groups = SiteGroups::of(column_sites, column_sites, entries);
-    if (groups) arcs = ArcSolver::make(*groups, entries);
-    by_arcs = arcs != nullptr;
+  Large(int n, Entries entries) : size(n), places(banded_places(n, entries)) {
+    int lower = 0, upper = 0;
+    for (const Entry& e : entries) {
+      const int offset = places[at(e.column)] - places[at(e.row)];
+      lower = std::max(lower, -offset), upper = std::max(upper, offset);
+    }
+    if (2 * lower + upper > std::max(size / 2, 2 * largest_dense)) return;
+    band.emplace(size, lower, upper);
+    for (const Entry& e : entries) where.push_back(band->place(places[at(e.row)], places[at(e.column)]));
   }
 
   bool factor(const std::vector<double>& values, Entries entries) {
-    by_arcs = arcs && arcs->factor(values, entries);
-    if (by_arcs) return true;
-    if (!sparse) prepare(entries);
-    for (std::size_t e = 0; e < entries.size(); ++e) matrix.valuePtr()[where[e]] = values[at(entries[e].place)];
+    if (!band && !sparse) prepare(entries);
+    if (band) band->set_zero();
+    double* const numbers = band ? band->numbers() : matrix.valuePtr();
+    for (std::size_t e = 0; e < entries.size(); ++e) numbers[where[e]] = values[at(entries[e].place)];
+    if (band) return band->factor();
     sparse->factorize(matrix);
     return sparse->info() == Eigen::Success;
   }
@@ -62,16 +96,20 @@ struct BlockSolver::Large {
 
   /// `part`: b, then x behind it.
   void solve(double* part) const {
-    if (by_arcs) {
-      arcs->solve(part, part + size);
+    double* const result = part + size;
+    if (!band) {
+      x = sparse->solve(Eigen::Map<const Eigen::VectorXd>(part, size));
+      std::copy_n(x.data(), size, result);
       return;
     }
-    x = sparse->solve(Eigen::Map<const Eigen::VectorXd>(part, size));
-    std::copy_n(x.data(), size, part + size);
+    for (int i = 0; i < size; ++i) result[places[at(i)]] = part[i];
+    band->solve(result);
+    std::copy_n(result, size, part);
+    for (int i = 0; i < size; ++i) result[i] = part[places[at(i)]];
   }
 
   std::size_t bytes() const {
-    std::size_t total = arcs ? arcs->bytes() : 0;
+    std::size_t total = (band ? band->bytes() : 0) + (places.size() + where.size()) * sizeof(int);
     if (sparse)
       total += static_cast<std::size_t>(matrix.nonZeros() + sparse->nnzL() + sparse->nnzU()) *
                (sizeof(double) + sizeof(int));
@@ -84,7 +122,7 @@ BlockSolver::BlockSolver(BlockSolver&&) noexcept = default;
 BlockSolver& BlockSolver::operator=(BlockSolver&&) noexcept = default;
 
 BlockSolver::BlockSolver(int n, const std::vector<std::pair<int, int>>& places, const std::vector<char>& present,
-                         bool matched, const Sites& sites) {
+                         bool matched) {
   std::vector<std::vector<int>> members;
   if (matched) {
     std::vector<std::pair<int, int>> edges;
@@ -111,14 +149,8 @@ BlockSolver::BlockSolver(int n, const std::vector<std::pair<int, int>>& places, 
       factors += at(b.size * b.size);
       continue;
     }
-    std::vector<int> row_sites, column_sites;
-    for (int i = 0; i < b.size && !sites.of_row.empty(); ++i) {
-      row_sites.push_back(sites.of_row[at(members_[at(b.first + i)])]);
-      column_sites.push_back(sites.of_column[at(members_[at(b.first + i)])]);
-    }
     b.large = static_cast<int>(large_.size());
-    large_.push_back(std::make_unique<Large>(b.size, Entries(inside_).subspan(b.inside, b.inside_end - b.inside),
-                                             row_sites, column_sites));
+    large_.push_back(std::make_unique<Large>(b.size, Entries(inside_).subspan(b.inside, b.inside_end - b.inside)));
   }
   factors_.resize(factors);
 }
@@ -224,8 +256,8 @@ std::size_t BlockSolver::bytes() const {
 }
 
 std::string BlockSolver::name() const {
-  const bool sparse = std::ranges::any_of(large_, [](const auto& large) { return !large->by_arcs; });
-  const std::string kind = largest_ <= largest_dense ? "dense" : sparse ? "sparse" : "block tridiagonal";
+  const bool sparse = std::ranges::any_of(large_, [](const auto& large) { return !large->band; });
+  const std::string kind = largest_ <= largest_dense ? "dense" : sparse ? "sparse" : "band";
   const std::string size = std::to_string(largest_);
   if (blocks() == 1) return kind + " LU of " + size + " unknowns";
   return std::to_string(blocks()) + " blocks in turn, " +

@@ -10,19 +10,13 @@
 namespace delf {
 
 /// A square matrix of fixed structure, solved block by block: the strongly connected components of its graph, each
-/// after those that it needs. Small blocks are dense. Large ones are block tridiagonal by sites where they can be,
-/// round the circle or not, and sparse where not.
+/// after those that it needs. Small blocks are dense. Large ones are bands where they can be, round a circle too, and
+/// sparse where not.
 class BlockSolver {
  public:
-  /// Where rows and columns belong on a line or a circle; nothing if that is not known.
-  struct Sites {
-    std::vector<int> of_row, of_column;
-  };
-
   /// `places`: (row, column) of each entry. With `matched`, row n is solved for column n, and the blocks are found from
   /// that; without, all is one block. A place that is not `present` is zero whatever its value says.
-  BlockSolver(int n, const std::vector<std::pair<int, int>>& places, const std::vector<char>& present, bool matched,
-              const Sites& sites = {});
+  BlockSolver(int n, const std::vector<std::pair<int, int>>& places, const std::vector<char>& present, bool matched);
   ~BlockSolver();
   BlockSolver(BlockSolver&&) noexcept;
   BlockSolver& operator=(BlockSolver&&) noexcept;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace delf {
 
@@ -27,12 +28,9 @@ CirculantSolver::CirculantSolver(const RowLayout& layout, double centre, double 
     gap_[l] = layout.start(l) + (l == 0 ? layout.sites() : 0) - layout.start(before) - 1;
     ends_[l] = layout.at(gap_[l]) + before;
   }
-  near_ = static_cast<int>(forward_.size());
   // Arcs overlap by at most two sites or so: the index that the arc before needs is small.
   const int deepest = layout.packs() - 1 - *std::ranges::min_element(gap_);
-  near_ = std::min(layout.packs(), near_ + deepest);
-  const int read_by_sums = (near_ + sums_at_once - 1) / sums_at_once * sums_at_once;
-  are_far_apart_ = read_by_sums < layout.packs() && layout.finds_halos_by_packs();
+  near_ = std::min(layout.packs(), static_cast<int>(forward_.size()) + deepest);
   while (static_cast<int>(forward_.size()) < near_) forward_.push_back(0);
   build_closure();
 }
@@ -58,7 +56,6 @@ void CirculantSolver::build_closure() {
       K(l, l) += power * forward_[static_cast<std::size_t>(v)];
     }
   }
-  for (int l = 0; l < lanes; ++l) x_from_u_.v[l] = K(l, l);
   const Square from_ends = U.inverse(), from_sums = X.inverse() * next, both = from_sums * K * from_ends;
   for (int m = 0; m < lanes; ++m)
     for (int l = 0; l < lanes; ++l) {
@@ -69,32 +66,85 @@ void CirculantSolver::build_closure() {
     }
 }
 
+/// u_i = r_i + q u_{i−1} in place; returns the last u. Four at once: u_4 = (r_4 + q(r_3 + …)) + q⁴ u_0 waits for u_0 alone.
+Pack CirculantSolver::run_forward(double* u, int first, int last, Pack before) const {
+  const double q = q_, q2 = q * q, q3 = q * q2, q4 = q2 * q2;
+  double *at = u + layout_->at(first), *const end = u + layout_->at(last);
+  for (; at + 3 * lanes < end; at += 4 * lanes) {
+    const Pack s1 = Pack::load(at), s2 = Pack::load(at + lanes) + q * s1, s3 = Pack::load(at + 2 * lanes) + q * s2,
+               s4 = Pack::load(at + 3 * lanes) + q * s3;
+    (s1 + q * before).store(at);
+    (s2 + q2 * before).store(at + lanes);
+    (s3 + q3 * before).store(at + 2 * lanes);
+    (before = s4 + q4 * before).store(at + 3 * lanes);
+  }
+  for (; at < end; at += lanes) (before = Pack::load(at) + q * before).store(at);
+  return before;
+}
+
 namespace {
 
-/// u_i = r_i/c + q u_{i−1}
+/// u_i = r_i + q u_{i−1} of right sides as they are formed.
 struct Recurrence {
   double q;
   double* u;
-  Pack last = 0.0;
-  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack r) {
-    last = r + q * last;
-    last.store(u + at);
-  }
-};
-/// The same near the ends of arcs, with Σ weight · u.
-struct SummedRecurrence {
-  Recurrence recurrence;
-  const double* weights;
-  Pack sums = 0.0;
-  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack r) {
-    recurrence(at, r);
-    sums += Pack::load(weights + at) * recurrence.last;
-  }
+  Pack last;
+  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack r) { (last = r + q * last).store(u + at); }
 };
 
 }  // namespace
 
-[[gnu::always_inline]] inline CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) const {
+/// The same for the right side that a sum of rows gives.
+Pack CirculantSolver::run_forward(const RowSum& sum, const double* const* rows, double* u, int first, int last,
+                                  Pack before) const {
+  Recurrence sink{q_, u, before};
+  sum.pass<lanes>(rows, layout_->at(first), layout_->at(last), sink);
+  return sink.last;
+}
+
+/// x_i = (u_i + q^(i+1) U) + q x_{i+1} in place, U what enters the arcs, felt in the first `near` packs; returns the
+/// first x.
+Pack CirculantSolver::run_backward(double* u, int first, int last, Pack after, Pack entering_u) const {
+  const double q = q_, q2 = q * q, q3 = q * q2, q4 = q2 * q2;
+  const double* const begin = u + layout_->at(first);
+  double* at = u + layout_->at(last - 1);
+  const double* const far = u + layout_->at(std::max(first, near_));
+  for (; at - 3 * lanes >= far; at -= 4 * lanes) {
+    const Pack s1 = Pack::load(at), s2 = Pack::load(at - lanes) + q * s1, s3 = Pack::load(at - 2 * lanes) + q * s2,
+               s4 = Pack::load(at - 3 * lanes) + q * s3;
+    (s1 + q * after).store(at);
+    (s2 + q2 * after).store(at - lanes);
+    (s3 + q3 * after).store(at - 2 * lanes);
+    (after = s4 + q4 * after).store(at - 3 * lanes);
+  }
+  for (; at >= far; at -= lanes) (after = Pack::load(at) + q * after).store(at);
+  const double* power = forward_.data() + (at - (u + layout_->at(0))) / lanes;
+  for (; at - 3 * lanes >= begin; at -= 4 * lanes, power -= 4) {
+    const Pack s1 = Pack::load(at) + power[0] * entering_u, s2 = (Pack::load(at - lanes) + power[-1] * entering_u) + q * s1,
+               s3 = (Pack::load(at - 2 * lanes) + power[-2] * entering_u) + q * s2,
+               s4 = (Pack::load(at - 3 * lanes) + power[-3] * entering_u) + q * s3;
+    (s1 + q * after).store(at);
+    (s2 + q2 * after).store(at - lanes);
+    (s3 + q3 * after).store(at - 2 * lanes);
+    (after = s4 + q4 * after).store(at - 3 * lanes);
+  }
+  for (; at >= begin; at -= lanes, --power)
+    (after = (Pack::load(at) + *power * entering_u) + q * after).store(at);
+  return after;
+}
+
+/// Σ weight · u over the first packs.
+Pack CirculantSolver::sum_of_first(const double* u) const {
+  Pack part[4] = {0.0, 0.0, 0.0, 0.0};  // a sum waits for itself
+  const double *weights = backward_.row(0) + layout_->at(0), *at = u + layout_->at(0);
+  int v = 0;
+  for (; v + 4 <= near_; v += 4, weights += 4 * lanes, at += 4 * lanes)
+    for (int p = 0; p < 4; ++p) part[p] += Pack::load(weights + p * lanes) * Pack::load(at + p * lanes);
+  for (; v < near_; ++v, weights += lanes, at += lanes) part[0] += Pack::load(weights) * Pack::load(at);
+  return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
+CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) const {
   // Two sums of each: a sum waits for itself.
   Entering part[2] = {{Pack(0.0), Pack(0.0)}, {Pack(0.0), Pack(0.0)}};
   Pack x_by_ends[2] = {Pack(0.0), Pack(0.0)};
@@ -108,172 +158,96 @@ struct SummedRecurrence {
   return {part[0].u + part[1].u, (part[0].x + part[1].x) + (x_by_ends[0] + x_by_ends[1])};
 }
 
-/// Σ weight · u over the first packs.
-inline Pack CirculantSolver::sum_of_first(const double* u) const {
-  Pack part[sums_at_once];  // a sum waits for itself
-  for (Pack& sum : part) sum = 0.0;
-  const double* const weights = backward_.row(0);
-  const std::ptrdiff_t end = layout_->at(near_);
-  for (std::ptrdiff_t at = layout_->at(0); at < end; at += sums_at_once * lanes)
-    for (int p = 0; p < sums_at_once; ++p)
-      part[p] += Pack::load(weights + at + p * lanes) * Pack::load(u + at + p * lanes);
-  return (part[0] + part[1]) + (part[2] + part[3]);
+void CirculantSolver::solve(double* const* w) const {
+  double* const u = w[0];
+  run_forward(u, 0, layout_->packs(), Pack(0.0));
+  const Entering e = entering(u, sum_of_first(u));
+  run_backward(u, 0, layout_->packs(), e.x, e.u);
 }
 
-/// X_l = s_m + K_m U_m,  m = l + 1
-inline Pack CirculantSolver::entering_far(Pack sums, Pack entering_u) const {
-  return from_lane_above(sums + x_from_u_ * entering_u);
-}
-
-// Inlined, as the pass is: what enters would go through memory.
-[[gnu::always_inline]] inline CirculantSolver::Entering CirculantSolver::forward(const RowSum& right_side, double* u) const {
-  const RowLayout& layout = *layout_;
-  if (are_far_apart_) {
-    const Pack last = right_side.pass(layout, layout.all(), Recurrence{q_, u}).last;
-    const std::ptrdiff_t at_last = layout.at(layout.packs() - 1);
-    const Pack entering_u = layout.before_first([=](std::ptrdiff_t at) __attribute__((always_inline)) {
-      return at == at_last ? last : Pack::load(u + at);
-    });
-    return {entering_u, entering_far(sum_of_first(u), entering_u)};
-  }
-  SummedRecurrence both{{q_, u}, backward_.row(0)};
-  right_side.pass_on(layout, layout.all(), both);
-  return entering(u, both.sums);
-}
-
-template <class Sink>
-[[gnu::always_inline]] inline void CirculantSolver::backward(const Entering& entering, const double* u, Sink& sink) const {
-  const Pack entering_u = entering.u;
-  const double q = q_;
-  // Counted here: the layout, which stores could change for all that compilers know, is not asked in loops.
-  const std::ptrdiff_t first = layout_->at(0), near_end = layout_->at(near_);
-  const double* power = forward_.data() + near_;
-  std::ptrdiff_t at = layout_->at(layout_->packs() - 1);
-  Pack x = entering.x;
-  for (int unseen = Sink::packs_unseen; unseen > 0; --unseen, at -= lanes) {
-    Pack r = Pack::load(u + at);
-    if (at < near_end) r += *--power * entering_u;
-    x = r + q * x;
-    sink.unseen(at, x);
-  }
-  for (; at >= near_end; at -= lanes) {
-    x = Pack::load(u + at) + q * x;
-    sink(at, x);
-  }
-  for (; at >= first; at -= lanes) {
-    x = (Pack::load(u + at) + *--power * entering_u) + q * x;
-    sink(at, x);
-  }
-}
-
-namespace {
-
-/// Stores x.
-struct Storing {
-  static constexpr int packs_unseen = 0;
-  double* x;
-  [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack value) const { value.store(x + at); }
-  void unseen(std::ptrdiff_t at, Pack value) const { (*this)(at, value); }
-};
-
-}  // namespace
-
-void CirculantSolver::solve(const double* const* rhs, double* const* w) const {
-  RowSum scaled;
-  scaled.add(0, 0, scale_);
-  const RowSum::Rows rows{rhs};
-  scaled.bind(rows);
-  double* const x = w[0];
-  Storing storing{x};
-  backward(forward(scaled, x), x, storing);
-}
-
-RowChange CirculantSolver::advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
-                                   double* const* w) const {
-  // u stands where the new increment will, unless that is made from itself.
-  double* const u = rows[0].v == rows[0].v_before ? w[0] : rows[0].v;
-  const Entering entering = forward(*right_sides[0], u);
-  return with_increment_pass<Order::descending>(rows[0], [&](auto pass) __attribute__((always_inline)) {
-    backward(entering, u, pass);
-    return pass.closed(layout, rows[0]);
-  });
-}
-
-/// u stands in the work space until the new row is made of it.
-class CirculantSolver::Stream final : public RowStream {
+/// Both recurrences over the whole row, the second one from its end in strips.
+class CirculantSolver::WholeRow final : public Sweeps {
  public:
-  Stream(const CirculantSolver& solver, const RowSum& right_side, const RowIncrement& rows)
-      : solver_(solver), right_side_(right_side), rows_(rows) {}
-  PackRange last_packs() const override;
-  void begin(double* u) override;
-  int advance(int end, double* u, const double* expected) override;
-  RowChange result() const override { return all_; }
+  explicit WholeRow(const CirculantSolver& solver) : s_(solver), packs_(solver.layout_->packs()) {}
+  bool takes_whole_rows() const override { return true; }
+  void begin(double*) override { ready_ = 0, last_ = Pack(0.0); }
+  void forward(double* u, int end) override {
+    last_ = s_.run_forward(u, ready_, end, last_);
+    turn(u, end);
+  }
+  void forward(const RowSum& sum, const double* const* rows, double* u, int end) override {
+    last_ = s_.run_forward(sum, rows, u, ready_, end, last_);
+    turn(u, end);
+  }
+  PackRange backward(double* u) override {
+    if (ready_ < packs_ || left_ == 0) return {0, 0};
+    const int end = std::exchange(left_, left_ < 2 * strip ? 0 : left_ - strip);
+    from_outside_.x = s_.run_backward(u, left_, end, from_outside_.x, from_outside_.u);
+    return {left_, end};
+  }
 
  private:
-  const CirculantSolver& solver_;
-  const RowSum& right_side_;
-  RowIncrement rows_;
-  RowChange all_;
-  Pack last_ = 0.0, sums_ = 0.0, after_ = 0.0;
-  int forward_ = 0, done_ = 0;
+  void turn(const double* u, int end) {
+    if ((ready_ = end) < packs_) return;
+    left_ = packs_;
+    from_outside_ = s_.entering(u, s_.sum_of_first(u));
+  }
+
+  static constexpr int strip = 64;
+  const CirculantSolver& s_;
+  const int packs_;
+  int ready_ = 0, left_ = 0;
+  Pack last_ = 0.0;
+  Entering from_outside_;
 };
 
-/// The ends of arcs must be far apart against what is felt of them.
-std::unique_ptr<RowStream> CirculantSolver::stream(const RowLayout& layout, const RowSum& right_side,
-                                                   const RowIncrement& rows) const {
-  if (!are_far_apart_ || layout.packs() < 4 * near_) return nullptr;
-  return std::make_unique<Stream>(*this, right_side, rows);
-}
-
-/// By the last packs the arcs know what enters from the one before.
-PackRange CirculantSolver::Stream::last_packs() const {
-  const int packs = solver_.layout_->packs();
-  return {packs - solver_.near_, packs};
-}
-
-void CirculantSolver::Stream::begin(double* u) {
-  right_side_.pass(*solver_.layout_, last_packs(), Recurrence{solver_.q_, u});
-  last_ = solver_.layout_->before_first(u);
-}
-
-int CirculantSolver::Stream::advance(int end, double* u, const double* expected) {
-  const RowLayout& layout = *solver_.layout_;
-  const int near = solver_.near_, packs = layout.packs();
-  SummedRecurrence summed{{solver_.q_, u, last_}, solver_.backward_.row(0), sums_};
-  if (forward_ < near) {
-    summed = right_side_.pass(layout, {forward_, std::min(end, near)}, summed);
-    forward_ = std::min(end, near);
-    sums_ = summed.sums;
-    if (forward_ == near) after_ = from_lane_above(sums_);  // of u as it is: it has begun with what enters
+/// The second recurrence follows the first one `near` packs behind.
+class CirculantSolver::ByStrips final : public Sweeps {
+ public:
+  explicit ByStrips(const CirculantSolver& solver) : s_(solver), packs_(solver.layout_->packs()) {}
+  PackRange warm_up() const override { return {packs_ - s_.near_, packs_}; }
+  /// By the last packs the arcs know what enters from the one before.
+  void begin(double* u) override {
+    s_.run_forward(u, packs_ - s_.near_, packs_, Pack(0.0));
+    last_ = s_.layout_->before_first(u);
+    ready_ = done_ = 0;
   }
-  last_ = right_side_.pass(layout, {forward_, end}, summed.recurrence).last;
-  forward_ = end;
+  void forward(double* u, int end) override {
+    last_ = s_.run_forward(u, ready_, end, last_);
+    look_back(u, end);
+  }
+  void forward(const RowSum& sum, const double* const* rows, double* u, int end) override {
+    last_ = s_.run_forward(sum, rows, u, ready_, end, last_);
+    look_back(u, end);
+  }
+  PackRange backward(double* u) override {
+    const int end = ready_ == packs_ ? packs_ : std::max(done_, ready_ - s_.near_);
+    if (end == done_) return {0, 0};
+    Pack x = ready_ == packs_ ? after_ : Pack(0.0);
+    for (int v = ready_ - 1; v >= end; --v) x = Pack::load(u + s_.layout_->at(v)) + s_.q_ * x;
+    s_.run_backward(u, done_, end, x, Pack(0.0));
+    return {std::exchange(done_, end), end};
+  }
 
-  // x from `near` packs further on, where it starts from nothing
-  const int ready = end == packs ? packs : std::max(done_, end - near);
-  if (ready == done_) return done_;
-  Pack x = end == packs ? after_ : Pack(0.0);
-  const double q = solver_.q_;
-  for (int v = end - 1; v >= ready; --v) x = Pack::load(u + layout.at(v)) + q * x;
-  rows_.look.expected = expected;
-  const std::ptrdiff_t last = layout.at(done_);
-  // w is this function's own: captured by reference it would go through memory from pack to pack.
-  const auto finish = [&layout, u, x, q, ready, last](auto pass) __attribute__((always_inline)) {
-    Pack w = x;
-    std::ptrdiff_t at = layout.at(ready - 1);
-    for (int unseen = pass.packs_unseen; unseen > 0 && at >= last; --unseen, at -= lanes) {
-      w = Pack::load(u + at) + q * w;
-      pass.unseen(at, w);
-    }
-    for (; at >= last; at -= lanes) {
-      w = Pack::load(u + at) + q * w;
-      pass(at, w);
-    }
-    return pass.result();
-  };
-  all_.take(expected ? with_increment_pass<Order::descending>(rows_, finish)
-                     : finish(IncrementPass<1, Order::descending, Look::increment>(rows_)));
-  return done_ = ready;
+ private:
+  void look_back(const double* u, int end) {
+    // What the arc before needs of this one is in its first `near` packs.
+    if (ready_ == 0) after_ = from_lane_above(s_.sum_of_first(u));
+    ready_ = end;
+  }
+
+  const CirculantSolver& s_;
+  const int packs_;
+  int ready_ = 0, done_ = 0;
+  Pack last_ = 0.0, after_ = 0.0;
+};
+
+/// By strips where the ends of arcs are far apart against what is felt of them.
+std::unique_ptr<Sweeps> CirculantSolver::sweeps(int) const {
+  constexpr int long_row = 4096;
+  if (layout_->packs() >= long_row && layout_->packs() >= 8 * near_ && layout_->finds_halos_by_packs())
+    return std::make_unique<ByStrips>(*this);
+  return std::make_unique<WholeRow>(*this);
 }
 
 }  // namespace delf

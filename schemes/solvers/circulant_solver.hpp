@@ -1,48 +1,47 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <string>
 #include <vector>
 
+#include "jets/simd/pack.hpp"
 #include "schemes/solvers/linear_solver.hpp"
 
 namespace delf {
 
-/// The symmetric circulant  a S⁻ + b + a S⁺ = c (1 − q S⁻)(1 − q S⁺)  on a circle: two first-order recurrences,
+/// Solves a x_{i−1} + b x_i + a x_{i+1} = r_i on a circle, |b| > 2|a|, by factoring the circulant:
 ///
-///     u_i = r_i/c + q u_{i−1},        x_i = u_i + q x_{i+1}.
+///     T = c (1 − q S⁻)(1 − q S⁺),   a = −cq,  b = c(1 + q²),  |q| < 1
+///     u_i = r_i/c + q u_{i−1},      x_i = u_i + q x_{i+1}
 ///
-/// All lanes run at once, each over its own arc of sites, from nothing. What really enters an arc is found from the ends
-/// of the arcs alone, after the forward recurrence and for both of them, so that the backward one can correct and
-/// finish a site in one go.
+/// Every lane runs both recurrences along its own arc, starting from nothing. What enters an arc from the one before it
+/// then adds q^(i+1) U to u_i, and the sums of these corrections close round the circle: they are found from the ends of
+/// all arcs. Where arcs are long against the decay of q^i, strips are solved one after the other: the first recurrence
+/// starts `near` packs before the row, the second one `near` packs beyond each strip.
 class CirculantSolver final : public LinearSolver {
  public:
   CirculantSolver(const RowLayout&, double centre, double side);
-  void solve(const double* const* rhs, double* const* w) const override;
-  RowChange advance(const RowLayout&, int, const RowSum* const* right_sides, const RowIncrement* rows,
-                    double* const* w) const override;
+  void solve(double* const* w) const override;
+  std::unique_ptr<Sweeps> sweeps(int) const override;
   double right_side_scale(int) const override { return scale_; }
-  bool needs_work_rows() const override { return false; }
-
-  std::unique_ptr<RowStream> stream(const RowLayout&, const RowSum&, const RowIncrement&) const override;
   std::size_t bytes() const override { return forward_.size() * sizeof(double) + backward_.bytes(); }
   std::string name() const override { return "two recurrences (symmetric circulant of width 1)"; }
 
  private:
-  class Stream;
+  class WholeRow;
+  class ByStrips;
   using Matrix = std::array<Pack, lanes>;  ///< by columns
 
-  /// u = the recurrence from nothing in w, and what enters the arcs.
+  /// u at the site before each arc, x at the site after it.
   struct Entering {
-    Pack u, x;  ///< u at the site before each arc, x at the site after it
+    Pack u, x;
   };
   Entering entering(const double* u, Pack sums) const;
-  Pack entering_far(Pack sums, Pack entering_u) const;
-  Pack sum_of_first(const double* u) const;
-  Entering forward(const RowSum& right_side, double* u) const;
-  /// The first Sink::packs_unseen go to sink.unseen().
-  template <class Sink>
-  void backward(const Entering&, const double* u, Sink&) const;
   void build_closure();
+  Pack run_forward(double* u, int first, int last, Pack u_before) const;
+  Pack run_forward(const RowSum&, const double* const* rows, double* u, int first, int last, Pack u_before) const;
+  Pack run_backward(double* u, int first, int last, Pack x_after, Pack entering_u) const;
+  Pack sum_of_first(const double* u) const;
 
   const RowLayout* layout_;
   double q_, scale_;
@@ -51,11 +50,7 @@ class CirculantSolver final : public LinearSolver {
   RowBuffer backward_;           ///< q^(v−j): what pack v adds to x at the site of the arc that the arc before needs
   int gap_[lanes];               ///< the site before arc l has this index in arc l−1
   std::ptrdiff_t ends_[lanes];   ///< and stands here in a row
-  /// What enters an arc is no longer felt in the next one: each then takes it from the arc beside it alone.
-  bool are_far_apart_ = false;
-  static constexpr int sums_at_once = 4;
   Matrix u_from_ends_, x_from_ends_, x_from_sums_;
-  Pack x_from_u_;  ///< K_l
 };
 
 }  // namespace delf

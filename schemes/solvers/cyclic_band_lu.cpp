@@ -6,7 +6,7 @@
 
 namespace delf {
 
-Bandwidth bandwidth(const Lattice& lattice, int size, const std::vector<LatticeSystem::Entry>& entries) {
+Bandwidth bandwidth(const Lattice& lattice, int size, const std::vector<MatrixEntry>& entries) {
   Bandwidth band;
   for (const auto& e : entries) {
     int offset = e.column - e.row;
@@ -19,7 +19,7 @@ Bandwidth bandwidth(const Lattice& lattice, int size, const std::vector<LatticeS
 }
 
 std::optional<CyclicBandLU> CyclicBandLU::factor(int size, Bandwidth width, bool cyclic,
-                                                 const std::vector<LatticeSystem::Entry>& entries) {
+                                                 const std::vector<MatrixEntry>& entries) {
   const auto [lower, upper] = width;
   if (size <= 2 * (lower + upper) + 2) return std::nullopt;
   CyclicBandLU f;

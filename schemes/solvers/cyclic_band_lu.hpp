@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "schemes/system/lattice_system.hpp"
+#include "lattice/lattice.hpp"
+#include "lattice/matrix_entry.hpp"
 
 namespace delf {
 
@@ -12,7 +13,7 @@ namespace delf {
 struct Bandwidth {
   int lower = 0, upper = 0;
 };
-Bandwidth bandwidth(const Lattice&, int size, const std::vector<LatticeSystem::Entry>& entries);
+Bandwidth bandwidth(const Lattice&, int size, const std::vector<MatrixEntry>& entries);
 
 /// LU of a band matrix, with corners when space is a circle: the last m unknowns are a border, so that what is left is
 /// a plain band, factored without pivoting.
@@ -24,7 +25,7 @@ class CyclicBandLU {
  public:
   /// Nothing if the band would wrap onto itself, or a pivot is so small that pivoting would be needed.
   static std::optional<CyclicBandLU> factor(int size, Bandwidth, bool cyclic,
-                                            const std::vector<LatticeSystem::Entry>& entries);
+                                            const std::vector<MatrixEntry>& entries);
   void solve(std::vector<double>& x) const;
   std::size_t bytes() const {
     return sizeof(double) * (lower_band_.size() + upper_band_.size() + pivot_.size() +

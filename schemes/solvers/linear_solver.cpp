@@ -4,11 +4,11 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lattice/error.hpp"
 #include "schemes/solvers/circulant_solver.hpp"
 #include "schemes/solvers/cyclic_band_lu.hpp"
-#include "schemes/solvers/lane_band_solver.hpp"
 
 namespace delf {
 namespace {
@@ -25,11 +25,11 @@ class DiagonalSolver final : public LinearSolver {
       layout.scatter(sites, inverse_.row(a));
     }
   }
-  void solve(const double* const* rhs, double* const* w) const override {
+  void solve(double* const* w) const override {
     for (int a = 0; a < d_; ++a)
       for (int v = 0; v < layout_->packs(); ++v) {
         const auto at = layout_->at(v);
-        (Pack::load(rhs[a] + at) * Pack::load(inverse_.row(a) + at)).store(w[a] + at);
+        (Pack::load(w[a] + at) * Pack::load(inverse_.row(a) + at)).store(w[a] + at);
       }
   }
   std::size_t bytes() const override { return inverse_.bytes(); }
@@ -41,37 +41,33 @@ class DiagonalSolver final : public LinearSolver {
   int d_;
 };
 
-/// Division by one number.
+/// Division by one number: by the right side's scale.
 class ScalarSolver final : public LinearSolver {
  public:
   ScalarSolver(const RowLayout& layout, double diagonal) : layout_(&layout), inverse_(1 / diagonal) {}
-  void solve(const double* const* rhs, double* const* w) const override {
-    for (int v = 0; v < layout_->packs(); ++v) {
-      const auto at = layout_->at(v);
-      (inverse_ * Pack::load(rhs[0] + at)).store(w[0] + at);
-    }
-  }
-  RowChange advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
-                    double* const*) const override {
-    return with_increment_pass<Order::ascending>(
-        rows[0], [&](auto pass) { return advance_with<decltype(pass)>(layout, *right_sides[0], rows[0]); });
-  }
+  void solve(double* const*) const override {}
+  std::unique_ptr<Sweeps> sweeps(int) const override { return std::make_unique<Through>(*layout_); }
   bool is_a_number() const override { return true; }
   double right_side_scale(int) const override { return inverse_; }
-  bool needs_work_rows() const override { return false; }
   std::size_t bytes() const override { return 0; }
   std::string name() const override { return "division by one number"; }
 
  private:
-  /// A function for each kind of pass: all in one would take compilers minutes.
-  template <class Pass>
-  [[gnu::noinline]] static RowChange advance_with(const RowLayout& layout, const RowSum& right_side,
-                                                  const RowIncrement& rows) {
-    Pass pass(rows);
-    right_side.pass_on(layout, layout.all(), pass);
-    return pass.closed(layout, rows);
-  }
+  class Through final : public Sweeps {
+   public:
+    explicit Through(const RowLayout& layout) : layout_(layout) {}
+    void begin(double*) override { done_ = ready_ = 0; }
+    void forward(double*, int end) override { ready_ = end; }
+    void forward(const RowSum& sum, const double* const* rows, double* w, int end) override {
+      sum.evaluate(rows, layout_.at(ready_), layout_.at(end), lanes, w);
+      ready_ = end;
+    }
+    PackRange backward(double*) override { return {std::exchange(done_, ready_), ready_}; }
 
+   private:
+    const RowLayout& layout_;
+    int done_ = 0, ready_ = 0;
+  };
   const RowLayout* layout_;
   double inverse_;
 };
@@ -87,10 +83,10 @@ class OrderedSolver final : public LinearSolver {
         name_(std::move(name)),
         site_(static_cast<std::size_t>(layout.sites())),
         all_(site_.size() * static_cast<std::size_t>(d)) {}
-  void solve(const double* const* rhs, double* const* w) const override {
+  void solve(double* const* w) const override {
     const auto d = static_cast<std::size_t>(d_);
     for (std::size_t a = 0; a < d; ++a) {
-      layout_->gather(rhs[a], d == 1 ? all_ : site_);
+      layout_->gather(w[a], d == 1 ? all_ : site_);
       if (d > 1)
         for (std::size_t i = 0; i < site_.size(); ++i) all_[i * d + a] = site_[i];
     }
@@ -130,19 +126,10 @@ struct SparseFactors {
 class ByComponent final : public LinearSolver {
  public:
   explicit ByComponent(std::vector<std::unique_ptr<LinearSolver>> solvers) : solvers_(std::move(solvers)) {}
-  void solve(const double* const* rhs, double* const* w) const override {
-    for (std::size_t a = 0; a < solvers_.size(); ++a) solvers_[a]->solve(rhs + a, w + a);
+  void solve(double* const* w) const override {
+    for (std::size_t a = 0; a < solvers_.size(); ++a) solvers_[a]->solve(w + a);
   }
-  RowChange advance(const RowLayout& layout, int, const RowSum* const* right_sides, const RowIncrement* rows,
-                    double* const* w) const override {
-    RowChange all;
-    for (std::size_t a = 0; a < solvers_.size(); ++a)
-      all.take(solvers_[a]->advance(layout, 1, right_sides + a, rows + a, w + a));
-    return all;
-  }
-  bool needs_work_rows() const override {
-    return std::ranges::any_of(solvers_, [](const auto& s) { return s->needs_work_rows(); });
-  }
+  std::unique_ptr<Sweeps> sweeps(int a) const override { return solvers_[static_cast<std::size_t>(a)]->sweeps(0); }
   double right_side_scale(int a) const override { return solvers_[static_cast<std::size_t>(a)]->right_side_scale(0); }
   std::size_t bytes() const override {
     std::size_t total = 0;
@@ -157,33 +144,13 @@ class ByComponent final : public LinearSolver {
 
 }  // namespace
 
-RowChange LinearSolver::advance(const RowLayout& layout, int components, const RowSum* const* right_sides,
-                                const RowIncrement* rows, double* const* w) const {
-  for (int a = 0; a < components; ++a) {
-    double* const to = w[a];
-    right_sides[a]->pass(layout, layout.all(), [to](std::ptrdiff_t at, Pack sum) { sum.store(to + at); });
-  }
-  solve(w, w);
-  RowChange all;
-  for (int a = 0; a < components; ++a) {
-    const double* const from = w[a];
-    layout.copy_overlaps(w[a]);  // solvers need not fill them
-    const RowIncrement& row = rows[a];
-    all.take(with_increment_pass<Order::ascending>(row, [&layout, &row, from](auto pass) __attribute__((always_inline)) {
-      for (int v = 0; v < layout.packs(); ++v) pass(layout.at(v), Pack::load(from + layout.at(v)));
-      return pass.closed(layout, row);
-    }));
-  }
-  return all;
-}
-
 std::unique_ptr<LinearSolver> by_component(std::vector<std::unique_ptr<LinearSolver>> solvers) {
   if (solvers.size() == 1) return std::move(solvers[0]);
   return std::make_unique<ByComponent>(std::move(solvers));
 }
 
 std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& layout, int d,
-                                     const std::vector<LatticeSystem::Entry>& entries) {
+                                     const std::vector<MatrixEntry>& entries) {
   const int size = lattice.sites() * d;
   const Bandwidth band = bandwidth(lattice, size, entries);
   if (band.lower == 0 && band.upper == 0) {
@@ -193,7 +160,6 @@ std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& la
       throw NoConvergence("the constant part of the equations is singular");
     return std::make_unique<DiagonalSolver>(layout, d, diagonal);
   }
-  if (auto by_lanes = LaneBandSolver::factor(lattice, layout, d, entries)) return by_lanes;
   if (auto lu = CyclicBandLU::factor(size, band, lattice.is_circle(), entries))
     return std::make_unique<OrderedSolver<CyclicBandLU>>(
         layout, d, std::move(*lu),
@@ -222,7 +188,7 @@ std::unique_ptr<LinearSolver> factor_uniform(const Lattice& lattice, const RowLa
   // Two arcs must not start at the same site, and each recurrence must decay.
   if (reach == 1 && symmetric && lattice.sites() >= 2 * lanes && std::abs(centre) > 2 * std::abs(left) * (1 + 1e-12))
     return std::make_unique<CirculantSolver>(layout, centre, left);
-  std::vector<LatticeSystem::Entry> entries;
+  std::vector<MatrixEntry> entries;
   for (int i = 0; i < lattice.sites(); ++i)
     for (const BandEntry& e : stencil) entries.push_back({i, lattice.wrapped(i + e.offset), e.value});
   return factor(lattice, layout, 1, entries);

@@ -15,7 +15,7 @@ struct DispersionPoint {
 };
 
 /// The dispersion relation of a scheme of one field, ℓ = ½φ_t² − ½φ_x² − ½m²φ² about the state of the symbol, at
-/// `count` wave numbers between 0 and the largest that the nodes tell apart, both included: κk = π, or pπ with p nodes
+/// `count` wave numbers between 0 and the largest that the nodes resolve, both included: κk = π, or pπ with p nodes
 /// in a cell. Of all roots the one is followed whose mode is nearest to a plane wave over the nodes; with p = 4 and
 /// more that may be the mirror image of the band below, for the shortest waves (κk > (p − 1)π). Throws BadInput:
 /// several fields, mechanics (theory.name).

@@ -19,7 +19,7 @@ namespace {
 using Complex = std::complex<double>;
 using std::numbers::pi;
 
-/// Separations nearer to zero than this are zero but for rounding.
+/// Separations nearer to zero than this are rounding.
 constexpr double met = 1e-11;
 
 /// The largest value of the parabola through three values at equal distances, of which the middle one is the largest.
@@ -29,7 +29,7 @@ double peak(double before, double here, double after) {
 }
 
 /// (z₁ − z₂)²/z₁z₂: −4 sin²(α/2) for two roots on the circle with α between them, positive for a pair z, 1/z̄ off it,
-/// smooth where one turns into the other. Of all pairs, the largest first.
+/// smooth where one becomes the other. Of all pairs, the largest first.
 std::vector<double> separations(const std::vector<Complex>& z) {
   std::vector<double> result;
   for (std::size_t i = 0; i < z.size(); ++i)
@@ -195,13 +195,13 @@ class Scan {
 
   void add_ghost(Ghost ghost) {
     if (symbol_.brick()) {
-      // Of the two names (z, θ), (−z, θ + π) of a mode the one under which neighbours of both kinds look alike.
+      // Of the two names (z, θ), (−z, θ + π) of a mode, the one in which even and odd sites have the same values.
       const std::vector<Complex> v = symbol_.mode(ghost.z, ghost.theta);
       double like = 0;
       for (std::size_t c = 0; c < v.size() / 2; ++c) like += std::real(std::conj(v[c]) * v[c + v.size() / 2]);
       if (like < 0) ghost.theta = pi - ghost.theta, ghost.z = -std::conj(ghost.z);
     }
-    // Very long waves of a massless field are as near to a drift as rounding can tell.
+    // To rounding, very long waves of a massless field are a drift.
     if (ghost.theta < 1e-3 && std::abs(ghost.z - 1.0) < 1e-4 && ghost.multiplicity <= 2 * drifts_) {
       verdict_.drift = true;
       return;

@@ -9,8 +9,8 @@
 
 namespace delf {
 
-/// A wave that grows like a power of time, whatever the amplification factor says: a multiple root on the unit circle
-/// with fewer independent modes than its multiplicity.
+/// A spurious wave that grows like a power of time although its amplification factor is 1: a multiple root on the
+/// unit circle with fewer independent modes than its multiplicity.
 struct Ghost {
   double theta;            ///< of y_ij = zʲ e^{iθi}
   std::complex<double> z;  ///< on the unit circle
@@ -22,7 +22,7 @@ struct Ghost {
 
 struct StabilityVerdict {
   bool stable;  ///< no root lies outside the unit circle, for any wave number
-  /// max |z|, 1 for roots that are on the circle but for rounding; infinite: a step has no solution.
+  /// max |z|, 1 for roots on the circle to round-off; infinite: a step has no solution.
   double amplification;
   double worst_theta;  ///< where that is, 0 … π
   std::vector<Ghost> ghosts;
@@ -33,11 +33,11 @@ struct StabilityVerdict {
 };
 
 /// von Neumann's analysis of a scheme about a constant state, over all wave numbers: `wave_numbers` of them between 0
-/// and π, both included, and between them wherever two roots on the circle come nearest to one another, since it is
-/// there that a pair of them leaves it. Walls, and which wave numbers a circle of N sites has, play no part. Throws as
-/// Symbol. Where four and more roots meet at one point of the circle, rounding parts them by more than its square root,
-/// and a scheme may be called unstable that is not: the massless element (4, 4) with Gauss at h = k to nine
-/// digits is one.
+/// and π, both included, and between them wherever two roots on the circle come nearest to one another, since
+/// a pair of roots leaves the circle there. Walls, and the wave numbers of a circle of N sites, play no part. Throws as
+/// Symbol. Where four and more roots meet at one point of the circle, rounding separates them by more than its square
+/// root, and a stable scheme may be called unstable: for example the massless element (4, 4) with Gauss, where h = k
+/// to nine digits.
 StabilityVerdict linear_stability(const Symbol&, int wave_numbers = 201);
 StabilityVerdict linear_stability(const LatticeSystem&, double constant = 0, int wave_numbers = 201);
 

@@ -21,8 +21,8 @@ struct StableSearch {
 };
 
 /// The values of a parameter between `least` and `most` at which a scheme is linearly stable: a union of intervals,
-/// ascending, which need not be one. An end at `least` or `most` is where the search ended, not where stability does.
-/// `least` itself is not tried: it may be 0. The parameter is what `make` makes of it: the Courant number at a fixed mh
+/// ascending, which may be several. An end at `least` or `most` is where the search ended, not where stability does.
+/// `least` itself is not tried: it may be 0. `make` interprets the parameter: the Courant number at a fixed mh
 /// or mk, or mh at a fixed Courant number. Throws as Symbol, and whatever `make` does.
 std::vector<StableInterval> stable_set(const std::function<LatticeSystem(double)>& make, double least, double most,
                                        const StableSearch& = {});

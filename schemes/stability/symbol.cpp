@@ -23,10 +23,9 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Entries this much smaller than the largest of their equation are what rounding left of a sum that cancels.
+/// Entries this much smaller than the largest of their equation are rounding of a sum that cancels.
 constexpr double cancelled = 4e-15;
-/// A matrix that is nearer to singular, relative to the terms of P, loses the digits that tell stable from unstable; or
-/// all of them.
+/// A matrix nearer to singular than this, relative to the terms of P, loses the digits that decide stability, or all.
 constexpr double regular = 1e-4, solvable = 1e-13;
 
 /// About the smallest change that makes it singular.
@@ -342,8 +341,7 @@ double Symbol::amplification(double theta, const std::vector<Complex>& roots) co
   double largest = 0;
   for (const Complex& z : roots) {
     double size = std::abs(z);
-    // A double root is known to the square root of what P is known to: what tells is whether there is one on
-    // the circle.
+    // A double root is accurate to the square root of the accuracy of P only, so test whether one lies on the circle.
     if (size > 1 && (size < 1 + 1e-12 || (size < 1.1 && is_root(z / size, theta)))) size = 1;
     largest = std::max(largest, size);
   }

@@ -7,12 +7,12 @@
 
 namespace delf {
 
-/// The symbol of a scheme at a constant state: what its linearised equations make of a wave y_ij = zʲ e^{iθi} v,
+/// The symbol of a scheme at a constant state: its linearised equations applied to a wave y_ij = zʲ e^{iθi} v,
 ///
 ///     P(z, θ) v = 0,        P_ab(z, θ) = Σ_{t,s} A_ab(t, s) zᵗ e^{iθs},
 ///
 /// with A_ab(t, s) the derivative of equation a by the component b, t rows later and s sites to the right: sums of
-/// entries of the Hessians. Its roots z are the amplification factors of a step, for all space: walls are not seen.
+/// entries of the Hessians. Its roots z are the amplification factors of a step on all of space, without walls.
 ///
 /// On a brick wall the equations of even and of odd sites (row + site) differ, and v has the values of both, first all
 /// components of the even ones. As (−1)^(row + site) is a wave too, (z, θ) and (−z, θ + π) are then the same mode.
@@ -39,7 +39,7 @@ class Symbol {
   /// det P(z, θ) = 0, largest |z| first, without those that are zero whatever the coefficients. A step that cannot be
   /// solved at this wave number is one infinite root.
   std::vector<Complex> roots(double theta) const;
-  /// max |z|; a root that is on the unit circle but for rounding has |z| = 1.
+  /// max |z|; a root on the unit circle to round-off has |z| = 1.
   double amplification(double theta) const;
   /// The same, of roots(θ).
   double amplification(double theta, const std::vector<Complex>& roots) const;
@@ -49,11 +49,11 @@ class Symbol {
   /// The singular values of P with its rows and columns scaled, relative to the size of its terms; smallest last. One
   /// of them is zero if z is a root.
   std::vector<double> singular_values(Complex z, double theta) const;
-  /// Whether z is a root but for rounding.
+  /// Whether z is a root to round-off.
   bool is_root(Complex z, double theta) const;
-  /// The v, of Euclidean length 1, that P makes least of.
+  /// The v of Euclidean length 1 with the smallest |P v|.
   std::vector<Complex> mode(Complex z, double theta) const;
-  /// How many independent fields that are the same everywhere solve the equations: P(1, 0) v = 0.
+  /// The number of independent constant fields that solve the equations: P(1, 0) v = 0.
   int constant_solutions() const;
 
  private:

@@ -1,42 +1,33 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <utility>
 
 #include "lattice/error.hpp"
-#include "schemes/states/builders.hpp"
 #include "schemes/states/modes.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 /// A Gaussian envelope, with its images around the circle, on a carrier that turns in the plane of φ:
 ///
-///     φ = A Σ_k e^{−(s − kL)²/2w²} e^{i(qs − ωt)},   s = x − x₀,   φ_t = −iωφ
+///     φ = a(s) e^{i(qs − ωt)},   a = A Σ_k e^{−(s − kL)²/2w²},   s = x − x₀,   φ_t = −iωφ,   φ_x = (a′/a + iq)φ
 ///
 /// The envelope stands still here: this is how the packet starts, not how it moves.
 class ChargedPacket final : public State {
  public:
-  ChargedPacket(double amplitude, double width, double wavenumber, double frequency, double position)
-      : A(amplitude), w(width), q(wavenumber), omega(frequency), x0(position) {}
+  ChargedPacket(double amplitude, double width, double wavenumber, double frequency, double position, double length)
+      : A(amplitude), w(width), q(wavenumber), omega(frequency), x0(position), L(length) {}
 
   int components() const override { return 2; }
-  void values(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i) {
-      const auto site = static_cast<std::size_t>(2 * i);
-      const double s = lattice.position(i) - x0, phase = q * s - omega * t, height = envelope(s, lattice.length());
-      out[site] = height * std::cos(phase);
-      out[site + 1] = height * std::sin(phase);
-    }
-  }
-  void velocities(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i) {
-      const auto site = static_cast<std::size_t>(2 * i);
-      const double s = lattice.position(i) - x0, phase = q * s - omega * t, height = envelope(s, lattice.length());
-      out[site] = omega * height * std::sin(phase);
-      out[site + 1] = -omega * height * std::cos(phase);
-    }
+  void at(double t, double x, std::span<FieldPoint> out) const override {
+    const double s = x - x0, phase = q * s - omega * t, c = std::cos(phase), n = std::sin(phase);
+    const auto [height, slope] = envelope(s);
+    out[0] = {height * c, omega * height * n, slope * c - q * height * n};
+    out[1] = {height * n, -omega * height * c, slope * n + q * height * c};
   }
   bool exact() const override { return false; }
   std::string description() const override {
@@ -45,34 +36,48 @@ class ChargedPacket final : public State {
   }
 
  private:
-  double envelope(double s, double L) const {
+  // a and a′
+  std::pair<double, double> envelope(double s) const {
     // beyond 9.2 w an image is below 1e-18
     const double nearest = std::remainder(s, L);
     const int images = static_cast<int>(std::ceil(9.2 * w / L)) + 1;
-    double sum = 0;
+    double sum = 0, slope = 0;
     for (int k = -images; k <= images; ++k) {
-      const double z = (nearest - k * L) / w;
-      sum += std::exp(-z * z / 2);
+      const double z = (nearest - k * L) / w, height = std::exp(-z * z / 2);
+      sum += height, slope -= z / w * height;
     }
-    return A * sum;
+    return {A * sum, A * slope};
   }
 
-  double A, w, q, omega, x0;
+  double A, w, q, omega, x0, L;
 };
 
-}  // namespace
-
-std::unique_ptr<State> charged_packet(const StateRequest& request, const Lattice& lattice) {
-  const double L = lattice.length(), w = positive("initial.width", request.width, L / 20);
+std::unique_ptr<State> charged_packet(const StateBuild& build) {
+  const Lattice& lattice = build.lattice;
+  const double L = lattice.length(), w = build.number("initial.width", L / 20);
   if (w < lattice.space_step() || w > L)
     throw BadInput("initial.width", "initial.width = " + text(w) +
                                         ": a packet is wider than the distance of the sites, " +
                                         text(lattice.space_step()) + ", and narrower than the circle, " + text(L) +
                                         "; choose a width between");
   const Modes modes(lattice);
-  const double q = modes.wavenumber(modes.read(request, std::min(8, modes.most())));
-  return std::make_unique<ChargedPacket>(wave_amplitude(request), w, q, std::sqrt(q * q + squared_mass(request)),
-                                         centre(request, lattice));
+  const double q = modes.wavenumber(modes.read(build, std::min(8, modes.most()))), m = build.mass();
+  return std::make_unique<ChargedPacket>(build.number("initial.amplitude"), w, q, std::sqrt(q * q + m * m),
+                                         centre(build), L);
 }
 
-}  // namespace delf::initial
+}  // namespace
+}  // namespace initial
+
+extern const StateEntry charged_packet_state;
+const StateEntry charged_packet_state{
+    "charged-packet",
+    "A exp(-s^2/2w^2) exp(i(q s - omega t)), s = x - x0, q = 2 pi n/L, omega^2 = q^2 + m^2",
+    {initial::amplitude_parameter(0.1), initial::width_parameter(), initial::packet_wavenumber_parameter(),
+     initial::position_parameter()},
+    {},
+    {"complex-klein-gordon"},
+    Place::circle,
+    initial::charged_packet};
+
+}  // namespace delf

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <cstddef>
 
 #include "lattice/error.hpp"
-#include "schemes/states/builders.hpp"
 #include "schemes/states/modes.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 /// φ = A e^{i(qx − ωt)}: |φ| = A everywhere, so that ω² = q² + m² + λA² at any amplitude.
@@ -16,22 +16,11 @@ class ChargedWave final : public State {
   ChargedWave(double amplitude, double wavenumber, double frequency) : A(amplitude), q(wavenumber), omega(frequency) {}
 
   int components() const override { return 2; }
-  void values(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i) {
-      const auto s = static_cast<std::size_t>(2 * i);
-      const double phase = q * lattice.position(i) - omega * t;
-      out[s] = A * std::cos(phase);
-      out[s + 1] = A * std::sin(phase);
-    }
-  }
-  // φ_t = −iωφ
-  void velocities(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i) {
-      const auto s = static_cast<std::size_t>(2 * i);
-      const double phase = q * lattice.position(i) - omega * t;
-      out[s] = A * omega * std::sin(phase);
-      out[s + 1] = -A * omega * std::cos(phase);
-    }
+  // φ_t = −iωφ,   φ_x = iqφ
+  void at(double t, double x, std::span<FieldPoint> out) const override {
+    const double phase = q * x - omega * t, c = std::cos(phase), s = std::sin(phase);
+    out[0] = {A * c, A * omega * s, -A * q * s};
+    out[1] = {A * s, -A * omega * c, A * q * c};
   }
   bool exact() const override { return true; }
   std::string description() const override {
@@ -43,18 +32,28 @@ class ChargedWave final : public State {
   double A, q, omega;
 };
 
-}  // namespace
-
-std::unique_ptr<State> charged_wave(const StateRequest& request, const Lattice& lattice) {
-  const Modes modes(lattice);
-  const double A = finite("initial.amplitude", request.amplitude, 1), q = modes.wavenumber(modes.read(request, 1));
+std::unique_ptr<State> charged_wave(const StateBuild& build) {
+  const Modes modes(build.lattice);
+  const double A = build.number("initial.amplitude"), q = modes.wavenumber(modes.read(build)), m = build.mass();
   // ω² = q² + m² + λA²
-  const double linear = q * q + request.mass * request.mass, squared = linear + request.lambda * A * A;
+  const double linear = q * q + m * m, squared = linear + build.lambda() * A * A;
   if (squared < 0)
-    throw BadInput("theory.lambda", "theory.lambda = " + text(request.lambda) +
+    throw BadInput("theory.lambda", "theory.lambda = " + text(build.lambda()) +
                                         ": a wave of this amplitude does not turn but grows; choose lambda >= " +
                                         text(-linear / (A * A)));
   return std::make_unique<ChargedWave>(A, q, std::sqrt(squared));
 }
 
-}  // namespace delf::initial
+}  // namespace
+}  // namespace initial
+
+extern const StateEntry charged_wave_state;
+const StateEntry charged_wave_state{"charged-wave",
+                                    "A exp(i(q x - omega t)), q = 2 pi n/L, omega^2 = q^2 + m^2 + lambda A^2",
+                                    {initial::amplitude_parameter(1), initial::wavenumber_parameter(1)},
+                                    {"complex-klein-gordon"},
+                                    {},
+                                    Place::circle,
+                                    initial::charged_wave};
+
+}  // namespace delf

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cstddef>
 #include <utility>
 #include <vector>
 
-#include "schemes/states/builders.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 
-namespace delf::initial {
+namespace delf {
+
+extern const StateEntry kink_state, breather_state;
+
+namespace initial {
 namespace {
 
 /// A pulse of sine-Gordon in each of two components. Where both are the same, sin(φ₁ − φ₂) = 0 and the coupling does
@@ -18,11 +21,9 @@ class CoupledPair final : public State {
       : first_(std::move(first)), second_(std::move(second)), exact_(solves), description_(std::move(line)) {}
 
   int components() const override { return 2; }
-  void values(double t, const Lattice& lattice, std::span<double> out) const override {
-    interleave(&State::values, t, lattice, out);
-  }
-  void velocities(double t, const Lattice& lattice, std::span<double> out) const override {
-    interleave(&State::velocities, t, lattice, out);
+  void at(double t, double x, std::span<FieldPoint> out) const override {
+    first_->at(t, x, out.first(1));
+    second_->at(t, x, out.subspan(1, 1));
   }
   bool exact() const override { return exact_ && first_->exact() && second_->exact(); }
   double exact_until() const override {
@@ -32,49 +33,54 @@ class CoupledPair final : public State {
   std::string description() const override { return description_; }
 
  private:
-  using Writer = void (State::*)(double, const Lattice&, std::span<double>) const;
-  void interleave(Writer write, double t, const Lattice& lattice, std::span<double> out) const {
-    const auto sites = static_cast<std::size_t>(lattice.sites());
-    std::vector<double> row(sites);
-    std::size_t a = 0;
-    for (const State* pulse : {first_.get(), second_.get()}) {
-      (pulse->*write)(t, lattice, row);
-      for (std::size_t i = 0; i < sites; ++i) out[2 * i + a] = row[i];
-      ++a;
-    }
-  }
-
   std::unique_ptr<State> first_, second_;
   bool exact_;
   std::string description_;
 };
 
-using Builder = std::unique_ptr<State> (*)(const StateRequest&, const Lattice&);
-
-std::unique_ptr<State> coupled(const StateRequest& request, const Lattice& lattice, Builder build, const char* name) {
-  const double x0 = centre(request, lattice), d = finite("initial.separation", request.separation, 0);
+std::unique_ptr<State> coupled(const StateBuild& build, const StateEntry& one) {
+  const double x0 = centre(build), d = build.number("initial.separation");
   const auto pulse = [&](double position) {
-    StateRequest one = request;
-    one.name = name;
-    one.position = position;
-    return build(one, lattice);
+    StateBuild alone{one, build.request, build.lattice, build.values, true};
+    alone.values["initial.position"] = position;
+    return one.build(alone);
   };
   auto first = pulse(x0 - d / 2), second = pulse(x0 + d / 2);
-  const bool solves = d == 0 || request.lambda == 0;
-  std::string line = request.name + ", ";
+  const bool solves = d == 0 || build.lambda() == 0;
+  std::string line = build.request.name + ", ";
   if (d == 0) line += "both components: " + first->description();
   else line += "first component: " + first->description() + "; second component: " + second->description();
-  if (!solves) line += "; together not an exact solution of " + request.theory;
+  if (!solves) line += "; together not an exact solution of " + build.request.theory;
   return std::make_unique<CoupledPair>(std::move(first), std::move(second), solves, std::move(line));
 }
 
+Parameter separation() {
+  Parameter p = separation_parameter();
+  p.help += "; other than 0, exact only if lambda = 0";
+  return p;
+}
+
 }  // namespace
+}  // namespace initial
 
-std::unique_ptr<State> coupled_kinks(const StateRequest& r, const Lattice& lattice) {
-  return coupled(r, lattice, kink, "kink");
-}
-std::unique_ptr<State> coupled_breathers(const StateRequest& r, const Lattice& lattice) {
-  return coupled(r, lattice, breather, "breather");
-}
+extern const StateEntry coupled_kinks_state;
+const StateEntry coupled_kinks_state{
+    "coupled-kinks",
+    "the sine-Gordon kink in both components; with a separation d, at x0 - d/2 and x0 + d/2",
+    {initial::position_parameter(), initial::speed_parameter(0), initial::separation()},
+    {"coupled-sine-gordon"},
+    {},
+    Place::line,
+    [](const StateBuild& build) { return initial::coupled(build, kink_state); }};
 
-}  // namespace delf::initial
+extern const StateEntry coupled_breathers_state;
+const StateEntry coupled_breathers_state{
+    "coupled-breathers",
+    "the sine-Gordon breather in both components; with a separation d, at x0 - d/2 and x0 + d/2",
+    {initial::position_parameter(), initial::speed_parameter(0), initial::frequency_parameter(), initial::separation()},
+    {"coupled-sine-gordon"},
+    {},
+    Place::line,
+    [](const StateBuild& build) { return initial::coupled(build, breather_state); }};
+
+}  // namespace delf

@@ -4,10 +4,11 @@
 #include <numbers>
 
 #include "lattice/error.hpp"
-#include "schemes/states/builders.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 /// E − e sin E = M for |M| ≤ π, by Newton's method, and by halves where it would leave the bracket.
@@ -36,15 +37,10 @@ class KeplerOrbit final : public State {
   explicit KeplerOrbit(double eccentricity) : e(eccentricity), minor(std::sqrt((1 - e) * (1 + e))) {}
 
   int components() const override { return 2; }
-  void values(double t, const Lattice&, std::span<double> out) const override {
-    const double E = anomaly(t);
-    out[0] = (1 - e) - versine(E);
-    out[1] = minor * std::sin(E);
-  }
-  void velocities(double t, const Lattice&, std::span<double> out) const override {
+  void at(double t, double, std::span<FieldPoint> out) const override {
     const double E = anomaly(t), rate = 1 / ((1 - e) + e * versine(E));
-    out[0] = -rate * std::sin(E);
-    out[1] = rate * minor * std::cos(E);
+    out[0] = {(1 - e) - versine(E), -rate * std::sin(E), 0};
+    out[1] = {minor * std::sin(E), rate * minor * std::cos(E), 0};
   }
   bool exact() const override { return true; }
   std::string description() const override {
@@ -59,14 +55,24 @@ class KeplerOrbit final : public State {
   double e, minor;
 };
 
-}  // namespace
-
-std::unique_ptr<State> kepler_orbit(const StateRequest& request, const Lattice&) {
-  const double e = finite("initial.eccentricity", request.eccentricity, 0.6);
+std::unique_ptr<State> kepler_orbit(const StateBuild& build) {
+  const double e = build.number("initial.eccentricity");
   if (!(e >= 0 && e < 1))
     throw BadInput("initial.eccentricity",
                    "initial.eccentricity = " + text(e) + ": the orbit does not close; choose 0 <= eccentricity < 1");
   return std::make_unique<KeplerOrbit>(e);
 }
 
-}  // namespace delf::initial
+}  // namespace
+}  // namespace initial
+
+extern const StateEntry kepler_orbit_state;
+const StateEntry kepler_orbit_state{"kepler-orbit",
+                                    "(cos E - e, sqrt(1 - e^2) sin E), E - e sin E = t",
+                                    {{"initial.eccentricity", 0.6, "e: eccentricity of an orbit"}},
+                                    {"kepler"},
+                                    {},
+                                    Place::point,
+                                    initial::kepler_orbit};
+
+}  // namespace delf

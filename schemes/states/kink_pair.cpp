@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/states/builders.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/pulse.hpp"
 #include "schemes/states/scaled_hyperbolic.hpp"
+#include "schemes/states/state_registry.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 /// Two pulses of sine-Gordon that come together with speeds ±v around a centre at rest: with
@@ -20,6 +22,7 @@ struct Pair {
   double a(double t) const { return gamma() * mass * (speed * t - separation / 2); }
   double b(double s) const { return gamma() * mass * s; }
   double a_t() const { return gamma() * mass * speed; }
+  double b_x() const { return gamma() * mass; }
   std::string text() const {
     return "a = gamma m (v t - d/2), b = gamma m (x - x0), x0 = " + initial::text(position) +
            ", v = " + initial::text(speed) + ", d = " + initial::text(separation) + ", m = " + initial::text(mass);
@@ -28,14 +31,15 @@ struct Pair {
 
 class KinkAntikink final : public Pulse {
  public:
-  KinkAntikink(const Lattice& l, const StateRequest& r, const PulseFrame& f, const Pair& p) : Pulse(l, r, f), pair(p) {}
+  KinkAntikink(const StateBuild& build, const PulseFrame& f, const Pair& p) : Pulse(build, f), pair(p) {}
 
  protected:
-  // φ = 4 atan( sinh a/(v cosh b) ),   φ_t = 4 F_t G/(F² + G²)
-  FieldPoint at(double t, double s) const override {
+  // φ = 4 atan( sinh a/(v cosh b) ),   φ_t = 4 F_t G/(F² + G²),   φ_x = −4 F G_x/(F² + G²)
+  FieldPoint pulse(double t, double s) const override {
     const double a = pair.a(t), b = pair.b(s), M = std::max(std::abs(a), std::abs(b));
     const double F = scaled_sinh(a, M), G = pair.speed * scaled_cosh(b, M), r = std::hypot(F, G);
-    return {4 * std::atan2(F, G), 4 * pair.a_t() * (scaled_cosh(a, M) / r) * (G / r)};
+    return {4 * std::atan2(F, G), 4 * pair.a_t() * (scaled_cosh(a, M) / r) * (G / r),
+            -4 * (F / r) * pair.speed * pair.b_x() * (scaled_sinh(b, M) / r)};
   }
   std::string formula() const override {
     return "kink-antikink (the antikink on the left until they meet): phi = 4 atan(sinh a/(v cosh b)), " + pair.text();
@@ -47,14 +51,15 @@ class KinkAntikink final : public Pulse {
 
 class KinkKink final : public Pulse {
  public:
-  KinkKink(const Lattice& l, const StateRequest& r, const PulseFrame& f, const Pair& p) : Pulse(l, r, f), pair(p) {}
+  KinkKink(const StateBuild& build, const PulseFrame& f, const Pair& p) : Pulse(build, f), pair(p) {}
 
  protected:
-  // φ = 4 atan( v sinh b/cosh a ),   φ_t = −4 F G_t/(F² + G²)                   Tyranowski–Desbrun (164)
-  FieldPoint at(double t, double s) const override {
+  // φ = 4 atan( v sinh b/cosh a ),   φ_t = −4 F G_t/(F² + G²),   φ_x = 4 F_x G/(F² + G²)   Tyranowski–Desbrun (164)
+  FieldPoint pulse(double t, double s) const override {
     const double a = pair.a(t), b = pair.b(s), M = std::max(std::abs(a), std::abs(b));
     const double F = pair.speed * scaled_sinh(b, M), G = scaled_cosh(a, M), r = std::hypot(F, G);
-    return {4 * std::atan2(F, G), -4 * (F / r) * pair.a_t() * (scaled_sinh(a, M) / r)};
+    return {4 * std::atan2(F, G), -4 * (F / r) * pair.a_t() * (scaled_sinh(a, M) / r),
+            4 * pair.speed * pair.b_x() * (scaled_cosh(b, M) / r) * (G / r)};
   }
   std::string formula() const override { return "kink-kink: phi = 4 atan(v sinh b/cosh a), " + pair.text(); }
 
@@ -62,40 +67,61 @@ class KinkKink final : public Pulse {
   Pair pair;
 };
 
-Pair read(const StateRequest& request, const Lattice& lattice) {
-  const double L = lattice.length(), v = subluminal(request, 0.5, "kink");
+Pair read(const StateBuild& build) {
+  const double L = build.lattice.length(), v = subluminal(build, "kink");
   if (!(v > 0))
     throw BadInput("initial.speed",
                    "initial.speed = " + text(v) + ": the two kinks come together at this speed; choose 0 < speed < 1");
-  const double d = finite("initial.separation", request.separation, L / 4);
+  const double d = build.number("initial.separation", L / 4);
   if (!(d >= 0 && d < L))
     throw BadInput(
         "initial.separation",
         "initial.separation = " + text(d) + ": two kinks do not fit that way; choose 0 <= separation < lattice.length");
-  return {centre(request, lattice), v, d, pulse_mass(request)};
+  return {centre(build), v, d, pulse_mass(build)};
 }
 
 // Away from the collision the pulses are at x₀ ± (|vt − d/2| + |ln v|/(γm)).
-double lasts_until(const StateRequest& request, const Lattice& lattice, const Pair& pair) {
-  if (request.theory == "sine-gordon-impurity") return 0;
-  const double rate = pair.gamma() * pair.mass, L = lattice.length();
-  const double to_the_edge = lattice.is_circle() ? L / 2 : std::min(pair.position, L - pair.position);
+double lasts_until(const StateBuild& build, const Pair& pair) {
+  if (!build.exact) return 0;
+  const double rate = pair.gamma() * pair.mass, L = build.lattice.length();
+  const double to_the_edge = build.lattice.is_circle() ? L / 2 : std::min(pair.position, L - pair.position);
   const double room = to_the_edge - reach(4, rate) + std::log(pair.speed) / rate;
   return room < pair.separation / 2 ? 0.0 : (room + pair.separation / 2) / pair.speed;
 }
 
+template <class Pulses>
+std::unique_ptr<State> kink_pair(const StateBuild& build, int winding) {
+  const Pair pair = read(build);
+  return std::make_unique<Pulses>(build, PulseFrame{pair.position, 0, winding, lasts_until(build, pair)}, pair);
+}
+
+std::vector<Parameter> pair_parameters() {
+  Parameter separation = separation_parameter();
+  separation.otherwise = "L/4";
+  return {position_parameter(), speed_parameter(0.5), separation};
+}
+
 }  // namespace
+}  // namespace initial
 
-std::unique_ptr<State> kink_antikink(const StateRequest& request, const Lattice& lattice) {
-  const Pair pair = read(request, lattice);
-  const PulseFrame frame{pair.position, 0, 0, lasts_until(request, lattice, pair)};
-  return std::make_unique<KinkAntikink>(lattice, request, frame, pair);
-}
+extern const StateEntry kink_antikink_state;
+const StateEntry kink_antikink_state{
+    "kink-antikink",
+    "4 atan(sinh(gamma m (v t - d/2))/(v cosh(gamma m (x - x0))))",
+    initial::pair_parameters(),
+    {"sine-gordon"},
+    {"sine-gordon-impurity"},
+    Place::line,
+    [](const StateBuild& build) { return initial::kink_pair<initial::KinkAntikink>(build, 0); }};
 
-std::unique_ptr<State> kink_kink(const StateRequest& request, const Lattice& lattice) {
-  const Pair pair = read(request, lattice);
-  const PulseFrame frame{pair.position, 0, 2, lasts_until(request, lattice, pair)};
-  return std::make_unique<KinkKink>(lattice, request, frame, pair);
-}
+extern const StateEntry kink_kink_state;
+const StateEntry kink_kink_state{
+    "kink-kink",
+    "4 atan(v sinh(gamma m (x - x0))/cosh(gamma m (v t - d/2)))",
+    initial::pair_parameters(),
+    {"sine-gordon"},
+    {"sine-gordon-impurity"},
+    Place::line,
+    [](const StateBuild& build) { return initial::kink_pair<initial::KinkKink>(build, 2); }};
 
-}  // namespace delf::initial
+}  // namespace delf

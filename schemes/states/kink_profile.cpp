@@ -67,18 +67,19 @@ class PhiFour final : public KinkProfile {
 
 }  // namespace
 
-std::unique_ptr<KinkProfile> kink_profile(const StateRequest& request) {
-  const double l = request.lambda;
-  if (request.theory == "phi4") {
-    if (!(l > 0) || !std::isfinite(l))
+std::unique_ptr<KinkProfile> kink_profile(const StateBuild& build) {
+  const double l = build.lambda();
+  const std::string& theory = build.request.theory;
+  if (theory == "phi4") {
+    if (!(l > 0))
       throw BadInput("theory.lambda", "theory.lambda = " + text(l) +
                                           ": phi4 has its two vacua when lambda is positive; choose lambda > 0");
     return std::make_unique<PhiFour>(l);
   }
-  const double m = pulse_mass(request);
-  if (request.theory != "double-sine-gordon") return std::make_unique<SineGordon>(m);
+  const double m = pulse_mass(build);
+  if (theory != "double-sine-gordon") return std::make_unique<SineGordon>(m);
   // below −m²/2 the vacuum at 0 splits in two
-  if (!(2 * l > -m * m) || !std::isfinite(l))
+  if (!(2 * l > -m * m))
     throw BadInput("theory.lambda", "theory.lambda = " + text(l) +
                                         ": the vacuum at 0 has split, and no kink joins it to 2 pi; choose "
                                         "lambda > -mass^2/2 = " +

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "schemes/state.hpp"
+#include "schemes/states/state_registry.hpp"
 
 namespace delf::initial {
 
@@ -21,6 +21,6 @@ class KinkProfile {
 };
 
 /// The profile of sine-gordon, double-sine-gordon or phi4. Throws BadInput for a mass or lambda without a kink.
-std::unique_ptr<KinkProfile> kink_profile(const StateRequest&);
+std::unique_ptr<KinkProfile> kink_profile(const StateBuild&);
 
 }  // namespace delf::initial

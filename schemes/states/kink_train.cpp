@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <cstddef>
 #include <numbers>
 
 #include "lattice/error.hpp"
-#include "schemes/states/builders.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 #include "schemes/states/train_profile.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 /// n kinks (n < 0: antikinks) side by side around a circle: φ = π ± 2 am(2K(x − x₀ − vt)/Λ; κ), Λ = L/|n|.
@@ -17,17 +17,10 @@ class KinkTrain final : public State {
   KinkTrain(TrainProfile profile, int winding, double position, double mass)
       : train_(profile), winding_(winding), sign_(winding < 0 ? -1 : 1), position_(position), mass_(mass) {}
 
-  void values(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i) {
-      const double phi = train_.phi(lattice.position(i) - position_ - train_.speed * t);
-      out[static_cast<std::size_t>(i)] = sign_ > 0 ? phi : 2 * std::numbers::pi - phi;
-    }
-  }
   // φ_t = −v φ_x
-  void velocities(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i)
-      out[static_cast<std::size_t>(i)] =
-          -sign_ * train_.speed * train_.slope(lattice.position(i) - position_ - train_.speed * t);
+  void at(double t, double x, std::span<FieldPoint> out) const override {
+    const double xi = x - position_ - train_.speed * t, phi = train_.phi(xi), slope = train_.slope(xi);
+    out[0] = {sign_ > 0 ? phi : 2 * std::numbers::pi - phi, -sign_ * train_.speed * slope, sign_ * slope};
   }
   bool exact() const override { return true; }
   int winding() const override { return winding_; }
@@ -46,21 +39,40 @@ class KinkTrain final : public State {
   double sign_, position_, mass_;
 };
 
-}  // namespace
-
-std::unique_ptr<State> kink_train(const StateRequest& request, const Lattice& lattice) {
-  const int n = request.winding.value_or(1);
+std::unique_ptr<State> kink_train(const StateBuild& build) {
+  const int n = build.request.winding.value_or(1), sites = build.lattice.sites();
   if (n == 0)
     throw BadInput("boundary.winding", "boundary.winding = 0: a train has at least one kink; choose 1, -1, 2, ...");
-  if (std::abs(static_cast<double>(n)) > lattice.sites() / 2)
-    throw BadInput("boundary.winding", "boundary.winding = " + std::to_string(n) + ": " +
-                                           std::to_string(lattice.sites()) + " sites resolve at most " +
-                                           std::to_string(lattice.sites() / 2) + " kinks; raise lattice.sites");
-  const double m = pulse_mass(request), period = lattice.length() / std::abs(static_cast<double>(n));
-  const TrainProfile profile =
-      request.speed ? TrainProfile::from_speed(subluminal(request, 0, "kink"), period, m)
-                    : TrainProfile::from_epsilon(finite("initial.epsilon", request.epsilon, 1e-6), period, m);
-  return std::make_unique<KinkTrain>(profile, n, centre(request, lattice), m);
+  if (std::abs(static_cast<double>(n)) > sites / 2)
+    throw BadInput("boundary.winding", "boundary.winding = " + std::to_string(n) + ": " + std::to_string(sites) +
+                                           " sites resolve at most " + std::to_string(sites / 2) +
+                                           " kinks; raise lattice.sites");
+  const double m = pulse_mass(build), period = build.lattice.length() / std::abs(static_cast<double>(n));
+  const TrainProfile profile = build.values.has("initial.speed")
+                                   ? TrainProfile::from_speed(subluminal(build, "kink"), period, m)
+                                   : TrainProfile::from_epsilon(build.number("initial.epsilon"), period, m);
+  return std::make_unique<KinkTrain>(profile, n, centre(build), m);
 }
 
-}  // namespace delf::initial
+Parameter speed() {
+  Parameter p = speed_parameter(0);
+  p.otherwise = "that of epsilon";
+  return p;
+}
+
+}  // namespace
+}  // namespace initial
+
+extern const StateEntry kink_train_state;
+const StateEntry kink_train_state{
+    "kink-train",
+    "pi + 2 am(2 K (x - x0 - v t)/l; kappa), l = L/|winding|, m l = 2 kappa K sqrt(1 - v^2)",
+    {initial::position_parameter(),
+     initial::speed(),
+     initial::epsilon_parameter()},
+    {"sine-gordon"},
+    {},
+    Place::circle,
+    initial::kink_train};
+
+}  // namespace delf

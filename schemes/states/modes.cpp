@@ -25,6 +25,11 @@ double Modes::standing(double n, double x) const {
   return lattice_.left() == Wall::fixed ? boost::math::sin_pi(turns) : boost::math::cos_pi(turns);
 }
 
+double Modes::standing_slope(double n, double x) const {
+  const double turns = half_waves(n) * (x / lattice_.length());
+  return wavenumber(n) * (lattice_.left() == Wall::fixed ? boost::math::cos_pi(turns) : -boost::math::sin_pi(turns));
+}
+
 int Modes::most() const {
   if (lattice_.is_circle()) return lattice_.sites() / 2;
   const bool both_fixed = lattice_.left() == Wall::fixed && lattice_.right() == Wall::fixed;
@@ -36,9 +41,9 @@ int Modes::least() const {
   return lattice_.left() == Wall::natural && lattice_.right() == Wall::natural ? 0 : 1;
 }
 
-int Modes::read(const StateRequest& request, int fallback) const {
+int Modes::read(const StateBuild& build, int otherwise) const {
   const std::string key = "initial.wavenumber";
-  const double n = finite(key, request.wavenumber, fallback);
+  const double n = build.number(key, otherwise);
   if (n != std::round(n))
     throw BadInput(key, key + " = " + text(n) + ": it counts the waves that fit on the lattice; choose an integer");
   if (std::abs(n) > most())
@@ -50,22 +55,30 @@ int Modes::read(const StateRequest& request, int fallback) const {
   return static_cast<int>(n);
 }
 
-double squared_mass(const StateRequest& request) {
-  const double m = finite("theory.mass", request.mass, 1);
-  if (request.theory == "wave") return 0;
-  if (request.theory != "double-sine-gordon") return m * m;
+double squared_mass(const StateBuild& build) {
+  const double m = build.mass();
+  if (build.request.theory == "wave") return 0;
+  if (build.request.theory != "double-sine-gordon") return m * m;
   // N = m²(cos φ − 1) + (λ/2)(cos 2φ − 1),   −N″(0) = m² + 2λ
-  const double l = finite("theory.lambda", request.lambda, 1), squared = m * m + 2 * l;
+  const double l = build.lambda(), squared = m * m + 2 * l;
   if (squared < 0)
     throw BadInput("theory.lambda",
                    "theory.lambda = " + text(l) + ": waves around phi = 0 grow; choose lambda >= " + text(-m * m / 2));
   return squared;
 }
 
-bool is_linear(const StateRequest& request) { return request.theory == "wave" || request.theory == "klein-gordon"; }
+Parameter wave_amplitude_parameter() {
+  Parameter p = amplitude_parameter(1);
+  p.otherwise = "1 if the theory is linear, else 0.1";
+  return p;
+}
 
-double wave_amplitude(const StateRequest& request) {
-  return finite("initial.amplitude", request.amplitude, is_linear(request) ? 1.0 : 0.1);
+double wave_amplitude(const StateBuild& build) { return build.number("initial.amplitude", build.exact ? 1.0 : 0.1); }
+
+Parameter packet_wavenumber_parameter() {
+  Parameter p = wavenumber_parameter(8);
+  p.otherwise = "8, or as many as the sites resolve";
+  return p;
 }
 
 }  // namespace delf::initial

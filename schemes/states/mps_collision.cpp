@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
 
-#include "schemes/states/builders.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 #include "schemes/states/train_profile.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 /// The collision of Marsden–Patrick–Shkoller §5.2: one kink of a train of period L/4 on the first quarter of the
@@ -21,13 +23,18 @@ class MpsCollision final : public State {
  public:
   MpsCollision(TrainProfile profile, double epsilon, double mass) : train_(profile), epsilon_(epsilon), mass_(mass) {}
 
+  void at(double t, double x, std::span<FieldPoint> out) const override {
+    const double L = 4 * train_.period, turns = std::floor(x / L), y = x - turns * L;
+    const double quarter = train_.period * (1 - 1e-12);  // the site at L/4 belongs to the middle
+    out[0] = y < quarter       ? soliton(t, y, 1)
+             : y < 3 * quarter ? FieldPoint{2 * std::numbers::pi}
+                               : soliton(t, L - y, -1);
+  }
   void values(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i)
-      out[static_cast<std::size_t>(i)] = outside(lattice, i) ? train_.phi(xi(t, lattice, i)) : 2 * std::numbers::pi;
+    at_every_site(&FieldPoint::phi, t, lattice, out);
   }
   void velocities(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i)
-      out[static_cast<std::size_t>(i)] = outside(lattice, i) ? -train_.speed * train_.slope(xi(t, lattice, i)) : 0.0;
+    at_every_site(&FieldPoint::phi_t, t, lattice, out);
   }
   bool exact() const override { return false; }
   bool knows_second_row() const override { return true; }
@@ -40,26 +47,44 @@ class MpsCollision final : public State {
   }
 
  private:
-  // branches by integers: 4i < N, 4i < 3N
-  static bool in_first_quarter(const Lattice& lattice, int i) { return std::int64_t{4} * i < lattice.sites(); }
-  static bool outside(const Lattice& lattice, int i) {
-    return in_first_quarter(lattice, i) || std::int64_t{4} * i >= std::int64_t{3} * lattice.sites();
+  /// φ̃(x − ct − L/8), or its mirror image (side −1) at x̄.
+  FieldPoint soliton(double t, double x, int side) const {
+    const double xi = x - train_.period / 2 - train_.speed * t, slope = train_.slope(xi);
+    return {train_.phi(xi), -train_.speed * slope, side * slope};
   }
-  // x − ct − L/8, or x̄ − ct − L/8: sites i and N − i agree to the bit
-  double xi(double t, const Lattice& lattice, int i) const {
-    const double x = lattice.position(in_first_quarter(lattice, i) ? i : lattice.sites() - i);
-    return x - train_.period / 2 - train_.speed * t;
+  // Of the last quarter of the sites the mirror images are taken, so that sites i and N − i agree to the bit.
+  void at_every_site(double FieldPoint::*part, double t, const Lattice& lattice, std::span<double> out) const {
+    const int N = lattice.sites();
+    FieldPoint point;
+    for (int i = 0; i < N; ++i) {
+      const bool mirrored = std::int64_t{4} * i >= std::int64_t{3} * N && lattice.position(0) == 0;
+      if (mirrored) point = soliton(t, lattice.position(N - i), -1);
+      else at(t, lattice.position(i), {&point, 1});
+      out[static_cast<std::size_t>(i)] = point.*part;
+    }
   }
 
   TrainProfile train_;
   double epsilon_, mass_;
 };
 
-}  // namespace
-
-std::unique_ptr<State> mps_collision(const StateRequest& request, const Lattice& lattice) {
-  const double m = pulse_mass(request), epsilon = finite("initial.epsilon", request.epsilon, 1e-6);
-  return std::make_unique<MpsCollision>(TrainProfile::from_epsilon(epsilon, lattice.length() / 4, m), epsilon, m);
+std::unique_ptr<State> mps_collision(const StateBuild& build) {
+  const double m = pulse_mass(build), epsilon = build.number("initial.epsilon");
+  return std::make_unique<MpsCollision>(TrainProfile::from_epsilon(epsilon, build.lattice.length() / 4, m), epsilon, m);
 }
 
-}  // namespace delf::initial
+}  // namespace
+}  // namespace initial
+
+extern const StateEntry mps_collision_state;
+const StateEntry mps_collision_state{
+    "mps-collision",
+    "phi~(x - c t) | 2 pi | 2 pi - phi~(x - 3L/4 + c t) on the first, middle two and last quarters of the circle, "
+    "phi~ = pi + 2 am(P (x - L/8)/(L/4); 1 - epsilon)",
+    {initial::epsilon_parameter()},
+    {},
+    {"sine-gordon"},
+    Place::circle,
+    initial::mps_collision};
+
+}  // namespace delf

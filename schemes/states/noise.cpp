@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/states/builders.hpp"
 #include "schemes/states/modes.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 // The top 53 bits of the generator as a number in [0, 1): the same with every library, unlike std's distributions.
@@ -37,11 +38,11 @@ class Noise final : public State {
   }
 
   int components() const override { return static_cast<int>(fields_.size()); }
-  void values(double, const Lattice& lattice, std::span<double> out) const override {
-    fill(&Field::value, lattice, out);
-  }
-  void velocities(double, const Lattice& lattice, std::span<double> out) const override {
-    fill(&Field::velocity, lattice, out);
+  void at(double, double x, std::span<FieldPoint> out) const override {
+    for (std::size_t a = 0; a < fields_.size(); ++a) {
+      const Field& f = fields_[a];
+      out[a] = {f.scale * sum(f.value, x), f.scale * sum(f.velocity, x), f.scale * slope(f.value, x)};
+    }
   }
   bool exact() const override { return false; }
   std::string description() const override {
@@ -81,10 +82,13 @@ class Noise final : public State {
                (circle_ ? std::cos(modes_.wavenumber(mode.n) * x + mode.phase) : modes_.standing(mode.n, x));
     return total;
   }
-  void fill(std::vector<Mode> Field::*modes, const Lattice& lattice, std::span<double> out) const {
-    std::size_t next = 0;
-    for (int i = 0; i < lattice.sites(); ++i)
-      for (const Field& field : fields_) out[next++] = field.scale * sum(field.*modes, lattice.position(i));
+  double slope(const std::vector<Mode>& modes, double x) const {
+    double total = 0;
+    for (const Mode& mode : modes) {
+      const double q = modes_.wavenumber(mode.n);
+      total += mode.amplitude * (circle_ ? -q * std::sin(q * x + mode.phase) : modes_.standing_slope(mode.n, x));
+    }
+    return total;
   }
 
   Modes modes_;
@@ -94,17 +98,37 @@ class Noise final : public State {
   std::vector<Field> fields_;  ///< one for each component
 };
 
-}  // namespace
-
-std::unique_ptr<State> noise(const StateRequest& request, const Lattice& lattice) {
+std::unique_ptr<State> noise(const StateBuild& build) {
   const std::string key = "initial.wavenumber";
-  const double M = finite(key, request.wavenumber, 8);
+  const double M = build.number(key);
   if (M != std::round(M) || M < 1)
     throw BadInput(key, key + " = " + text(M) + ": the number of modes in the noise; choose an integer from 1 up");
   // M < N/2
-  const int most = std::max(1, static_cast<int>(std::min(M, static_cast<double>((lattice.sites() - 1) / 2))));
-  return std::make_unique<Noise>(lattice, finite("initial.amplitude", request.amplitude, 0.1), most, request.seed,
-                                 request.components);
+  const int most = std::max(1, static_cast<int>(std::min(M, static_cast<double>((build.lattice.sites() - 1) / 2))));
+  return std::make_unique<Noise>(build.lattice, build.number("initial.amplitude"), most, build.request.seed,
+                                 build.request.components);
 }
 
-}  // namespace delf::initial
+Parameter modes() {
+  Parameter p = wavenumber_parameter(8);
+  p.help = "M: how many modes";
+  return p;
+}
+
+}  // namespace
+}  // namespace initial
+
+extern const StateEntry noise_state;
+const StateEntry noise_state{
+    "noise",
+    "a sum of M smooth modes of random amplitude and phase, drawn from run.seed, scaled to max |phi| = A in each "
+    "component",
+    {initial::amplitude_parameter(0.1), initial::modes()},
+    {},
+    {},
+    Place::line,
+    initial::noise,
+    true,
+    {"kepler", "wave-map"}};  // singular at 0; not on the sphere
+
+}  // namespace delf

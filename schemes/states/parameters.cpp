@@ -8,41 +8,49 @@
 
 namespace delf::initial {
 
+Parameter position_parameter() {
+  return {"initial.position", 0.0, "x0: centre of the pulse, or of the pair", "length", {}, {}, "L/2"};
+}
+Parameter speed_parameter(double fallback) { return {"initial.speed", fallback, "v, |v| < 1", "length/time"}; }
+Parameter separation_parameter() {
+  return {"initial.separation", 0.0, "d: distance between the two pulses of a pair", "length"};
+}
+Parameter frequency_parameter() {
+  return {"initial.frequency", 0.0, "omega: frequency of a breather", "1/time", {}, {}, "0.6 m"};
+}
+Parameter wavenumber_parameter(int fallback) {
+  return {"initial.wavenumber", static_cast<double>(fallback), "n: how many waves go into L"};
+}
+Parameter amplitude_parameter(double fallback) {
+  return {"initial.amplitude", fallback, "A: size of a wave, or of the noise"};
+}
+Parameter epsilon_parameter() { return {"initial.epsilon", 1e-6, "1 - the modulus of the elliptic functions"}; }
+Parameter width_parameter() {
+  return {"initial.width", 0.0, "w: width of a pulse", "length", {0, Limits{}.high, true}, {}, "L/20"};
+}
+
 std::string text(double x) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.10g", x);
   return buffer;
 }
 
-double finite(const std::string& key, const std::optional<double>& given, double fallback) {
-  const double x = given.value_or(fallback);
-  if (!std::isfinite(x)) throw BadInput(key, key + " = " + text(x) + ": not a finite number; choose a finite one");
-  return x;
-}
-
-double positive(const std::string& key, const std::optional<double>& given, double fallback) {
-  const double x = finite(key, given, fallback);
-  if (!(x > 0)) throw BadInput(key, key + " = " + text(x) + ": must be positive; choose " + key + " > 0");
-  return x;
-}
-
-double subluminal(const StateRequest& request, double fallback, const std::string& what) {
-  const double v = finite("initial.speed", request.speed, fallback);
+double subluminal(const StateBuild& build, const std::string& what) {
+  const double v = build.number("initial.speed");
   if (!(std::abs(v) < 1))
     throw BadInput("initial.speed",
                    "initial.speed = " + text(v) + ": a " + what + " must be slower than light; choose |speed| < 1");
   return v;
 }
 
-double centre(const StateRequest& request, const Lattice& lattice) {
-  return finite("initial.position", request.position, lattice.length() / 2);
-}
+double centre(const StateBuild& build) { return build.number("initial.position", build.lattice.length() / 2); }
 
-double pulse_mass(const StateRequest& request) {
-  if (!(request.mass > 0) || !std::isfinite(request.mass))
-    throw BadInput("theory.mass", "theory.mass = " + text(request.mass) + ": the state " + request.name +
+double pulse_mass(const StateBuild& build) {
+  const double m = build.mass();
+  if (!(m > 0))
+    throw BadInput("theory.mass", "theory.mass = " + text(m) + ": the state " + build.request.name +
                                       " has the width 1/mass; choose a finite mass > 0");
-  return request.mass;
+  return m;
 }
 
 double lorentz_factor(double v) { return 1 / std::sqrt((1 - v) * (1 + v)); }

@@ -3,11 +3,12 @@
 #include <numbers>
 
 #include "lattice/error.hpp"
-#include "schemes/states/builders.hpp"
 #include "schemes/states/jacobi.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 /// A pendulum let go at the angle A: sin(q/2) = k sn(K + mt; k), k = sin(A/2). With the quarter period taken out,
@@ -20,12 +21,10 @@ class PendulumSwing final : public State {
   PendulumSwing(double amplitude, double mass)
       : A(amplitude), m(mass), sign(A < 0 ? -1 : 1), jacobi(Jacobi::from_angle(std::abs(A) / 2)) {}
 
-  void values(double t, const Lattice&, std::span<double> out) const override {
-    out[0] = 2 * sign * std::atan2(jacobi.modulus() * std::cos(amplitude(t)), jacobi.complementary_modulus());
-  }
-  void velocities(double t, const Lattice&, std::span<double> out) const override {
-    const double phi = amplitude(t);
-    out[0] = -2 * sign * m * jacobi.modulus() * jacobi.complementary_modulus() * std::sin(phi) / jacobi.dn(phi);
+  void at(double t, double, std::span<FieldPoint> out) const override {
+    const double phi = amplitude(t), k = jacobi.modulus(), k_prime = jacobi.complementary_modulus();
+    out[0] = {2 * sign * std::atan2(k * std::cos(phi), k_prime),
+              -2 * sign * m * k * k_prime * std::sin(phi) / jacobi.dn(phi), 0};
   }
   bool exact() const override { return true; }
   std::string description() const override {
@@ -41,14 +40,26 @@ class PendulumSwing final : public State {
   Jacobi jacobi;
 };
 
-}  // namespace
-
-std::unique_ptr<State> pendulum_swing(const StateRequest& request, const Lattice&) {
-  const double A = finite("initial.amplitude", request.amplitude, 2), m = positive("theory.mass", request.mass, 1);
+std::unique_ptr<State> pendulum_swing(const StateBuild& build) {
+  const double A = build.number("initial.amplitude"), m = build.mass();
+  if (!(m > 0))
+    throw BadInput("theory.mass", "theory.mass = " + text(m) + ": must be positive; choose theory.mass > 0");
   if (!(std::abs(A) < std::numbers::pi))
     throw BadInput("initial.amplitude", "initial.amplitude = " + text(A) +
                                             ": a pendulum let go turns back before the top; choose |amplitude| < pi");
   return std::make_unique<PendulumSwing>(A, m);
 }
 
-}  // namespace delf::initial
+}  // namespace
+}  // namespace initial
+
+extern const StateEntry pendulum_swing_state;
+const StateEntry pendulum_swing_state{"pendulum-swing",
+                                      "2 asin(k sn(K + m t; k)), k = sin(A/2)",
+                                      {initial::amplitude_parameter(2)},
+                                      {"pendulum"},
+                                      {},
+                                      Place::point,
+                                      initial::pendulum_swing};
+
+}  // namespace delf

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <cstddef>
 
-#include "schemes/states/builders.hpp"
 #include "schemes/states/modes.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 /// φ = A cos(q(x − x₀) − ωt) around a circle, ω = √(q² + m²) ≥ 0: n > 0 moves right, n < 0 left.
@@ -15,14 +15,10 @@ class PlaneWave final : public State {
   PlaneWave(double amplitude, double wavenumber, double frequency, double position, bool solves)
       : A(amplitude), q(wavenumber), omega(frequency), x0(position), exact_(solves) {}
 
-  void values(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i)
-      out[static_cast<std::size_t>(i)] = A * std::cos(q * (lattice.position(i) - x0) - omega * t);
-  }
-  // φ_t = Aω sin(q(x − x₀) − ωt)
-  void velocities(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i)
-      out[static_cast<std::size_t>(i)] = A * omega * std::sin(q * (lattice.position(i) - x0) - omega * t);
+  // φ_t = Aω sin(q(x − x₀) − ωt),   φ_x = −Aq sin(q(x − x₀) − ωt)
+  void at(double t, double x, std::span<FieldPoint> out) const override {
+    const double phase = q * (x - x0) - omega * t;
+    out[0] = {A * std::cos(phase), A * omega * std::sin(phase), -A * q * std::sin(phase)};
   }
   bool exact() const override { return exact_; }
   std::string description() const override {
@@ -41,11 +37,9 @@ class StandingWave final : public State {
   StandingWave(const Modes& modes, int n, double amplitude, double frequency, bool solves)
       : modes_(modes), n_(n), A(amplitude), omega(frequency), exact_(solves) {}
 
-  void values(double t, const Lattice& lattice, std::span<double> out) const override {
-    fill(A * std::cos(omega * t), lattice, out);
-  }
-  void velocities(double t, const Lattice& lattice, std::span<double> out) const override {
-    fill(-A * omega * std::sin(omega * t), lattice, out);
+  void at(double t, double x, std::span<FieldPoint> out) const override {
+    const double X = modes_.standing(n_, x), c = A * std::cos(omega * t);
+    out[0] = {c * X, -A * omega * std::sin(omega * t) * X, c * modes_.standing_slope(n_, x)};
   }
   bool exact() const override { return exact_; }
   std::string description() const override {
@@ -55,26 +49,39 @@ class StandingWave final : public State {
   }
 
  private:
-  void fill(double factor, const Lattice& lattice, std::span<double> out) const {
-    for (int i = 0; i < lattice.sites(); ++i)
-      out[static_cast<std::size_t>(i)] = factor * modes_.standing(n_, lattice.position(i));
-  }
-
   Modes modes_;
   int n_;
   double A, omega;
   bool exact_;
 };
 
-}  // namespace
-
-std::unique_ptr<State> plane_wave(const StateRequest& request, const Lattice& lattice) {
-  const Modes modes(lattice);
-  const int n = modes.read(request, 1);
+std::unique_ptr<State> plane_wave(const StateBuild& build) {
+  const Modes modes(build.lattice);
+  const int n = modes.read(build);
   // ω² = q² + m²
-  const double A = wave_amplitude(request), q = modes.wavenumber(n), omega = std::sqrt(q * q + squared_mass(request));
-  if (!lattice.is_circle()) return std::make_unique<StandingWave>(modes, n, A, omega, is_linear(request));
-  return std::make_unique<PlaneWave>(A, q, omega, finite("initial.position", request.position, 0), is_linear(request));
+  const double A = wave_amplitude(build), q = modes.wavenumber(n), omega = std::sqrt(q * q + squared_mass(build));
+  if (!build.lattice.is_circle()) return std::make_unique<StandingWave>(modes, n, A, omega, build.exact);
+  return std::make_unique<PlaneWave>(A, q, omega, build.number("initial.position"), build.exact);
 }
 
-}  // namespace delf::initial
+Parameter origin() {
+  Parameter p = position_parameter();
+  p.otherwise.clear();
+  return p;
+}
+
+}  // namespace
+}  // namespace initial
+
+extern const StateEntry plane_wave_state;
+const StateEntry plane_wave_state{
+    "plane-wave",
+    "A cos(q (x - x0) - omega t), q = 2 pi n/L, omega^2 = q^2 + m^2; between walls the standing mode n times "
+    "cos(omega t)",
+    {initial::wave_amplitude_parameter(), initial::wavenumber_parameter(1), initial::origin()},
+    {"wave", "klein-gordon"},
+    {"sine-gordon", "double-sine-gordon", "sine-gordon-impurity"},
+    Place::line,
+    initial::plane_wave};
+
+}  // namespace delf

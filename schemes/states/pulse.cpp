@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <numbers>
 
@@ -11,38 +10,30 @@
 
 namespace delf::initial {
 
-Pulse::Pulse(const Lattice& lattice, const StateRequest& request, const PulseFrame& frame)
-    : frame_(frame), circle_(lattice.is_circle()), length_(lattice.length()), theory_(request.theory) {
+Pulse::Pulse(const StateBuild& build, const PulseFrame& frame)
+    : frame_(frame),
+      circle_(build.lattice.is_circle()),
+      length_(build.lattice.length()),
+      theory_(build.request.theory) {
   if (!circle_) frame_.winding = 0;
 }
 
-FieldPoint Pulse::on(const Lattice& lattice, double t, int site) const {
-  const double L = lattice.length();
+void Pulse::at(double t, double x, std::span<FieldPoint> out) const {
   // ξ = x − x₀ − vt,   n = ⌊(ξ + L/2)/L⌋,   s = ξ − nL
-  const double xi = lattice.position(site) - frame_.position - frame_.speed * t;
-  const double n = lattice.is_circle() ? std::floor((xi + L / 2) / L) : 0.0;
-  FieldPoint point = at(t, xi - n * L);
-  point.phi += 2 * std::numbers::pi * frame_.winding * n;
-  return point;
-}
-
-void Pulse::values(double t, const Lattice& lattice, std::span<double> out) const {
-  for (int i = 0; i < lattice.sites(); ++i) out[static_cast<std::size_t>(i)] = on(lattice, t, i).phi;
-}
-
-void Pulse::velocities(double t, const Lattice& lattice, std::span<double> out) const {
-  for (int i = 0; i < lattice.sites(); ++i) out[static_cast<std::size_t>(i)] = on(lattice, t, i).phi_t;
+  const double xi = x - frame_.position - frame_.speed * t;
+  const double n = circle_ ? std::floor((xi + length_ / 2) / length_) : 0.0;
+  out[0] = pulse(t, xi - n * length_);
+  out[0].phi += 2 * std::numbers::pi * frame_.winding * n;
 }
 
 std::string Pulse::description() const {
   std::string line = formula();
   if (circle_) {
     // how far the tail is from the vacuum 2πℤ where the circle closes
-    const double tail = std::abs(std::remainder(at(0, length_ / 2).phi, 2 * std::numbers::pi));
+    const double tail = std::abs(std::remainder(pulse(0, length_ / 2).phi, 2 * std::numbers::pi));
     if (tail > 1e-8) line += "; off by " + text(tail) + " at the seam";
   }
-  if (!exact())
-    line += "; not an exact solution of " + theory_ + " here";
+  if (!exact()) line += "; not an exact solution of " + theory_ + " here";
   else if (std::isfinite(frame_.exact_until))
     line += "; exact until t = " + text(frame_.exact_until) + (circle_ ? ", at the seam" : ", at the wall");
   return line;

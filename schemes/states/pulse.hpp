@@ -3,14 +3,9 @@
 #include <span>
 #include <string>
 
-#include "schemes/state.hpp"
+#include "schemes/states/state_registry.hpp"
 
 namespace delf::initial {
-
-/// φ and φ_t at one point of spacetime.
-struct FieldPoint {
-  double phi, phi_t;
-};
 
 /// Where a pulse is, how it moves, and for how long the lattice lets it be what it is.
 struct PulseFrame {
@@ -26,10 +21,9 @@ struct PulseFrame {
 ///
 class Pulse : public State {
  public:
-  Pulse(const Lattice&, const StateRequest&, const PulseFrame&);
+  Pulse(const StateBuild&, const PulseFrame&);
 
-  void values(double t, const Lattice&, std::span<double> out) const final;
-  void velocities(double t, const Lattice&, std::span<double> out) const final;
+  void at(double t, double x, std::span<FieldPoint> out) const final;
   bool exact() const final { return frame_.exact_until > 0; }
   double exact_until() const final { return frame_.exact_until; }
   int winding() const final { return frame_.winding; }
@@ -37,13 +31,11 @@ class Pulse : public State {
 
  protected:
   /// The pulse at time t, at the distance s from its moving centre; φ_t is taken at fixed x = x₀ + vt + s.
-  virtual FieldPoint at(double t, double s) const = 0;
+  virtual FieldPoint pulse(double t, double s) const = 0;
   /// The formula and its parameters, for description().
   virtual std::string formula() const = 0;
 
  private:
-  FieldPoint on(const Lattice&, double t, int site) const;
-
   PulseFrame frame_;
   bool circle_;
   double length_;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/states/builders.hpp"
 #include "schemes/states/modes.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/state_registry.hpp"
 
-namespace delf::initial {
+namespace delf {
+namespace initial {
 namespace {
 
 struct Wave {
@@ -28,21 +28,15 @@ class WavePacket final : public State {
   WavePacket(std::vector<Wave> waves, double position, std::string parameters, bool solves)
       : waves_(std::move(waves)), x0(position), parameters_(std::move(parameters)), exact_(solves) {}
 
-  void values(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i) {
-      double sum = 0;
-      for (const Wave& w : waves_)
-        sum += w.weight * std::cos(w.wavenumber * (lattice.position(i) - x0) - w.frequency * t);
-      out[static_cast<std::size_t>(i)] = sum;
+  void at(double t, double x, std::span<FieldPoint> out) const override {
+    double phi = 0, phi_t = 0, phi_x = 0;
+    for (const Wave& w : waves_) phi += w.weight * std::cos(w.wavenumber * (x - x0) - w.frequency * t);
+    for (const Wave& w : waves_) {
+      const double sine = std::sin(w.wavenumber * (x - x0) - w.frequency * t);
+      phi_t += w.weight * w.frequency * sine;
+      phi_x -= w.weight * w.wavenumber * sine;
     }
-  }
-  void velocities(double t, const Lattice& lattice, std::span<double> out) const override {
-    for (int i = 0; i < lattice.sites(); ++i) {
-      double sum = 0;
-      for (const Wave& w : waves_)
-        sum += w.weight * w.frequency * std::sin(w.wavenumber * (lattice.position(i) - x0) - w.frequency * t);
-      out[static_cast<std::size_t>(i)] = sum;
-    }
+    out[0] = {phi, phi_t, phi_x};
   }
   bool exact() const override { return exact_; }
   std::string description() const override {
@@ -58,16 +52,15 @@ class WavePacket final : public State {
   bool exact_;
 };
 
-}  // namespace
-
-std::unique_ptr<State> wave_packet(const StateRequest& request, const Lattice& lattice) {
-  const double L = lattice.length(), A = wave_amplitude(request), m2 = squared_mass(request);
-  const double w = positive("initial.width", request.width, L / 20);
+std::unique_ptr<State> wave_packet(const StateBuild& build) {
+  const Lattice& lattice = build.lattice;
+  const double L = lattice.length(), A = wave_amplitude(build), m2 = squared_mass(build);
+  const double w = build.number("initial.width", L / 20);
   if (w < lattice.space_step())
     throw BadInput("initial.width", "initial.width = " + text(w) + ": the sites are " + text(lattice.space_step()) +
                                         " apart; choose a wider packet, or raise lattice.sites");
   const Modes modes(lattice);
-  const int carrier = modes.read(request, std::min(8, modes.most()));
+  const int carrier = modes.read(build, std::min(8, modes.most()));
   const double q0 = modes.wavenumber(std::abs(carrier)), direction = carrier < 0 ? -1 : 1;
 
   // Poisson: Σ_images A e^{−s²/2w²} e^{iq₀s} = Σ_n c_n e^{iq_n s},   c_n = A (w√(2π)/L) e^{−w²(q_n − q₀)²/2},
@@ -84,9 +77,22 @@ std::unique_ptr<State> wave_packet(const StateRequest& request, const Lattice& l
     const double q = modes.wavenumber(n);
     waves.push_back({n == 0 ? c(0) : c(n) + c(-n), direction * q, std::sqrt(q * q + m2)});
   }
-  return std::make_unique<WavePacket>(std::move(waves), centre(request, lattice),
+  return std::make_unique<WavePacket>(std::move(waves), centre(build),
                                       "A = " + text(A) + ", w = " + text(w) + ", q = " + text(direction * q0),
-                                      is_linear(request));
+                                      build.exact);
 }
 
-}  // namespace delf::initial
+}  // namespace
+}  // namespace initial
+
+extern const StateEntry wave_packet_state;
+const StateEntry wave_packet_state{"wave-packet",
+                                   "A exp(-s^2/2w^2) cos(2 pi n s/L), s = x - x0, each mode with its own omega",
+                                   {initial::wave_amplitude_parameter(), initial::width_parameter(),
+                                    initial::packet_wavenumber_parameter(), initial::position_parameter()},
+                                   {"wave", "klein-gordon"},
+                                   {"sine-gordon", "double-sine-gordon", "sine-gordon-impurity"},
+                                   Place::circle,
+                                   initial::wave_packet};
+
+}  // namespace delf

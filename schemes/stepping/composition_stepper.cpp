@@ -10,38 +10,51 @@
 #include <stdexcept>
 #include <utility>
 
+#include "jets/simd/scratch_rows.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
-#include "schemes/stepping/rows/row_increment.hpp"
-#include "schemes/families/row_kernel.hpp"
 
 namespace delf {
 
+namespace {
+
+int reach_of(const StencilFamily& family) {
+  const auto [least, most] = std::ranges::minmax(family.pattern().vertices, {}, &Site::space);
+  return most.space - least.space;
+}
+
+}  // namespace
+
 std::unique_ptr<CompositionStepper> CompositionStepper::make(const LatticeSystem& system, const StepOptions& options) {
   if (system.families().size() != 1 || !system.lattice().is_circle() || options.fibre == Fibre::circle) return nullptr;
-  const NodalKernel* const kernel = system.families()[0]->nodal_kernel();
-  if (!kernel || system.fields() > RowKernel::most_components) return nullptr;
-  std::unique_ptr<CompositionStepper> stepper(new CompositionStepper(system, options, *kernel));
+  const StencilFamily& family = *system.families()[0];
+  if (!family.sources()) return nullptr;
+  // The source terms at a node are those of its own value.
+  for (const SourceTerms::Group& group : family.sources()->groups)
+    for (const SourceTerms::QuadratureValue& value : group.inputs)
+      if (value.size() != 1 || value[0].weight != 1) return nullptr;
+  std::unique_ptr<CompositionStepper> stepper(new CompositionStepper(system, options));
   return stepper->assemble() ? std::move(stepper) : nullptr;
 }
 
-CompositionStepper::CompositionStepper(const LatticeSystem& system, const StepOptions& options,
-                                       const NodalKernel& kernel)
+CompositionStepper::CompositionStepper(const LatticeSystem& system, const StepOptions& options)
     : system_(system),
       options_(options),
-      kernel_(kernel),
+      family_(*system.families()[0]),
       d_(system.fields()),
       S_(system.components() / system.fields()),
-      reach_(kernel.reach()),
-      layout_(system.lattice(), kernel.reach()),
+      reach_(reach_of(family_)),
+      layout_(system.lattice(), std::max(1, reach_)),
       size_(layout_.doubles()) {}
 
 /// The numbers of the equation at node s, from the elements that read it: all of them, or those above it alone.
 CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_below, bool& fits) const {
-  const StencilFamily& family = *system_.families()[0];
+  const StencilFamily& family = family_;
   const Cell cell{system_.time_step(), system_.lattice().space_step(), 0, 0};
   const auto n = static_cast<std::size_t>(family.size()), d = static_cast<std::size_t>(d_);
-  std::vector<double> J(n * n);
-  kernel_.linear_part(cell, J);
+  const auto part = family.constant_part(cell);
+  if (!part) return fits = false, SubStep{};
+  const std::vector<double>& J = part->J;
+  const SourceTerms& sources = *family.sources();
 
   SubStep step{std::vector(d * static_cast<std::size_t>(reach_), 0.0), std::vector(d, 0.0), 0,
                system_.component(s * d_).at.time * cell.time_step};
@@ -52,7 +65,8 @@ CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_b
     const auto [vertex, component] = family.values()[static_cast<std::size_t>(i)];
     if (component / d_ != s || (!from_below && family.site(i).time != 0)) continue;
     const auto a = static_cast<std::size_t>(component % d_);
-    step.nonlinear[a] += kernel_.weight(cell, i);
+    for (int c = 0; c < sources.outputs(); ++c)
+      step.nonlinear[a] += cell.time_step * cell.space_step * sources.weight(c, i);
     for (int j = 0; j < family.size(); ++j) {
       const double entry = J[static_cast<std::size_t>(i) * n + static_cast<std::size_t>(j)];
       if (entry == 0) continue;
@@ -85,8 +99,12 @@ CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_b
 
 bool CompositionStepper::assemble() {
   if (S_ * d_ != system_.components()) return false;
-  for (int c = 0; c < system_.components(); ++c)
-    if (system_.component(c).role == Role::multiplier || system_.component(c).at.space != 0) return false;
+  for (int c = 0; c < system_.components(); ++c) {
+    // sub-step by sub-step, the fields first
+    const Component& component = system_.component(c);
+    if (component.role != (c < d_ ? Role::field : Role::inner) || component.field != c % d_) return false;
+    if (component.at.space != 0) return false;
+  }
   bool fits = true;
   for (int s = 0; s < S_; ++s) steps_.push_back(read_sub_step(s, true, fits));
   first_ = read_sub_step(0, false, fits);
@@ -119,26 +137,60 @@ bool CompositionStepper::assemble() {
   return true;
 }
 
+/// One sub-step of a row, with D(i) = y(i + 1) − y(i):
+///
+///     u += Σ_m g_m (y(i + m) − 2y(i) + y(i − m)) + nonlinear ∂ℓ/∂φ(y(i)),    next = y + stride u
+///
+/// where the sum is Σ_j linear(j) (D(i + j) − D(i − 1 − j)): half the operations, and still differences only. Returns the
+/// largest |next|.
 double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const double* from, const double* differences,
                                     double* to, double* next_differences, double* velocity) const {
-  constexpr int most = RowKernel::most_components;
-  const double *now[most], *D[most];
-  double *u[most], *y[most], *next_D[most];
-  for (int a = 0; a < d_; ++a) {
-    const std::size_t at = static_cast<std::size_t>(a) * size_;
-    now[a] = from + at, D[a] = differences + at, u[a] = velocity + at, y[a] = to + at,
-    next_D[a] = next_differences + at;
+  constexpr int strip = 32;
+  const bool has_sources = !family_.sources()->groups.empty();
+  const ScratchRows slopes(d_, strip * lanes);
+  std::vector<const double*> now(static_cast<std::size_t>(d_));
+  const auto row = [this](int a) { return static_cast<std::ptrdiff_t>(a) * static_cast<std::ptrdiff_t>(size_); };
+  Pack largest(0.0);
+  std::vector<Pack> before(static_cast<std::size_t>(d_), Pack(0.0));
+  for (int first = 0; first < layout_.packs(); first += strip) {
+    const int packs = std::min(strip, layout_.packs() - first);
+    const std::ptrdiff_t begin = layout_.at(first);
+    for (int a = 0; a < d_; ++a) now[static_cast<std::size_t>(a)] = from + row(a) + begin;
+    if (has_sources)
+      family_.evaluate_sources(0, {packs * lanes, now.data(), static_cast<double>(n) * system_.time_step() + step.time,
+                                   positions_.rows() ? positions_.row(0) + begin : nullptr},
+                               slopes.data());
+    for (int a = 0; a < d_; ++a) {
+      const double* const linear = step.linear.data() + static_cast<std::ptrdiff_t>(a) * reach_;
+      const double nonlinear = step.nonlinear[static_cast<std::size_t>(a)], stride = step.stride;
+      const double *const D = differences + row(a) + begin, *const y = from + row(a) + begin, *const slope = slopes[a];
+      double *const u = velocity + row(a) + begin, *const next = to + row(a) + begin,
+             *const next_D = next_differences + row(a) + begin;
+      Pack last = before[static_cast<std::size_t>(a)];
+      for (std::ptrdiff_t at = 0; at < packs * lanes; at += lanes) {
+        Pack force = Pack::load(u + at);
+        if (has_sources) force += nonlinear * Pack::load(slope + at);
+        for (int j = 0; j < reach_; ++j)
+          force += linear[j] * (Pack::load(D + at + j * lanes) - Pack::load(D + at - (j + 1) * lanes));
+        const Pack value = Pack::load(y + at) + stride * force;
+        largest = largest_magnitude(largest, value);
+        force.store(u + at);
+        value.store(next + at);
+        // The first of these lies in the halo, which is filled afterwards.
+        (value - last).store(next_D + at - lanes);
+        last = value;
+      }
+      before[static_cast<std::size_t>(a)] = last;
+    }
   }
-  const double largest = kernel_.step({&layout_, now, y, D, next_D, u, positions_.rows() ? positions_.row(0) : nullptr,
-                                       static_cast<double>(n) * system_.time_step() + step.time, step.linear.data(),
-                                       step.nonlinear.data(), step.stride});
   const std::ptrdiff_t last = layout_.at(layout_.packs() - 1);
   for (int a = 0; a < d_; ++a) {
-    layout_.fill_halo(y[a], options_.turn);
-    (Pack::load(y[a] + last + lanes) - Pack::load(y[a] + last)).store(next_D[a] + last);
-    layout_.fill_halo(next_D[a]);
+    double *const y = to + row(a), *const D = next_differences + row(a);
+    layout_.fill_halo(y, options_.turn);
+    (Pack::load(y + last + lanes) - Pack::load(y + last)).store(D + last);
+    layout_.fill_halo(D);
   }
-  return largest;
+  return max_or_nan(largest);
 }
 
 void CompositionStepper::find_differences(const double* row, double* differences) const {
@@ -151,7 +203,7 @@ void CompositionStepper::find_differences(const double* row, double* differences
   }
 }
 
-/// The sub-steps from row n on; in place if no one looks. Returns √Σy² of the new row.
+/// The sub-steps from row n on; in place if no one looks. Returns the largest |y| of the new row.
 double CompositionStepper::advance(const SubStep& first, bool looked_at) {
   const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
   double* const newest = newest_row();
@@ -164,12 +216,6 @@ double CompositionStepper::advance(const SubStep& first, bool looked_at) {
                        differences_.row(1 - at_), velocity_.row(0));
   }
   return largest;
-}
-
-std::vector<int> CompositionStepper::behind() const {
-  std::vector<int> rows(static_cast<std::size_t>(S_ * d_), 1);
-  std::fill_n(rows.begin(), d_, 0);
-  return rows;
 }
 
 /// The fields of a section, by lanes.
@@ -329,19 +375,18 @@ double CompositionStepper::residual() const {
   return size != 0 ? worst / size : 0;
 }
 
-std::size_t CompositionStepper::bytes() const {
-  return newest_.bytes() + velocity_.bytes() + differences_.bytes() + slabs_.bytes() + saved_.bytes() +
-         scratch_.bytes() + positions_.bytes() + layout_.bytes();
-}
-std::size_t CompositionStepper::bytes_to_come(bool residual) const {
-  if (!residual || scratch_.rows()) return 0;
-  return RowBuffer::bytes_of(static_cast<std::size_t>(d_) * size_, scratch_rows());
-}
-std::string CompositionStepper::memory_report(bool residual) const {
-  return fmt::format(
+StepReport CompositionStepper::report(bool residual) const {
+  StepReport report{.iterates = false, .matrix_free = true, .solver = "explicit sub-steps, row by row"};
+  report.behind.assign(static_cast<std::size_t>(S_ * d_), 1);
+  std::fill_n(report.behind.begin(), d_, 0);
+  const std::size_t work = saved_.bytes() + scratch_.bytes() + positions_.bytes() + layout_.bytes();
+  report.bytes = newest_.bytes() + velocity_.bytes() + differences_.bytes() + slabs_.bytes() + work;
+  if (residual && !scratch_.rows())
+    report.bytes_to_come = RowBuffer::bytes_of(static_cast<std::size_t>(d_) * size_, scratch_rows());
+  report.memory = fmt::format(
       "rows of the field {} B, differences {} B, momenta {} B, rows between sub-steps {} B, work space {} B",
-      newest_.bytes(), differences_.bytes(), velocity_.bytes(), slabs_.bytes(),
-      saved_.bytes() + scratch_.bytes() + positions_.bytes() + layout_.bytes() + bytes_to_come(residual));
+      newest_.bytes(), differences_.bytes(), velocity_.bytes(), slabs_.bytes(), work + report.bytes_to_come);
+  return report;
 }
 
 }  // namespace delf

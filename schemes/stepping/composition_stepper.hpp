@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "schemes/system/lattice_system.hpp"
-#include "schemes/families/nodal_kernel.hpp"
+#include "schemes/solvers/row_layout.hpp"
 #include "schemes/stepping/step_method.hpp"
 
 namespace delf {
@@ -23,25 +23,17 @@ class CompositionStepper final : public StepMethod {
   /// Nothing if the equations are not of this kind.
   static std::unique_ptr<CompositionStepper> make(const LatticeSystem&, const StepOptions&);
 
-  int starting_rows() const override { return 2; }
   /// Throws BadInput where there are rows between the sub-steps: they follow from momenta alone.
   void start(const std::vector<std::vector<double>>& rows) override;
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool looked_at) override;
 
-  std::int64_t newest() const override { return n_; }
-  std::vector<int> behind() const override;
+  StepState state() const override { return {n_, 0}; }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   double residual() const override;
-  int iterations() const override { return 0; }
 
-  bool iterates() const override { return false; }
-  std::string solver_name() const override { return "explicit sub-steps, row by row"; }
-  bool matrix_free() const override { return true; }
-  std::size_t bytes() const override;
-  std::size_t bytes_to_come(bool residual) const override;
-  std::string memory_report(bool residual) const override;
+  StepReport report(bool residual) const override;
 
  private:
   /// One sub-step from the row of a node.
@@ -52,7 +44,7 @@ class CompositionStepper final : public StepMethod {
     double time = 0;                ///< of the row, from that of the step
   };
 
-  CompositionStepper(const LatticeSystem&, const StepOptions&, const NodalKernel&);
+  CompositionStepper(const LatticeSystem&, const StepOptions&);
   /// False where an equation is not of the form above.
   bool assemble();
   SubStep read_sub_step(int s, bool from_below, bool& fits) const;
@@ -75,7 +67,7 @@ class CompositionStepper final : public StepMethod {
   static constexpr int slabs_held = 4;
   const LatticeSystem& system_;
   StepOptions options_;
-  const NodalKernel& kernel_;
+  const StencilFamily& family_;
   int d_, S_, reach_;
   double scale_ = 1;  ///< K: velocities are P/K
   RowLayout layout_;

@@ -8,8 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "schemes/solvers/cyclic_band_lu.hpp"
-#include "schemes/families/row_kernel.hpp"
+#include "schemes/stepping/slab_solver.hpp"
 
 namespace delf {
 namespace {
@@ -23,131 +22,55 @@ Vector as_vector(const std::vector<double>& row) {
   return Eigen::Map<const Vector>(row.data(), static_cast<Eigen::Index>(row.size()));
 }
 std::vector<double> as_row(const Vector& v) { return {v.data(), v.data() + v.size()}; }
+int parity_of(const SolvePlan& plan, std::int64_t J) { return static_cast<int>(J & (plan.table.parities - 1)); }
 
-/// The equations of one slab as a function of its unknown row.
-class SlabEquations {
+/// The equations of slab J as a function of row J, followed in the step s·h from s = 0 to 1.
+class SlabProblem {
  public:
-  /// Makes the window for a value of the unknown row: the rows before it, and it.
-  using MakeWindow = std::function<Window(const Vector& unknown)>;
-  /// ∂(row j)/∂(unknown row), for rows that follow the unknown: {row, factor}.
-  struct Dependent {
-    std::int64_t row;
-    double factor;
-  };
+  /// The rows that the equations read, made from row J: those of the past move with s, or with row J.
+  using MakeRows = std::function<void(double s, const Vector& row, SectionRing&)>;
 
-  SlabEquations(const LatticeSystem& system, const SolvePlan& plan, std::int64_t unknown_row, double h, MakeWindow make,
-                std::vector<Dependent> dependents)
-      : system_(system), plan_(plan), unknown_row_(unknown_row), h_(h), make_(std::move(make)),
-        dependents_(std::move(dependents)) {}
+  SlabProblem(const LatticeSystem& system, Assembly::Parts parts, std::int64_t J, MakeRows make)
+      : h_(system.time_step()),
+        J_(J),
+        ring_(parts.past + parts.future + 1,
+              static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(system.components())),
+        equations_(system, std::move(parts)),
+        make_(std::move(make)) {}
 
-  Vector residual(const Vector& y) const {
-    const Window window = make_(y);
-    const int d = system_.components();
-    Vector E = Vector::Zero(y.size());
-    // A fixed wall keeps its value: y_wall − y = 0, of the sign that the equations' ∂E/∂y_{j+1} has.
-    for (int i = 0; i < system_.lattice().sites(); ++i)
-      for (int a = 0; a < d; ++a)
-        if (!solved(i, a)) E[i * d + a] = window(unknown_row_ - 1, i, a) - y[i * d + a];
-    std::vector<double> values, r;
-    for_each_stencil([&](const StencilFamily& family, std::int64_t row, int site) {
-      const Cell cell = system_.gather(family, window, row, site, h_, values);
-      r.resize(values.size());
-      family.residual(cell, values, r);
-      for (int m = 0; m < family.size(); ++m)
-        if (const int at = equations_[static_cast<std::size_t>(m)]; at >= 0) E[at] += r[static_cast<std::size_t>(m)];
-    });
-    return E;
+  void set(double s) { equations_.set_time_step(s * h_), s_ = s; }
+  const Assembly& equations() const { return equations_; }
+
+  /// ∂E/∂(row J)
+  const std::vector<double>& jacobian(const Vector& row) {
+    make_(s_, row, ring_);
+    equations_.jacobian(ring_, J_, values_);
+    return values_;
   }
-
-  /// ∂E/∂(unknown row), entry by entry; those of one place are to be added.
-  std::vector<LatticeSystem::Entry> jacobian_entries(const Vector& y) const {
-    const Window window = make_(y);
-    const int d = system_.components();
-    std::vector<LatticeSystem::Entry> entries;
-    for (int i = 0; i < system_.lattice().sites(); ++i)
-      for (int a = 0; a < d; ++a)
-        if (!solved(i, a)) entries.push_back({i * d + a, i * d + a, -1.0});
-    std::vector<double> values, J;
-    for_each_stencil([&](const StencilFamily& family, std::int64_t row, int site) {
-      if (std::ranges::none_of(factors_, [](double f) { return f != 0; })) return;
-      const Cell cell = system_.gather(family, window, row, site, h_, values);
-      const auto size = static_cast<std::size_t>(family.size());
-      J.resize(size * size);
-      family.jacobian(cell, values, J);
-      for (std::size_t m = 0; m < size; ++m)
-        for (std::size_t n = 0; n < size && equations_[m] >= 0; ++n)
-          if (factors_[n] != 0 && J[m * size + n] != 0)
-            entries.push_back({equations_[m], places_[n], factors_[n] * J[m * size + n]});
-    });
-    return entries;
+  const std::vector<double>& residual(const Vector& row) {
+    make_(s_, row, ring_);
+    equations_.residual(ring_, J_, E_);
+    return E_;
   }
-
-  Matrix jacobian(const Vector& y) const {
-    std::vector<Eigen::Triplet<double>> triplets;
-    for (const auto& e : jacobian_entries(y)) triplets.emplace_back(e.row, e.column, e.value);
-    Matrix J(y.size(), y.size());
-    J.setFromTriplets(triplets.begin(), triplets.end());
-    return J;
+  /// y + by; a fixed wall keeps its value.
+  Vector moved(Vector y, const Vector& by) const {
+    for (int n = 0; n < equations_.size(); ++n) y[place(n)] += by[place(n)];
+    return y;
   }
-
-  const Lattice& lattice() const { return system_.lattice(); }
+  /// y −= change
+  void take(Vector& row, std::span<const double> change) const {
+    for (int n = 0; n < equations_.size(); ++n) row[place(n)] -= change[static_cast<std::size_t>(n)];
+  }
 
  private:
-  bool solved(int i, int a) const { return plan_.solved(i, a); }
-  std::int64_t row_of(int i, int a) const {
-    return unknown_row_ - plan_.shift(i, a, static_cast<int>(unknown_row_ & 1));
-  }
+  int place(int n) const { return equations_.place(equations_.unknown(n)); }
 
-  /// Every stencil that has an equation of the slab, once: it costs the same whichever of its equations is asked for.
-  /// Of its values: their places in a row, the equations that are theirs (−1: none), and how much they change with the
-  /// unknown row.
-  template <class Visit>
-  void for_each_stencil(const Visit& visit) const {
-    const Lattice& lattice = system_.lattice();
-    const int d = system_.components(), N = lattice.sites();
-    constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
-    std::vector<std::int64_t> rows;  // of the equations, by place
-    std::int64_t lowest = unknown_row_, highest = lowest;
-    for (int i = 0; i < N; ++i)
-      for (int a = 0; a < d; ++a) {
-        rows.push_back(solved(i, a) ? row_of(i, a) : none);
-        if (rows.back() != none) lowest = std::min(lowest, rows.back()), highest = std::max(highest, rows.back());
-      }
-    for (const auto& family : system_.families()) {
-      const auto [first, last] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
-      const auto size = static_cast<std::size_t>(family->size());
-      places_.resize(size), equations_.resize(size), factors_.resize(size);
-      for (std::int64_t anchor = lowest - last.time; anchor <= highest - first.time; ++anchor) {
-        for (std::size_t m = 0; m < size; ++m) {
-          factors_[m] = 0;
-          for (const Dependent& dependent : dependents_)
-            if (anchor + family->site(static_cast<int>(m)).time == dependent.row) factors_[m] += dependent.factor;
-        }
-        for (int i = 0; i < N; ++i) {
-          if (!system_.has_stencil(*family, anchor, i)) continue;
-          bool any = false;
-          for (std::size_t m = 0; m < size; ++m) {
-            const Site vertex = family->site(static_cast<int>(m));
-            const int x = i + vertex.space, home = lattice.is_circle() ? lattice.wrapped(x) : x;
-            places_[m] = home * d + family->values()[m].component;
-            const bool there = rows[static_cast<std::size_t>(places_[m])] == anchor + vertex.time;
-            equations_[m] = there ? places_[m] : -1;
-            any = any || there;
-          }
-          if (any) visit(*family, anchor, i);
-        }
-      }
-    }
-  }
-
-  const LatticeSystem& system_;
-  const SolvePlan& plan_;
-  std::int64_t unknown_row_;
-  double h_;
-  MakeWindow make_;
-  std::vector<Dependent> dependents_;
-  mutable std::vector<int> places_, equations_;
-  mutable std::vector<double> factors_;
+  double h_, s_ = 1;
+  std::int64_t J_;
+  SectionRing ring_;
+  Assembly equations_;
+  MakeRows make_;
+  std::vector<double> values_, E_;
 };
 
 struct Newton {
@@ -159,33 +82,39 @@ struct Newton {
   int sign = 0;  ///< of the determinant at the root
 };
 
-Newton newton(const SlabEquations& equations, Vector y, double absolute_tolerance, int max_iterations,
+/// Whether corrections of this size say that the iteration has arrived. Those that stopped shrinking below a few hundred
+/// units of round-off have: the matrix is ill-conditioned, not the iteration lost.
+bool arrived(double size, double last, double absolute_tolerance, double round_off) {
+  return size <= absolute_tolerance || size <= round_off || (size > 0.5 * last && size <= 64 * round_off);
+}
+double round_off_of(const Vector& y) { return 8 * std::numeric_limits<double>::epsilon() * largest(y); }
+
+Newton newton(SlabProblem& problem, Vector y, double absolute_tolerance, int max_iterations,
               double tame_ratio = 0.5) {
   Newton result;
+  const Assembly& equations = problem.equations();
   double last = std::numeric_limits<double>::infinity();
+  Matrix J(equations.size(), equations.size());
+  std::vector<Eigen::Triplet<double>> triplets;
   for (int it = 1; it <= max_iterations; ++it) {
+    const std::vector<double>& values = problem.jacobian(y);
+    triplets.clear();
+    for (std::size_t n = 0; n < values.size(); ++n)
+      if (values[n] != 0) triplets.emplace_back(equations.places()[n].equation, equations.places()[n].unknown, values[n]);
+    J.setFromTriplets(triplets.begin(), triplets.end());
     Eigen::SparseLU<Matrix> lu;
-    lu.compute(equations.jacobian(y));
+    lu.compute(J);
     result.iterations = it;
     if (lu.info() != Eigen::Success) break;
-    const Vector change = lu.solve(equations.residual(y));
+    const Vector change = lu.solve(as_vector(problem.residual(y)));
     if (lu.info() != Eigen::Success || !change.allFinite()) break;
-    y -= change;
+    problem.take(y, as_row(change));
     const int sign = static_cast<int>(lu.signDeterminant());
     if (it > 1 && sign != result.sign) result.tame = false;
     result.sign = sign;
-    const double size = largest(change);
-    const double round_off = 8 * std::numeric_limits<double>::epsilon() * largest(y);
-    if (size <= absolute_tolerance || size <= round_off) {
-      result.converged = true;
-      break;
-    }
-    // Corrections that stopped shrinking below a few hundred units of round-off have arrived: the matrix is
-    // ill-conditioned, not the iteration lost.
-    if (size > 0.5 * last && size <= 64 * round_off) {
-      result.converged = true;
-      break;
-    }
+    const double size = largest(change), round_off = round_off_of(y);
+    result.converged = arrived(size, last, absolute_tolerance, round_off);
+    if (result.converged) break;
     if (size > tame_ratio * last && size > 64 * round_off) result.tame = false;
     last = size;
   }
@@ -193,54 +122,45 @@ Newton newton(const SlabEquations& equations, Vector y, double absolute_toleranc
   return result;
 }
 
-/// LU of a band; nothing where there is no band, or it is not safe without pivoting.
-std::optional<CyclicBandLU> factor_band(const Lattice& lattice, int size,
-                                        const std::vector<LatticeSystem::Entry>& entries) {
-  const Bandwidth band = bandwidth(lattice, size, entries);
-  // What joins the ends of a circle must stay narrow, or the border is no border.
-  if (band.lower + band.upper > 64) return std::nullopt;
-  return CyclicBandLU::factor(size, band, lattice.is_circle(), entries);
-}
-
 /// y ← y − J⁻¹E(y) with the Jacobian where it begins, while each correction is at most a tenth of the one before: then
-/// no other root is near. Not converged where it does not contract like that, or the matrix is no band.
-Newton chord(const SlabEquations& equations, Vector y, double absolute_tolerance, int max_iterations) {
+/// no other root is near. Not converged where it does not contract like that.
+Newton chord(SlabProblem& problem, Vector y, double absolute_tolerance, int max_iterations) {
   Newton result;
-  const auto lu = factor_band(equations.lattice(), static_cast<int>(y.size()), equations.jacobian_entries(y));
+  const std::vector<double>& values = problem.jacobian(y);
+  std::vector<char> present;
+  for (const double value : values) present.push_back(value != 0);
+  BlockSolver solver = solver_of(problem.equations(), present);
+  if (!solver.factor(values)) return result;
   double last = std::numeric_limits<double>::infinity();
   std::vector<double> change;
-  for (int it = 1; lu && it <= max_iterations; ++it) {
+  for (int it = 1; it <= max_iterations && !result.converged; ++it) {
     result.iterations = it;
-    change = as_row(equations.residual(y));
-    lu->solve(change);
-    const Vector by = as_vector(change);
-    if (!by.allFinite()) return result;
-    y -= by;
-    const double size = largest(by), round_off = 8 * std::numeric_limits<double>::epsilon() * largest(y);
-    if (size <= absolute_tolerance || size <= round_off || (size > 0.5 * last && size <= 64 * round_off)) {
-      result.converged = true;
-      break;
-    }
-    if (size > 0.1 * last && size > 64 * round_off) return result;
+    solver.solve(problem.residual(y), change);
+    const double size = largest(as_vector(change));
+    if (!std::isfinite(size)) return result;
+    problem.take(y, change);
+    const double round_off = round_off_of(y);
+    result.converged = arrived(size, last, absolute_tolerance, round_off);
+    if (!result.converged && size > 0.1 * last && size > 64 * round_off) return result;
     last = size;
   }
   result.y = std::move(y);
   return result;
 }
 
-/// Follows the root of equations_at(s) from s near 0 to s = 1. A stride is taken once and in two halves: both ways must
+/// Follows the root of the problem from s near 0 to s = 1. A stride is taken once and in two halves: both ways must
 /// be tame and end at the same root, because Newton's method may by accident arrive quickly at a root that is far
 /// away. Stops where the determinant changes sign, because there two roots meet.
-Newton follow(const std::function<SlabEquations(double)>& equations_at, const std::function<Vector(double)>& predict,
-              double absolute_tolerance, int max_iterations) {
+Newton follow(SlabProblem& problem, const std::function<Vector(double)>& predict, double absolute_tolerance,
+              int max_iterations) {
   constexpr double first = 1. / 16, largest_stride = 1. / 8, least_stride = 1. / 65536, tame_ratio = 1. / 8;
   double s = 0, stride = first;
   Newton at;
   Vector offset = 0 * predict(0);  // of the root from its prediction
   int iterations = 0, sign = 0;
   const auto root_at = [&](double where, const Vector& off) {
-    Newton found = newton(equations_at(where), predict(where) + off, absolute_tolerance, std::min(max_iterations, 12),
-                          tame_ratio);
+    problem.set(where);
+    Newton found = newton(problem, predict(where) + off, absolute_tolerance, std::min(max_iterations, 12), tame_ratio);
     iterations += found.iterations;
     found.converged = found.converged && found.tame && (sign == 0 || found.sign == sign);
     return found;
@@ -282,26 +202,24 @@ NewtonResult as_result(const Newton& found, int iterations) {
 
 NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, const Window& past,
                         double tolerance, int max_iterations) {
-  const std::int64_t unknown = past.last_row() + 1;
+  const std::int64_t J = past.last_row() + 1;
+  const int rows = static_cast<int>(past.rows.size());
   const Vector newest = as_vector(past.rows.back());
   const Vector increment = newest - as_vector(past.rows[past.rows.size() - 2]);
   // With the step s·h the rows before the newest are as far away as the same velocities put them.
-  const auto equations_at = [&](double s) {
-    return SlabEquations(
-        system, plan, unknown, s * system.time_step(),
-        [&past, s](const Vector& y) {
-          Window window = past;
-          for (auto& row : window.rows)
-            for (std::size_t i = 0; i < row.size(); ++i)
-              row[i] = past.rows.back()[i] - s * (past.rows.back()[i] - row[i]);
-          window.rows.push_back(as_row(y));
-          return window;
-        },
-        {{unknown, 1.0}});
-  };
-  const auto predict = [&](double s) { return Vector(newest + s * increment); };
+  SlabProblem problem(system, Assembly::slab(plan, parity_of(plan, J), rows, 0, past.turn), J,
+                      [&](double s, const Vector& y, SectionRing& ring) {
+                        for (int r = 0; r < rows; ++r) {
+                          const auto& row = past.rows[static_cast<std::size_t>(r)];
+                          double* const to = ring.row(past.first_row + r);
+                          for (std::size_t i = 0; i < row.size(); ++i)
+                            to[i] = past.rows.back()[i] - s * (past.rows.back()[i] - row[i]);
+                        }
+                        std::copy(y.begin(), y.end(), ring.row(J));
+                      });
+  const auto predict = [&](double s) { return problem.moved(newest, s * increment); };
   const double absolute = tolerance * std::max(largest(newest), largest(predict(1)));
-  const Newton followed = follow(equations_at, predict, absolute, max_iterations);
+  const Newton followed = follow(problem, predict, absolute, max_iterations);
   return as_result(followed, followed.iterations);
 }
 
@@ -310,35 +228,34 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
                                  int max_iterations) {
   const Vector y0 = as_vector(row0.rows.back()), phi_t = as_vector(velocity);
   const double h = system.time_step();
-  const auto equations_at = [&](double s) {
-    return SlabEquations(
-        system, plan, 1, s * h,
-        [&, s](const Vector& y1) {
-          Window window = row0;
-          window.first_row = -1;
-          window.rows = {as_row(y1 - 2 * s * h * phi_t), row0.rows.back(), as_row(y1)};
-          return window;
-        },
-        {{1, 1.0}, {-1, 1.0}});
-  };
-  const auto predict = [&](double s) { return Vector(y0 + s * h * phi_t); };
+  // Row −1 moves with row 1: its values are the same unknowns.
+  Assembly::Parts parts = Assembly::slab(plan, parity_of(plan, 1), 2, 0, row0.turn);
+  for (const Node& unknown : std::vector<Node>(parts.unknowns))
+    parts.unknowns.push_back({unknown.site - Site{2, 0}, unknown.component});
+  parts.copies = 2;
+  SlabProblem problem(system, std::move(parts), 1, [&](double s, const Vector& y1, SectionRing& ring) {
+    Eigen::Map<Vector>(ring.row(-1), y1.size()) = y1 - 2 * s * h * phi_t;
+    std::copy(y0.begin(), y0.end(), ring.row(0));
+    std::copy(y1.begin(), y1.end(), ring.row(1));
+  });
+  const auto predict = [&](double s) { return problem.moved(y0, s * h * phi_t); };
   const double absolute = tolerance * std::max(largest(y0), largest(predict(1)));
   int iterations = 0;
   if (!stiff) {
-    const Newton quick = chord(equations_at(1), predict(1), absolute, max_iterations);
+    const Newton quick = chord(problem, predict(1), absolute, max_iterations);
     if (quick.converged) return as_result(quick, quick.iterations);
-    const Newton direct = newton(equations_at(1), predict(1), absolute, max_iterations);
+    const Newton direct = newton(problem, predict(1), absolute, max_iterations);
     iterations = quick.iterations + direct.iterations;
     if (direct.converged && direct.tame) return as_result(direct, iterations);
   }
-  const Newton followed = follow(equations_at, predict, absolute, max_iterations);
+  const Newton followed = follow(problem, predict, absolute, max_iterations);
   return as_result(followed, iterations + followed.iterations);
 }
 
 std::optional<FixedPointBound> fixed_point_bound(const LatticeSystem& system, const SolvePlan& plan,
                                                  double amplitude) {
   for (const auto& family : system.families())
-    if (family->row_kernel()->nonlinearity() == Nonlinearity::all) return std::nullopt;
+    if (!family->sources()) return std::nullopt;
   FixedPointBound bound{0, std::numeric_limits<double>::infinity()};
   const int d = system.components(), site = system.lattice().sites() / 2;
   Window uniform{&system.lattice(), d, 0, 0, {}};

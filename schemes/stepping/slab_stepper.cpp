@@ -9,31 +9,39 @@
 #include <utility>
 
 #include "jets/simd/pack_gather.hpp"
-#include "schemes/stepping/rows/extrapolation.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
+#include "schemes/stepping/newton.hpp"
 #include "schemes/system/slab_extent.hpp"
 
 namespace delf {
+namespace {
+
+constexpr double smallest_estimated = 0.99e-13;
+constexpr double epsilon = std::numeric_limits<double>::epsilon(), infinity = std::numeric_limits<double>::infinity();
+/// Slabs that a polynomial goes through: more are worse than eight.
+constexpr int most_points = 8, least_points = 4;
+
+}  // namespace
+
 SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
     : system_(system), plan_(plan), options_(options), components_(system.components()) {
   SlabExtent extent = slab_extent(system, plan);
   future_ = extent.above;
   lag_ = extent.field_lag;
   back_ = std::move(extent.behind);
-  seed_order_ = std::clamp(options.seed_order, 1, 12) - 1;
-  newton_seed_order_ = std::clamp(options.seed_order, 1, 3);
-  past_ = std::max(plan.history, std::max(seed_order_, newton_seed_order_) + 1 + extent.below);
+  points_ = std::clamp(options.seed_order, 1, most_points);
+  past_ = std::max(plan.history, points_ + extent.below);
   starting_rows_ = std::max(plan.history, 1) + future_;
   const std::size_t row = static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_);
   ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row);
   for (int p = 0; p < plan.table.parities; ++p) {
-    SlabEquations equations(system, plan, p, past_, future_, options.turn);
-    BlockSolver solver = equations.solver();
+    Assembly equations(system, Assembly::slab(plan, p, past_, future_, options.turn));
+    BlockSolver solver = solver_of(equations);
     std::vector<Unknowns> unknowns = list_unknowns(equations);
     parities_.push_back({std::move(equations), std::move(solver), std::move(unknowns)});
     parities_.back().has_constant = factor_constant(parities_.back());
   }
-  seed_.resize(row);
+  predicted_.resize(row);
   // Made now, so that memory that is short is told at the start.
   for (std::vector<double>* numbers : {&E_, &known_E_, &change_}) numbers->reserve(unknowns() + 1);
   for (const Parity& p : parities_) jacobian_.reserve(p.equations.places().size());
@@ -45,7 +53,7 @@ std::size_t SlabStepper::unknowns() const {
   return most;
 }
 
-std::vector<SlabStepper::Unknowns> SlabStepper::list_unknowns(const SlabEquations& equations) const {
+std::vector<SlabStepper::Unknowns> SlabStepper::list_unknowns(const Assembly& equations) const {
   std::vector<Unknowns> lists;
   for (int n = 0; n < equations.size(); ++n) {
     const Node& u = equations.unknown(n);
@@ -74,7 +82,7 @@ bool SlabStepper::factor_constant(Parity& p) {
 /// The largest |y| of the fields in a row: starting rows need not hold anything else.
 double SlabStepper::largest_of(const double* row) const {
   double largest = 0;
-  for (std::size_t at = 0; at < seed_.size(); ++at)
+  for (std::size_t at = 0; at < predicted_.size(); ++at)
     if (system_.component(static_cast<int>(at) % components_).role == Role::field)
       largest = std::max(largest, std::abs(row[at]));
   return largest;
@@ -95,9 +103,24 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
   J_ = static_cast<std::int64_t>(rows.size()) - 1 - future_;
   known_ = 0;
   // Nothing of an earlier run is left: starting again gives the same bits.
-  for (Parity& p : parities_)
+  for (Parity& p : parities_) {
     if (p.factored == Matrix::jacobian) p.factored = Matrix::none;
+    p.curvature = 0, p.unseen = 0, p.last_iterations = p.fresh_iterations = 0;
+  }
   wait_ = 1, waiting_ = 0;
+}
+
+void SlabStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
+  for (const Component& c : system_.all_components())
+    if (c.role != Role::field || starting_rows_ != 2) return StepMethod::start_centred(row0, velocity);
+  const Window first = system_.window(0, {row0}, options_.turn);
+  const NewtonResult result =
+      solve_centred_start(system_, plan_, first, velocity, false, options_.tolerance, options_.max_iterations);
+  if (!result.converged)
+    throw NoConvergence(
+        "the starting row of initial.start = centred was not found: Newton's method did not converge; "
+        "reduce lattice.courant or lattice.time_step");
+  start({row0, result.row});
 }
 
 void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
@@ -108,38 +131,44 @@ void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vec
   J_ = 1;
 }
 
-/// The polynomial of degree `most_order`, or as much as there are slabs for, through the values that the last slabs gave.
-void SlabStepper::seed(Parity& p, std::int64_t J, int most_order) {
+/// The polynomial through the values that the last slabs gave, `most_points` of them or as many as there are:
+///
+///     y_J = Σ_{m=1}^{p} (−1)^{m+1} C(p, m) y_{J−m}
+void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
   // What has no equation keeps its value: fixed walls.
-  const std::size_t size = seed_.size();
+  const std::size_t size = predicted_.size();
   std::copy_n(ring_->row(J + future_ - 1), size, ring_->row(J + future_));
   for (const Unknowns& unknowns : p.unknowns) {
     // Starting rows hold the fields; multipliers and inner nodes are known from the slabs that were solved.
     const std::int64_t available = unknowns.field() ? J + unknowns.time : known_;
-    const int order = static_cast<int>(std::min<std::int64_t>(most_order, available - 1));
-    if (order < 0) {
-      seed_without_past(unknowns, J);
+    const int points = static_cast<int>(std::min<std::int64_t>(most, available));
+    if (points < 1) {
+      predict_without_past(unknowns, J);
       continue;
     }
     // Whole rows at once: what else lies in them costs less than to leave it out.
-    std::ranges::fill(seed_, 0.0);
-    for (int m = 1; m <= order + 1; ++m) {
-      const double coefficient = extrapolation_weight(order + 1, m);
+    std::ranges::fill(predicted_, 0.0);
+    double weight = -1;
+    for (int m = 1; m <= points; ++m) {
+      weight *= -static_cast<double>(points - m + 1) / m;
       const double* const row = ring_->row(J + unknowns.time - m);
-      for (std::size_t at = 0; at < size; ++at) seed_[at] += coefficient * row[at];
+      for (std::size_t at = 0; at < size; ++at) predicted_[at] += weight * row[at];
     }
     double* const row = ring_->row(J + unknowns.time);
-    for (const int place : unknowns.places) row[place] = seed_[static_cast<std::size_t>(place)];
+    for (const int place : unknowns.places) row[place] = predicted_[static_cast<std::size_t>(place)];
   }
 }
 
-/// An inner node: the value of its cell's vertex. A multiplier: zero.
-void SlabStepper::seed_without_past(const Unknowns& unknowns, std::int64_t J) {
+/// An inner node or a trace: the value of its cell's vertex. What is slaved: its last value. A multiplier: zero.
+void SlabStepper::predict_without_past(const Unknowns& unknowns, std::int64_t J) {
   double* const row = ring_->row(J + unknowns.time);
   for (const int place : unknowns.places) {
     const int component = place % components_;
-    const bool inner = system_.component(component).role == Role::inner;
-    row[place] = inner ? row[place - component + component % system_.fields()] : 0.0;
+    const Component& c = system_.component(component);
+    if (c.role == Role::inner || c.role == Role::trace)
+      row[place] = row[place - component + system_.field_component(c.field)];
+    else if (c.role == Role::slaved) row[place] = ring_->row(J + unknowns.time - 1)[place];
+    else row[place] = 0.0;
   }
 }
 
@@ -182,25 +211,37 @@ SlabStepper::Change SlabStepper::take_change(const Parity& p, std::int64_t J) {
   return result;
 }
 
-bool SlabStepper::small(const Change& c) const {
-  return c.change <= std::max(options_.tolerance, 4 * std::numeric_limits<double>::epsilon()) * c.value;
+double SlabStepper::wanted(const Change& c) const {
+  return std::max(options_.tolerance, 4 * epsilon) * c.value;
+}
+
+/// With one matrix for all iterations corrections shrink by a ratio ρ: what is left after this one is ρ/(1 − ρ) of it.
+bool SlabStepper::arrived(const Change& c, double before) const {
+  if (c.change <= wanted(c)) return true;
+  // The smallest tolerances ask for all that rounding allows: there nothing is left to an estimate.
+  if (before == infinity || options_.tolerance < smallest_estimated) return false;
+  const double ratio = c.change / before;
+  return ratio < 0.5 && 2 * ratio / (1 - ratio) * c.change <= wanted(c);
+}
+/// Corrections that no longer shrink are rounding, if they are small.
+bool SlabStepper::is_rounding(const Change& c, double before) {
+  return c.change > 0.25 * before && c.change <= 512 * epsilon * c.value;
 }
 
 /// Simplified Newton with the constant part. False where it does not contract, or not fast enough.
 bool SlabStepper::iterate(Parity& p, std::int64_t J) {
   if (p.factored != Matrix::constant && !factor_constant(p)) return false;
-  seed(p, J, seed_order_);
+  predict(p, J, points_);
   p.equations.known(*ring_, J, known_E_);
-  double before = std::numeric_limits<double>::infinity();
+  double before = infinity;
   while (iterations_ < options_.max_iterations) {
     ++iterations_;
     p.equations.residual_from(known_E_, *ring_, J, E_);
     p.solver.solve(E_, change_);
     const Change c = take_change(p, J);
     if (!c.finite) return false;
-    if (small(c)) return true;
-    // Changes that no longer shrink are rounding, if they are small.
-    if (c.change > 0.25 * before) return c.change <= 512 * std::numeric_limits<double>::epsilon() * c.value;
+    if (arrived(c, before)) return true;
+    if (c.change > 0.25 * before) return is_rounding(c, before);
     before = c.change;
   }
   return false;
@@ -214,20 +255,24 @@ bool SlabStepper::may_iterate(const Parity& p) {
   return false;
 }
 
-void SlabStepper::newton(Parity& p, std::int64_t J, const std::vector<double>* momenta) {
-  seed(p, J, newton_seed_order_);
+/// Newton's method from a polynomial through so many slabs. Why it failed, or nothing.
+const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std::vector<double>* momenta) {
+  predict(p, J, points);
   if (!momenta) p.equations.known(*ring_, J, known_E_);
-  bool fresh = false, refactor = p.factored != Matrix::jacobian || momenta;
-  double before = std::numeric_limits<double>::infinity();
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  // Small blocks cost less to factor than an iteration more, and a fresh Jacobian leaves no bias behind.
+  const bool always = p.solver.largest_block() <= 24;
+  // One that was kept and has become slow is not kept any longer.
+  bool refactor = always || momenta || p.factored != Matrix::jacobian || p.last_iterations > p.fresh_iterations + 1;
+  bool fresh = false;
+  double before = infinity;
   for (int iteration = 1;; ++iteration) {
     ++iterations_;
-    if (iteration > options_.max_iterations) fail(J, "Newton's method does not converge");
+    if (iteration > options_.max_iterations) return "Newton's method does not converge";
     if (refactor) {
       p.equations.jacobian(*ring_, J, jacobian_, momenta);
       p.has_values = true;
       p.factored = p.solver.factor(jacobian_) ? Matrix::jacobian : Matrix::none;
-      if (p.factored == Matrix::none) fail(J, "their Jacobian is singular");
+      if (p.factored == Matrix::none) return "their Jacobian is singular";
       fresh = true;
     }
     if (momenta) p.equations.residual(*ring_, J, E_, nullptr, momenta);
@@ -236,32 +281,47 @@ void SlabStepper::newton(Parity& p, std::int64_t J, const std::vector<double>* m
     const Change c = take_change(p, J);
     if (!c.finite) {
       p.factored = Matrix::none;
-      fail(J, "Newton's method diverges");
+      return "Newton's method diverges";
     }
-    if (small(c)) break;
+    // Far from the polynomial another root may be nearer.
+    if (iteration == 1 && points > least_points && c.change > 1e-2 * c.value) return "the predictor is far away";
+    p.last_iterations = iteration;
+    if (fresh) p.fresh_iterations = iteration;
+    if (always && iteration > 1) {
+      // With a fresh matrix what is left is C correction².
+      p.curvature = std::max(c.change / (before * before), 0.5 * p.curvature), p.unseen = 0;
+    } else {
+      ++p.unseen;
+    }
+    const bool seen = always && (iteration > 1 || p.unseen < 8) && p.curvature > 0 &&
+                      options_.tolerance >= smallest_estimated;
+    if (seen && 4 * p.curvature * c.change * c.change <= wanted(c)) break;
+    if (always ? c.change <= wanted(c) : arrived(c, before)) break;
+    if (is_rounding(c, before)) break;
     const bool slow = c.change > 0.1 * before;
-    // Changes that no longer shrink are rounding, if they are small.
-    if (slow && c.change > 0.25 * before && c.change <= 512 * epsilon * c.value) break;
-    if (slow && fresh && iteration > 8 && c.change > before) fail(J, "Newton's method diverges");
-    // Small blocks cost less to factor than an iteration more.
-    refactor = slow || p.solver.largest_block() <= 24 || (iteration == 1 && !fresh && c.change > 1e-3 * c.value);
-    fresh = fresh && !slow;
+    if (slow && fresh && iteration > 8 && c.change > before) return "Newton's method diverges";
+    refactor = always || slow || (iteration == 1 && !fresh && c.change > 1e-3 * c.value);
     before = c.change;
   }
   if (momenta) p.factored = Matrix::none;
+  return nullptr;
 }
 
 void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
   const FlushDenormals guard;
   Parity& p = parity(J);
   iterations_ = 0;
+  bool solved = false;
   if (!momenta && may_iterate(p)) {
-    const bool solved = iterate(p, J);
+    solved = iterate(p, J);
     waiting_ = solved ? 0 : wait_;
     wait_ = solved ? 1 : std::min(2 * wait_ + 1, 63);
-    if (!solved) newton(p, J, nullptr);
-  } else {
-    newton(p, J, momenta);
+  }
+  if (!solved) {
+    const char* why = newton(p, J, points_, momenta);
+    // Rough sections are predicted better by a few slabs.
+    if (why && points_ > least_points) why = newton(p, J, least_points, momenta);
+    if (why) fail(J, why);
   }
   if (const auto i = crossing(ring_->row(J - lag_)))
     throw MeshCrossing(fmt::format(
@@ -311,8 +371,6 @@ double SlabStepper::residual() const {
   return size > 0 ? worst / size : 0;
 }
 
-std::string SlabStepper::solver_name() const { return parities_[0].solver.name(); }
-
 std::size_t SlabStepper::equation_bytes() const {
   std::size_t total = 0;
   for (const Parity& p : parities_) total += p.equations.bytes();
@@ -325,7 +383,7 @@ std::size_t SlabStepper::matrix_bytes() const {
 }
 std::size_t SlabStepper::work_bytes() const {
   std::size_t total = 0;
-  const std::vector<double>* const all[] = {&E_, &known_E_, &change_, &seed_, &residual_, &absolute_};
+  const std::vector<double>* const all[] = {&E_, &known_E_, &change_, &predicted_, &residual_, &absolute_};
   for (const std::vector<double>* numbers : all)
     total += numbers->capacity() * sizeof(double);
   for (const Parity& p : parities_)
@@ -333,9 +391,7 @@ std::size_t SlabStepper::work_bytes() const {
   return total;
 }
 
-std::size_t SlabStepper::bytes() const { return ring_->bytes() + equation_bytes() + matrix_bytes() + work_bytes(); }
-
-/// A solver's own copy of the values. Where a block is too large to be dense and does not go by arcs, its sparse LU is
+/// A solver's own copy of the values. Where a block is too large to be dense and is no band, its sparse LU is
 /// not foreseen: how much it fills in is known when it is there.
 std::size_t SlabStepper::matrix_bytes_to_come() const {
   std::size_t total = 0;
@@ -346,14 +402,17 @@ std::size_t SlabStepper::matrix_bytes_to_come() const {
 std::size_t SlabStepper::residual_bytes_to_come() const {
   return residual_.capacity() > 0 ? 0 : 2 * (unknowns() + 1) * sizeof(double);
 }
-std::size_t SlabStepper::bytes_to_come(bool residual) const {
-  return matrix_bytes_to_come() + (residual ? residual_bytes_to_come() : 0);
-}
-
-std::string SlabStepper::memory_report(bool residual) const {
-  return fmt::format("rows of the section {} B, stencils {} B, Jacobian and factors {} B, work space {} B",
-                     ring_->bytes(), equation_bytes(), matrix_bytes() + matrix_bytes_to_come(),
-                     work_bytes() + (residual ? residual_bytes_to_come() : 0));
+StepReport SlabStepper::report(bool residual) const {
+  const std::size_t residual_bytes = residual ? residual_bytes_to_come() : 0;
+  return {.starting_rows = starting_rows_,
+          .behind = back_,
+          .iterates = plan_.nonlinear_in_slab,
+          .solver = parities_[0].solver.name(),
+          .bytes = ring_->bytes() + equation_bytes() + matrix_bytes() + work_bytes(),
+          .bytes_to_come = matrix_bytes_to_come() + residual_bytes,
+          .memory = fmt::format("rows of the section {} B, stencils {} B, Jacobian and factors {} B, work space {} B",
+                                ring_->bytes(), equation_bytes(), matrix_bytes() + matrix_bytes_to_come(),
+                                work_bytes() + residual_bytes)};
 }
 
 }  // namespace delf

@@ -4,8 +4,7 @@
 #include <optional>
 
 #include "lattice/plan/solve_plan.hpp"
-#include "schemes/solvers/block_solver.hpp"
-#include "schemes/system/slab_equations.hpp"
+#include "schemes/stepping/slab_solver.hpp"
 #include "schemes/stepping/step_method.hpp"
 
 namespace delf {
@@ -15,30 +14,25 @@ namespace delf {
 ///
 ///  - where every family knows the constant part A of its Jacobian, A, factored once: y ← y − A⁻¹ E(y) from a polynomial
 ///    through the last scheme.seed_order slabs, as long as it contracts by four and more;
-///  - otherwise, and where that does not contract, the Jacobian: Newton's method from a seed of lower order. A factored
-///    Jacobian is kept while it contracts by more than ten.
+///  - otherwise, and where that does not contract, the Jacobian: Newton's method from the same polynomial, or from one
+///    through fewer slabs. The factors of large blocks are kept while they contract by more than ten.
+///
+/// An iteration ends when what it leaves, estimated from its last two corrections, is below the tolerance.
 class SlabStepper final : public StepMethod {
  public:
   SlabStepper(const LatticeSystem&, const SolvePlan&, const StepOptions&);
 
-  int starting_rows() const override { return starting_rows_; }
   void start(const std::vector<std::vector<double>>& rows) override;
+  void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) override;
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool looked_at) override;
 
-  std::int64_t newest() const override { return J_ - lag_; }
-  std::vector<int> behind() const override { return back_; }
+  StepState state() const override { return {newest(), plan_.nonlinear_in_slab ? iterations_ : 0}; }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   double residual() const override;
-  int iterations() const override { return iterations_; }
 
-  bool iterates() const override { return true; }
-  std::string solver_name() const override;
-  bool matrix_free() const override { return false; }
-  std::size_t bytes() const override;
-  std::size_t bytes_to_come(bool residual) const override;
-  std::string memory_report(bool residual) const override;
+  StepReport report(bool residual) const override;
 
  private:
   /// Unknowns whose pasts are as long: those in one row of which as many slabs are known.
@@ -51,30 +45,36 @@ class SlabStepper final : public StepMethod {
   };
   enum class Matrix { none, constant, jacobian };
   struct Parity {
-    SlabEquations equations;
+    Assembly equations;
     BlockSolver solver;
     std::vector<Unknowns> unknowns;
     bool has_constant = false;       ///< there is a constant part, and it has an inverse
     bool has_values = false;         ///< the solver has had the values of a matrix, and keeps them
     Matrix factored = Matrix::none;  ///< what the solver holds
+    int last_iterations = 0, fresh_iterations = 0;  ///< of the last slab, and of the last one with a new Jacobian
+    double curvature = 0;  ///< the last correction over the square of that before, with a fresh Jacobian each time
+    int unseen = 0;        ///< iterations since it was seen
   };
   struct Change {
     double change = 0;  ///< the largest, multipliers apart
-    double value = 0;   ///< largest |y| of the candidate and of the two slabs before
+    double value = 0;   ///< largest |y| of the new slab and of the two slabs before
     bool finite = true;
   };
+  std::int64_t newest() const { return J_ - lag_; }
   Parity& parity(std::int64_t J) { return parities_[static_cast<std::size_t>(J) % parities_.size()]; }
   const Parity& parity(std::int64_t J) const { return parities_[static_cast<std::size_t>(J) % parities_.size()]; }
-  std::vector<Unknowns> list_unknowns(const SlabEquations&) const;
+  std::vector<Unknowns> list_unknowns(const Assembly&) const;
   bool factor_constant(Parity&);
-  void seed(Parity&, std::int64_t J, int most_order);
-  void seed_without_past(const Unknowns&, std::int64_t J);
+  void predict(const Parity&, std::int64_t J, int most_points);
+  void predict_without_past(const Unknowns&, std::int64_t J);
   double largest_of(const double* row) const;
   Change take_change(const Parity&, std::int64_t J);
-  bool small(const Change&) const;
+  double wanted(const Change&) const;
+  bool arrived(const Change&, double before) const;
+  static bool is_rounding(const Change&, double before);
   bool iterate(Parity&, std::int64_t J);
   bool may_iterate(const Parity&);
-  void newton(Parity&, std::int64_t J, const std::vector<double>* momenta);
+  const char* newton(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
   void solve(std::int64_t J, const std::vector<double>* momenta);
   std::optional<int> crossing(const double* row) const;
   [[noreturn]] void fail(std::int64_t J, const char* why) const;
@@ -86,7 +86,7 @@ class SlabStepper final : public StepMethod {
   const SolvePlan& plan_;
   StepOptions options_;
   int components_, past_ = 0, future_ = 0, lag_ = 0, starting_rows_ = 0;
-  int seed_order_, newton_seed_order_;
+  int points_;  ///< slabs that a predictor goes through, if there are as many
   std::vector<int> back_;  ///< of each component: rows that its newest value lies behind the newest field
   std::vector<Parity> parities_;
   std::unique_ptr<SectionRing> ring_;
@@ -96,7 +96,7 @@ class SlabStepper final : public StepMethod {
   double largest_[2] = {0, 0};  ///< |y| of the newest two slabs, or of the starting rows
   int wait_ = 1,
       waiting_ = 0;  ///< steps by Newton's method before the constant part is tried again; those that are left
-  std::vector<double> E_, known_E_, change_, jacobian_, seed_;
+  std::vector<double> E_, known_E_, change_, jacobian_, predicted_;
   mutable std::vector<double> residual_, absolute_;
 };
 

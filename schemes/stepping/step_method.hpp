@@ -2,14 +2,13 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "jets/fibre.hpp"
 #include "lattice/error.hpp"
 #include "schemes/system/lattice_system.hpp"
-#include "schemes/stepping/rows/row_layout.hpp"
+#include "schemes/solvers/row_layout.hpp"
 
 namespace delf {
 
@@ -28,13 +27,29 @@ inline bool overflowed(double largest_value) { return !(largest_value <= largest
 /// Of a whole row: whether √Σy² did.
 inline bool squares_overflowed(double sum_of_squares) { return !(sum_of_squares <= largest_finite * largest_finite); }
 
-/// How a system is stepped: by whole rows (RowStepper) or slab by slab (SlabStepper). What the functions do stands at
-/// Stepper, which chooses one.
+/// Where a stepper stands.
+struct StepState {
+  std::int64_t newest = -1;  ///< row of the fields
+  int iterations = 0;        ///< of the last step: evaluations of the nonlinear part; 0 if it was solved at once
+};
+
+/// What a stepper is like.
+struct StepReport {
+  int starting_rows = 2;
+  std::vector<int> behind = {};       ///< of each component, rows before the newest that its newest is; none: 0
+  bool iterates = true, matrix_free = false;
+  std::string solver = {};            ///< in words
+  const RowLayout* layout = nullptr;  ///< of rows by lanes; null when stepped slab by slab
+  std::size_t bytes = 0, bytes_to_come = 0;  ///< allocated now; on top while it steps, and by residual() if asked for
+  std::string memory = {};            ///< both, in parts
+};
+
+/// How a system is stepped: by whole rows (RowStepper), by sub-steps (CompositionStepper) or slab by slab (SlabStepper).
+/// What the functions do stands at Stepper, which chooses one.
 class StepMethod {
  public:
   virtual ~StepMethod() = default;
 
-  virtual int starting_rows() const = 0;
   virtual void start(const std::vector<std::vector<double>>& rows) = 0;
   virtual void start_centred(const std::vector<double>&, const std::vector<double>&) {
     throw BadInput("initial.start",
@@ -44,28 +59,13 @@ class StepMethod {
     throw BadInput("initial.start", "initial.start = legendre: only for elements; use exact or centred");
   }
   virtual void step(bool looked_at) = 0;
-  virtual void steps(int count) {
-    for (; count > 0; --count) step(false);
-  }
-  virtual int steps_at_once() const { return 1; }
 
-  virtual std::int64_t newest() const = 0;
-  virtual std::vector<int> behind() const { return {}; }  ///< none: every component is known
+  virtual StepState state() const = 0;
   virtual std::vector<double> row(int back) const = 0;
   virtual Window window(int rows) const = 0;
   virtual double residual() const = 0;
-  virtual int iterations() const = 0;
-
-  virtual const RowLayout* layout() const { return nullptr; }
-  virtual const double* row_data(int, int) const { return nullptr; }
-  virtual double newest_pair(const double** /*rows*/) const { return std::numeric_limits<double>::infinity(); }
-
-  virtual bool iterates() const = 0;
-  virtual std::string solver_name() const = 0;
-  virtual bool matrix_free() const = 0;
-  virtual std::size_t bytes() const = 0;
-  virtual std::size_t bytes_to_come(bool residual) const = 0;
-  virtual std::string memory_report(bool residual) const = 0;
+  virtual void newest_pair(const double** /*rows*/) const {}
+  virtual StepReport report(bool residual) const = 0;
 };
 
 }  // namespace delf

@@ -25,6 +25,7 @@ std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan&
 
 Stepper::Stepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
     : method_(choose(system, plan, options)),
+      report_(method_->report(false)),
       components_(static_cast<std::size_t>(system.components())),
       row_size_(static_cast<std::size_t>(system.lattice().sites() * system.components())) {}
 

@@ -18,7 +18,7 @@ class Stepper {
   /// Throws BadInput for a component that cannot be stepped.
   Stepper(const LatticeSystem&, const SolvePlan&, const StepOptions&);
 
-  int starting_rows() const { return method_->starting_rows(); }
+  int starting_rows() const { return report_.starting_rows; }
   /// Rows 0 … starting_rows()−1, each row[i·C + c] of all C components; what is not known yet (multipliers) is not
   /// read.
   void start(const std::vector<std::vector<double>>& rows);
@@ -37,18 +37,15 @@ class Stepper {
     method_->step(looked_at);
   }
 
-  /// The same as so many step(false), with the same bits. Explicit steps through rows that outgrow the cache are taken
-  /// steps_at_once() together, and then cost what they do in the cache. If one of them throws, newest() is the row before.
+  /// The same as so many step(false). If one of them throws, newest() is the row before.
   void steps(int count) {
-    require_start();
-    method_->steps(count);
+    for (; count > 0; --count) step(false);
   }
-  int steps_at_once() const { return method_->steps_at_once(); }
 
-  std::int64_t newest() const { return method_->newest(); }
+  std::int64_t newest() const { return method_->state().newest; }
   /// Of each component, so many rows before the newest row of fields is its newest that is known.
   std::vector<int> behind() const {
-    std::vector<int> rows = method_->behind();
+    std::vector<int> rows = report_.behind;
     rows.resize(components_, 0);
     return rows;
   }
@@ -61,25 +58,20 @@ class Stepper {
   /// of them: their slopes are then kept, a row more for each field, which bytes_to_come() does not foresee.
   double residual() const { return method_->residual(); }
   /// Of the last step: evaluations of the nonlinear part; 0 if it was solved at once.
-  int iterations() const { return method_->iterations(); }
+  int iterations() const { return method_->state().iterations; }
 
-  /// Rows in the lanes' layout with halos; null when stepped slab by slab.
-  const RowLayout* layout() const { return method_->layout(); }
-  const double* row_data(int back, int component) const { return method_->row_data(back, component); }
-  /// Of each component the row before the newest, then of each the newest, and of each the increment from one to the
-  /// other, all with the pack after the end. No |y| of all rows since the start is above what is returned.
-  double newest_pair(const double** rows) const { return method_->newest_pair(rows); }
+  /// Of rows by lanes with halos; null when stepped slab by slab.
+  const RowLayout* layout() const { return report_.layout; }
+  /// Where rows are by lanes, of each component the row before the newest, then of each the newest, and of each the
+  /// increment from one to the other, all with the pack after the end.
+  void newest_pair(const double** rows) const { method_->newest_pair(rows); }
 
-  bool iterates() const { return method_->iterates(); }  ///< a step is not one solve
-  std::string solver_name() const { return method_->solver_name(); }
-  bool matrix_free() const { return method_->matrix_free(); }  ///< one number for all sites: no matrix is allocated
-  /// Allocated now: rows, matrices, work space.
-  std::size_t bytes() const { return method_->bytes(); }
-  /// What comes on top while it steps, and by residual() if it is asked for. What depends on the data is not foreseen:
-  /// see Simulation::bytes_of_run.
-  std::size_t bytes_to_come(bool residual) const { return method_->bytes_to_come(residual); }
-  /// Both, in parts.
-  std::string memory_report(bool residual) const { return method_->memory_report(residual); }
+  bool iterates() const { return report_.iterates; }          ///< a step is not one solve
+  bool matrix_free() const { return report_.matrix_free; }    ///< one number for all sites: no matrix is allocated
+  /// What it is like now: its solver, its memory, and what comes on top by residual() if that is asked for. What depends on
+  /// the data is not foreseen: see Simulation::bytes_of_run.
+  StepReport report(bool residual) const { return method_->report(residual); }
+  std::size_t bytes() const { return report(false).bytes; }
 
  private:
   void require_start() const {
@@ -87,6 +79,7 @@ class Stepper {
   }
 
   std::unique_ptr<StepMethod> method_;
+  StepReport report_;  ///< what does not change
   std::size_t components_, row_size_;
   bool started_ = false;
 };

@@ -5,8 +5,17 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
+#include "schemes/system/assembly.hpp"
 
 namespace delf {
+
+namespace {
+
+bool is_value_of_field(const Component& c) {
+  return c.role == Role::field || c.role == Role::inner || c.role == Role::trace;
+}
+
+}  // namespace
 
 void generator(const LatticeSystem& system, const StencilFamily& family, const LinearSymmetry& symmetry,
                std::span<const double> y, std::vector<double>& xi) {
@@ -14,17 +23,23 @@ void generator(const LatticeSystem& system, const StencilFamily& family, const L
   const std::size_t d = symmetry.shift.size();
   xi.assign(values.size(), 0.0);
   for (std::size_t n = 0; n < values.size(); ++n) {
-    if (system.component(values[n].component).role == Role::multiplier) continue;
-    const std::size_t a = static_cast<std::size_t>(values[n].component) % d;
+    const Component& here = system.component(values[n].component);
+    const auto a = static_cast<std::size_t>(here.field);
+    if (!is_value_of_field(here) || a >= d) continue;
     // ξ_a = Σ_b A_ab y_b + b_a
     xi[n] = symmetry.shift[a];
     for (std::size_t b = 0; b < d; ++b) {
       if (symmetry.matrix[a * d + b] == 0) continue;
-      const VertexValue wanted{values[n].vertex, values[n].component + static_cast<int>(b) - static_cast<int>(a)};
-      const auto found = std::ranges::find(values, wanted);
+      // the same node of field b
+      const auto found = std::ranges::find_if(values, [&](const VertexValue& value) {
+        const Component& there = system.component(value.component);
+        return value.vertex == values[n].vertex && there.role == here.role && there.at.time == here.at.time &&
+               there.at.space == here.at.space &&
+               there.field == static_cast<int>(b);
+      });
       if (found == values.end())
-        throw BadInput("verify.generator", "a stencil does not read " + system.component(wanted.component).name +
-                                               " where the generator needs it; leave it out");
+        throw BadInput("verify.generator", "a stencil does not read field " + std::to_string(b + 1) + " where " +
+                                               here.name + " is and the generator needs it; leave it out");
       xi[n] += symmetry.matrix[a * d + b] * y[static_cast<std::size_t>(found - values.begin())];
     }
   }
@@ -32,28 +47,19 @@ void generator(const LatticeSystem& system, const StencilFamily& family, const L
 
 double noether_charge(const LatticeSystem& system, const Window& window, std::int64_t cut,
                       const LinearSymmetry& symmetry, double* absolute) {
-  const Lattice& lattice = system.lattice();
-  double sum = 0;
-  if (absolute) *absolute = 0;
-  std::vector<double> y, r, xi;
-  for (const auto& family : system.families()) {
-    const auto& vertices = family->pattern().vertices;
-    const auto [low, high] = std::ranges::minmax(vertices, {}, &Site::time);
-    for (std::int64_t row = cut - high.time; row + low.time < cut; ++row)
-      for (int i = 0; i < lattice.sites(); ++i) {
-        if (!system.has_stencil(*family, row, i)) continue;
-        const Cell cell = system.gather(*family, window, row, i, system.time_step(), y);
-        r.resize(y.size());
-        family->residual(cell, y, r);
-        generator(system, *family, symmetry, y, xi);
-        for (int n = 0; n < family->size(); ++n) {
-          if (row + family->site(n).time < cut) continue;
-          const double term = r[static_cast<std::size_t>(n)] * xi[static_cast<std::size_t>(n)];
-          sum += term;
-          if (absolute) *absolute += std::abs(term);
+  const Assembly stencils(system, Assembly::across(system, static_cast<int>(cut & 1), window.turn));
+  double sum = 0, size = 0;
+  std::vector<double> xi;
+  stencils.each_residual(
+      SectionRing(window, cut - system.height(), cut + system.height()), cut, [&](const Assembly::Local& at) {
+        generator(system, at.family, symmetry, at.y, xi);
+        for (int n = 0; n < at.family.size(); ++n) {
+          if (at.anchor.site.time + at.family.site(n).time < 0) continue;
+          const double term = at.derivatives[static_cast<std::size_t>(n)] * xi[static_cast<std::size_t>(n)];
+          sum += term, size += std::abs(term);
         }
-      }
-  }
+      });
+  if (absolute) *absolute = size;
   return sum;
 }
 

@@ -6,55 +6,34 @@
 #include <map>
 #include <tuple>
 
-#include "schemes/families/row_kernel.hpp"
+#include "lattice/error.hpp"
 
 namespace delf {
 namespace {
 
-/// The linear part of the equation at one site, with cancelled coefficients dropped: A_{m,s,b}, r(0), and the matrix.
+/// The constant part of the equation at one site, with cancelled coefficients dropped: A_{m,s,b} and r(0).
 struct LinearEquation {
   std::map<std::tuple<int, int, int>, double> A;  ///< (row offset, site offset, component)
-  std::map<std::tuple<int, int, int>, double> matrix;
   double constant = 0;
 };
 
-/// ∂r/∂y at y = 0, or where the density has a value if it has none there.
-std::vector<double> jacobian_at_rest(const StencilFamily& family, const Cell& cell) {
-  const auto size = static_cast<std::size_t>(family.size());
-  std::vector<double> y(size, 0.0), J(size * size);
-  family.jacobian(cell, y, J);
-  if (std::ranges::all_of(J, [](double x) { return std::isfinite(x); })) return J;
-  for (std::size_t i = 0; i < size; ++i) y[i] = 1 + 0.25 * family.values()[i].component;
-  family.jacobian(cell, y, J);
-  return J;
-}
-
-LinearEquation linear_equation(const LatticeSystem& system, bool whole_jacobian, Site site, int a) {
+LinearEquation linear_equation(const LatticeSystem& system, Site site, int a) {
   LinearEquation result;
   std::map<std::tuple<int, int, int>, double> scale;
   for (const auto& touch : system.touching(site, a)) {
-    const RowKernel& kernel = *touch.family->row_kernel();
     const int size = touch.family->size();
-    std::vector<double> J(static_cast<std::size_t>(size * size)), r0(static_cast<std::size_t>(size));
-    const Cell cell{system.time_step(), system.lattice().space_step(), 0, 0};
-    kernel.linear_part(cell, J, r0);
-    result.constant += r0[static_cast<std::size_t>(touch.index)];
-    // The matrix is that of the linear part; but where the unknown row enters linearly one solve must do, so that it
-    // has to be the whole Jacobian, outputs included, and where there is no linear part it is all there is.
-    std::vector<double> reference = J;
-    if (kernel.nonlinearity() == Nonlinearity::all || whole_jacobian)
-      reference = jacobian_at_rest(*touch.family, cell);
+    const auto part = touch.family->constant_part({system.time_step(), system.lattice().space_step(), 0, 0});
+    if (!part) throw NoConvergence("the constant part of the equations is not finite");
+    result.constant += part->r0[static_cast<std::size_t>(touch.index)];
     for (int m = 0; m < size; ++m) {
       const Site offset = touch.anchor + touch.family->site(m);
       const std::tuple key{offset.time, offset.space, touch.family->values()[static_cast<std::size_t>(m)].component};
-      const auto at = static_cast<std::size_t>(touch.index * size + m);
-      result.A[key] += J[at];
-      result.matrix[key] += reference[at];
-      scale[key] += std::abs(reference[at]) + std::abs(J[at]);
+      const double entry = part->J[static_cast<std::size_t>(touch.index * size + m)];
+      result.A[key] += entry;
+      scale[key] += std::abs(entry);
     }
   }
-  for (auto* map : {&result.A, &result.matrix})
-    std::erase_if(*map, [&](const auto& e) { return std::abs(e.second) <= 1e-13 * scale[e.first]; });
+  std::erase_if(result.A, [&](const auto& e) { return std::abs(e.second) <= 1e-13 * scale[e.first]; });
   return result;
 }
 
@@ -118,7 +97,8 @@ void add_linear_terms(const std::map<std::tuple<int, int, int>, std::pair<double
 void add_output_terms(const LatticeSystem& system, int site, bool everywhere, int a, EquationTerms& equation) {
   for (std::size_t f = 0; f < system.families().size(); ++f) {
     const StencilFamily& family = *system.families()[f];
-    const RowKernel& kernel = *family.row_kernel();
+    const SourceTerms& sources = *family.sources();
+    const double hk = system.time_step() * system.lattice().space_step();
     for (int i = 0; i < family.size(); ++i) {
       if (family.values()[static_cast<std::size_t>(i)].component != a) continue;
       const Site anchor = Site{} - family.site(i);
@@ -127,8 +107,8 @@ void add_output_terms(const LatticeSystem& system, int site, bool everywhere, in
         return x >= 0 && x < system.lattice().sites();
       });
       if (!inside) continue;
-      for (int c = 0; c < kernel.outputs(); ++c)
-        if (const double w = kernel.weight(c, i); w != 0)
+      for (int c = 0; c < sources.outputs(); ++c)
+        if (const double w = hk * sources.weight(c, i); w != 0)
           equation.terms.push_back({Source::output, 1 - equation.shift + anchor.time, 0, static_cast<int>(f), c,
                                     anchor.space, w, 0});
     }
@@ -137,23 +117,12 @@ void add_output_terms(const LatticeSystem& system, int site, bool everywhere, in
 
 }  // namespace
 
-bool solved_at_once(const LatticeSystem& system, const SolvePlan& plan) {
-  return !plan.nonlinear_in_slab && std::ranges::none_of(system.families(), [](const auto& family) {
-    const int top = std::ranges::max(family->pattern().vertices, {}, &Site::time).time;
-    const RowKernel& kernel = *family->row_kernel();
-    return family->is_placed() && kernel.nonlinearity() != Nonlinearity::none && kernel.outputs_read_until() == top;
-  });
-}
-
 bool goes_by_rows(const LatticeSystem& system, const SolvePlan& plan) {
   const int d = system.components(), last = system.lattice().sites() - 1;
   // Between walls the number of sites is odd, and arcs of an even number of sites do not cover them.
   if (system.placement() == Placement::brick_wall && !system.lattice().is_circle()) return false;
-  for (const auto& family : system.families()) {
-    if (!family->row_kernel() || family->size() != family->pattern().size() * d) return false;
-    // A density that is nonlinear in its derivatives has no linear part that could be shared.
-    if (family->row_kernel()->nonlinearity() == Nonlinearity::all && system.families().size() > 1) return false;
-  }
+  for (const auto& family : system.families())
+    if (!family->sources() || family->size() != family->pattern().size() * d) return false;
   bool one_row = plan.table.regular;
   for (int i : {0, last / 2, last})
     for (int a = 0; a < d; ++a)
@@ -167,20 +136,17 @@ AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) 
   const int d = system.components(), N = lattice.sites();
   const bool bricks = system.placement() == Placement::brick_wall;
   AssembledEquations result;
-  const bool at_once = solved_at_once(system, plan);
-  for (const auto& family : system.families())
-    if (family->row_kernel()->nonlinearity() == Nonlinearity::all) result.correction_form = true;
 
   const auto equation_at = [&](int site, int a, bool everywhere, std::vector<UnknownEntry>& unknowns) {
     EquationTerms equation;
     equation.shift = plan.shift(site, a);
-    const LinearEquation even = linear_equation(system, at_once, {site % 2, site}, a);
-    const LinearEquation odd = bricks ? linear_equation(system, at_once, {(site + 1) % 2, site}, a) : even;
+    const LinearEquation even = linear_equation(system, {site % 2, site}, a);
+    const LinearEquation odd = bricks ? linear_equation(system, {(site + 1) % 2, site}, a) : even;
     add_linear_terms(mean_and_alternating(even.A, odd.A), a, equation);
     equation.constant = (even.constant + odd.constant) / 2;
     equation.constant_alternating = (even.constant - odd.constant) / 2;
     add_output_terms(system, site, everywhere, a, equation);
-    for (const auto& [key, value] : mean_and_alternating(even.matrix, odd.matrix)) {
+    for (const auto& [key, value] : mean_and_alternating(even.A, odd.A)) {
       const auto& [m, s, b] = key;
       if (m == equation.shift) unknowns.push_back({s, b, value.first, value.second});
     }

@@ -52,15 +52,10 @@ struct AssembledEquations {
   std::vector<EquationTerms> bulk;                  ///< for each component
   std::vector<std::vector<UnknownEntry>> unknowns;  ///< of the bulk, for each component
   std::vector<SiteEquation> exceptional;
-  bool correction_form = false;  ///< no linear part: `output` is the whole residual, and w is corrected by A⁻¹E
 };
 
-/// The unknown row enters linearly, with coefficients that the matrix holds: one solve is a step. Coefficients that
-/// depend on x and t are not held, and are iterated on.
-bool solved_at_once(const LatticeSystem&, const SolvePlan&);
-
 /// Whole rows can be stepped: every unknown of a slab lies in its row, and every family reads d fields at each of its
-/// vertices and has a kernel for rows. What cannot is stepped slab by slab.
+/// vertices and is a constant part and source terms. What cannot is stepped slab by slab.
 bool goes_by_rows(const LatticeSystem&, const SolvePlan&);
 
 AssembledEquations assemble(const LatticeSystem&, const SolvePlan&);

@@ -6,12 +6,13 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "lattice/error.hpp"
 #include "lattice/stencil.hpp"
-#include "schemes/families/row_kernel.hpp"
+#include "schemes/system/assembly.hpp"
 
 namespace delf {
 namespace {
@@ -23,9 +24,26 @@ Cell cell_at(const Lattice& lattice, std::int64_t row, int i, double time_step) 
 
 }  // namespace
 
+const char* to_string(Role role) {
+  switch (role) {
+    case Role::field:
+      return "field";
+    case Role::inner:
+      return "inner";
+    case Role::multiplier:
+      return "multiplier";
+    case Role::trace:
+      return "trace";
+    case Role::slaved:
+      return "slaved";
+  }
+  return "";
+}
+
 std::vector<Component> fields(int d) {
   std::vector<Component> result;
-  for (int a = 0; a < d; ++a) result.push_back({d == 1 ? "phi" : "phi" + std::to_string(a + 1)});
+  for (int a = 0; a < d; ++a)
+    result.push_back({d == 1 ? "phi" : "phi" + std::to_string(a + 1), Role::field, {}, false, a});
   return result;
 }
 
@@ -34,7 +52,7 @@ double Window::operator()(std::int64_t row, int i, int a) const {
   if (!lattice->is_circle()) return values[static_cast<std::size_t>(i * components + a)];
   const int home = lattice->wrapped(i);
   const double value = values[static_cast<std::size_t>(home * components + a)];
-  return a < turning ? value + (i - home) / lattice->sites() * turn : value;
+  return value + (i - home) / lattice->sites() * (turns.empty() ? turn : turns[static_cast<std::size_t>(a)]);
 }
 
 LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families,
@@ -56,6 +74,9 @@ LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr
                          : "lattice.stencil: the interval is shorter than the stencil; raise lattice.sites");
   }
   if (names_.empty()) names_ = delf::fields(read);
+  int field = 0;
+  for (Component& component : names_)
+    if (component.role == Role::field) component.field = field++;
   if (read > this->components())
     throw BadInput("lattice.stencil", "lattice.stencil: a stencil reads component " + std::to_string(read - 1) +
                                           " of " + std::to_string(this->components()) + "; name every component");
@@ -70,12 +91,25 @@ int LatticeSystem::fields() const {
   return static_cast<int>(std::ranges::count(names_, Role::field, &Component::role));
 }
 
+int LatticeSystem::field_component(int a) const {
+  const auto at = std::ranges::find_if(names_, [a](const Component& c) { return c.role == Role::field && c.field == a; });
+  if (at == names_.end()) throw std::logic_error("the system has no field " + std::to_string(a));
+  return static_cast<int>(at - names_.begin());
+}
+
+bool LatticeSystem::moves() const { return std::ranges::any_of(names_, &Component::position); }
+
+double LatticeSystem::turn_of(int component, double turn) const {
+  const Role role = this->component(component).role;
+  return role == Role::multiplier || role == Role::slaved ? 0.0 : turn;
+}
+
 std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice, Site site, int component) const {
   std::vector<Touch> result;
   for (std::size_t f = 0; f < families_.size(); ++f) {
     const StencilFamily& family = *families_[f];
     for (int i = 0; i < family.size(); ++i) {
-      if (family.values()[static_cast<std::size_t>(i)].component != component) continue;
+      if (family.values()[static_cast<std::size_t>(i)].component != component || !family.is_varied(i)) continue;
       const Site vertex = family.site(i), offset{-vertex.time, -vertex.space}, anchor = site + offset;
       if (delf::has_stencil(lattice, family.pattern(), anchor))
         result.push_back({&family, offset, i, static_cast<int>(f)});
@@ -117,7 +151,7 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
   std::map<std::tuple<Site, int>, std::array<double, 3>> field;
   for (const Touch& touch : touching(lattice, site, component)) {
     const int size = touch.family->size();
-    std::vector<double> y(static_cast<std::size_t>(size)), J(y.size() * y.size()), r0(y.size());
+    std::vector<double> y(static_cast<std::size_t>(size)), J(y.size() * y.size());
     // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
     const Cell cell = cell_at(lattice, site.time + touch.anchor.time, site.space + touch.anchor.space, time_step_);
     const double widened = 1 / std::min(1.0, std::max(cell.time_step, cell.space_step));
@@ -129,10 +163,8 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
                         touch.family->values()[static_cast<std::size_t>(m)].component};
     };
     const std::size_t from = static_cast<std::size_t>(touch.index * size);
-    if (const RowKernel* kernel = touch.family->row_kernel()) {
-      kernel->linear_part(cell, J, r0);
-      for (int m = 0; m < size; ++m) samples[key(m)].constant += J[from + static_cast<std::size_t>(m)];
-    }
+    if (const auto part = touch.family->constant_part(cell))
+      for (int m = 0; m < size; ++m) samples[key(m)].constant += part->J[from + static_cast<std::size_t>(m)];
     for (int s = 0; s < 3; ++s) {
       for (int m = 0; m < size; ++m) {
         auto [where, fresh] = field.try_emplace(key(m));
@@ -184,7 +216,7 @@ SystemPattern LatticeSystem::pattern() const {
 
 Window LatticeSystem::window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const {
   Window window{&lattice_, components(), turn, first_row, std::move(rows)};
-  for (int c = components() - 1; c >= 0 && component(c).role == Role::multiplier; --c) window.turning = c;
+  for (int c = 0; c < components(); ++c) window.turns.push_back(turn_of(c, turn));
   return window;
 }
 
@@ -192,77 +224,41 @@ bool LatticeSystem::has_stencil(const StencilFamily& family, std::int64_t row, i
   return delf::has_stencil(lattice_, family.pattern(), {static_cast<int>(row & 1), site});
 }
 
-Cell LatticeSystem::gather(const StencilFamily& family, const Window& window, std::int64_t row, int site,
-                           double time_step, std::vector<double>& y) const {
-  y.clear();
-  for (int i = 0; i < family.size(); ++i) {
-    const Site vertex = family.site(i);
-    y.push_back(window(row + vertex.time, site + vertex.space, family.values()[static_cast<std::size_t>(i)].component));
-  }
-  return cell_at(lattice_, row, site, time_step);
-}
-
 void LatticeSystem::equations(const Window& window, std::int64_t row, std::vector<Value>& values) const {
-  const int d = components(), N = lattice_.sites();
-  values.assign(static_cast<std::size_t>(N) * static_cast<std::size_t>(d), {});
-  std::vector<double> y, r;
-  for (const auto& family : families_) {
-    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
-    for (std::int64_t anchor = row - high.time; anchor <= row - low.time; ++anchor)
-      for (int i = 0; i < N; ++i) {
-        if (!has_stencil(*family, anchor, i)) continue;
-        const Cell cell = gather(*family, window, anchor, i, time_step_, y);
-        r.resize(y.size());
-        family->residual(cell, y, r);
-        for (int m = 0; m < family->size(); ++m) {
-          const Site vertex = family->site(m);
-          if (anchor + vertex.time != row) continue;
-          const int x = i + vertex.space, home = lattice_.is_circle() ? lattice_.wrapped(x) : x;
-          Value& value = values[static_cast<std::size_t>(
-              home * d + family->values()[static_cast<std::size_t>(m)].component)];
-          value.sum += r[static_cast<std::size_t>(m)];
-          value.absolute += std::abs(r[static_cast<std::size_t>(m)]);
-        }
-      }
-  }
+  std::vector<Node> all;
+  for (int i = 0; i < lattice_.sites(); ++i)
+    for (int c = 0; c < components(); ++c) all.push_back({{0, i}, c});
+  const Assembly assembly(*this, {.equations = std::move(all), .parity = static_cast<int>(row & 1), .past = height_,
+                                  .future = height_, .turn = window.turn});
+  std::vector<double> E, absolute;
+  assembly.residual(SectionRing(window, row - height_, row + height_), row, E, &absolute);
+  values.resize(E.size());
+  for (std::size_t n = 0; n < E.size(); ++n) values[n] = {E[n], absolute[n]};
 }
 
 LatticeSystem::Value LatticeSystem::equation(const Window& window, std::int64_t row, int site, int component,
                                              double time_step) const {
-  Value value;
-  std::vector<double> y, r;
-  for (const Touch& touch : touching({static_cast<int>(row & 1), site}, component)) {
-    const Cell cell =
-        gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space, time_step, y);
-    r.resize(y.size());
-    touch.family->residual(cell, y, r);
-    const double term = r[static_cast<std::size_t>(touch.index)];
-    value.sum += term;
-    value.absolute += std::abs(term);
-  }
-  return value;
+  Assembly assembly(*this, {.equations = {{{0, site}, component}}, .parity = static_cast<int>(row & 1),
+                            .past = height_, .future = height_, .turn = window.turn});
+  assembly.set_time_step(time_step);
+  std::vector<double> E, absolute;
+  assembly.residual(SectionRing(window, row - height_, row + height_), row, E, &absolute);
+  return {E[0], absolute[0]};
 }
 
 void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, int component, std::int64_t unknown_row,
                              double time_step, std::vector<Entry>& entries) const {
-  const int d = components();
-  std::vector<double> y, J;
-  for (const Touch& touch : touching({static_cast<int>(row & 1), site}, component)) {
-    const Cell cell =
-        gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space, time_step, y);
-    const int size = touch.family->size();
-    J.resize(y.size() * y.size());
-    touch.family->jacobian(cell, y, J);
-    for (int m = 0; m < size; ++m) {
-      const Site vertex = touch.family->site(m);
-      if (row + touch.anchor.time + vertex.time != unknown_row) continue;
-      const int i = site + touch.anchor.space + vertex.space, home = lattice_.is_circle() ? lattice_.wrapped(i) : i;
-      const double value = J[static_cast<std::size_t>(touch.index * size + m)];
-      if (value != 0)
-        entries.push_back(
-            {site * d + component, home * d + touch.family->values()[static_cast<std::size_t>(m)].component, value});
-    }
-  }
+  std::vector<Node> unknowns;
+  for (int i = 0; i < lattice_.sites(); ++i)
+    for (int c = 0; c < components(); ++c) unknowns.push_back({{static_cast<int>(unknown_row - row), i}, c});
+  Assembly assembly(*this, {.equations = {{{0, site}, component}}, .unknowns = std::move(unknowns),
+                            .parity = static_cast<int>(row & 1), .past = height_, .future = height_,
+                            .turn = window.turn});
+  assembly.set_time_step(time_step);
+  std::vector<double> values;
+  assembly.jacobian(SectionRing(window, row - height_, row + height_), row, values);
+  for (std::size_t n = 0; n < values.size(); ++n)
+    if (values[n] != 0) entries.push_back({site * components() + component, assembly.places()[n].unknown, values[n]});
 }
 
 }  // namespace delf

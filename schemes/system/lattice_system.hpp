@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -7,24 +8,32 @@
 #include <string>
 #include <vector>
 
-#include "jets/tables/element.hpp"
+#include "jets/tables/stencil_table.hpp"
 #include "lattice/plan/incidence.hpp"
 #include "lattice/lattice.hpp"
+#include "lattice/matrix_entry.hpp"
 #include "schemes/families/stencil_family.hpp"
 
 namespace delf {
 
 /// What a component of the section is.
 enum class Role {
-  field,      ///< at the vertices of the lattice: what rows record
-  inner,      ///< a field at a node inside the cells
-  multiplier  ///< of a constraint: its equation is the constraint
+  field,       ///< at the vertices of the lattice: what rows record
+  inner,       ///< a field at a node inside the cells
+  multiplier,  ///< of a constraint: its equation is the constraint
+  trace,       ///< of a field, between cells: q, q⁻ or q⁺ of a broken element
+  slaved       ///< at the vertices, determined by an equation of its own and not varied
 };
+inline constexpr std::array all_roles{Role::field, Role::inner, Role::multiplier, Role::trace, Role::slaved};
+/// "field", "inner", …: the name of its dataset too.
+const char* to_string(Role);
+
 struct Component {
   std::string name = "phi";
   Role role = Role::field;
-  NodePosition at = {};  ///< in the cell, as fractions of h and k
+  NodePosition at = {};   ///< in the cell, as fractions of h and k
   bool position = false;  ///< of the sites themselves, which move: it grows along every row
+  int field = 0;          ///< inner and trace: the field that it is a value of; a field is its own, counted from 0
 };
 /// d fields at the vertices: "phi", or "phi1", "phi2", …
 std::vector<Component> fields(int d);
@@ -34,10 +43,10 @@ std::vector<Component> fields(int d);
 struct Window {
   const Lattice* lattice;
   int components = 1;
-  double turn = 0;             ///< φ(x + L) − φ(x); multipliers are periodic
+  double turn = 0;             ///< φ(x + L) − φ(x)
   std::int64_t first_row = 0;  ///< index of rows[0]
   std::vector<std::vector<double>> rows;
-  int turning = 1 << 30;  ///< components from here on are periodic
+  std::vector<double> turns = {};  ///< of each component, where they differ: multipliers are periodic
 
   /// Rows beyond the window read as its nearest row: stencils may reach there without depending on it.
   double operator()(std::int64_t row, int i, int a) const;
@@ -73,8 +82,14 @@ class LatticeSystem {
   int components() const { return static_cast<int>(names_.size()); }
   const Component& component(int a) const { return names_[static_cast<std::size_t>(a)]; }
   const std::vector<Component>& all_components() const { return names_; }
-  /// Components that are fields at the vertices: they come first.
+  /// Components that are fields at the vertices.
   int fields() const;
+  /// Which component field a is at the vertices.
+  int field_component(int a) const;
+  /// The sites move: a component is their position.
+  bool moves() const;
+  /// y(x + L) − y(x) of a component, where the fields gain `turn`.
+  double turn_of(int component, double turn) const;
   /// The component keeps its value in this column: a fixed wall, where a node inside the cell lies on the wall or not.
   bool is_held(int column, int component) const {
     return lattice_.is_fixed(column) && names_[static_cast<std::size_t>(component)].at.space == 0;
@@ -92,7 +107,7 @@ class LatticeSystem {
     int index;
     int family_index;
   };
-  /// The stencils of `lattice` that read the component at `site`, whose row matters by its parity.
+  /// The stencils of `lattice` that read and vary the component at `site`, whose row matters by its parity.
   std::vector<Touch> touching(const Lattice& lattice, Site site, int component) const;
   std::vector<Touch> touching(Site site, int component) const { return touching(lattice_, site, component); }
 
@@ -104,28 +119,21 @@ class LatticeSystem {
   /// What the plan is made of.
   SystemPattern pattern() const;
 
-  /// Rows of all components, to be looked at: `turn` is φ(x + L) − φ(x), and multipliers are periodic.
+  /// Rows of all components, to be looked at: `turn` is φ(x + L) − φ(x).
   Window window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const;
 
   /// Whether a family has a stencil at (row, site), whose row matters by its parity.
   bool has_stencil(const StencilFamily&, std::int64_t row, int site) const;
-  /// The stencil of a family anchored at (row, site): its cell and, into y, the values of the window on it.
-  Cell gather(const StencilFamily&, const Window&, std::int64_t row, int site, double time_step,
-              std::vector<double>& y) const;
 
   struct Value {
     double sum = 0, absolute = 0;  ///< Σ rˡ and Σ |rˡ|
   };
-  /// E of every site and component of a row, [i·C + c], whether it is an equation there or not: each stencil that
-  /// touches the row is evaluated once for every row of it.
+  /// E of every site and component of a row, [i·C + c], whether it is an equation there or not (Assembly).
   void equations(const Window&, std::int64_t row, std::vector<Value>& values) const;
   /// E(site) for a window around it; h may differ from the system's own (continuation).
   Value equation(const Window&, std::int64_t row, int site, int component, double time_step) const;
 
-  struct Entry {
-    int row, column;
-    double value;
-  };
+  using Entry = MatrixEntry;
   /// ∂E(row, site, component)/∂y(unknown_row, ·) appended as entries with row and column site·d + component.
   void jacobian(const Window&, std::int64_t row, int site, int component, std::int64_t unknown_row, double time_step,
                 std::vector<Entry>& entries) const;

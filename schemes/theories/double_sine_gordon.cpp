@@ -2,16 +2,18 @@
 #include "schemes/theories/double_sine_gordon.hpp"
 
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/simulation.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 
 extern const TheoryEntry double_sine_gordon_theory;
-const TheoryEntry double_sine_gordon_theory{
-    "double-sine-gordon", "φ_tt − φ_xx + m² sin φ + λ sin 2φ = 0", {"theory.mass", "theory.lambda"},
-    [](const Problem& p) -> std::unique_ptr<FieldTheory> {
-      return std::make_unique<TheoryOf<DoubleSineGordon>>(DoubleSineGordon{p.mass, p.lambda});
-    }};
+const TheoryEntry double_sine_gordon_theory{"double-sine-gordon",
+                                            "φ_tt − φ_xx + m² sin φ + λ sin 2φ = 0",
+                                            {mass_parameter(), lambda_parameter()},
+                                            [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+                                              return std::make_unique<TheoryOf<DoubleSineGordon>>(DoubleSineGordon{
+                                                  p.get<double>("theory.mass"), p.get<double>("theory.lambda")});
+                                            },
+                                            true};
 
 }  // namespace delf

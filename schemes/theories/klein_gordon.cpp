@@ -2,16 +2,17 @@
 #include "schemes/theories/klein_gordon.hpp"
 
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/simulation.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 
 extern const TheoryEntry klein_gordon_theory;
 const TheoryEntry klein_gordon_theory{
-    "klein-gordon", "φ_tt − φ_xx + m²φ = 0", {"theory.mass"},
-    [](const Problem& p) -> std::unique_ptr<FieldTheory> {
-      return std::make_unique<TheoryOf<KleinGordon>>(KleinGordon{p.mass});
+    "klein-gordon",
+    "φ_tt − φ_xx + m²φ = 0",
+    {mass_parameter()},
+    [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+      return std::make_unique<TheoryOf<KleinGordon>>(KleinGordon{p.get<double>("theory.mass")});
     }};
 
 }  // namespace delf

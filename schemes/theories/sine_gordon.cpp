@@ -2,16 +2,18 @@
 #include "schemes/theories/sine_gordon.hpp"
 
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/simulation.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 
 extern const TheoryEntry sine_gordon_theory;
 const TheoryEntry sine_gordon_theory{
-    "sine-gordon", "φ_tt − φ_xx + m² sin φ = 0", {"theory.mass"},
-    [](const Problem& p) -> std::unique_ptr<FieldTheory> {
-      return std::make_unique<TheoryOf<SineGordon>>(SineGordon{p.mass});
-    }};
+    "sine-gordon",
+    "φ_tt − φ_xx + m² sin φ = 0",
+    {mass_parameter()},
+    [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+      return std::make_unique<TheoryOf<SineGordon>>(SineGordon{p.get<double>("theory.mass")});
+    },
+    true};
 
 }  // namespace delf

@@ -2,7 +2,6 @@
 #include "schemes/theories/sine_gordon_impurity.hpp"
 
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/simulation.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
@@ -11,10 +10,19 @@ extern const TheoryEntry sine_gordon_impurity_theory;
 const TheoryEntry sine_gordon_impurity_theory{
     "sine-gordon-impurity",
     "φ_tt − φ_xx + m²(1 + ε exp(−((x − x₀)/w)²)) sin φ = 0",
-    {"theory.mass", "theory.strength", "theory.width", "theory.position"},
-    [](const Problem& p) -> std::unique_ptr<FieldTheory> {
+    {mass_parameter(),
+     {.key = "theory.strength", .fallback = 1.0, .help = "strength of the impurity"},
+     {.key = "theory.width",
+      .fallback = 1.0,
+      .help = "width of the impurity",
+      .unit = "length",
+      .range = {.low = 0, .open = true}},
+     {.key = "theory.position", .fallback = 0.0, .help = "position of the impurity", .unit = "length"}},
+    [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<SineGordonImpurity>>(
-          SineGordonImpurity{p.mass, p.impurity_strength, p.impurity_width, p.impurity_position});
-    }};
+          SineGordonImpurity{p.get<double>("theory.mass"), p.get<double>("theory.strength"),
+                             p.get<double>("theory.width"), p.get<double>("theory.position")});
+    },
+    true};
 
 }  // namespace delf

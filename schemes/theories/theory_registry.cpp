@@ -1,26 +1,54 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/theories/theory_registry.hpp"
 
+#include "schemes/declared.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/unknown_name.hpp"
+
 namespace delf {
 
 extern const TheoryEntry wave_theory, klein_gordon_theory, sine_gordon_theory, phi4_theory, double_sine_gordon_theory,
     sine_gordon_impurity_theory, pendulum_theory, kepler_theory, coupled_sine_gordon_theory,
     complex_klein_gordon_theory, wave_map_theory;
 
-const std::vector<const TheoryEntry*>& theory_entries() {
-  static const std::vector<const TheoryEntry*> entries{
-      &wave_theory,
-      &klein_gordon_theory,
-      &sine_gordon_theory,
-      &phi4_theory,
-      &double_sine_gordon_theory,
-      &sine_gordon_impurity_theory,
-      &coupled_sine_gordon_theory,
-      &complex_klein_gordon_theory,
-      &wave_map_theory,
-      &pendulum_theory,
-      &kepler_theory};
-  return entries;
+namespace {
+
+std::vector<const TheoryEntry*>& entries() {
+  static std::vector<const TheoryEntry*> all{&wave_theory,
+                                             &klein_gordon_theory,
+                                             &sine_gordon_theory,
+                                             &phi4_theory,
+                                             &double_sine_gordon_theory,
+                                             &sine_gordon_impurity_theory,
+                                             &coupled_sine_gordon_theory,
+                                             &complex_klein_gordon_theory,
+                                             &wave_map_theory,
+                                             &pendulum_theory,
+                                             &kepler_theory};
+  return all;
+}
+
+}  // namespace
+
+Parameter mass_parameter() {
+  return {.key = "theory.mass",
+          .fallback = 1.0,
+          .help = "m, where a theory has one",
+          .unit = "1/length",
+          .range = {.low = 0}};
+}
+Parameter lambda_parameter() {
+  return {.key = "theory.lambda", .fallback = 1.0, .help = "the second coupling, where a theory has one"};
+}
+
+const std::vector<const TheoryEntry*>& theory_entries() { return entries(); }
+void register_theory(const TheoryEntry& entry) { entries().push_back(&entry); }
+
+const TheoryEntry& find_theory(const std::string& name) { return find_entry(theory_entries(), "theory.name", name); }
+
+std::unique_ptr<FieldTheory> make_theory(const TheoryEntry& entry, ParameterValues given) {
+  complete(given, entry.parameters);
+  return entry.make(given);
 }
 
 }  // namespace delf

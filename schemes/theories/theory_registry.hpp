@@ -2,22 +2,37 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "schemes/parameter.hpp"
 
 namespace delf {
 
 class FieldTheory;
-struct Problem;
 
-/// A theory that a scene can name: one constant of this type stands at the end of each file in schemes/theories/.
+/// A theory that a scene can name by theory.name: one constant of this type stands at the end of each file in
+/// schemes/theories/.
 struct TheoryEntry {
-  const char* name;
-  const char* formula;
-  std::vector<std::string> parameters;  ///< scene keys that it reads
-  std::unique_ptr<FieldTheory> (*make)(const Problem&);
+  std::string name;
+  std::string formula;
+  std::vector<Parameter> parameters;  ///< that it reads
+  /// From the values of all its parameters.
+  std::unique_ptr<FieldTheory> (*make)(const ParameterValues&);
+  bool angle = false;  ///< the field is an angle: values 2π apart are the same state
 };
 
-/// The list of all of them: a new theory adds one line there.
+/// m and λ, which several theories have.
+Parameter mass_parameter();
+Parameter lambda_parameter();
+
+/// All theories, the built-in ones first: a new theory adds one line there.
 const std::vector<const TheoryEntry*>& theory_entries();
+/// Adds a theory of a program's own, before the first scene is read; the entry must outlive all use.
+void register_theory(const TheoryEntry&);
+/// Throws BadInput, with the nearest name, if there is none of that name.
+const TheoryEntry& find_theory(const std::string& name);
+/// With the fallbacks of the parameters that are not given. Throws BadInput for values out of range.
+std::unique_ptr<FieldTheory> make_theory(const TheoryEntry&, ParameterValues given = {});
 
 }  // namespace delf

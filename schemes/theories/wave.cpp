@@ -2,15 +2,13 @@
 #include "schemes/theories/wave.hpp"
 
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/simulation.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 
 extern const TheoryEntry wave_theory;
 const TheoryEntry wave_theory{
-    "wave", "φ_tt − φ_xx = 0", {},
-    [](const Problem&) -> std::unique_ptr<FieldTheory> {
+    "wave", "φ_tt − φ_xx = 0", {}, [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<Wave>>(Wave{});
     }};
 

@@ -2,16 +2,16 @@
 #include "schemes/theories/wave_map.hpp"
 
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/simulation.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 
 extern const TheoryEntry wave_map_theory;
-const TheoryEntry wave_map_theory{
-    "wave-map", "u_tt − u_xx + (|u_t|² − |u_x|²)u = 0, |u| = 1", {},
-    [](const Problem&) -> std::unique_ptr<FieldTheory> {
-      return std::make_unique<TheoryOf<WaveMap>>(WaveMap{});
-    }};
+const TheoryEntry wave_map_theory{"wave-map",
+                                  "u_tt − u_xx + (|u_t|² − |u_x|²)u = 0, |u| = 1",
+                                  {},
+                                  [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
+                                    return std::make_unique<TheoryOf<WaveMap>>(WaveMap{});
+                                  }};
 
 }  // namespace delf

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "schemes/system/assembly.hpp"
 #include "schemes/verify/drawn_region.hpp"
 
 namespace delf {
@@ -26,8 +27,14 @@ EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan,
     }
 }
 
+/// The equation of a multiplier, or of what is slaved: it has a scale of its own.
+bool EquationCheck::is_constraint(int component) const {
+  const Role role = system_->component(component).role;
+  return role == Role::multiplier || role == Role::slaved;
+}
+
 EquationCheck::Sort EquationCheck::sort_of(int site, int component) const {
-  if (system_->component(component).role == Role::multiplier) return constraint;
+  if (is_constraint(component)) return constraint;
   const Lattice& lattice = system_->lattice();
   if (lattice.space() != Space::interval) return bulk;
   const bool end = (site == 0 && lattice.left() == Wall::natural) ||
@@ -37,16 +44,20 @@ EquationCheck::Sort EquationCheck::sort_of(int site, int component) const {
 
 /// Σ_a |∂E/∂y_a y_a|
 double EquationCheck::size_of(const Window& window, std::int64_t row, int site, int component) const {
+  const int reach = system_->height();
+  const Assembly assembly(*system_, {.equations = {{{0, site}, component}}, .parity = static_cast<int>(row & 1),
+                                     .past = reach, .future = reach, .turn = window.turn});
   double size = 0;
-  std::vector<double> y, J;
-  for (const auto& touch : system_->touching({static_cast<int>(row & 1), site}, component)) {
-    const Cell cell = system_->gather(*touch.family, window, row + touch.anchor.time, site + touch.anchor.space,
-                                      system_->time_step(), y);
-    J.resize(y.size() * y.size());
-    touch.family->jacobian(cell, y, J);
-    for (std::size_t m = 0; m < y.size(); ++m)
-      size += std::abs(J[static_cast<std::size_t>(touch.index) * y.size() + m] * y[m]);
-  }
+  assembly.each_jacobian(SectionRing(window, row - reach, row + reach), row, [&](const Assembly::Local& at) {
+    for (int i = 0; i < at.family.size(); ++i) {
+      const Site read = at.anchor.site + at.family.site(i);
+      const int home = system_->lattice().is_circle() ? system_->lattice().wrapped(read.space) : read.space;
+      if (read.time != 0 || home != site || at.family.values()[static_cast<std::size_t>(i)].component != component)
+        continue;
+      for (std::size_t m = 0; m < at.y.size(); ++m)
+        size += std::abs(at.derivatives[static_cast<std::size_t>(i) * at.y.size() + m] * at.y[m]);
+    }
+  });
   return size;
 }
 
@@ -80,7 +91,7 @@ void EquationCheck::at(const Window& window, std::int64_t row) {
   for (int c = 0; c < system_->components(); ++c) {
     const int largest = largest_site(c);
     if (largest < 0) continue;
-    double& of = scale[system_->component(c).role == Role::multiplier ? constraint : bulk];
+    double& of = scale[is_constraint(c) ? constraint : bulk];
     of = std::max(of, size_of(window, row, largest, c));
   }
   scale[natural_end] = scale[bulk];  // ends are measured by the scale of the bulk

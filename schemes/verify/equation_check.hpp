@@ -37,6 +37,7 @@ class EquationCheck {
     std::int64_t failures = 0, first_row = 0, last_row = 0;
     int first_site = 0, last_site = 0;
   };
+  bool is_constraint(int component) const;
   Sort sort_of(int site, int component) const;
   double size_of(const Window&, std::int64_t row, int site, int component) const;
   void find_sizes(const Window&, std::int64_t row);

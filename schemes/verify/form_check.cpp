@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "lattice/error.hpp"
+#include "schemes/system/assembly.hpp"
 
 namespace delf {
 namespace {
@@ -21,25 +22,21 @@ std::vector<RegionSystem::Pair> pairs_of(std::vector<RegionSystem::Values> varia
 
 std::vector<Balance> symplectic_form(const LatticeSystem& system, const Window& y, const std::vector<Window>& V,
                                      std::int64_t cut) {
+  const int reach = system.height();
+  const Assembly stencils(system, Assembly::across(system, static_cast<int>(cut & 1), y.turn));
+  std::vector<SectionRing> variations;
+  for (const Window& v : V) variations.emplace_back(v, cut - reach, cut + reach);
   std::vector<Balance> balances(V.size() / 2);
-  std::vector<double> values, J, v, w;
-  const int N = system.lattice().sites();
-  for (const auto& family : system.families()) {
-    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
-    for (std::int64_t row = cut - high.time; row + low.time < cut; ++row)
-      for (int i = 0; i < N; ++i) {
-        if (!system.has_stencil(*family, row, i)) continue;
-        const Cell cell = system.gather(*family, y, row, i, system.time_step(), values);
-        J.resize(values.size() * values.size());
-        family->jacobian(cell, values, J);
-        for (std::size_t p = 0; p < balances.size(); ++p) {
-          system.gather(*family, V[2 * p], row, i, system.time_step(), v);
-          system.gather(*family, V[2 * p + 1], row, i, system.time_step(), w);
-          for (int n = 0; n < family->size(); ++n)
-            if (row + family->site(n).time >= cut) add_form(balances[p], static_cast<std::size_t>(n), J, v, w);
-        }
-      }
-  }
+  std::vector<double> v, w;
+  stencils.each_jacobian(SectionRing(y, cut - reach, cut + reach), cut, [&](const Assembly::Local& at) {
+    for (std::size_t p = 0; p < balances.size(); ++p) {
+      Assembly::gather(at, variations[2 * p], cut, v);
+      Assembly::gather(at, variations[2 * p + 1], cut, w);
+      for (int n = 0; n < at.family.size(); ++n)
+        if (at.anchor.site.time + at.family.site(n).time >= 0)
+          add_form(balances[p], static_cast<std::size_t>(n), at.derivatives, v, w);
+    }
+  });
   return balances;
 }
 

@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "schemes/solvers/block_solver.hpp"
-#include "schemes/system/slab_equations.hpp"
+#include "schemes/stepping/slab_solver.hpp"
 #include "schemes/system/slab_extent.hpp"
 
 namespace delf {
@@ -29,11 +28,9 @@ class SolvedSlab {
       : system_(system),
         J_(solution.last_row() - extent.above),
         parity_(static_cast<int>(((J_ % plan.table.parities) + plan.table.parities) % plan.table.parities)),
-        equations_(system, plan, parity_, extent.past(), extent.above, solution.turn),
-        ring_(extent.past() + extent.above + 1, solution.rows.back().size()),
-        solver_(equations_.solver()) {
-    for (std::int64_t r = J_ - extent.past(); r <= J_ + extent.above; ++r)
-      std::ranges::copy(solution.rows[static_cast<std::size_t>(r - solution.first_row)], ring_.row(r));
+        equations_(system, Assembly::slab(plan, parity_, extent.past(), extent.above, solution.turn)),
+        ring_(solution, J_ - extent.past(), J_ + extent.above),
+        solver_(solver_of(equations_)) {
     for (int n = 0; n < size(); ++n) solution_.push_back(equations_.value(ring_, J_, n));
   }
 
@@ -69,7 +66,7 @@ class SolvedSlab {
     for (int n = 0; n < size(); ++n) equations_.value(ring_, J_, n) = y[static_cast<std::size_t>(n)];
     equations_.jacobian(ring_, J_, entries_);
     if (!solver_.factor(entries_)) return std::nullopt;
-    equations_.residual(ring_, J_, E_, nullptr);
+    equations_.residual(ring_, J_, E_);
     solver_.solve(E_, change_);
     for (std::size_t n = 0; n < y.size(); ++n) y[n] -= change_[n];
     return y;
@@ -79,7 +76,7 @@ class SolvedSlab {
   const LatticeSystem& system_;
   std::int64_t J_;
   int parity_;
-  SlabEquations equations_;
+  Assembly equations_;
   SectionRing ring_;
   BlockSolver solver_;
   std::vector<double> solution_, entries_, E_, change_;

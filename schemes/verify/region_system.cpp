@@ -32,33 +32,22 @@ RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int6
   solved_.assign(nodes(), false);
   held_.assign(nodes(), false);
   const auto C = static_cast<std::size_t>(components_);
-  const double h = system.time_step(), k = system.lattice().space_step();
+  Assembly::Parts parts{.equations = {}, .parity = static_cast<int>(origin & 1), .turn = turn,
+                        .stencils = std::vector<Assembly::Anchor>(),
+                        .place = [region = region_](Site site) { return static_cast<int>(region.place(site)); }};
   region_.visit_stencils([&](int f, Site anchor, std::span<const std::size_t> places) {
-    const StencilFamily& family = *system_.families()[static_cast<std::size_t>(f)];
-    const int home = system_.lattice().is_circle() ? system_.lattice().wrapped(anchor.space) : anchor.space;
-    Member member{&family,
-                  f,
-                  {anchor.time, home, 0},
-                  {h, k, static_cast<double>(origin_ + anchor.time) * h, system_.lattice().position(home)},
-                  reads_.size(),
-                  false};
-    for (const VertexValue& value : family.values()) {
+    const Lattice& lattice = system_.lattice();
+    parts.stencils->push_back({f, {anchor.time, lattice.is_circle() ? lattice.wrapped(anchor.space) : anchor.space}});
+    for (const VertexValue& value : system_.families()[static_cast<std::size_t>(f)]->values()) {
       const std::size_t place = places[static_cast<std::size_t>(value.vertex)];
       const std::size_t node = place * C + static_cast<std::size_t>(value.component);
-      reads_.push_back(node);
-      if (turn != 0) {
-        const int x = home + family.pattern().vertices[static_cast<std::size_t>(value.vertex)].space;
-        const int laps = (x - system_.lattice().wrapped(x)) / system_.lattice().sites();
-        gained_.push_back(system_.component(value.component).role == Role::multiplier ? 0.0 : laps * turn);
-      }
-      member.meets_boundary = member.meets_boundary || kind_[place] == boundary;
       held_[node] = system_.is_held(region_.sites()[place].space, value.component);
       solved_[node] = kind_[place] == inside && !held_[node];
     }
-    members_.push_back(member);
   });
   for (std::size_t n = 0; n < solved_.size(); ++n)
-    if (solved_[n]) equations_.push_back(n);
+    if (solved_[n]) equations_.push_back(n), parts.equations.push_back(node(n));
+  assembly_.emplace(system_, std::move(parts));
 }
 
 Node RegionSystem::node(std::size_t n) const {
@@ -75,53 +64,32 @@ RegionSystem::Values RegionSystem::restricted(const Window& window) const {
   return values;
 }
 
-void RegionSystem::gather(const Member& member, const Values& from, std::vector<double>& to) const {
-  to.clear();
-  for (const std::size_t node : reads(member)) to.push_back(from[node]);
-}
-
-void RegionSystem::gather_section(const Member& member, const Values& y, std::vector<double>& to) const {
-  gather(member, y, to);
-  for (std::size_t i = 0; i < to.size() && !gained_.empty(); ++i) to[i] += gained_[member.first + i];
+void RegionSystem::gather(const Assembly::Local& at, const Values& from, std::vector<double>& to) const {
+  Assembly::gather(at, row(from), origin_, to);
 }
 
 template <class Visit>
-void RegionSystem::each_jacobian(const Values& y, bool at_boundary, Visit visit) const {
-  std::vector<double> values, J;
-  for (const Member& member : members_) {
-    if (at_boundary && !member.meets_boundary) continue;
-    gather_section(member, y, values);
-    J.resize(values.size() * values.size());
-    member.family->jacobian(member.cell, values, J);
-    visit(member, reads(member), J);
-  }
+void RegionSystem::each_jacobian(const Values& y, bool at_boundary, const Visit& visit) const {
+  assembly_->each_jacobian(row(y), origin_, [&](const Assembly::Local& at) {
+    if (!at_boundary || std::ranges::any_of(at.places, [&](int node) { return this->at_boundary(node); }))
+      visit(at, at.places, at.derivatives);
+  });
 }
 
 std::vector<Balance> RegionSystem::residual(const Values& y) const {
-  std::vector<Balance> at(nodes());
-  std::vector<double> values, r;
-  for (const Member& member : members_) {
-    gather_section(member, y, values);
-    r.resize(values.size());
-    member.family->residual(member.cell, values, r);
-    const auto read = reads(member);
-    for (std::size_t i = 0; i < r.size(); ++i)
-      if (solved_[read[i]]) at[read[i]].add(r[i]);
-  }
+  std::vector<double> E, absolute;
+  assembly_->residual(row(y), origin_, E, &absolute);
   std::vector<Balance> result;
-  for (const std::size_t n : equations_) result.push_back(at[n]);
+  for (std::size_t n = 0; n < E.size(); ++n) result.push_back({E[n], absolute[n]});
   return result;
 }
 
 std::vector<Balance> RegionSystem::linearised(const Values& y, const Values& V) const {
-  std::vector<Balance> at(nodes());
-  each_jacobian(y, false, [&](const Member&, Reads read, const std::vector<double>& J) {
-    for (std::size_t i = 0; i < read.size(); ++i)
-      for (std::size_t m = 0; m < read.size() && solved_[read[i]]; ++m)
-        at[read[i]].add(J[i * read.size() + m] * V[read[m]]);
-  });
+  Assembly::Variation variation{row(V)};
+  std::vector<double> values;
+  assembly_->linearised(row(y), origin_, {&variation, 1}, values);
   std::vector<Balance> result;
-  for (const std::size_t n : equations_) result.push_back(at[n]);
+  for (std::size_t n = 0; n < equations_.size(); ++n) result.push_back({variation.E[n], variation.absolute[n]});
   return result;
 }
 
@@ -132,11 +100,11 @@ std::vector<RegionSystem::Values> RegionSystem::first_variations(const Values& y
   std::vector<int> row(nodes(), -1), column(nodes(), -1);
   for (std::size_t n = 0; n < equations_.size(); ++n) column[equations_[n]] = static_cast<int>(n);
   std::vector<std::size_t> varied;
-  each_jacobian(y, false, [&](const Member&, Reads read, const std::vector<double>& J) {
+  each_jacobian(y, false, [&](const Assembly::Local&, Reads read, std::span<const double> J) {
     for (std::size_t i = 0; i < read.size(); ++i)
-      for (std::size_t m = 0; m < read.size() && solved_[read[i]]; ++m) {
+      for (std::size_t m = 0; m < read.size() && is_solved(read[i]); ++m) {
         const double entry = J[i * read.size() + m];
-        if (entry == 0 || held_[read[m]]) continue;
+        if (entry == 0 || is_held(read[m])) continue;
         if (row[read[m]] < 0) row[read[m]] = static_cast<int>(varied.size()), varied.push_back(read[m]);
         entries.emplace_back(row[read[m]], column[read[i]], entry);
       }
@@ -166,10 +134,10 @@ std::vector<RegionSystem::Values> RegionSystem::first_variations(const Values& y
 
 std::optional<std::size_t> RegionSystem::coupling_node(const Values& y) const {
   std::vector<double> felt(nodes(), 0.0);
-  each_jacobian(y, true, [&](const Member&, Reads read, const std::vector<double>& J) {
+  each_jacobian(y, true, [&](const Assembly::Local&, Reads read, std::span<const double> J) {
     for (std::size_t i = 0; i < read.size(); ++i)
-      for (std::size_t m = 0; m < read.size() && solved_[read[i]]; ++m)
-        if (at_boundary(read[m]) && !held_[read[m]]) felt[read[m]] += std::abs(J[i * read.size() + m]);
+      for (std::size_t m = 0; m < read.size() && is_solved(read[i]); ++m)
+        if (at_boundary(read[m]) && !is_held(read[m])) felt[read[m]] += std::abs(J[i * read.size() + m]);
   });
   const auto most = std::ranges::max_element(felt);
   if (most == felt.end() || *most == 0) return std::nullopt;
@@ -179,17 +147,17 @@ std::optional<std::size_t> RegionSystem::coupling_node(const Values& y) const {
 std::vector<Balance> RegionSystem::form_formula(const Values& y, std::span<const Pair> pairs) const {
   std::vector<Balance> balances(pairs.size());
   std::vector<double> v, w;
-  each_jacobian(y, true, [&](const Member& member, Reads read, const std::vector<double>& J) {
+  each_jacobian(y, true, [&](const Assembly::Local& at, Reads read, std::span<const double> J) {
     const std::size_t n = read.size();
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-      gather(member, pairs[p].V, v);
-      gather(member, pairs[p].W, w);
+      gather(at, pairs[p].V, v);
+      gather(at, pairs[p].W, w);
       for (std::size_t i = 0; i < n; ++i) {
         if (variational_) {
           if (at_boundary(read[i])) add_form(balances[p], i, J, v, w);
           continue;
         }
-        for (std::size_t m = 0; m < n && solved_[read[i]]; ++m)
+        for (std::size_t m = 0; m < n && is_solved(read[i]); ++m)
           if (at_boundary(read[m])) balances[p].add(J[i * n + m] * (w[m] * v[i] - v[m] * w[i]));
       }
     }
@@ -199,7 +167,7 @@ std::vector<Balance> RegionSystem::form_formula(const Values& y, std::span<const
 
 double RegionSystem::form_error(const Values& y, const Pair& pair, double delta) const {
   double sum = 0;
-  each_jacobian(y, true, [&](const Member&, Reads read, const std::vector<double>& J) {
+  each_jacobian(y, true, [&](const Assembly::Local&, Reads read, std::span<const double> J) {
     const auto size = [&](std::size_t i) { return std::abs(pair.V[read[i]]) + std::abs(pair.W[read[i]]); };
     for (std::size_t i = 0; i < read.size(); ++i)
       for (std::size_t m = 0; m < read.size(); ++m)
@@ -211,15 +179,15 @@ double RegionSystem::form_error(const Values& y, const Pair& pair, double delta)
 RegionSystem::LocalDefect RegionSystem::local_identity(const Values& y, const Pair& pair) const {
   LocalDefect worst;
   std::vector<double> v, w;
-  each_jacobian(y, false, [&](const Member& member, Reads read, const std::vector<double>& J) {
-    if (!member.family->is_variational()) return;
-    gather(member, pair.V, v);
-    gather(member, pair.W, w);
+  each_jacobian(y, false, [&](const Assembly::Local& at, Reads read, std::span<const double> J) {
+    if (!at.family.is_variational()) return;
+    gather(at, pair.V, v);
+    gather(at, pair.W, w);
     const std::size_t n = read.size();
     Balance balance;
     for (std::size_t i = 0; i < n; ++i) add_form(balance, i, J, v, w);
     if (balance.relative() <= worst.balance.relative() && worst.balance.count > 0) return;
-    worst = {balance, member.family_index, member.anchor, 0, 0};
+    worst = {balance, at.anchor.family, at.anchor.site, 0, 0};
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t m = 0; m < i; ++m)
@@ -231,10 +199,10 @@ RegionSystem::LocalDefect RegionSystem::local_identity(const Values& y, const Pa
 
 std::optional<RegionSystem::OneWay> RegionSystem::least_mutual(const Values& y) const {
   std::map<std::pair<std::size_t, std::size_t>, double> entries;
-  each_jacobian(y, false, [&](const Member&, Reads read, const std::vector<double>& J) {
+  each_jacobian(y, false, [&](const Assembly::Local&, Reads read, std::span<const double> J) {
     for (std::size_t i = 0; i < read.size(); ++i)
       for (std::size_t m = 0; m < read.size(); ++m)
-        if (solved_[read[i]] && solved_[read[m]]) entries[{read[i], read[m]}] += J[i * read.size() + m];
+        if (is_solved(read[i]) && is_solved(read[m])) entries[{read[i], read[m]}] += J[i * read.size() + m];
   });
   std::optional<OneWay> worst;
   double most = 0, largest = 0;
@@ -252,9 +220,9 @@ std::optional<RegionSystem::OneWay> RegionSystem::least_mutual(const Values& y) 
 std::vector<double> RegionSystem::boundary_terms(const Values& y, const Pair& pair) const {
   std::vector<double> terms(region_.sites().size(), 0.0), v, w;
   const auto C = static_cast<std::size_t>(components_);
-  each_jacobian(y, true, [&](const Member& member, Reads read, const std::vector<double>& J) {
-    gather(member, pair.V, v);
-    gather(member, pair.W, w);
+  each_jacobian(y, true, [&](const Assembly::Local& at, Reads read, std::span<const double> J) {
+    gather(at, pair.V, v);
+    gather(at, pair.W, w);
     for (std::size_t i = 0; i < read.size(); ++i)
       if (at_boundary(read[i])) terms[read[i] / C] += multisymplectic_form(static_cast<int>(i), 1, J, v, w);
   });
@@ -264,17 +232,13 @@ std::vector<double> RegionSystem::boundary_terms(const Values& y, const Pair& pa
 
 Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry) const {
   Balance balance;
-  std::vector<double> values, r, xi;
-  for (const Member& member : members_) {
-    if (!member.meets_boundary) continue;
-    gather_section(member, y, values);
-    r.resize(values.size());
-    member.family->residual(member.cell, values, r);
-    generator(system_, *member.family, symmetry, values, xi);
-    const auto read = reads(member);
-    for (std::size_t i = 0; i < r.size(); ++i)
-      if (at_boundary(read[i])) balance.add(momentum_map(static_cast<int>(i), 1, r, xi));
-  }
+  std::vector<double> xi;
+  assembly_->each_residual(row(y), origin_, [&](const Assembly::Local& at) {
+    if (std::ranges::none_of(at.places, [&](int node) { return at_boundary(node); })) return;
+    generator(system_, at.family, symmetry, at.y, xi);
+    for (std::size_t i = 0; i < at.places.size(); ++i)
+      if (at_boundary(at.places[i])) balance.add(momentum_map(static_cast<int>(i), 1, at.derivatives, xi));
+  });
   return balance;
 }
 

@@ -9,7 +9,7 @@
 #include "jets/symmetry.hpp"
 #include "lattice/region.hpp"
 #include "lattice/plan/solve_plan.hpp"
-#include "schemes/system/lattice_system.hpp"
+#include "schemes/system/assembly.hpp"
 #include "schemes/verify/check.hpp"
 
 namespace delf {
@@ -30,7 +30,7 @@ class RegionSystem {
   const Region& region() const { return region_; }
   std::int64_t origin() const { return origin_; }
   std::size_t nodes() const { return region_.sites().size() * static_cast<std::size_t>(components_); }
-  std::int64_t stencils() const { return static_cast<std::int64_t>(members_.size()); }
+  std::int64_t stencils() const { return assembly_->stencils(); }
   /// The node of that number; rows count from the origin.
   Node node(std::size_t n) const;
   /// The nodes of int U where there is an equation.
@@ -87,37 +87,28 @@ class RegionSystem {
   Balance noether(const Values& y, const LinearSymmetry&) const;
 
  private:
-  struct Member {
-    const StencilFamily* family;
-    int family_index;
-    Site anchor;
-    Cell cell;
-    std::size_t first;  ///< into reads_
-    bool meets_boundary;
-  };
   enum Kind : char { outside, inside, boundary };  ///< outside: in U, but neither in int U nor in ∂U
-  using Reads = std::span<const std::size_t>;
-  /// Calls visit(member, reads, ∂r/∂y) for every stencil in U, or for those that meet ∂U.
+  using Reads = std::span<const int>;              ///< the nodes that a stencil reads
+  /// Calls visit(stencil, reads, ∂r/∂y) for every stencil in U, or for those that meet ∂U.
   template <class Visit>
-  void each_jacobian(const Values& y, bool at_boundary, Visit visit) const;
-  bool at_boundary(std::size_t node) const { return kind_[node / static_cast<std::size_t>(components_)] == boundary; }
-  void gather(const Member&, const Values& from, std::vector<double>& to) const;
-  /// The same of a section, which gains `turn` around a circle.
-  void gather_section(const Member&, const Values& y, std::vector<double>& to) const;
-  Reads reads(const Member& m) const { return {reads_.data() + m.first, static_cast<std::size_t>(m.family->size())}; }
+  void each_jacobian(const Values& y, bool at_boundary, const Visit& visit) const;
+  bool at_boundary(int node) const { return kind_[static_cast<std::size_t>(node / components_)] == boundary; }
+  bool is_solved(int node) const { return solved_[static_cast<std::size_t>(node)]; }
+  bool is_held(int node) const { return held_[static_cast<std::size_t>(node)]; }
+  /// Values of a section or a variation as its one row.
+  static SectionView row(const Values& values) { return {values.data(), 1, values.size()}; }
+  void gather(const Assembly::Local&, const Values& from, std::vector<double>& to) const;
 
   const LatticeSystem& system_;
   Region region_;
   std::int64_t origin_;
   int components_;
   bool variational_;
-  std::vector<Member> members_;
-  std::vector<std::size_t> reads_;  ///< of each value of each member: the node
-  std::vector<double> gained_;      ///< beside reads_: what sections gain there by going round; empty if nothing
-  std::vector<Kind> kind_;          ///< of each site
+  std::vector<Kind> kind_;  ///< of each site
   std::vector<std::size_t> equations_;
-  std::vector<char> solved_;  ///< of each node: it is in equations_
-  std::vector<char> held_;    ///< of each node: at a fixed wall, where V = 0
+  std::vector<char> solved_;           ///< of each node: it is in equations_
+  std::vector<char> held_;             ///< of each node: at a fixed wall, where V = 0
+  std::optional<Assembly> assembly_;  ///< of equations_, in their order, and all stencils in U; rows count from the origin
 };
 
 }  // namespace delf

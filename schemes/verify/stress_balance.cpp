@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "schemes/system/stress_energy.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
@@ -128,7 +129,7 @@ void StressBalance::add_cells(std::int64_t row, std::span<const double> above) {
       phi_x_[a] = (y_1 + z_1 - y_0 - z_0) / (2 * k);
     }
     const StressEnergy s =
-        theory_.stress_energy(phi_.data(), phi_t_.data(), phi_x_.data(), t, lattice_.position(i) + 0.5 * k);
+        stress_energy(theory_.density(), phi_.data(), phi_t_.data(), phi_x_.data(), t, lattice_.position(i) + 0.5 * k);
     energy_cells_[static_cast<std::size_t>(i)] = {s.energy, s.energy_flux, s.by_t};
     momentum_cells_[static_cast<std::size_t>(i)] = {s.momentum, s.momentum_flux, -s.by_x};
   }

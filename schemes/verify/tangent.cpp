@@ -6,8 +6,7 @@
 #include <string>
 
 #include "lattice/error.hpp"
-#include "schemes/solvers/block_solver.hpp"
-#include "schemes/system/slab_equations.hpp"
+#include "schemes/stepping/slab_solver.hpp"
 #include "schemes/system/slab_extent.hpp"
 
 namespace delf {
@@ -19,7 +18,7 @@ NoConvergence singular(std::int64_t row) {
 }
 
 /// b − A x, and Σ|terms| of each equation.
-std::vector<double> remainder(const SlabEquations& equations, const std::vector<double>& A,
+std::vector<double> remainder(const Assembly& equations, const std::vector<double>& A,
                               const std::vector<double>& b, const std::vector<double>& x,
                               std::vector<double>& absolute) {
   std::vector<double> left = b;
@@ -37,7 +36,7 @@ std::vector<double> remainder(const SlabEquations& equations, const std::vector<
 }  // namespace
 
 struct Tangent::Parity {
-  SlabEquations equations;
+  Assembly equations;
   BlockSolver solver;
 };
 
@@ -60,8 +59,8 @@ Tangent::Tangent(const LatticeSystem& system, const SolvePlan& plan, int rows, d
   data_ = extent.past();
   above_ = extent.above;
   for (int p = 0; p < plan.table.parities; ++p) {
-    SlabEquations equations(system, plan, p, data_, above_, turn);
-    BlockSolver solver = equations.solver();
+    Assembly equations(system, Assembly::slab(plan, p, data_, above_, turn));
+    BlockSolver solver = solver_of(equations);
     parities_.push_back(std::make_unique<Parity>(Parity{std::move(equations), std::move(solver)}));
   }
 }
@@ -80,25 +79,27 @@ std::vector<Window> Tangent::evolve(const Window& y, int count, std::mt19937_64&
       for (int i = 0; i < N; ++i)
         for (int c = 0; c < C; ++c) v.row(y.first_row + r)[i * C + c] = system_.is_held(i, c) ? 0.0 : normal(random);
 
-  std::vector<std::vector<double>> E;
+  std::vector<Assembly::Variation> left_side;
+  for (const SectionRing& v : V) left_side.push_back({v});
   std::vector<double> values, x, more, size_of_terms;
   for (std::int64_t J = y.first_row + data_; J <= y.last_row() - above_; ++J) {
     Parity& p = *parities_[static_cast<std::size_t>(J) % parities_.size()];
     for (SectionRing& v : V)
       for (int n = 0; n < p.equations.size(); ++n) p.equations.value(v, J, n) = 0;
-    p.equations.linearised(section, J, V, E, values);
+    p.equations.linearised(section, J, left_side, values);
     if (!p.solver.factor(values)) throw singular(J);
     for (std::size_t v = 0; v < V.size(); ++v) {
+      const std::vector<double>& E = left_side[v].E;
       // A x = Σ_known ∂E/∂y_a V_a, V_unknown = −x; once more for what rounding left
-      p.solver.solve(E[v], x);
-      p.solver.solve(remainder(p.equations, values, E[v], x, size_of_terms), more);
+      p.solver.solve(E, x);
+      p.solver.solve(remainder(p.equations, values, E, x, size_of_terms), more);
       for (std::size_t n = 0; n < x.size(); ++n) x[n] += more[n];
       // Where something of an equation is left even so, or terms grow beyond what they make up, the matrix is singular but
       // for rounding. On all stencils and theories they grow up to 6e7 times where it is not, and from 2e10 on where it is.
-      const std::vector<double> left = remainder(p.equations, values, E[v], x, size_of_terms);
+      const std::vector<double> left = remainder(p.equations, values, E, x, size_of_terms);
       constexpr double most_growth = 1e9;
       const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
-      if (!x.empty() && std::ranges::max(size_of_terms) > most_growth * std::abs(std::ranges::max(E[v], smaller)))
+      if (!x.empty() && std::ranges::max(size_of_terms) > most_growth * std::abs(std::ranges::max(E, smaller)))
         throw singular(J);
       for (std::size_t n = 0; n < left.size(); ++n)
         if (!(std::abs(left[n]) <= 1e-10 * size_of_terms[n])) throw singular(J);

@@ -209,8 +209,10 @@ std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simula
   const auto simulation = make();
   const LatticeSystem& system = simulation->evolution().system();
   const std::vector<std::int64_t> planned = turning_steps(steps, system.placement() == Placement::brick_wall);
-  if (start_rows.size() != 2 || simulation->starting_rows() != 2 || simulation->count(Role::inner) > 0 ||
-      planned.empty())
+  // rows of fields are enough to start from
+  const bool rows_suffice = std::ranges::all_of(
+      simulation->components(), [](const Component& c) { return c.role == Role::field || c.role == Role::multiplier; });
+  if (start_rows.size() != 2 || simulation->starting_rows() != 2 || !rows_suffice || planned.empty())
     return std::nullopt;
 
   Reversal reversal;

@@ -37,7 +37,7 @@ struct Two {
   static constexpr int components = 2;
   auto operator()(const auto& j) const { return j.phi_t[0] * j.phi_t[1] - j.phi[0] * j.phi_x[1]; }
 };
-struct Placed {
+struct Located {
   static constexpr bool placed = true;
   auto operator()(const auto& j) const { return j.phi_t * j.phi_t - sin(j.x - j.t) * j.phi; }
 };
@@ -49,7 +49,7 @@ struct PlacedTwo {
 
 }  // namespace
 
-static_assert(Density<Good> && Density<Constant> && Density<Two> && Density<Placed> && Density<PlacedTwo>);
+static_assert(Density<Good> && Density<Constant> && Density<Two> && Density<Located> && Density<PlacedTwo>);
 static_assert(Density<Wave> && Density<KleinGordon> && Density<SineGordon> && Density<PhiFour> &&
               Density<DoubleSineGordon> && Density<SineGordonImpurity>);
 static_assert(!Density<NotConst>, "the operator must be const");
@@ -60,7 +60,7 @@ static_assert(!Density<int> && !Density<Jet<double>>, "it must be a function");
 
 TEST_CASE("a density says its components and whether it is placed, and has neither by default") {
   CHECK((components_of<Good>() == 1 && components_of<Two>() == 2 && components_of<PlacedTwo>() == 2));
-  CHECK((is_placed<Placed>() && is_placed<PlacedTwo>() && is_placed<SineGordonImpurity>()));
+  CHECK((is_placed<Located>() && is_placed<PlacedTwo>() && is_placed<SineGordonImpurity>()));
   CHECK_FALSE((is_placed<Good>() || is_placed<Two>() || is_placed<SineGordon>()));
   CHECK(std::is_same_v<JetFor<double, Good>, Jet<double, 1>>);
   CHECK(std::is_same_v<JetFor<double, PlacedTwo>, PlacedJet<double, 2>>);

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-# Every ```cpp block of the README is a program; the ```text block after it is what it prints. Builds each against the
-# installed library and compares.
+# Every ```cpp block of the README and of tools/examples/README.md is a program, and the ```text block after it is its
+# output. Builds each against the installed library and compares.
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK}/source)
 file(READ ${DELF_SOURCE}/README.md rest)
+file(READ ${DELF_SOURCE}/tools/examples/README.md examples)
+string(APPEND rest "${examples}")
 set(count 0)
 set(project "cmake_minimum_required(VERSION 3.25)\nproject(readme LANGUAGES CXX)\nfind_package(delf 0.1 REQUIRED)\n")
 while(TRUE)
@@ -26,8 +28,8 @@ while(TRUE)
     "add_executable(example_${count} example_${count}.cpp)\ntarget_link_libraries(example_${count} PRIVATE delf::delf)\n")
   math(EXPR count "${count} + 1")
 endwhile()
-if(count LESS 2)
-  message(FATAL_ERROR "README.md has ${count} examples, not the two that it promises")
+if(NOT count EQUAL 4)
+  message(FATAL_ERROR "README.md and tools/examples/README.md have ${count} programs, not 1 + 3")
 endif()
 file(WRITE ${WORK}/source/CMakeLists.txt "${project}")
 
@@ -43,6 +45,6 @@ foreach(i RANGE ${last})
   find_program(executable example_${i} PATHS ${WORK}/build PATH_SUFFIXES ${BUILD_TYPE} NO_DEFAULT_PATH REQUIRED)
   execute_process(COMMAND ${executable} OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
   if(NOT printed STREQUAL expected_${i})
-    message(FATAL_ERROR "example ${i} of README.md printed\n${printed}and the README says\n${expected_${i}}")
+    message(FATAL_ERROR "program ${i} of the two pages printed\n${printed}and the page says\n${expected_${i}}")
   endif()
 endforeach()

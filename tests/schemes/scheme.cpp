@@ -3,7 +3,9 @@
 
 #include <numbers>
 
+#include "jets/discrete_lagrangian.hpp"
 #include "jets/tables/hexagon_jet.hpp"
+#include "jets/tables/rectangle_jet.hpp"
 #include "lattice/shapes/rectangle.hpp"
 #include "schemes/theories/phi4.hpp"
 #include "schemes/theories/sine_gordon.hpp"
@@ -68,12 +70,12 @@ double error(Map map, int sites, double h) {
 
 }  // namespace
 
-TEST_CASE("a user's theory on a shipped stencil is that of the registry, to the bit") {
+TEST_CASE("a user's theory on a shipped stencil is that of the registry") {
   const Lattice lattice = Lattice::circle(64, 20);
   const double h = 0.1;
   auto mine = Scheme{hexagon, MyPhiFour{}}.on(lattice, h);
   Problem p;
-  p.theory = "phi4", p.lambda = 1, p.lattice = lattice, p.stencil = "hexagon", p.time_step = h;
+  p.theory = "phi4", p.parameters["theory.lambda"] = 1, p.lattice = lattice, p.stencil = "hexagon", p.time_step = h;
   Simulation theirs(p);
   Row y0;
   for (int i = 0; i < 64; ++i) y0.push_back(std::tanh(std::sin(2 * std::numbers::pi * i / 64)));
@@ -89,7 +91,7 @@ TEST_CASE("a user's theory on a shipped stencil is that of the registry, to the 
 TEST_CASE("a user's stencil is found to be explicit, and is of second order") {
   auto evolution = Scheme{Corners{}, SineGordon{}}.on(Lattice::circle(100, 40), 0.1);
   CHECK(evolution.plan().kind == SolveKind::explicit_);
-  CHECK(evolution.stepper().solver_name() == "division by one number");
+  CHECK(evolution.stepper().report(false).solver == "division by one number");
   CHECK(std::abs(std::log2(error(Corners{}, 200, 0.1) / error(Corners{}, 400, 0.05)) - 2) < 0.1);
 }
 
@@ -105,13 +107,15 @@ TEST_CASE("a user's stencil with a shape of its own is of fourth order in space"
 TEST_CASE("a scheme hands out its Lagrangian and its family") {
   const Scheme scheme{rectangle, PhiFour{0.5}};
   CHECK(scheme.density().lambda == 0.5);
-  const auto family = scheme.family(0.1, 0.2);
+  const auto family = scheme.family();
   const std::array<double, 4> y{0.1, 0.3, -0.4, 0.2};
   const Cell cell{0.1, 0.2, 0, 0};
-  CHECK(family->lagrangian(cell, y) == scheme.lagrangian()(y, cell));
+  const auto lagrangian = discrete_lagrangian(rectangle, PhiFour{0.5});
+  CHECK(std::abs(*family->lagrangian(cell, y) - lagrangian(y, cell)) < 1e-15);
   std::array<double, 4> r;
+  const auto gradient = lagrangian.gradient(y, cell);
   family->residual(cell, y, r);
-  CHECK(r == scheme.lagrangian().gradient(y, cell));
+  CHECK(distance(Row(r.begin(), r.end()), Row(gradient.begin(), gradient.end())) < 1e-15);
 }
 
 TEST_CASE("an evolution may be moved while its stepper is in use") {

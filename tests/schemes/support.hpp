@@ -9,7 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "jets/batch_of.hpp"
 #include "lattice/error.hpp"
+#include "schemes/families/damped_leapfrog.hpp"
+#include "schemes/families/guo.hpp"
+#include "schemes/families/jet_family.hpp"
+#include "schemes/families/vu_quoc_li.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/simulation.hpp"
@@ -41,13 +46,13 @@ inline std::vector<Row> random_rows(Random& random, int count, int sites, double
 /// Parameters away from special values, so that no term of a theory is missing.
 inline Problem problem_of(const std::string& theory) {
   Problem p;
-  p.theory = theory, p.mass = 1.2, p.lambda = 0.4;
-  p.impurity_strength = 0.6, p.impurity_width = 0.8, p.impurity_position = 0.3;
+  p.theory = theory, p.parameters["theory.mass"] = 1.2, p.parameters["theory.lambda"] = 0.4;
+  p.parameters["theory.strength"] = 0.6, p.parameters["theory.width"] = 0.8, p.parameters["theory.position"] = 0.3;
   return p;
 }
 inline std::unique_ptr<FieldTheory> theory_named(const Problem& p) {
   for (const TheoryEntry* entry : theory_entries())
-    if (p.theory == entry->name) return entry->make(p);
+    if (p.theory == entry->name) return make_theory(*entry, p.parameters);
   throw std::logic_error("no theory " + p.theory);
 }
 /// Theories of one field on a space that is more than a point.
@@ -65,15 +70,24 @@ inline std::vector<std::string> stencil_names() {
       names.push_back(stencil.name);
   return names;
 }
-/// The scheme of a stencil, or of a comparator ("guo", "vu-quoc-li"); null if the theory has none.
-inline std::shared_ptr<const StencilFamily> family_of(const Problem& p, const std::string& scheme, double h, double k) {
-  const auto theory = theory_named(p);
-  if (scheme == "guo" || scheme == "vu-quoc-li") return theory->comparator(scheme, h, k);
-  return theory->variational(scheme, h, k);
+/// The scheme of a stencil, or of a comparator; null if the theory has none.
+inline std::shared_ptr<const StencilFamily> family_of(const FieldTheory& theory, const std::string& scheme) {
+  if (scheme == "guo") return theory.comparator(guo());
+  if (scheme == "vu-quoc-li") return theory.comparator(vu_quoc_li());
+  if (scheme == "damped") return theory.comparator(damped_leapfrog());
+  return theory.variational(scheme);
+}
+inline std::shared_ptr<const StencilFamily> family_of(const Problem& p, const std::string& scheme) {
+  return family_of(*theory_named(p), scheme);
+}
+/// A density on any table.
+template <Density D>
+std::shared_ptr<const JetFamily> jet_family(StencilTable table, const D& density) {
+  return std::make_shared<JetFamily>(std::move(table), std::make_shared<BatchOf<D>>(density));
 }
 inline Evolution evolution_of(const Problem& p, const std::string& scheme, const Lattice& lattice, double h,
                               const StepOptions& options = {}) {
-  return {lattice, {family_of(p, scheme, h, lattice.space_step())}, h, options};
+  return {lattice, {family_of(p, scheme)}, h, options};
 }
 
 /// The rows that a stepper holds, its newest last.
@@ -93,7 +107,7 @@ inline double equation_defect(const Evolution& evolution, const Window& window) 
   double defect = 0, slopes = 0, values = 0;
   for (const Row& row : window.rows)
     for (double y : row) values = std::max(values, std::abs(y));
-  std::vector<LatticeSystem::Entry> entries;
+  std::vector<MatrixEntry> entries;
   for (int i = 0; i < system.lattice().sites(); ++i)
     for (int a = 0; a < system.components(); ++a) {
       if (!plan.solved(i, a)) continue;

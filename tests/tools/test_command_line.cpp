@@ -24,7 +24,7 @@ TEST_CASE("help, version and lists go to stdout and succeed") {
   CHECK(contains(delf_program(folder, "list scenes").out, "collision"));
 }
 
-TEST_CASE("delf help run tells every key") {
+TEST_CASE("delf help run lists every key") {
   const Folder folder;
   const std::string help = delf_program(folder, "help run").out;
   for (const auto& key : delf::keys()) CHECK(contains(help, std::string(key.name)));

@@ -63,7 +63,8 @@ class ByName {
 
  private:
   static std::unique_ptr<State> make(StateRequest request, Problem& problem) {
-    request.theory = problem.theory, request.mass = problem.mass, request.lambda = problem.lambda;
+    request.theory = problem.theory;
+    for (const auto& [key, value] : problem.parameters) request.values[key] = value;
     auto state = make_state(request, problem.lattice);
     if (problem.lattice.is_circle()) problem.winding = state->winding();
     return state;

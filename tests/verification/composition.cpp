@@ -5,7 +5,7 @@
 
 #include "jets/tables/pair_element.hpp"
 #include "jets/tables/splitting.hpp"
-#include "schemes/families/element_family.hpp"
+#include "schemes/families/jet_family.hpp"
 #include "schemes/theories/phi4.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
@@ -20,10 +20,10 @@ namespace {
 Row breather(int order, int space_order, int sites, int steps, double* error = nullptr) {
   constexpr double until = 4;
   Problem p;
-  p.method = "composition", p.order = order, p.space_order = space_order;
+  p.method = "composition", p.parameters["scheme.order"] = order, p.parameters["lattice.space_order"] = space_order;
   p.lattice = Lattice::circle(sites, 80), p.time_step = until / steps;
   StateRequest request;
-  request.name = "breather", request.theory = p.theory, request.frequency = 0.5, request.speed = 0.3;
+  request.name = "breather", request.theory = p.theory, request.values["initial.frequency"] = 0.5, request.values["initial.speed"] = 0.3;
   const auto state = make_state(request, p.lattice);
   Simulation simulation(p);
   const auto C = simulation.components().size();
@@ -45,7 +45,7 @@ double breather_error(int order, int space_order, int sites, int steps) {
 constexpr double k = 0.6, h = 0.3;
 
 FamilyList pairs(int order, int p) {
-  return {std::make_shared<ElementFamily<SineGordon>>(pair_element(splitting_of_order(order), p), SineGordon{})};
+  return {jet_family(pair_element(splitting_of_order(order), p), SineGordon{})};
 }
 
 }  // namespace

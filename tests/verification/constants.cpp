@@ -27,7 +27,7 @@ double measured(const SchemeName& scheme, double courant) {
   Problem p = problem_for(scheme, "sine-gordon", lattice, courant);
   p.winding = 1;
   StateRequest request;
-  request.name = "kink-train", request.theory = "sine-gordon", request.winding = 1, request.epsilon = 1e-6;
+  request.name = "kink-train", request.theory = "sine-gordon", request.winding = 1, request.values["initial.epsilon"] = 1e-6;
   const double k = lattice.space_step();
   return final_error(p, *make_state(request, lattice), static_cast<int>(std::lround(8 / p.time_step))) / (k * k);
 }

@@ -19,11 +19,11 @@ Patch stepped(const std::string& theory, const SchemeName& scheme) {
   const Lattice lattice = Lattice::circle(N, 10);
   const Problem p = problem_for(scheme, theory, lattice, 0.5);
   StateRequest request;
-  request.name = "noise", request.theory = theory, request.seed = 3, request.amplitude = 0.5;
+  request.name = "noise", request.theory = theory, request.seed = 3, request.values["initial.amplitude"] = 0.5;
   Simulation simulation(p);
   start(simulation, p, *make_state(request, lattice), Start::centred);
 
-  const Family family = make_family(theory, scheme, p.time_step, lattice.space_step());
+  const Family family = make_family(theory, scheme);
   Patch patch({family}, p.time_step, Region::rectangle(lattice, {family->pattern()}, {0, last}, {0, N - 1}));
   for (int j = 0; j <= last; ++j) {
     while (simulation.newest() < std::max(j, 1)) simulation.step();

@@ -32,7 +32,7 @@ Patch random_patch(std::mt19937_64& random, const Lattice& lattice, const Family
 }
 Patch random_patch(std::mt19937_64& random, const Lattice& lattice, const std::string& theory,
                    const SchemeName& scheme) {
-  return random_patch(random, lattice, make_family(theory, scheme, time_step(lattice), lattice.space_step()));
+  return random_patch(random, lattice, make_family(theory, scheme));
 }
 
 /// A scheme that says nothing of its Lagrangian, so that its equations alone are asked.
@@ -105,7 +105,7 @@ TEST_CASE("every variational scheme satisfies the multisymplectic form formula o
   for (const SchemeName& scheme : variational_schemes)
     for (const Lattice& lattice : lattices)
       for (int trial = 0; trial < 10; ++trial) {
-        const Family family = make_family("sine-gordon", scheme, time_step(lattice), lattice.space_step());
+        const Family family = make_family("sine-gordon", scheme);
         std::mt19937_64 same = random;
         const Patch patch = random_patch(random, lattice, family);
         const Patch untold = random_patch(same, lattice, std::make_shared<Untold>(family));

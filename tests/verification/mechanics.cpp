@@ -260,7 +260,7 @@ TEST_CASE("the check can fail: maps without a Lagrangian lose the energy's band 
     }
 }
 
-TEST_CASE("angular momentum stays because the attraction is the same all round: an uneven one does not keep it") {
+TEST_CASE("angular momentum stays because the attraction is isotropic: an anisotropic one does not keep it") {
   const ByName orbit = body(kepler, "midpoint", kepler.step);
   const LinearSymmetry rotation{"rotation", {0, -1, 1, 0}, {0, 0}};
   const auto drift = [&](double squeeze) {

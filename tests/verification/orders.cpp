@@ -21,8 +21,8 @@ double error_at(const SchemeName& scheme, const Solution& solution, double until
   Problem p = problem_for(scheme, "sine-gordon", lattice, courant);
   StateRequest request;
   request.name = solution.state, request.theory = "sine-gordon";
-  if (request.name == "kink-train") request.winding = p.winding = 1, request.epsilon = 1e-6;
-  if (request.name == "breather") request.frequency = 0.6;
+  if (request.name == "kink-train") request.winding = p.winding = 1, request.values["initial.epsilon"] = 1e-6;
+  if (request.name == "breather") request.values["initial.frequency"] = 0.6;
   const int steps = static_cast<int>(std::lround(until / p.time_step));
   REQUIRE(std::abs(steps * p.time_step - until) < 1e-12);
   return final_error(p, *make_state(request, lattice), steps, how);

@@ -12,6 +12,10 @@
 #include <vector>
 
 #include "lattice/region_shapes.hpp"
+#include "schemes/families/damped_leapfrog.hpp"
+#include "schemes/families/guo.hpp"
+#include "schemes/families/jet_family.hpp"
+#include "schemes/families/vu_quoc_li.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/theories/theory_registry.hpp"
@@ -23,14 +27,22 @@ namespace delf::testing {
 using Family = std::shared_ptr<const StencilFamily>;
 using FamilyList = std::vector<Family>;
 
-inline Family make_family(const std::string& theory, const SchemeName& scheme, double h, double k) {
+inline Family make_family(const std::string& theory, const SchemeName& scheme) {
   for (const TheoryEntry* entry : theory_entries())
     if (theory == entry->name) {
-      const auto made = entry->make(Problem{});
-      return scheme.method == "multisymplectic" ? made->variational(scheme.stencil, h, k)
-                                                : made->comparator(scheme.method, h, k);
+      const auto made = make_theory(*entry);
+      return scheme.method == "multisymplectic" ? made->variational(scheme.stencil)
+                                                : made->comparator(scheme.method == "guo"          ? guo()
+                                                                   : scheme.method == "vu-quoc-li" ? vu_quoc_li()
+                                                                                                   : damped_leapfrog());
     }
   throw std::invalid_argument(theory);
+}
+
+/// A density on any table.
+template <Density D>
+Family jet_family(StencilTable table, const D& density) {
+  return std::make_shared<JetFamily>(std::move(table), std::make_shared<BatchOf<D>>(density));
 }
 
 inline std::vector<StencilPattern> patterns(const FamilyList& families) {

@@ -87,7 +87,7 @@ Deviation deviation(const ReferenceRun& reference, const SchemeName& scheme, dou
   const Lattice lattice = Lattice::circle(255, 40);
   const Problem p = problem_for(scheme, "sine-gordon", lattice, 0.125);
   StateRequest request;
-  request.name = "mps-collision", request.theory = "sine-gordon", request.epsilon = epsilon;
+  request.name = "mps-collision", request.theory = "sine-gordon", request.values["initial.epsilon"] = epsilon;
   const auto state = make_state(request, lattice);
   Simulation simulation(p);
   start(simulation, p, *state, Start::exact);

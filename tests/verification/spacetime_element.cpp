@@ -10,14 +10,13 @@
 #include <vector>
 
 #include "jets/tables/rectangle_jet.hpp"
-#include "schemes/families/element_family.hpp"
+#include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/r_adaptive.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "schemes/theories/wave_map.hpp"
-#include "schemes/families/variational_family.hpp"
 #include "schemes/families/vertex_constraint.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/patch.hpp"
@@ -41,11 +40,12 @@ struct Result {
 Result run_elements(int cells, const std::string& quadrature, int degree_time, int degree_space,
                     ElementStart how = ElementStart::legendre) {
   Problem p;
-  p.method = "spacetime", p.quadrature = quadrature, p.degree_time = degree_time, p.degree_space = degree_space;
+  p.method = "spacetime", p.parameters["scheme.quadrature"] = quadrature,
+  p.parameters["scheme.degree_time"] = degree_time, p.parameters["scheme.degree_space"] = degree_space;
   p.lattice = Lattice::circle(cells, length), p.time_step = until / (2 * cells);
   StateRequest request;
-  request.name = "kink-train", request.theory = p.theory, request.epsilon = 0.1, request.speed = 0.3;
-  request.position = 0;
+  request.name = "kink-train", request.theory = p.theory, request.values["initial.epsilon"] = 0.1, request.values["initial.speed"] = 0.3;
+  request.values["initial.position"] = 0;
   const auto state = make_state(request, p.lattice);
   p.winding = state->winding();
   Simulation simulation(p);
@@ -121,11 +121,11 @@ constexpr double round_off = 1e-13, k = 0.6, h = 0.3;
 const std::vector<std::array<int, 2>> degrees{{2, 2}, {1, 2}, {2, 3}};
 
 FamilyList element_families(int degree_time, int degree_space, TimeQuadrature quadrature) {
-  return {std::make_shared<ElementFamily<SineGordon>>(spacetime_element(degree_time, degree_space, quadrature),
+  return {jet_family(spacetime_element(degree_time, degree_space, quadrature),
                                                       SineGordon{})};
 }
 FamilyList wave_map_families() {
-  return {std::make_shared<VariationalFamily<Rectangle, WaveMap>>(WaveMap{}, h, k),
+  return {jet_family(stencil_table(rectangle.table), WaveMap{}),
           std::make_shared<LagrangianFamily<VertexConstraint<WaveMap>>>(VertexConstraint<WaveMap>{})};
 }
 FamilyList r_adaptive_families() {

@@ -26,9 +26,9 @@ struct Course {
 
 /// 1000 steps from seeded noise at rest.
 Course from_noise(Problem p, double mass, double amplitude) {
-  p.mass = mass;
+  p.parameters["theory.mass"] = mass;
   StateRequest request;
-  request.name = "noise", request.theory = p.theory, request.mass = mass, request.amplitude = amplitude;
+  request.name = "noise", request.theory = p.theory, request.values["theory.mass"] = mass, request.values["initial.amplitude"] = amplitude;
   request.seed = 7;
   const Row y0 = values(*make_state(request, p.lattice), 0, p.lattice), at_rest(y0.size(), 0.0);
   Simulation simulation(p);

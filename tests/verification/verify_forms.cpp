@@ -154,7 +154,8 @@ TEST_CASE("verify: elements keep the form formula with their inner nodes, betwee
       for (const char* quadrature : {"gauss", "lobatto"}) {
         Problem p;
         p.method = "spacetime", p.lattice = lattice, p.time_step = 0.5 * lattice.space_step();
-        p.degree_time = in_time, p.degree_space = in_space, p.quadrature = quadrature;
+        p.parameters["scheme.degree_time"] = in_time, p.parameters["scheme.degree_space"] = in_space,
+        p.parameters["scheme.quadrature"] = quadrature;
         CAPTURE(in_time, in_space, quadrature, static_cast<int>(lattice.space()), static_cast<int>(lattice.left()));
         const Result result = at_random_sections(p, 7);
         CHECK(result.checks.size() >= 7);
@@ -164,7 +165,8 @@ TEST_CASE("verify: elements keep the form formula with their inner nodes, betwee
 
 TEST_CASE("verify: the moving mesh keeps the form formula on field, mesh and multiplier") {
   Problem p;
-  p.method = "r-adaptive", p.lattice = Lattice::interval(17, 20), p.time_step = 0.01, p.alpha = 2.5;
+  p.method = "r-adaptive", p.lattice = Lattice::interval(17, 20), p.time_step = 0.01,
+  p.parameters["scheme.alpha"] = 2.5;
   const Result result = at_random_sections(p, 11, 4);
   CHECK(result.checks.size() == 8);  // every kind of region, the local identity, the symplectic form
   require_round_off(result);

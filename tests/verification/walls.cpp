@@ -39,10 +39,10 @@ double error_at(const SchemeName& scheme, const Solution& solution, int cells, S
   const Problem p = problem_for(scheme, solution.theory, lattice, 0.5);
   StateRequest request;
   request.name = solution.name, request.theory = solution.theory;
-  if (request.name == "plane-wave") request.wavenumber = 2;
-  else request.position = solution.right == natural ? solution.length : 0;
-  if (request.name == "breather") request.frequency = 0.6;
-  if (request.name == "kink-kink") request.speed = 0.5, request.separation = 6;
+  if (request.name == "plane-wave") request.values["initial.wavenumber"] = 2;
+  else request.values["initial.position"] = solution.right == natural ? solution.length : 0;
+  if (request.name == "breather") request.values["initial.frequency"] = 0.6;
+  if (request.name == "kink-kink") request.values["initial.speed"] = 0.5, request.values["initial.separation"] = 6;
   const int steps = static_cast<int>(std::lround(solution.until / p.time_step));
   return final_error(p, *make_state(request, lattice), steps, how);
 }
@@ -133,7 +133,7 @@ double element_error_at(const Solution& solution, int cells) {
   p.lattice = Lattice::interval(cells + 1, solution.length, solution.left, solution.right);
   p.time_step = 0.5 * p.lattice.space_step();
   StateRequest request;
-  request.name = solution.name, request.theory = solution.theory, request.wavenumber = 2;
+  request.name = solution.name, request.theory = solution.theory, request.values["initial.wavenumber"] = 2;
   const auto state = make_state(request, p.lattice);
   Simulation simulation(p);
   const auto sites = static_cast<std::size_t>(p.lattice.sites()), C = simulation.components().size();

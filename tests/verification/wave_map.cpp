@@ -108,7 +108,7 @@ TEST_CASE("the check can fail: without the constraint the same density leaves th
   CHECK(std::abs(std::log2(errors[0] / errors[1])) < 0.3);
 }
 
-TEST_CASE("the momenta stay because turns leave the density as it is: pulled along an axis it keeps that one only") {
+TEST_CASE("the momenta stay because rotations leave the density invariant: pulled along an axis, only that one stays") {
   const int N = 32;
   const ByName wave = great_circle("triangle-vertex", N);
   for (const double pull : {0.0, 0.3}) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tools/bench/collision.hpp"
 
+#include <algorithm>
+
 #include "schemes/state.hpp"
 
 namespace delf::bench {
@@ -9,7 +11,7 @@ std::vector<std::vector<double>> Collision::rows() const {
   StateRequest request;
   request.name = "mps-collision";
   request.theory = "sine-gordon";
-  request.epsilon = 1e-6;
+  request.values["initial.epsilon"] = 1e-6;
   const auto state = make_state(request, lattice());
   std::vector<std::vector<double>> both(2, std::vector<double>(static_cast<std::size_t>(sites)));
   state->values(0, lattice(), both[0]);
@@ -22,8 +24,9 @@ Problem Collision::problem() const {
   problem.lattice = lattice();
   problem.time_step = time_step();
   problem.tolerance = tolerance;
-  if (scheme == "vu-quoc-li" || scheme == "guo") problem.method = scheme;
-  else problem.stencil = scheme;
+  const auto& all = methods();
+  const bool is_method = std::ranges::find(all, scheme, &NamedFormula::name) != all.end();
+  (is_method ? problem.method : problem.stencil) = scheme;
   problem.threads = threads;
   return problem;
 }

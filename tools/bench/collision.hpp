@@ -9,8 +9,8 @@
 
 namespace delf::bench {
 
-/// What is stepped: the collision of Marsden–Patrick–Shkoller §5.2 on a circle of length 40, h = k/8, by a scheme named
-/// as a stencil or as a method.
+/// The problem that is stepped: the collision of Marsden–Patrick–Shkoller §5.2 on a circle of length 40, h = k/8, by a
+/// scheme named as a stencil or as a method.
 struct Collision {
   static constexpr double length = 40;
 

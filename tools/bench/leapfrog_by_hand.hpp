@@ -2,12 +2,12 @@
 #pragma once
 #include <vector>
 
-#include "schemes/stepping/rows/row_layout.hpp"
+#include "schemes/solvers/row_layout.hpp"
 
 namespace delf::bench {
 
-/// What the explicit scheme cannot be faster than, short of several steps at a time: the least a step must do, written
-/// by hand for it alone, with the engine's packs, sine and layout of rows.
+/// A lower bound for the explicit scheme, short of several steps at a time: the least work of a step, written by hand,
+/// with the engine's packs, sine and layout of rows.
 ///
 ///     v += (h/k)² ∂²_k y − h² sin y,   y += v
 class LeapfrogByHand {

@@ -25,7 +25,7 @@ struct AutovectorisedLeapfrog {
   }
 };
 
-// Of the explicit scheme, all against the loop written by hand.
+// The explicit scheme, compared with the loop written by hand.
 void compare_loops(const std::vector<int>& all_sites, int repeats) {
   fmt::print("leapfrog, ns per site and step, over the least loop written by hand:\n\n");
   const Table table({{"loop", 20}, {"N", 8}, {"by hand", 8}, {"this", 8}, {"ratio", 24}});

@@ -10,10 +10,10 @@
 #include "jets/simd/pack.hpp"
 
 #ifndef DELF_BENCH_FLAGS
-#define DELF_BENCH_FLAGS "not told"
+#define DELF_BENCH_FLAGS "unknown"
 #endif
 #ifndef DELF_BENCH_FAST_FLAGS
-#define DELF_BENCH_FAST_FLAGS "not told"
+#define DELF_BENCH_FAST_FLAGS "unknown"
 #endif
 #ifndef DELF_VERSION
 #define DELF_VERSION "unknown"

@@ -3,7 +3,7 @@
 
 namespace delf::bench {
 
-/// What numbers depend on: the processor, the compiler, its flags, the version.
+/// The conditions of a measurement: the processor, the compiler, its flags, the version.
 void print_machine();
 
 }  // namespace delf::bench

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "jets/simd/pack_math.hpp"
-#include "schemes/stepping/rows/row_layout.hpp"
+#include "schemes/solvers/row_layout.hpp"
 #include "tools/bench/pairing.hpp"
 #include "tools/bench/textbook_autovectorised.hpp"
 

@@ -10,7 +10,7 @@ namespace delf::bench {
 
 namespace {
 
-/// A simulation that is looked at after every step, or that could be.
+/// A simulation whose monitors are evaluated after every step, or could be.
 template <class Look>
 Side watched(const Collision& collision, Look look) {
   const auto simulation = engine(collision);
@@ -35,7 +35,7 @@ void time_monitors(const Request& request) {
     for (const int sites : request.sites_or({255, 4095})) {
       const Collision collision{scheme, suited_sites(scheme, sites), tolerance};
       const Side step = watched(collision, [](const Simulation&) {});
-      volatile double seen = 0;  // so that nothing that is looked at is left out
+      volatile double seen = 0;  // so that the compiler removes no monitor
       const auto against = [&](auto look) { return pair(watched(collision, look), step, request.repeats); };
       const Pairing monitors = against([&](const Simulation& s) { seen = s.monitors().energy; });
       const Pairing residual = against([&](const Simulation& s) { seen = s.residual(); });

@@ -9,7 +9,7 @@ namespace delf::bench {
 namespace {
 
 constexpr double chunk_seconds = 0.03;
-constexpr long warming_steps = 16;  // seeds have reached their order, caches and pages are there
+constexpr long warming_steps = 16;  // predictors have reached their order, caches and pages are warm
 
 double seconds(const Side& side, long steps) {
   const auto begin = std::chrono::steady_clock::now();

@@ -23,8 +23,8 @@ struct Pairing {
 };
 
 /// A and B in turn. In every repetition both start anew, warm up, and take the same number of steps, so that they pass
-/// through the same fields; a chunk lasts 30 ms or more for the faster one. Who begins changes with every repetition.
-/// A ratio is taken within its repetition, where the machine is likely to be in one mood.
+/// through the same fields; a chunk lasts 30 ms or more for the faster one. The side that begins changes with every
+/// repetition. A ratio is taken within its repetition, where the machine's speed is likely to be the same.
 Pairing pair(const Side& a, const Side& b, int repeats);
 
 /// One side alone: ns for each step, of so many after each restart, or as many as last 30 ms.

@@ -5,7 +5,7 @@
 
 namespace delf::bench {
 
-/// What the command line asks for; a list that is empty takes the command's own default.
+/// The parsed command line; an empty list stands for the command's own default.
 struct Request {
   std::vector<int> sites;
   std::vector<double> tolerances;

@@ -9,14 +9,13 @@ namespace delf::bench {
 
 namespace {
 
-/// The engine, which tells the mean of its iterations, of the last steps that it took.
+/// The engine, which reports the mean number of iterations of its last steps.
 Side counting_side(const Collision& collision, double& mean) {
   const auto simulation = engine(collision);
   Side side = side_of(simulation, collision);
   side.advance = [simulation, &mean](long steps) {
     long iterations = 0;
     const FlushDenormals for_all_steps;  // as in `delf run`
-    if (simulation->steps_at_once() > 1) return simulation->steps(static_cast<int>(steps));  // explicit ones
     for (long n = 0; n < steps; ++n) {
       simulation->step(false);
       iterations += simulation->iterations();
@@ -26,7 +25,7 @@ Side counting_side(const Collision& collision, double& mean) {
   return side;
 }
 
-/// The textbook, which tells the same.
+/// The textbook, which reports the same.
 Side counting_textbook_side(const Collision& collision, double& mean) {
   const std::shared_ptr<Textbook> textbook = collision.textbook();
   Side side = side_of(textbook, collision);

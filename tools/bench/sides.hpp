@@ -20,7 +20,7 @@ Side side_of(std::shared_ptr<Stepped> stepped, std::vector<std::vector<double>> 
           [stepped](long steps) {
             if constexpr (requires { stepped->step(false); }) {
               const FlushDenormals for_all_steps;  // as in `delf run`
-              stepped->steps(static_cast<int>(steps));  // rows that no one looks at
+              stepped->steps(static_cast<int>(steps));  // rows that no one reads
             } else {
               for (long n = 0; n < steps; ++n) stepped->step();
             }

@@ -15,8 +15,8 @@ namespace delf::bench {
 
 namespace {
 
-// What is said of a scheme in the end: how far apart its costs are, small circles (which do not fill the lanes) and
-// rows far beyond every cache set aside.
+// The summary of a scheme: the range of its costs, without small circles (which do not fill the lanes) and rows far
+// beyond every cache.
 constexpr int least_compared = 255, most_compared = 1'000'000;
 
 struct Measured {
@@ -30,10 +30,10 @@ Measured measured(const std::string& scheme, int sites, double tolerance, int re
   return {times, collision.sites, simulation->iterations()};
 }
 
-/// What a step costs that sites do not: where the line of least squares through rows of 127, 191, 255 and 319 sites meets
+/// The fixed overhead of a step: where the line of least squares through rows of 127, 191, 255 and 319 sites meets
 /// N = 0. They hold two, three, four and five standing waves, with the steps in space and time of the collision at
-/// N = 255, so that a site costs the same in all of them: shorter rows of the collision itself take a seed from more
-/// rows, or a second iteration.
+/// N = 255, so that a site costs the same in all of them: shorter rows of the collision itself take a predictor from
+/// more rows, or a second iteration.
 double fixed_cost(const std::string& scheme, double tolerance, int repeats) {
   const Collision at_255{scheme, 255, tolerance};
   constexpr long steps = 30'000;  // the first of them, which take more iterations, are few against these

@@ -12,20 +12,39 @@
 
 namespace delf::bench {
 
+namespace {
+
+template <class T>
+std::unique_ptr<Textbook> make(int N, double L, double h, double tolerance) {
+  return std::make_unique<T>(N, L, h, tolerance);
+}
+
+struct Entry {
+  const char* scheme;
+  std::unique_ptr<Textbook> (*make)(int N, double L, double h, double tolerance);
+};
+constexpr Entry entries[] = {{"rectangle-symmetric", make<TextbookSymmetricRectangle>},
+                             {"rectangle", make<TextbookPlainRectangle>},
+                             {"triangle", make<TextbookTriangle>},
+                             {"triangle-vertex", make<TextbookExplicit>},
+                             {"hexagon", make<TextbookHexagon>},
+                             {"vu-quoc-li", make<TextbookVuQuocLi>},
+                             {"guo", make<TextbookGuo>}};
+
+}  // namespace
+
 const std::vector<std::string>& textbook_schemes() {
-  static const std::vector<std::string> names{
-      "rectangle-symmetric", "rectangle", "triangle", "triangle-vertex", "hexagon", "vu-quoc-li", "guo"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Entry& entry : entries) all.emplace_back(entry.scheme);
+    return all;
+  }();
   return names;
 }
 
 std::unique_ptr<Textbook> make_textbook(const std::string& scheme, int N, double L, double h, double tolerance) {
-  if (scheme == "rectangle-symmetric") return std::make_unique<TextbookSymmetricRectangle>(N, L, h, tolerance);
-  if (scheme == "rectangle") return std::make_unique<TextbookPlainRectangle>(N, L, h, tolerance);
-  if (scheme == "triangle") return std::make_unique<TextbookTriangle>(N, L, h, tolerance);
-  if (scheme == "triangle-vertex") return std::make_unique<TextbookExplicit>(N, L, h, tolerance);
-  if (scheme == "hexagon") return std::make_unique<TextbookHexagon>(N, L, h, tolerance);
-  if (scheme == "vu-quoc-li") return std::make_unique<TextbookVuQuocLi>(N, L, h, tolerance);
-  if (scheme == "guo") return std::make_unique<TextbookGuo>(N, L, h, tolerance);
+  for (const Entry& entry : entries)
+    if (scheme == entry.scheme) return entry.make(N, L, h, tolerance);
   throw std::logic_error("no textbook implementation of " + scheme);
 }
 

@@ -7,9 +7,9 @@
 
 namespace delf::bench {
 
-/// What the engine is held against: φ_tt − φ_xx + sin φ = 0 on a circle, the equations of one scheme written out by
-/// hand as scalar loops over plain arrays with the library's sine. tools/bench/README.md says what was done in them and
-/// what was not.
+/// The programs that the engine is compared with: φ_tt − φ_xx + sin φ = 0 on a circle, the equations of one scheme
+/// written out by hand as scalar loops over plain arrays with the library's sine. tools/bench/README.md says what was
+/// done in them and what was not.
 class Textbook {
  public:
   virtual ~Textbook() = default;
@@ -19,7 +19,7 @@ class Textbook {
   virtual long iterations() const { return 0; }     ///< since the start; none of explicit schemes
 };
 
-/// The schemes that there is a textbook for, named as in scenes: stencils, then methods.
+/// The schemes with a textbook program, named as in scenes: stencils, then methods.
 const std::vector<std::string>& textbook_schemes();
 
 /// N sites on a circle of length L. The tolerance is of the last change, relative to the largest |y| of three rows.

@@ -6,7 +6,7 @@
 
 namespace delf::bench {
 
-/// What one pass of a fixed point did to the row that it improves: max |Δy| and max |y|.
+/// The effect of one pass of a fixed point on its row: max |Δy| and max |y|.
 struct Change {
   double change = 0, value = 0;
 

@@ -8,10 +8,10 @@
 
 namespace delf::bench {
 
-/// The brick wall of jets/hexagon_jet.hpp: every vertical edge has weight 1 in the sum of its bricks, and so has every
-/// pair of horizontal ones, which is the wave part of (5.10); and ⅓ Σ sin(mean of six) over the three bricks that meet
-/// in a site. With bricks anchored where i + j is even these are, for (j, i) even, i and i−2 of row j and i−1 of row
-/// j−1; for (j, i) odd, i−1 of row j and i, i−2 of row j−1. N even.
+/// The brick wall of jets/tables/hexagon_jet.hpp: every vertical edge has weight 1 in the sum of its bricks, and so has
+/// every pair of horizontal ones, which is the wave part of (5.10); and ⅓ Σ sin(mean of six) over the three bricks that
+/// meet in a site. With bricks anchored where i + j is even these are, for (j, i) even, i and i−2 of row j and i−1 of
+/// row j−1; for (j, i) odd, i−1 of row j and i, i−2 of row j−1. N even.
 class TextbookHexagon final : public Textbook {
  public:
   TextbookHexagon(int sites, double length, double time_step, double tolerance);

@@ -22,7 +22,7 @@ class CircleRow {
   std::vector<double> data_;
 };
 
-/// The newest eight rows, and the one that is being looked for.
+/// The newest eight rows, and the unknown one.
 class PastRows {
  public:
   explicit PastRows(int sites) : sites_(sites), ring_(9, CircleRow(sites)) {}

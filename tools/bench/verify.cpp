@@ -102,7 +102,7 @@ void time_verify(const Request& request) {
       const Pairing asked = pair(looking([&] { equations.at(rows, equations.reach()); }), step, request.repeats);
       std::mt19937_64 random(1);
       const FormFormula form(evolution, rows, random);
-      volatile double seen = 0;  // so that no sum is left out
+      volatile double seen = 0;  // so that the compiler removes no sum
       const Pairing summed = pair(looking([&] { seen = form.look(); }), step, request.repeats);
 
       table.row({scheme, fmt::to_string(collision.sites), number(asked.b / stepped), number(asked.a / in_a_row),

@@ -7,7 +7,7 @@
 
 namespace delf {
 
-/// The relative energy error over time; says so if it is nothing but round-off.
+/// The relative energy error over time; says so if it is all round-off.
 /// Returns gnuplot commands; their data is written to `scratch`. Empty if there is nothing to show.
 std::string energy_figure(const FigureSource&, const std::filesystem::path& scratch);
 

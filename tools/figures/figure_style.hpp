@@ -6,12 +6,12 @@
 namespace delf {
 
 /// Colours from `least` to `most`: a perceptually even map from dark to light, or from blue through white to red for
-/// what swings about zero. Both are told apart by the colour-blind.
+/// values of both signs. Both are readable by the colour-blind.
 struct ColourScale {
   double least, most;
   bool swings;  ///< about zero
 };
-/// The scale of some values; the wildest half per cent do not count if they would hide the rest.
+/// The scale of some values; the most extreme half per cent are ignored if they would hide the rest.
 ColourScale colour_scale(std::span<const double> values);
 /// As gnuplot commands.
 std::string gnuplot_colours(const ColourScale&);
@@ -27,7 +27,7 @@ double nice_step(double range, int most);
 
 /// The dark colour of single lines.
 inline constexpr auto line_colour = "#31688e";
-/// The colour of a component's line: told apart by the colour-blind, and the first is that of single lines.
+/// The colour of a component's line, distinguishable by the colour-blind; the first is that of single lines.
 std::string component_colour(std::size_t component);
 
 }  // namespace delf

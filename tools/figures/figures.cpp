@@ -30,7 +30,7 @@ constexpr Figure all[] = {{"spacetime", spacetime_figure},
 }  // namespace
 
 std::vector<double> drawn_space(const FigureSource& source) {
-  if (source.names.mesh) {
+  if (source.names.drawn_mesh()) {
     constexpr int cells = 400;
     std::vector<double> even;
     for (int i = 0; i <= cells; ++i) even.push_back(source.lattice.length() * i / cells);
@@ -43,7 +43,7 @@ std::vector<double> drawn_space(const FigureSource& source) {
 
 std::vector<double> drawn_sites(const FigureSource& source, int frame, std::size_t component) {
   const auto row = source.film.frame(frame);
-  const double unit = source.angle && component != source.names.mesh ? 2 * std::numbers::pi : 1;
+  const double unit = source.angle && component != source.names.drawn_mesh() ? 2 * std::numbers::pi : 1;
   std::vector<double> values;
   for (std::size_t i = component; i < row.size(); i += source.film.components())
     values.push_back(std::clamp(row[i] / unit, -1e30, 1e30));
@@ -54,8 +54,8 @@ std::vector<double> drawn_sites(const FigureSource& source, int frame, std::size
 
 std::vector<double> drawn_frame(const FigureSource& source, int frame, std::size_t component) {
   std::vector<double> values = drawn_sites(source, frame, component);
-  if (!source.names.mesh || component == *source.names.mesh) return values;
-  const std::vector<double> nodes = drawn_sites(source, frame, *source.names.mesh), space = drawn_space(source);
+  if (!source.names.drawn_mesh() || component == *source.names.drawn_mesh()) return values;
+  const std::vector<double> nodes = drawn_sites(source, frame, *source.names.drawn_mesh()), space = drawn_space(source);
   std::vector<double> there;
   for (const double x : space) {
     const auto after = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x) - nodes.begin();
@@ -67,7 +67,7 @@ std::vector<double> drawn_frame(const FigureSource& source, int frame, std::size
 }
 
 std::string drawn_name(const FigureSource& source, std::size_t component) {
-  return source.film.components() == 1 ? "φ" : source.names.field[component];
+  return source.film.components() == 1 ? "φ" : source.names.drawn()[component];
 }
 
 int tame_frames(const FigureSource& source) {

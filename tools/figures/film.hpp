@@ -15,7 +15,7 @@ class Film {
   Film(const Lattice&, std::int64_t expected_frames, std::size_t components = 1);
 
   void append(double time, std::span<const double> row);
-  /// Keeps the newest row, whether or not its turn has come.
+  /// Keeps the newest row, due or not.
   void finish();
 
   int frames() const noexcept { return static_cast<int>(times_.size()); }

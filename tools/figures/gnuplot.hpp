@@ -5,7 +5,7 @@
 
 namespace delf {
 
-/// A scratch folder inside a folder of results; gone, with all that is in it, when it is no longer needed.
+/// A scratch folder inside a folder of results, removed with its contents by the destructor.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const std::filesystem::path& parent);

@@ -28,7 +28,7 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
     const auto frame = drawn_frame(source, f);
     map.insert(map.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(space.size()));
   }
-  // an angle that has drifted through many turns is shown by where it is away from its vacua
+  // an angle that has drifted by many multiples of 2π is shown by its distance from the vacua
   const auto tame =
       std::span(map).first(space.size() * static_cast<std::size_t>(std::min(frames, tame_frames(source))));
   const auto [least, most] = std::ranges::minmax(tame);

@@ -41,7 +41,7 @@ std::string key_of_components(const FigureSource& source, const std::vector<std:
   std::string labels;
   for (std::size_t c = 0; c < components.size(); ++c)
     labels += fmt::format("set label {} '{}' at screen {},0.955 right textcolor rgb '{}' noenhanced\n", 110 + c,
-                          source.names.field[components[c]],
+                          source.names.drawn()[components[c]],
                           0.97 - 0.07 * static_cast<double>(components.size() - 1 - c), component_colour(c));
   return labels;
 }
@@ -58,15 +58,15 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   const auto space = drawn_space(source);
   const int panels = static_cast<int>(frames.size());
 
-  // An angle counts up or down as solitons pass: whole turns of the whole row are taken off, never site by site.
+  // An angle grows or falls as solitons pass: multiples of 2π are subtracted from the whole row, never site by site.
   std::string table;
   std::vector<double> shown;
   bool turned = false;
   std::vector<std::size_t> components;
   for (std::size_t c = 0; c < source.film.components(); ++c)
-    if (c != source.names.mesh) components.push_back(c);
+    if (c != source.names.drawn_mesh()) components.push_back(c);
   for (const int f : frames) {
-    const auto nodes = source.names.mesh ? drawn_sites(source, f, *source.names.mesh) : space;
+    const auto nodes = source.names.drawn_mesh() ? drawn_sites(source, f, *source.names.drawn_mesh()) : space;
     for (const std::size_t c : components) {
       const auto row = drawn_sites(source, f, c);
       const double drift = mean(row) - mean(drawn_sites(source, 0, c));
@@ -104,13 +104,13 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
                         source.film.time(frames[static_cast<std::size_t>(p)]));
     if (p == 0 && turned)
       body +=
-          "set label 103 'whole turns of the field are taken off' at screen 0.97,0.905 right font ',11' "
+          "set label 103 'multiples of 2 pi are subtracted' at screen 0.97,0.905 right font ',11' "
           "textcolor rgb '#666666'\n";
     if (p == 0 && components.size() > 1) body += key_of_components(source, components);
     const int first = p * static_cast<int>(components.size());
     for (std::size_t c = 0; c < components.size(); ++c)
       body += fmt::format("{} 'waveforms' index {} using 1:2 with {} lw 1.6 lc rgb '{}'", c == 0 ? "plot" : ",",
-                          first + static_cast<int>(c), source.names.mesh ? "linespoints pt 7 ps 0.4" : "lines",
+                          first + static_cast<int>(c), source.names.drawn_mesh() ? "linespoints pt 7 ps 0.4" : "lines",
                           component_colour(c));
     body += "\nunset label\n";
   }

@@ -75,7 +75,8 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
                        const std::string& scene, int winding, const RowNames& names)
     : path_(path), sites_(space.size()), names_(names) {
   constexpr std::size_t block = 1 << 17;  // doubles: 1 MiB
-  const std::size_t columns = std::max({names.field.size(), names.inner.size(), names.multiplier.size()});
+  std::size_t columns = 0;
+  for (const Role role : all_roles) columns = std::max(columns, names.of[role].size());
   frames_per_block_ = std::clamp<std::size_t>(block / (sites_ * columns), 1, 1024);
   frames_per_block_ = std::min(frames_per_block_, static_cast<std::size_t>(std::max<std::int64_t>(1, expected_frames)));
   quiet_hdf5();
@@ -87,27 +88,25 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   const Hdf5Handle positions(H5Dcreate2(file_, "space", H5T_IEEE_F64LE, extent, H5P_DEFAULT, properties, H5P_DEFAULT),
                              H5Dclose);
   time_ = growing(file_, "time", {frames_per_block_});
-  field_ = rows("field", {sites, names.field.size()});
-  if (!names.inner.empty()) inner_ = rows("inner", {sites, names.inner.size()});
-  if (!names.multiplier.empty()) multiplier_ = rows("multiplier", {sites, names.multiplier.size()});
+  for (const Role role : all_roles)
+    if (!names.of[role].empty()) rows_[role] = rows(to_string(role), {sites, names.of[role].size()});
+  const Rows& field = rows_[Role::field];
   if (names.mesh) mesh_ = rows("mesh", {sites});
-  require(positions && time_ && field_.dataset &&
+  require(positions && time_ && field.dataset &&
               H5Dwrite(positions, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, space.data()) >= 0 &&
               write_text(positions, "units", "dimensionless") && write_text(time_, "units", "dimensionless") &&
-              write_text(field_.dataset, "units", "dimensionless") && write_text(file_, "scene", scene) &&
+              write_text(field.dataset, "units", "dimensionless") && write_text(file_, "scene", scene) &&
               write_text(file_, "version", DELF_VERSION) && write_integer(file_, "winding", winding),
           "cannot be written");
   const auto describe = [&](const Rows& of, const std::vector<std::string>& components) {
     if (!of.dataset) return;
-    const bool units = &of == &field_ || write_text(of.dataset, "units", "dimensionless");
+    const bool units = &of == &field || write_text(of.dataset, "units", "dimensionless");
     require(units && write_text(of.dataset, "components", fmt::format("{}", fmt::join(components, ","))),
             "cannot be written");
   };
   if (!names.plain()) {
-    describe(field_, names.field);
-    describe(inner_, names.inner);
-    describe(multiplier_, names.multiplier);
-    if (names.mesh) describe(mesh_, {names.field[*names.mesh]});
+    for (const Role role : all_roles) describe(rows_[role], names.of[role]);
+    if (names.mesh) describe(mesh_, {names.of[names.mesh->role][names.mesh->index]});
   }
   require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
   times_.reserve(frames_per_block_);
@@ -123,17 +122,23 @@ FieldsFile::Rows FieldsFile::rows(const char* name, std::vector<hsize_t> shape) 
 
 FieldsFile::~FieldsFile() = default;
 
+std::vector<FieldsFile::Rows*> FieldsFile::all_rows() {
+  std::vector<Rows*> all;
+  for (const Role role : all_roles) all.push_back(&rows_[role]);
+  all.push_back(&mesh_);
+  return all;
+}
+
 void FieldsFile::append(double time, const RecordedRow& row) {
   times_.push_back(time);
   const auto add = [](Rows& to, std::span<const double> values) {
     to.waiting.insert(to.waiting.end(), values.begin(), values.end());
   };
-  add(field_, row.field);
-  if (inner_.dataset) add(inner_, row.inner);
-  if (multiplier_.dataset) add(multiplier_, row.multiplier);
-  if (mesh_.dataset)
-    for (std::size_t i = *names_.mesh; i < row.field.size(); i += names_.field.size())
-      mesh_.waiting.push_back(row.field[i]);
+  for (const Role role : all_roles)
+    if (rows_[role].dataset) add(rows_[role], row[role]);
+  if (const auto& mesh = names_.mesh)
+    for (std::size_t i = mesh->index; i < row[mesh->role].size(); i += names_.of[mesh->role].size())
+      mesh_.waiting.push_back(row[mesh->role][i]);
   if (times_.size() == frames_per_block_) write_block();
 }
 
@@ -141,29 +146,30 @@ void FieldsFile::write_block() {
   if (times_.empty()) return;
   const hsize_t frames = times_.size();
   bool written = append_block(time_, frames_written_, {frames}, times_.data());
-  for (Rows* rows : {&field_, &inner_, &multiplier_, &mesh_})
+  for (Rows* rows : all_rows())
     if (rows->dataset)
       written =
           written && append_block(rows->dataset, frames_written_, block_of(frames, rows->shape), rows->waiting.data());
   require(written && H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
   frames_written_ += frames;
   times_.clear();
-  for (Rows* rows : {&field_, &inner_, &multiplier_, &mesh_}) rows->waiting.clear();
+  for (Rows* rows : all_rows()) rows->waiting.clear();
 }
 
 void FieldsFile::close() {
   if (!file_) return;
   write_block();
   bool datasets = time_.close();
-  for (Rows* rows : {&field_, &inner_, &multiplier_, &mesh_}) datasets = rows->dataset.close() && datasets;
+  for (Rows* rows : all_rows()) datasets = rows->dataset.close() && datasets;
   require(file_.close() && datasets, "cannot be closed");
 }
 
 void FieldsFile::require(bool went_well, const char* what) {
   if (went_well) return;
   // closing would write a header that promises more than there is; without it the last flush stays readable
-  for (Hdf5Handle* handle : {&time_, &field_.dataset, &inner_.dataset, &multiplier_.dataset, &mesh_.dataset, &file_})
-    handle->abandon();
+  for (Rows* rows : all_rows()) rows->dataset.abandon();
+  time_.abandon();
+  file_.abandon();
   throw SystemFailure(fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), what));
 }
 

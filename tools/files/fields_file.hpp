@@ -18,8 +18,8 @@ namespace delf {
 ///     /time   frames                       attribute units
 ///     /space  sites                        attribute units
 ///     /field  frames × sites × fields      values as they are, not reduced modulo 2π
-///     /inner, /multiplier                  the same of nodes inside the cells, and of multipliers; if there are any
-///     /mesh   frames × sites               of a mesh that is a field: its positions
+///     /inner, /multiplier, /trace, /slaved  the same of components of these roles; if there are any
+///     /mesh   frames × sites               of a mesh that moves: its positions
 /// Where there is more than one field at the vertices, each has an attribute `components`: names, comma separated.
 ///
 ///     /       attributes scene (the resolved scene), version, winding
@@ -32,7 +32,7 @@ class FieldsFile {
   ~FieldsFile();
 
   void append(double time, const RecordedRow&);
-  /// Writes what is still waiting. Until then it may be missing on the disk.
+  /// Writes the buffered rows. Until then they may be missing on the disk.
   void close();
 
  private:
@@ -48,10 +48,12 @@ class FieldsFile {
   std::filesystem::path path_;
   std::size_t sites_, frames_per_block_;
   hsize_t frames_written_ = 0;
-  std::vector<double> times_;  ///< waiting
+  std::vector<double> times_;  ///< buffered
   RowNames names_;
   Hdf5Handle file_, time_;  ///< closed in the other order
-  Rows field_, inner_, multiplier_, mesh_;
+  std::vector<Rows*> all_rows();
+  ByRole<Rows> rows_;
+  Rows mesh_;
 };
 
 }  // namespace delf

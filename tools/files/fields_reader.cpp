@@ -42,18 +42,14 @@ bool fits(const std::array<hsize_t, 3>& extent) {
 
 }  // namespace
 
-const char* dataset_name(Role role) {
-  return role == Role::field ? "field" : role == Role::inner ? "inner" : "multiplier";
-}
-
 FieldsReader::FieldsReader(const std::filesystem::path& path) {
   quiet_hdf5();
   file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
   if (!file_) throw bad_file("is not an HDF5 file that can be read; name the fields.h5 of a run");
   time_ = {H5Dopen2(file_, "time", H5P_DEFAULT), H5Dclose};
-  for (const Role role : {Role::field, Role::inner, Role::multiplier}) {
+  for (const Role role : all_roles) {
     const bool needed = role == Role::field;
-    Hdf5Handle dataset(H5Dopen2(file_, dataset_name(role), H5P_DEFAULT), H5Dclose);
+    Hdf5Handle dataset(H5Dopen2(file_, to_string(role), H5P_DEFAULT), H5Dclose);
     if (needed && !dataset) throw bad_file("has no dataset /field; name the fields.h5 of a run");
     const auto extent = extent_of(dataset);
     if (needed && !extent) throw bad_file("/field is not frames x sites x components; name the fields.h5 of a run");

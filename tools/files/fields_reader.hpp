@@ -11,11 +11,8 @@
 
 namespace delf {
 
-/// The dataset of fields.h5 that holds the components of a role: "field", "inner" or "multiplier".
-const char* dataset_name(Role);
-
-/// The rows of a fields.h5, one frame at a time. A run starts from its fields at the vertices; what looks at a run
-/// reads the nodes inside the cells and the multipliers too.
+/// The rows of a fields.h5, one frame at a time. A run starts from its fields at the vertices; a verification
+/// reads the other roles too.
 class FieldsReader final : public RowsFile {
  public:
   explicit FieldsReader(const std::filesystem::path&);
@@ -43,7 +40,7 @@ class FieldsReader final : public RowsFile {
   const Part& part(Role role) const { return parts_[static_cast<std::size_t>(role)]; }
 
   Hdf5Handle file_, time_;
-  std::array<Part, 3> parts_;  ///< by role; held open, so that HDF5 keeps the block that a frame is in
+  std::array<Part, all_roles.size()> parts_;  ///< by role; held open, so that HDF5 keeps the block that a frame is in
 };
 
 }  // namespace delf

@@ -6,7 +6,7 @@
 
 namespace delf {
 
-/// An HDF5 identifier that is closed when it goes. A negative one stands for a call that failed.
+/// An HDF5 identifier, closed by the destructor. A negative one stands for a failed call.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);

@@ -13,8 +13,6 @@ namespace delf {
 
 namespace {
 
-constexpr std::array roles{Role::field, Role::inner, Role::multiplier};
-
 std::string counted(int n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
 
 // A reader's errors name a key of a scene; here the file comes from the command line.
@@ -33,7 +31,7 @@ FieldsReader opened(const std::filesystem::path& path, const std::string& place)
 RecordedSection::RecordedSection(const std::filesystem::path& path, const LatticeSystem& system,
                                  const std::vector<int>& back, double time_step, const char* option)
     : place_(fmt::format("command line: {} {}", option, path.string())), file_(opened(path, place_)) {
-  std::array<int, 3> count{};
+  std::array<int, all_roles.size()> count{};
   for (std::size_t c = 0; c < back.size(); ++c) {
     const Role role = system.all_components()[c].role;
     columns_.push_back({role, count[static_cast<std::size_t>(role)]++, back[c]});
@@ -41,7 +39,7 @@ RecordedSection::RecordedSection(const std::filesystem::path& path, const Lattic
   if (const int here = file_.sites(), there = system.lattice().sites(); here != there)
     throw wrong(fmt::format("has {}, and the lattice has {}; use lattice.sites = {}, or another file",
                             counted(here, "site"), there, here));
-  for (const Role role : roles)
+  for (const Role role : all_roles)
     if (count[static_cast<std::size_t>(role)] > 0) check_shape(system, role);
   check_times(time_step);
 }
@@ -61,8 +59,8 @@ void RecordedSection::check_shape(const LatticeSystem& system, Role role) const 
   const std::string needed =
       fmt::format("frames x sites x components = {} x {} x {} ({})", rows(), file_.sites(), components, names);
   if (here == 0)
-    throw wrong(fmt::format("has no dataset /{}, which the scheme needs; write {}", dataset_name(role), needed));
-  throw wrong(fmt::format("/{} is {} x {} x {}; write {}", dataset_name(role), frames, sites, here, needed));
+    throw wrong(fmt::format("has no dataset /{}, which the scheme needs; write {}", to_string(role), needed));
+  throw wrong(fmt::format("/{} is {} x {} x {}; write {}", to_string(role), frames, sites, here, needed));
 }
 
 void RecordedSection::check_times(double time_step) const {
@@ -90,7 +88,7 @@ void RecordedSection::check_finite(const std::vector<double>& values, Role role,
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
       throw wrong(fmt::format("/{} is not finite in frame {} at site {}; leave out the frames from there on",
-                              dataset_name(role), frame, i / static_cast<std::size_t>(file_.shape(role).components)));
+                              to_string(role), frame, i / static_cast<std::size_t>(file_.shape(role).components)));
 }
 
 void RecordedSection::read(Role role, int back, std::int64_t j, std::vector<double>& row) const {

@@ -14,7 +14,7 @@ namespace delf {
 /// The rows of a file in the layout of fields.h5, of a run or of any other program, as a section of a system's
 /// components: the first frame is row 0, and the next frames are the next rows.
 ///
-/// What is wrong with the file is thrown as BadScene: "command line: OPTION FILE: what; remedy".
+/// Errors of the file are thrown as BadScene: "command line: OPTION FILE: what; remedy".
 class RecordedSection {
  public:
   /// `back`, of each component: the rows that its value in a frame lies behind the fields there. Multipliers and inner

@@ -7,8 +7,8 @@
 
 namespace delf {
 
-/// Rows in a file, to start from. What is wrong with it is thrown as BadInput with the key initial.file, or
-/// initial.frame for a frame that it does not have.
+/// Rows in a file, to start from. Errors of the file are thrown as BadInput with the key initial.file, or
+/// initial.frame for a missing frame.
 class RowsFile {
  public:
   virtual ~RowsFile() = default;

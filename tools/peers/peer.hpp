@@ -18,7 +18,7 @@ class Peer {
   virtual void start(std::span<const double> phi, std::span<const double> phi_t) = 0;
   /// `steps` steps of length h. What depends on h alone is computed when h changes. Allocates nothing.
   virtual void advance(double h, std::int64_t steps) = 0;
-  /// Now; sizes as in start().
+  /// The present φ and φ_t; sizes as in start().
   virtual void copy(std::span<double> phi, std::span<double> phi_t) const = 0;
 };
 
@@ -30,7 +30,7 @@ struct PeerInfo {
   std::unique_ptr<Peer> (*make)(const WaveEquation&);  ///< throws std::invalid_argument for what it cannot run
 };
 
-/// All that this build has.
+/// All peers of this build.
 const std::vector<PeerInfo>& peers();
 
 }  // namespace delf::peers

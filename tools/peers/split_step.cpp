@@ -272,7 +272,7 @@ std::unique_ptr<Peer> make_split_step(const WaveEquation& equation, const Splitt
   using enum WaveEquation::Potential;
   equation.check(1);
   if (mass == MassIn::flow && (equation.potential == phi4 || equation.turn != 0))
-    throw std::invalid_argument("a mass in the flow wants its vacuum at 0 and a field that does not turn");
+    throw std::invalid_argument("a mass in the flow needs its vacuum at 0 and a field that does not wind");
   switch (equation.potential) {
     case quadratic:
       return made<KleinGordonFlow>(equation, splitting);

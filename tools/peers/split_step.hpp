@@ -16,7 +16,7 @@ enum class MassIn {
 
 /// Fourier split-step: a splitting whose flow is exact, mode by mode. The wave equation and Klein–Gordon are one flow a
 /// step, without an error in time. Throws std::invalid_argument for a mass in the flow where that is of no use: for φ⁴,
-/// whose vacua are not at φ = 0, and for a field that turns.
+/// whose vacua are not at φ = 0, and for a field that winds.
 std::unique_ptr<Peer> make_split_step(const WaveEquation&, const Splitting&, MassIn = MassIn::kick);
 
 /// One for each order and place of the mass, with the splitting that served the sine-Gordon breather best there.

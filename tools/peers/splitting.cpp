@@ -35,7 +35,7 @@ Splitting composed(bool flows_first, const std::vector<double>& half) {
 
 Splitting strang() { return composed(true, {1}); }
 
-// With their sources in jets/splitting.hpp: those that the engine takes are given to its opponents too.
+// With their sources in jets/tables/splitting.hpp: the peers get the splittings of the engine too.
 static Splitting kicks_first(const delf::Splitting& splitting) { return {false, splitting.kicks, splitting.drifts}; }
 Splitting blanes_moan_4() { return kicks_first(splitting_of_order(4)); }
 Splitting blanes_moan_6b() { return kicks_first(splitting_of_order(6)); }

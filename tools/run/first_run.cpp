@@ -57,7 +57,7 @@ TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants
   const std::vector<double> there = solution.at(lattice, until);
   const FieldError error = field_error(last, there, lattice.space_step());
   run.error_linf = error.linf, run.error_l2 = error.l2;
-  if (!solution.is_exact() || scene.initial.name == "file") return tried;
+  if (!solution.is_exact() || scene.from_file()) return tried;
   // the same of the exact field, at the same sites and times
   const double turn = 2 * std::numbers::pi * InitialRows(scene).winding();
   const int fields = solution.components();

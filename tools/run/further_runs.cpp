@@ -38,7 +38,7 @@ Scene refined(const Scene& scene) {
 void measure_orders(const Scene& scene, int winding, std::vector<Measured> balances, std::int64_t rows,
                     Verdict& verdict) {
   try {
-    if (scene.initial.name == "file") throw BadInput("initial.file", "its rows come from a file");
+    if (scene.from_file()) throw BadInput("initial.file", "its rows come from a file");
     const Scene fine = refined(scene);
     const InitialRows initial(fine);
     Simulation simulation = build(fine, winding);

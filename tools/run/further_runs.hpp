@@ -9,7 +9,7 @@
 
 namespace delf {
 
-// What a verification needs runs of its own for.
+// Checks of a verification that need further runs.
 
 /// Runs the scene at half of its steps in time and space up to the time of row rows − 1, and gives the balances their
 /// orders; where it cannot be run so, they are left without, and the verdict says why.

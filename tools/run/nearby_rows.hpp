@@ -10,8 +10,8 @@
 
 namespace delf {
 
-/// The rows of a solution near to another one, read beside it row by row. It has to be a solution too: its equations
-/// are checked as they come.
+/// The rows of a solution near another one, read beside it row by row. It must be a solution too: its equations are
+/// checked as the rows come.
 class NearbyRows {
  public:
   /// Holds `held` rows at once. `equations`: if its equations are to be checked.
@@ -21,7 +21,7 @@ class NearbyRows {
   int rows() const { return section_.rows(); }
   /// Reads row j, which comes after row j − 1.
   void take(std::int64_t j);
-  /// What it differs by from the rows of a window that ends with the row taken last.
+  /// Its difference to the rows of a window that ends with the row read last.
   Window difference(const Window&) const;
   /// "field equations of nearby-a.h5"
   std::vector<Check> checks() const;

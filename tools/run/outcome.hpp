@@ -16,7 +16,7 @@ struct Conserved {
   double error_max;  ///< the largest |J - J_0|, relative to |J_0| unless that is 0
 };
 
-/// What a run came to: all that summary.json and the report on stdout tell.
+/// The result of a run: everything in summary.json and in the report on stdout.
 struct Outcome {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 

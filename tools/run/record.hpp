@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
-#include <span>
 #include <vector>
+
+#include "tools/scene/row_names.hpp"
 
 namespace delf {
 
-/// What is told of a recorded row, apart from its values.
+/// The monitors of a recorded row.
 struct Record {
   std::int64_t row = 0;
   double time = 0;
@@ -14,12 +15,10 @@ struct Record {
   double momentum = 0, charge = 0;
   int iterations = 0;  ///< of the step that gave this row; the starting rows have none
   double residual = 0;
-  std::vector<double> further;  ///< the constraint, if the scheme has any, and the conserved sums
+  std::vector<double> further;  ///< the constraint if there is one, the method's monitors, the conserved sums
 };
 
-/// A recorded row, by the roles of its components, each site by site.
-struct RecordedRow {
-  std::span<const double> field, inner, multiplier;
-};
+/// A recorded row: the components of each role, site by site.
+using RecordedRow = ByRole<std::vector<double>>;
 
 }  // namespace delf

@@ -7,7 +7,7 @@ namespace delf {
 
 Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, const std::string& resolved_scene,
                    int winding, const RowNames& names)
-    : series_(folder / "series.csv", names.further) {
+    : names_(names), series_(folder / "series.csv", names.further) {
   const Lattice& lattice = scene.problem.lattice;
   const std::int64_t expected = scene.every == 0 ? 1 : scene.steps / scene.every + 2;
   if (scene.fields) {
@@ -15,16 +15,29 @@ Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, cons
     for (int i = 0; i < lattice.sites(); ++i) space.push_back(lattice.position(i));
     fields_.emplace(folder / "fields.h5", space, expected, resolved_scene, winding, names);
   }
-  if (scene.figures) film_.emplace(lattice, expected, names.field.size());
+  if (scene.figures) film_.emplace(lattice, expected, names.drawn().size());
 }
 
 void Recorder::append(const Record& record, const RecordedRow& row) {
   series_.append(record);
   if (fields_) fields_->append(record.time, row);
-  if (film_) film_->append(record.time, row.field);
+  if (film_) film_->append(record.time, drawn(row));
   if (std::isfinite(record.energy_error)) energy_errors_.append(record.time, record.energy_error);
   const double error = std::abs(record.energy_error);
   if (std::isnan(error) || error > largest_energy_error_) largest_energy_error_ = error;  // not a number stays so
+}
+
+/// The fields, and the positions of sites that move.
+std::vector<double> Recorder::drawn(const RecordedRow& row) const {
+  const auto& mesh = names_.mesh;
+  if (!mesh || mesh->role == Role::field) return row[Role::field];
+  const std::size_t fields = names_.of[Role::field].size(), step = names_.of[mesh->role].size();
+  std::vector<double> all;
+  for (std::size_t i = 0; i * fields < row[Role::field].size(); ++i) {
+    for (std::size_t a = 0; a < fields; ++a) all.push_back(row[Role::field][i * fields + a]);
+    all.push_back(row[mesh->role][i * step + mesh->index]);
+  }
+  return all;
 }
 
 void Recorder::close() {

@@ -23,7 +23,7 @@ class Recorder {
            const RowNames&);
 
   void append(const Record&, const RecordedRow&);
-  /// Writes all that waits. What fails does not keep the rest from being written; the first failure is then thrown.
+  /// Writes all buffered rows. A failure does not prevent the other files; the first one is then thrown.
   void close();
 
   const Film* film() const noexcept { return film_ ? &*film_ : nullptr; }
@@ -31,6 +31,9 @@ class Recorder {
   double largest_energy_error() const noexcept { return largest_energy_error_; }
 
  private:
+  std::vector<double> drawn(const RecordedRow&) const;
+
+  RowNames names_;
   SeriesFile series_;
   std::optional<FieldsFile> fields_;
   std::optional<Film> film_;

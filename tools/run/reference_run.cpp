@@ -78,7 +78,7 @@ std::optional<Reference> refined(const Contestant& scheme, const Scene& scene, c
 }  // namespace
 
 Reference find_reference(const Scene& scene, const WorkPrecisionRequest& request, Clock::time_point until) {
-  if (scene.initial.name == "file")
+  if (scene.from_file())
     throw scene.settings.error("initial.state", "a file has rows of one lattice only; use a state");
   if (has_exact(scene, request.until)) return {ComparedSolution::exact(scene, request.until), "the exact solution", 0};
   std::vector<Contestant> schemes = engine_contestants(scene);

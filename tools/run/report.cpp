@@ -9,12 +9,8 @@
 namespace delf {
 
 std::string scheme_in_words(const Problem& p) {
-  std::string scheme = p.method == "multisymplectic" ? p.stencil : p.method;
-  const bool point = p.lattice.space() == Space::point;
-  if (p.method == "spacetime")
-    scheme += fmt::format(" of degrees {} and {}, {}", p.degree_time, p.degree_space, p.quadrature);
-  if (p.method == "r-adaptive") scheme += fmt::format(", alpha = {:g}", p.alpha);
-  if (point) return fmt::format("{}, h = {:.6g}", scheme, p.time_step);
+  const std::string scheme = scheme_label(p);
+  if (p.lattice.space() == Space::point) return fmt::format("{}, h = {:.6g}", scheme, p.time_step);
   return fmt::format("{}, N = {}, h/k = {:.4g}", scheme, p.lattice.sites(), p.time_step / p.lattice.space_step());
 }
 

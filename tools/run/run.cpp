@@ -5,13 +5,14 @@
 
 #include <cstdio>
 
+#include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
-#include "tools/scene/initial_rows.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/recorder.hpp"
 #include "tools/run/stepping.hpp"
+#include "tools/scene/initial_rows.hpp"
 #include "tools/scene/text_file.hpp"
 
 namespace delf {
@@ -20,11 +21,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Makes the folder, and takes away what an earlier run left there under the names that this one may write.
+// Makes the folder, and removes files of an earlier run with the names that this one may write.
 void prepare(const fs::path& folder, const Scene& scene) {
   std::error_code error;
   for (const char* name : {"fields.h5", "series.csv"})
-    if (scene.initial.name == "file" && fs::equivalent(scene.initial_file, folder / name, error))
+    if (scene.from_file() && fs::equivalent(scene.initial_file, folder / name, error))
       throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
   make_results_folder(folder);
   std::vector<fs::path> earlier;
@@ -34,13 +35,12 @@ void prepare(const fs::path& folder, const Scene& scene) {
   for (const fs::path& file : earlier) fs::remove(file, error);
 }
 
-// What the recorder keeps of the rows, as pictures. A figure that cannot be drawn fails no run.
+// Figures of the rows that the recorder kept. A run does not fail if a figure cannot be drawn.
 std::string drawn(const Scene& scene, int winding, const RowNames& names, const Recorder& recorder,
                   const fs::path& folder) {
   if (!recorder.film()) return {};
   const std::string& theory = scene.problem.theory;
-  const bool angle =
-      scene.problem.circle_valued || theory == "pendulum" || theory.find("sine-gordon") != std::string::npos;
+  const bool angle = scene.problem.circle_valued || find_theory(theory).angle;
   try {
     return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding,
                          *recorder.film(), recorder.energy_errors(), scene.times, names},

@@ -8,7 +8,7 @@
 namespace delf {
 
 /// `delf run`: steps a scene and leaves scene.ini, series.csv, summary.json, fields.h5 and figures in `folder`, and a
-/// report on stdout. Whatever stops it, what it has by then is written first.
+/// report on stdout. However it ends, the results so far are written first.
 ExitCode run(const Scene&, const std::filesystem::path& folder);
 
 }  // namespace delf

@@ -23,7 +23,7 @@ double continued(const Lattice& lattice, std::span<const double> row, int d, int
 }  // namespace
 
 bool has_exact(const Scene& scene, double until) {
-  if (scene.initial.name == "file") return false;
+  if (scene.from_file()) return false;
   try {
     const auto state = make_state(scene.initial, scene.problem.lattice);
     return state->exact() && until <= state->exact_until();

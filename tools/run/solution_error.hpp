@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// What the last rows of runs are compared with: the state's exact solution, or a row of a much finer run.
+/// The solution that last rows are compared with: the state's exact solution, or a row of a much finer run.
 class ComparedSolution {
  public:
   /// The exact solution; throws std::logic_error unless has_exact().
@@ -34,7 +34,7 @@ class ComparedSolution {
 bool has_exact(const Scene&, double until);
 
 /// The centre of the first field's φ_x²; around a circle, the angle of its first Fourier coefficient. Not a number
-/// where it has none to speak of: it is the same all over, or all gone.
+/// where there is no centre: φ_x² is constant, or zero.
 double gradient_centre(const Lattice&, std::span<const double> field, int components, double turn);
 /// a − b, the shorter way around a circle.
 double separation(const Lattice&, double a, double b);

@@ -9,7 +9,6 @@
 
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
-#include "schemes/families/row_kernel.hpp"
 #include "tools/run/field_error.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
@@ -33,14 +32,11 @@ class Stopwatch {
   Clock::time_point begin_ = Clock::now();
 };
 
-// Whether a step is one explicit loop over the row, its nonlinear part at a site being that of the site's own value.
-bool is_one_loop(const Simulation& simulation) {
+// Whether threads share the strips of a step: explicit ones, whose matrix is one number.
+bool is_shared(const Simulation& simulation) {
   const Stepper& stepper = simulation.evolution().stepper();
   const LatticeSystem& system = simulation.evolution().system();
-  if (!stepper.layout() || stepper.iterates() || !stepper.matrix_free()) return false;
-  if (!system.lattice().is_circle() || system.families().size() != 1) return false;
-  const RowKernel* kernel = system.families()[0]->row_kernel();
-  return kernel && kernel->nonlinearity() == Nonlinearity::values && !kernel->explicit_neighbours().empty();
+  return stepper.layout() && !stepper.iterates() && stepper.matrix_free() && system.lattice().is_circle();
 }
 
 }  // namespace
@@ -48,7 +44,7 @@ bool is_one_loop(const Simulation& simulation) {
 std::string threads_in_words(const Simulation& simulation, int asked) {
   constexpr int packs_for_each = 1024;  // as RowStepper shares them
   if (asked == 1) return {};
-  if (!is_one_loop(simulation)) return fmt::format("1 of {}: only explicit steps of one loop are shared", asked);
+  if (!is_shared(simulation)) return fmt::format("1 of {}: only explicit steps are shared", asked);
   const int used = std::clamp(simulation.evolution().stepper().layout()->packs() / packs_for_each, 1, asked);
   if (used == asked) return fmt::to_string(asked);
   return fmt::format("{} of {}: each takes {} sites or more", used, asked, packs_for_each * lanes);
@@ -58,9 +54,7 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
                    Outcome& outcome)
     : scene_(scene), initial_(initial), simulation_(simulation), outcome_(outcome), names_(names) {
   const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
-  row_.resize(sites * names.field.size());
-  inner_.resize(sites * names.inner.size());
-  multiplier_.resize(sites * names.multiplier.size());
+  for (const Role role : all_roles) row_[role].resize(sites * names.of[role].size());
   for (const std::string& name : simulation.conserved_names())
     outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   outcome.threads = threads_in_words(simulation, scene.problem.threads);
@@ -81,7 +75,7 @@ void Stepping::start() {
     const double initial = monitors.conserved[j];
     outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0};
   }
-  if (!names_.multiplier.empty()) outcome_.constraint_max = 0;
+  if (!names_.of[Role::multiplier].empty()) outcome_.constraint_max = 0;
 }
 
 void Stepping::run(Recorder& recorder) {
@@ -130,19 +124,16 @@ void Stepping::step_until(std::int64_t row, Progress& progress) {
   bool looked_at = true;  // as the row that an interruption leaves must be: it is recorded
   while (newest_ < row && !(looked_at && Interrupt::asked())) {
     const std::int64_t unseen = Interrupt::asked() ? 0 : row - 1 - newest_;
-    const auto count = static_cast<int>(std::clamp<std::int64_t>(unseen, 1, simulation_.steps_at_once()));
     looked_at = unseen == 0;
-    if (looked_at) simulation_.step(true);
-    else simulation_.steps(count);
-    newest_ += count;
-    count_steps(count);
+    simulation_.step(looked_at);
+    ++newest_;
+    count_step();
     progress.at(newest_);
   }
 }
 
-// Steps that are taken together are explicit: they do not iterate.
-void Stepping::count_steps(int count) {
-  outcome_.steps_taken += count;
+void Stepping::count_step() {
+  ++outcome_.steps_taken;
   last_iterations_ = simulation_.iterations();
   iterations_ += last_iterations_;
   outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);
@@ -161,14 +152,13 @@ void Stepping::record(std::int64_t row) {
   record.row = row;
   record.time = static_cast<double>(row) * scene_.problem.time_step;
   if (!started_) {
-    row_ = initial_.row0();
+    row_[Role::field] = initial_.row0();
     record.energy = record.energy_error = record.momentum = record.charge = Outcome::unknown;
     record.further.assign(names_.further.size(), Outcome::unknown);
   } else {
     const int back = static_cast<int>(newest_ - row);
-    simulation_.copy_row(back, row_);
-    if (!inner_.empty()) simulation_.copy_row(back, inner_, Role::inner);
-    if (!multiplier_.empty()) simulation_.copy_row(back, multiplier_, Role::multiplier);
+    for (const Role role : all_roles)
+      if (!row_[role].empty()) simulation_.copy_row(back, row_[role], role);
     const auto monitors = simulation_.monitors();
     record.energy = monitors.energy;
     record.energy_error = (monitors.energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);
@@ -183,16 +173,17 @@ void Stepping::record(std::int64_t row) {
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
   outcome_.charge_final = record.charge;
-  recorder_->append(record, {row_, inner_, multiplier_});
+  recorder_->append(record, row_);
   ++outcome_.records;
 }
 
-// The constraint and the conserved sums.
+// The constraint, the monitors of the method, and the conserved sums.
 void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
-  if (!multiplier_.empty()) {
+  if (!row_[Role::multiplier].empty()) {
     record.further.push_back(monitors.constraint);
     if (!(monitors.constraint <= outcome_.constraint_max)) outcome_.constraint_max = monitors.constraint;
   }
+  record.further.insert(record.further.end(), monitors.of_method.begin(), monitors.of_method.end());
   for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
     Conserved& c = outcome_.conserved[j];
     c.final = monitors.conserved[j];
@@ -216,9 +207,9 @@ void Stepping::close_outcome() {
 void Stepping::measure_error() {
   const State* exact = initial_.exact();
   if (!exact || recorded_ < 0 || outcome_.time > exact->exact_until()) return;
-  std::vector<double> solution(row_.size());
+  std::vector<double> solution(row_[Role::field].size());
   exact->values(outcome_.time, scene_.problem.lattice, solution);
-  const FieldError error = field_error(row_, solution, scene_.problem.lattice.space_step());
+  const FieldError error = field_error(row_[Role::field], solution, scene_.problem.lattice.space_step());
   outcome_.error_linf = error.linf;
   outcome_.error_l2 = error.l2;
 }

@@ -7,16 +7,16 @@
 
 namespace delf {
 
-/// "2", or how many of the threads that are asked for share a step, and why not more; empty if one is asked for.
+/// "2", or how many of the requested threads share a step, and why not more; empty if one is requested.
 std::string threads_in_words(const Simulation&, int asked);
 
 /// Steps a simulation through its scene, and records: rows 0, every, 2·every, … and the last one, whichever becomes the
-/// last. What the steps cost and gave is told to the outcome, also when they fail.
+/// last. The outcome receives the cost and the results, also when steps fail.
 class Stepping {
  public:
   Stepping(const Scene&, const InitialRows&, Simulation&, const RowNames&, Outcome&);
 
-  /// Gives the simulation its first rows. Throws BadScene; if the numerics fail, run() tells it.
+  /// Gives the simulation its first rows. Throws BadScene; a numerical failure is reported by run().
   void start();
   /// Until the end, or an interruption. Throws NumericalFailure, with the step, after recording the last good row.
   void run(Recorder&);
@@ -24,7 +24,7 @@ class Stepping {
  private:
   void record_and_step();
   void step_until(std::int64_t row, Progress&);
-  void count_steps(int count);
+  void count_step();
   void record(std::int64_t row);
   void fail(const NumericalFailure&);
   bool to_be_recorded(std::int64_t row) const;
@@ -39,7 +39,7 @@ class Stepping {
   Outcome& outcome_;
   Recorder* recorder_ = nullptr;
   const RowNames& names_;
-  std::vector<double> row_, inner_, multiplier_;
+  RecordedRow row_;
   bool started_ = false;
   std::int64_t newest_ = 0, recorded_ = -1;
   double iterations_ = 0;

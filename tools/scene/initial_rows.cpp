@@ -10,7 +10,7 @@ namespace delf {
 InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
   const Settings& settings = scene.settings;
   try {
-    if (scene.initial.name != "file") {
+    if (!scene.from_file()) {
       state_ = make_state(scene.initial, scene.problem.lattice);
       if (rule() == StartRule::exact && !state_->knows_second_row())
         throw settings.error("initial.start", "the second row of this state is not known; use centred");
@@ -38,9 +38,9 @@ int InitialRows::winding() const {
 
 StartRule InitialRows::rule() const {
   if (file_) return StartRule::exact;
-  if (!scene_.start && (scene_.problem.method == "spacetime" || scene_.problem.method == "composition"))
-    return StartRule::legendre;
-  return scene_.start.value_or(state_->knows_second_row() ? StartRule::exact : StartRule::centred);
+  if (scene_.start) return *scene_.start;
+  return find_method(scene_.problem.method)
+      .start.value_or(state_->knows_second_row() ? StartRule::exact : StartRule::centred);
 }
 
 std::string InitialRows::description() const {
@@ -78,10 +78,16 @@ std::vector<double> InitialRows::section(const Simulation& simulation, Writer wr
   const double h = scene_.problem.time_step, k = scene_.problem.lattice.space_step();
   std::vector<double> out(sites * d), at_node;
   NodePosition node{};
-  std::size_t inner = 0;
   for (std::size_t c = 0; c < d; ++c) {
     if (components[c].role == Role::multiplier) continue;
-    const std::size_t a = components[c].role == Role::inner ? inner++ % fields : c;
+    if (components[c].role == Role::slaved) {
+      // sites that move start from where those of the lattice are, at rest
+      if (components[c].position && write == &State::values)
+        for (std::size_t i = 0; i < sites; ++i)
+          out[i * d + c] = scene_.problem.lattice.position(static_cast<int>(i));
+      continue;
+    }
+    const auto a = static_cast<std::size_t>(components[c].field);
     if (at_node.empty() || components[c].at.time != node.time || components[c].at.space != node.space) {
       node = components[c].at;
       if (file_) at_node = file_->row(scene_.initial_frame + row);
@@ -102,7 +108,7 @@ void InitialRows::start(Simulation& simulation) const {
   check(simulation);
   const double h = scene_.problem.time_step;
   try {
-    if (file_ && simulation.count(Role::inner) > 0)
+    if (file_ && simulation.count(Role::inner) + simulation.count(Role::trace) > 0)
       throw BadInput("initial.state", "a file has no values at the nodes inside the cells; choose another state");
     if (rule() == StartRule::centred)
       return simulation.start_centred(section(simulation, 0), section(simulation, &State::velocities, 0, true));

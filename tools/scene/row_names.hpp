@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,17 +10,32 @@
 
 namespace delf {
 
+/// Something of each role.
+template <class T>
+struct ByRole {
+  std::array<T, all_roles.size()> values{};
+  T& operator[](Role role) { return values[static_cast<std::size_t>(role)]; }
+  const T& operator[](Role role) const { return values[static_cast<std::size_t>(role)]; }
+};
+
 /// What the columns of recorded rows, and of the series, are called.
 struct RowNames {
   RowNames() = default;
   explicit RowNames(const Simulation&);
 
-  std::vector<std::string> field{"phi"}, inner, multiplier;
-  std::vector<std::string> further;  ///< columns of series.csv after the residual
-  std::optional<std::size_t> mesh;   ///< the field that is the position of the nodes
+  ByRole<std::vector<std::string>> of{{{std::vector<std::string>{"phi"}}}};  ///< names of the components
+  std::vector<std::string> further;                ///< columns of series.csv after the residual
+  struct Mesh {
+    Role role;
+    std::size_t index;
+  };
+  std::optional<Mesh> mesh;  ///< the component that is the position of the sites
 
+  /// What figures draw: the fields, and behind them the positions of sites that move, if these are not a field.
+  std::vector<std::string> drawn() const;
+  std::optional<std::size_t> drawn_mesh() const;  ///< which of them are the positions
   /// One field at the vertices, and nothing else.
-  bool plain() const { return field.size() == 1 && inner.empty() && multiplier.empty(); }
+  bool plain() const;
 };
 
 }  // namespace delf

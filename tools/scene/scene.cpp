@@ -2,10 +2,14 @@
 #include "tools/scene/scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "schemes/states/state_registry.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/values.hpp"
 
@@ -17,9 +21,10 @@ namespace {
 
 constexpr double usual_records = 400;
 
-const TheoryInfo& theory_of(const Problem& problem) {
-  const auto& all = theories();
-  return *std::find_if(all.begin(), all.end(), [&](const TheoryInfo& t) { return t.name == problem.theory; });
+// The name that the scene gives for what declares keys: its theory, its method, or its state.
+const std::string& chosen(const Scene& scene, DeclaredBy kind) {
+  if (kind == DeclaredBy::state) return scene.initial.name;
+  return kind == DeclaredBy::theory ? scene.problem.theory : scene.problem.method;
 }
 
 Wall wall(const Values& values, std::string_view key) {
@@ -39,33 +44,35 @@ Lattice read_lattice(const Settings& settings, const Values& values) {
   return lattice;
 }
 
+// What the scene gives, of all theories and methods (others may run in its place); those of its own are complete.
+void read_parameters(const Values& values, Problem& p) {
+  for (const Declaration& declaration : declarations()) {
+    if (declaration.kind == DeclaredBy::state) continue;
+    const std::string& name = declaration.kind == DeclaredBy::theory ? p.theory : p.method;
+    for (const Parameter& parameter : declaration.parameters)
+      if (name == declaration.name) p.parameters[parameter.key] = values.parameter(parameter);
+      else if (values.given(parameter.key) && !p.parameters.has(parameter.key))
+        p.parameters[parameter.key] = values.parameter(parameter);
+  }
+}
+
 Problem read_problem(const Settings& settings, const Values& values) {
   Problem p;
   p.theory = values.choice("theory.name");
   p.circle_valued = values.choice("theory.fibre") == "S1";
-  p.mass = values.real("theory.mass");
-  p.lambda = values.real("theory.lambda");
-  p.impurity_strength = values.real("theory.strength");
-  p.impurity_width = values.real("theory.width");
-  p.impurity_position = values.real("theory.position");
   p.lattice = read_lattice(settings, values);
   p.stencil = values.choice("lattice.stencil");
   p.method = values.choice("scheme.method");
   p.tolerance = values.real("scheme.tolerance");
   p.seed_order = static_cast<int>(values.integer("scheme.seed_order"));
   p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
-  p.degree_time = static_cast<int>(values.integer("scheme.degree_time"));
-  p.degree_space = static_cast<int>(values.integer("scheme.degree_space"));
-  p.quadrature = values.choice("scheme.quadrature");
-  p.order = static_cast<int>(values.integer("scheme.order"));
-  p.space_order = static_cast<int>(values.integer("lattice.space_order"));
-  p.alpha = values.real("scheme.alpha");
   p.threads = static_cast<int>(values.integer("run.threads"));
   const bool by_courant = values.given("lattice.courant");
   p.time_step = by_courant ? values.real("lattice.courant") * p.lattice.space_step() : values.real("lattice.time_step");
   if (!std::isnormal(p.time_step))
     throw settings.error(by_courant ? "lattice.courant" : "lattice.time_step",
                          "the time step is outside the range of double precision; use another");
+  read_parameters(values, p);
   return p;
 }
 
@@ -73,18 +80,10 @@ StateRequest read_initial(const Values& values, const Problem& problem) {
   StateRequest r;
   r.name = values.choice("initial.state");
   r.theory = problem.theory;
-  r.mass = problem.mass;
-  r.lambda = problem.lambda;
-  r.components = theory_of(problem).components;
-  r.position = values.maybe_real("initial.position");
-  r.speed = values.maybe_real("initial.speed");
-  r.separation = values.maybe_real("initial.separation");
-  r.frequency = values.maybe_real("initial.frequency");
-  r.wavenumber = values.maybe_real("initial.wavenumber");
-  r.amplitude = values.maybe_real("initial.amplitude");
-  r.epsilon = values.maybe_real("initial.epsilon");
-  r.width = values.maybe_real("initial.width");
-  r.eccentricity = values.maybe_real("initial.eccentricity");
+  for (const Parameter& p : find_theory(problem.theory).parameters) r.values[p.key] = values.parameter(p);
+  for (const Parameter& p : find_state(r.name).parameters)
+    if (values.given(p.key)) r.values[p.key] = values.parameter(p);
+  r.components = make_theory(find_theory(problem.theory), problem.parameters)->components();
   if (const auto winding = values.maybe_integer("boundary.winding"); winding && problem.lattice.is_circle())
     r.winding = static_cast<int>(*winding);
   r.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
@@ -108,10 +107,15 @@ fs::path find_initial_file(const Settings& settings, const Values& values) {
 std::optional<StartRule> read_start(const Settings& settings, const Values& values, const Problem& problem) {
   if (!values.given("initial.start")) return std::nullopt;
   const std::string rule = values.choice("initial.start");
-  if (rule == "legendre" && problem.method != "spacetime" && problem.method != "composition")
-    throw settings.error("initial.start", "needs scheme.method = spacetime or composition; use exact or centred");
-  if (rule == "legendre") return StartRule::legendre;
-  return rule == "exact" ? StartRule::exact : StartRule::centred;
+  for (const StartRule known : find_method(problem.method).starts)
+    if (rule == to_string(known)) return known;
+  std::vector<std::string> able, known;
+  for (const MethodEntry* entry : method_entries())
+    for (const StartRule start : entry->starts)
+      if (rule == to_string(start)) able.insert(able.begin(), entry->name);
+  for (const StartRule start : find_method(problem.method).starts) known.emplace_back(to_string(start));
+  throw settings.error("initial.start", fmt::format("needs scheme.method = {}; use {}", fmt::join(able, " or "),
+                                                    fmt::join(known, " or ")));
 }
 
 std::int64_t read_steps(const Settings& settings, const Values& values, double time_step) {
@@ -121,6 +125,21 @@ std::int64_t read_steps(const Settings& settings, const Values& values, double t
     throw settings.error(
         "run.until", fmt::format("is {:.3g} steps of {:.3g}, more than can be counted; use less", steps, time_step));
   return static_cast<std::int64_t>(steps);
+}
+
+// For a key that theories, methods or states declare; empty where the scene's own does, and for other keys.
+std::string why_not_read(const Scene& scene, std::string_view key) {
+  std::optional<DeclaredBy> kind;
+  for (const Declaration& declaration : declarations()) {
+    if (std::ranges::find(declaration.parameters, key, &Parameter::key) == declaration.parameters.end()) continue;
+    if (chosen(scene, declaration.kind) == declaration.name) return {};
+    kind = kind.value_or(declaration.kind);
+  }
+  if (kind == DeclaredBy::theory) return fmt::format("the theory {} does not read it", scene.problem.theory);
+  if (kind == DeclaredBy::state) return fmt::format("the state {} does not read it", scene.initial.name);
+  if (kind == DeclaredBy::method)
+    return fmt::format("only scheme.method = {} reads it", fmt::join(declared_by(key), " or "));
+  return {};
 }
 
 }  // namespace
@@ -139,7 +158,7 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
     throw settings.located(bad);
   }
   scene.initial = read_initial(values, scene.problem);
-  if (scene.initial.name == "file") scene.initial_file = find_initial_file(settings, values);
+  if (!find_state(scene.initial.name).build) scene.initial_file = find_initial_file(settings, values);
   scene.initial_frame = static_cast<int>(values.integer("initial.frame"));
   scene.start = read_start(settings, values, scene.problem);
   scene.steps = read_steps(settings, values, scene.problem.time_step);
@@ -156,37 +175,14 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   return scene;
 }
 
-const char* to_string(StartRule rule) {
-  return rule == StartRule::exact ? "exact" : rule == StartRule::centred ? "centred" : "legendre";
-}
-
 std::string why_without_effect(const Scene& scene, std::string_view key) {
   const bool circle = scene.problem.lattice.is_circle(), point = scene.problem.lattice.space() == Space::point;
-  if (key.starts_with("theory.") && key != "theory.name" && key != "theory.fibre") {
-    const TheoryInfo& theory = theory_of(scene.problem);
-    const bool read = std::find(theory.parameters.begin(), theory.parameters.end(), key) != theory.parameters.end();
-    return read ? "" : "the theory " + theory.name + " does not read it";
-  }
+  if (const auto unread = why_not_read(scene, key); !unread.empty()) return unread;
   if ((key == "lattice.sites" || key == "lattice.length") && point) return "a point has neither length nor sites";
-  if ((key == "scheme.degree_time" || key == "scheme.degree_space" || key == "scheme.quadrature") &&
-      scene.problem.method != "spacetime")
-    return "only scheme.method = spacetime reads it";
-  if ((key == "scheme.order" || key == "lattice.space_order") && scene.problem.method != "composition")
-    return "only scheme.method = composition reads it";
-  if (key == "scheme.alpha" && scene.problem.method != "r-adaptive") return "only scheme.method = r-adaptive reads it";
   if (key == "boundary.winding" && point) return "a point has no winding";
   if (key == "boundary.winding" && !circle) return "an interval has no winding";
   if ((key == "boundary.left" || key == "boundary.right") && point) return "a point has no walls";
   if ((key == "boundary.left" || key == "boundary.right") && circle) return "a circle has no walls";
-  if ((key == "initial.file" || key == "initial.frame") && scene.initial.name != "file")
-    return "only initial.state = file reads it";
-  if (key.starts_with("initial.") && find_key(key)->type == KeyType::real) {
-    const auto& all = states();
-    const auto state =
-        std::find_if(all.begin(), all.end(), [&](const StateInfo& s) { return s.name == scene.initial.name; });
-    const bool read = state != all.end() && state->parameters.find(key.substr(8)) != std::string::npos;
-    return read ? "" : "the state " + scene.initial.name + " does not read it";
-  }
   return "";
 }
 

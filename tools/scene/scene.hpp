@@ -6,15 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "tools/scene/settings.hpp"
 
 namespace delf {
-
-/// What gives row 1: the known solution; the field equation at row 0; the discrete Legendre transform there.
-enum class StartRule { exact, centred, legendre };
-const char* to_string(StartRule);
 
 /// A scene, read and resolved: nothing in it is left to guess, except what only the initial state knows.
 struct Scene {
@@ -25,14 +22,16 @@ struct Scene {
   std::vector<std::string> warnings;  ///< lines for stderr: keys that have no effect
 
   Problem problem;       ///< [theory] [lattice] [scheme] run.threads; the winding is still to come from the state
-  StateRequest initial;  ///< [initial]; its name is "file" if the rows come from `initial_file`
-  std::filesystem::path initial_file;  ///< absolute
+  StateRequest initial;  ///< [initial]
+  std::filesystem::path initial_file;  ///< absolute; empty unless the rows come from a file
   int initial_frame = 0;
   std::optional<StartRule> start;  ///< if the scene gives it
   std::int64_t steps = 0;          ///< after row 0
   std::int64_t every = 1;          ///< 0: the last row only
   bool figures = true, fields = true;
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread
+
+  bool from_file() const { return !initial_file.empty(); }
 };
 
 /// Reads, checks and resolves the scene `file`; throws BadScene.

@@ -8,10 +8,9 @@
 namespace delf {
 
 std::vector<double> fields_of(const LatticeSystem& system, const std::vector<double>& row) {
-  const auto d = static_cast<std::size_t>(system.fields()), C = static_cast<std::size_t>(system.components());
   std::vector<double> fields;
   for (std::size_t n = 0; n < row.size(); ++n)
-    if (n % C < d) fields.push_back(row[n]);
+    if (system.component(static_cast<int>(n) % system.components()).role == Role::field) fields.push_back(row[n]);
   return fields;
 }
 

@@ -7,8 +7,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "tools/scene/suggestion.hpp"
 #include "tools/scene/scene_text.hpp"
+#include "tools/scene/suggestion.hpp"
 
 namespace delf {
 
@@ -38,13 +38,24 @@ std::optional<std::string> Values::text(std::string_view key) const {
     if (s->value.empty()) throw settings_.error(key, "no value is given; give one, or remove the key");
     return s->value;
   }
-  const Key* known = find_key(key);
-  return known && !known->fallback.empty() ? std::optional(std::string(known->fallback)) : std::nullopt;
+  const std::string fallback = known(key).fallback;
+  return fallback.empty() ? std::nullopt : std::optional(fallback);
+}
+
+Key Values::known(std::string_view name) const {
+  for (const Declaration& declaration : declarations()) {
+    const auto p = std::ranges::find(declaration.parameters, name, &Parameter::key);
+    if (p == declaration.parameters.end()) continue;
+    const std::string_view by = chosen_by(declaration.kind);
+    const Setting* chosen = settings_.find(by);
+    if (declaration.name == (chosen ? chosen->value : find_key(by)->fallback)) return key_of(*p);
+  }
+  return *find_key(name);
 }
 
 std::string Values::required(std::string_view key) const {
   if (auto value = text(key)) return *value;
-  throw settings_.error(key, fmt::format("must be given ({})", find_key(key)->meaning));
+  throw settings_.error(key, fmt::format("must be given ({})", known(key).meaning));
 }
 
 double Values::number(const Key& key, std::string_view text) const {
@@ -60,7 +71,7 @@ double Values::number(const Key& key, std::string_view text) const {
   return value;
 }
 
-double Values::real(std::string_view key) const { return number(*find_key(key), required(key)); }
+double Values::real(std::string_view key) const { return number(known(key), required(key)); }
 
 std::optional<double> Values::maybe_real(std::string_view key) const {
   return given(key) ? std::optional(real(key)) : std::nullopt;
@@ -72,7 +83,7 @@ std::int64_t Values::integer(std::string_view key) const {
   const std::errc error = read(value, number);
   if (error == std::errc::result_out_of_range) throw settings_.error(key, "is too large; use a smaller integer");
   if (error != std::errc()) throw settings_.error(key, "is not an integer; write one like 255");
-  const Limits& range = find_key(key)->range;
+  const Limits range = known(key).range;
   const auto low = static_cast<std::int64_t>(std::max(range.low, -9e15));
   const auto high = static_cast<std::int64_t>(std::min(range.high, 9.1e15));
   if (number < low) throw settings_.error(key, below(key, range, low));
@@ -95,9 +106,9 @@ bool Values::toggle(std::string_view key) const {
 
 std::string Values::choice(std::string_view key) const {
   const std::string value = required(key);
-  const auto known = find_key(key)->choices();
-  if (std::find(known.begin(), known.end(), value) == known.end())
-    throw settings_.error(key, "is not known" + suggestion(value, known));
+  const auto choices = known(key).choices;
+  if (std::find(choices.begin(), choices.end(), value) == choices.end())
+    throw settings_.error(key, "is not known" + suggestion(value, choices));
   return value;
 }
 
@@ -106,15 +117,21 @@ std::vector<double> Values::times(std::string_view key) const {
   const std::string list = text(key).value_or("");
   for (std::size_t begin = 0; begin < list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
-    numbers.push_back(number(*find_key(key), trimmed(std::string_view(list).substr(begin, end - begin))));
+    numbers.push_back(number(known(key), trimmed(std::string_view(list).substr(begin, end - begin))));
     begin = end + 1;
   }
   return numbers;
 }
 
+ParameterValue Values::parameter(const Parameter& p) const {
+  if (std::holds_alternative<double>(p.fallback)) return real(p.key);
+  if (std::holds_alternative<int>(p.fallback)) return static_cast<int>(integer(p.key));
+  return p.choices.empty() ? required(p.key) : choice(p.key);
+}
+
 void Values::check(const Key& key) const {
   if (!given(key.name)) return;
-  switch (key.type) {
+  switch (known(key.name).type) {
     case KeyType::real:
       real(key.name);
       break;

@@ -26,6 +26,8 @@ class Values {
   bool toggle(std::string_view key) const;
   std::string choice(std::string_view key) const;
   std::vector<double> times(std::string_view key) const;
+  /// By the type of its fallback.
+  ParameterValue parameter(const Parameter&) const;
 
   std::optional<double> maybe_real(std::string_view key) const;
   std::optional<std::int64_t> maybe_integer(std::string_view key) const;
@@ -34,6 +36,8 @@ class Values {
   void check(const Key&) const;
 
  private:
+  /// The key as the scene's own theory or method declares it.
+  Key known(std::string_view key) const;
   std::string required(std::string_view key) const;
   double number(const Key&, std::string_view text) const;
   const Settings& settings_;

@@ -7,9 +7,12 @@
 #include <chrono>
 #include <cmath>
 
+#include "schemes/declared.hpp"
+#include "schemes/states/state_registry.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
-#include "tools/scene/initial_rows.hpp"
 #include "tools/run/seconds_since.hpp"
+#include "tools/scene/initial_rows.hpp"
 
 namespace delf {
 
@@ -192,43 +195,29 @@ const char* to_string(CornerVerdict verdict) {
 }
 
 std::vector<Setting> keys_of(const Corner& corner) {
-  const Problem& p = corner.problem;
+  Problem p = completed(corner.problem);
   std::vector<Setting> keys;
-  const auto add = [&](const char* key, const std::string& value) { keys.push_back({key, value, 0}); };
+  const auto add = [&](const std::string& key, const std::string& value) { keys.push_back({key, value, 0}); };
   const auto number = [](double x) { return fmt::format("{}", x); };
-  const auto maybe = [&](const char* key, const std::optional<double>& x) {
-    if (x) add(key, number(*x));
-  };
   add("theory.name", p.theory);
   if (p.circle_valued) add("theory.fibre", "S1");
-  const auto& all = theories();
-  const auto theory = std::ranges::find(all, p.theory, &TheoryInfo::name);
-  const auto reads = [&](const char* key) {
-    return theory != all.end() && std::ranges::find(theory->parameters, key) != theory->parameters.end();
+  const MethodEntry& method = find_method(p.method);
+  const auto add_all = [&](const std::vector<Parameter>& declared) {
+    for (const Parameter& parameter : declared)
+      if (p.parameters.has(parameter.key)) add(parameter.key, to_text(p.parameters[parameter.key]));
   };
-  if (reads("theory.mass")) add("theory.mass", number(p.mass));
-  if (reads("theory.lambda")) add("theory.lambda", number(p.lambda));
-  if (p.method == "multisymplectic") add("lattice.stencil", p.stencil);
-  else add("scheme.method", p.method);
-  if (p.method == "spacetime") {
-    add("scheme.degree_time", fmt::format("{}", p.degree_time));
-    add("scheme.degree_space", fmt::format("{}", p.degree_space));
-    add("scheme.quadrature", p.quadrature);
-  }
-  if (p.method == "composition") {
-    add("scheme.order", fmt::format("{}", p.order));
-    add("lattice.space_order", fmt::format("{}", p.space_order));
-  }
+  add_all(find_theory(p.theory).parameters);
+  if (method.reads_stencil) add("lattice.stencil", p.stencil);
+  if (p.method != Problem{}.method) add("scheme.method", p.method);
+  add_all(method.parameters);
   if (p.lattice.space() == Space::interval) add("lattice.space", "interval");
   add("lattice.length", number(p.lattice.length()));
   add("lattice.sites", fmt::format("{}", p.lattice.sites()));
   add("lattice.time_step", number(p.time_step));
   add("initial.state", corner.state.name);
-  maybe("initial.speed", corner.state.speed);
-  maybe("initial.position", corner.state.position);
-  maybe("initial.frequency", corner.state.frequency);
-  maybe("initial.wavenumber", corner.state.wavenumber);
-  maybe("initial.amplitude", corner.state.amplitude);
+  ParameterValues given = corner.state.values;
+  for (const Parameter& parameter : find_state(corner.state.name).parameters)
+    if (given.has(parameter.key)) add(parameter.key, to_text(given[parameter.key]));
   add("run.steps", fmt::format("{}", corner.steps));
   return keys;
 }

@@ -32,15 +32,15 @@ Corner corner_of(const std::string& group, const Draft& d, const NamedScheme& sc
   c.scheme = scheme.name;
   c.problem = scheme.problem;
   c.problem.theory = d.theory;
-  c.problem.mass = d.mass;
-  c.problem.lambda = d.lambda;
+  c.problem.parameters["theory.mass"] = d.mass;
+  c.problem.parameters["theory.lambda"] = d.lambda;
   c.problem.circle_valued = d.circle_valued;
   c.problem.winding = 0;
   c.problem.lattice = Lattice::circle(d.sites, d.length);
   c.problem.time_step = d.courant * c.problem.lattice.space_step();
   c.state.theory = d.theory;
-  c.state.mass = d.mass;
-  c.state.lambda = d.lambda;
+  c.state.values["theory.mass"] = d.mass;
+  c.state.values["theory.lambda"] = d.lambda;
   for (const TheoryInfo& theory : theories())
     if (theory.name == d.theory) c.state.components = theory.components;
   return c;
@@ -53,7 +53,7 @@ std::vector<Draft> stiff() {
     Draft d;
     d.name = fmt::format("mh = {:g}", mass_step);
     d.mass = mass_step / (d.courant * d.length / d.sites);
-    d.state.amplitude = 1;
+    d.state.values["initial.amplitude"] = 1;
     d.growth_bound = 100;
     d.steps = 400;
     all.push_back(d);
@@ -69,7 +69,7 @@ std::vector<Draft> courant() {
     d.name = fmt::format("h/k = {:g}", r);
     d.courant = r;
     d.state.name = "breather";
-    d.state.frequency = 0.6;
+    d.state.values["initial.frequency"] = 0.6;
     d.sites = r < 2 ? 256 : 128;  // steps that must be followed from small h are dear
     d.steps = std::clamp<std::int64_t>(std::llround(15 / (r * d.length / d.sites)), 40, 10000);
     all.push_back(d);
@@ -86,7 +86,7 @@ std::vector<Draft> fast_kinks() {
       Draft d;
       d.name = fmt::format("v = {:g}, k gamma = {:g}", v, width);
       d.state.name = "kink";
-      d.state.speed = v;
+      d.state.values["initial.speed"] = v;
       d.length = 40 / gamma;
       d.sites = 2 * static_cast<int>(std::lround(20 / width));
       d.steps = std::lround(d.sites / 3.0 * 0.9);
@@ -96,17 +96,22 @@ std::vector<Draft> fast_kinks() {
 }
 
 std::vector<Draft> amplitudes() {
+  struct Start {
+    const char *theory, *state;
+    std::int64_t steps;
+  };
   std::vector<Draft> all;
-  for (const char* theory : {"klein-gordon", "sine-gordon"})
+  for (const auto& [theory, state, steps] :
+       {Start{"klein-gordon", "plane-wave", 60}, Start{"sine-gordon", "noise", 500}})
     for (const double A : {1e-300, 1e-100, 1e-8, 1e3, 1e9}) {
       Draft d;
       d.name = fmt::format("{}, A = {:g}", theory, A);
       d.theory = theory;
-      d.state.name = d.theory == "klein-gordon" ? "plane-wave" : "noise";
-      d.state.amplitude = A;
+      d.state.name = state;
+      d.state.values["initial.amplitude"] = A;
       d.sites = 128;
       d.growth_bound = 100;
-      d.steps = d.theory == "klein-gordon" ? 60 : 500;
+      d.steps = steps;
       all.push_back(d);
     }
   return all;
@@ -120,8 +125,8 @@ std::vector<Draft> sizes() {
     d.name = fmt::format("N = {}", N);
     d.sites = N;
     d.length = 0.3 * N;
-    if (N < 60) d.state.amplitude = 0.5;  // noise
-    else d.state.name = "breather", d.state.frequency = 0.6;
+    if (N < 60) d.state.values["initial.amplitude"] = 0.5;  // noise
+    else d.state.name = "breather", d.state.values["initial.frequency"] = 0.6;
     d.energy_bound = N < 60 ? 1 : 0.1;
     d.growth_bound = 100;
     d.steps = N > 1000 ? 40 : 100;
@@ -134,7 +139,7 @@ std::vector<Draft> long_runs() {
   Draft d;
   d.name = "breather, 10^6 steps";
   d.state.name = "breather";
-  d.state.frequency = 0.6;
+  d.state.values["initial.frequency"] = 0.6;
   d.steps = 1000000;
   d.patience = 5;
   d.error_bound = std::numeric_limits<double>::infinity();  // phases drift
@@ -150,7 +155,7 @@ std::vector<Draft> stiff_second_terms() {
     d.theory = "double-sine-gordon";
     const double h = d.courant * d.length / d.sites;
     d.lambda = lambda / (h * h);
-    d.state.amplitude = 0.5;
+    d.state.values["initial.amplitude"] = 0.5;
     d.growth_bound = 100;
     d.steps = 400;
     all.push_back(d);
@@ -177,7 +182,7 @@ std::vector<Draft> wave_maps() {
     d.name = fmt::format("great circle, A = {:g}", A);
     d.theory = "wave-map";
     d.state.name = "great-circle";
-    d.state.amplitude = A;
+    d.state.values["initial.amplitude"] = A;
     d.length = 2 * std::numbers::pi;
     d.steps = 200;
     all.push_back(d);
@@ -193,7 +198,7 @@ std::vector<Draft> resonances() {
     d.name = fmt::format("omega h = {:g} pi", z / std::numbers::pi);
     d.theory = "klein-gordon";
     d.state.name = "plane-wave";
-    d.state.wavenumber = 1;
+    d.state.values["initial.wavenumber"] = 1;
     const double h = d.courant * d.length / d.sites, q = 2 * std::numbers::pi / d.length;
     d.mass = std::sqrt(z * z / (h * h) - q * q);
     d.growth_bound = 100;
@@ -210,7 +215,7 @@ std::vector<Draft> angles() {
     Draft d;
     d.name = fmt::format("values in S1, h/k = {:g}", r);
     d.state.name = "breather";
-    d.state.frequency = 0.6;
+    d.state.values["initial.frequency"] = 0.6;
     d.sites = 256;
     d.courant = r;
     d.circle_valued = true;

@@ -95,7 +95,7 @@ Problem linear_problem(const Problem& scheme, double mass_step, double courant, 
   p.theory = "klein-gordon";
   p.circle_valued = false;
   p.winding = 0;
-  p.mass = mass_step;
+  p.parameters["theory.mass"] = mass_step;
   p.time_step = 1;
   p.lattice = Lattice::circle(sites, sites / courant);
   return p;

@@ -21,7 +21,7 @@ struct GhostMode {
   std::string words;
 };
 
-/// What the symbol of a scheme says about φ = 0.
+/// The linear stability of a scheme about φ = 0, from its symbol.
 struct LinearTheory {
   std::vector<CourantInterval> stable;  ///< Courant numbers, in order, up to the most that was asked for
   std::vector<GhostMode> ghosts;        ///< in the middle of the first of them
@@ -33,11 +33,14 @@ struct LinearTheory {
   bool is_clear(double courant, double relative) const;
 };
 
+/// theory.mass, or 1 if the problem has none.
+inline double mass_of(const Problem& p) { return p.parameters.maybe<double>("theory.mass").value_or(1); }
+
 /// A scheme on a circle of `sites` with h = 1, k = 1/courant and m = mass_step, so that mh stays as the Courant number
 /// changes and the theory klein-gordon.
 Problem linear_problem(const Problem& scheme, double mass_step, double courant, int sites);
 
-/// The stable Courant numbers in (0, most], at `samples` of which it is looked, and the ghosts in the middle of the first
+/// The stable Courant numbers in (0, most], from `samples` of them, and the ghosts in the middle of the first
 /// interval. Throws BadInput for a scheme that cannot be built, or has no symbol.
 LinearTheory linear_theory(const Problem& scheme, double mass_step, double most, int samples = 120);
 
@@ -56,8 +59,8 @@ class WaveGrowth {
 
   const WorstWave& of_all() const { return worst_; }
   WorstWave on_circle(int sites) const;
-  /// The number of sites, of least, least + stride, … most, whose circle has a wave so near to the worst of all that this
-  /// one is seen to grow with the fewest updates of a site (steps × sites).
+  /// The number of sites, of least, least + stride, … most, whose circle has a wave near enough to the worst of all for
+  /// its growth to show with the fewest updates of a site (steps × sites).
   int best_circle(int least, int most, int stride) const;
 
  private:
@@ -72,8 +75,8 @@ struct FrequencyPoint {
   double numerical;    ///< ωk of the scheme
   double exact;        ///< √((qk)² + (mk)²)
 };
-/// The dispersion relation of a scheme of klein-gordon, at `count` wave numbers from 0 to the largest that its nodes tell
-/// apart. Throws as linear_theory.
+/// The dispersion relation of a scheme of klein-gordon, at `count` wave numbers from 0 to the largest that its nodes
+/// resolve. Throws as linear_theory.
 std::vector<FrequencyPoint> frequencies(const Problem& scheme, double courant, double mass_space_step, int count);
 
 }  // namespace delf

@@ -10,8 +10,8 @@
 
 namespace delf {
 
-/// How noise of size 1e-8 fares: stays within what rounding makes of it, grows like the number of steps, grows like a
-/// power of it, or cannot be stepped.
+/// The growth of noise of size 1e-8: none beyond rounding, linear in the number of steps, exponential, or the scheme
+/// cannot be stepped.
 enum class Growth { bounded, linear, exponential, refused };
 const char* to_string(Growth);
 
@@ -22,10 +22,10 @@ struct ObservedGrowth {
   bool stable() const { return kind == Growth::bounded || kind == Growth::linear; }
 };
 
-/// Steps from random rows and looks at the largest |φ| of the second and of the fourth quarter of the run.
+/// Steps from random rows and compares the largest |φ| of the second and of the fourth quarter of the run.
 ObservedGrowth observe_growth(const Problem&, int steps, std::uint64_t seed);
 
-/// Runs at one Courant number, against what theory says of it.
+/// Runs at one Courant number, compared with theory.
 struct Probe {
   double courant = 0;
   bool theory_stable = false;  ///< for waves of any length
@@ -50,10 +50,10 @@ struct Limit {
 
   std::string scheme;
   double mass_step = 0;
-  double theory = unknown, observed = unknown;  ///< Courant numbers; infinite: none up to the most looked at
+  double theory = unknown, observed = unknown;  ///< Courant numbers; infinite: none up to the most examined
   LinearTheory symbol;
   std::vector<Probe> probes;               ///< runs that were compared with theory
-  std::vector<Unresolved> unresolved;      ///< Courant numbers at which neither says anything against the other
+  std::vector<Unresolved> unresolved;      ///< Courant numbers at which no run can decide
   bool limit_unresolved = false;           ///< observed is above theory, and all that lies between is unresolved
   std::optional<Growth> even, odd;         ///< inside the first interval, on N and N − 1 sites
   std::string left_out;                    ///< why there is none of it, or empty
@@ -66,7 +66,7 @@ struct LimitRequest {
   double most = 3;  ///< Courant numbers up to here
   int sites = 64;   ///< even; N − 1 is run too where the scheme allows it
   int steps = 2000;
-  double work = 200;  ///< sites × steps of a run that looks for a wave known to grow: at most so many times the above
+  double work = 200;  ///< sites × steps of a run for a wave known to grow: at most so many times the above
   double agreement = 0.01;   ///< relative, of limits
   int samples = 120;         ///< of theory, in Courant numbers
   int grid = 24;             ///< Courant numbers to run at, besides those that theory makes interesting
@@ -78,13 +78,13 @@ struct LimitRequest {
   double least_growth() const;
 };
 
-/// Runs upwards from small Courant numbers, bisects the first instability to 0.3 %, and looks into the middle of every
-/// interval that theory has. Runs are on N and N − 1 sites; where theory has a wave that grows, and they do not see it,
-/// on the circle that suits this wave best, for as many steps as its |z| asks for, up to `work`. Each run is compared
-/// with what theory says of the waves that its circle has. Disagreements are told, not thrown.
+/// Runs upwards from small Courant numbers, bisects the first instability to 0.3 %, and tries the middle of every
+/// interval of theory. Runs are on N and N − 1 sites. Where theory has a growing wave that they do not show, a further
+/// run is on the circle that suits this wave best, for as many steps as its |z| requires, up to `work`. Each run is
+/// compared with theory for the waves of its own circle. Disagreements are reported, not thrown.
 Limit find_limit(const std::string& name, const Problem& scheme, double mass_step, const LimitRequest&);
 
-/// The same, against intervals that are given.
+/// The same, compared with given intervals.
 Limit compare_with_runs(const std::string& name, const Problem& scheme, double mass_step, const LinearTheory& intervals,
                         const LimitRequest&);
 

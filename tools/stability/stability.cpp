@@ -38,7 +38,7 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
   f.limit_sites = request.limit.sites;
   f.seed = request.limit.seed;
   f.dispersion_courant = base.time_step / base.lattice.space_step();
-  f.dispersion_mass = base.mass * base.lattice.space_step();
+  f.dispersion_mass = mass_of(base) * base.lattice.space_step();
 
   std::vector<Corner> all;
   for (const std::string& group : request.corners)
@@ -63,7 +63,7 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
     if (Interrupt::asked()) break;
     try {
       f.dispersion.push_back(make_dispersion_curve(scheme));
-    } catch (const BadInput&) {  // told by the limits
+    } catch (const BadInput&) {  // reported with the limits
     }
     if (!request.map) continue;
     f.maps.push_back(make_stability_map(scheme, request.limit.most, request.limit.seed));
@@ -72,7 +72,7 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
   for (Corner& corner : all) {
     if (Interrupt::asked()) break;
     CornerResult result = run_corner_apart(corner, request.budget);
-    if (Interrupt::asked()) break;  // what it says is of a run that was ended
+    if (Interrupt::asked()) break;  // its verdict is that of an interrupted run
     f.corners.push_back({std::move(corner), std::move(result)});
     advance(1);
   }
@@ -85,14 +85,14 @@ ExitCode stability(const Scene& scene, const fs::path& folder) {
   const Interrupt interrupt;
   const StabilityRequest request = read_stability_request(scene);
   const StabilityFindings findings = find_stability(request, scene.problem);
-  make_results_folder(folder);  // what an earlier one left there stays until there is something new
+  make_results_folder(folder);  // earlier results stay until there are new ones
   write_text_file(folder / "stability.json", stability_json(scene, findings));
   remove_figures(folder, findings.maps.size() + maps_in_a_figure);
   std::string missing;
   if (scene.figures) {
     try {
       missing = draw_stability(findings, scene.name, folder);
-    } catch (const std::exception& error) {  // a figure that cannot be drawn fails nothing
+    } catch (const std::exception& error) {  // a failed figure does not fail the command
       missing = error.what();
     }
   }

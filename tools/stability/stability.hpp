@@ -9,11 +9,11 @@
 
 namespace delf {
 
-/// Limits by theory and by running, corners, maps and dispersion: what is asked for. Ends early when interrupted.
+/// Limits by theory and by running, stress cases, maps and dispersion, as requested. Ends early when interrupted.
 StabilityFindings find_stability(const StabilityRequest&, const Problem& base);
 
-/// `delf stability`: writes stability.json and figures into `folder`, and tables to stdout. Exit code 1 if runs disagree
-/// with theory, or a corner ends in what must not be.
+/// `delf stability`: writes stability.json and figures into `folder`, and tables to stdout. Exit code 1 if runs
+/// disagree with theory, or a stress case ends in a forbidden verdict.
 ExitCode stability(const Scene&, const std::filesystem::path& folder);
 
 }  // namespace delf

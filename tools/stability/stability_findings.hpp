@@ -10,7 +10,7 @@
 
 namespace delf {
 
-/// How noise fares over Courant number and mh: rows of mh, from the least.
+/// The growth of noise over Courant number and mh: rows of mh, from the least.
 struct StabilityMap {
   std::string scheme;
   std::vector<double> courants, mass_steps;
@@ -30,7 +30,7 @@ struct CornerFinding {
   CornerResult result;
 };
 
-/// What `delf stability` came to.
+/// The results of `delf stability`.
 struct StabilityFindings {
   std::vector<Limit> limits;
   std::vector<CornerFinding> corners;
@@ -46,7 +46,7 @@ struct StabilityFindings {
 
   std::int64_t disagreements() const;
   std::int64_t unresolved() const;   ///< Courant numbers of limits
-  std::int64_t must_not_be() const;  ///< corners of which that can be said
+  std::int64_t must_not_be() const;  ///< stress cases with a forbidden verdict
   bool passed() const { return status == "done" && disagreements() == 0 && must_not_be() == 0; }
 };
 

@@ -39,7 +39,7 @@ StabilityMap make_stability_map(const NamedScheme& scheme, double most, std::uin
         if (i.from > 0) ends.push_back(i.from);
         if (i.to < most * (1 - 1e-9)) ends.push_back(i.to);
       }
-    } catch (const BadInput&) {  // told by the limits
+    } catch (const BadInput&) {  // reported with the limits
     }
   }
   return map;
@@ -47,7 +47,7 @@ StabilityMap make_stability_map(const NamedScheme& scheme, double most, std::uin
 
 DispersionCurve make_dispersion_curve(const NamedScheme& scheme) {
   const double k = scheme.problem.lattice.space_step();
-  return {scheme.name, frequencies(scheme.problem, scheme.problem.time_step / k, scheme.problem.mass * k, 129)};
+  return {scheme.name, frequencies(scheme.problem, scheme.problem.time_step / k, mass_of(scheme.problem) * k, 129)};
 }
 
 }  // namespace delf

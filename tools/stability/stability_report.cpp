@@ -20,7 +20,7 @@ std::string courant(const Limit& l, double value, double most) {
   return std::isinf(value) ? fmt::format("none to {:g}", most) : fmt::format("{:.6g}", value);
 }
 
-// What a limit has to say beyond its numbers.
+// Remarks on a limit.
 std::string remark(const Limit& l) {
   std::string text;
   const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
@@ -92,13 +92,13 @@ std::string cell(const CornerResult& r) {
   return word + (std::isfinite(r.cut_at) && r.verdict != CornerVerdict::unstarted ? "…" : "");
 }
 
-// One row for each corner, one column for each scheme, whose names are numbers that the first line explains.
+// One row for each stress case, one column for each scheme, whose names are numbers that the first line explains.
 std::string corner_table(const StabilityFindings& f) {
   if (f.corners.empty()) return {};
   std::vector<std::string> schemes;
   for (const CornerFinding& c : f.corners)
     if (std::ranges::find(schemes, c.corner.scheme) == schemes.end()) schemes.push_back(c.corner.scheme);
-  std::vector<TextColumn> columns{{"corner", false, 34}};
+  std::vector<TextColumn> columns{{"stress case", false, 34}};
   std::string key;
   for (std::size_t s = 0; s < schemes.size(); ++s) {
     columns.push_back({fmt::format("({})", s + 1)});
@@ -150,13 +150,13 @@ std::string conclusion(const StabilityFindings& f) {
     wrong += c.result.verdict == CornerVerdict::wrong;
   }
   const std::string counts =
-      fmt::format("{} limits compared{}, {} corners ({} refused, {} bounded but wrong), in {}", compared,
+      fmt::format("{} limits compared{}, {} stress cases ({} refused, {} bounded but wrong), in {}", compared,
                   f.unresolved() > 0 ? fmt::format(" ({} h/k unresolved)", f.unresolved()) : "", f.corners.size(),
                   refused, wrong, duration_in_words(f.seconds));
   if (f.status != "done") return fmt::format("not finished ({}): {}\n", f.status, counts);
   if (f.passed()) return fmt::format("passed: {}\n", counts);
-  return fmt::format("FAILED: {} disagreements with theory, {} corners that must not be; {}\n", f.disagreements(),
-                     f.must_not_be(), counts);
+  return fmt::format("FAILED: {} disagreements with theory, {} stress cases with a forbidden verdict; {}\n",
+                     f.disagreements(), f.must_not_be(), counts);
 }
 
 }  // namespace
@@ -178,7 +178,8 @@ std::int64_t StabilityFindings::must_not_be() const {
 }
 
 std::string stability_report(const Scene& scene, const StabilityFindings& f) {
-  return fmt::format("{}: stability of phi_tt - phi_xx + m^2 phi = 0, and corners; seed {}\n", scene.name, f.seed) +
+  return fmt::format("{}: stability of phi_tt - phi_xx + m^2 phi = 0, and stress cases; seed {}\n", scene.name,
+                     f.seed) +
          limits(f) + corner_table(f) + failures(f) + "\n" + conclusion(f);
 }
 

@@ -94,7 +94,8 @@ StabilityRequest read_stability_request(const Scene& scene) {
   for (const std::string& group : request.corners)
     if (group != "none" && std::ranges::find(corner_groups(), group) == corner_groups().end())
       throw scene.settings.error("stability.corners",
-                                 fmt::format("{} is no group of corners{}", group, suggestion(group, corner_groups())));
+                                 fmt::format("{} is no group of stress cases{}", group,
+                                             suggestion(group, corner_groups())));
   if (request.corners.empty()) request.corners = corner_groups();
   std::erase(request.corners, "none");
   request.limit.most = values.real("stability.most_courant");

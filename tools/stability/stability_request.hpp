@@ -9,13 +9,13 @@
 
 namespace delf {
 
-/// What `delf stability` is asked for.
+/// A request to `delf stability`.
 struct StabilityRequest {
   std::vector<NamedScheme> schemes;
   std::vector<double> mass_steps{0.5, 1, 2.3};  ///< mh at which limits are found
   LimitRequest limit;
   std::vector<std::string> corners;  ///< groups
-  double budget = 1;                 ///< seconds for a corner
+  double budget = 1;                 ///< seconds for a stress case
   bool map = true;
 };
 

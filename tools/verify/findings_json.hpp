@@ -9,7 +9,7 @@
 
 namespace delf {
 
-// What the JSON of all that is found out about a scene has in common.
+// Common parts of verify.json and stability.json.
 
 using Json = nlohmann::ordered_json;
 

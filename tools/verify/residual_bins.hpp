@@ -8,7 +8,7 @@
 
 namespace delf {
 
-/// The largest residual in each of some hundred bins of time and space: what a figure can show of any number of rows.
+/// The largest residual in each of some hundred bins of time and space: a figure of any number of rows.
 class ResidualBins {
  public:
   ResidualBins(const Lattice&, double time_step, std::int64_t first_row, std::int64_t rows);

@@ -44,7 +44,7 @@ struct ReversalCurve {
   std::vector<double> distance;
 };
 
-/// What `delf verify` came to: all that verify.json, the report on stdout and the figures tell.
+/// The results of `delf verify`: everything in verify.json, in the report on stdout and in the figures.
 struct Verdict {
   std::vector<Check> checks;
   std::vector<Measured> measured;
@@ -62,7 +62,7 @@ struct Verdict {
   std::int64_t failed() const {
     return std::ranges::count_if(checks, [](const Check& check) { return !check.passed(); });
   }
-  /// Every check was made and passed; where nothing was looked at, nothing has passed.
+  /// Every check was made and passed; without checks, nothing has passed.
   bool passed() const { return status == "done" && !(checks.empty() && measured.empty()) && failed() == 0; }
 };
 

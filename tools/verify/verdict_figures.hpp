@@ -28,7 +28,7 @@ std::string residual_region_figure(const VerdictSource&, const std::filesystem::
 std::string worst_region_figure(const VerdictSource&, const std::filesystem::path& scratch);
 std::string time_reversal_figure(const VerdictSource&, const std::filesystem::path& scratch);
 
-/// What is less than round-off can be, 0 above all, is drawn here on a logarithmic axis.
+/// Values below round-off, 0 above all, are drawn here on a logarithmic axis.
 inline constexpr double drawn_zero = 1e-18;
 /// A value on a logarithmic axis.
 double drawn_logarithmic(double value);

@@ -89,7 +89,7 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
   rows_ = fields_->rows() - std::ranges::max(behind);
 }
 
-// A region that is asked for and holds no equation would pass for verified.
+// A requested region without an equation would be taken for verified.
 void Verification::require_interiors() const {
   std::mt19937_64 unused;
   for (const RegionRequest& request : request_.regions)
@@ -122,7 +122,7 @@ void Verification::choose_moments() {
   if (equations_) bins_.emplace(system_.lattice(), scene_.problem.time_step, reach, rows_ - 2 * reach);
   const FieldTheory& theory = simulation_.theory();
   if (request_.wants("balance")) {
-    if (theory.components() != system_.fields()) leave_out("balance of energy and momentum: the sites move");
+    if (system_.moves()) leave_out("balance of energy and momentum: the sites move");
     else {
       balance_.emplace(theory, system_.lattice(), scene_.problem.time_step, turn_);
       balance_rows_ = std::clamp<std::int64_t>(most_updates / 4 / system_.lattice().sites(), 3, rows_);
@@ -305,7 +305,7 @@ void Verification::collect() {
   if (balance_) {  // without an order
     for (Measured& m : balance_->results()) verdict_.measured.push_back(std::move(m));
   }
-  // A fault that was planted where nobody looked must not pass for one that is not there.
+  // A fault that was planted where no check was made must not count as absent.
   if (request_.fault != "none" && verdict_.status == "done" && verdict_.failed() == 0)
     verdict_.checks.push_back({.name = "planted fault: " + request_.fault,
                                .region = "nowhere",

@@ -24,15 +24,15 @@
 
 namespace delf {
 
-/// Everything that `delf verify` checks of a scene: its rows are made, or read from a file, one after the other, and
-/// looked at as they come; a few of them are held for the regions.
+/// The checks of `delf verify`: the rows of a scene are made, or read from a file, one after the other, and checked as
+/// they come; a few of them are held for the regions.
 class Verification {
  public:
   /// Throws BadScene. `fields` and `nearby` are files of rows that another program made.
   Verification(const Scene&, const VerifyRequest&, const std::optional<std::string>& fields,
                const std::vector<std::string>& nearby);
 
-  /// What it came to; also when the numerics failed on the way, or it was interrupted.
+  /// The results; also when the numerics failed on the way, or it was interrupted.
   Verdict run();
   /// Why it ended early, if it failed.
   std::exception_ptr failure() const { return failure_; }

@@ -29,7 +29,7 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   const Interrupt interrupt;
   const VerifyRequest request = read_verify_request(scene);
   Verification verification(scene, request, fields, nearby);
-  make_results_folder(folder);  // what an earlier one left there stays until there is something new
+  make_results_folder(folder);  // earlier results stay until there are new ones
   const Verdict verdict = verification.run();
   write_text_file(folder / "verify.json", verdict_json(scene, verdict));
   remove_figures(folder);
@@ -37,7 +37,7 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   if (scene.figures) {
     try {
       missing = draw_verdict(verdict, scene.name, scheme_in_words(scene.problem), folder);
-    } catch (const std::exception& error) {  // a figure that cannot be drawn fails nothing
+    } catch (const std::exception& error) {  // a failed figure does not fail the command
       missing = error.what();
     }
   }

@@ -11,7 +11,7 @@
 namespace delf {
 
 /// `delf verify`: checks the rows of a scene, or those of the file `fields`, and writes verify.json and figures into
-/// `folder`. A failed check is told by the exit code.
+/// `folder`. The exit code reports a failed check.
 ExitCode verify(const Scene&, const std::filesystem::path& folder, const std::optional<std::string>& fields,
                 const std::vector<std::string>& nearby);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/simulation.hpp"
-#include "tools/workprecision/contestant.hpp"
+#include "schemes/stepping/flush_denormals.hpp"
 #include "tools/engine.hpp"
-#include "tools/scene/initial_rows.hpp"
 #include "tools/run/interrupt.hpp"
+#include "tools/scene/initial_rows.hpp"
+#include "tools/workprecision/contestant.hpp"
 
 namespace delf {
 
@@ -19,9 +19,10 @@ class EngineRacer final : public Racer {
   void restart() override { initial_.start(simulation_); }
   std::int64_t newest() const override { return simulation_.newest(); }
   void advance(std::int64_t steps) override {
+    constexpr std::int64_t between_interrupts = 64;
     const FlushDenormals for_all_steps;
     while (steps > 1 && !Interrupt::asked()) {
-      const auto count = std::min<std::int64_t>(steps - 1, simulation_.steps_at_once());
+      const auto count = std::min(steps - 1, between_interrupts);
       simulation_.steps(static_cast<int>(count));
       steps -= count;
     }
@@ -42,8 +43,6 @@ class EngineRacer final : public Racer {
   Simulation simulation_;
 };
 
-bool starts_from_velocities(const Problem& p) { return p.method == "spacetime" || p.method == "composition"; }
-
 // The scene as this scheme runs it. Without a known solution rows 0 and 1 come from φ and φ_t, as those of all others.
 Scene scene_of(const Scene& scene, const Problem& problem, const Resolution& r) {
   Scene other = scene;
@@ -52,30 +51,21 @@ Scene scene_of(const Scene& scene, const Problem& problem, const Resolution& r) 
   other.problem.time_step = r.time_step;
   other.steps = r.steps;
   other.start.reset();
-  if (starts_from_velocities(problem) || scene.initial.name == "file") return other;
+  if (find_method(problem.method).start || scene.from_file()) return other;
   if (scene.start == StartRule::centred) other.start = scene.start;
   else if (const InitialRows rows(other); !rows.exact()) other.start = StartRule::centred;
   return other;
-}
-
-int rank_of(const Problem& p) {
-  if (p.method == "composition") return 100 + p.order + p.space_order;
-  if (p.method == "spacetime" && p.quadrature == "gauss") return 10 + 2 * p.degree_time;
-  return p.method == "multisymplectic" && p.stencil == "rectangle-symmetric" ? 1 : 0;
 }
 
 }  // namespace
 
 std::vector<Contestant> engine_contestants(const Scene& scene) {
   std::vector<Contestant> all;
-  for (NamedScheme& scheme : named_schemes(scene.problem)) {
-    const Problem& p = scheme.problem;
-    const int nodes = p.method == "spacetime" ? p.degree_space : 1, rank = rank_of(p);
-    all.push_back({scheme.name, false, nodes, rank,
+  for (NamedScheme& scheme : named_schemes(scene.problem))
+    all.push_back({scheme.name, false, scheme.nodes, scheme.rank,
                    [&scene, problem = std::move(scheme.problem)](const Resolution& r) -> std::unique_ptr<Racer> {
                      return std::make_unique<EngineRacer>(scene_of(scene, problem, r));
                    }});
-  }
   return all;
 }
 

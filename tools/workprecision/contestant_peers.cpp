@@ -23,18 +23,13 @@ using peers::WaveEquation;
 // The scene's equation in the peers' words, if it is one of theirs: a single field on a circle.
 std::optional<WaveEquation> equation_of(const Scene& scene) {
   const Problem& p = scene.problem;
-  if (!p.lattice.is_circle() || p.circle_valued || scene.initial.name == "file") return std::nullopt;
-  WaveEquation equation{};
-  if (p.theory == "wave") equation.potential = WaveEquation::Potential::none;
-  else if (p.theory == "klein-gordon") equation.potential = WaveEquation::Potential::quadratic;
-  else if (p.theory == "sine-gordon") equation.potential = WaveEquation::Potential::sine_gordon;
-  else if (p.theory == "phi4") equation.potential = WaveEquation::Potential::phi4;
-  else return std::nullopt;
-  equation.mass = p.mass;
-  equation.lambda = p.lambda;
-  equation.length = p.lattice.length();
+  if (!p.lattice.is_circle() || p.circle_valued || scene.from_file()) return std::nullopt;
+  const auto parameter = [&](const char* key) { return p.parameters.maybe<double>(key).value_or(1); };
+  auto equation =
+      peers::wave_equation(p.theory, parameter("theory.mass"), parameter("theory.lambda"), p.lattice.length(), 0, 0);
+  if (!equation) return equation;
   const auto state = make_state(scene.initial, p.lattice);
-  equation.turn = 2 * std::numbers::pi * scene.initial.winding.value_or(state->winding());
+  equation->turn = 2 * std::numbers::pi * scene.initial.winding.value_or(state->winding());
   return equation;
 }
 

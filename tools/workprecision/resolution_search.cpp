@@ -133,7 +133,7 @@ void ResolutionSearch::attempt(const Next& next) {
   }
 }
 
-// Errors as large as the field itself say nothing of how refining will change them.
+// Errors as large as the field itself do not predict the effect of refinement.
 bool ResolutionSearch::too_coarse(const Next& next, const WorkPrecisionRun& run) const {
   const Problem& p = scene_.problem;
   const int scene_sites = p.lattice.sites() / contestants_[next.contestant].nodes;

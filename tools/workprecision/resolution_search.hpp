@@ -12,7 +12,7 @@
 
 namespace delf {
 
-/// A resolution that a contestant has been run at, once, untimed.
+/// A resolution at which an entry has been run, once, untimed.
 struct TriedRun {
   std::size_t contestant;
   Resolution resolution;
@@ -20,7 +20,7 @@ struct TriedRun {
   std::shared_ptr<Racer> racer = {};  ///< kept while the run is worth timing: to build it may cost more than its steps
 };
 
-/// Runs contestants once at the resolutions that a request names, or at those that turn out to matter:
+/// Runs each entry once at the resolutions that a request names, or at those that turn out to matter:
 ///
 /// Coarse first. N and h are refined by √2: each alone and both together from every run that no cheaper one of the same
 /// scheme equals, and both together as long as that still helps; with given Courant numbers, both together. It ends for

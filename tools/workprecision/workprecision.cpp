@@ -45,7 +45,7 @@ ExitCode workprecision_in(const fs::path& folder, const Scene& scene) {
   if (scene.figures && !outcome.runs.empty()) {
     try {
       missing = draw_workprecision(scene, outcome, folder);
-    } catch (const std::exception& error) {  // a figure that cannot be drawn fails nothing
+    } catch (const std::exception& error) {  // a failed figure does not fail the command
       missing = error.what();
     }
   }

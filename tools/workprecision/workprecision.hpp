@@ -9,7 +9,7 @@
 namespace delf {
 
 /// Runs a scene with every scheme that the request names, over a ladder of resolutions, and times them in turn. Throws
-/// BadScene for a request that cannot be met; a scheme that cannot be run is left out and says why. Looks at
+/// BadScene for a request that cannot be met; a scheme that cannot be run is left out, with the reason. Checks
 /// Interrupt::asked().
 WorkPrecisionOutcome compare_schemes(const Scene&, const WorkPrecisionRequest&);
 

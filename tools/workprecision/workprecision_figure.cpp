@@ -16,7 +16,7 @@ namespace delf {
 
 namespace {
 
-// Told apart by the colour-blind, and from the grey of the others.
+// Distinguishable by the colour-blind, and from the grey of the others.
 constexpr const char* engine_colours[] = {"#31688e", "#1b9e77", "#7570b3", "#66a61e",
                                           "#0099c6", "#a6761d", "#440154", "#005f73"};
 constexpr const char* peer_colours[] = {"#d95f02", "#e7298a", "#b2182b", "#e6ab02"};

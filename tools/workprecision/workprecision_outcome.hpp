@@ -11,7 +11,7 @@
 
 namespace delf {
 
-/// One scheme at one resolution, from row 0 to the end: how wrong it is there, and what its steps cost.
+/// One scheme at one resolution, from row 0 to the end: its errors, and the cost of its steps.
 struct WorkPrecisionRun {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -37,7 +37,7 @@ struct WorkPrecisionLine {
   double slope = WorkPrecisionRun::unknown;  ///< of log error over log seconds along the front
 };
 
-/// What an accuracy costs: the cheapest run with at most that error. Nothing is interpolated.
+/// The cost of an accuracy: the cheapest run with at most that error. Nothing is interpolated.
 struct WorkPrecisionCost {
   double accuracy = 0;
   std::optional<std::size_t> engine, peer;  ///< indices of runs
@@ -45,7 +45,7 @@ struct WorkPrecisionCost {
   double ratio = WorkPrecisionRun::unknown;
 };
 
-/// All that workprecision.json, the tables and the figure tell.
+/// Everything in workprecision.json, the tables and the figure.
 struct WorkPrecisionOutcome {
   std::string status = "done";  ///< or interrupted
   std::string reference;        ///< what errors are measured against, in words

@@ -8,7 +8,7 @@
 
 namespace delf {
 
-/// What a comparison of work and precision is asked to do: the [workprecision] keys of a scene.
+/// A request to `delf workprecision`: the [workprecision] keys of a scene.
 struct WorkPrecisionRequest {
   std::vector<std::string> schemes;  ///< names of schemes, methods or peers; empty: all
   std::vector<int> sites;            ///< N of the ladder; empty: chosen

@@ -3,370 +3,434 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <map>
+#include <set>
 
-#include "schemes/stepping/rows/row_equations_step.hpp"
+#include "jets/simd/scratch_rows.hpp"
+#include "lattice/error.hpp"
 
 namespace delf {
+namespace {
 
-RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, SectionRows& rows, int history,
-                           const std::optional<Mixture>& mixture, int most_order)
+constexpr std::size_t most_values = 32;  // that a group of source terms reads, or gives
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+RowTable::Ring RowTable::add(const RowLayout& layout, int held, int width) {
+  const Ring ring{static_cast<int>(rows_.size()), held, width};
+  memory_.push_back(std::make_shared<RowBuffer>(layout, held * width));
+  for (int r = 0; r < held * width; ++r) rows_.push_back(memory_.back()->row(r));
+  if (held == 0) rows_.resize(rows_.size() + at(width), nullptr);
+  return ring;
+}
+void RowTable::turn(const Ring& ring) {
+  const auto first = rows_.begin() + ring.first, last = first + ring.held * ring.width;
+  std::rotate(first, last - ring.width, last);
+}
+void RowTable::turn_back(const Ring& ring) {
+  const auto first = rows_.begin() + ring.first;
+  std::rotate(first, first + ring.width, first + ring.held * ring.width);
+}
+
+RowEquations::RowEquations(const LatticeSystem& system, const SolvePlan& plan, const RowLayout& layout, RowTable& table,
+                           int history, int source_rows)
     : system_(system),
-      rows_(rows),
-      layout_(rows.layout()),
+      layout_(layout),
       d_(system.components()),
-      history_(history),
-      turn_(rows.turn()),
-      time_step_(system.time_step()),
-      space_step_(system.lattice().space_step()),
       bricks_(system.placement() == Placement::brick_wall),
       equations_(assemble(system, plan)),
-      y_slots_(rows.rows_held()),
-      v_slots_(rows.increments_held()),
-      candidate_(layout_, d_),
-      work_window_(layout_) {
-  build_marks();
+      most_rows_(source_rows) {
   build_solvers();
-  build_loop();
-  build_outputs();
+  int ages = 2;
+  for (const EquationTerms& equation : equations_.bulk)
+    for (const Term& t : equation.terms)
+      if (t.source == Source::increment) ages = std::max(ages, t.age + 1);
+  for (const SiteEquation& special : equations_.exceptional)
+    for (const Term& t : special.equation.terms)
+      if (t.source == Source::increment) ages = std::max(ages, t.age + 1);
+  y_ = table.add(layout, history + 1, d_);
+  v_ = table.add(layout, std::max(ages, history) + 1, d_);
+  build_rows(table, source_rows);
   build_sums();
-  if (mixture) build_arguments(*mixture, most_order);
-  build_looks();
-  if (can_go_in_place()) make_room_in_place();
-  build_places();
-}
-
-void RowEquations::begin_in_place(std::int64_t n) {
-  begin(n);
-  in_place_ = true;
-  go_in_place();
-  let_sums_read_here();
-}
-
-/// Before something is sent elsewhere for once.
-RowEquations::StepRows& RowEquations::own_rows() {
-  if (here_ != &own_) own_ = *here_, here_ = &own_;
-  return own_;
-}
-
-/// The new row and its increment take the place of the old ones.
-void RowEquations::go_in_place() {
-  StepRows& rows = own_rows();
-  for (int a = 0; a < d_; ++a) {
-    RowIncrement& increment = rows.increments[static_cast<std::size_t>(a)];
-    increment.y = base(y_base_ + a), increment.v = base(v_base_ + a);
+  if (std::ranges::any_of(system.families(), [](const auto& f) { return f->is_placed(); })) {
+    std::vector<double> x;
+    for (int i = 0; i < layout.sites(); ++i) x.push_back(system.lattice().position(i));
+    positions_ = RowBuffer(layout, 1);
+    layout.scatter(x, positions_.row(0));
   }
 }
 
-void RowEquations::find_rows_at(std::int64_t place) {
-  here_ = &own_;
-  y_slots_.at(place);
-  v_slots_.at(place);
-  for (Outputs& o : outputs_) o.slots.at(place);
-  for (int row = oldest_value_; row <= newest_value_; ++row)
-    for (int a = 0; a < d_; ++a)
-      own_.values[value_index(row) + static_cast<std::size_t>(a)] =
-          rows_.y_at(y_slots_(-std::clamp(row, 1 - history_, 1)), a);
-  for (int a = 0; a < d_; ++a) {
-    base(y_base_ + a) = rows_.y_at(y_slots_(0), a);
-    base(E_base_ + a) = rows_.y_at(y_slots_(-1), a);
-    base(v_new_base_ + a) = rows_.v_at(v_slots_(-1), a);
-    for (int age = 0; age < ages_; ++age) base(v_base_ + age * d_ + a) = rows_.v_at(v_slots_(age), a);
-    RowIncrement& rows = increment(a);
-    rows.y_before = base(y_base_ + a);
-    rows.v = base(v_new_base_ + a);
-    rows.y = base(E_base_ + a);
-    rows.v_before = equations_.correction_form ? rows.v : base(v_base_ + a);
-  }
-  for (Outputs& o : outputs_)
-    for (int age = o.oldest; age <= o.newest; ++age)
-      for (int c = 0; c < o.kernel->outputs(); ++c)
-        output(o, age, c) = o.ring.row(o.slots(-age) * o.kernel->outputs() + c);
-  if (!arguments_) return;
-  own_.known_values = rows_.y_at(y_slots_(arguments_->mixture().known_row - 1), 0);
-  own_.output = newest_output();
-  const Outputs& o = outputs_[0];
-  for (int back = 1; back <= static_cast<int>(own_.past_outputs.size()); ++back)
-    own_.past_outputs[static_cast<std::size_t>(back - 1)] = o.ring.row(o.slots(back - o.newest));
-}
-
-/// The rings come round together after as many steps as their common multiple: where rows lie can be looked up then. To
-/// find it out takes a tenth of an implicit step of a few hundred sites.
-void RowEquations::build_places() {
-  if (is_one_loop()) return;
-  int period = std::lcm(rows_.rows_held(), rows_.increments_held());
-  for (const Outputs& o : outputs_) period = std::lcm(period, std::max(1, o.held));
-  if (!reads_unknown_row() || period > longest_period) return;
-  std::vector<StepRows> places;
-  for (int place = 0; place < period; ++place) {
-    find_rows_at(place);
-    places.push_back(own_);
-  }
-  period_ = RingSlots(period);
-  places_ = std::move(places);
-}
-
-SlabRows RowEquations::slab_of(const double* const* values, std::int64_t row) const {
-  return {&layout_, values, positions(), static_cast<double>(row) * time_step_,
-          time_step_, space_step_};
-}
-
-/// The outputs of the stencils anchored `age` rows after row n, reading rows n + 1 − history … n + 1 and no others.
-void RowEquations::evaluate(const Outputs& o, int age, double* const* out, At which, const PackRange& packs,
-                            double largest, const RowsAhead& ahead) {
-  const double* const* values = here_->values.data() + value_index(age + o.first_time);
-  if (which != At::row) {
-    const auto rows = static_cast<std::size_t>((o.last_time - o.first_time + 1) * d_);
-    std::copy_n(values, rows, slab_rows_.begin());
-    const double** const newest = slab_rows_.data() + (1 - age - o.first_time) * d_;
-    for (int a = 0; a < d_; ++a) newest[a] = which == At::candidate ? candidate_.row(a) : increment(a).y_before;
-    values = slab_rows_.data();
-  }
-  SlabRows slab = slab_of(values, n_ + age);
-  slab.ahead = ahead;
-  slab.near = largest <= o.kernel->near_below();
-  if (which == At::straight_line) o.kernel->evaluate_straight(slab, increment(0).v_before, out, packs_of(o, age, packs));
-  else o.kernel->evaluate(slab, out, packs_of(o, age, packs));
-  if (turn_ != 0)
-    for (int c = 0; c < o.kernel->outputs(); ++c) layout_.fill_halo(out[c]);
-}
-
-void RowEquations::evaluate_outputs() {
-  if (is_one_loop()) return;
-  for (Outputs& o : outputs_)
-    for (int age = o.oldest; age <= o.newest; ++age)
-      if (!o.reads_unknown_row(age)) evaluate_in_ring(o, age, At::row);
-  if (arguments_) find_arguments();
-}
-
-void RowEquations::evaluate_unknown_outputs(At at) {
-  if (arguments_) return evaluate_arguments(at);
-  for (Outputs& o : outputs_)
-    for (int age = o.oldest; age <= o.newest; ++age)
-      if (o.reads_unknown_row(age)) evaluate_in_ring(o, age, at);
-}
-
-void RowEquations::evaluate_in_ring(Outputs& o, int age, At at) {
-  for (int c = 0; c < o.kernel->outputs(); ++c) slab_out_[static_cast<std::size_t>(c)] = output(o, age, c);
-  evaluate(o, age, slab_out_.data(), at, where_read(o));
-}
-
-void RowEquations::evaluate_newest_known_outputs() {
-  for (Outputs& o : outputs_)
-    if (o.oldest <= o.newest && !o.reads_unknown_row(o.newest)) evaluate_in_ring(o, o.newest, At::row);
-}
-
-bool RowEquations::reads_unknown_row() const {
-  return std::ranges::any_of(outputs_, [](const Outputs& o) { return o.rows() > 0 && o.reads_unknown_row(o.newest); });
-}
-
-void RowEquations::store_right_sides() {
-  for (int a = 0; a < d_; ++a) {
-    double* const E = stored_right_side(a);
-    sums_[first_sum(a)].pass(layout_, layout_.all(), [E](std::ptrdiff_t at, Pack sum) __attribute__((always_inline)) {
-      sum.store(E + at);
-    });
-  }
-}
-
-RowChange RowEquations::advance(bool compared) {
-  const bool on_the_way = compared && looks_on_the_way_;
-  for (int a = 0; a < d_; ++a) {
-    RowLook& look = increment(a).look;
-    look.parts = on_the_way ? static_cast<int>(looks_[0].parts.size()) : 0;
-    look.expected = candidate_.row(a);
-  }
-  RowChange all = make_new_row();
-  if (compared && !on_the_way) all.change = largest_change(looks_);
-  return all;
-}
-
-bool RowEquations::can_go_in_place() const {
-  if (arguments_ || !(is_streamed_ || divides_straight()) || history_ > 2 || outputs_[0].rows() > 2) return false;
-  for (const Term& t : equations_.bulk[0].terms)
-    if (t.source == Source::increment) return false;
-  return !outputs_[0].kernel->arguments().empty() && (divides_straight() || !looks_back());
-}
-
-bool RowEquations::looks_back() const {
-  for (const Outputs& o : outputs_)
-    for (const Argument& argument : o.kernel->arguments())
-      for (const Argument::Part& part : argument.parts)
-        if (o.newest + part.vertex.time < 0) return true;
-  return false;
-}
-
-/// A stream's windows; and where steps in place write over the newest outputs, those of the row that can be gone back
-/// to, and those of a next step that is not in place, lie beside.
-void RowEquations::make_room_in_place() {
-  if (is_streamed_) {
-    const int window = window_packs(solver_[0]->stream(layout_, right_side(0), {})->last_packs());
-    for (PackWindow& out : output_windows_) out.hold(window, 0, 0);
-    work_window_.hold(window, 0, 0);
-  }
-  Outputs& o = outputs_[0];
-  if (o.rows() < 2) return;
-  o.held = o.rows() + 1;
-  o.slots = RingSlots(o.held);
-  o.ring = RowBuffer(layout_, o.held * o.kernel->outputs());
-}
-
-RowChange RowEquations::stream(At which, const std::function<void(PackRange)>& find, double largest) {
-  const bool straight = which == At::straight_line;
-  Outputs& o = outputs_[0];
-  const int packs = layout_.packs(), halo = layout_.halo(), count = o.kernel->outputs();
-  const PackRange read = where_read(o);
-  for (int c = 0; c < count; ++c) output_places_[static_cast<std::size_t>(c)] = newest_output(c);
-  int reach = 0;
-  for (const Argument& look : looks_)
-    for (const Argument::Part& part : look.parts) reach = std::max(reach, part.vertex.space);
-
-  RowLook& look = increment(0).look;
-  look.parts = looks_on_the_way_ ? static_cast<int>(looks_[0].parts.size()) : 0;
-  const auto stream = solver_[0]->stream(layout_, right_side(0), increment(0));
-  const PackRange last = stream->last_packs();
-  const int window = window_packs(last);
-  const auto hold_candidate = [&](int first, int kept_until) {
-    if (find) candidate_.hold_window(window, first, kept_until);
-  };
-  // What would stand in a row beside the old one has windows where there is none.
-  const auto hold = [&](PackWindow& place, double* beside, int first, int kept_until) {
-    if (!in_place_) return beside;
-    place.hold(window, first, kept_until);
-    return place.row();
-  };
-  const auto hold_outputs = [&](int first, int kept_until) {
-    for (int c = 0; c < count; ++c) {
-      const auto at = static_cast<std::size_t>(c);
-      output(o, o.newest, c) = slab_out_[at] = hold(output_windows_[at], output_places_[at], first, kept_until);
+void RowEquations::build_solvers() {
+  const Lattice& lattice = system_.lattice();
+  bool coupled = false, alternating = false;
+  for (std::size_t a = 0; a < equations_.unknowns.size(); ++a)
+    for (const UnknownEntry& e : equations_.unknowns[a]) {
+      coupled = coupled || e.component != static_cast<int>(a);
+      alternating = alternating || e.alternating != 0;
     }
-  };
-  const auto work = [&](int first, int kept_until) {
-    return hold(work_window_, increment(0).v, first, kept_until);
-  };
-  // What a strip is made from, so many packs further on: it comes from memory while those before are evaluated.
-  const auto rows_after = [&](int shift) {
-    RowsAhead ahead{increment(0).y_before, increment(0).v_before, old_output()};
-    for (const double*& row : ahead)
-      if (row) row += static_cast<std::ptrdiff_t>(shift) * lanes;
-    return ahead;
-  };
-  hold_candidate(last.first - halo, 0);
-  if (find) find({last.first - halo, packs + halo});
-  hold_outputs(last.first + o.lowest, 0);
-  evaluate(o, o.newest, slab_out_.data(), which, {last.first + o.lowest, read.last}, largest);
-  stream->begin(work(last.first, last.first));
-  hold_candidate(-halo, 0);
-  if (find) find({-halo, halo});
-  int found = halo, evaluated = read.first, kept = read.first, summed = 0, done = 0, changed = 0;
-  double change = 0;
-  for (int end = 0; end < packs;) {
-    end = packs - end < 2 * strip_packs ? packs : end + strip_packs;
-    const bool all = end == packs;
-    hold_candidate(std::max(-halo, changed - 2 * halo), found);
-    if (find) find({found, all ? packs + halo : end + halo});
-    found = end + halo;
-    const int evaluated_until = all ? read.last : end + o.highest;
-    hold_outputs(kept, evaluated);
-    evaluate(o, o.newest, slab_out_.data(), which, {evaluated, evaluated_until}, largest,
-             all ? RowsAhead{} : rows_after(found - evaluated));
-    evaluated = evaluated_until;
-    double* const room = work(done, summed);
-    summed = end;
-    const int before = done;
-    done = stream->advance(end, room, straight ? nullptr : candidate_.row(0));
-    // Outputs take the place of those that are no longer read.
-    const int keep_until = all ? read.last : end + o.lowest;
-    for (int c = 0; c < count && in_place_; ++c) {
-      const double* const from = slab_out_[static_cast<std::size_t>(c)];
-      std::copy(from + layout_.at(kept), from + layout_.at(keep_until),
-                output_places_[static_cast<std::size_t>(c)] + layout_.at(kept));
+  if (lattice.is_circle() && !coupled && !alternating) {
+    std::vector<std::unique_ptr<LinearSolver>> solvers;
+    for (const auto& unknowns : equations_.unknowns) {
+      std::vector<BandEntry> stencil;
+      for (const UnknownEntry& e : unknowns) stencil.push_back({e.space, e.coefficient});
+      solvers.push_back(factor_uniform(lattice, layout_, stencil));
     }
-    kept = keep_until;
-    if (straight) continue;
-    // What is looked at on the way is that from one end of a strip to the next, and not beyond it.
-    const int seen = done - reach;
-    if (seen > (looks_on_the_way_ ? before : changed)) {
-      change = larger_or_nan(largest_change(looks_, {changed, looks_on_the_way_ ? before : seen}), change);
-      changed = seen;
+    solver_[0] = by_component(std::move(solvers));
+    return;
+  }
+  for (int parity = 0; parity < (alternating ? 2 : 1); ++parity) {
+    std::vector<MatrixEntry> entries;
+    std::set<std::pair<int, int>> special;
+    const auto add = [&](int i, int a, int shift, const std::vector<UnknownEntry>& unknowns) {
+      // The step is from a row of this parity; the equation sits `shift` rows below the unknown one.
+      const double sign = (parity + 1 - shift + i) % 2 == 0 ? 1 : -1;
+      for (const UnknownEntry& e : unknowns) {
+        const int column = lattice.is_circle() ? lattice.wrapped(i + e.space) : i + e.space;
+        entries.push_back({i * d_ + a, column * d_ + e.component, e.coefficient + sign * e.alternating});
+      }
+    };
+    for (const auto& s : equations_.exceptional) {
+      special.insert({s.site, s.component});
+      if (s.fixed) entries.push_back({s.site * d_ + s.component, s.site * d_ + s.component, 1.0});
+      else add(s.site, s.component, s.equation.shift, s.unknowns);
+    }
+    for (int i = 0; i < layout_.sites(); ++i)
+      for (int a = 0; a < d_; ++a)
+        if (!special.contains({i, a})) add(i, a, equations_.bulk[at(a)].shift, equations_.unknowns[at(a)]);
+    solver_[parity] = factor(lattice, layout_, d_, entries);
+  }
+}
+
+void RowEquations::build_rows(RowTable& table, int source_rows) {
+  for (std::size_t f = 0; f < system_.families().size(); ++f) {
+    const StencilFamily& family = *system_.families()[f];
+    const SourceTerms& terms = *family.sources();
+    if (terms.groups.empty()) continue;
+    const bool bricks = family.pattern().placement == Placement::brick_wall;
+    for (int c = 0; c < terms.outputs(); ++c) {
+      SourceRow row{.family = static_cast<int>(f),
+                    .group = c / terms.outputs_per_group,
+                    .component = c % terms.outputs_per_group,
+                    .ring = {},
+                    .stride = bricks ? 2 : 1};
+      int oldest = std::numeric_limits<int>::max(), newest = std::numeric_limits<int>::min();
+      const auto scan = [&](const EquationTerms& equation) {
+        for (const Term& t : equation.terms)
+          if (t.source == Source::output && t.family == row.family && t.output / terms.outputs_per_group == row.group) {
+            oldest = std::min(oldest, t.age), newest = std::max(newest, t.age);
+            row.lowest = std::min(row.lowest, t.shift), row.highest = std::max(row.highest, t.shift);
+          }
+      };
+      for (const auto& equation : equations_.bulk) scan(equation);
+      for (const auto& special : equations_.exceptional) scan(special.equation);
+      if (oldest > newest) oldest = newest = 0;
+      row.oldest = oldest, row.newest = newest;
+      row.reads_unknown = newest + terms.groups[at(row.group)].latest_time() >= 1;
+      row.is_local = !row.reads_unknown && oldest == newest && row.lowest == 0 && row.highest == 0 && !bricks &&
+                     !has_walls();
+      const int held = std::max(newest - oldest + 1, row.reads_unknown ? source_rows * row.stride + 1 : 1);
+      row.ring = table.add(layout_, row.is_local ? 0 : held);
+      if (row.reads_unknown) row.change = table.add(layout_, 1).first;
+      row.outputs = terms.outputs_per_group;
+      if (std::max(terms.groups[at(row.group)].inputs.size(), at(row.outputs)) > most_values)
+        throw NoConvergence("source terms of so many values go slab by slab");
+      iterates_ = iterates_ || row.reads_unknown;
+      sources_.push_back(row);
+
+      inputs_.push_back(make_inputs(terms.groups[at(row.group)], sources_.back()));
     }
   }
-  increment(0).close(layout_, [](const auto&) {});
-  RowChange result = stream->result();
-  if (!straight)
-    result.change = larger_or_nan(larger_or_nan(largest_change(looks_, {changed, packs}), change), result.change);
-  return result;
 }
 
-/// The pass over whole rows has left the bulk's equation at these sites: puts their own sums in its place.
-void RowEquations::set_exceptional_sites() {
+/// Quadrature values as sums of rows. Rows before the newest that is read are taken from it and the increments,
+/// y_{j−1} = y_j − v_j, so that they may have been written over.
+RowEquations::Inputs RowEquations::make_inputs(const SourceTerms::Group& group, SourceRow& row) {
+  Inputs inputs{.family = system_.families()[at(row.family)].get(), .values = {}, .single_rows = {}, .outputs = row.outputs,
+                .time = group.time, .space = group.space};
+  int newest = std::numeric_limits<int>::min();
+  for (const auto& value : group.inputs)
+    for (const SourceTerms::Part& part : value) {
+      newest = std::max(newest, part.vertex.time);
+      row.left = std::min(row.left, part.vertex.space), row.right = std::max(row.right, part.vertex.space);
+    }
+  for (const auto& value : group.inputs) {
+    std::map<std::pair<int, int>, double> weights;  // of rows at shifts
+    for (const SourceTerms::Part& part : value) {
+      const int back = 1 - (row.newest + newest);  // of the newest row that is read
+      weights[{y_.row(back, part.component), part.vertex.space}] += part.weight;
+      for (int r = 0; r < newest - part.vertex.time; ++r)
+        weights[{v_.row(back + r, part.component), part.vertex.space}] -= part.weight, reads_increments_beside_ = true;
+      row.reads_back = row.reads_back || newest - part.vertex.time > 1;
+    }
+    RowSum sum;
+    for (const auto& [where, weight] : weights) sum.add(where.first, where.second, weight);
+    sum.pair_up();
+    inputs.single_rows.push_back(row.stride == 1 ? sum.one_row() : RowSum::OneRow{});
+    inputs.formed += inputs.single_rows.back().row < 0;
+    inputs.values.push_back(std::move(sum));
+  }
+  return inputs;
+}
+
+bool RowEquations::reads_newest_alone() const {
+  for (const EquationTerms& equation : equations_.bulk)
+    for (const Term& t : equation.terms)
+      if (t.source == Source::increment && t.age > 0) return false;
+  return !has_walls() && std::ranges::all_of(sources_, [](const SourceRow& row) {
+    return row.is_local || (row.reads_unknown && !row.reads_back);
+  });
+}
+
+double RowEquations::weight_of(const SourceRow& row) const {
+  double sum = 0;
+  for (const EquationTerms& equation : equations_.bulk)
+    for (const Term& t : equation.terms)
+      if (t.source == Source::output && &source_of(t) == &row && t.age == row.newest) sum += std::abs(t.coefficient);
+  return sum;
+}
+
+const SourceRow& RowEquations::source_of(const Term& t) const {
+  const auto found = std::ranges::find_if(sources_, [&](const SourceRow& row) {
+    return row.family == t.family &&
+           row.group * system_.families()[at(t.family)]->sources()->outputs_per_group + row.component == t.output;
+  });
+  return *found;
+}
+
+/// Where a term of the known part stands in the table.
+int RowEquations::known_row(const Term& t) const {
+  switch (t.source) {
+    case Source::difference:
+    case Source::value:
+      return y_.row(1, t.component);
+    case Source::increment:
+      return v_.row(1 + t.age, t.component);
+    default: {
+      const SourceRow& row = source_of(t);
+      return row.ring.row(row.newest - t.age);
+    }
+  }
+}
+
+/// Where it stands for residual(): source terms that depend on row n + 1, or have no row, among the measured ones.
+int RowEquations::measured_row(const Term& t) const {
+  if (t.source == Source::unknown) return measured_ + t.component;
+  if (t.source != Source::output) return known_row(t);
+  const SourceRow& row = source_of(t);
+  const bool measured = row.is_local || (row.reads_unknown && t.age == row.newest);
+  return measured ? measured_ + d_ + static_cast<int>(&row - sources_.data()) : known_row(t);
+}
+int RowEquations::measured_count() const { return d_ + static_cast<int>(sources_.size()) + 2 * d_; }
+
+bool RowEquations::brick_exists(const Term& t, int equation_shift, int parity) const {
+  if (t.source != Source::output) return true;
+  const bool bricks = system_.families()[at(t.family)]->pattern().placement == Placement::brick_wall;
+  return !bricks || (parity + t.age - 1 + equation_shift + t.shift) % 2 == 0;
+}
+
+/// g ≈ Σ_{j=1}^{p} (−1)^{j+1} C(p, j) g_{n+1−j}
+double prediction_weight(int p, int j) {
+  double ways = 1;
+  for (int i = 1; i <= j; ++i) ways = ways * (p + 1 - i) / i;  // whole numbers all the way
+  return j % 2 == 0 ? -ways : ways;
+}
+
+void RowEquations::add_sources(RowSum& sum, const Term& t, double c, Taking taking) const {
+  const SourceRow& row = source_of(t);
+  const bool unknown = row.reads_unknown && t.age == row.newest;
+  if (taking.changes) {
+    if (unknown) sum.add(row.change, t.shift, c);
+  } else if (!unknown || taking.predicted_from == 0) {
+    sum.add(known_row(t), t.shift, c);
+  } else {
+    for (int j = 1; j <= taking.predicted_from; ++j)
+      sum.add(row.ring.row(j * row.stride), t.shift, c * prediction_weight(taking.predicted_from, j));
+  }
+}
+
+void RowEquations::build_sums() {
+  measured_ = v_.row(v_.held);
+  for (const SourceRow& row : sources_)
+    measured_ = std::max({measured_, row.ring.row(std::max(1, row.ring.held)), row.change + 1});
+  known_.resize(static_cast<std::size_t>(iterates_ ? most_rows_ + 1 : 1));
+  for (int a = 0; a < d_; ++a) {
+    const EquationTerms& equation = equations_.bulk[at(a)];
+    for (int parity = 0; parity < (bricks_ ? 2 : 1); ++parity) {
+      const double sign = parity == 0 ? 1 : -1;
+      const double constant = equation.constant + sign * equation.constant_alternating;
+      std::vector<RowSum> known(known_.size());
+      RowSum correction, all;
+      for (const Term& t : equation.terms) {
+        if (bricks_ && !brick_exists(t, equation.shift, parity)) continue;
+        const double c = t.coefficient + sign * t.alternating;
+        if (c == 0) continue;
+        if (t.source != Source::output) reach_ = std::max(reach_, std::abs(t.shift));
+        if (t.source == Source::increment && t.shift != 0) reads_increments_beside_ = true;
+        if (t.source == Source::difference) all.add_difference(measured_row(t), t.shift, c);
+        else all.add(measured_row(t), t.shift, c);
+        if (t.source == Source::output) add_sources(correction, t, c, {0, true});
+        for (std::size_t p = 0; p < known.size(); ++p) {
+          if (t.source == Source::output) add_sources(known[p], t, c, {static_cast<int>(p), false});
+          else if (t.source == Source::difference) known[p].add_difference(known_row(t), t.shift, c);
+          else if (t.source != Source::unknown) known[p].add(known_row(t), t.shift, c);
+        }
+      }
+      const auto finish = [this, a](RowSum& sum) { sum.scale(-scale_of(a)), sum.pair_up(); };
+      all.add_constant(constant);
+      all_.push_back(std::move(all));
+      finish(correction);
+      correction_.push_back(std::move(correction));
+      for (std::size_t p = 0; p < known.size(); ++p) {
+        known[p].add_constant(constant);
+        finish(known[p]);
+        known_[p].push_back(std::move(known[p]));
+      }
+    }
+  }
+  for (const SourceRow& row : sources_) {
+    predictions_.emplace_back(static_cast<std::size_t>(most_rows_ + 1));
+    for (int p = 0; p <= most_rows_ && row.reads_unknown; ++p) {
+      RowSum& sum = predictions_.back()[static_cast<std::size_t>(p)];
+      if (p == 0) sum.add(row.ring.row(0), 0, 1);
+      for (int j = 1; j <= p; ++j) sum.add(row.ring.row(j * row.stride), 0, prediction_weight(p, j));
+    }
+  }
+}
+
+void RowEquations::right_side(const RowTable& table, std::int64_t n, int a, Taking taking, int from, int to,
+                              double* w) const {
+  if (!bricks_) return sum_of(a, 0, taking).evaluate(table.data(), layout_.at(from), layout_.at(to), lanes, w);
+  // Packs of even and odd sites take turns; site + row of the equation tells which sum is theirs.
+  const int row_parity = static_cast<int>((n + 1 - equations_.bulk[at(a)].shift) & 1);
+  for (int half = 0; half < 2; ++half)
+    sum_of(a, ((from + half) & 1) ^ row_parity, taking)
+        .evaluate(table.data(), layout_.at(from + half), layout_.at(to), 2 * lanes, w);
+}
+
+void RowEquations::wall_sites(const RowTable& table, std::int64_t n, Taking taking, double* const* w) const {
   for (const SiteEquation& special : equations_.exceptional) {
-    const double E = value_at(special, false, nullptr);
-    for (int slot : layout_.slots_of(special.site)) stored_right_side(special.component)[slot] = -E;
+    const double E = value_at(special, table, n, &taking, nullptr);
+    for (int slot : layout_.slots_of(special.site)) w[special.component][slot] = -E;
   }
 }
 
-/// E at one site, by its own terms.
-double RowEquations::value_at(const SiteEquation& special, bool unknown_too, double* absolute) const {
+/// E at one site, by its own terms: what a right side takes of it, or, without `taking`, all of it at row n + 1.
+double RowEquations::value_at(const SiteEquation& special, const RowTable& table, std::int64_t n, const Taking* taking,
+                              double* absolute) const {
   const int own = layout_.slot(special.site), a = special.component;
-  if (special.fixed) {
-    // v_{n+1} = v_n + w = 0; where w corrects the candidate, v_{n+1} is the candidate's
-    const int v = equations_.correction_form || unknown_too ? v_new_base_ : v_base_;
-    return base(v + a)[own];
-  }
+  const bool changes = taking && taking->changes;
+  if (special.fixed)  // v_{n+1} = v_n + w = 0
+    return changes ? 0 : table[v_.row(taking ? 1 : 0, a)][own];
   const EquationTerms& equation = special.equation;
-  const double sign = (n_ + 1 - equation.shift + special.site) % 2 == 0 ? 1 : -1;
-  double value = equation.constant + sign * equation.constant_alternating;
+  const double sign = (n + 1 - equation.shift + special.site) % 2 == 0 ? 1 : -1;
+  double value = changes ? 0 : equation.constant + sign * equation.constant_alternating;
   for (const Term& t : equation.terms) {
-    if (t.source == Source::unknown && !unknown_too) continue;
-    const double* row = base(index_of(t, unknown_too));
     const int beside = layout_.slot(std::clamp(special.site + t.shift, 0, layout_.sites() - 1));
-    const double less = t.source == Source::difference ? row[own]
-                        : t.source == Source::unknown
-                            ? base(v_base_ + t.component)[beside]  // w = v_{n+1} − v_n
-                            : 0;
-    const double x = (t.coefficient + sign * t.alternating) * (row[beside] - less);
+    const double c = t.coefficient + sign * t.alternating;
+    double x = 0;
+    if (taking && t.source == Source::output) {
+      RowSum sum;
+      add_sources(sum, t, c, *taking);
+      x = sum.at(table.data(), beside - t.shift * lanes);
+    } else if (!taking || (!changes && t.source != Source::unknown)) {
+      const double* const row = table[taking ? known_row(t) : measured_row(t)];
+      x = c * (row[beside] - (t.source == Source::difference ? row[own] : 0));
+    }
     value += x;
     if (absolute) *absolute += std::abs(x);
   }
   return value;
 }
 
-std::size_t RowEquations::bytes_to_come(int parts, bool residual) const {
-  const auto missing = [](std::size_t bytes, std::size_t there) { return bytes > there ? bytes - there : 0; };
-  const std::size_t row = layout_.doubles();
-  std::size_t total = missing(RowBuffer::bytes_of(edge_doubles(parts)), edges_.bytes());
-  if (residual) total += missing(RowBuffer::bytes_of(row, residual_rows()), scratch_.bytes());
-  if (is_streamed_) {
-    // First steps, whose seeds are of low order, iterate: their candidate is whole.
-    const PackRange last = solver_[0]->stream(layout_, right_side(0), {})->last_packs();
-    const std::size_t window = static_cast<std::size_t>(window_packs(last)) * lanes;
-    total += missing(RowBuffer::bytes_of(window) + RowBuffer::bytes_of(row), candidate_.bytes());
+void RowEquations::evaluate(const RowTable& table, std::int64_t n, const SourceRow& source, int back, int from, int to,
+                            double* const* out) const {
+  constexpr int most_packs = 64;
+  const Inputs& inputs = inputs_[static_cast<std::size_t>(&source - sources_.data())];
+  const int count = static_cast<int>(inputs.values.size()), outputs = inputs.outputs;
+  const bool bricks = source.stride == 2, placed = positions_.rows() > 0;
+  const std::int64_t anchors = n + source.newest - back;
+  // The rows of the anchors `back` rows before: further back in the rings of y and v.
+  const double* const* const rows = table.data() + back * d_;
+  const ScratchRows scratch(inputs.formed + (bricks ? outputs : 0) + placed, most_packs * lanes);
+  std::array<const double*, most_values> slots;
+  std::array<double*, most_values> results;
+  // Bricks stand where row + site is even: at every second pack.
+  const int stride = bricks ? 2 : 1;
+  for (int first = bricks ? from + static_cast<int>((from + anchors) & 1) : from; first < to; first += most_packs * stride) {
+    const int packs = std::min(most_packs, (to - first + stride - 1) / stride);
+    const std::ptrdiff_t begin = layout_.at(first), end = layout_.at(first + (packs - 1) * stride) + lanes;
+    int next = 0;
+    for (int j = 0; j < count; ++j)
+      if (const RowSum::OneRow& one = inputs.single_rows[at(j)]; one.row >= 0) {
+        slots[at(j)] = rows[one.row] + begin + one.by;
+      } else {
+        inputs.values[at(j)].evaluate_dense(rows, begin, end, stride * lanes, scratch[next]);
+        slots[at(j)] = scratch[next++];
+      }
+    JetBatch batch{packs * lanes, slots.data(), 0, nullptr};
+    if (placed) {
+      double* const x = scratch[inputs.formed + (bricks ? outputs : 0)];
+      for (int p = 0; p < packs; ++p)
+        (Pack::load(positions_.row(0) + begin + p * stride * lanes) + inputs.space * system_.lattice().space_step())
+            .store(x + p * lanes);
+      batch.x = x;
+      batch.t = (static_cast<double>(anchors) + inputs.time) * system_.time_step();
+    }
+    for (int c = 0; c < outputs; ++c) results[at(c)] = bricks ? scratch[next + c] : out[c] + begin;
+    inputs.family->evaluate_sources(source.group, batch, results.data());
+    for (int c = 0; c < outputs && bricks; ++c)
+      for (int p = 0; p < packs; ++p) Pack::load(results[at(c)] + p * lanes).store(out[c] + begin + 2 * p * lanes);
   }
-  if (divides_straight()) total += missing(RowBuffer::bytes_of(row), candidate_.bytes());
-  return total;
 }
 
-std::size_t RowEquations::window_bytes() const {
-  std::size_t total = work_window_.bytes();
-  for (const PackWindow& out : output_windows_) total += out.bytes();
-  return total;
-}
+std::size_t RowEquations::residual_bytes() const { return RowBuffer::bytes_of(layout_.doubles(), measured_count()); }
 
-std::size_t RowEquations::output_bytes() const {
-  std::size_t total = 0;
-  for (const Outputs& o : outputs_) total += o.ring.bytes();
-  return total;
-}
-
-std::size_t RowEquations::matrix_bytes() const { return solver_[0]->bytes() + (solver_[1] ? solver_[1]->bytes() : 0); }
-std::size_t RowEquations::work_bytes() const {
-  std::size_t total = layout_.bytes();
-  total += places_.size() * (sizeof(StepRows) + (own_.bases.size() + own_.values.size()) * sizeof(double*) +
-                             own_.increments.size() * sizeof(RowIncrement));
-  for (const RowBuffer* b : {&w_, &scratch_, &positions_, &edges_}) total += b->bytes();
-  return total + window_bytes() + candidate_.bytes() + (arguments_ ? arguments_->bytes() : 0) +
-         (tiles_ ? tiles_->bytes() : 0);
+double RowEquations::residual(RowTable table, std::int64_t n) {
+  if (!measured_rows_.rows()) measured_rows_ = RowBuffer(layout_, measured_count());
+  const int numbers = measured_ + measured_count();
+  table.reserve(numbers);
+  for (int r = 0; r < measured_count(); ++r) table[measured_ + r] = measured_rows_.row(r);
+  for (int a = 0; a < d_; ++a) {
+    double* const w = table[measured_ + a];
+    const double *v = table[v_.row(0, a)], *before = table[v_.row(1, a)];
+    for (int p = 0; p < layout_.packs(); ++p)
+      (Pack::load(v + layout_.at(p)) - Pack::load(before + layout_.at(p))).store(w + layout_.at(p));
+    layout_.fill_halo(w);
+  }
+  for (std::size_t s = 0; s < sources_.size(); ++s) {
+    if (sources_[s].component != 0 || !(sources_[s].is_local || sources_[s].reads_unknown)) continue;
+    double* const* const out = &table[measured_ + d_ + static_cast<int>(s)];
+    evaluate(table, n, sources_[s], 0, 0, layout_.packs(), out);
+    for (int c = 0; c < system_.families()[at(sources_[s].family)]->sources()->outputs_per_group; ++c)
+      layout_.fill_halo(out[c]);
+  }
+  double largest = 0, scale = 0;
+  for (int a = 0; a < d_; ++a) {
+    // Sites near walls have their own sums, in the place of the bulk's.
+    double *const E = measured_rows_.row(measured_count() - 2 * d_ + a), *const size = measured_rows_.row(measured_count() - d_ + a);
+    const auto store = [&](std::ptrdiff_t place, Pack sum, Pack absolute) {
+      sum.store(E + place), absolute.store(size + place);
+    };
+    const int row_parity = static_cast<int>((n + 1 - equations_.bulk[at(a)].shift) & 1);
+    for (int half = 0; half < (bricks_ ? 2 : 1); ++half)
+      all_[index_of(a, (half & 1) ^ row_parity)].measure(table.data(), layout_.at(half), layout_.at(layout_.packs()),
+                                                      (bricks_ ? 2 : 1) * lanes, store);
+    for (const SiteEquation& special : equations_.exceptional) {
+      if (special.component != a) continue;
+      double absolute = 0;
+      const double value = value_at(special, table, n, nullptr, &absolute);
+      for (int slot : layout_.slots_of(special.site)) E[slot] = value, size[slot] = absolute;
+    }
+    for (std::size_t i = static_cast<std::size_t>(layout_.at(0)); i < static_cast<std::size_t>(layout_.at(layout_.packs())); ++i) {
+      largest = larger_or_nan(std::abs(E[i]), largest);
+      scale = larger_or_nan(size[i], scale);
+    }
+  }
+  if (!std::isfinite(scale)) return std::numeric_limits<double>::quiet_NaN();
+  return scale != 0 ? largest / scale : 0;
 }
 
 }  // namespace delf

@@ -1,323 +1,149 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <functional>
-#include <limits>
 #include <memory>
-#include <optional>
-#include <span>
 #include <vector>
 
-#include "schemes/stepping/rows/argument_rows.hpp"
-#include "schemes/stepping/rows/candidate_rows.hpp"
-#include "schemes/system/equation_terms.hpp"
-#include "schemes/stepping/rows/largest_terms.hpp"
 #include "schemes/solvers/linear_solver.hpp"
-#include "schemes/stepping/rows/ring_slots.hpp"
-#include "schemes/families/row_kernel.hpp"
-#include "schemes/stepping/rows/row_sum.hpp"
-#include "schemes/stepping/rows/section_rows.hpp"
-#include "schemes/stepping/rows/time_tiles.hpp"
+#include "schemes/solvers/row_sum.hpp"
+#include "schemes/system/equation_terms.hpp"
 
 namespace delf {
 
-/// The field equations of one slab, evaluated for whole rows: y_{n+1} = y_n + v_n + w is the unknown row. All of it is laid
-/// out at set-up: which rows, at which shifts, with which coefficients; a step only looks up where rows lie.
-class RowEquations {
+/// The rows that steps read and make, all in the lanes' layout, in one table of pointers: terms of equations name a row by
+/// its number there. A ring of rows has the newest first, `width` rows each; a step makes number 0 of each ring, and the
+/// oldest takes its place for the next step. A copy of the table has pointers of its own to the same rows.
+class RowTable {
  public:
-  /// `history`: how many rows the equations of a slab read before the unknown one. Throws NoConvergence if the constant
-  /// part of the equations is singular. With a mixture the nonlinear part is evaluated at rows of that argument, which
-  /// steps extrapolate by polynomials up to `most_order`.
-  RowEquations(const LatticeSystem&, const SolvePlan&, SectionRows&, int history,
-               const std::optional<Mixture>& = std::nullopt, int most_order = 0);
-  RowEquations(const RowEquations&) = delete;
-
-  // What is inline without a body here has it in row_equations_step.hpp.
-
-  /// Finds the rows for the step from row n. What follows is about this step.
-  inline void begin(std::int64_t n);
-  /// The same where what it makes is written over what it is made from, if can_go_in_place().
-  void begin_in_place(std::int64_t n);
-
-  /// A step is one loop: no outputs, no matrix.
-  bool is_one_loop() const { return one_loop_ != nullptr; }
-  /// Makes ready for the loop in so many parts of the row; `in_place`: the new row and its increment are written over the
-  /// old ones. Σy² of the row that it goes from is no more than that given.
-  void begin_loop(int parts, bool in_place, double sum_of_squares);
-  /// Rows have been set anew.
-  void forget_rows() { loop_row_ = residual_row_ = slopes_row_ = -1; }
-  /// A part of the new row by that loop; returns its Σy².
-  double loop(int part, int parts) const;
-  void close_loop();
-  /// Lets long rows be taken several steps on at once, in so many parts; and whether that is so.
-  void tile(int parts);
-  bool is_tiled() const { return tiles_.has_value(); }
-  /// The steps from row n on in place, one for each of `squares`, which become Σy² of their rows. False where one of
-  /// these is too large for the next step to be what it was taken for: the rows are then of no use.
-  bool loop_levels(std::span<double> squares, double sum_of_squares, RowTeam*);
-
-  ArgumentRows* arguments() { return arguments_ ? &*arguments_ : nullptr; }
-  /// Those of the rows that are held: steps along straight lines make none.
-  void find_arguments();
-  CandidateRows& candidate() { return candidate_; }
-  void make_row_the_candidate();
-  /// Evaluates the nonlinear outputs that do not read row n+1, and finds the arguments of the rows that are held; those
-  /// outputs that do, of the candidate or of the row.
-  void evaluate_outputs();
-  enum class At { candidate, row, straight_line };  ///< y_n + v_n in the place of y_{n+1}
-  void evaluate_unknown_outputs(At);
-  /// Evaluates the outputs that read rows up to n only and that no earlier step had to evaluate.
-  void evaluate_known_outputs() {
-    if (has_known_outputs_) evaluate_newest_known_outputs();
-  }
-  /// Whether there are outputs that read row n+1.
-  bool reads_unknown_row() const;
-
-  /// Solves for w with the outputs as they are, and makes v_{n+1} and y_{n+1} of it, halos too. `compared`: with the
-  /// candidate, in what the nonlinear outputs look at; otherwise the change is zero.
-  RowChange advance(bool compared);
-  /// The same with the outputs that read row n+1, at arguments: extrapolated, or as the row makes them that was found.
-  /// No |y| of all rows so far is above `largest`.
-  inline RowChange advance_extrapolated(int order, double largest);
-  /// Whether there are outputs enough, of steps since the start, to extrapolate from `order` + 1 rows of them; and a step
-  /// with outputs so found: returns the largest |y|.
-  bool can_extrapolate_outputs(int order) const {
-    return order < static_cast<int>(here_->past_outputs.size()) && n_ + 1 - history_ > order;
-  }
-  double advance_from_outputs(int order);
-  inline RowChange advance_again(double largest);
-  /// Rows outgrow the cache, and all that a step does to them can go strip by strip.
-  bool is_streamed() const { return is_streamed_; }
-  /// From y_n + v_n, which need not be written down: strip by strip, or in one loop. The change is then a bound: the
-  /// largest of w, times the weights of what is looked at.
-  bool goes_straight() const {
-    return divides_straight() || (is_streamed_ && outputs_[0].kernel->evaluates_straight());
-  }
-  /// No |y| of all rows so far is above `largest`.
-  RowChange advance_straight(double largest);
-  /// Steps of one of these kinds, of rows beyond the cache, read no rows before y_n, v_n and the newest outputs.
-  bool can_go_in_place() const;
-  /// Outputs of the unknown row are those of a row before y_n too, which straight lines know from v_n.
-  bool looks_back() const;
-  /// The same as finding the candidate by `find`, or taking the one there is, evaluating, and advance(true), in one
-  /// stream through the rows. A candidate that is found on the way is not kept.
-  RowChange advance_streamed(const std::function<void(PackRange)>& find) { return stream(At::candidate, find); }
-  /// The largest difference between the candidate and y_{n+1}.
-  double whole_change() const { return largest_change(whole_); }
-  /// What outputs look at, at the unknown row: mixtures of values whose weights sum to at least this.
-  double least_weight() const;
-  double most_weight() const;  ///< and to no more than this
-  const std::vector<Argument>& looks() const { return looks_; }
-  /// The largest change of y_{n+1} for a change of 1 in what the outputs look at, if ∂E/∂(y_{n+1}) of the nonlinear part sums
-  /// to 1: an exact ∞-norm, by the response to an impulse. 0 where it is not known: several components, walls.
-  double gain();
-  /// max |E| / max Σ |terms| over the sites for row n+1 as it is. Leaves nothing changed that a step reads.
-  /// No |y| of the rows that it reads is above `largest`.
-  double residual(std::int64_t n, double largest);
-  /// Outputs are the whole residual: w must be corrected by −A₊⁻¹E instead of set to it.
-  bool correction_form() const { return equations_.correction_form; }
-
-  const LinearSolver& solver() const { return *solver_[0]; }
-  bool matrix_free() const { return !solver_[1] && solver_[0]->bytes() == 0; }
-  std::size_t output_bytes() const, matrix_bytes() const, work_bytes() const;
-  /// What is not allocated yet, but will be: by loops in so many parts, by a stream's candidates, by residual().
-  std::size_t bytes_to_come(int parts, bool residual) const;
+  struct Ring {
+    int first = 0, held = 0, width = 1;
+    int row(int back, int a = 0) const { return first + back * width + a; }
+  };
+  /// `held` = 0: a place for a row that is elsewhere.
+  Ring add(const RowLayout& layout, int held, int width = 1);
+  void turn(const Ring& ring);
+  void turn_back(const Ring& ring);
+  double*& operator[](int row) { return rows_[static_cast<std::size_t>(row)]; }
+  double* operator[](int row) const { return rows_[static_cast<std::size_t>(row)]; }
+  const double* const* data() const { return rows_.data(); }
+  void reserve(int rows) { rows_.resize(std::max(rows_.size(), static_cast<std::size_t>(rows))); }
 
  private:
-  /// The rows out_c of one family: a ring over the anchors' rows.
-  struct Outputs {
-    const StencilFamily* family;
-    const RowKernel* kernel;
-    RowBuffer ring;
-    RingSlots slots;
-    int oldest = 0, newest = -1;        ///< anchors' rows that equations use, from n
-    int first_time = 0, last_time = 0;  ///< of the pattern
-    int lowest = 0, highest = 0;        ///< shifts at which equations read
-    int base = 0, measured_base = 0;    ///< where its rows stand among the bases; and those that residual() finds
-    int held = 0;                       ///< rows of the ring
+  std::vector<double*> rows_;
+  std::vector<std::shared_ptr<RowBuffer>> memory_;
+};
 
-    int rows() const { return newest - oldest + 1; }
-    bool reads_unknown_row(int age) const { return age + kernel->outputs_read_until() >= 1; }
-    /// The first age whose outputs do.
-    int oldest_measured() const { return std::max(oldest, 1 - kernel->outputs_read_until()); }
-    int measured_rows() const { return std::max(0, newest + 1 - oldest_measured()) * kernel->outputs(); }
-    /// Where out_c of the stencils anchored `age` rows after row n stands among the bases; and that of residual().
-    int index(int age, int c) const { return base + (age - oldest) * kernel->outputs() + c; }
-    int measured_index(int age, int c) const {
-      return measured_base + (age - oldest_measured()) * kernel->outputs() + c;
-    }
+/// One source term of a family, g_c of a group, along whole rows: hk weight · g adds to the equations.
+struct SourceRow {
+  int family, group, component;  ///< component: which of the group's outputs
+  RowTable::Ring ring;           ///< number 0 is that of the newest anchors, `newest` rows after row n
+  int newest = 0, oldest = 0;    ///< anchors' rows that equations read, from n
+  int lowest = 0, highest = 0;   ///< shifts at which equations read it
+  bool reads_unknown = false;    ///< number 0 depends on row n + 1
+  bool is_local = false;         ///< is needed at its own site, in this step alone: no row of it is kept
+  int outputs = 1;               ///< of its group; of these, this is number `component`
+  int left = 0, right = 0;       ///< shifts at which it reads rows itself
+  bool reads_back = false;       ///< it reads rows before n too
+  int stride = 1;                ///< of bricks, those of the row before stand elsewhere: 2
+  int change = -1;               ///< row: its last change by an iteration
+};
+
+/// The field equations of one slab for whole rows. With y_{n+1} = y_n + v_n + w,
+///
+///     A₊ w = −(linear part at y_n, v_n, v_{n−1}, …) − r(0) − Σ hk weight · g,
+///
+/// A₊ constant and factored once; differences throughout, so that rounding enters at the size of the increment. All sums
+/// are laid out here, once; a step evaluates them.
+class RowEquations {
+ public:
+  /// Throws NoConvergence if the constant part of the equations is singular. Source terms are kept for so many past
+  /// rows, if steps extrapolate them.
+  RowEquations(const LatticeSystem&, const SolvePlan&, const RowLayout&, RowTable&, int history, int source_rows);
+
+  const RowTable::Ring &y() const { return y_; }
+  const RowTable::Ring &v() const { return v_; }
+  const std::vector<SourceRow>& sources() const { return sources_; }
+  bool iterates() const { return iterates_; }  ///< some source term depends on row n + 1
+  bool reads_increments_beside() const { return reads_increments_beside_; }  ///< at shifts: v needs halos
+  /// For the step from row n: on brick walls those from even and from odd rows may differ.
+  const LinearSolver& solver(std::int64_t n) const { return solver_[1] ? *solver_[n & 1] : *solver_[0]; }
+  int reach() const { return reach_; }  ///< so many sites to either side right sides read y
+
+  /// What a right side takes for the source terms of the unknown row: number 0 of their rings, predictions from so many
+  /// rows, or what they have changed by.
+  struct Taking {
+    int predicted_from = 0;
+    bool changes = false;
   };
+  /// The right side of component a, times the solver's scale, for the packs from … to, into w.
+  void right_side(const RowTable&, std::int64_t n, int a, Taking, int from, int to, double* w) const;
+  /// The same as a sum of rows, for all packs; null for bricks, whose packs take turns.
+  const RowSum* right_side(int a, Taking taking) const { return bricks_ ? nullptr : &sum_of(a, 0, taking); }
+  /// The prediction of number 0 of a source row's ring.
+  const RowSum& prediction(const SourceRow& row, int predicted_from) const {
+    return predictions_[static_cast<std::size_t>(&row - sources_.data())][static_cast<std::size_t>(predicted_from)];
+  }
+  /// The sum of its weights' sizes in the equation of the step.
+  double weight_of(const SourceRow&) const;
+  /// The step reads rows n and v_n alone, and the source terms at row n + 1 nothing before row n.
+  bool reads_newest_alone() const;
+  /// Replaces it near walls, where the equations are others.
+  bool has_walls() const { return !equations_.exceptional.empty(); }
+  void wall_sites(const RowTable&, std::int64_t n, Taking, double* const* w) const;
 
-  /// Where all lies that a step from one place of the rings reads and makes.
-  struct StepRows {
-    std::vector<double*> bases;   ///< y_n, y_{n+1}; v_{n+1}, v_n, v_{n−1}, …; outputs; −E, d rows each
-    std::vector<double*> values;  ///< …, y_{n−1}, y_n, y_{n+1}, d rows each; for rows that none reads the next of these
-    std::vector<RowIncrement> increments;
-    std::vector<const double*> past_outputs;  ///< before the newest ones, those first; none where none is extrapolated
-    double *known_values = nullptr, *output = nullptr;  ///< of arguments: y of their known_row, and what they give
+  /// g_c of a group of a family for the packs from … to, of the anchors `back` rows before the newest: out[c], where
+  /// pack v stands at layout.at(v).
+  void evaluate(const RowTable&, std::int64_t n, const SourceRow& first_of_group, int back, int from, int to,
+                double* const* out) const;
+  /// max |E| / max Σ |terms| at row n + 1 as it stands, source terms evaluated there.
+  double residual(RowTable, std::int64_t n);
+  std::size_t residual_bytes() const;  ///< that residual() will have allocated
+  std::size_t matrix_bytes() const { return solver_[0]->bytes() + (solver_[1] ? solver_[1]->bytes() : 0); }
+  std::size_t work_bytes() const { return positions_.bytes() + measured_rows_.bytes(); }
+
+ private:
+  struct Inputs {
+    const StencilFamily* family = nullptr;
+    std::vector<RowSum> values;               ///< of number 0
+    std::vector<RowSum::OneRow> single_rows;  ///< those that are one row, which need not be formed
+    int outputs = 1, formed = 0;              ///< of the group; values that are formed
+    double time = 0, space = 0;
   };
-
-  void build_outputs();
-  void build_solvers();
-  void build_marks();
+  void build_rows(RowTable&, int source_rows);
+  Inputs make_inputs(const SourceTerms::Group&, SourceRow&);
   void build_sums();
-  void build_loop();
-  void find_loop_rows(bool in_place);
-  void build_arguments(const Mixture&, int most_order);
-  void build_looks();
-  void make_room_in_place();
-  static constexpr int longest_period = 32;  ///< of places_
-  void build_places();
-  inline void find_rows();
-  inline void begin_arguments();
-  // Out of line, what few steps come to: all others would save registers for it.
-  [[gnu::noinline]] void find_rows_at(std::int64_t place);
-  [[gnu::noinline]] StepRows& own_rows();
-  [[gnu::noinline]] void go_in_place();
-  std::size_t first_sum(int a) const { return static_cast<std::size_t>(bricks_ ? 2 * a : a); }
-  inline void let_sums_read_here();
-  void evaluate_newest_known_outputs();
-  double largest_change(const std::vector<Argument>& looks) const { return largest_change(looks, layout_.all()); }
-  double largest_change(const std::vector<Argument>& looks, PackRange) const;
-  int residual_rows() const;
-  void make_room_for_residual();
-  void measure_sums(LargestTerms&, double largest);
-  void measure_loop(LargestTerms*);  ///< one for each component, times right_side_scale()
-  LargestTerms measure_loop(int a, const PackRange&, const double* slopes, LargestTerms) const;
-  /// Of a stream, without the candidate's.
-  std::size_t window_bytes() const;
-  /// Packs of a strip: ten rows of it fit into the second level of the cache.
-  static constexpr int strip_packs = 1024;
-  /// That windows need room for where a stream goes by strips.
-  int window_packs(PackRange last) const {
-    return last.last - last.first + 2 * strip_packs + 8 * layout_.halo();
-  }
-  std::size_t edge_doubles(int parts) const {
-    return parts == 1 ? 0 : static_cast<std::size_t>(2 * parts * d_ * loop_reach_ * lanes);
-  }
-  double*& base(int at) { return here_->bases[static_cast<std::size_t>(at)]; }
-  const double* base(int at) const { return here_->bases[static_cast<std::size_t>(at)]; }
-  RowIncrement& increment(int a) { return here_->increments[static_cast<std::size_t>(a)]; }
-  const RowIncrement& increment(int a) const { return here_->increments[static_cast<std::size_t>(a)]; }
-  /// Of a sum that is measured, with the outputs that residual() finds.
-  int index_of(const Term&, bool measured) const;
-  void add_term(RowSum&, const Term&, double coefficient, bool measured) const;
+  void build_solvers();
+  int known_row(const Term&) const;
+  int measured_row(const Term&) const;
+  const SourceRow& source_of(const Term&) const;
+  int measured_count() const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
-  /// Wherever the equations of a pack read outputs: beyond the ends of arcs too.
-  PackRange where_read(const Outputs& o) const {
-    if (turn_ != 0) return layout_.all();  // what is read across the seam is the site's own output, whatever the density
-    return {o.lowest, layout_.packs() + o.highest};
+  void add_sources(RowSum&, const Term&, double coefficient, Taking) const;
+  std::size_t index_of(int a, int parity) const { return static_cast<std::size_t>(bricks_ ? 2 * a + parity : a); }
+  const RowSum& sum_of(int a, int parity, Taking taking) const {
+    return taking.changes ? correction_[index_of(a, parity)]
+                          : known_[static_cast<std::size_t>(taking.predicted_from)][index_of(a, parity)];
   }
-  /// Where the row so many after row n begins in StepRows::values.
-  std::size_t value_index(int row) const { return static_cast<std::size_t>((row - oldest_value_) * d_); }
-  /// Across the seam rows are more by turn_.
-  double with_turn(double largest) const { return largest + std::abs(turn_); }
-  using RowsAhead = decltype(SlabRows::ahead);
-  static constexpr double unknown_largest = std::numeric_limits<double>::infinity();
-  /// No |y| that is read is above `largest`.
-  void evaluate(const Outputs&, int age, double* const* out, At, const PackRange&, double largest = unknown_largest,
-                const RowsAhead& = {});
-  void evaluate_in_ring(Outputs&, int age, At);
-  /// Those at which stencils anchored `age` rows after row n exist.
-  PackRange packs_of(const Outputs& o, int age, PackRange packs) const {
-    if (o.family->pattern().placement != Placement::brick_wall) return packs;
-    return {packs.first + static_cast<int>((packs.first + n_ + age) % 2 != 0), packs.last, 2};
-  }
-  void make_room_for_past_outputs(int count);
-  void build_division(const Mixture&, bool in_steps);
-  bool divides_straight() const { return divides_in_steps_ && on_the_way_; }
-  void evaluate_arguments(At);
-  inline const ArgumentRow& argument_row();
-  double time_of_outputs() const { return static_cast<double>(n_ + outputs_[0].newest) * time_step_; }
-  /// out_c of stencils anchored `age` rows after row n, where sums read it.
-  double*& output(const Outputs& o, int age, int c = 0) { return base(o.index(age, c)); }
-  /// Of the row before; null where equations read no such.
-  double* old_output() { return outputs_[0].rows() > 1 ? output(outputs_[0], outputs_[0].newest - 1) : nullptr; }
-  /// Where those of the unknown row go: in steps in place, over those of the row before.
-  double* newest_output(int c = 0) {
-    const Outputs& o = outputs_[0];
-    return output(o, o.newest - (in_place_ && o.rows() > 1 ? 1 : 0), c);
-  }
-  const DivisionRows& division(const ArgumentRow&, double* output);
-  RowChange divide(const ArgumentRow&, double* output);
-  /// Where arguments have no rows of their own; none of what is looked at is above `largest`.
-  ArgumentRow argument_on_the_way(double largest);
-  RowChange stream(At, const std::function<void(PackRange)>& find, double largest = unknown_largest);
-  inline void evaluate_at(const ArgumentRow&);
-  inline RowChange advance_at(const ArgumentRow&);
-  inline RowChange make_new_row();
-  const double* edge(int part, int parts, int side, int a) const;
-  /// Rows of stencils anchored at this row.
-  SlabRows slab_of(const double* const* values, std::int64_t row) const;
-  /// x of each slot's site; null where no family is placed.
-  const double* positions() const { return positions_.rows() ? positions_.row(0) : nullptr; }
-  const RowSum& right_side(int a) const { return *right_sides_[static_cast<std::size_t>(a)]; }
-  /// −E stands where y_{n+1} will: solvers have read a right side before they write the row.
-  double* stored_right_side(int a) { return base(E_base_ + a); }
-  void store_right_sides();
-  void set_exceptional_sites();
-  double value_at(const SiteEquation&, bool unknown_too, double* absolute) const;
+  double value_at(const SiteEquation&, const RowTable&, std::int64_t n, const Taking*, double* absolute) const;
+  double scale_of(int a) const { return has_walls() ? 1 : solver_[0]->right_side_scale(a); }
 
   const LatticeSystem& system_;
-  SectionRows& rows_;
   const RowLayout& layout_;
-  int d_, history_;
-  double turn_, time_step_, space_step_;
+  int d_, reach_ = 0;
   bool bricks_;
   AssembledEquations equations_;
-  std::vector<Outputs> outputs_;
-  std::unique_ptr<LinearSolver> solver_[2];  ///< of even and odd unknown rows; the second only if bricks differ
-
-  std::int64_t n_ = -1;
-  bool in_place_ = false;
-  RingSlots y_slots_, v_slots_;
-  int ages_ = 1;
-  StepRows own_;                  ///< what may be written to
-  std::vector<StepRows> places_;  ///< those of one step after the other, until they are the first again
-  StepRows* here_ = &own_;        ///< one of these
-  RingSlots period_;
-  int y_base_ = 0, v_base_ = 0, E_base_ = 0, v_new_base_ = 0;
-  int oldest_value_ = 0, newest_value_ = 1;  ///< of StepRows::values, from n
-
-  /// −E times the solver's scale, for each component; of bricks two that take turns, the first for packs whose site and
-  /// equation's row are both even or both odd.
-  std::vector<RowSum> sums_, stored_, measured_;
-  RowSum::Rows summed_;  ///< what all of them read
-  std::vector<const RowSum*> right_sides_;
-  bool has_known_outputs_ = false;  ///< that each step must evaluate
-  bool is_stored_ = false;  ///< right sides are summed to a row first: walls, and solvers that alternate
-  RowBuffer w_, scratch_, positions_;
-  CandidateRows candidate_;
-  std::vector<PackWindow> output_windows_;      ///< of a stream: out_c at the candidate
-  std::vector<double*> output_places_;          ///< and where it stands afterwards
-  PackWindow work_window_;                      ///< and its solver's work space
-  std::optional<ArgumentRows> arguments_;
-  std::optional<DivisionRows> division_;  ///< if a step at arguments can be one loop
-  bool divides_in_steps_ = false;         ///< and is
-  std::optional<Mixture> on_the_way_;     ///< what is looked at, if such a loop can find it
-  std::vector<Argument> whole_{{{{Site{}, 1.0}}}},
-      looks_;  ///< the row itself; what outputs look at, at the unknown row; one for those alike but for a shift
-  std::vector<double*> w_rows_, slab_out_;
-  std::vector<const double*> slab_rows_;
-  int measured_reach_ = 0;             ///< so many sites to either side, residual() reads increments
-  bool is_streamed_ = false;
-  bool looks_on_the_way_ = false;  ///< advance() compares while it makes the row
-
-  const RowKernel* one_loop_ = nullptr;
-  std::optional<TimeTiles> tiles_;
-  std::vector<double> loop_linear_, loop_nonlinear_;
-  int loop_reach_ = 0;
-  double loop_near_squares_ = -1;  ///< up to this Σy² slopes may be evaluated on NearPacks
-  std::vector<const double*> loop_now_, loop_before_, loop_after_, loop_v_before_;
-  std::vector<double*> loop_y_, loop_v_, loop_slopes_;
-  ExplicitRows loop_rows_{};    ///< these, for a loop in one part
-  std::int64_t loop_row_ = -1;  ///< the row that loop_y_ is
-  bool loop_in_place_ = false;
-  std::int64_t residual_row_ = -1;  ///< n when residual() was last asked for
-  std::int64_t slopes_row_ = -1;    ///< the row whose slopes scratch_ holds, where that is at every step
-  RowBuffer edges_;             ///< of the parts: what lies beside them, before it is written over
+  RowTable::Ring y_, v_;
+  bool iterates_ = false, reads_increments_beside_ = false;
+  int measured_ = 0;  ///< in the table: w, and source terms at row n + 1, as residual() finds them
+  std::vector<SourceRow> sources_;
+  std::vector<Inputs> inputs_;  ///< of each source row that is the first of its group
+  int most_rows_;  ///< that predictions are made from
+  std::vector<std::vector<RowSum>> known_;  ///< [rows that predictions are made from][component, parity]
+  std::vector<RowSum> correction_, all_;
+  std::vector<std::vector<RowSum>> predictions_;  ///< [source row][rows that they are made from]
+  std::unique_ptr<LinearSolver> solver_[2];  ///< the second only if bricks of odd rows differ
+  RowBuffer positions_, measured_rows_;
 };
 
 }  // namespace delf

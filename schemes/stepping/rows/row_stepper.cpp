@@ -4,30 +4,75 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <optional>
 
+#include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
-#include "schemes/stepping/rows/explicit_steps.hpp"
+#include "schemes/stepping/contraction.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
-#include "schemes/stepping/rows/implicit_steps.hpp"
-#include "schemes/system/wrapped_differences.hpp"
+#include "schemes/stepping/newton.hpp"
+#include "schemes/stepping/rows/predictor.hpp"
+#include "schemes/stepping/rows/row_team.hpp"
+#include "schemes/stepping/rows/wrapped_differences.hpp"
+#include "schemes/stepping/slab_stepper.hpp"
 
 namespace delf {
+namespace {
 
+constexpr double round_off = std::numeric_limits<double>::epsilon();
+// Strips that stay in the first level of the cache; in the second one where a solve follows a recurrence strip by strip.
+constexpr int short_strip = 64, long_strip = 1024;
+// Tolerances below this ask for all that rounding allows.
+constexpr double smallest_estimated = 0.99e-13;
+constexpr int packs_of_a_thread = 1024;
+constexpr std::size_t most_components = 32;
+
+using Pointers = std::array<double*, most_components>;
+
+}  // namespace
+
+/// A step, in which the source terms g at row n + 1 are the one thing that is iterated:
+///
+///     predict    g ≈ Σ_j (−1)^{j+1} C(p, j) g_{n+1−j}
+///     solve      A₊ w = −(linear part) − r(0) − Σ hk weight · g
+///     update     v_{n+1} = v_n + w,   y_{n+1} = y_n + v_{n+1}
+///     evaluate   g′ = ∂ℓ/∂φ at the quadrature values of y_{n+1}, and δ = g′ − g
+///     test       what δ would change y by is below the tolerance: done; else
+///     correct    A₊ δw = −Σ hk weight · δ,   v_{n+1} += δw,   y_{n+1} += δw,   g = g′, and evaluate again
+///
+/// Where no source term depends on row n + 1, evaluate, solve and update are all. Rows are passed strip by strip.
 struct RowStepper::Impl {
   const LatticeSystem& system;
   const SolvePlan& plan;
   const StepOptions options;
-  const int d, history;
-  const bool iterative, fits_cache;
-  const int seed_rows;
-  const std::optional<Mixture> mixture;  ///< that is extrapolated in the place of y
-  SectionRows rows;
+  const int d, history, most_rows;
+  const RowLayout layout;
+  RowTable table;
   RowEquations equations;
-  SteppedRows at;
-  ExplicitSteps explicit_steps;
-  ImplicitSteps implicit_steps;
+  Predictor predictor;
+  std::vector<std::unique_ptr<Sweeps>> sweeps;  ///< of each component; none: the solver takes whole rows
+  std::optional<Contraction> contraction;
+  std::optional<RowTeam> team;
+  std::vector<double> gains, changes;  ///< of each source row: what a change of 1 changes y by, at most; largest |δ|
+  double gain = 0;            ///< the same for source terms whose weights in an equation sum to 1
+  RowBuffer work;             ///< right sides, which solutions take the place of
+  int strip = 0, lag = 0;     ///< packs; and how many the update stays behind right sides
+  bool has_local = false, forms_directly = false, solves_whole = true, sweeps_along = false, goes_in_place = false;
+
+  std::int64_t n = -1;        ///< newest row
+  std::int64_t started = -1;  ///< newest row of the start: the increment to the row before it is not known
+  int known = 0;              ///< newest rows that are there
+  int past_sources = 0;       ///< rows of source terms that are there before row n + 1
+  int source_rows_there = 0;  ///< the same as predictions count them
+  int iterations = 0;
+  double largest = 0, largest_before = 0, span = 0, contracts_by = -1;
+  // Steps in place are written over the newest row; the row before the first of them is kept.
+  std::vector<double*> spare;
+  std::int64_t kept_row = -1;
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
       : system(s),
@@ -35,56 +80,658 @@ struct RowStepper::Impl {
         options(o),
         d(s.components()),
         history(std::max(p.forward + p.backward, 2)),
-        iterative(!solved_at_once(s, p)),
-        fits_cache(RowSeed::fits_cache(s.lattice().sites())),
-        seed_rows(iterative ? RowSeed::rows_for(o.seed_order, s.lattice().sites()) : 2),
-        mixture(iterative && fits_cache ? Mixture::of(s) : std::nullopt),
-        rows(s, std::max(1, s.width()), history + 1, increments(), o.turn),
-        equations(s, p, rows, history, mixture, seed_rows),
-        at{rows, s.time_step()},
-        explicit_steps(at, equations, o.threads),
-        implicit_steps(at, equations, s, p, options, history, iterative, seed_rows) {
-    if (o.fibre != Fibre::circle) equations.tile(explicit_steps.parts());
+        most_rows(Predictor::rows_for(o.seed_order, s.lattice().sites())),
+        layout(s.lattice(), std::max(1, s.width()), s.placement() == Placement::brick_wall ? 2 : 1),
+        equations(s, p, layout, table, history, most_rows),
+        predictor(equations, layout, most_rows) {
+    if (d > static_cast<int>(most_components)) throw NoConvergence("rows of so many components go slab by slab");
+    choose_strips();
+    if (!equations.iterates()) return;
+    contraction.emplace(system, plan);
+    find_gains();
+    changes.assign(gains.size(), 0.0);
   }
 
-  /// The new one too; and where steps in place may be followed by one that is not, that of the kept row besides.
-  int increments() const {
-    const int read = std::max(history - 1, mixture ? 1 : seed_rows);
-    return (iterative && !fits_cache ? std::max(read, 2) : read) + 1;
+  void choose_strips() {
+    const auto& sources = equations.sources();
+    if (!equations.has_walls() &&
+        std::ranges::all_of(sources, [](const SourceRow& row) { return row.reads_unknown || row.is_local; }))
+      for (int a = 0; a < d; ++a) sweeps.push_back(equations.solver(0).sweeps(a));
+    if (std::ranges::any_of(sweeps, [](const auto& one) { return !one; })) sweeps.clear();
+    int warm_up = 0;
+    if (!sweeps.empty()) {
+      const PackRange first = sweeps[0]->warm_up();
+      warm_up = first.last - first.first;
+      // Components that advance by other strips would have to wait for each other.
+      if (std::ranges::any_of(sweeps, [&](const auto& one) {
+            return one->warm_up().first != first.first || one->takes_whole_rows() != sweeps[0]->takes_whole_rows();
+          }))
+        sweeps.clear();
+    }
+    solves_whole = sweeps.empty() || sweeps[0]->takes_whole_rows();
+    sweeps_along = !sweeps.empty() && (solves_whole || warm_up > 0);
+    strip = sweeps.empty() ? layout.packs() : warm_up > 0 ? long_strip : short_strip;
+    lag = std::max(warm_up, equations.reach());
+    const bool is_long = !solves_whole && layout.packs() > 4 * long_strip;
+    const int packs = solves_whole ? layout.packs() : std::min(layout.packs(), longest_strip() + 2 * lag);
+    has_local = std::ranges::any_of(sources, &SourceRow::is_local);
+    // Where the matrix is a number and row n stays, right sides are used as they are formed.
+    forms_directly = !sweeps.empty() && !sweeps_along && equations.right_side(0, {});
+    if (!forms_directly || is_long) work = RowBuffer(static_cast<std::size_t>(packs) * lanes, d);
+    goes_in_place = !solves_whole && history == 2 && equations.reads_newest_alone() && options.fibre == Fibre::real &&
+                    is_long && (warm_up == 0 || warm_up > equations.reach());
+    const int parts = std::min(options.threads, layout.packs() / packs_of_a_thread);
+    if (solves_whole || equations.iterates() || parts < 2) return;
+    team.emplace(parts);
+    goes_in_place = false;
   }
 
-  void step(bool looked_at) {
-    const FlushDenormals guard;
-    at.iterations = 0;
-    looked_at = looked_at || options.fibre == Fibre::circle;  // whose rows are compared
-    double value = 0;
-    if (!equations.is_one_loop()) value = implicit_steps.step(looked_at);
-    else if (!explicit_steps.step(looked_at)) at.report_not_finite();
-    if (options.fibre == Fibre::circle) check_wrapped_differences(system, rows, at.n + 1);
-    at.row_is_found(value);
-    ++at.n;
+  int longest_strip() const { return strip == long_strip ? 2 * strip : strip; }
+
+  // ---- One pass over the row, strip by strip.
+
+  struct Found {
+    Pack y = 0.0;  ///< the largest |y|
+  };
+  enum class Kind { step, correction };
+
+  /// Source terms of the packs from … to, of which no rows are kept.
+  void find_sources(RowTable& rows, const ScratchRows& local, int from, int to) const {
+    for (std::size_t s = 0; s < equations.sources().size(); ++s) {
+      const SourceRow& source = equations.sources()[s];
+      if (!source.is_local) continue;
+      rows[source.ring.row(0)] = local[static_cast<int>(s)] - layout.at(from);
+      if (source.component + 1 == source.outputs)
+        evaluate(rows, s + 1 - static_cast<std::size_t>(source.outputs), from, to);
+    }
+  }
+  /// A group of source terms, into number 0 of their rings.
+  void evaluate(const RowTable& rows, std::size_t first, int from, int to, int back = 0) const {
+    Pointers out;
+    const SourceRow& source = equations.sources()[first];
+    for (int c = 0; c < source.outputs; ++c)
+      out[static_cast<std::size_t>(c)] = rows[equations.sources()[first + static_cast<std::size_t>(c)].ring.row(back)];
+    equations.evaluate(rows, n, source, back, from, to, out.data());
   }
 
-  /// Steps that no one looks at.
-  void steps(int count) {
-    while (count > 0) {
-      const int levels = explicit_steps.levels(count);
-      if (levels > 1) {
-        const FlushDenormals guard;
-        at.iterations = 0;
-        explicit_steps.step_at_once(levels);
-      } else {
-        step(false);
+  /// v_{n+1} and y_{n+1} from w, pack by pack; of a correction, from what they were.
+  struct Update {
+    const double *v, *y;
+    double *new_v, *new_y;
+    Pack of_increment, of_change, largest;
+    Update(const RowEquations& equations, const RowTable& rows, Kind kind, int a, const Found& found)
+        : v(rows[equations.v().row(kind == Kind::step ? 1 : 0, a)]),
+          y(rows[equations.y().row(kind == Kind::step ? 1 : 0, a)]),
+          new_v(rows[equations.v().row(0, a)]),
+          new_y(rows[equations.y().row(0, a)]),
+          of_increment(kind == Kind::step ? 1.0 : 0.0),
+          of_change(kind == Kind::step ? 0.0 : 1.0),
+          largest(found.y) {}
+    [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) {
+      const Pack increment = Pack::load(v + at) + w;
+      const Pack value = Pack::load(y + at) + (of_increment * increment + of_change * w);
+      increment.store(new_v + at);
+      value.store(new_y + at);
+      largest = largest_magnitude(largest, value);
+    }
+  };
+  [[gnu::noinline]] void update(const RowTable& rows, Kind kind, int a, const double* w, PackRange packs,
+                                Found& found) const {
+    Update made(equations, rows, kind, a, found);
+    const std::ptrdiff_t end = layout.at(packs.last);
+    for (std::ptrdiff_t at = layout.at(packs.first); at < end; at += lanes) made(at, Pack::load(w + at));
+    found.y = made.largest;
+  }
+  /// The same where w is the right side.
+  [[gnu::noinline]] void update(const RowTable& rows, Kind kind, int a, const RowSum& w, PackRange packs,
+                                Found& found) const {
+    Update made(equations, rows, kind, a, found);
+    w.pass<lanes>(rows.data(), layout.at(packs.first), layout.at(packs.last), made);
+    found.y = made.largest;
+  }
+
+  /// δ = g′ − g, pack by pack: g is what the right side took.
+  struct Compare {
+    const double* now;
+    double *g, *delta;  ///< delta: null where δ is not kept
+    Pack most = 0.0;
+    [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack taken) {
+      const Pack value = Pack::load(now + at), change = value - taken;
+      most = largest_magnitude(most, change);
+      if (delta) change.store(delta + at);
+      value.store(g + at);
+    }
+  };
+  /// g′ of the packs from … to, and how much they have changed; g′ takes the place of g.
+  void compare(const RowTable& rows, Kind kind, int from, int to) {
+    for (std::size_t first = 0; first < equations.sources().size();
+         first += static_cast<std::size_t>(equations.sources()[first].outputs)) {
+      const SourceRow& source = equations.sources()[first];
+      if (!source.reads_unknown) continue;
+      const ScratchRows scratch(source.outputs, short_strip * lanes);
+      for (int begin = from; begin < to; begin += short_strip) {
+        const int end = std::min(to, begin + short_strip);
+        Pointers out;
+        for (int c = 0; c < source.outputs; ++c) out[static_cast<std::size_t>(c)] = scratch[c] - layout.at(begin);
+        equations.evaluate(rows, n, source, 0, begin, end, out.data());
+        const int own = source.stride == 2 ? begin + static_cast<int>((begin + n + source.newest) & 1) : begin;
+        for (int c = 0; c < source.outputs; ++c) {
+          const std::size_t s = first + static_cast<std::size_t>(c);
+          const SourceRow& one = equations.sources()[s];
+          Compare sink{out[static_cast<std::size_t>(c)], rows[one.ring.row(0)], keeps(kind) ? rows[one.change] : nullptr};
+          const RowSum& taken = equations.prediction(one, taking(kind).predicted_from);
+          if (one.stride == 1) taken.pass<lanes>(rows.data(), layout.at(own), layout.at(end), sink);
+          else taken.pass<2 * lanes>(rows.data(), layout.at(own), layout.at(end), sink);
+          changes[s] = larger_or_nan(max_or_nan(sink.most), changes[s]);
+        }
       }
-      count -= std::max(levels, 1);
+    }
+  }
+  /// A correction takes what the source terms have changed by, and compares with what they are.
+  RowEquations::Taking taking(Kind kind) const {
+    if (kind == Kind::correction) return {0, true};
+    return {equations.iterates() && source_rows_there > 0 ? predictor.order() : 0, false};
+  }
+
+  /// Right sides of some packs, at `w`.
+  void right_sides(const RowTable& rows, Kind kind, int from, int to, double* const* w) const {
+    for (int a = 0; a < d; ++a) equations.right_side(rows, n, a, taking(kind), from, to, w[a]);
+    if (equations.has_walls()) equations.wall_sites(rows, n, taking(kind), w);
+  }
+
+  /// The strips of the packs from … to, of which those of a thread are one part. `compares`: source terms are evaluated at
+  /// what has been made.
+  void pass(RowTable& rows, Kind kind, bool compares, RowBuffer& memory, int from, int to, Found& found) {
+    const ScratchRows local(has_local ? static_cast<int>(equations.sources().size()) : 0,
+                            std::min(longest_strip(), layout.packs()) * lanes);
+    Pointers w{};
+    const auto window = [&](int begin) {
+      for (int a = 0; a < memory.rows(); ++a) w[static_cast<std::size_t>(a)] = memory.row(a) - layout.at(begin);
+    };
+    int left = 0, right = 0;
+    for (const SourceRow& source : equations.sources())
+      if (source.reads_unknown) left = std::min(left, source.left), right = std::max(right, source.right);
+    PackRange made{from, from}, compared{from, from};
+    // Rows that stay in the cache are compared when all of them is there.
+    const bool compares_on_the_way = compares && layout.packs() > 2 * short_strip;
+    const auto compare_inside = [&] {
+      if (!compares_on_the_way) return;
+      const PackRange there{made.first - left, made.last - right};
+      if (there.first >= there.last) return;
+      if (compared.first == compared.last) compared = {there.first, there.first};
+      if (there.first < compared.first) compare(rows, kind, there.first, compared.first);
+      if (there.last > compared.last) compare(rows, kind, compared.last, there.last);
+      compared = {std::min(there.first, compared.first), std::max(there.last, compared.last)};
+    };
+    const bool is_direct = forms_directly && spare.empty();
+    const auto finish = [&](PackRange packs) {
+      if (packs.first >= packs.last) return;
+      for (int a = 0; a < d; ++a) {
+        if (is_direct) update(rows, kind, a, *equations.right_side(a, taking(kind)), packs, found);
+        else update(rows, kind, a, w[static_cast<std::size_t>(a)], packs, found);
+      }
+      if (made.first == made.last) made = packs;
+      else made = {std::min(made.first, packs.first), std::max(made.last, packs.last)};
+      compare_inside();
+    };
+
+    if (!sweeps.empty() && sweeps[0]->warm_up().first < sweeps[0]->warm_up().last) {
+      const PackRange last = sweeps[0]->warm_up();
+      window(last.first);
+      if (kind == Kind::step) find_sources(rows, local, last.first, last.last);
+      right_sides(rows, kind, last.first, last.last, w.data());
+    } else {
+      window(from);
+    }
+    // Threads have parts of the row, and no recurrence.
+    const bool is_part = to - from < layout.packs();
+    for (int a = 0; a < d && sweeps_along; ++a)
+      sweeps[static_cast<std::size_t>(a)]->begin(w[static_cast<std::size_t>(a)]);
+    window(from);
+    int done = from;
+    for (int end = from; end < to;) {
+      const int strip_begin = end;
+      end = to - end < 2 * strip && strip == long_strip ? to : std::min(to, end + strip);
+      if (kind == Kind::step) find_sources(rows, local, strip_begin, end);
+      const bool forms_on_the_way = is_direct || (sweeps_along && equations.right_side(0, {}));
+      if (!forms_on_the_way) right_sides(rows, kind, strip_begin, end, w.data());
+      if (sweeps.empty()) {
+        equations.solver(n).solve(w.data());
+        for (int a = 0; a < d; ++a) layout.copy_overlaps(w[static_cast<std::size_t>(a)]);
+        finish({from, to});
+        break;
+      }
+      if (sweeps_along) {
+        for (int a = 0; a < d; ++a) {
+          Sweeps& sweep = *sweeps[static_cast<std::size_t>(a)];
+          double* const to_solve = w[static_cast<std::size_t>(a)];
+          if (forms_on_the_way)
+            sweep.forward(*equations.right_side(a, taking(kind)), rows.data(), to_solve, end);
+          else sweep.forward(to_solve, end);
+        }
+        // All components advance alike.
+        for (;;) {
+          PackRange ready{0, 0};
+          for (int a = 0; a < d; ++a)
+            ready = sweeps[static_cast<std::size_t>(a)]->backward(w[static_cast<std::size_t>(a)]);
+          if (ready.first >= ready.last) break;
+          done = std::max(done, ready.last);
+          finish(ready);
+        }
+      } else if (is_direct) {
+        finish({strip_begin, end});
+        done = end;
+      } else {
+        // Right sides still to come read rows this far back.
+        const int ready = end == to ? to : std::max(done, end - lag);
+        finish({done, ready});
+        done = ready;
+      }
+      if (solves_whole || is_direct || end == to) continue;
+      // What is not used yet moves to the beginning of the window.
+      for (int a = 0; a < d; ++a)
+        std::memmove(memory.row(a), w[static_cast<std::size_t>(a)] + layout.at(done),
+                     static_cast<std::size_t>(layout.at(end) - layout.at(done)) * sizeof(double));
+      window(done);
+    }
+    if (is_part) return;
+    close(rows);
+    if (!compares) return;
+    if (compared.first == compared.last) compared = {from, from};
+    compare(rows, kind, from, compared.first);
+    compare(rows, kind, compared.last, to);
+    for (const SourceRow& source : equations.sources())
+      if (source.reads_unknown) {
+        layout.fill_halo(rows[source.ring.row(0)]);
+        if (keeps(kind)) layout.fill_halo(rows[source.change]);
+      }
+  }
+  bool keeps(Kind kind) const { return kind == Kind::correction || source_rows_there == 0; }
+
+  /// Halos and overlaps of the new row.
+  void close(const RowTable& rows) const {
+    for (int a = 0; a < d; ++a) {
+      double *const y = rows[equations.y().row(0, a)], *const v = rows[equations.v().row(0, a)];
+      // Loads wait for slots of theirs that have just been stored alone.
+      const bool overlaps_last = layout.halos_come_first();
+      if (!overlaps_last) layout.copy_overlaps(v, y);
+      layout.fill_halo(y, options.turn);
+      if (equations.reads_increments_beside()) layout.fill_halo(v);
+      if (overlaps_last) layout.copy_overlaps(v, y);
     }
   }
 
-  double residual() {
-    const std::int64_t base = at.n - 1;
-    if (base < history - 1) return 0;
-    if (at.known < 2) return std::numeric_limits<double>::quiet_NaN();
-    return equations.residual(base, at.largest_ever);
+  Found pass(Kind kind, bool compares) {
+    Found found;
+    std::ranges::fill(changes, 0.0);
+    if (!team) {
+      pass(table, kind, compares, work, 0, layout.packs(), found);
+      return found;
+    }
+    const int parts = team->size();
+    std::vector<RowTable> rows(static_cast<std::size_t>(parts), table);
+    std::vector<RowBuffer> memory;
+    std::vector<Found> of_part(static_cast<std::size_t>(parts));
+    for (int p = 0; p < parts; ++p) memory.emplace_back(static_cast<std::size_t>(work.stride()), work.rows());
+    team->run(parts, [&](int p) {
+      const auto at = static_cast<std::size_t>(p);
+      pass(rows[at], kind, false, memory[at], layout.first_of_part(p, parts), layout.first_of_part(p + 1, parts), of_part[at]);
+    });
+    for (const Found& part : of_part)
+      found.y = larger_size(found.y, part.y);
+    close(table);
+    return found;
+  }
+
+  // ---- A step.
+
+  void begin_step() {
+    for (std::size_t s = 0; s < equations.sources().size(); ++s) {
+      const SourceRow& source = equations.sources()[s];
+      if (source.component == 0 && !source.reads_unknown && !source.is_local) {
+        evaluate(table, s, 0, layout.packs());
+        for (int c = 0; c < source.outputs; ++c)
+          layout.fill_halo(table[equations.sources()[s + static_cast<std::size_t>(c)].ring.row(0)]);
+      }
+    }
+    if (!equations.iterates()) return;
+    if (source_rows_there == 0) start_from_straight_line();
+    else if (predictor.is_due(n)) choose_order();
+  }
+  /// Where no past source terms are there: those at y_n + v_n.
+  void start_from_straight_line() {
+    for (int a = 0; a < d; ++a) {
+      const double *const y = table[equations.y().row(1, a)], *const v = table[equations.v().row(1, a)];
+      double *const new_y = table[equations.y().row(0, a)], *const new_v = table[equations.v().row(0, a)];
+      for (std::size_t i = 0; i < layout.doubles(); ++i) new_v[i] = v[i], new_y[i] = y[i] + v[i];
+    }
+    evaluate_unknown();
+  }
+  void evaluate_unknown() {
+    for (std::size_t s = 0; s < equations.sources().size(); ++s) {
+      const SourceRow& source = equations.sources()[s];
+      if (!source.reads_unknown) continue;
+      if (source.component == 0) evaluate(table, s, 0, layout.packs());
+      layout.fill_halo(table[source.ring.row(0)]);
+    }
+  }
+  void choose_order() {
+    find_span();
+    predictor.choose(table, n, source_rows_there, gains, contraction_now(),
+                     share_of_tolerance() * allowed(largest), system.time_step());
+  }
+  void find_span() {
+    span = 0;
+    for (int a = 0; a < d; ++a) {
+      const double* const y = table[equations.y().row(1, a)];
+      const double some = y[layout.slot(0)];
+      Pack above(0.0), below(0.0);
+      for (int p = 0; p < layout.packs(); ++p) {
+        const Pack difference = Pack::load(y + layout.at(p)) - some;
+        above = max_or_nan(difference, above), below = max_or_nan(-difference, below);
+      }
+      span = std::max(span, max_or_nan(above) + max_or_nan(below));
+    }
+  }
+
+  /// What the tolerance allows: relative to what the field spans, for where it has drifted to says nothing, but not
+  /// below what rounding leaves at its size.
+  double allowed(double size) const {
+    const double tolerance = std::max(options.tolerance, 4 * round_off);
+    const double spanned = span > 0 ? std::min(span, size) : size;
+    return std::max(tolerance * spanned, 4 * round_off * size);
+  }
+  /// What is left to a prediction has the same sign step after step, and moves the energy: over 5000 collisions (N = 255,
+  /// h = k/8, tolerance 6e-8) by 1e-4 of it where all of the tolerance was, within what the exact root does with this
+  /// share. The smallest tolerances ask for all that rounding allows: what is left then no longer shrinks.
+  double share_of_tolerance() {
+    constexpr double left_to_predictions = 0.01;
+    return options.tolerance >= smallest_estimated ? left_to_predictions : std::min(contraction_now(), 1.0) / 64;
+  }
+  /// By which one more iteration's change would be less.
+  double contraction_now() {
+    if (contracts_by < 0 || contraction->is_outgrown(largest))
+      contracts_by = contraction->next_change(largest, 1, gain);
+    return contracts_by;
+  }
+
+  /// How y answers to a change of 1 in a source term: exact on a circle, where one impulse shows it. In the middle of
+  /// an interval it is near enough: the tolerance is tested by it, and the change itself is what ends an iteration.
+  void find_gains() {
+    gain = 0;
+    for (const SourceRow& source : equations.sources()) {
+      gains.push_back(0);
+      if (!source.reads_unknown) continue;
+      double* const delta = table[source.change];
+      // Two sites in the middle: a source term at a wall, or between bricks, is read by no equation.
+      for (const SourceRow& other : equations.sources())
+        if (other.reads_unknown) std::fill_n(table[other.change], layout.doubles(), 0.0);
+      for (const int site : {layout.sites() / 2 - 1, layout.sites() / 2}) {
+        std::fill_n(delta, layout.doubles(), 0.0);
+        for (const int slot : layout.slots_of(site)) delta[slot] = 1;
+        layout.fill_halo(delta);
+        Pointers w;
+        RowBuffer memory(layout, d);
+        for (int a = 0; a < d; ++a) w[static_cast<std::size_t>(a)] = memory.row(a);
+        right_sides(table, Kind::correction, 0, layout.packs(), w.data());
+        equations.solver(n).solve(w.data());
+        std::vector<double> sites(static_cast<std::size_t>(layout.sites()));
+        for (int a = 0; a < d; ++a) {
+          layout.gather(w[static_cast<std::size_t>(a)], sites);
+          double sum = 0;
+          for (const double x : sites) sum += std::abs(x);
+          gains.back() = std::max(gains.back(), sum);
+        }
+      }
+      gain = std::max(gain, gains.back() / equations.weight_of(source));
+      std::fill_n(delta, layout.doubles(), 0.0);
+    }
+  }
+  /// What the changes of source terms would change y by, at most.
+  double effect_of_changes() const {
+    double effect = 0;
+    for (std::size_t s = 0; s < gains.size(); ++s) effect += gains[s] * changes[s];
+    return effect;
+  }
+
+  /// The new row, beside the old one or over it. False if it could not be solved for.
+  bool solve_step() {
+    const bool iterates = equations.iterates();
+    begin_step();
+    iterations = 0;
+    Found found = pass(Kind::step, iterates);
+    double value = max_or_nan(found.y);
+    if (overflowed(value)) return set_largest(value);
+    if (!iterates) return set_largest(value);
+    const double by = contraction_now(), enough = share_of_tolerance() * allowed(std::max({value, largest, largest_before}));
+    double effect = effect_of_changes();
+    for (iterations = 1; !(effect <= enough);) {
+      if (iterations >= options.max_iterations || !(effect < 1e100)) return false;
+      if (iterations == 1 && source_rows_there > 0) find_changes();
+      // An estimate of what is left after this correction may spare its evaluation.
+      const bool is_last = options.tolerance >= smallest_estimated && by * effect <= enough;
+      found = pass(Kind::correction, !is_last);
+      value = max_or_nan(found.y);
+      if (overflowed(value)) return set_largest(value);
+      if (is_last) break;
+      ++iterations;
+      const double before = effect;
+      effect = effect_of_changes();
+      // Changes that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
+      if (iterations >= 3 && effect > 0.5 * before) {
+        if (effect <= 64 * round_off * std::max({value, largest, largest_before})) break;
+        return false;
+      }
+    }
+    return set_largest(value);
+  }
+  bool set_largest(double value) {
+    largest_before = largest, largest = value;
+    return true;
+  }
+  /// δ = g′ − g again, where the first pass has not kept it.
+  void find_changes() {
+    for (std::size_t s = 0; s < equations.sources().size(); ++s) {
+      const SourceRow& source = equations.sources()[s];
+      if (!source.reads_unknown) continue;
+      const double* const g = table[source.ring.row(0)];
+      double* const delta = table[source.change];
+      const RowSum& taken = equations.prediction(source, predictor.order());
+      taken.evaluate(table.data(), layout.at(0), layout.at(layout.packs()), lanes, delta);
+      for (std::ptrdiff_t at = layout.at(0); at < layout.at(layout.packs()); at += lanes)
+        (Pack::load(g + at) - Pack::load(delta + at)).store(delta + at);
+      layout.fill_halo(delta);
+    }
+  }
+
+  /// Where the fixed point does not contract: the root followed from a small time step by full Newton steps.
+  void follow_root() {
+    const Window past = window(history);
+    const NewtonResult result = solve_slab(system, plan, past, options.tolerance, options.max_iterations);
+    iterations += result.iterations;
+    if (!result.converged)
+      throw NoConvergence(fmt::format(
+          "step {}, t = {:.6g}: the implicit equations were not solved: the simplified Newton method does not "
+          "contract, and the root could not be followed from a small time step by full Newton steps; reduce "
+          "lattice.courant or lattice.time_step",
+          n + 1, static_cast<double>(n + 1) * system.time_step()));
+    set_row(0, result.row);
+    find_increment(0);
+    evaluate_unknown();
+    double value = 0;
+    for (double x : result.row) value = std::max(value, std::abs(x));
+    set_largest(value);
+  }
+
+  void step_beside() {
+    leave_place();
+    known = std::min(known, history);  // the oldest is written over
+    const bool stiff = equations.iterates() && contraction->is_stiff();
+    if (stiff) begin_step(), iterations = 0;
+    if (stiff || !solve_step()) follow_root();
+    if (overflowed(largest)) {
+      const double was = largest_before;
+      largest = was;
+      report_not_finite();
+    }
+    if (options.fibre == Fibre::circle) check_wrapped_differences(system, layout, wrapped_rows(), n + 1);
+    table.turn(equations.y()), table.turn(equations.v());
+    turn_sources();
+    ++n;
+    known = std::min(known + 1, history + 1);
+  }
+  void turn_sources() {
+    for (const SourceRow& source : equations.sources())
+      if (!source.is_local) table.turn(source.ring);
+    ++past_sources;
+    count_sources();
+  }
+  /// Of bricks those of every second row stand at the same sites.
+  void count_sources() {
+    source_rows_there = most_rows;
+    for (const SourceRow& source : equations.sources())
+      if (source.reads_unknown)
+        source_rows_there = std::min(source_rows_there, std::min(past_sources, source.ring.held - 1) / source.stride);
+  }
+
+  /// A step that takes the place of the newest row.
+  bool step_in_place() {
+    if (spare.empty()) {
+      for (const auto& ring : {equations.y(), equations.v()})
+        for (int a = 0; a < d; ++a) {
+          spare.push_back(table[ring.row(0, a)]);
+          table[ring.row(0, a)] = table[ring.row(1, a)];
+        }
+      kept_row = n - 1;
+    }
+    if (!solve_step() || overflowed(largest)) return false;
+    turn_sources();
+    ++n;
+    known = 1;
+    return true;
+  }
+  void leave_place() {
+    if (spare.empty()) return;
+    std::size_t next = 0;
+    for (const auto& ring : {equations.y(), equations.v()})
+      for (int a = 0; a < d; ++a) table[ring.row(0, a)] = spare[next++];
+    spare.clear();
+    known = 1;
+  }
+  /// Back to the row before the first step in place, and from there on beside each other.
+  void step_again(std::int64_t last) {
+    leave_place();
+    table.turn_back(equations.y()), table.turn_back(equations.v());
+    n = kept_row;
+    known = 1;
+    find_past_sources();
+    largest = largest_before = row_largest(1);
+    while (n < last) step_beside();
+  }
+
+  /// A step whose row nobody asks for is in place, as long as there is a row to go back to.
+  void step(bool looked_at) {
+    const bool may_be_in_place = !looked_at && goes_in_place && (!spare.empty() || (known >= 2 && n > started)) &&
+                                 !(equations.iterates() && (source_rows_there == 0 || contraction->is_stiff()));
+    if (!may_be_in_place) step_beside();
+    else if (!step_in_place()) step_again(n + 1);
+  }
+
+  // ---- Rows.
+
+  void set_row(int back, const std::vector<double>& values) {
+    std::vector<double> one(static_cast<std::size_t>(layout.sites()));
+    for (int a = 0; a < d; ++a) {
+      for (std::size_t i = 0; i < one.size(); ++i)
+        one[i] = values[i * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)];
+      layout.scatter(one, table[equations.y().row(back, a)], options.turn);
+    }
+  }
+  void find_increment(int back) {
+    for (int a = 0; a < d; ++a) {
+      double* const v = table[equations.v().row(back, a)];
+      const double *y = table[equations.y().row(back, a)], *before = table[equations.y().row(back + 1, a)];
+      for (std::size_t i = 0; i < layout.doubles(); ++i) v[i] = y[i] - before[i];
+    }
+  }
+  std::vector<double> row(int back) const {
+    std::vector<double> values(static_cast<std::size_t>(layout.sites() * d)), one(static_cast<std::size_t>(layout.sites()));
+    for (int a = 0; a < d; ++a) {
+      layout.gather(table[equations.y().row(back, a)], one);
+      for (std::size_t i = 0; i < one.size(); ++i)
+        values[i * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)] = one[i];
+    }
+    return values;
+  }
+  /// The number in its ring of the row so many before the unknown one: the oldest stands where the next is made.
+  int number(int back) const { return back % (history + 1); }
+  double row_largest(int back) const {
+    double most = 0;
+    for (const double x : row(back)) most = std::max(most, std::abs(x));
+    return most;
+  }
+  delf::Window window(int rows) const {
+    delf::Window result{&system.lattice(), d, options.turn, n - rows + 1, {}};
+    for (int back = rows; back >= 1; --back) result.rows.push_back(row(number(back)));
+    return result;
+  }
+  std::vector<const double*> wrapped_rows() const {
+    std::vector<const double*> rows;
+    for (int back = 0; back <= history; ++back)
+      for (int a = 0; a < d; ++a) rows.push_back(table[equations.y().row(back, a)]);
+    return rows;
+  }
+
+  void start(const std::vector<std::vector<double>>& rows) {
+    leave_place();
+    started = n = static_cast<std::int64_t>(rows.size()) - 1;
+    known = std::min(static_cast<int>(rows.size()), history);
+    for (int back = 1; back <= known; ++back) set_row(back, rows[rows.size() - static_cast<std::size_t>(back)]);
+    for (int back = 1; back < known; ++back) find_increment(back);
+    largest = row_largest(1), largest_before = row_largest(2);
+    span = 0, contracts_by = -1;
+    find_past_sources();
+  }
+  /// Source terms before the unknown row's, as far as equations read them.
+  void find_past_sources() {
+    past_sources = std::numeric_limits<int>::max() / 2;
+    for (std::size_t s = 0; s < equations.sources().size(); ++s) {
+      const SourceRow& source = equations.sources()[s];
+      if (source.is_local) continue;
+      for (int back = 1; back <= source.newest - source.oldest; ++back) {
+        if (source.component == 0) evaluate(table, s, 0, layout.packs(), back);
+        layout.fill_halo(table[source.ring.row(back)]);
+      }
+      if (source.reads_unknown) past_sources = std::min(past_sources, source.newest - source.oldest);
+    }
+    count_sources();
+    predictor.restart();
+  }
+
+  [[noreturn]] void report_not_finite() const {
+    const std::vector<double> bad = row(0), before = row(1);
+    const auto fine = [](double x) { return !overflowed(std::abs(x)); };
+    // Implicit steps spread an overflow over the whole row: it is where the field was largest.
+    const auto where = std::ranges::none_of(bad, fine)
+                           ? std::ranges::max_element(before, {}, [](double x) { return std::abs(x); }) - before.begin()
+                           : std::ranges::find_if_not(bad, fine) - bad.begin();
+    throw NotFinite(
+        fmt::format("step {}, t = {:.6g}, site {}: the field is no longer finite: the scheme is unstable here; "
+                    "reduce lattice.courant or lattice.time_step, or choose an implicit stencil",
+                    n + 1, static_cast<double>(n + 1) * system.time_step(), where / d));
+  }
+  void require(int rows) const {
+    if (rows > known)
+      throw std::logic_error("delf: rows before the newest were written over by step(false), or not stepped yet");
+  }
+  std::size_t row_bytes() const {
+    return RowBuffer::bytes_of(layout.doubles(), equations.y().held * d + equations.v().held * d);
+  }
+  std::size_t source_bytes() const {
+    std::size_t bytes = 0;
+    for (const SourceRow& source : equations.sources())
+      bytes += RowBuffer::bytes_of(layout.doubles(), source.ring.held + (source.change >= 0 ? 1 : 0));
+    return bytes;
   }
 };
 
@@ -92,18 +739,17 @@ RowStepper::RowStepper(const LatticeSystem& system, const SolvePlan& plan, const
     : impl_(std::make_unique<Impl>(system, plan, options)) {}
 RowStepper::~RowStepper() = default;
 
-int RowStepper::starting_rows() const { return impl_->history; }
+void RowStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
+  SlabStepper first(impl_->system, impl_->plan, impl_->options);
+  first.start_legendre(row0, momenta);
+  start({row0, first.row(0)});
+}
 
 void RowStepper::start(const std::vector<std::vector<double>>& rows) {
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (double x : rows[r])
       if (overflowed(std::abs(x))) throw NotFinite(fmt::format("row {} of the start is not finite", r));
-  Impl& s = *impl_;
-  s.at.start(rows);
-  s.equations.forget_rows();
-  s.equations.begin(s.at.n);
-  s.equations.evaluate_outputs();
-  s.implicit_steps.restart();
+  impl_->start(rows);
 }
 
 void RowStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
@@ -112,9 +758,9 @@ void RowStepper::start_centred(const std::vector<double>& row0, const std::vecto
     throw BadInput("initial.start", "initial.start = centred makes one more row, and this stencil needs " +
                                         std::to_string(s.history) + " starting rows; choose initial.start = exact");
   const Window first{&s.system.lattice(), s.d, s.options.turn, 0, {row0}};
+  const bool stiff = s.contraction && s.contraction->is_stiff();
   const NewtonResult result =
-      solve_centred_start(s.system, s.plan, first, velocity, s.implicit_steps.is_stiff(), s.options.tolerance,
-                          s.options.max_iterations);
+      solve_centred_start(s.system, s.plan, first, velocity, stiff, s.options.tolerance, s.options.max_iterations);
   if (!result.converged)
     throw NoConvergence(
         "the starting row of initial.start = centred was not found: Newton's method did not converge; "
@@ -122,55 +768,55 @@ void RowStepper::start_centred(const std::vector<double>& row0, const std::vecto
   start({row0, result.row});
 }
 
-void RowStepper::step(bool looked_at) { impl_->step(looked_at); }
-void RowStepper::steps(int count) { impl_->steps(count); }
-int RowStepper::steps_at_once() const { return impl_->equations.is_tiled() ? TimeTiles::most_levels : 1; }
-std::int64_t RowStepper::newest() const { return impl_->at.n; }
+void RowStepper::step(bool looked_at) {
+  const FlushDenormals guard;
+  impl_->step(looked_at);
+}
+StepState RowStepper::state() const { return {impl_->n, impl_->iterations}; }
 std::vector<double> RowStepper::row(int back) const {
-  impl_->at.require(back + 1);
-  return impl_->rows.row(impl_->at.n - back);
+  impl_->require(back + 1);
+  return impl_->row(impl_->number(back + 1));
 }
-double RowStepper::residual() const { return impl_->residual(); }
-int RowStepper::iterations() const { return impl_->at.iterations; }
-const RowLayout* RowStepper::layout() const { return &impl_->rows.layout(); }
-Window RowStepper::window(int rows) const {
-  impl_->at.require(rows);
-  return impl_->rows.window(impl_->at.n - rows + 1, impl_->at.n);
-}
-const double* RowStepper::row_data(int back, int a) const {
-  impl_->at.require(back + 1);
-  return impl_->rows.y(impl_->at.n - back, a);
-}
-double RowStepper::newest_pair(const double** rows) const {
+double RowStepper::residual() const {
   Impl& s = *impl_;
-  s.at.require(2);
+  if (s.n < s.history) return 0;
+  if (s.known < 2) return std::numeric_limits<double>::quiet_NaN();
+  RowTable rows = s.table;
+  rows.turn_back(s.equations.y()), rows.turn_back(s.equations.v());
+  for (const SourceRow& source : s.equations.sources())
+    if (!source.is_local) rows.turn_back(source.ring);
+  return s.equations.residual(std::move(rows), s.n - 1);
+}
+Window RowStepper::window(int rows) const {
+  impl_->require(rows);
+  return impl_->window(rows);
+}
+void RowStepper::newest_pair(const double** rows) const {
+  const Impl& s = *impl_;
+  s.require(2);
   for (int a = 0; a < s.d; ++a) {
-    double* const v = s.rows.v(s.at.n, a);
-    s.rows.layout().fill_first_after(v);  // a loop leaves it
-    rows[a] = s.rows.y_before(s.at.n, a), rows[s.d + a] = s.rows.y(s.at.n, a), rows[2 * s.d + a] = v;
+    rows[a] = s.table[s.equations.y().row(2, a)];
+    rows[s.d + a] = s.table[s.equations.y().row(1, a)];
+    rows[2 * s.d + a] = s.table[s.equations.v().row(1, a)];
+    s.layout.fill_halo(s.table[s.equations.v().row(1, a)]);  // which steps may do without
   }
-  const double largest = s.equations.is_one_loop() ? std::sqrt(s.at.squares_ever) : s.at.largest_ever;
-  return largest + std::abs(s.options.turn);  // across the seam
 }
-std::string RowStepper::solver_name() const { return impl_->equations.solver().name(); }
-bool RowStepper::iterates() const { return impl_->iterative; }
-bool RowStepper::matrix_free() const { return impl_->equations.matrix_free(); }
 
-std::size_t RowStepper::bytes() const {
+StepReport RowStepper::report(bool residual) const {
   const Impl& s = *impl_;
-  return s.rows.row_bytes() + s.rows.increment_bytes() + s.equations.output_bytes() + s.equations.matrix_bytes() +
-         s.equations.work_bytes();
-}
-
-std::size_t RowStepper::bytes_to_come(bool residual) const {
-  return impl_->equations.bytes_to_come(impl_->explicit_steps.parts(), residual);
-}
-
-std::string RowStepper::memory_report(bool residual) const {
-  const Impl& s = *impl_;
-  return fmt::format("rows of the field {} B, increments {} B, nonlinear terms {} B, matrix {} B, work space {} B",
-                     s.rows.row_bytes(), s.rows.increment_bytes(), s.equations.output_bytes(),
-                     s.equations.matrix_bytes(), s.equations.work_bytes() + bytes_to_come(residual));
+  const std::size_t rows = s.row_bytes(), sources = s.source_bytes(), matrix = s.equations.matrix_bytes();
+  const std::size_t work = s.equations.work_bytes() + s.work.bytes() + s.layout.bytes();
+  const bool comes = residual && s.equations.work_bytes() < s.equations.residual_bytes();
+  const std::size_t to_come = comes ? s.equations.residual_bytes() : 0;
+  return {.starting_rows = s.history,
+          .iterates = s.equations.iterates(),
+          .matrix_free = matrix == 0,
+          .solver = s.equations.solver(0).name(),
+          .layout = &s.layout,
+          .bytes = rows + sources + matrix + work,
+          .bytes_to_come = to_come,
+          .memory = fmt::format("rows of the field and increments {} B, source terms {} B, matrix {} B, work space {} B",
+                                rows, sources, matrix, work + to_come)};
 }
 
 }  // namespace delf

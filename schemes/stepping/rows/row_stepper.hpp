@@ -10,7 +10,7 @@ namespace delf {
 /// Steps a system row by row, as its plan says. Kept are the newest rows y and their increments v_j = y_j − y_{j−1}:
 /// with A₊ the coefficients of the unknown row, every step solves for w = v_{n+1} − v_n,
 ///
-///     A₊ w = −(linear part at y_n, v_n, v_{n−1}, …) − r(0) − nonlinear part,      v += w, y += v,
+///     A₊ w = −(linear part at y_n, v_n, v_{n−1}, …) − r(0) − source terms,      v += w, y += v,
 ///
 /// differences throughout, so that rounding enters at the size of the increment and not of the field.
 class RowStepper final : public StepMethod {
@@ -19,29 +19,17 @@ class RowStepper final : public StepMethod {
   RowStepper(const LatticeSystem&, const SolvePlan&, const StepOptions&);
   ~RowStepper() override;
 
-  int starting_rows() const override;
   void start(const std::vector<std::vector<double>>& rows) override;
   void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) override;
+  void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool looked_at) override;
-  void steps(int count) override;
-  int steps_at_once() const override;
 
-  std::int64_t newest() const override;
+  StepState state() const override;
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   double residual() const override;
-  int iterations() const override;
-
-  const RowLayout* layout() const override;
-  const double* row_data(int back, int component) const override;
-  double newest_pair(const double** rows) const override;
-
-  bool iterates() const override;
-  std::string solver_name() const override;
-  bool matrix_free() const override;
-  std::size_t bytes() const override;
-  std::size_t bytes_to_come(bool residual) const override;
-  std::string memory_report(bool residual) const override;
+  void newest_pair(const double** rows) const override;
+  StepReport report(bool residual) const override;
 
  private:
   struct Impl;

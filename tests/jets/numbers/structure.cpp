@@ -213,35 +213,3 @@ TEST_CASE("the sampling can fail: φ³ claimed to have a constant Hessian, φφ_
   CHECK(contradiction(cube, constant, random) > 0.01);
   CHECK(contradiction(product, none, random) > 0.01);
 }
-
-TEST_CASE("how large a field may be so that no function in its density is asked beyond packs' polynomials") {
-  const auto below = [](auto f) { return near_below(from(f)); };
-  CHECK(below([](const auto& j) { return kinetic(j) + cosm1(j.phi); }) == 3e6);
-  CHECK(below([](const auto& j) { return cos(2.0 * j.phi); }) == 1e6);
-  CHECK(below([](const auto& j) { return sin(j.phi / 30.0); }) == 3e6);
-  CHECK(below([](const auto& j) { return sin(j.phi * j.phi); }) == 1e3);
-  CHECK(below([](const auto& j) { return sin(pow(j.phi, 3.0) - 7.0); }) == 100);
-  CHECK(below([](const auto& j) { return cosh(j.phi); }) == 100);
-  CHECK(below([](const auto& j) { return sin(exp(j.phi)); }) == 10);
-  CHECK(below([](const auto& j) { return sin(1e5 * sin(j.phi) + 1e4 * tanh(j.phi) + 1e4 * cosm1(j.phi)); }) == 3e6);
-  CHECK(below([](const auto& j) { return cos(sinc(j.phi) + sqrt(j.phi)); }) == 3e6);
-  CHECK(below([](const auto& j) { return exp(j.phi) + tan(j.phi) + log(j.phi) / j.phi; }) == 3e6);
-  // Derivatives are 0 there.
-  CHECK(below([](const auto& j) { return sin(1e9 * j.phi_t) + cos(j.phi_x * j.phi); }) == 3e6);
-  CHECK(near_below(from<2>([](const auto& j) { return sin(j.phi[0] - j.phi[1]); })) == 1e6);
-}
-
-TEST_CASE("where nothing bounds an argument no field is near, however small") {
-  const auto below = [](auto f) { return near_below(from(f)); };
-  CHECK(below([](const auto& j) { return sin(1e7 * j.phi); }) == -1);
-  CHECK(below([](const auto& j) { return sin(j.phi + 1e7); }) == -1);
-  CHECK(below([](const auto& j) { return 0.0 * sin(1e7 * j.phi); }) == -1);
-  CHECK(below([](const auto& j) { return sin(1e7 + 0.0 * j.phi) + j.phi; }) == -1);
-  CHECK(below([](const auto& j) { return sin(tan(j.phi)); }) == -1);
-  CHECK(below([](const auto& j) { return sin(1.0 / j.phi); }) == -1);
-  CHECK(below([](const auto& j) { return cos(log(j.phi)); }) == -1);
-  CHECK(below([](const auto& j) { return cos(pow(j.phi, -1.0)); }) == -1);
-  CHECK(below([](const auto& j) { return sin(std::numeric_limits<double>::quiet_NaN() * j.phi); }) == -1);
-  CHECK(near_below(from<1, true>([](const auto& j) { return sin(j.x) * j.phi; })) == -1);
-  CHECK(near_below(from<1, true>([](const auto& j) { return tanh(j.x) * sin(j.phi); })) == 3e6);
-}

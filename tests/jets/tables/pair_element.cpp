@@ -81,30 +81,34 @@ TEST_CASE(
     "the element of a composition lists its rows one above the other, and weighs its points by signed fractions") {
   const Splitting splitting = splitting_of_order(8);
   const auto& fractions = splitting.drifts;
-  const Element element = pair_element(splitting, 3);
+  const StencilTable element = pair_element(splitting, 3);
   CHECK(element.nodes.size() == fractions.size());
   CHECK(element.pattern.size() == static_cast<int>(4 * (fractions.size() + 1)));
   CHECK(element.points.size() == fractions.size() * 3 * 4);
   double total = 0;
-  for (const ElementPoint& p : element.points) total += p.weight;
+  for (const TablePoint& p : element.points) total += p.weight;
   CHECK(std::abs(total - 1) < 1e-13);
   CHECK(element.nodes[3].time < element.nodes[2].time);  // the third sub-step goes back
   // A row's points weigh what its kick does: φ alone, at all vertices of node 2.
   double kick = 0;
-  for (const ElementPoint& p : element.points)
-    for (std::size_t l = 0; l < p.phi.size(); ++l)
-      if (element.pattern.vertices[l].time == 0 && element.pattern.vertices[l].node == 2) kick += p.weight * p.phi[l];
+  for (const TablePoint& p : element.points)
+    for (const auto& [vertex, weight] : p[JetSlot::phi]) {
+      const Site v = element.pattern.vertices[static_cast<std::size_t>(vertex)];
+      if (v.time == 0 && v.node == 2) kick += p.weight * weight;
+    }
   CHECK(std::abs(kick - splitting.kicks[2]) < 1e-14);
   // On the affine field 2 + 3t + 5x every point finds φ_t = 3 and φ_x = 5.
-  for (const ElementPoint& p : element.points) {
-    double phi = 0, phi_t = 0, phi_x = 0;
-    for (std::size_t l = 0; l < p.phi.size(); ++l) {
-      const Site v = element.pattern.vertices[l];
-      const double y = 2 + 3 * (v.time + element.nodes[static_cast<std::size_t>(v.node)].time) + 5 * v.space;
-      phi += p.phi[l] * y, phi_t += p.phi_t[l] * y, phi_x += p.phi_x[l] * y;
-    }
-    CHECK(std::abs(phi - (2 + 3 * p.time + 5 * p.space)) < 1e-13);
-    CHECK(std::abs(phi_t - 3) < 1e-13);
-    CHECK(std::abs(phi_x - 5) < 1e-13);
+  for (const TablePoint& p : element.points) {
+    const auto found = [&](JetSlot slot) {
+      double sum = 0;
+      for (const auto& [vertex, weight] : p[slot]) {
+        const Site v = element.pattern.vertices[static_cast<std::size_t>(vertex)];
+        sum += weight * (2 + 3 * (v.time + element.nodes[static_cast<std::size_t>(v.node)].time) + 5 * v.space);
+      }
+      return sum;
+    };
+    CHECK(std::abs(found(JetSlot::phi) - (2 + 3 * p.time + 5 * p.space)) < 1e-13);
+    CHECK(std::abs(found(JetSlot::phi_t) - 3) < 1e-13);
+    CHECK(std::abs(found(JetSlot::phi_x) - 5) < 1e-13);
   }
 }

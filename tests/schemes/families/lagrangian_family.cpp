@@ -125,7 +125,7 @@ TEST_CASE("a family of a stencil Lagrangian has its pattern and its values") {
   CHECK(family.pattern().vertices == stencil.shape.vertices);
   CHECK(family.values() == stencil.values());
   CHECK(family.is_variational());
-  CHECK(family.row_kernel() == nullptr);
+  CHECK(family.sources() == nullptr);
   std::vector<double> y(static_cast<std::size_t>(family.size()), 0.5);
   CHECK(family.lagrangian(cell, y) == stencil(std::span<const double>(y), cell));
 }

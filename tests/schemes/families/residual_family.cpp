@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/families/residual_family.hpp"
 
+#include "schemes/families/damped_leapfrog.hpp"
+#include "schemes/families/guo.hpp"
+#include "schemes/families/vu_quoc_li.hpp"
 #include "schemes/theories/phi4.hpp"
 #include "schemes/theories/sine_gordon.hpp"
-#include "schemes/families/vu_quoc_li.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/families/family_batch.hpp"
 #include "tests/schemes/support.hpp"
 
 using namespace delf;
@@ -13,60 +16,190 @@ using namespace delf::testing;
 namespace {
 
 constexpr double h = 0.2, k = 0.3;
+constexpr Cell cell{h, k, 0, 0};
 constexpr int N = 19;
 
-/// The largest difference between E of (5.14) at the rows of four, and its linear part with what stencils centred there
+template <class D>
+ResidualFamily family_for(const DirectResidual& stencil, const D& density) {
+  return {stencil, std::make_shared<BatchOf<D>>(density)};
+}
+
+/// N(φ) = −¼(φ¹² + φ²²)² − φ¹φ², whose difference quotients are taken one component after the other:
+/// Q₁ = (N(a₁, b₂) − N(b₁, b₂))/(a₁ − b₁), Q₂ = (N(a₁, a₂) − N(a₁, b₂))/(a₂ − b₂).
+struct Pair {
+  static constexpr int components = 2;
+  auto operator()(const auto& j) const {
+    const auto r = j.phi[0] * j.phi[0] + j.phi[1] * j.phi[1];
+    return 0.5 * (j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1] - j.phi_x[0] * j.phi_x[0] - j.phi_x[1] * j.phi_x[1]) -
+           0.25 * (r * r) - j.phi[0] * j.phi[1];
+  }
+  /// (u² − v²)/(a − b) for u = a² + c², v = b² + c² is (u + v)(a + b).
+  template <class T>
+  std::array<T, 2> difference_quotient(const std::array<T, 2>& a, const std::array<T, 2>& b) const {
+    const T u = a[0] * a[0] + b[1] * b[1], v = b[0] * b[0] + b[1] * b[1], w = a[0] * a[0] + a[1] * a[1];
+    return {-0.25 * ((u + v) * (a[0] + b[0])) - b[1], -0.25 * ((w + u) * (a[1] + b[1])) - a[0]};
+  }
+};
+
+struct NoQuotient {
+  auto operator()(const auto& j) const { return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + cosm1(j.phi); }
+};
+
+/// (5.14), (5.15) and leapfrog with friction by hand, E of component a at the vertex of the centre.
+double by_hand(const DirectResidual& stencil, int d, int a, const std::vector<double>& y, const auto& quotient) {
+  double E = 0;
+  for (int l = 0; l < stencil.pattern.size(); ++l) {
+    const auto at = static_cast<std::size_t>(l);
+    E += (stencil.by_xx[at] / (k * k) - stencil.by_tt[at] / (h * h)) * y[static_cast<std::size_t>(l * d + a)];
+    if (!stencil.by_t.empty()) E += stencil.by_t[at] / h * y[static_cast<std::size_t>(l * d + a)];
+  }
+  for (const auto& q : stencil.quotients) {
+    const auto values = [&](int l) { return std::span(y).subspan(static_cast<std::size_t>(l * d), static_cast<std::size_t>(d)); };
+    E += q.weight * quotient(values(q.above), values(q.below));
+  }
+  return h * k * E;
+}
+
+/// The largest difference between E of (5.14) at the rows of four, and its constant part with what stencils centred there
 /// and a row below share; `of_below` times the latter.
-template <class Theory>
-double shared_defect(const Theory& theory, double of_below) {
-  using Stencil = VuQuocLi<Theory>;
-  const ResidualFamily<Stencil> family(Stencil{theory}, h, k);
-  const RowKernel& kernel = *family.row_kernel();
+template <class D>
+double shared_defect(const D& density, double of_below) {
+  constexpr int d = components_of<D>();
+  const DirectResidual stencil = vu_quoc_li();
+  const ResidualFamily family = family_for(stencil, density);
   const Lattice ring = Lattice::circle(N, N * k);
-  const RowLayout layout(ring, 1);
   Random random(7);
   std::vector<Row> y;
-  RowBuffer rows(layout, 4), out(layout, 2);
-  for (int r = 0; r < 4; ++r) {
-    y.push_back(random_row(random, N, 2));
-    layout.scatter(y.back(), rows.row(r));
-  }
-  for (int below = 0; below < 2; ++below) {  // centred at the row 2, at the row 1
-    const double* const slab[] = {rows.row(1 - below), rows.row(2 - below), rows.row(3 - below)};
-    double* const outputs[] = {out.row(below)};
-    kernel.evaluate({&layout, slab, nullptr, 0, h, k}, outputs);
-  }
-  std::vector<double> stencil(9), r(9), J(81), r0(9);
-  const Cell cell{h, k, 0, 0};
-  kernel.linear_part(cell, J, r0);
-  double worst = 0;
-  for (int i = 0; i < N; ++i) {
-    double sum = r0[Stencil::centre];
-    for (int l = 0; l < 9; ++l) {
-      const Site at = Stencil::shape.vertex(l);
-      const double value =
-          y[static_cast<std::size_t>(2 + at.time)][static_cast<std::size_t>(ring.wrapped(i + at.space))];
-      stencil[static_cast<std::size_t>(l)] = value;
-      sum += J[static_cast<std::size_t>(9 * Stencil::centre + l)] * value;
+  for (int r = 0; r < 4; ++r) y.push_back(random_row(random, N * d, 2));
+  const SourceTerms& terms = *family.sources();
+  REQUIRE(terms.groups.size() == 1);
+  // Q of the stencil that is centred at site i of row r.
+  const auto sources = [&](int r, int i) {
+    std::vector<Pack> in(static_cast<std::size_t>(2 * d)), out(static_cast<std::size_t>(d));
+    std::vector<const double*> from;
+    std::vector<double*> to;
+    for (std::size_t j = 0; j < in.size(); ++j) {
+      double m = 0;
+      for (const auto& part : terms.groups[0].inputs[j])
+        m += part.weight * y[static_cast<std::size_t>(r + part.vertex.time)]
+                            [static_cast<std::size_t>(ring.wrapped(i + part.vertex.space) * d + part.component)];
+      in[j] = Pack(m);
+      from.push_back(reinterpret_cast<double*>(&in[j]));
     }
-    const int slot = layout.slot(i);
-    sum += kernel.weight(0, 4) * out.row(0)[slot] + of_below * kernel.weight(0, 7) * out.row(1)[slot];
-    family.residual(cell, stencil, r);
-    worst = std::max(worst, std::abs(sum - r[Stencil::centre]));
+    for (Pack& o : out) to.push_back(reinterpret_cast<double*>(&o));
+    family.evaluate_sources(0, {lanes, from.data()}, to.data());
+    std::vector<double> q;
+    for (const Pack& o : out) q.push_back(o[0]);
+    return q;
+  };
+  const auto part = family.constant_part(cell);
+  double worst = 0;
+  const int size = family.size();
+  for (int i = 0; i < N; ++i) {
+    std::vector<double> values, r(static_cast<std::size_t>(size));
+    for (const Site& v : stencil.pattern.vertices)
+      for (int a = 0; a < d; ++a)
+        values.push_back(y[static_cast<std::size_t>(2 + v.time)][static_cast<std::size_t>(ring.wrapped(i + v.space) * d + a)]);
+    family.residual(cell, values, r);
+    const auto here = sources(2, i), below = sources(1, i);
+    for (int a = 0; a < d; ++a) {
+      const int row = stencil.centre * d + a;
+      double sum = part->r0[static_cast<std::size_t>(row)];
+      for (int l = 0; l < size; ++l)
+        sum += part->J[static_cast<std::size_t>(row * size + l)] * values[static_cast<std::size_t>(l)];
+      for (int c = 0; c < d; ++c)
+        sum += h * k * (terms.weight(c, 4 * d + a) * here[static_cast<std::size_t>(c)] +
+                        of_below * terms.weight(c, 7 * d + a) * below[static_cast<std::size_t>(c)]);
+      worst = std::max(worst, std::abs(sum - r[static_cast<std::size_t>(row)]));
+    }
   }
   return worst;
 }
 
 }  // namespace
 
+TEST_CASE("comparators are their printed equations times hk, at the centre alone") {
+  const double m2 = 1.69;
+  const auto quotient = [&](std::span<const double> a, std::span<const double> b) {
+    if (a[0] == b[0]) return -m2 * std::sin(a[0]);
+    return m2 * (std::cos(a[0]) - std::cos(b[0])) / (a[0] - b[0]);
+  };
+  Random random(8);
+  for (const DirectResidual& stencil : {vu_quoc_li(), guo(), damped_leapfrog(0.3)}) {
+    const ResidualFamily family = family_for(stencil, SineGordon{1.3});
+    const FamilyBatch stencils(family, cell, 3 * lanes, random);
+    const auto r = stencils.residuals();
+    for (int s = 0; s < stencils.count(); ++s)
+      for (int i = 0; i < family.size(); ++i) {
+        const double expected = i == stencil.centre ? by_hand(stencil, 1, 0, stencils.y(s), quotient) : 0;
+        CHECK(std::abs(r[static_cast<std::size_t>(i)][static_cast<std::size_t>(s)] - expected) < 1e-14);
+      }
+  }
+}
+
+TEST_CASE("the residual is its constant part and its source terms where these are not shared, and its Jacobian too") {
+  Random random(9);
+  for (const DirectResidual& stencil : {guo(), damped_leapfrog(0.3)}) {
+    const auto check = [&](const ResidualFamily& family) {
+      const FamilyBatch stencils(family, cell, 3 * lanes, random);
+      CHECK(stencils.split_defect() < 3e-15);
+      CHECK(stencils.split_jacobian_defect() < 3e-15);
+      CHECK(stencils.split_defect(1.001) > 1e-7);
+    };
+    check(family_for(stencil, SineGordon{1.3}));
+    check(family_for(stencil, PhiFour{}));
+    check(family_for(stencil, Pair{}));
+  }
+}
+
 TEST_CASE("(5.14) is its linear part and the halves of one quotient that two rows share") {
-  CHECK(shared_defect(SineGordon{1.3}, 1) < 1e-15);
-  CHECK(shared_defect(PhiFour{}, 1) < 1e-15);
+  CHECK(shared_defect(SineGordon{1.3}, 1) < 2e-15);
+  CHECK(shared_defect(PhiFour{}, 1) < 2e-15);
+  CHECK(shared_defect(Pair{}, 1) < 4e-15);
   for (double of_below : {0.0, -1.0, 0.99}) CHECK(shared_defect(SineGordon{1.3}, of_below) > 1e-5);
 }
 
 TEST_CASE("no vertex but these two has a share of it") {
-  const ResidualFamily<VuQuocLi<SineGordon>> family({{1}}, h, k);
-  for (int l = 0; l < 9; ++l) CHECK(family.weight(0, l) == (l == 4 || l == 7 ? 0.5 * h * k : 0));
-  CHECK(family.outputs_read_until() == 1);
+  const ResidualFamily family = family_for(vu_quoc_li(), SineGordon{1});
+  for (int l = 0; l < 9; ++l) CHECK(family.sources()->weight(0, l) == (l == 4 || l == 7 ? 0.5 : 0));
+  CHECK(family.sources()->groups[0].latest_time() == 1);
+}
+
+TEST_CASE("the Jacobian is the derivative of the residual, with two components that a quotient couples too") {
+  Random random(10);
+  for (const DirectResidual& stencil : {vu_quoc_li(), guo(), damped_leapfrog()}) {
+    const ResidualFamily family = family_for(stencil, Pair{});
+    const auto n = static_cast<std::size_t>(family.size());
+    std::vector<double> y(n), J(n * n), r(n);
+    for (double& value : y) value = random(-1, 1);
+    family.jacobian(cell, y, J);
+    double worst = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      std::vector<double> slope(n, 0.0);
+      for (const auto& [step, weight] : {std::pair{1, 8.0}, {-1, -8.0}, {2, -1.0}, {-2, 1.0}}) {
+        std::vector<double> to = y;
+        to[j] += step * 0.25;  // exact: a polynomial of degree 3
+        family.residual(cell, to, r);
+        for (std::size_t i = 0; i < n; ++i) slope[i] += weight / 3 * r[i];
+      }
+      for (std::size_t i = 0; i < n; ++i) worst = std::max(worst, std::abs(slope[i] - J[i * n + j]));
+    }
+    CHECK(worst < 1e-13);
+  }
+}
+
+TEST_CASE("two components whose comparators couple them are stepped, and a density without a quotient is refused") {
+  for (const DirectResidual& stencil : {vu_quoc_li(), guo()}) {
+    Evolution evolution(Lattice::circle(32, 32 * k), {std::make_shared<ResidualFamily>(family_for(stencil, Pair{}))}, h / 2,
+                        {}, fields(2));
+    Stepper& stepper = evolution.stepper();
+    Random random(11);
+    stepper.start(random_rows(random, stepper.starting_rows(), 64, 0.5));
+    for (int n = 0; n < 4; ++n) {
+      stepper.step();
+      CHECK(equation_defect(evolution, window_of(evolution)) < 3e-15);
+      CHECK(stepper.residual() < 1e-14);
+    }
+  }
+  CHECK_THROWS_AS(family_for(guo(), NoQuotient{}), BadInput);
 }

@@ -15,9 +15,9 @@ namespace {
 
 LatticeSystem element(int degree_time, int degree_space, const char* quadrature, double k, double h, double mass) {
   Problem p;
-  p.theory = "klein-gordon", p.method = "spacetime", p.quadrature = quadrature;
-  p.degree_time = degree_time, p.degree_space = degree_space;
-  p.lattice = Lattice::circle(4, 4 * k), p.time_step = h, p.mass = mass;
+  p.theory = "klein-gordon", p.method = "spacetime", p.parameters["scheme.quadrature"] = quadrature;
+  p.parameters["scheme.degree_time"] = degree_time, p.parameters["scheme.degree_space"] = degree_space;
+  p.lattice = Lattice::circle(4, 4 * k), p.time_step = h, p.parameters["theory.mass"] = mass;
   return Simulation(p).evolution().system();
 }
 

@@ -27,9 +27,9 @@ LatticeSystem system_of(Problem p) { return Simulation(p).evolution().system(); 
 /// Klein-Gordon on every scheme that is made for a circle; not those with too many nodes for a quick test.
 std::vector<NamedScheme> schemes_of(int sites, double mass) {
   Problem base;
-  base.theory = "klein-gordon", base.mass = mass;
+  base.theory = "klein-gordon", base.parameters["theory.mass"] = mass;
   base.lattice = Lattice::circle(sites, 0.9 * sites), base.time_step = 0.31;
-  base.order = base.space_order = 4;
+  base.parameters["scheme.order"] = base.parameters["lattice.space_order"] = 4;
   std::vector<NamedScheme> result;
   for (NamedScheme& scheme : named_schemes(base)) {
     try {
@@ -168,7 +168,7 @@ TEST_CASE("roots are roots, and the number beside them is none") {
 
 TEST_CASE("the roots at a circle's wave numbers are the eigenvalues of the step that the program makes") {
   Problem p;
-  p.theory = "klein-gordon", p.mass = 1.3, p.time_step = 0.5;
+  p.theory = "klein-gordon", p.parameters["theory.mass"] = 1.3, p.time_step = 0.5;
   for (const char* stencil :
        {"triangle", "triangle-vertex", "rectangle", "rectangle-symmetric", "six-tuple", "nine-tuple"}) {
     CAPTURE(stencil);
@@ -178,10 +178,10 @@ TEST_CASE("the roots at a circle's wave numbers are the eigenvalues of the step 
   }
   p.stencil = "hexagon";
   for (const double mass : {1.3, 5.0}) {  // of these steps the second grows
-    p.mass = mass, p.lattice = Lattice::circle(8, 7.2);
+    p.parameters["theory.mass"] = mass, p.lattice = Lattice::circle(8, 7.2);
     CHECK(step_mismatch(p, Symbol(system_of(p))) < 1e-10);
   }
-  p.mass = 1.3, p.lattice = Lattice::circle(7, 6.3);
+  p.parameters["theory.mass"] = 1.3, p.lattice = Lattice::circle(7, 6.3);
   for (const char* method : {"guo", "vu-quoc-li", "damped"}) {
     CAPTURE(method);
     p.method = method;
@@ -191,7 +191,7 @@ TEST_CASE("the roots at a circle's wave numbers are the eigenvalues of the step 
 
 TEST_CASE("the check can fail: another scheme's roots are not the eigenvalues of the step") {
   Problem p;
-  p.theory = "klein-gordon", p.mass = 1.3, p.time_step = 0.5, p.lattice = Lattice::circle(7, 6.3),
+  p.theory = "klein-gordon", p.parameters["theory.mass"] = 1.3, p.time_step = 0.5, p.lattice = Lattice::circle(7, 6.3),
   p.stencil = "rectangle";
   Problem other = p;
   other.stencil = "triangle";
@@ -227,13 +227,13 @@ TEST_CASE("about a constant state: sine-Gordon at 0 is Klein-Gordon, and at pi t
 
 TEST_CASE("two coupled fields have the roots of their normal modes") {
   Problem p;
-  p.theory = "coupled-sine-gordon", p.mass = 0.8, p.lambda = 0.35;
+  p.theory = "coupled-sine-gordon", p.parameters["theory.mass"] = 0.8, p.parameters["theory.lambda"] = 0.35;
   p.lattice = Lattice::circle(8, 8), p.time_step = 0.5, p.stencil = "rectangle-symmetric";
   const Symbol both(system_of(p));
   CHECK(both.size() == 2);
   p.theory = "klein-gordon";
   const Symbol slow(system_of(p));
-  p.mass = std::sqrt(0.8 * 0.8 + 2 * 0.35);
+  p.parameters["theory.mass"] = std::sqrt(0.8 * 0.8 + 2 * 0.35);
   const Symbol fast(system_of(p));
   for (const double theta : {0.0, 0.7, 2.2}) {
     Values apart = slow.roots(theta);

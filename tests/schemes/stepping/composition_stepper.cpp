@@ -23,9 +23,10 @@ struct Run {
   Run(const std::string& theory, int order, int space_order, double courant, int sites = N, int winding = 0)
       : problem([&] {
           Problem p = problem_of(theory);
-          p.method = "composition", p.order = order, p.space_order = space_order, p.winding = winding;
+          p.method = "composition", p.parameters["scheme.order"] = order,
+          p.parameters["lattice.space_order"] = space_order, p.winding = winding;
           // far from the seam: stencils across it see x beyond L, where rows see it once more from 0
-          p.impurity_position = 6, p.impurity_width = 0.3;
+          p.parameters["theory.position"] = 6, p.parameters["theory.width"] = 0.3;
           p.lattice = Lattice::circle(sites, 12), p.time_step = courant * p.lattice.space_step();
           return p;
         }()),
@@ -86,7 +87,7 @@ TEST_CASE("the equations of a composition notice another mass") {
   Run run("sine-gordon", 4, 4, 0.4);
   for (int n = 0; n < 3; ++n) run.simulation.step();
   Problem other = run.problem;
-  other.mass = 1.3;
+  other.parameters["theory.mass"] = 1.3;
   const Simulation heavier(other);
   const Window window = run.simulation.evolution().stepper().window(3);
   std::vector<LatticeSystem::Value> values;
@@ -162,11 +163,12 @@ TEST_CASE("compositions refuse what they cannot start from or be built on") {
     }
     return std::string();
   };
-  CHECK(refused([](Problem& p) { p.order = 3; }) == "scheme.order");
-  CHECK(refused([](Problem& p) { p.order = 10; }) == "scheme.order");
-  CHECK(refused([](Problem& p) { p.space_order = 5; }) == "lattice.space_order");
-  CHECK(refused([](Problem& p) { p.space_order = 14; }) == "lattice.space_order");
-  CHECK(refused([](Problem& p) { p.space_order = 12, p.lattice = Lattice::circle(12, 12); }) == "lattice.sites");
+  CHECK(refused([](Problem& p) { p.parameters["scheme.order"] = 3; }) == "scheme.order");
+  CHECK(refused([](Problem& p) { p.parameters["scheme.order"] = 10; }) == "scheme.order");
+  CHECK(refused([](Problem& p) { p.parameters["lattice.space_order"] = 5; }) == "lattice.space_order");
+  CHECK(refused([](Problem& p) { p.parameters["lattice.space_order"] = 14; }) == "lattice.space_order");
+  CHECK(refused([](Problem& p) { p.parameters["lattice.space_order"] = 12, p.lattice = Lattice::circle(12, 12); }) ==
+        "lattice.sites");
   CHECK(refused([](Problem& p) { p.lattice = Lattice::interval(30, 12); }) == "lattice.space");
   CHECK(refused([](Problem& p) { p.theory = "wave-map"; }) == "scheme.method");
   CHECK(refused([](Problem& p) { p.circle_valued = true; }) == "theory.fibre");

@@ -69,7 +69,7 @@ const Component phi{"phi"}, psi{"psi"}, lambda{"lambda", Role::multiplier, {}}, 
 }  // namespace
 
 TEST_CASE("ill-posed systems are refused, and say by name what is not determined") {
-  const auto action = Scheme{rectangle, SineGordon{1}}.family(0.1, 0.5);
+  const auto action = Scheme{rectangle, SineGordon{1}}.family();
   CHECK(refusal({action, family(Unit{1})}, {phi, lambda}) == "accepted");
 
   const std::string nobody = refusal({action, family(Absent{})}, {phi, psi});

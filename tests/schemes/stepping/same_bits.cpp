@@ -63,7 +63,7 @@ Trace run(const std::string& theory, const std::string& scheme, const Asked& ask
 std::vector<std::string> schemes_of(const std::string& theory) {
   std::vector<std::string> schemes = stencil_names();
   for (const char* comparator : {"guo", "vu-quoc-li"})
-    if (family_of(problem_of(theory), comparator, 0.1, 0.25)) schemes.emplace_back(comparator);
+    if (family_of(problem_of(theory), comparator)) schemes.emplace_back(comparator);
   return schemes;
 }
 const std::vector<std::string> some_theories{"sine-gordon", "phi4", "coupled-sine-gordon", "sine-gordon-impurity"};

@@ -18,8 +18,8 @@ double assembly_defect(const std::string& theory, const std::string& scheme, con
   const AssembledEquations assembled = assemble(evolution.system(), evolution.plan());
   const int N = lattice.sites();
   Random random(71);
-  Window window{&lattice, 1, 3.5, newest_known - 3, {}};  // rows n−3 … n+1, with a turn
-  if (!lattice.is_circle()) window.turn = 0;
+  // Rows n−3 … n+1, with a turn where the theory does not see one.
+  Window window{&lattice, 1, lattice.is_circle() && theory == "wave" ? 3.5 : 0, newest_known - 3, {}};
   for (int j = 0; j < 5; ++j) window.rows.push_back(random_row(random, N, 1));
   const int n = newest_known;
   const auto y = [&](int row, int i) { return window(row, i, 0); };

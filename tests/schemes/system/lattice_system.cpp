@@ -105,7 +105,7 @@ double against_print(const LatticeSystem& system,
   return worst;
 }
 double against_print(const std::string& scheme, const Problem& p, const Equation& equation) {
-  return against_print(LatticeSystem(ring, {family_of(p, scheme, h, k)}, h),
+  return against_print(LatticeSystem(ring, {family_of(p, scheme)}, h),
                        [&](const Field& y, int, int) { return equation(y); });
 }
 
@@ -132,7 +132,7 @@ bool has_coefficients(const LatticeSystem& system, Site site, const std::map<Sit
 
 Problem sine_gordon() {
   Problem p;
-  p.theory = "sine-gordon", p.mass = m;
+  p.theory = "sine-gordon", p.parameters["theory.mass"] = m;
   return p;
 }
 Problem wave() {
@@ -162,7 +162,7 @@ TEST_CASE("for N = 0 the generated equations are (5.8), (5.10), (5.12), (5.14), 
   Equation without_potential = [](const Field& y) { return d2k(y, 0) - d2h(y, 0); };
   for (const auto& [scheme, equation] : printed(0)) {
     CAPTURE(scheme);
-    const LatticeSystem system(ring, {family_of(wave(), scheme, h, k)}, h);
+    const LatticeSystem system(ring, {family_of(wave(), scheme)}, h);
     // the quotients are 0/0 at a field of zeros: without N the comparators are (5.10) and (5.8)
     const Equation linear = scheme == "guo"          ? without_potential
                             : scheme == "vu-quoc-li" ? printed(0)["rectangle"]
@@ -174,14 +174,14 @@ TEST_CASE("for N = 0 the generated equations are (5.8), (5.10), (5.12), (5.14), 
 TEST_CASE("the hexagon for N = 0 is (5.10) at every site, coefficient by coefficient, and the six-tuple is too") {
   const auto expected = coefficients(printed(0)["rectangle"]);
   CHECK(expected.size() == 9);
-  const LatticeSystem hexagons(ring, {family_of(wave(), "hexagon", h, k)}, h);
+  const LatticeSystem hexagons(ring, {family_of(wave(), "hexagon")}, h);
   for (int j : {0, 1})
     for (int i = 0; i < 4; ++i) CHECK(has_coefficients(hexagons, {j, i}, expected));
-  CHECK(has_coefficients(LatticeSystem(ring, {family_of(wave(), "six-tuple", h, k)}, h), {0, 5}, expected));
+  CHECK(has_coefficients(LatticeSystem(ring, {family_of(wave(), "six-tuple")}, h), {0, 5}, expected));
 }
 
 TEST_CASE("the coefficients can be seen to differ: the rectangle's are not the symmetric rectangle's") {
-  const LatticeSystem system(ring, {family_of(wave(), "rectangle", h, k)}, h);
+  const LatticeSystem system(ring, {family_of(wave(), "rectangle")}, h);
   CHECK(has_coefficients(system, {0, 5}, coefficients(printed(0)["rectangle"])));
   CHECK_FALSE(has_coefficients(system, {0, 5}, coefficients(printed(0)["rectangle-symmetric"])));
   CHECK_FALSE(has_coefficients(system, {0, 5}, coefficients(printed(0)["triangle"])));
@@ -192,7 +192,7 @@ TEST_CASE("for sine-Gordon the generated equations are the printed ones on rando
     CAPTURE(scheme);
     CHECK(against_print(scheme, sine_gordon(), equation) < 1e-13);
   }
-  const LatticeSystem hexagons(ring, {family_of(sine_gordon(), "hexagon", h, k)}, h);
+  const LatticeSystem hexagons(ring, {family_of(sine_gordon(), "hexagon")}, h);
   CHECK(against_print(hexagons, [](const Field& y, int site, int row) {
           return printed_hexagon(y, (site + row) % 2 == 0, m);
         }) < 1e-13);
@@ -205,7 +205,7 @@ TEST_CASE("the nine-tuple's equation is (5.12), and neither is the rectangle's")
 
 TEST_CASE("the comparison can fail: a sign planted in one term of the Lagrangian is found on every stencil") {
   for (const auto& [scheme, equation] : printed(m))
-    if (const auto family = TheoryOf<Planted>(Planted{}).variational(scheme, h, k)) {
+    if (const auto family = TheoryOf<Planted>(Planted{}).variational(scheme)) {
       CAPTURE(scheme);
       CHECK(against_print(LatticeSystem(ring, {family}, h), [&](const Field& y, int, int) { return equation(y); }) >
             1e-2);
@@ -218,7 +218,7 @@ TEST_CASE("a difference quotient of equal values is N′, where the quotient its
   Random random(32);
   window.rows.assign(3, random_row(random, N, 3));
   for (const char* scheme : {"vu-quoc-li", "guo"}) {
-    const LatticeSystem system(ring, {family_of(sine_gordon(), scheme, h, k)}, h);
+    const LatticeSystem system(ring, {family_of(sine_gordon(), scheme)}, h);
     for (int i = 0; i < N; ++i) {
       const Field y = [&](int j, int s) { return window(j, i + s, 0); };
       CHECK(std::abs(system.equation(window, 0, i, 0, h).sum / (h * k) - (d2k(y, 0) + slope(y(0, 0), m))) <
@@ -230,7 +230,7 @@ TEST_CASE("a difference quotient of equal values is N′, where the quotient its
 TEST_CASE("coefficients that the potential touches are nonlinear, those that cancel are absent") {
   const auto dependence = [](const char* scheme) {
     std::map<Site, Dependence> result;
-    for (const Coefficient& c : LatticeSystem(ring, {family_of(sine_gordon(), scheme, h, k)}, h).linearised({0, 5}, 0))
+    for (const Coefficient& c : LatticeSystem(ring, {family_of(sine_gordon(), scheme)}, h).linearised({0, 5}, 0))
       result[c.offset] = c.dependence;
     return result;
   };
@@ -244,7 +244,7 @@ TEST_CASE("coefficients that the potential touches are nonlinear, those that can
   CHECK(dependence("rectangle").size() == 9);
   CHECK(dependence("nine-tuple").size() == 9);  // of 25: the rest cancels
   // at h = k the unknown row of (5.12) has no linear part beside its own site
-  const LatticeSystem square(ring, {family_of(sine_gordon(), "rectangle-symmetric", k, k)}, k);
+  const LatticeSystem square(ring, {family_of(sine_gordon(), "rectangle-symmetric")}, k);
   for (const Coefficient& c : square.linearised({0, 5}, 0))
     if (c.offset.time == 1 && c.offset.space != 0) CHECK(c.value == 0);
 }
@@ -252,7 +252,7 @@ TEST_CASE("coefficients that the potential touches are nonlinear, those that can
 TEST_CASE("what is nonlinear is found on the finest lattices too, and nothing else is") {
   const auto nonlinear = [](const Problem& problem, const std::string& scheme, double sites) {
     const double fine = 40 / sites, step = fine / 8;
-    const LatticeSystem system(Lattice::circle(N, N * fine), {family_of(problem, scheme, step, fine)}, step);
+    const LatticeSystem system(Lattice::circle(N, N * fine), {family_of(problem, scheme)}, step);
     std::set<Site> found;
     for (const Coefficient& c : system.linearised({0, 5}, 0))
       if (c.dependence == Dependence::nonlinear) found.insert(c.offset);
@@ -276,11 +276,11 @@ TEST_CASE("the Jacobian of the equations is that of finite differences, across t
   for (const std::string& scheme :
        {std::string("triangle"), std::string("rectangle"), std::string("hexagon"), std::string("vu-quoc-li")}) {
     CAPTURE(scheme);
-    const LatticeSystem system(ring, {family_of(sine_gordon(), scheme, h, k)}, h);
+    const LatticeSystem system(ring, {family_of(sine_gordon(), scheme)}, h);
     Window window{&ring, 1, 2 * std::numbers::pi, -2, {}};
     for (int j = 0; j < 5; ++j) window.rows.push_back(random_row(random, N, 3));
     for (int i : {0, 5, N - 1}) {
-      std::vector<LatticeSystem::Entry> entries;
+      std::vector<MatrixEntry> entries;
       system.jacobian(window, 0, i, 0, 1, h, entries);
       Row by_entries(N), by_difference(N);
       for (const auto& e : entries) {
@@ -311,7 +311,7 @@ TEST_CASE("a window goes round a circle with a turn, and stops at its first and 
 
 TEST_CASE("at a natural wall the equation is what the stencils inside give, at a fixed wall there is none") {
   const Lattice walls = Lattice::interval(N, (N - 1) * k, Wall::natural, Wall::fixed);
-  const LatticeSystem system(walls, {family_of(wave(), "rectangle", h, k)}, h);
+  const LatticeSystem system(walls, {family_of(wave(), "rectangle")}, h);
   // Σ over the two rectangles right of the wall: −½(∂²_h y₀)/h² + half the slopes in space, averaged as in (5.10)
   std::map<Site, double> expected;
   const double weights[]{.25, .5, .25}, second[]{1, -2, 1};
@@ -328,10 +328,10 @@ TEST_CASE("bricks on an odd circle, components without a name, and stencils that
   const auto with = [](int sites, const Families& families) {
     return refused_key([&] { LatticeSystem(Lattice::circle(sites, 5), families, h); });
   };
-  const auto hexagons = family_of(wave(), "hexagon", h, k);
+  const auto hexagons = family_of(wave(), "hexagon");
   CHECK(with(11, {hexagons}) == "lattice.sites");
   CHECK(with(12, {hexagons}) == "accepted");
-  const auto two = TheoryOf<Two>(Two{}).variational("rectangle", h, k);
+  const auto two = TheoryOf<Two>(Two{}).variational("rectangle");
   CHECK(with(12, {hexagons, two}) == "accepted");  // a second field beside one that has more
   CHECK(refused_key([&] { LatticeSystem(Lattice::circle(12, 5), {two}, h, fields(1)); }) == "lattice.stencil");
   CHECK(refused_key([&] { LatticeSystem(Lattice::point(), {two}, h); }) == "lattice.stencil");

@@ -25,7 +25,7 @@ using Rows = std::vector<std::vector<double>>;
 Rows start_rows(Problem& p, const std::string& name) {
   StateRequest request;
   request.name = name, request.theory = p.theory;
-  if (name == "breather" || name == "kink") request.speed = 0.3;
+  if (name == "breather" || name == "kink") request.values["initial.speed"] = 0.3;
   const auto state = make_state(request, p.lattice);
   if (p.lattice.is_circle()) p.winding = state->winding();
   const auto d = static_cast<std::size_t>(state->components()), N = static_cast<std::size_t>(p.lattice.sites());
@@ -192,7 +192,7 @@ TEST_CASE("a step back that fails is a check that fails, and says how") {
 TEST_CASE("moving meshes with their multipliers come back to their start") {
   namespace given = r_adaptive_rows;
   Problem p;
-  p.method = "r-adaptive", p.alpha = given::alpha;
+  p.method = "r-adaptive", p.parameters["scheme.alpha"] = given::alpha;
   p.lattice = Lattice::interval(17, 25), p.time_step = given::time_step;
   CHECK(reversible_equations(p));
   Rows rows(2);

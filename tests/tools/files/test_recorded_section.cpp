@@ -58,9 +58,9 @@ struct Layout {
 
 delf::RowNames names_of(const Layout& layout) {
   delf::RowNames names;
-  names.field.assign(static_cast<std::size_t>(layout.fields), "phi");
-  names.inner.assign(static_cast<std::size_t>(layout.inner), "inner");
-  names.multiplier.assign(static_cast<std::size_t>(layout.multipliers), "lambda");
+  names.of[delf::Role::field].assign(static_cast<std::size_t>(layout.fields), "phi");
+  names.of[delf::Role::inner].assign(static_cast<std::size_t>(layout.inner), "inner");
+  names.of[delf::Role::multiplier].assign(static_cast<std::size_t>(layout.multipliers), "lambda");
   return names;
 }
 
@@ -74,7 +74,7 @@ std::filesystem::path write(const Folder& folder, const Layout& layout, double (
     const auto inner = marks(j, layout.sites, layout.fields, layout.inner);
     const auto multiplier = marks(j, layout.sites, layout.fields + layout.inner, layout.multipliers);
     const double time = layout.times.empty() ? 7 + j * layout.step : layout.times[static_cast<std::size_t>(j)];
-    file.append(time, {field, inner, multiplier});
+    file.append(time, {{field, inner, multiplier}});
   }
   file.close();
   return path;
@@ -167,7 +167,7 @@ TEST_CASE("what a scheme does not have may be in a file of recorded rows") {
   CHECK(section.row(1) == marks(1, 4, 0, 1));
 }
 
-TEST_CASE("a file of recorded rows that is none is refused") {
+TEST_CASE("a file without recorded rows is refused") {
   const Folder folder;
   check_refused(folder / "nowhere.h5", plain(), {"no such file"});
   check_refused(folder.write("text.h5", "this is no HDF5\n"), plain(),
@@ -295,10 +295,10 @@ TEST_CASE("files of recorded rows are given by options, and only to what reads t
   const auto refused = [&](const std::string& arguments, const std::string& part) {
     check_refused(delf_program(folder, arguments), {part});
   };
-  refused("run breather --fields a.h5", "--fields: `run` looks at no recorded rows");
-  refused("plan breather --nearby=a.h5", "--nearby: `plan` looks at no recorded rows");
-  refused("list --fields=a.h5", "--fields: `list` looks at no recorded rows");
-  refused("help run --nearby a.h5", "--nearby: `help` looks at no recorded rows");
+  refused("run breather --fields a.h5", "--fields: `run` reads no recorded rows");
+  refused("plan breather --nearby=a.h5", "--nearby: `plan` reads no recorded rows");
+  refused("list --fields=a.h5", "--fields: `list` reads no recorded rows");
+  refused("help run --nearby a.h5", "--nearby: `help` reads no recorded rows");
   refused("run breather --fields a.h5 --fields b.h5", "--fields: give one file of rows");
   refused("run breather --fields ''", "--fields");
   refused("run breather --nearby ''", "--nearby");

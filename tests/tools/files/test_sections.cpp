@@ -157,7 +157,7 @@ TEST_CASE("on a point a Courant number is a time step, and sites and length have
   CHECK(contains(warned.err, "lattice.sites = 5: warning: a point has neither length nor sites"));
 }
 
-TEST_CASE("what does not go together is refused in one line") {
+TEST_CASE("incompatible keys are refused in one line") {
   const Folder folder;
   const auto refused = [&](const std::string& arguments, const std::string& part) {
     INFO(arguments);
@@ -194,7 +194,7 @@ TEST_CASE("keys of another method are warned of") {
   warned("breather --initial.eccentricity=0.3", "the state breather does not read it");
 }
 
-TEST_CASE("a table of rows is read in any order, and what is wrong with it is told by its line") {
+TEST_CASE("a table of rows is read in any order, and its errors are reported with their line") {
   const Folder folder;
   const std::string good = "# two rows\nrow,site,phi,X\n1,0,5,6\n0,1,3,4\n0,0,1,2\n\n1,1,7, 8\r\n";
   const delf::RowsTable table(folder.write("rows.csv", good));

@@ -234,7 +234,7 @@ TEST_CASE("peers have the order in time that they state, for every potential, an
   }
 }
 
-TEST_CASE("peers run fields that turn, and even numbers of sites") {
+TEST_CASE("peers run fields that wind, and even numbers of sites") {
   for (const double turn : {0.0, 2 * std::numbers::pi, -4 * std::numbers::pi}) {
     const WaveEquation e = equation(Potential::sine_gordon, 18, turn);
     WaveEquation unturned = e;
@@ -254,7 +254,7 @@ TEST_CASE("peers run fields that turn, and even numbers of sites") {
   }
 }
 
-TEST_CASE("peers have the order in space that they state, and another is told from it") {
+TEST_CASE("peers have the order in space that they state, and another order is detected") {
   const auto light = [](int sites) {
     WaveEquation e = equation(Potential::sine_gordon, sites);
     e.mass = 1;

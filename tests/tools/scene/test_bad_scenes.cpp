@@ -5,7 +5,7 @@
 
 using namespace delf::testing;
 
-TEST_CASE("what is wrong in a scene is told by file, line, key, value, reason and remedy") {
+TEST_CASE("errors in a scene name file, line, key, value, reason and remedy") {
   struct Bad {
     const char *line, *key, *reason;
   };
@@ -45,7 +45,7 @@ TEST_CASE("what is wrong in a scene is told by file, line, key, value, reason an
   CHECK_FALSE(std::filesystem::exists(folder / "results"));
 }
 
-TEST_CASE("what is wrong on the command line is told by key, value, reason and remedy") {
+TEST_CASE("errors on the command line name key, value, reason and remedy") {
   struct Bad {
     const char *argument, *reason;
   };
@@ -88,7 +88,7 @@ TEST_CASE("what is wrong on the command line is told by key, value, reason and r
   check_refused(delf_program(folder, std::string("run good.ini ") + bad.argument), {"command line: ", bad.reason});
 }
 
-TEST_CASE("what a scene must give is asked for") {
+TEST_CASE("missing keys of a scene are reported") {
   const Folder folder;
   const auto refused = [&](const std::string& text, const std::string& reason) {
     folder.write("bad.ini", text);
@@ -105,7 +105,7 @@ TEST_CASE("what a scene must give is asked for") {
   refused("# only this\n\n", "the scene is empty");
 }
 
-TEST_CASE("what is no scene at all is refused in one line") {
+TEST_CASE("a file that is no scene is refused in one line") {
   const Folder folder;
   std::filesystem::create_directory(folder / "directory");
   folder.write("zeros", std::string(100, '\0'));
@@ -123,7 +123,7 @@ TEST_CASE("what is no scene at all is refused in one line") {
   check_refused(delf_program(folder, "run ''"), {"no such file"});
 }
 
-TEST_CASE("a bad choice of the library is told with the line of the scene that made it") {
+TEST_CASE("a choice that the library refuses is reported with its line of the scene") {
   const Folder folder;
   folder.write("odd.ini", small_scene("[lattice]\nstencil = hexagon\n") + "");
   folder.write("fast.ini", small_scene("[initial]\nfrequency = 1.5\n"));

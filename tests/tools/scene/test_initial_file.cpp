@@ -33,7 +33,7 @@ TEST_CASE("a run goes on from the rows of another") {
   CHECK(read(folder / "part/series.csv") == read(folder / "elsewhere/again/series.csv"));
 }
 
-TEST_CASE("a file of rows is looked for beside the scene first") {
+TEST_CASE("a file of rows is first looked up beside the scene") {
   const Folder folder;
   folder.write("small.ini", small_scene("every = 1\n"));
   REQUIRE(delf_program(folder, "run small.ini --run.steps=5 --out inner").code == 0);

@@ -30,7 +30,7 @@ TEST_CASE("a scene gives its keys, and the table of keys what it leaves out") {
   CHECK(scene.problem.seed_order == 8);
   CHECK_FALSE(scene.problem.circle_valued);
   CHECK(scene.initial.name == "breather");
-  CHECK_FALSE(scene.initial.position);
+  CHECK_FALSE(scene.initial.values.has("initial.position"));
   CHECK(scene.initial.seed == 1);
   CHECK_FALSE(scene.start);
   CHECK(scene.steps == 100);
@@ -110,7 +110,7 @@ TEST_CASE("the resolved scene reads back as the same scene, and resolves to the 
   const std::string text = resolved_text(scene, StartRule::centred, "words");
   const Scene again = read_scene(folder.write("again.ini", text), {});
   CHECK(again.problem.time_step == scene.problem.time_step);
-  CHECK(again.problem.mass == 1.25);
+  CHECK(again.problem.parameters.get<double>("theory.mass") == 1.25);
   CHECK(again.problem.stencil == "triangle");
   CHECK(again.steps == scene.steps);
   CHECK(again.every == scene.every);

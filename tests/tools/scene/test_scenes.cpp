@@ -29,7 +29,7 @@ std::string shortened(const std::string& command) {
 
 }  // namespace
 
-TEST_CASE("the scenes of the issue are shipped, each with its equation and the commands that run it") {
+TEST_CASE("the scenes are shipped, each with its equation and the commands that run it") {
   std::vector<std::string> names;
   for (const auto& scene : delf::shipped_scenes()) {
     names.push_back(scene.name);

@@ -44,7 +44,7 @@ LimitRequest quick() {
 Corner corner(const std::string& group, const std::string& name, const std::string& of) {
   for (Corner& c : corners(group, chosen_schemes({of}, Problem{})))
     if (c.name == name) return c;
-  FAIL("no corner " << name);
+  FAIL("no stress case " << name);
   return {};
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("limits found by running are those of the symbol, to one in a hundred"
   else CHECK(std::abs(limit.observed / limit.theory - 1) < 0.01);
 }
 
-TEST_CASE("a limit that is not the scheme's is found out") {
+TEST_CASE("a wrong limit is detected") {
   LimitRequest request = quick();
   request.theory_factor = 1.05;
   const Limit limit = find_limit("triangle-vertex", scheme("triangle-vertex"), 1, request);
@@ -124,7 +124,7 @@ TEST_CASE("narrow tongues of slow waves are seen on the circle that suits them: 
   CHECK_FALSE(compare_with_runs("composition (6,12)", p, 0.5, limit.symbol, request).agrees());
 }
 
-TEST_CASE("a tongue that theory invents or denies is found out, however narrow") {
+TEST_CASE("a tongue that theory invents or misses is detected, however narrow") {
   const Problem leapfrog = scheme("triangle-vertex");
   LinearTheory invented = linear_theory(leapfrog, 1, 1.6, 20);
   REQUIRE(invented.stable.size() == 1);
@@ -142,7 +142,7 @@ TEST_CASE("a tongue that theory invents or denies is found out, however narrow")
   CHECK_FALSE(waves.agrees());
 }
 
-TEST_CASE("a wave that grows too slowly to be seen is told as unresolved, and settles nothing") {
+TEST_CASE("a wave that grows too slowly to be seen is reported as unresolved, and decides nothing") {
   LimitRequest request = quick();
   request.most = 2;
   request.steps = 300;
@@ -217,13 +217,13 @@ TEST_CASE("the ghost of the symmetric rectangle on an even circle is named, and 
   CHECK(growth("rectangle", 0.5, 0.5, 64) == Growth::bounded);
 }
 
-TEST_CASE("what cannot be built is refused, not judged") {
+TEST_CASE("a scheme that cannot be built is refused, without a verdict") {
   const ObservedGrowth odd = observe_growth(noisy("hexagon", 0.5, 0.5, 63), 100, 1);
   CHECK(odd.kind == Growth::refused);
   CHECK_FALSE(odd.reason.empty());
 }
 
-TEST_CASE("corners end in the verdicts that they deserve") {
+TEST_CASE("stress cases end in the right verdicts") {
   SECTION("stable") {
     const CornerResult r = run_corner(corner("fast-kink", "v = 0.99, k gamma = 0.05", "triangle-vertex"), 10);
     CHECK(r.verdict == CornerVerdict::stable);
@@ -266,7 +266,7 @@ TEST_CASE("corners end in the verdicts that they deserve") {
   }
 }
 
-TEST_CASE("a corner in a process of its own ends as it does here") {
+TEST_CASE("a stress case in a process of its own ends as it does here") {
   for (const char* name : {"values in S1, h/k = 0.5", "values in S1, h/k = 1.2"}) {
     const Corner c = corner("angle", name, "triangle-vertex");
     const CornerResult here = run_corner(c, 10), apart = run_corner_apart(c, 10);
@@ -278,7 +278,7 @@ TEST_CASE("a corner in a process of its own ends as it does here") {
   }
 }
 
-TEST_CASE("every corner of every group names keys that a scene has") {
+TEST_CASE("every stress case of every group names keys that a scene has") {
   for (const std::string& group : corner_groups()) {
     const auto all = corners(group, chosen_schemes({}, Problem{}));
     CHECK_FALSE(all.empty());
@@ -288,7 +288,7 @@ TEST_CASE("every corner of every group names keys that a scene has") {
   CHECK(corners("no such group", chosen_schemes({}, Problem{})).empty());
 }
 
-TEST_CASE("names in lists are told apart by commas outside brackets") {
+TEST_CASE("names in lists are separated by commas outside brackets") {
   CHECK(names_in_list("guo, spacetime (2,2) gauss ,triangle") ==
         std::vector<std::string>{"guo", "spacetime (2,2) gauss", "triangle"});
   CHECK(names_in_list(" ").empty());
@@ -296,7 +296,7 @@ TEST_CASE("names in lists are told apart by commas outside brackets") {
   CHECK_THROWS_AS(chosen_schemes({"triangel"}, Problem{}), BadInput);
 }
 
-TEST_CASE("findings pass, and are told without a number that is none") {
+TEST_CASE("findings pass, and numbers that are not finite are reported as null") {
   const StabilityFindings f = find_stability(small_request(), coarse());
   CHECK(f.passed());
   const Scene scene(Settings("test.ini", {}, {}));
@@ -314,7 +314,7 @@ TEST_CASE("findings pass, and are told without a number that is none") {
   CHECK(stability_report(scene, f).find("passed: 2 limits") != std::string::npos);
 }
 
-TEST_CASE("findings fail when theory is wrong, or a corner ends in what must not be") {
+TEST_CASE("findings fail when theory is wrong, or a stress case ends in a forbidden verdict") {
   StabilityRequest request = small_request();
   request.schemes.pop_back();
   request.corners.clear();

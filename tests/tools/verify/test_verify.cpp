@@ -220,7 +220,7 @@ TEST_CASE("a planted wrong variation fails the form formula alone, and is locate
   }
 }
 
-TEST_CASE("a planted wrong sign in the derivatives is told from other faults") {
+TEST_CASE("a planted wrong sign in the derivatives is distinguished from other faults") {
   const Folder folder;
   const Verified v = verified_text(folder, scene(), "--verify.fault=sign", 1);
   const auto says = [&](const std::string& name, const std::string& words) {
@@ -245,14 +245,14 @@ TEST_CASE("a field edited at one site is found there, and the scheme still passe
   CHECK(contains(v.out, "FAILED: 1 of "));
 }
 
-TEST_CASE("a fault planted where nobody looks does not pass") {
+TEST_CASE("a fault planted where no check looks does not pass") {
   const Folder folder;
   const Verified v = verified_text(folder, scene(), "--verify.fault=variation --verify.checks=equations", 1);
   CHECK(v.failed() == std::vector<std::string>{"planted fault: variation"});
   CHECK(contains(v.out, "no check that was made looks for it"));
 }
 
-TEST_CASE("rows of a file edited at one site are found out there, and the rows as they were are not") {
+TEST_CASE("rows of a file edited at one site fail there, and the original rows pass") {
   const Folder folder;
   folder.write("small.ini", scene("every = 1\n"));
   REQUIRE(delf_program(folder, "run small.ini --out run").code == 0);
@@ -403,7 +403,7 @@ TEST_CASE("scenes of few steps are verified over as many rows as regions take") 
   verified_text(folder, scene(), "--run.steps=" + std::to_string(steps), 0);
 }
 
-TEST_CASE("help verify tells every key of its section") {
+TEST_CASE("help verify lists every key of its section") {
   const Folder folder;
   const Ran ran = delf_program(folder, "help verify");
   CHECK(ran.code == 0);

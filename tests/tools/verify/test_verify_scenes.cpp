@@ -9,7 +9,7 @@
 using namespace delf;
 using namespace delf::testing;
 
-TEST_CASE("every shipped scene is what theory promises, and with a planted fault it is not", "[slow]") {
+TEST_CASE("every shipped scene passes verification, and fails with a planted fault", "[slow]") {
   int regions = 0;
   for (const ShippedScene& scene : shipped_scenes()) {
     const Folder folder;

@@ -147,7 +147,7 @@ TEST_CASE("without an exact solution runs are compared with a finer one, and com
   CHECK(json["runs"][0]["position_error"].is_null());
 }
 
-TEST_CASE("a ladder that workprecision chooses ends at the accuracy that is asked for") {
+TEST_CASE("resolutions that workprecision chooses end at the requested accuracy") {
   const WithScene folder;
   const Json json = compared(folder,
                              "small.ini --workprecision.schemes=triangle-vertex --workprecision.repeats=1 "
@@ -199,7 +199,7 @@ TEST_CASE("keys of workprecision that say nothing are refused in one line") {
   refused("pendulum --workprecision.sites=3", "a point has no sites");
 }
 
-TEST_CASE("help workprecision tells every key of its section") {
+TEST_CASE("help workprecision lists every key of its section") {
   const Folder folder;
   const Ran ran = delf_program(folder, "help workprecision");
   CHECK(ran.code == 0);

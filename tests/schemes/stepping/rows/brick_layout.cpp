@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "schemes/stepping/rows/row_layout.hpp"
+#include "schemes/solvers/row_layout.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/stepping/rows/site_slots.hpp"
 #include "tests/schemes/support.hpp"

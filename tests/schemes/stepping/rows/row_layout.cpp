@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/stepping/rows/row_layout.hpp"
+#include "schemes/solvers/row_layout.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "schemes/stepping/rows/row_layout.hpp"
+#include "schemes/solvers/row_layout.hpp"
 #include "tests/catch.hpp"
 
 namespace delf::testing {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "jets/batch_density.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace delf {
+
+/// Constant entries are the same wherever they are taken: at zero, or where the density has a value if it has none there.
+void BatchDensity::find_constants() {
+  const auto m = static_cast<std::size_t>(variables());
+  std::vector<Pack> jet(m + 1, Pack(0.0)), H(m * m), g(m);
+  std::vector<const double*> slots(m);
+  std::vector<double*> entries(m * m), gradient_rows(m);
+  for (std::size_t a = 0; a < m; ++a) {
+    slots[a] = reinterpret_cast<const double*>(&jet[a]);
+    gradient_rows[a] = reinterpret_cast<double*>(&g[a]);
+    for (std::size_t b = 0; b < m; ++b) entries[a * m + b] = reinterpret_cast<double*>(&H[a * m + b]);
+  }
+  const JetBatch batch{lanes, slots.data(), 0, reinterpret_cast<const double*>(&jet[m])};
+  const auto kept = [&](std::size_t a, std::size_t b) {
+    return is_constant(static_cast<int>(a), static_cast<int>(b)) ? H[a * m + b][0] : 0.0;
+  };
+  constant_hessian_.assign(m * m, 0.0);
+  constant_gradient_.assign(m, 0.0);
+  for (const bool at_zero : {true, false}) {
+    for (std::size_t a = 0; a < m && !at_zero; ++a) jet[a] = Pack(1 + 0.25 * static_cast<double>(a));
+    hessian(batch, entries.data());
+    gradient(batch, gradient_rows.data());
+    bool finite = true;
+    for (std::size_t a = 0; a < m; ++a)
+      for (std::size_t b = 0; b < m; ++b) {
+        constant_hessian_[a * m + b] = kept(a, b);
+        finite = finite && std::isfinite(kept(a, b));
+      }
+    for (std::size_t a = 0; a < m; ++a) {
+      constant_gradient_[a] = g[a][0];
+      for (std::size_t b = 0; b < m; ++b) constant_gradient_[a] -= constant_hessian_[a * m + b] * jet[b][0];
+      finite = finite && std::isfinite(constant_gradient_[a]);
+    }
+    if (finite) return;
+  }
+}
+
+}  // namespace delf

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "jets/tables/named_tables.hpp"
+
+#include "jets/tables/hexagon_jet.hpp"
+#include "jets/tables/point_jets.hpp"
+#include "jets/tables/rectangle_jet.hpp"
+#include "jets/tables/triangle_jet.hpp"
+#include "jets/tables/tuple_jets.hpp"
+
+namespace delf {
+namespace {
+
+/// A map whose weights are wrong does not compile.
+template <JetMap Map>
+NamedTable named(const char* name, const char* description, Map) {
+  return {name, description, stencil_table(Map::table)};
+}
+
+}  // namespace
+
+const std::vector<NamedTable>& named_tables() {
+  static const std::vector<NamedTable> tables{
+      named("triangle", "3 sites, φ at the centroid: (5.8)", triangle),
+      named("triangle-vertex", "3 sites, φ at the first vertex (footnote 3): explicit", triangle_vertex),
+      named("rectangle", "4 sites, (5.9) with φ_t on both vertical edges: (5.10)", rectangle),
+      named("rectangle-symmetric", "4 sites, space and time alike: (5.12)", rectangle_symmetric),
+      named("hexagon", "6 sites of a brick wall (Fig. 5.4); circle, N even", hexagon),
+      named("six-tuple", "6 sites, φ on the middle edge, φ_x left and right of it; circle", six_tuple),
+      named("nine-tuple", "9 sites, the symmetric rectangle in each of four cells; circle", nine_tuple),
+      named("midpoint", "2 sites of a time lattice, q in the middle; lattice.space = point", midpoint),
+      named("trapezoidal", "2 sites of a time lattice, half at either end (Störmer–Verlet); lattice.space = point",
+            trapezoidal),
+      named("vertex", "2 sites of a time lattice, q at the first (symplectic Euler); lattice.space = point", vertex),
+  };
+  return tables;
+}
+
+}  // namespace delf

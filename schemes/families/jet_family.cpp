@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/families/jet_family.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "jets/simd/scratch_rows.hpp"
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// h^−time k^−space of each slot.
+std::array<double, jet_slots> slot_scales(const Cell& cell) {
+  std::array<double, jet_slots> scales;
+  for (int s = 0; s < jet_slots; ++s)
+    scales[at(s)] = std::pow(cell.time_step, -slot_powers[at(s)].time) *
+                    std::pow(cell.space_step, -slot_powers[at(s)].space);
+  return scales;
+}
+
+/// y += w x, `count` numbers.
+void add(double* y, double w, const double* x, int count) {
+  for (int i = 0; i < count; i += lanes) (Pack::load(y + i) + w * Pack::load(x + i)).store(y + i);
+}
+void fill_zero(double* y, int count) { std::fill_n(y, count, 0.0); }
+
+}  // namespace
+
+/// The jets of some stencils at a point of the table: what a density is evaluated at.
+struct JetFamily::Jets {
+  static constexpr int most = 16 * lanes;  ///< stencils at once
+
+  Jets(const JetFamily& family, const StencilBatch& batch)
+      : d(family.d_),
+        variables(family.density_->variables()),
+        scales(slot_scales(batch.cell)),
+        area(family.table_.measure * batch.cell.time_step * batch.cell.space_step),
+        jets(variables, std::min(batch.count, most)),
+        x(1, std::min(batch.count, most)),
+        batch_(batch) {}
+
+  /// j_q = M_q y of the stencils first … first + count − 1.
+  JetBatch at_point(const TablePoint& p, int first, int count) {
+    for (int s = 0; s * d < variables; ++s)
+      for (int a = 0; a < d; ++a) {
+        double* const jet = jets[s * d + a];
+        fill_zero(jet, count);
+        for (const auto& [vertex, weight] : p.slots[at(s)])
+          add(jet, weight * scales[at(s)], value(vertex * d + a) + first, count);
+      }
+    for (int i = 0; i < count; ++i) x[0][i] = batch_.x[first + i] + p.space * batch_.cell.space_step;
+    return {count, jets.data(), batch_.cell.t + p.time * batch_.cell.time_step, x[0]};
+  }
+  const double* value(int i) const { return batch_.y + static_cast<std::ptrdiff_t>(i) * batch_.count; }
+
+  const int d, variables;
+  const std::array<double, jet_slots> scales;
+  const double area;  ///< |Δ|
+
+ private:
+  ScratchRows jets, x;
+  const StencilBatch& batch_;
+};
+
+JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> density, bool values_are_sources)
+    : StencilFamily(table.pattern, values_at_every_vertex(table.pattern, density->components()), true),
+      table_(std::move(table)),
+      density_(std::move(density)),
+      d_(density_->components()),
+      has_sources_(density_->nonlinearity() == Nonlinearity::values ||
+                   (values_are_sources && density_->nonlinearity() == Nonlinearity::none)) {
+  placed_ = density_->is_placed();
+  for (const TablePoint& p : table_.points) {
+    Point point{std::vector<std::vector<Weight>>(at(pattern_.size()))};
+    for (int s = 0; s < density_->slots(); ++s)
+      for (const auto& [vertex, weight] : p.slots[at(s)]) point.of_vertex[at(vertex)].push_back({s, weight});
+    points_.push_back(std::move(point));
+  }
+  find_sources();
+}
+
+bool JetFamily::lagrangian(const StencilBatch& batch, double* L) const {
+  Jets jets(*this, batch);
+  const ScratchRows l(1, Jets::most);
+  fill_zero(L, batch.count);
+  for (int first = 0; first < batch.count; first += Jets::most) {
+    const int count = std::min(Jets::most, batch.count - first);
+    for (const TablePoint& p : table_.points) {
+      density_->value(jets.at_point(p, first, count), l[0]);
+      add(L + first, jets.area * p.weight, l[0], count);
+    }
+  }
+  return true;
+}
+
+void JetFamily::residual(const StencilBatch& batch, double* r) const {
+  Jets jets(*this, batch);
+  const ScratchRows g(jets.variables, Jets::most);
+  fill_zero(r, size() * batch.count);
+  for (int first = 0; first < batch.count; first += Jets::most) {
+    const int count = std::min(Jets::most, batch.count - first);
+    for (const TablePoint& p : table_.points) {
+      density_->gradient(jets.at_point(p, first, count), g.data());
+      // r += |Δ| w_q M_qᵀ ∂ℓ/∂j
+      for (int s = 0; s < density_->slots(); ++s)
+        for (const auto& [vertex, weight] : p.slots[at(s)])
+          for (int a = 0; a < d_; ++a)
+            add(r + static_cast<std::ptrdiff_t>(vertex * d_ + a) * batch.count + first,
+                jets.area * p.weight * jets.scales[at(s)] * weight, g[s * d_ + a], count);
+    }
+  }
+}
+
+void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equations, std::span<const int> unknowns,
+                         double* J) const {
+  Jets jets(*this, batch);
+  const int m = jets.variables;
+  const ScratchRows H(m * m, Jets::most);
+  const auto columns = static_cast<std::ptrdiff_t>(unknowns.size());
+  fill_zero(J, static_cast<int>(equations.size() * unknowns.size()) * batch.count);
+  for (int first = 0; first < batch.count; first += Jets::most) {
+    const int count = std::min(Jets::most, batch.count - first);
+    for (std::size_t q = 0; q < points_.size(); ++q) {
+      const TablePoint& p = table_.points[q];
+      density_->hessian(jets.at_point(p, first, count), H.data());
+      // J += |Δ| w_q M_qᵀ ∂²ℓ/∂j∂j M_q
+      for (std::size_t e = 0; e < equations.size(); ++e)
+        for (std::size_t u = 0; u < unknowns.size(); ++u) {
+          double* const to = J + (static_cast<std::ptrdiff_t>(e) * columns + static_cast<std::ptrdiff_t>(u)) * batch.count + first;
+          const int a = equations[e] % d_, b = unknowns[u] % d_;
+          for (const Weight& left : points_[q].of_vertex[at(equations[e] / d_)])
+            for (const Weight& right : points_[q].of_vertex[at(unknowns[u] / d_)]) {
+              const int row = left.slot * d_ + a, column = right.slot * d_ + b;
+              if (density_->is_zero(row, column)) continue;
+              add(to, jets.area * p.weight * jets.scales[at(left.slot)] * left.weight * jets.scales[at(right.slot)] * right.weight,
+                  H[row * m + column], count);
+            }
+        }
+    }
+  }
+}
+
+/// Where ∂ℓ/∂φ varies it is a source term as a whole, the constant entries of its Hessian with it.
+std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
+  const int n = size(), m = density_->variables();
+  const auto scales = slot_scales(cell);
+  const double area = table_.measure * cell.time_step * cell.space_step;
+  ConstantPart part{std::vector<double>(at(n * n), 0.0), std::vector<double>(at(n), 0.0),
+                    density_->nonlinearity() == Nonlinearity::none && !has_sources_};
+  const auto hessian = [&](int row, int column) {
+    return has_sources_ && row < d_ && column < d_ ? 0.0 : density_->constant_hessian()[at(row * m + column)];
+  };
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    const double w = area * table_.points[q].weight;
+    for (int i = 0; i < n; ++i)
+      for (const Weight& left : points_[q].of_vertex[at(i / d_)]) {
+        const double to = w * scales[at(left.slot)] * left.weight;
+        const int row = left.slot * d_ + i % d_;
+        if (!(has_sources_ && row < d_)) part.r0[at(i)] += to * density_->constant_gradient()[at(row)];
+        for (int k = 0; k < n; ++k)
+          for (const Weight& right : points_[q].of_vertex[at(k / d_)])
+            part.J[at(i * n + k)] += to * scales[at(right.slot)] * right.weight * hessian(row, right.slot * d_ + k % d_);
+      }
+  }
+  for (const auto* numbers : {&part.J, &part.r0})
+    if (!std::ranges::all_of(*numbers, [](double x) { return std::isfinite(x); })) return std::nullopt;
+  return part;
+}
+
+/// A density that is nonlinear in φ alone is evaluated once for all points with the same φ.
+void JetFamily::find_sources() {
+  if (!has_sources_) return;
+  sources_.outputs_per_group = d_;
+  std::vector<const TablePoint*> representatives;
+  for (const TablePoint& p : table_.points) {
+    const auto same = [&p](const TablePoint* q) {
+      return std::ranges::equal(p[JetSlot::phi], (*q)[JetSlot::phi], [](const auto& e, const auto& f) {
+        return e.vertex == f.vertex && e.weight == f.weight;
+      });
+    };
+    const auto group = static_cast<std::size_t>(std::ranges::find_if(representatives, same) - representatives.begin());
+    if (group == representatives.size()) {
+      representatives.push_back(&p);
+      SourceTerms::Group made{.inputs = {}, .time = p.time, .space = p.space};
+      for (int a = 0; a < d_; ++a) {
+        SourceTerms::QuadratureValue value;
+        for (const auto& [vertex, weight] : p[JetSlot::phi])
+          value.push_back({pattern_.vertices[at(vertex)],
+                           pattern_.vertices[at(vertex)].node * d_ + a, weight});
+        made.inputs.push_back(std::move(value));
+      }
+      sources_.groups.push_back(std::move(made));
+      sources_.weights.resize(sources_.groups.size() * at(d_ * size()), 0.0);
+    }
+    for (const auto& [vertex, weight] : p[JetSlot::phi])
+      for (int a = 0; a < d_; ++a)
+        sources_.weights[(group * at(d_) + at(a)) * at(size()) + at(vertex * d_ + a)] +=
+            table_.measure * p.weight * weight;
+  }
+}
+
+const SourceTerms* JetFamily::sources() const {
+  return density_->nonlinearity() == Nonlinearity::all ? nullptr : &sources_;
+}
+void JetFamily::evaluate_sources(int, const JetBatch& inputs, double* const* g) const { density_->slope(inputs, g); }
+void JetFamily::differentiate_sources(int, const JetBatch& inputs, double* const* d) const {
+  density_->curvature(inputs, d);
+}
+
+/// One cell's part of the semi-discrete momenta at its lower side, from φ and φ_t at the nodes there:
+///
+///     p_b = k Σ_q w_q φ_q,b ∂ℓ/∂φ_t(j_q)     with φ_q = Σ_b φ_q,b y_b
+///
+bool JetFamily::momentum(const Cell& cell, std::span<const double> phi, std::span<const double> phi_t,
+                         std::span<double> p) const {
+  if (table_.lower_side.empty()) return false;
+  std::ranges::fill(p, 0.0);
+  const int m = density_->variables();
+  const ScratchRows jet(m, lanes), g(m, lanes), x(1, lanes);
+  for (const TablePoint& point : table_.lower_side) {
+    for (int i = 0; i < m; ++i) fill_zero(jet[i], lanes);
+    const auto add_up = [&](JetSlot slot, int to, std::span<const double> values, double scale) {
+      for (const auto& [vertex, weight] : point[slot])
+        for (int a = 0; a < d_; ++a)
+          for (int l = 0; l < lanes; ++l) jet[to * d_ + a][l] += weight * scale * values[at(vertex * d_ + a)];
+    };
+    add_up(JetSlot::phi, 0, phi, 1);
+    add_up(JetSlot::phi, 1, phi_t, 1);
+    add_up(JetSlot::phi_x, 2, phi, 1 / cell.space_step);
+    std::fill_n(x[0], lanes, cell.x + point.space * cell.space_step);
+    density_->gradient({lanes, jet.data(), cell.t, x[0]}, g.data());
+    for (const auto& [vertex, weight] : point[JetSlot::phi])
+      for (int a = 0; a < d_; ++a)
+        p[at(vertex * d_ + a)] += cell.space_step * point.weight * weight * g[d_ + a][0];
+  }
+  return true;
+}
+
+}  // namespace delf

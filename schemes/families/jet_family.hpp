@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <memory>
+
+#include "jets/tables/stencil_table.hpp"
+#include "schemes/families/stencil_family.hpp"
+
+namespace delf {
+
+/// A density on every stencil of the lattice, its jets by a table:
+///
+///     L_Δ = |Δ| Σ_q w_q ℓ(j_q),    j_q = M_q y_Δ
+///     ∂L/∂y = |Δ| Σ_q w_q M_qᵀ ∂ℓ/∂j(j_q),    ∂²L/∂y∂y = |Δ| Σ_q w_q M_qᵀ ∂²ℓ/∂j∂j(j_q) M_q
+///
+/// Stencils of sites, elements with nodes inside and the sub-steps of a composition alike: value l·d + a is component
+/// node·d + a of the section at vertex l.
+class JetFamily final : public StencilFamily {
+ public:
+  /// Where ∂ℓ/∂φ is linear it is part of the constant part, or a source term if `values_are_sources`.
+  JetFamily(StencilTable, std::shared_ptr<const BatchDensity>, bool values_are_sources = false);
+
+  const StencilTable& table() const { return table_; }
+  const BatchDensity& density() const { return *density_; }
+
+  using StencilFamily::jacobian;
+  using StencilFamily::lagrangian;
+  using StencilFamily::residual;
+  void residual(const StencilBatch&, double* r) const override;
+  void jacobian(const StencilBatch&, std::span<const int> equations, std::span<const int> unknowns,
+                double* J) const override;
+  bool lagrangian(const StencilBatch&, double* L) const override;
+  std::optional<ConstantPart> constant_part(const Cell&) const override;
+
+  const SourceTerms* sources() const override;
+  void evaluate_sources(int group, const JetBatch& inputs, double* const* g) const override;
+  void differentiate_sources(int group, const JetBatch& inputs, double* const* d) const override;
+
+  bool momentum(const Cell&, std::span<const double> phi, std::span<const double> phi_t,
+                std::span<double> p) const override;
+
+ private:
+  /// What the value at a vertex weighs in a slot of a point's jet, with h = k = 1.
+  struct Weight {
+    int slot;
+    double weight;
+  };
+  struct Point {
+    std::vector<std::vector<Weight>> of_vertex;
+  };
+  struct Jets;
+
+  void find_sources();
+
+  StencilTable table_;
+  std::shared_ptr<const BatchDensity> density_;
+  int d_;
+  bool has_sources_;
+  std::vector<Point> points_;
+  SourceTerms sources_;
+};
+
+}  // namespace delf

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "schemes/state.hpp"
+
+namespace delf {
+
+/// Where a state can live: on a circle; on a circle or between walls; at a point; or it does not matter.
+enum class Place { circle, line, point, anywhere };
+
+struct StateEntry;
+
+/// What a state is built from.
+struct StateBuild {
+  const StateEntry& entry;
+  const StateRequest& request;
+  const Lattice& lattice;
+  ParameterValues values;  ///< in force: those of the request, and the fallbacks of the entry
+  bool exact;              ///< the entry names the theory as one whose field equation the state solves
+
+  double number(std::string_view key) const { return values.get<double>(key); }
+  double number(std::string_view key, double otherwise) const { return values.maybe<double>(key).value_or(otherwise); }
+  double mass() const { return number("theory.mass", 1); }
+  double lambda() const { return number("theory.lambda", 1); }
+};
+
+/// A state that a scene can name by initial.state: a constant of this type stands at the end of each file in
+/// schemes/states/.
+struct StateEntry {
+  std::string name;
+  std::string formula;
+  std::vector<Parameter> parameters;     ///< that it reads
+  std::vector<std::string> exact;        ///< theories whose field equation it solves
+  std::vector<std::string> approximate;  ///< other theories that may start from it
+  Place place;
+  /// Called for a theory and a place that fit, with finite values. Null: the rows are read from initial.file.
+  std::unique_ptr<State> (*build)(const StateBuild&);
+  bool any_theory = false;            ///< every theory may start from it …
+  std::vector<std::string> but = {};  ///< … but these
+};
+
+/// All states, the built-in ones first: a new state adds one line there.
+const std::vector<const StateEntry*>& state_entries();
+/// Adds a state of a program's own, before the first scene is read; the entry must outlive all use.
+void register_state(const StateEntry&);
+/// Throws BadInput, with the nearest name, if there is none of that name.
+const StateEntry& find_state(const std::string& name);
+/// "sine-gordon, phi4; approximately: sine-gordon-impurity"
+std::string theories_in_words(const StateEntry&);
+
+}  // namespace delf

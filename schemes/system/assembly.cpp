@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/system/assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "jets/simd/pack_gather.hpp"
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Numbers of nodes, looked up by their place: −1 where there is none.
+class NodeNumbers {
+ public:
+  NodeNumbers(const std::vector<Node>& nodes, int copies, int sites, int components) : components_(components) {
+    if (nodes.empty()) return;
+    const auto [low, high] = std::ranges::minmax(nodes, {}, [](const Node& n) { return n.site.time; });
+    low_ = low.site.time, high_ = high.site.time, row_ = sites * components;
+    numbers_.assign(at(high_ - low_ + 1) * at(row_), -1);
+    const std::size_t count = nodes.size() / at(copies);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      numbers_[index(nodes[n].site.time, nodes[n].site.space, nodes[n].component)] = static_cast<int>(n % count);
+  }
+  int operator()(int row, int site, int component) const {
+    return row < low_ || row > high_ ? -1 : numbers_[index(row, site, component)];
+  }
+
+ private:
+  std::size_t index(int row, int site, int component) const {
+    return at(row - low_) * at(row_) + at(site * components_ + component);
+  }
+  int components_, low_ = 0, high_ = -1, row_ = 0;
+  std::vector<int> numbers_;
+};
+
+/// to[index] += r, lane by lane.
+void add(Pack r, double* to, const int* index) { scatter(gather(to, index) + r, to, index); }
+
+}  // namespace
+
+SectionRing::SectionRing(const Window& window, std::int64_t first, std::int64_t last)
+    : SectionRing(static_cast<int>(last - first + 1), window.rows.front().size()) {
+  for (std::int64_t r = first; r <= last; ++r)
+    std::ranges::copy(
+        window.rows[static_cast<std::size_t>(std::clamp(r, window.first_row, window.last_row()) - window.first_row)],
+        row(r));
+}
+
+Assembly::Parts Assembly::slab(const SolvePlan& plan, int parity, int past, int future, double turn) {
+  Slab slab = plan.slab(parity);
+  for (auto* nodes : {&slab.unknowns, &slab.equations})
+    for (Node& node : *nodes) node.site.time -= parity;
+  return {.equations = std::move(slab.equations), .unknowns = std::move(slab.unknowns), .matched = slab.matched,
+          .parity = parity, .past = past, .future = future, .turn = turn};
+}
+
+Assembly::Parts Assembly::across(const LatticeSystem& system, int parity, double turn) {
+  std::vector<Anchor> anchors;
+  for (int f = 0; f < static_cast<int>(system.families().size()); ++f) {
+    const StencilFamily& family = *system.families()[at(f)];
+    const auto [low, high] = std::ranges::minmax(family.pattern().vertices, {}, &Site::time);
+    for (int row = -high.time; row + low.time < 0; ++row)
+      for (int i = 0; i < system.lattice().sites(); ++i)
+        if (system.has_stencil(family, row + parity, i)) anchors.push_back({f, {row, i}});
+  }
+  return {.equations = {}, .parity = parity, .past = system.height(), .future = system.height(), .turn = turn,
+          .stencils = std::move(anchors)};
+}
+
+Assembly::Assembly(const LatticeSystem& system, Parts parts)
+    : time_step_(system.time_step()),
+      space_step_(system.lattice().space_step()),
+      components_(system.components()),
+      parts_(std::move(parts)) {
+  list_stencils(system);
+  list_reads(system);
+  take_constant_parts();
+}
+
+/// The batches with their stencils, without what those read.
+void Assembly::list_stencils(const LatticeSystem& system) {
+  const Lattice& lattice = system.lattice();
+  std::vector<Anchor> anchors;
+  if (parts_.stencils) anchors = *std::move(parts_.stencils);
+  else
+    for (const Node& e : parts_.equations)
+      for (const auto& touch : system.touching(e.site + Site{parts_.parity, 0}, e.component)) {
+        const Site site = e.site + touch.anchor;
+        anchors.push_back(
+            {touch.family_index, {site.time, lattice.is_circle() ? lattice.wrapped(site.space) : site.space}});
+      }
+  std::ranges::sort(anchors);
+  anchors.erase(std::ranges::unique(anchors).begin(), anchors.end());
+  for (const Anchor& anchor : anchors) {
+    const auto [number, site] = anchor;
+    if (batches_.empty() || batches_.back().number != number || batches_.back().row != site.time) {
+      const StencilFamily& family = *system.families()[at(number)];
+      batches_.push_back({.family = &family, .number = number, .size = family.size(), .row = site.time,
+                          .lowest_row = site.time, .stencils = 0, .padded = 0});
+      for (int i = 0; i < family.size(); ++i) {
+        batches_.back().rows.push_back(site.time + family.site(i).time);
+        batches_.back().lowest_row = std::min(batches_.back().lowest_row, batches_.back().rows.back());
+      }
+    }
+    batches_.back().sites.push_back(site.space);
+  }
+  for (Batch& b : batches_) {
+    b.stencils = static_cast<int>(b.sites.size());
+    b.padded = (b.stencils + lanes - 1) / lanes * lanes;
+    b.sites.resize(at(b.padded), b.sites.back());
+    b.x.resize(at(b.padded / lanes));
+    for (int s = 0; s < b.padded; ++s) b.x[at(s / lanes)].v[s % lanes] = lattice.position(b.sites[at(s)]);
+  }
+}
+
+void Assembly::list_reads(const LatticeSystem& system) {
+  const Lattice& lattice = system.lattice();
+  const NodeNumbers unknown_at(parts_.unknowns, parts_.copies, lattice.sites(), components_);
+  const NodeNumbers equation_at(parts_.equations, 1, lattice.sites(), components_);
+  std::vector<std::vector<int>> unknown(batches_.size());
+  int largest = 0;
+  for (std::size_t n = 0; n < batches_.size(); ++n) {
+    Batch& b = batches_[n];
+    largest = std::max(largest, b.size);
+    const std::size_t reads = at(b.size) * at(b.padded);
+    b.place.resize(reads), b.equation.resize(reads), unknown[n].resize(reads);
+    if (parts_.turn != 0) b.gained.resize(reads);
+    for (int i = 0; i < b.size; ++i) {
+      const Site vertex = b.family->site(i);
+      const int c = b.family->values()[at(i)].component, row = b.rows[at(i)];
+      const double turn = system.turn_of(c, parts_.turn);
+      bool is_equation = false, is_unknown = false;
+      for (int s = 0; s < b.padded; ++s) {
+        const int x = b.sites[at(s)] + vertex.space, home = lattice.is_circle() ? lattice.wrapped(x) : x;
+        const std::size_t read = at(b.read(i, s));
+        const int equation = s < b.stencils && b.family->is_varied(i) ? equation_at(row, home, c) : -1;
+        b.place[read] = place({{row, home, vertex.node}, c});
+        b.equation[read] = equation < 0 ? size() : equation;
+        unknown[n][read] = unknown_at(row, home, c);
+        if (parts_.turn != 0) b.gained[read] = turn * ((x - home) / lattice.sites());
+        is_equation = is_equation || equation >= 0;
+        is_unknown = is_unknown || unknown[n][read] >= 0;
+      }
+      if (is_equation) b.equations.push_back(i);
+      if (is_unknown) b.unknowns.push_back(i);
+      b.rows[at(i)] = std::clamp(row, -parts_.past, parts_.future);
+    }
+  }
+  list_places(unknown);
+  for (const Batch& b : batches_) {
+    const std::size_t numbers = std::max(b.equations.size() * b.unknowns.size(), at(b.size));
+    out_.reserve(std::max(numbers, at(largest_strip / lanes)));
+  }
+  y_.reserve(at(largest * most_together / lanes));
+}
+
+/// The entries of the Jacobian, each once, and which of them each stencil gives a share of.
+void Assembly::list_places(const std::vector<std::vector<int>>& unknown) {
+  struct Share {
+    Place place;
+    int* entry;
+  };
+  std::vector<Share> shares;
+  for (std::size_t n = 0; n < batches_.size(); ++n) {
+    Batch& b = batches_[n];
+    b.entry.assign(b.equations.size() * b.unknowns.size() * at(b.padded), -1);
+    int* entry = b.entry.data();
+    for (const int i : b.equations)
+      for (const int m : b.unknowns)
+        for (int s = 0; s < b.padded; ++s, ++entry) {
+          const Place place{b.equation[at(b.read(i, s))], unknown[n][at(b.read(m, s))]};
+          if (place.equation < size() && place.unknown >= 0) shares.push_back({place, entry});
+        }
+  }
+  std::ranges::sort(shares, {}, [](const Share& s) { return std::pair{s.place.equation, s.place.unknown}; });
+  for (const auto& [place, entry] : shares) {
+    if (places_.empty() || places_.back().equation != place.equation || places_.back().unknown != place.unknown)
+      places_.push_back(place);
+    *entry = static_cast<int>(places_.size()) - 1;
+  }
+  places_.shrink_to_fit();
+  for (Batch& b : batches_) std::ranges::replace(b.entry, -1, static_cast<int>(places_.size()));
+}
+
+void Assembly::take_constant_parts() {
+  fixed_.assign(places_.size() + 1, 0.0);
+  for (Batch& b : batches_) {
+    const auto part = b.family->constant_part(cell(b, 0, b.x[0][0]));
+    b.linear = part && part->is_all;
+    if (!b.linear) continue;
+    b.at_zero = part->r0;
+    b.terms.clear();
+    for (int i = 0; i < b.size; ++i)
+      for (int m = 0; m < b.size; ++m)
+        if (const double value = part->J[at(i * b.size + m)]; value != 0) b.terms.push_back({i, m, value});
+    add_constant(b, part->J, fixed_);
+  }
+}
+
+void Assembly::set_time_step(double h) {
+  time_step_ = h;
+  take_constant_parts();
+}
+
+/// h, k, t and x of a stencil
+Cell Assembly::cell(const Batch& b, std::int64_t J, double x) const {
+  return {time_step_, space_step_, static_cast<double>(J + b.row) * time_step_, x};
+}
+
+Pack Assembly::gathered(const Batch& b, SectionView section, std::int64_t J, int i, int s) const {
+  return delf::gather(section.row(J + b.rows[at(i)]), b.place.data() + b.read(i, s));
+}
+
+template <class Use>
+void Assembly::strips(const Batch& b, SectionView section, std::int64_t J, int numbers, const Use& use) const {
+  // A strip's numbers stay in the cache of first level.
+  const int most = std::clamp(largest_strip / std::max(numbers, 1) / lanes * lanes, lanes, most_together);
+  for (int first = 0; first < b.padded; first += most) {
+    const int count = std::min(most, b.padded - first);
+    y_.resize(at(b.size * count / lanes)), out_.resize(at(numbers * count / lanes));
+    Pack* y = y_.data();
+    for (int i = 0; i < b.size; ++i) {
+      const double* const row = section.row(J + b.rows[at(i)]);
+      for (int s = first; s < first + count; s += lanes, ++y) {
+        *y = delf::gather(row, b.place.data() + b.read(i, s));
+        if (!b.gained.empty())
+          for (int l = 0; l < lanes; ++l) y->v[l] += b.gained[at(b.read(i, s + l))];
+      }
+    }
+    use(StencilBatch{cell(b, J, 0), count, numbers_of(b.x.data() + first / lanes), numbers_of(y_.data())}, first,
+        out_.data());
+  }
+}
+
+void Assembly::add_residual(const Batch& b, SectionView section, std::int64_t J, double* E, double* absolute) const {
+  strips(b, section, J, b.size, [&](const StencilBatch& strip, int first, Pack* r) {
+    const int packs = strip.count / lanes;
+    if (b.linear) {
+      for (int i = 0; i < b.size; ++i) std::fill_n(r + i * packs, packs, Pack(b.at_zero[at(i)]));
+      for (const auto& [i, m, value] : b.terms)
+        for (int p = 0; p < packs; ++p) r[i * packs + p] += Pack(value) * y_[at(m * packs + p)];
+    } else {
+      b.family->residual(strip, numbers_of(r));
+    }
+    // No two stencils of a row have the same equation at the same value.
+    for (const int i : b.equations)
+      for (int p = 0; p < packs; ++p) {
+        const int* const equation = b.equation.data() + b.read(i, first + p * lanes);
+        add(r[i * packs + p], E, equation);
+        if (absolute) add(abs(r[i * packs + p]), absolute, equation);
+      }
+  });
+}
+
+void Assembly::residual(SectionView section, std::int64_t J, std::vector<double>& E, std::vector<double>* absolute,
+                        const std::vector<double>* momenta) const {
+  // One number more than there are equations takes what belongs to none.
+  E.assign(at(size()) + 1, 0.0);
+  if (absolute) absolute->assign(E.size(), 0.0);
+  if (momenta)
+    for (int n = 0; n < size(); ++n)
+      if (J + equation(n).site.time == 0) E[at(n)] = (*momenta)[at(place(equation(n)))];
+  for (const Batch& b : batches_)
+    if (!below_start(b, J, momenta != nullptr))
+      add_residual(b, section, J, E.data(), absolute ? absolute->data() : nullptr);
+  E.resize(at(size()));
+  if (absolute) absolute->resize(E.size());
+}
+
+void Assembly::known(SectionView section, std::int64_t J, std::vector<double>& E) const {
+  E.assign(at(size()) + 1, 0.0);
+  for (const Batch& b : batches_)
+    if (b.unknowns.empty()) add_residual(b, section, J, E.data(), nullptr);
+}
+
+void Assembly::residual_from(const std::vector<double>& known, SectionView section, std::int64_t J,
+                             std::vector<double>& E) const {
+  E = known;
+  for (const Batch& b : batches_)
+    if (!b.unknowns.empty()) add_residual(b, section, J, E.data(), nullptr);
+}
+
+void Assembly::jacobian(SectionView section, std::int64_t J, std::vector<double>& values,
+                        const std::vector<double>* momenta) const {
+  values = fixed_;
+  for (const Batch& b : batches_) {
+    if (b.linear || below_start(b, J, momenta != nullptr)) continue;
+    const int pairs = static_cast<int>(b.equations.size() * b.unknowns.size());
+    if (pairs == 0) continue;
+    strips(b, section, J, pairs, [&](const StencilBatch& strip, int first, Pack* derivatives) {
+      b.family->jacobian(strip, b.equations, b.unknowns, numbers_of(derivatives));
+      for (int n = 0; n < pairs; ++n)
+        for (int s = 0; s < strip.count; s += lanes)
+          add(*derivatives++, values.data(), b.entry.data() + n * b.padded + first + s);
+    });
+  }
+  values.resize(places_.size());
+}
+
+/// The same for a batch all of whose stencils have this J.
+void Assembly::add_constant(const Batch& b, const Numbers& J, Numbers& values) const {
+  const int* entry = b.entry.data();
+  for (const int i : b.equations)
+    for (const int m : b.unknowns)
+      for (int s = 0; s < b.padded; ++s) values[at(*entry++)] += J[at(i * b.size + m)];
+}
+
+bool Assembly::constant_jacobian(std::vector<double>& values) const {
+  values.assign(places_.size() + 1, 0.0);
+  for (const Batch& b : batches_) {
+    if (b.unknowns.empty()) continue;
+    // What depends on the place is not in the constant part: one cell stands for all.
+    const auto part = b.family->constant_part(cell(b, 0, b.x[0][0]));
+    if (!part) return false;
+    add_constant(b, part->J, values);
+  }
+  values.resize(places_.size());
+  std::vector<char> has(at(size()), false);
+  for (std::size_t p = 0; p < values.size(); ++p) has[at(places_[p].equation)] |= values[p] != 0;
+  return std::ranges::all_of(has, [](char any) { return any != 0; });
+}
+
+void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V, std::vector<double>& values) const {
+  values.assign(places_.size() + 1, 0.0);
+  for (Variation& v : V) v.E.assign(at(size()) + 1, 0.0), v.absolute.assign(v.E.size(), 0.0);
+  std::vector<int> all;
+  for (const Batch& b : batches_) {
+    all.resize(at(b.size));
+    std::iota(all.begin(), all.end(), 0);
+    const int pairs = static_cast<int>(b.equations.size()) * b.size;
+    strips(b, y, J, pairs, [&](const StencilBatch& strip, int first, Pack* derivatives) {
+      b.family->jacobian(strip, b.equations, all, numbers_of(derivatives));
+      const int packs = strip.count / lanes;
+      const int* entry = b.entry.data() + first;
+      for (std::size_t e = 0; e < b.equations.size(); ++e)
+        for (std::size_t u = 0; u < b.unknowns.size(); ++u, entry += b.padded)
+          for (int p = 0; p < packs; ++p)
+            add(derivatives[(static_cast<int>(e) * b.size + b.unknowns[u]) * packs + p], values.data(),
+                entry + p * lanes);
+      for (Variation& v : V)
+        for (std::size_t e = 0; e < b.equations.size(); ++e)
+          for (int p = 0; p < packs; ++p) {
+            const int s = first + p * lanes;
+            Pack sum(0.0), absolute(0.0);
+            for (int m = 0; m < b.size; ++m) {
+              const Pack term = derivatives[(static_cast<int>(e) * b.size + m) * packs + p] * gathered(b, v.V, J, m, s);
+              sum += term, absolute += abs(term);
+            }
+            const int* const equation = b.equation.data() + b.read(b.equations[e], s);
+            add(sum, v.E.data(), equation);
+            add(absolute, v.absolute.data(), equation);
+          }
+    });
+  }
+  for (Variation& v : V) v.E.resize(at(size())), v.absolute.resize(at(size()));
+  values.resize(places_.size());
+}
+
+void Assembly::each(bool jacobian, SectionView section, std::int64_t J, const Visit& visit) const {
+  std::vector<int> all, places;
+  Numbers y, derivatives;
+  for (const Batch& b : batches_) {
+    all.resize(at(b.size)), places.resize(at(b.size)), y.resize(at(b.size));
+    std::iota(all.begin(), all.end(), 0);
+    derivatives.resize(jacobian ? at(b.size * b.size) : at(b.size));
+    strips(b, section, J, static_cast<int>(derivatives.size()), [&](const StencilBatch& strip, int first, Pack* out) {
+      if (jacobian) b.family->jacobian(strip, all, all, numbers_of(out));
+      else b.family->residual(strip, numbers_of(out));
+      for (int s = 0; s < std::min(strip.count, b.stencils - first); ++s) {
+        for (int i = 0; i < b.size; ++i) {
+          places[at(i)] = b.place[at(b.read(i, first + s))];
+          y[at(i)] = strip.y[i * strip.count + s];
+        }
+        for (std::size_t n = 0; n < derivatives.size(); ++n)
+          derivatives[n] = numbers_of(out)[n * at(strip.count) + at(s)];
+        visit({*b.family, {b.number, {b.row, b.sites[at(first + s)]}}, b.rows, places, y, derivatives});
+      }
+    });
+  }
+}
+
+void Assembly::gather(const Local& local, SectionView V, std::int64_t J, std::vector<double>& v) {
+  v.clear();
+  for (std::size_t i = 0; i < local.places.size(); ++i) v.push_back(V.row(J + local.rows[i])[local.places[i]]);
+}
+
+std::vector<char> Assembly::present() const {
+  const int depth = parts_.past + parts_.future + 1;
+  int row_size = 0;
+  for (const Batch& b : batches_)
+    for (const int place : b.place) row_size = std::max(row_size, place + 1);
+  SectionRing ring(depth, at(row_size));
+  std::mt19937_64 engine(20251121);
+  std::vector<char> found(places_.size(), false);
+  std::vector<double> values;
+  for (int sample = 0; sample < 3; ++sample) {
+    for (int r = 0; r < depth; ++r)
+      for (int n = 0; n < row_size; ++n) ring.row(r)[n] = 4.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 2.0;
+    jacobian(ring, depth, values);
+    std::vector<double> largest(at(size()), 0.0);
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      double& size = largest[at(places_[p].equation)];
+      size = std::max(size, std::abs(values[p]));
+    }
+    for (std::size_t p = 0; p < values.size(); ++p)
+      if (!(std::abs(values[p]) <= 1e-13 * largest[at(places_[p].equation)])) found[p] = true;
+  }
+  return found;
+}
+
+int Assembly::stencils() const {
+  return std::accumulate(batches_.begin(), batches_.end(), 0, [](int n, const Batch& b) { return n + b.stencils; });
+}
+
+std::size_t Assembly::bytes() const {
+  std::size_t total = places_.size() * sizeof(Place) + fixed_.size() * sizeof(double) +
+                      (y_.capacity() + out_.capacity()) * sizeof(Pack) +
+                      (parts_.equations.size() + parts_.unknowns.size()) * sizeof(Node);
+  for (const Batch& b : batches_)
+    total += sizeof(Batch) + b.x.size() * sizeof(Pack) + b.gained.size() * sizeof(double) +
+             (b.sites.size() + b.rows.size() + b.place.size() + b.equation.size() + b.entry.size()) * sizeof(int);
+  return total;
+}
+
+}  // namespace delf

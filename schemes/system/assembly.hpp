@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "jets/simd/pack.hpp"
+#include "lattice/plan/solve_plan.hpp"
+#include "schemes/families/stencil_family.hpp"
+#include "schemes/system/lattice_system.hpp"
+
+namespace delf {
+
+/// Rows of a section, row[i·C + c]: a ring of the newest `depth`.
+struct SectionView {
+  const double* values;
+  int depth;
+  std::size_t row_size;
+
+  const double* row(std::int64_t r) const {
+    return values + static_cast<std::size_t>(((r % depth) + depth) % depth) * row_size;
+  }
+};
+class SectionRing {
+ public:
+  SectionRing(int depth, std::size_t row_size)
+      : depth_(depth), row_size_(row_size), values_(static_cast<std::size_t>(depth) * row_size, 0.0) {}
+  /// Rows `first` to `last` of a window.
+  SectionRing(const Window&, std::int64_t first, std::int64_t last);
+
+  double* row(std::int64_t r) { return values_.data() + (view().row(r) - values_.data()); }
+  const double* row(std::int64_t r) const { return view().row(r); }
+  SectionView view() const { return {values_.data(), depth_, row_size_}; }
+  operator SectionView() const { return view(); }
+  std::size_t bytes() const { return values_.size() * sizeof(double); }
+
+ private:
+  int depth_;
+  std::size_t row_size_;
+  std::vector<double> values_;
+};
+
+/// The assembler: equations of a system, the stencils that they are sums of, and some of their unknowns.
+///
+///     E(site) = Σ_families Σ_{l: Δˡ = site} rˡ(y_Δ)                        Marsden–Patrick–Shkoller (5.2)
+///
+/// Stencils of one family whose anchors lie in one row are a batch. What a batch reads, and where its residuals and
+/// derivatives go, are lists of indices made at set-up: evaluation gathers values, calls the family for some packs of
+/// stencils at once, and scatters. Rows count from a row J, which is given when the assembly is evaluated.
+class Assembly {
+ public:
+  struct Anchor {
+    int family;
+    Site site;
+    friend auto operator<=>(const Anchor&, const Anchor&) = default;
+  };
+  struct Parts {
+    std::vector<Node> equations;
+    /// Listed `copies` times one after another, where the same unknown moves values in several rows.
+    std::vector<Node> unknowns = {};
+    int copies = 1;
+    bool matched = false;  ///< equation n determines unknown n
+    int parity = 0;        ///< of row J: brick walls
+    /// Rows J − past … J + future are there; stencils that reach further do not depend on what they read there.
+    int past = 0, future = 0;
+    double turn = 0;                                    ///< φ(x + L) − φ(x)
+    std::optional<std::vector<Anchor>> stencils = {};   ///< those that touch an equation, if not given
+    std::function<int(Site)> place = {};  ///< in a row of the section; the number in space, if not given
+  };
+  Assembly(const LatticeSystem&, Parts);
+  /// The equations and the unknowns of a plan's slabs of one parity.
+  static Parts slab(const SolvePlan&, int parity, int past, int future, double turn);
+  /// No equations: the stencils that reach across the cut below row J.
+  static Parts across(const LatticeSystem&, int parity, double turn);
+
+  int size() const { return static_cast<int>(parts_.equations.size()); }
+  int unknowns() const { return static_cast<int>(parts_.unknowns.size()) / parts_.copies; }
+  bool matched() const { return parts_.matched; }
+  /// site.time counts from J.
+  const Node& unknown(int n) const { return parts_.unknowns[static_cast<std::size_t>(n)]; }
+  const Node& equation(int n) const { return parts_.equations[static_cast<std::size_t>(n)]; }
+  /// Of a node, in its row.
+  int place(const Node& node) const {
+    return (parts_.place ? parts_.place(node.site) : node.site.space) * components_ + node.component;
+  }
+  double& value(SectionRing& ring, std::int64_t J, int n) const {
+    return ring.row(J + unknown(n).site.time)[place(unknown(n))];
+  }
+
+  /// An entry of the Jacobian, ∂(equation)/∂(unknown): those that may differ from zero, each once.
+  struct Place {
+    int equation, unknown;
+  };
+  const std::vector<Place>& places() const { return places_; }
+  /// Which of them are not zero at three seeded random sections: others cancel between stencils.
+  std::vector<char> present() const;
+
+  /// h, if it is not the system's own.
+  void set_time_step(double h);
+
+  /// E and Σ|terms| of every equation. With `momenta` (site·C + component), slab 1 from row 0 alone: the stencils below
+  /// row 0 are replaced by their momenta ∂L/∂y₀, p₀ + Σ_above ∂L/∂y₀ = 0 (the discrete Legendre transform).
+  void residual(SectionView, std::int64_t J, std::vector<double>& E, std::vector<double>* absolute = nullptr,
+                const std::vector<double>* momenta = nullptr) const;
+  /// The values of places().
+  void jacobian(SectionView, std::int64_t J, std::vector<double>& values,
+                const std::vector<double>* momenta = nullptr) const;
+
+  /// The part of E that contains no unknown, and E from it.
+  void known(SectionView, std::int64_t J, std::vector<double>& E) const;
+  void residual_from(const std::vector<double>& known, SectionView, std::int64_t J, std::vector<double>& E) const;
+  /// The values of places() without the terms that depend on the field. False if some family cannot tell, or nothing is
+  /// left of an equation.
+  bool constant_jacobian(std::vector<double>& values) const;
+
+  /// Σ_a ∂E/∂y_a V_a and Σ|terms| for several V at once, every a that the stencils read, and the values of places().
+  struct Variation {
+    SectionView V;
+    std::vector<double> E = {}, absolute = {};
+  };
+  void linearised(SectionView y, std::int64_t J, std::span<Variation> V, std::vector<double>& values) const;
+
+  /// One stencil, its values y, and r or ∂r/∂y (row by row) there.
+  struct Local {
+    const StencilFamily& family;
+    Anchor anchor;                      ///< its row counts from J
+    std::span<const int> rows, places;  ///< of the values: where they are read
+    std::span<const double> y, derivatives;
+  };
+  using Visit = std::function<void(const Local&)>;
+  void each_residual(SectionView y, std::int64_t J, const Visit& visit) const { each(false, y, J, visit); }
+  void each_jacobian(SectionView y, std::int64_t J, const Visit& visit) const { each(true, y, J, visit); }
+  /// The values of a variation on that stencil.
+  static void gather(const Local&, SectionView V, std::int64_t J, std::vector<double>& v);
+
+  int stencils() const;
+  std::size_t bytes() const;
+
+ private:
+  using Numbers = std::vector<double>;
+  using Packs = std::vector<Pack>;
+  static constexpr int most_together = 64;     ///< stencils of a strip
+  static constexpr int largest_strip = 2048;   ///< doubles of its results: half of a cache of first level
+  static double* numbers_of(Pack* packs) { return reinterpret_cast<double*>(packs); }
+  static const double* numbers_of(const Pack* packs) { return reinterpret_cast<const double*>(packs); }
+  /// An entry of a constant J that is not zero.
+  struct Term {
+    int i, m;
+    double value;
+  };
+  /// As many lanes as fill whole packs: the last stencil is repeated, and what it repeats goes to an equation that
+  /// nobody reads. Lists hold what belongs to value i of stencil s at i·padded + s.
+  struct Batch {
+    const StencilFamily* family;
+    int number;           ///< of the family
+    int size;             ///< values of a stencil
+    int row, lowest_row;  ///< of the anchors and of the lowest value, from J
+    int stencils, padded;
+    std::vector<int> sites = {};  ///< of the anchors
+    Packs x = {};
+    std::vector<int> rows = {};                      ///< of value i, from J
+    std::vector<int> place = {};                     ///< in the row
+    Numbers gained = {};                             ///< for having gone round the circle; empty if nothing
+    std::vector<int> equation = {};                  ///< that the residual belongs to, or size()
+    std::vector<int> equations = {}, unknowns = {};  ///< values that are one, of some stencil
+    /// Of (equations[e], unknowns[u]) of stencil s, at (e·U + u)·padded + s: its number in places(), or one beyond.
+    std::vector<int> entry = {};
+    bool linear = false;  ///< r = r(0) + J y with the same J everywhere
+    std::vector<Term> terms = {};
+    Numbers at_zero = {};
+
+    int read(int i, int s) const { return i * padded + s; }
+  };
+
+  void list_stencils(const LatticeSystem&);
+  void list_reads(const LatticeSystem&);
+  void list_places(const std::vector<std::vector<int>>& unknown);
+  void take_constant_parts();
+
+  bool below_start(const Batch& b, std::int64_t J, bool legendre) const { return legendre && J + b.lowest_row < 0; }
+  Cell cell(const Batch& b, std::int64_t J, double x) const;
+  /// Calls use(stencils, number of the first, room for `numbers` of each) for a batch, strip by strip.
+  template <class Use>
+  void strips(const Batch&, SectionView, std::int64_t J, int numbers, const Use& use) const;
+  Pack gathered(const Batch&, SectionView, std::int64_t J, int i, int s) const;
+  void add_residual(const Batch&, SectionView, std::int64_t J, double* E, double* absolute) const;
+  void add_constant(const Batch&, const Numbers& J, Numbers& values) const;
+  void each(bool jacobian, SectionView y, std::int64_t J, const Visit&) const;
+
+  double time_step_, space_step_;
+  int components_;
+  Parts parts_;
+  std::vector<Batch> batches_;
+  std::vector<Place> places_;
+  Numbers fixed_;                     ///< the values of places() that linear batches give
+  mutable Packs y_, out_;  ///< of a strip
+};
+
+}  // namespace delf

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/system/momenta.hpp"
+
+#include <algorithm>
+
+#include "lattice/error.hpp"
+
+namespace delf {
+
+void require_lagrangian(const LatticeSystem& system) {
+  if (!is_variational(system))
+    throw BadInput("scheme.method", "scheme.method: momenta are derivatives of a discrete Lagrangian, and this scheme "
+                                    "has none; use a variational one");
+}
+
+std::vector<double> momenta(const LatticeSystem& system, const Window& window, std::int64_t row, Side side) {
+  require_lagrangian(system);
+  const Lattice& lattice = system.lattice();
+  const int C = system.components(), N = lattice.sites();
+  std::vector<double> p(static_cast<std::size_t>(N * C), 0.0), y, r;
+  for (const auto& family : system.families()) {
+    const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
+    if (low.time == high.time) continue;
+    const std::int64_t anchor = row - (side == Side::below ? high.time : low.time);
+    for (int i = 0; i < N; ++i) {
+      if (!system.has_stencil(*family, anchor, i)) continue;
+      y.clear();
+      for (int m = 0; m < family->size(); ++m) {
+        const Site v = family->site(m);
+        y.push_back(window(anchor + v.time, i + v.space, family->values()[static_cast<std::size_t>(m)].component));
+      }
+      r.resize(y.size());
+      const double h = system.time_step();
+      family->residual({h, lattice.space_step(), static_cast<double>(anchor) * h, lattice.position(i)}, y, r);
+      for (int m = 0; m < family->size(); ++m) {
+        const Site v = family->site(m);
+        if (anchor + v.time != row || !family->is_varied(m)) continue;
+        const int x = i + v.space, home = lattice.is_circle() ? lattice.wrapped(x) : x;
+        const int c = family->values()[static_cast<std::size_t>(m)].component;
+        p[static_cast<std::size_t>(home * C + c)] += side == Side::below ? r[static_cast<std::size_t>(m)]
+                                                                         : -r[static_cast<std::size_t>(m)];
+      }
+    }
+  }
+  return p;
+}
+
+}  // namespace delf
