@@ -14,7 +14,7 @@ void print_keys(std::string_view only) {
   std::string_view section;
   for (const Key& key : keys()) {
     if (!only.empty() && !key.name.starts_with(only)) continue;
-    if (const auto now = key.name.substr(0, key.name.find('.')); now != section) {
+    if (const auto now = section_of(key.name); now != section) {
       section = now;
       fmt::print("\n[{}]\n", section);
     }

@@ -169,8 +169,6 @@ std::vector<Key> general_keys() {
   };
 }
 
-std::string_view section_of(std::string_view name) { return name.substr(0, name.find('.')); }
-
 // Behind the last key of its section.
 void insert(std::vector<Key>& table, Key key) {
   const auto last = std::find_if(table.rbegin(), table.rend(),

@@ -23,6 +23,9 @@ struct Key {
   std::vector<std::string> choices = {};
 };
 
+/// "lattice" of "lattice.sites": a view of the name that is given.
+constexpr std::string_view section_of(std::string_view name) { return name.substr(0, name.find('.')); }
+
 /// The key that a parameter is.
 Key key_of(const Parameter&);
 

@@ -37,12 +37,11 @@ std::string resolved_text(const Scene& scene, StartRule in_force, const std::str
   for (const Key& key : keys()) {
     const std::string value = resolved(scene, key, in_force);
     if (value.empty()) continue;
-    const auto dot = key.name.find('.');
-    if (section != key.name.substr(0, dot)) {
-      section = key.name.substr(0, dot);
+    if (section != section_of(key.name)) {
+      section = section_of(key.name);
       text += fmt::format("\n[{}]\n", section);
     }
-    text += fmt::format("{} = {}\n", key.name.substr(dot + 1), value);
+    text += fmt::format("{} = {}\n", key.name.substr(section.size() + 1), value);
   }
   return text;
 }
