@@ -40,6 +40,8 @@ class Lattice {
   int cells() const noexcept { return space_ == Space::interval ? sites_ - 1 : sites_; }
   /// The site i of the circle that an index outside 0 … N−1 stands for.
   int wrapped(int i) const noexcept { return ((i % sites_) + sites_) % sites_; }
+  /// On an interval the index itself, which may be beyond a wall.
+  int home(int i) const noexcept { return is_circle() ? wrapped(i) : i; }
   /// A wall that is kept at its value: it has no equation.
   bool is_fixed(int i) const noexcept {
     return !is_circle() && ((i == 0 && left_ == Wall::fixed) || (i == sites_ - 1 && right_ == Wall::fixed));

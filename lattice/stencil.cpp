@@ -34,7 +34,7 @@ Stencils::Stencils(const Lattice& lattice, std::vector<StencilPattern> families)
 }
 
 Site Stencils::reduced(Site site) const {
-  return lattice_.is_circle() ? Site{site.time, lattice_.wrapped(site.space), site.node} : site;
+  return {site.time, lattice_.home(site.space), site.node};
 }
 
 bool Stencils::in_lattice(Site site) const {

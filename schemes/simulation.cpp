@@ -229,7 +229,7 @@ void Simulation::start_legendre(std::span<const double> row0, std::span<const do
       for (int i = 0; i < family->size(); ++i) {
         const int c = family->values()[static_cast<std::size_t>(i)].component;
         if (family->site(i).time != 0 || system.component(c).at.time != 0) continue;
-        const int x = cell + family->site(i).space, home = lattice.is_circle() ? lattice.wrapped(x) : x;
+        const int x = cell + family->site(i).space, home = lattice.home(x);
         places.push_back(static_cast<std::size_t>(home * C + c));
         phi.push_back(row0[places.back()] + (x - home) / N * turn);
         phi_t.push_back(velocity[places.back()]);

@@ -9,11 +9,9 @@ namespace delf {
 
 BadInput unknown_name(const std::string& key, const std::string& value, const std::vector<std::string>& names) {
   const auto near = nearest(value, names);
-  std::string known;
-  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
   return {key,
           fmt::format("{} = {}: there is no such {}{}; choose one of {}", key, value, key.substr(key.find('.') + 1),
-                      near ? fmt::format(" (did you mean {}?)", *near) : "", known)};
+                      near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(names, ", "))};
 }
 
 }  // namespace delf

@@ -74,9 +74,11 @@ JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> den
                    (values_are_sources && density_->nonlinearity() == Nonlinearity::none)) {
   placed_ = density_->is_placed();
   for (const TablePoint& p : table_.points) {
-    Point point{std::vector<std::vector<Weight>>(at(pattern_.size()))};
+    Point point{std::vector<std::vector<Weight>>(at(pattern_.size())), {}};
     for (int s = 0; s < density_->slots(); ++s)
       for (const auto& [vertex, weight] : p.slots[at(s)]) point.of_vertex[at(vertex)].push_back({s, weight});
+    for (int i = 0; i < size(); ++i)
+      if (!point.of_vertex[at(i / d_)].empty()) point.values.push_back(i);
     points_.push_back(std::move(point));
   }
   find_sources();
@@ -124,6 +126,8 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
     for (std::size_t q = 0; q < points_.size(); ++q) {
+      const auto reads = [&](int i) { return !points_[q].of_vertex[at(i / d_)].empty(); };
+      if (!std::ranges::any_of(equations, reads)) continue;
       const TablePoint& p = table_.points[q];
       density_->hessian(jets.at_point(p, first, count), H.data());
       // J += |Δ| w_q M_qᵀ ∂²ℓ/∂j∂j M_q
@@ -155,12 +159,12 @@ std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
   };
   for (std::size_t q = 0; q < points_.size(); ++q) {
     const double w = area * table_.points[q].weight;
-    for (int i = 0; i < n; ++i)
+    for (const int i : points_[q].values)
       for (const Weight& left : points_[q].of_vertex[at(i / d_)]) {
         const double to = w * scales[at(left.slot)] * left.weight;
         const int row = left.slot * d_ + i % d_;
         if (!(has_sources_ && row < d_)) part.r0[at(i)] += to * density_->constant_gradient()[at(row)];
-        for (int k = 0; k < n; ++k)
+        for (const int k : points_[q].values)
           for (const Weight& right : points_[q].of_vertex[at(k / d_)])
             part.J[at(i * n + k)] += to * scales[at(right.slot)] * right.weight * hessian(row, right.slot * d_ + k % d_);
       }

@@ -46,6 +46,7 @@ class JetFamily final : public StencilFamily {
   };
   struct Point {
     std::vector<std::vector<Weight>> of_vertex;
+    std::vector<int> values;  ///< numbers in values() of those that the jet here reads
   };
   struct Jets;
 

@@ -45,6 +45,15 @@ void StencilFamily::jacobian(const Cell& cell, std::span<const double> y, std::s
   for (std::size_t i = 0; i < J.size(); ++i) J[i] = out[i][0];
 }
 
+void StencilFamily::jacobian_row(int equation, const Cell& cell, std::span<const double> y, std::span<double> J) const {
+  const Alone one(cell, y);
+  std::vector<int> all(y.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<Pack> out(y.size());
+  jacobian(one.batch, {&equation, 1}, all, reinterpret_cast<double*>(out.data()));
+  for (std::size_t i = 0; i < J.size(); ++i) J[i] = out[i][0];
+}
+
 std::optional<double> StencilFamily::lagrangian(const Cell& cell, std::span<const double> y) const {
   const Alone one(cell, y);
   Pack L;

@@ -100,9 +100,10 @@ class StencilFamily {
     return false;
   }
 
-  /// For one stencil: r, ∂r/∂y row by row, and L.
+  /// For one stencil: r, ∂r/∂y row by row, one of its rows, and L.
   virtual void residual(const Cell&, std::span<const double> y, std::span<double> r) const;
   virtual void jacobian(const Cell&, std::span<const double> y, std::span<double> J) const;
+  void jacobian_row(int equation, const Cell&, std::span<const double> y, std::span<double> J) const;
   virtual std::optional<double> lagrangian(const Cell&, std::span<const double> y) const;
 
  protected:

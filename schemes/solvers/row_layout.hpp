@@ -60,17 +60,6 @@ class RowLayout {
     if (turn != 0) fill_halo_turned(row, turn);
     else fill_halo(row);
   }
-  /// Of what is read so many packs away, if these alone can be filled.
-  void fill_halo(double* row, int before, int after) const {
-    if (!by_packs_) return fill_halo(row);
-    if (before > 0) before_.fill(row, -before * lanes, 0);
-    if (after > 0) after_.fill(row, 0, after * lanes);
-  }
-  /// The first pack after the row alone.
-  void fill_first_after(double* row) const {
-    if (by_packs_) after_.pack(row, 0).store(row + after_.to);
-    else fill_halo(row);
-  }
   /// Whether packs of a halo are packs of the row, moved by a lane; and then the one before the first.
   bool finds_halos_by_packs() const { return by_packs_; }
   Pack before_first(const double* row) const { return before_.pack(row, -lanes); }

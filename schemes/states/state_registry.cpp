@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/states/state_registry.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -47,9 +49,7 @@ std::vector<const StateEntry*>& registry() {
 }
 
 std::string joined(const std::vector<std::string>& names) {
-  std::string line;
-  for (const std::string& name : names) line += (line.empty() ? "" : ", ") + name;
-  return line;
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 bool holds(const std::vector<std::string>& names, const std::string& name) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "lattice/error.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 
 namespace delf {
@@ -249,6 +250,10 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
     if (direct.converged && direct.tame) return as_result(direct, iterations);
   }
   const Newton followed = follow(problem, predict, absolute, max_iterations);
+  if (!followed.converged)
+    throw NoConvergence(
+        "the starting row of initial.start = centred was not found: Newton's method did not converge; "
+        "reduce lattice.courant or lattice.time_step");
   return as_result(followed, iterations + followed.iterations);
 }
 
@@ -270,7 +275,7 @@ std::optional<FixedPointBound> fixed_point_bound(const LatticeSystem& system, co
         const bool own = c.offset.space == 0 && c.component == a;
         dominance += own ? std::abs(c.value) : -std::abs(c.value);
         const int i = site + c.offset.space;
-        constant[(system.lattice().is_circle() ? system.lattice().wrapped(i) : i) * d + c.component] += c.value;
+        constant[system.lattice().home(i) * d + c.component] += c.value;
       }
       // The fixed point contracts by at most Σ |J_ij − A_ij| / dominance; J at uniform fields.
       bound.dominance = std::min(bound.dominance, dominance);

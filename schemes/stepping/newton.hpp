@@ -24,7 +24,7 @@ NewtonResult solve_slab(const LatticeSystem&, const SolvePlan&, const Window& pa
                         int max_iterations);
 
 /// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t. By Newton from y₀ + hφ_t, or, where the
-/// equations are `stiff` or that does not converge, followed from a small h as above.
+/// equations are `stiff` or that does not converge, followed from a small h as above. Throws NoConvergence.
 NewtonResult solve_centred_start(const LatticeSystem&, const SolvePlan&, const Window& row0,
                                  const std::vector<double>& velocity, bool stiff, double tolerance,
                                  int max_iterations);

@@ -21,11 +21,12 @@ struct StepOptions {
   int threads = 1;           ///< that explicit steps are shared by; the bits are the same for any number
 };
 
+/// Tolerances below this ask for all that rounding allows: there nothing is left to an estimate.
+inline constexpr double smallest_estimated = 0.99e-13;
+
 /// Beyond this squares overflow, and with them every energy: nothing that could be reported is a number any more.
 inline constexpr double largest_finite = 1e150;
 inline bool overflowed(double largest_value) { return !(largest_value <= largest_finite); }
-/// Of a whole row: whether √Σy² did.
-inline bool squares_overflowed(double sum_of_squares) { return !(sum_of_squares <= largest_finite * largest_finite); }
 
 /// Where a stepper stands.
 struct StepState {

@@ -54,8 +54,7 @@ class Stepper {
   /// The newest rows, every component at its own row: for checks.
   Window window(int rows) const { return method_->window(rows); }
   /// The residual of the field equations that were solved for the newest row: max |Σ terms| / max Σ |terms| over the
-  /// sites (a vacuum has no scale of its own). Costs about a step; half an explicit one where it is asked for after each
-  /// of them: their slopes are then kept, a row more for each field, which bytes_to_come() does not foresee.
+  /// sites (a vacuum has no scale of its own). Costs about a step, and the first of them rows to work in.
   double residual() const { return method_->residual(); }
   /// Of the last step: evaluations of the nonlinear part; 0 if it was solved at once.
   int iterations() const { return method_->state().iterations; }

@@ -91,7 +91,7 @@ void Assembly::list_stencils(const LatticeSystem& system) {
       for (const auto& touch : system.touching(e.site + Site{parts_.parity, 0}, e.component)) {
         const Site site = e.site + touch.anchor;
         anchors.push_back(
-            {touch.family_index, {site.time, lattice.is_circle() ? lattice.wrapped(site.space) : site.space}});
+            {touch.family_index, {site.time, lattice.home(site.space)}});
       }
   std::ranges::sort(anchors);
   anchors.erase(std::ranges::unique(anchors).begin(), anchors.end());
@@ -135,7 +135,7 @@ void Assembly::list_reads(const LatticeSystem& system) {
       const double turn = system.turn_of(c, parts_.turn);
       bool is_equation = false, is_unknown = false;
       for (int s = 0; s < b.padded; ++s) {
-        const int x = b.sites[at(s)] + vertex.space, home = lattice.is_circle() ? lattice.wrapped(x) : x;
+        const int x = b.sites[at(s)] + vertex.space, home = lattice.home(x);
         const std::size_t read = at(b.read(i, s));
         const int equation = s < b.stencils && b.family->is_varied(i) ? equation_at(row, home, c) : -1;
         b.place[read] = place({{row, home, vertex.node}, c});

@@ -18,7 +18,7 @@ namespace delf {
 namespace {
 
 Cell cell_at(const Lattice& lattice, std::int64_t row, int i, double time_step) {
-  const int home = lattice.is_circle() ? lattice.wrapped(i) : i;
+  const int home = lattice.home(i);
   return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, lattice.position(home)};
 }
 
@@ -149,9 +149,10 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
   const auto number = [&] { return amplitude * (2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0); };
   // One random value for each unknown near the site, the same for all stencils that contain it.
   std::map<std::tuple<Site, int>, std::array<double, 3>> field;
+  std::map<const StencilFamily*, std::optional<ConstantPart>> constant;
   for (const Touch& touch : touching(lattice, site, component)) {
     const int size = touch.family->size();
-    std::vector<double> y(static_cast<std::size_t>(size)), J(y.size() * y.size());
+    std::vector<double> y(static_cast<std::size_t>(size)), J(y.size());
     // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
     const Cell cell = cell_at(lattice, site.time + touch.anchor.time, site.space + touch.anchor.space, time_step_);
     const double widened = 1 / std::min(1.0, std::max(cell.time_step, cell.space_step));
@@ -162,19 +163,21 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
       return std::tuple{touch.anchor + Site{vertex.time, vertex.space},
                         touch.family->values()[static_cast<std::size_t>(m)].component};
     };
-    const std::size_t from = static_cast<std::size_t>(touch.index * size);
-    if (const auto part = touch.family->constant_part(cell))
-      for (int m = 0; m < size; ++m) samples[key(m)].constant += part->J[from + static_cast<std::size_t>(m)];
+    const auto [part, first] = constant.try_emplace(touch.family);
+    if (first) part->second = touch.family->constant_part(cell);
+    if (part->second)
+      for (int m = 0; m < size; ++m)
+        samples[key(m)].constant += part->second->J[static_cast<std::size_t>(touch.index * size + m)];
     for (int s = 0; s < 3; ++s) {
       for (int m = 0; m < size; ++m) {
         auto [where, fresh] = field.try_emplace(key(m));
         if (fresh) where->second = {number(), number(), number()};
         y[static_cast<std::size_t>(m)] = where->second[static_cast<std::size_t>(s)];
       }
-      touch.family->jacobian(cell, y, J);
-      for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[from + static_cast<std::size_t>(m)]);
-      touch.family->jacobian(wide, y, J);
-      for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[from + static_cast<std::size_t>(m)]);
+      touch.family->jacobian_row(touch.index, cell, y, J);
+      for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[static_cast<std::size_t>(m)]);
+      touch.family->jacobian_row(touch.index, wide, y, J);
+      for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[static_cast<std::size_t>(m)]);
     }
   }
   std::vector<Coefficient> result;

@@ -35,7 +35,7 @@ std::vector<double> momenta(const LatticeSystem& system, const Window& window, s
       for (int m = 0; m < family->size(); ++m) {
         const Site v = family->site(m);
         if (anchor + v.time != row || !family->is_varied(m)) continue;
-        const int x = i + v.space, home = lattice.is_circle() ? lattice.wrapped(x) : x;
+        const int x = i + v.space, home = lattice.home(x);
         const int c = family->values()[static_cast<std::size_t>(m)].component;
         p[static_cast<std::size_t>(home * C + c)] += side == Side::below ? r[static_cast<std::size_t>(m)]
                                                                          : -r[static_cast<std::size_t>(m)];

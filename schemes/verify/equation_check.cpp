@@ -51,7 +51,7 @@ double EquationCheck::size_of(const Window& window, std::int64_t row, int site, 
   assembly.each_jacobian(SectionRing(window, row - reach, row + reach), row, [&](const Assembly::Local& at) {
     for (int i = 0; i < at.family.size(); ++i) {
       const Site read = at.anchor.site + at.family.site(i);
-      const int home = system_->lattice().is_circle() ? system_->lattice().wrapped(read.space) : read.space;
+      const int home = system_->lattice().home(read.space);
       if (read.time != 0 || home != site || at.family.values()[static_cast<std::size_t>(i)].component != component)
         continue;
       for (std::size_t m = 0; m < at.y.size(); ++m)

@@ -37,7 +37,7 @@ RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int6
                         .place = [region = region_](Site site) { return static_cast<int>(region.place(site)); }};
   region_.visit_stencils([&](int f, Site anchor, std::span<const std::size_t> places) {
     const Lattice& lattice = system_.lattice();
-    parts.stencils->push_back({f, {anchor.time, lattice.is_circle() ? lattice.wrapped(anchor.space) : anchor.space}});
+    parts.stencils->push_back({f, {anchor.time, lattice.home(anchor.space)}});
     for (const VertexValue& value : system_.families()[static_cast<std::size_t>(f)]->values()) {
       const std::size_t place = places[static_cast<std::size_t>(value.vertex)];
       const std::size_t node = place * C + static_cast<std::size_t>(value.component);

@@ -88,7 +88,7 @@ void RowEquations::build_solvers() {
       // The step is from a row of this parity; the equation sits `shift` rows below the unknown one.
       const double sign = (parity + 1 - shift + i) % 2 == 0 ? 1 : -1;
       for (const UnknownEntry& e : unknowns) {
-        const int column = lattice.is_circle() ? lattice.wrapped(i + e.space) : i + e.space;
+        const int column = lattice.home(i + e.space);
         entries.push_back({i * d_ + a, column * d_ + e.component, e.coefficient + sign * e.alternating});
       }
     };
@@ -404,7 +404,7 @@ double RowEquations::residual(RowTable table, std::int64_t n) {
     if (sources_[s].component != 0 || !(sources_[s].is_local || sources_[s].reads_unknown)) continue;
     double* const* const out = &table[measured_ + d_ + static_cast<int>(s)];
     evaluate(table, n, sources_[s], 0, 0, layout_.packs(), out);
-    for (int c = 0; c < system_.families()[at(sources_[s].family)]->sources()->outputs_per_group; ++c)
+    for (int c = 0; c < sources_[s].outputs; ++c)
       layout_.fill_halo(out[c]);
   }
   double largest = 0, scale = 0;

