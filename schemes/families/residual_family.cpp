@@ -20,6 +20,7 @@ ResidualFamily::ResidualFamily(DirectResidual stencil, std::shared_ptr<const Bat
       d_(density_->components()) {
   if (!density_->has_difference_quotient())
     throw BadInput("theory.name", "a comparator needs a density that declares a difference quotient of its potential");
+  if (is_linear()) return;
   const auto vertex = [this](int l) { return pattern_.vertices[at(l)]; };
   // Q of the first pair; the others are that of the stencil that is anchored where they have moved to.
   const DirectResidual::Quotient& first = stencil_.quotients[0];
@@ -96,8 +97,15 @@ void ResidualFamily::jacobian(const StencilBatch& batch, std::span<const int> eq
   }
 }
 
+/// Where ℓ is quadratic its difference quotients are linear.
 std::optional<ConstantPart> ResidualFamily::constant_part(const Cell& cell) const {
-  ConstantPart part{std::vector<double>(at(size() * size()), 0.0), std::vector<double>(at(size()), 0.0)};
+  ConstantPart part{std::vector<double>(at(size() * size()), 0.0), std::vector<double>(at(size()), 0.0), is_linear()};
+  if (is_linear()) {
+    const std::vector<double> zero(at(size()), 0.0);
+    residual(cell, zero, part.r0);
+    jacobian(cell, zero, part.J);
+    return part;
+  }
   for (int l = 0; l < pattern_.size(); ++l)
     for (int a = 0; a < d_; ++a)
       part.J[at((stencil_.centre * d_ + a) * size() + l * d_ + a)] = linear(cell, l);

@@ -42,6 +42,7 @@ class ResidualFamily final : public StencilFamily {
   void differentiate_sources(int group, const JetBatch& inputs, double* const* d) const override;
 
  private:
+  bool is_linear() const { return density_->nonlinearity() == Nonlinearity::none; }
   /// (by_xx/k² − by_tt/h² + by_t/h) hk at vertex l.
   double linear(const Cell&, int l) const;
 

@@ -4,6 +4,7 @@
 #include "schemes/families/damped_leapfrog.hpp"
 #include "schemes/families/guo.hpp"
 #include "schemes/families/vu_quoc_li.hpp"
+#include "schemes/theories/klein_gordon.hpp"
 #include "schemes/theories/phi4.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
@@ -202,4 +203,33 @@ TEST_CASE("two components whose comparators couple them are stepped, and a densi
     }
   }
   CHECK_THROWS_AS(family_for(guo(), NoQuotient{}), BadInput);
+}
+
+TEST_CASE("comparators of a linear theory are their constant part, and are solved at once") {
+  Random random(21);
+  for (const DirectResidual& stencil : {vu_quoc_li(), guo(), damped_leapfrog(0.3)}) {
+    const ResidualFamily family = family_for(stencil, KleinGordon{1.7}), sine = family_for(stencil, SineGordon{1.7});
+    CHECK(family.sources()->groups.empty());
+    CHECK_FALSE(sine.sources()->groups.empty());
+    const auto part = family.constant_part(cell);
+    REQUIRE(part);
+    CHECK(part->is_all);
+    CHECK_FALSE(sine.constant_part(cell)->is_all);
+    const std::size_t size = static_cast<std::size_t>(family.size());
+    std::vector<double> r(size);
+    const Row y = random_row(random, family.size(), 2);
+    family.residual(cell, y, r);
+    for (std::size_t i = 0; i < size; ++i) {
+      double sum = part->r0[i];
+      for (std::size_t m = 0; m < size; ++m) sum += part->J[i * size + m] * y[m];
+      CHECK(std::abs(sum - r[i]) < 1e-14);
+    }
+  }
+  // mh = 1.5 at Courant 1.5: too stiff for a fixed point, and there is none to find
+  Problem p = problem_of("klein-gordon");
+  p.parameters["theory.mass"] = 1.5;
+  Evolution evolution = evolution_of(p, "guo", Lattice::circle(N, N / 1.5), 1.0);
+  evolution.stepper().start({random_row(random, N, 1), random_row(random, N, 1)});
+  evolution.stepper().step();
+  CHECK(evolution.stepper().iterations() == 0);
 }
