@@ -2,7 +2,6 @@
 #include "schemes/solvers/block_solver.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -10,6 +9,7 @@
 
 #include "lattice/plan/block_order.hpp"
 #include "schemes/solvers/band_lu.hpp"
+#include "schemes/solvers/sparse_lu.hpp"
 
 namespace delf {
 namespace {
@@ -55,7 +55,7 @@ struct BlockSolver::Large {
   std::optional<BandLU> band;
   Eigen::SparseMatrix<double> matrix;
   std::vector<int> where;  ///< of the entries, in the numbers of the band or of the matrix
-  std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> sparse;
+  std::unique_ptr<SparseLU> sparse;
   mutable Eigen::VectorXd x;
 
   Large(int n, Entries entries) : size(n), places(banded_places(n, entries)) {
@@ -90,7 +90,7 @@ struct BlockSolver::Large {
       const int* last = matrix.innerIndexPtr() + matrix.outerIndexPtr()[e.column + 1];
       where.push_back(static_cast<int>(std::lower_bound(first, last, e.row) - matrix.innerIndexPtr()));
     }
-    sparse = std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
+    sparse = std::make_unique<SparseLU>();
     sparse->analyzePattern(matrix);
   }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/solvers/linear_solver.hpp"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "lattice/error.hpp"
 #include "schemes/solvers/circulant_solver.hpp"
 #include "schemes/solvers/cyclic_band_lu.hpp"
+#include "schemes/solvers/sparse_lu.hpp"
 
 namespace delf {
 namespace {
@@ -112,7 +112,7 @@ class OrderedSolver final : public LinearSolver {
 };
 
 struct SparseFactors {
-  std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> lu;
+  std::unique_ptr<SparseLU> lu;
   void solve(std::vector<double>& x) const {
     Eigen::Map<Eigen::VectorXd> vector(x.data(), static_cast<Eigen::Index>(x.size()));
     vector = lu->solve(Eigen::VectorXd(vector));
@@ -169,7 +169,7 @@ std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& la
   for (const auto& e : entries) triplets.emplace_back(e.row, e.column, e.value);
   Eigen::SparseMatrix<double> matrix(size, size);
   matrix.setFromTriplets(triplets.begin(), triplets.end());
-  auto lu = std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
+  auto lu = std::make_unique<SparseLU>();
   lu->compute(matrix);
   if (lu->info() != Eigen::Success) throw NoConvergence("the constant part of the equations is singular");
   return std::make_unique<OrderedSolver<SparseFactors>>(layout, d, SparseFactors{std::move(lu)}, "sparse LU");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/stepping/newton.hpp"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 #include <numbers>
 
 #include "lattice/error.hpp"
+#include "schemes/solvers/sparse_lu.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 
 namespace delf {
@@ -103,7 +103,7 @@ Newton newton(SlabProblem& problem, Vector y, double absolute_tolerance, int max
     for (std::size_t n = 0; n < values.size(); ++n)
       if (values[n] != 0) triplets.emplace_back(equations.places()[n].equation, equations.places()[n].unknown, values[n]);
     J.setFromTriplets(triplets.begin(), triplets.end());
-    Eigen::SparseLU<Matrix> lu;
+    SparseLU lu;
     lu.compute(J);
     result.iterations = it;
     if (lu.info() != Eigen::Success) break;
