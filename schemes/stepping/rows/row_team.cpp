@@ -2,29 +2,35 @@
 #include "schemes/stepping/rows/row_team.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 #include "schemes/stepping/flush_denormals.hpp"
 
 namespace delf {
 namespace {
 
-// Some ten microseconds: longer than what a thread does alone between two parts of a long row.
-constexpr int looks_before_sleep = 4000;
+// Longer than what a thread does alone between two parts of a long row; a thread that waits awake for longer takes a core
+// from the one that it waits for, where there are more threads than cores.
+constexpr std::chrono::microseconds awake{10};
+constexpr int looks_between_clocks = 16;
 
 /// Returns when `value` is no longer `old`.
 void await_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
-  for (int look = 0; look < looks_before_sleep; ++look) {
-    if (value.load(std::memory_order_acquire) != old) return;
+  const auto until = std::chrono::steady_clock::now() + awake;
+  do {
+    for (int look = 0; look < looks_between_clocks; ++look) {
+      if (value.load(std::memory_order_acquire) != old) return;
 #if defined(__SSE2__)
-    _mm_pause();
+      _mm_pause();
 #endif
-  }
+    }
+  } while (std::chrono::steady_clock::now() < until);
   value.wait(old, std::memory_order_acquire);
 }
 
 }  // namespace
 
-RowTeam::RowTeam(int threads) {
+RowTeam::RowTeam(int threads) : begun_(static_cast<std::size_t>(threads)) {
   for (int which = 1; which < threads; ++which) workers_.emplace_back([this, which] { work(which); });
 }
 
@@ -37,23 +43,43 @@ RowTeam::~RowTeam() {
 
 void RowTeam::run(int parts, const std::function<void(int)>& part) {
   if (parts == 1) return part(0);
+  const std::uint32_t round = round_.load(std::memory_order_relaxed) + 1;
   part_ = &part;
-  parts_ = parts;
-  unfinished_.store(static_cast<std::uint32_t>(workers_.size()), std::memory_order_relaxed);
-  round_.fetch_add(1, std::memory_order_release);
+  unfinished_.store(static_cast<std::uint32_t>(parts), std::memory_order_relaxed);
+  // Part 0 is the caller's, and those from `parts` on are nobody's.
+  begun_[0].store(round, std::memory_order_relaxed);
+  for (auto none = begun_.begin() + parts; none != begun_.end(); ++none) none->store(round, std::memory_order_relaxed);
+  round_.store(round, std::memory_order_release);
   round_.notify_all();
   part(0);
+  unfinished_.fetch_sub(1, std::memory_order_acq_rel);
+  do_parts(1, round);
   for (std::uint32_t left; (left = unfinished_.load(std::memory_order_acquire)) != 0;) await_change(unfinished_, left);
+}
+
+void RowTeam::do_parts(int first, std::uint32_t round) {
+  for (int n = 0; n < size(); ++n) {
+    const int which = (first + n) % size();
+    if (!begin(which, round)) continue;
+    (*part_)(which);
+    if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_all();
+  }
+}
+
+/// One thread alone can begin a part in a round, and none in a round that is over: all its parts have been begun then.
+bool RowTeam::begin(int part, std::uint32_t round) {
+  std::atomic<std::uint32_t>& begun = begun_[static_cast<std::size_t>(part)];
+  std::uint32_t last = begun.load(std::memory_order_relaxed);
+  return last == round - 1 && begun.compare_exchange_strong(last, round, std::memory_order_acq_rel);
 }
 
 void RowTeam::work(int which) {
   const FlushDenormals guard;
   for (std::uint32_t seen = 0;;) {
     await_change(round_, seen);
-    ++seen;
+    seen = round_.load(std::memory_order_acquire);
     if (over_) return;
-    if (which < parts_) (*part_)(which);
-    if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_all();
+    do_parts(which, seen);
   }
 }
 
