@@ -49,13 +49,23 @@ using JetFor = std::conditional_t<is_placed<D>(), Placed<T, PlainJetFor<T, D>>, 
 /// If this concept fails: the operator must be const, take `const auto& j`, use only j.phi, j.phi_t, j.phi_x (arrays
 /// if it declares `static constexpr int components = n`; also j.t, j.x if it declares `placed = true`; also j.phi_tt,
 /// j.phi_tx, j.phi_xx if it declares `jet_order = 2`), arithmetic and cos, cosm1 (cos x − 1), tan, exp, log, sqrt, sinh, cosh, tanh, pow(x, double), and return a number of the kind that
-/// it was given.
+/// it was given: `return 1.0` is no density.
 template <class D>
 concept Density = requires(const D& density, const JetFor<double, D>& numbers, const JetFor<Dual<double, 3>, D>& duals,
                            const JetFor<Dual<Pack, 1>, D>& packs) {
-  { density(numbers) } -> std::convertible_to<double>;             // a density returns ℓ for numbers …
-  { density(duals) } -> std::convertible_to<Dual<double, 3>>;      // … and with derivatives: write `const auto& j` …
-  { density(packs) } -> std::convertible_to<Dual<Pack, 1>>;        // … many sites at a time: no `if` on the field
+  { density(numbers) } -> std::same_as<double>;         // a density returns ℓ for numbers …
+  { density(duals) } -> std::same_as<Dual<double, 3>>;  // … and with derivatives: write `const auto& j` …
+  { density(packs) } -> std::same_as<Dual<Pack, 1>>;    // … many sites at a time: no `if` on the field
 };
+
+/// The same, told in one line where a program hands over what is none: static_assert(is_density<D>()).
+template <class D>
+consteval bool is_density() {
+  static_assert(Density<D>,
+                "delf: this is no Lagrangian density: its operator() must be const, take `const auto& j`, use j.phi, "
+                "j.phi_t and j.phi_x by arithmetic and functions such as cos and exp, and return a number of the kind "
+                "that it was given, not 1.0 and not void (jets/density.hpp)");
+  return true;
+}
 
 }  // namespace delf

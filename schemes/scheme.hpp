@@ -21,8 +21,10 @@ namespace delf {
 ///     evolution.stepper().step();
 ///
 /// A constraint that the density declares is kept by a multiplier, which is one more component.
-template <Density D>
+template <class D>
 class Scheme {
+  static_assert(is_density<D>());
+
  public:
   template <JetMap Map>
   Scheme(Map, D density) : Scheme(stencil_table(Map::table), std::move(density)) {}
@@ -31,7 +33,7 @@ class Scheme {
     if (!is_consistent(table_))
       throw BadInput("lattice.stencil",
                      "the weights of a table must sum to 1 and be exact on affine fields; correct the table");
-    batches_ = std::make_shared<BatchOf<D>>(density_);
+    if constexpr (Density<D>) batches_ = std::make_shared<BatchOf<D>>(density_);
   }
 
   const D& density() const { return density_; }
@@ -53,7 +55,7 @@ class Scheme {
   D density_;
   std::shared_ptr<const BatchDensity> batches_;
 };
-template <JetMap Map, Density D>
+template <JetMap Map, class D>
 Scheme(Map, D) -> Scheme<D>;
 
 }  // namespace delf

@@ -69,17 +69,29 @@ std::string named(const SolvePlan::Table& table, const Quotient& quotient, const
   return text;
 }
 
-void require_solvable(const SolvePlan::Table& table, const Quotient& quotient, const SystemPattern& system,
-                      const StructuralAnalysis& analysis) {
-  if (!std::ranges::count(quotient.solved, true))
-    throw BadInput("lattice.sites", "lattice.sites = " + std::to_string(table.lattice_sites) +
-                                        ": no site has an equation, every value is data; raise lattice.sites");
+bool is_fixed_everywhere(const Lattice& lattice) {
+  for (int i = 0; i < lattice.sites(); ++i)
+    if (!lattice.is_fixed(i)) return false;
+  return true;
+}
+
+void require_solvable(const Lattice& lattice, const SolvePlan::Table& table, const Quotient& quotient,
+                      const SystemPattern& system, const StructuralAnalysis& analysis) {
+  if (!std::ranges::count(quotient.solved, true)) {
+    if (is_fixed_everywhere(lattice))
+      throw BadInput("lattice.sites", "lattice.sites = " + std::to_string(table.lattice_sites) +
+                                          ": no site has an equation, every value is data; raise lattice.sites");
+    throw BadInput("theory.name",
+                   "the density determines no field: its field equation contains no unknown at any site; give it terms "
+                   "of second order in the field, such as 0.5 phi_t^2 - 0.5 phi_x^2");
+  }
   for (int component = 0; component < quotient.components; ++component) {
     bool any = false;
     for (int n = 0; n < quotient.nodes(); ++n) any = any || (quotient.solved[n] && quotient.component(n) == component);
     if (!any)
       throw BadInput("lattice.stencil", "lattice.stencil: " + system.name(component) +
-                                            " has no equation at any site; add a stencil that it takes part in");
+                                            " has no equation at any site: no term of the action depends on it; "
+                                            "add such a term to the density, or a stencil that it takes part in");
   }
   if (!analysis.solvable())
     throw BadInput("lattice.stencil",
@@ -106,7 +118,7 @@ struct Analysed {
 
   Analysed(const Lattice& lattice, const SystemPattern& system, Quotient q)
       : quotient(std::move(q)), analysis(quotient.analysis()), table(frame(lattice, quotient)) {
-    require_solvable(table, quotient, system, analysis);
+    require_solvable(lattice, table, quotient, system, analysis);
     table.entries = entries(quotient, analysis);
     const int cells = quotient.circle ? lattice.sites() / quotient.sites : 1;
     slab = slab_graph(quotient, analysis, cells);

@@ -100,8 +100,8 @@ struct SolvePlan {
   const Entry& node(int site, int component, int parity) const;
 };
 
-/// Throws BadInput: "lattice.sites" if the brick wall does not close on the circle or no site has an equation,
-/// "lattice.stencil" if some unknown is not determined, or by no fixed row.
+/// Throws BadInput: "lattice.sites" if the brick wall does not close on the circle or every value is data, "theory.name"
+/// if no equation contains an unknown, "lattice.stencil" if some unknown is not determined, or by no fixed row.
 SolvePlan make_plan(const Lattice&, const SystemPattern&);
 
 }  // namespace delf

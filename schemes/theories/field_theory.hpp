@@ -46,8 +46,10 @@ std::shared_ptr<const StencilFamily> constraint_of([[maybe_unused]] const D& den
 }
 
 /// A functor as a theory.
-template <Density D>
+template <class D>
 class TheoryOf final : public FieldTheory {
+  static_assert(is_density<D>());
+
  public:
   explicit TheoryOf(const D& density) : FieldTheory(std::make_shared<BatchOf<D>>(density), constraint_of(density)) {}
 };

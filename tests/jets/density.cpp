@@ -49,11 +49,12 @@ struct PlacedTwo {
 
 }  // namespace
 
-static_assert(Density<Good> && Density<Constant> && Density<Two> && Density<Located> && Density<PlacedTwo>);
+static_assert(Density<Good> && Density<Two> && Density<Located> && Density<PlacedTwo>);
 static_assert(Density<Wave> && Density<KleinGordon> && Density<SineGordon> && Density<PhiFour> &&
               Density<DoubleSineGordon> && Density<SineGordonImpurity>);
 static_assert(!Density<NotConst>, "the operator must be const");
 static_assert(!Density<ReturnsNothing> && !Density<ReturnsText>, "it must return a number");
+static_assert(!Density<Constant>, "it must return a number of the kind that it was given: 1.0 has no derivatives");
 static_assert(!Density<NumbersOnly> && !Density<NoPacks>, "it must work for any kind of number");
 static_assert(!Density<TakesReference>, "it must take const auto&");
 static_assert(!Density<int> && !Density<Jet<double>>, "it must be a function");

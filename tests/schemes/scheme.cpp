@@ -126,3 +126,59 @@ TEST_CASE("an evolution may be moved while its stepper is in use") {
   second.stepper().step();
   CHECK(equation_defect(second, window_of(second)) < 2e-15);
 }
+
+namespace {
+
+struct NoField {  // 0·φ
+  auto operator()(const auto& j) const { return 0.0 * j.phi; }
+};
+struct NullLagrangian {  // φφ_t = ½∂_t φ²
+  auto operator()(const auto& j) const { return j.phi * j.phi_t; }
+};
+struct NoKinetic {
+  auto operator()(const auto& j) const { return -0.5 * (j.phi_x * j.phi_x + j.phi * j.phi); }
+};
+/// Two uncoupled fields, of which the second stands still.
+struct OneOfTwo {
+  static constexpr int components = 2;
+  auto operator()(const auto& j) const {
+    return 0.5 * j.phi_t[0] * j.phi_t[0] - 0.5 * (j.phi[0] * j.phi[0] + j.phi[1] * j.phi[1]);
+  }
+};
+/// The same, coupled; and a density of first order in time, as that of Schrödinger's equation.
+struct Coupled {
+  static constexpr int components = 2;
+  auto operator()(const auto& j) const { return 0.5 * j.phi_t[0] * j.phi_t[0] - j.phi[0] * j.phi[0] * j.phi[1]; }
+};
+struct FirstOrder {
+  static constexpr int components = 2;
+  auto operator()(const auto& j) const {
+    return j.phi[0] * j.phi_t[1] - 0.5 * (j.phi_x[0] * j.phi_x[0] + j.phi_x[1] * j.phi_x[1]);
+  }
+};
+
+template <class D>
+std::string refusal(const D& density) {
+  return message_of([&] { Scheme{rectangle, density}.on(Lattice::circle(31, 10), 0.1); });
+}
+
+}  // namespace
+
+TEST_CASE("a density that determines no field is refused, and not for its number of sites") {
+  for (const std::string& message : {refusal(NoField{}), refusal(NullLagrangian{})}) {
+    CAPTURE(message);
+    CHECK(contains(message, "determines no field"));
+    CHECK_FALSE(contains(message, "sites;"));
+    CHECK_FALSE(contains(message, "raise"));
+  }
+}
+
+TEST_CASE("a density without a kinetic term determines no next row, and the field is named") {
+  CHECK(contains(refusal(NoKinetic{}),
+                 "no kinetic term for phi: no row determines the next; add one, such as 0.5 phi_t^2"));
+  CHECK(contains(refusal(OneOfTwo{}), "no kinetic term for phi2"));
+  CHECK(refused_key([&] { Scheme{rectangle, NoKinetic{}}.on(Lattice::circle(31, 10), 0.1); }) == "theory.name");
+  // none is asked of a field that is coupled to one that has it, nor of what is of first order in time
+  CHECK_FALSE(contains(refusal(Coupled{}), "kinetic"));
+  CHECK(refusal(FirstOrder{}).empty());
+}
