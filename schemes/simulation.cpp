@@ -340,6 +340,7 @@ const std::vector<NamedFormula>& methods() {
 Problem completed(Problem p) {
   complete(p.parameters, find_theory(p.theory).parameters);
   complete(p.parameters, find_method(p.method).parameters);
+  p.stencil = stencil_name(p.stencil, p.lattice.space() == Space::point);
   return p;
 }
 

@@ -2,7 +2,9 @@
 #include "tools/list.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "jets/tables/named_tables.hpp"
 #include "schemes/declared.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/states/state_registry.hpp"
@@ -21,7 +23,12 @@ void print_theories() {
 void print_formulas(const std::vector<NamedFormula>& all) {
   for (const NamedFormula& n : all) fmt::print("  {:<22} {}\n", n.name, n.formula);
 }
-void print_stencils() { print_formulas(stencils()); }
+void print_stencils() {
+  for (const NamedTable& t : named_tables()) {
+    fmt::print("  {:<22} {}\n", t.name, t.description);
+    if (!t.aliases.empty()) fmt::print("  {:<22}   also found by {}\n", "", fmt::join(t.aliases, ", "));
+  }
+}
 void print_schemes() { print_formulas(methods()); }
 void print_states() {
   for (const StateEntry* s : state_entries()) {

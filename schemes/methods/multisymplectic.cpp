@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "jets/tables/named_tables.hpp"
 #include "lattice/error.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
@@ -37,11 +38,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   SchemeParts parts{{theory.variational(p.stencil)},
                     fields(theory.components()),
                     theory.symmetries()};
-  if (!parts.families[0]) {
-    std::vector<std::string> names;
-    for (const auto& stencil : stencils()) names.push_back(stencil.name);
-    throw unknown_name("lattice.stencil", p.stencil, names);
-  }
+  if (!parts.families[0]) throw unknown_name("lattice.stencil", p.stencil, stencil_names_and_aliases());
   check_walls(p, *parts.families[0]);
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));

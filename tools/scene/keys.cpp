@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "jets/tables/named_tables.hpp"
 #include "schemes/declared.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/nearest_name.hpp"
@@ -30,7 +31,6 @@ Names names_of(const Infos& infos) {
 }
 
 Names theory_names() { return names_of(theories()); }
-Names stencil_names() { return names_of(stencils()); }
 Names method_names() { return names_of(methods()); }
 Names state_names() {
   Names names;
@@ -86,7 +86,7 @@ std::vector<Key> general_keys() {
           fibres()},
 
       Key{"lattice.stencil", choice, "rectangle-symmetric", "", "stencil and jet; see `delf list stencils`", "", any,
-          stencil_names()},
+          stencil_names_and_aliases()},
       Key{"lattice.space", choice, "circle", "", "the shape of space", "", any, spaces()},
       Key{"lattice.length", real, "", "must be given, but for a point", "L", "length", positive},
       Key{"lattice.sites", integer, "", "must be given, but for a point", "N; on an interval both walls are counted",

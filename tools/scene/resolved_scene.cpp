@@ -16,6 +16,7 @@ std::string resolved(const Scene& scene, const Key& key, StartRule start) {
   for (const char* section : {"verify.", "workprecision.", "stability."})
     if (key.name.starts_with(section) && !scene.settings.find(key.name)) return {};
   if (key.name == "lattice.courant" || key.name == "run.until") return {};
+  if (key.name == "lattice.stencil") return scene.problem.stencil;  // of an alias, the name that it stands for
   if (key.name == "lattice.time_step") return fmt::format("{}", scene.problem.time_step);
   if (key.name == "run.steps") return fmt::format("{}", scene.steps);
   if (key.name == "output.every") return fmt::format("{}", scene.every);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "jets/tables/named_tables.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
@@ -61,7 +62,7 @@ Problem read_problem(const Settings& settings, const Values& values) {
   p.theory = values.choice("theory.name");
   p.circle_valued = values.choice("theory.fibre") == "S1";
   p.lattice = read_lattice(settings, values);
-  p.stencil = values.choice("lattice.stencil");
+  p.stencil = stencil_name(values.choice("lattice.stencil"), p.lattice.space() == Space::point);
   p.method = values.choice("scheme.method");
   p.tolerance = values.real("scheme.tolerance");
   p.seed_order = static_cast<int>(values.integer("scheme.seed_order"));

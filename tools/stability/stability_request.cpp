@@ -7,10 +7,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "jets/tables/named_tables.hpp"
 #include "schemes/unknown_name.hpp"
-#include "tools/stability/corner_list.hpp"
 #include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
+#include "tools/stability/corner_list.hpp"
 
 namespace delf {
 
@@ -56,13 +57,15 @@ std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& asked, c
       "triangle-vertex", "rectangle-symmetric", "rectangle", "hexagon",
       "triangle",        "vu-quoc-li",          "guo",       "spacetime (2,2) gauss"};
   std::vector<NamedScheme> chosen;
-  for (const std::string& name : asked.empty() ? usual : asked) {
+  for (const std::string& given : asked.empty() ? usual : asked) {
+    const std::string name = stencil_name(given, base.lattice.space() == Space::point);
     const auto scheme = std::ranges::find(all, name, &NamedScheme::name);
     if (scheme != all.end()) {
       chosen.push_back(*scheme);
       continue;
     }
-    std::vector<std::string> names{"all"};
+    std::vector<std::string> names = stencil_names_and_aliases();
+    names.emplace_back("all");
     for (const NamedScheme& s : all) names.push_back(s.name);
     throw unknown_name("stability.schemes", name, names);
   }

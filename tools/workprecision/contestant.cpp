@@ -2,9 +2,11 @@
 #include "tools/workprecision/contestant.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "jets/tables/named_tables.hpp"
 #include "tools/scene/suggestion.hpp"
 
 namespace delf {
@@ -22,17 +24,27 @@ std::vector<Contestant> contestants(const Scene& scene, const WorkPrecisionReque
     for (Contestant& peer : peer_contestants(scene)) all.push_back(std::move(peer));
   if (request.schemes.empty()) return all;
   std::vector<bool> named(all.size());
-  for (const std::string& name : request.schemes) {
+  const auto name_all = [&](const std::string& given) {
+    const std::string name = stencil_name(given, scene.problem.lattice.space() == Space::point);
     bool any = false;
     for (std::size_t i = 0; i < all.size(); ++i)
       // "spacetime" names all of its degrees, "peers" all of the other programs
       if (all[i].name == name || all[i].name.starts_with(name + " ") || (name == "peers" && all[i].peer))
         named[i] = any = true;
-    if (any || name == "peers") continue;
-    std::vector<std::string> names;
-    for (const Contestant& one : all) names.push_back(one.name);
-    throw scene.settings.error("workprecision.schemes",
-                               fmt::format("{} is no scheme here{}", name, suggestion(name, names)));
+    return any || name == "peers";
+  };
+  // Names of peers hold commas themselves: the longest list of pieces that is a name together is one.
+  const std::vector<std::string>& pieces = request.schemes;
+  for (auto at = pieces.begin(); at != pieces.end();) {
+    auto end = pieces.end();
+    while (end != at && !name_all(fmt::format("{}", fmt::join(at, end, ", ")))) --end;
+    if (end == at) {
+      std::vector<std::string> names = stencil_names_and_aliases();
+      for (const Contestant& one : all) names.push_back(one.name);
+      throw scene.settings.error("workprecision.schemes",
+                                 fmt::format("{} is no scheme here{}", *at, suggestion(*at, names)));
+    }
+    at = end;
   }
   std::vector<Contestant> chosen;
   for (std::size_t i = 0; i < all.size(); ++i)

@@ -80,6 +80,21 @@ TEST_CASE("every shipped table is consistent, stencils, elements and composition
   CHECK(names.size() == named_tables().size());
 }
 
+TEST_CASE("no alias is the name of a stencil, and none has two meanings on one kind of lattice") {
+  std::set<std::pair<std::string, bool>> seen;
+  for (const NamedTable& named : named_tables()) {
+    CHECK(stencil_name(named.name, named.is_for_point()) == named.name);
+    for (const std::string& alias : named.aliases) {
+      CAPTURE(alias, named.name);
+      CHECK(std::ranges::find(named_tables(), alias, &NamedTable::name) == named_tables().end());
+      CHECK(seen.insert({alias, named.is_for_point()}).second);
+      CHECK(stencil_name(alias, named.is_for_point()) == named.name);
+      CHECK(std::ranges::count(stencil_names_and_aliases(), alias) == 1);
+    }
+  }
+  CHECK(stencil_name("no such stencil", false) == "no such stencil");
+}
+
 TEST_CASE("one wrong weight of any slot, point or vertex is found") {
   auto all = tables();
   all.push_back(second_order());

@@ -67,6 +67,8 @@ TEST_CASE("errors on the command line name key, value, reason and remedy") {
       {"--lattice.courant=nan", "--lattice.courant = nan: is not a finite number"},
       {"--lattice.courant 0.5 --lattice.time_step 0.1", "lattice.courant is given too"},
       {"--lattice.stencil=triangel", "did you mean triangle?"},
+      {"--lattice.stencil=leapfrogg", "did you mean leapfrog?"},
+      {"--lattice.stencil=stoermer-verlet", "did you mean stormer-verlet?"},
       {"--lattice.stencil=hexagon --lattice.sites=63", "--lattice.sites = 63"},
       {"--theory.name=sin-gordon", "--theory.name = sin-gordon: is not known; did you mean sine-gordon?"},
       {"--initial.state=breathr", "did you mean breather?"},

@@ -119,3 +119,24 @@ TEST_CASE("the resolved scene reads back as the same scene, and resolves to the 
   CHECK(again.warnings.empty());
   CHECK(resolved_text(again, StartRule::centred, "words") == text);
 }
+
+TEST_CASE("an alias of a stencil is the stencil that it is on this lattice, and scene.ini holds its name") {
+  const Folder folder;
+  for (const char* alias : {"leapfrog", "yee", "stormer-verlet", "stormer", "verlet"}) {
+    CAPTURE(alias);
+    const Scene scene = scene_of(folder, small_scene(), {{"lattice.stencil", alias}});
+    CHECK(scene.problem.stencil == "triangle-vertex");
+    CHECK(contains(resolved_text(scene, StartRule::exact, ""), "stencil = triangle-vertex\n"));
+  }
+  const auto on_point = [&](const char* name) {
+    return scene_of(folder,
+                    "[theory]\nname = pendulum\n[lattice]\nspace = point\ntime_step = 0.1\n[initial]\nstate = "
+                    "pendulum-swing\n[run]\nsteps = 1\n",
+                    {{"lattice.stencil", name}})
+        .problem.stencil;
+  };
+  CHECK(on_point("leapfrog") == "trapezoidal");
+  CHECK(on_point("stormer-verlet") == "trapezoidal");
+  CHECK(on_point("midpoint") == "midpoint");    // a name stays what it is
+  CHECK(on_point("yee") == "triangle-vertex");  // which no point has room for: refused, by its name, when it is built
+}
