@@ -2,18 +2,21 @@
 #include "tools/commands.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
 
+#include "schemes/methods/method_registry.hpp"
+#include "schemes/stepping/energy.hpp"
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/plan.hpp"
 #include "tools/run/run.hpp"
 #include "tools/scene/scene.hpp"
 #include "tools/scene/shipped_scenes.hpp"
-#include "tools/stability/stability.hpp"
 #include "tools/scene/suggestion.hpp"
+#include "tools/stability/stability.hpp"
 #include "tools/verify/verify.hpp"
 #include "tools/workprecision/workprecision.hpp"
 
@@ -83,42 +86,61 @@ ExitCode carry_out_help(const Arguments& arguments) {
   return help(only_word(arguments, ""));
 }
 
+// The methods that do not take the energy of all others.
+std::string own_energies() {
+  std::vector<std::string> names;
+  for (const MethodEntry* method : method_entries())
+    if (method->energy) names.push_back(method->name);
+  return names.empty() ? "" : fmt::format(" Methods with one of their own: {}.", fmt::join(names, ", "));
+}
+
 const std::vector<Command>& table() {
   static const std::vector<Command> all{
       {"run", "delf run SCENE [--out DIR] [--KEY=VALUE ...]", "step a scene, and record it",
        "Steps a scene. Into DIR (results/NAME of the scene, if not given) go scene.ini, which runs again to the same\n"
        "bits; series.csv, one line for each recorded row; summary.json; fields.h5, the recorded rows; and figures.\n"
-       "Ctrl-C ends a run early, with all so far written.\n\n"
-       "Keys, with what holds if they are not given (a key on the command line wins over the file):",
+       "Ctrl-C ends a run early, with all so far written.\n\n" +
+           std::string("The energy of a run is\n  E = ") + energy_formula +
+           ".\nIt is measured, not conserved, and known to second order for schemes of higher order too." +
+           own_energies() +
+           "\n\n"
+           "Keys, with what holds if they are not given (a key on the command line wins over the file):",
        true, carry_out_run},
       {"plan", "delf plan SCENE [--KEY=VALUE ...]", "what a run would solve, how, and at what cost",
        "Prints what would be solved and how, what it costs, what would be written and what is left out. The keys are\n"
        "those of `delf run`:",
        true, carry_out_plan},
-      {"verify", "delf verify SCENE [--fields FILE] [--KEY=VALUE ...]",
-       "whether its rows are what theory promises",
-       "Steps a scene, or reads the rows that another program made of it, and checks the field equations at every site, the\n"
-       "discrete multisymplectic form formula (5.6) on regions of all kinds, Noether's theorem (5.7), time reversal, the\n"
-       "generated derivatives and Newton's method; energy and momentum balances are measured. Prints a table; into DIR\n"
+      {"verify", "delf verify SCENE [--fields FILE] [--KEY=VALUE ...]", "whether its rows are what theory promises",
+       "Steps a scene, or reads the rows that another program made of it, and checks the field equations at every "
+       "site, the\n"
+       "discrete multisymplectic form formula (5.6) on regions of all kinds, Noether's theorem (5.7), time reversal, "
+       "the\n"
+       "generated derivatives and Newton's method; energy and momentum balances are measured. Prints a table; into "
+       "DIR\n"
        "(results/NAME of the scene, if not given) go verify.json and figures. Exit code 1 if a check fails.\n\n"
        "  --fields FILE.h5   verify these rows, in the layout of fields.h5, every row recorded, instead of stepping\n"
-       "  --nearby FILE.h5   given twice: two solutions of the same program from nearby data, whose differences stand for\n"
+       "  --nearby FILE.h5   given twice: two solutions of the same program from nearby data, whose differences stand "
+       "for\n"
        "                     first variations; further pairs of other sizes are extrapolated to size zero\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_verify, "verify", true},
       {"workprecision", "delf workprecision SCENE [--out DIR] [--KEY=VALUE ...]",
        "error against run time, for many schemes and resolutions",
        "Runs a scene with every scheme that can, and with other programs (peers) where they have its equation, over a\n"
-       "ladder of resolutions; times the steps in turn, and prints what each accuracy costs. Errors are those of the last\n"
+       "ladder of resolutions; times the steps in turn, and prints what each accuracy costs. Errors are those of the "
+       "last\n"
        "row against the exact solution, or without one against a much finer run. h is until/steps, so that the end is\n"
-       "met exactly. Into DIR (results/NAME of the scene, if not given) go workprecision.json, workprecision.csv and a\n"
-       "figure. Ctrl-C leaves what is done.\n\n"
+       "met exactly. Into DIR (results/NAME of the scene, if not given) go workprecision.json, workprecision.csv, a "
+       "table by\n"
+       "scheme as workprecision.md and .tex, and a figure. Ctrl-C leaves what is done.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_workprecision, "workprecision"},
       {"stability", "delf stability SCENE [--out DIR] [--KEY=VALUE ...]",
        "where schemes are stable, by theory and by running",
-       "Stability limits from the symbol of each scheme and from runs, compared; stiff and extreme stress cases, each run\n"
-       "with a verdict. Into DIR (results/NAME of the scene, if not given) go stability.json and figures. Exit code 1 if\n"
+       "Stability limits from the symbol of each scheme and from runs, compared; stiff and extreme stress cases, each "
+       "run\n"
+       "with a verdict. Into DIR (results/NAME of the scene, if not given) go stability.json and figures. Exit code 1 "
+       "if\n"
        "runs disagree with theory, or a stress case crashes, hangs, or reports a wrong result as valid.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_stability, "stability"},

@@ -14,6 +14,11 @@ struct RowPair {
   double time_step, space_step;
 };
 
+/// What the energy of a run is, in one line, for whoever reads a number or a figure.
+inline constexpr const char* energy_formula =
+    "k Σ (φ_t ∂ℓ/∂φ_t − ℓ), jets of the symmetric rectangle on the last two rows, whatever the scheme; order 2 in h "
+    "and k";
+
 struct EnergyMomentum {
   double energy = 0, momentum = 0;
 };

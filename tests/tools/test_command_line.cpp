@@ -30,6 +30,21 @@ TEST_CASE("delf help run lists every key") {
   for (const auto& key : delf::keys()) CHECK(contains(help, std::string(key.name)));
 }
 
+TEST_CASE("delf help run says what the energy is, and which methods have one of their own") {
+  const Folder folder;
+  const std::string help = delf_program(folder, "help run").out;
+  CHECK(contains(help, "E = k Σ (φ_t ∂ℓ/∂φ_t − ℓ), jets of the symmetric rectangle on the last two rows"));
+  CHECK(contains(help, "order 2 in h and k"));
+  CHECK(contains(help, "r-adaptive"));
+}
+
+TEST_CASE("delf list names the aliases of stencils, and says which rule trapezoidal is not") {
+  const Folder folder;
+  const std::string listed = delf_program(folder, "list stencils").out;
+  CHECK(contains(listed, "not the trapezoidal rule"));
+  CHECK(contains(listed, "also found by leapfrog, yee, stormer-verlet"));
+}
+
 TEST_CASE("without a command the usage is shown, and that is not success") {
   const Folder folder;
   const Ran ran = delf_program(folder, "");

@@ -22,6 +22,7 @@ struct FigureSource {
   const Trace& energy_errors;
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread
   RowNames names = {};
+  std::string energy = {};  ///< one line: what the energy is
 };
 
 /// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "schemes/stepping/energy.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
@@ -35,6 +36,10 @@ void prepare(const fs::path& folder, const Scene& scene) {
   for (const fs::path& file : earlier) fs::remove(file, error);
 }
 
+std::string energy_in_words(const Problem& problem) {
+  return find_method(problem.method).energy ? "what scheme.method = " + problem.method + " observes" : energy_formula;
+}
+
 // Figures of the rows that the recorder kept. A run does not fail if a figure cannot be drawn.
 std::string drawn(const Scene& scene, int winding, const RowNames& names, const Recorder& recorder,
                   const fs::path& folder) {
@@ -42,9 +47,10 @@ std::string drawn(const Scene& scene, int winding, const RowNames& names, const 
   const std::string& theory = scene.problem.theory;
   const bool angle = scene.problem.circle_valued || find_theory(theory).angle;
   try {
-    return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding,
-                         *recorder.film(), recorder.energy_errors(), scene.times, names},
-                        folder);
+    return draw_figures(
+        {scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding, *recorder.film(),
+         recorder.energy_errors(), scene.times, names, energy_in_words(scene.problem)},
+        folder);
   } catch (const std::exception& error) {
     return error.what();
   }

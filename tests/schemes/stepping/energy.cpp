@@ -76,6 +76,27 @@ TEST_CASE("the sums can be seen to differ: another potential, one cell too few")
   CHECK(std::abs(energy - footnote_4(other, rows[0], rows[1]).energy) > 1e-3 * energy);
 }
 
+TEST_CASE("the energy that is observed is of order 2 in h and k, of exact rows too") {
+  // a breather ω = 0.6 at rest: E = 16 √(1 − ω²); at t = h/2, away from its turning points
+  const auto off_by = [](int sites, double h) {
+    Problem p = problem_of("sine-gordon");
+    p.parameters["theory.mass"] = 1.0;
+    p.lattice = Lattice::circle(sites, 40), p.time_step = h, p.stencil = "triangle-vertex";
+    const auto row = [&](double t) {
+      Row values;
+      for (int i = 0; i < sites; ++i)
+        values.push_back(
+            4 * std::atan(0.8 / 0.6 * std::sin(0.6 * t + 0.7) / std::cosh(0.8 * (p.lattice.position(i) - 20))));
+      return values;
+    };
+    Simulation simulation(p);
+    simulation.start({row(0), row(h)});
+    return simulation.monitors().energy - 16 * 0.8;
+  };
+  CHECK(std::abs(off_by(200, 0.1)) > 1e-4);
+  CHECK(std::abs(std::log2(off_by(200, 0.1) / off_by(400, 0.05)) - 2) < 0.1);
+}
+
 namespace {
 
 /// H = k Σ (φ_t ∂ℓ/∂φ_t − ℓ) and P = −k Σ φ_x ∂ℓ/∂φ_t of random rows, cell by cell with dual numbers: the largest

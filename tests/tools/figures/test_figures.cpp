@@ -31,6 +31,15 @@ TEST_CASE("figures are drawn as PNG and as SVG, and nothing else is left beside 
     CHECK_FALSE(entry.path().filename().string().starts_with("."));
 }
 
+TEST_CASE("the figure of the energy error says which energy that is") {
+  if (!has_gnuplot()) return;
+  const Folder folder;
+  REQUIRE(delf_program(folder, "run kink --run.until=1 --out here").code == 0);
+  const std::string svg = read(folder / "here/figures/energy.svg");
+  CHECK(contains(svg, "symmetric rectangle"));
+  CHECK(contains(svg, "order 2"));
+}
+
 TEST_CASE("without gnuplot a run succeeds, and says which package is missing") {
   const Folder folder;
   const Ran ran = delf_program(folder, "run kink --run.until=1 --out here", "PATH=/nowhere");
