@@ -49,6 +49,7 @@ class VelocityVerlet final : public TwoRows<Lines> {
   static constexpr const char* name = "velocity Verlet 2";
   static constexpr int order = 2;
   static constexpr double stable = 2;  ///< h times the highest frequency
+  static constexpr std::size_t forces = 1;
 
   explicit VelocityVerlet(const WaveEquation& equation) : TwoRows<Lines>(equation), acceleration_(this->phi_.size()) {
     stepper_.adjust_size(this->phi_);
@@ -78,6 +79,7 @@ class McLachlan final : public TwoRows<Lines> {
   static constexpr const char* name = "rkn-mclachlan 4";
   static constexpr int order = 4;
   static constexpr double stable = 2.92;
+  static constexpr std::size_t forces = 5;
 
   explicit McLachlan(const WaveEquation& equation) : TwoRows<Lines>(equation) { stepper_.adjust_size(this->phi_); }
 
@@ -104,6 +106,7 @@ class Fehlberg final : public Peer {
   static constexpr const char* name = "fehlberg 8";
   static constexpr int order = 8;
   static constexpr double stable = 2.36;
+  static constexpr std::size_t forces = 13;
 
   explicit Fehlberg(const WaveEquation& equation)
       : lines_(equation), turn_(equation.turn), state_(2 * lines_.circle.size()) {
@@ -137,8 +140,12 @@ class Fehlberg final : public Peer {
 template <template <class> class Method, int p>
 PeerInfo info() {
   using Any = Method<MethodOfLines<p, NoForce>>;
-  return {std::string("odeint ") + Any::name + ", differences " + std::to_string(2 * p), Any::order, 2 * p,
-          Any::stable / std::sqrt(highest_square<p>()), [](const WaveEquation& equation) {
+  return {std::string("odeint ") + Any::name + ", differences " + std::to_string(2 * p),
+          Any::order,
+          2 * p,
+          Any::stable / std::sqrt(highest_square<p>()),
+          Any::forces,
+          [](const WaveEquation& equation) {
             equation.check(2 * p + 1);
             return with_force(equation, [&]<class Force>(Force) -> std::unique_ptr<Peer> {
               return std::make_unique<Method<MethodOfLines<p, Force>>>(equation);

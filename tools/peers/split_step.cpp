@@ -262,8 +262,12 @@ std::unique_ptr<Peer> made(const WaveEquation& equation, const Splitting& splitt
 
 template <Splitting splitting(), int order, MassIn mass>
 PeerInfo info() {
-  return {"Fourier split-step " + std::to_string(order) + (mass == MassIn::flow ? ", mass in the flow" : ""), order, 0,
-          0, [](const WaveEquation& equation) { return make_split_step(equation, splitting(), mass); }};
+  return {"Fourier split-step " + std::to_string(order) + (mass == MassIn::flow ? ", mass in the flow" : ""),
+          order,
+          0,
+          0,
+          splitting().inner.size(),
+          [](const WaveEquation& equation) { return make_split_step(equation, splitting(), mass); }};
 }
 
 }  // namespace

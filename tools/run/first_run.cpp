@@ -34,13 +34,15 @@ TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants
 
   constexpr std::int64_t records = 50;
   const double energy0 = racer->energy();
-  double largest = 0, seconds = 0;
+  double largest = 0, seconds = 0, forces = 0;
+  int looked_at = 0;
   const auto step_to = [&](std::int64_t row) {
     const auto from = Clock::now();
     racer->advance(row - racer->newest());
     seconds += seconds_since(from);
     const double error = std::abs(racer->energy() - energy0) / std::abs(energy0);
     if (!(error <= largest)) largest = error;
+    forces += racer->forces(), ++looked_at;
   };
   const std::int64_t every = std::max<std::int64_t>(1, r.steps / records);
   for (std::int64_t row = racer->newest() + every; row < r.steps - 1 && !Interrupt::asked(); row += every) step_to(row);
@@ -53,6 +55,7 @@ TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants
   if (racer->newest() != r.steps) return tried;  // Ctrl-C
   run.seconds = run.seconds_min = run.seconds_max = seconds;
   run.energy_error_max = largest;
+  run.forces_per_step = forces / looked_at;
 
   const std::vector<double> there = solution.at(lattice, until);
   const FieldError error = field_error(last, there, lattice.space_step());

@@ -37,6 +37,8 @@ class Racer {
   virtual void copy(std::span<double> out) const = 0;
   /// Of the newest row; not a number if there is none.
   virtual double energy() const = 0;
+  /// Evaluations of the force at each site in the last step; not a number if that is not known.
+  virtual double forces() const = 0;
 };
 
 /// A scheme of the engine, or another program, that can run the scene at any resolution.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/simulation.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
+#include "schemes/stepping/force_evaluations.hpp"
 #include "tools/engine.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/scene/initial_rows.hpp"
@@ -30,6 +32,10 @@ class EngineRacer final : public Racer {
   }
   void copy(std::span<double> out) const override { simulation_.copy_row(0, out); }
   double energy() const override { return simulation_.monitors().energy; }
+  // those of a pass; an explicit step is one, an implicit one as many as it has iterations
+  double forces() const override {
+    return forces_in_a_pass(simulation_.evolution().system()) * std::max(1, simulation_.iterations());
+  }
 
  private:
   Simulation build() {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tools/workprecision/contestant.hpp"
+#include "tools/workprecision/workprecision_outcome.hpp"
 
 #ifdef DELF_HAS_PEERS
 
@@ -49,7 +50,12 @@ double potential(const WaveEquation& e, double phi) {
 class PeerRacer final : public Racer {
  public:
   PeerRacer(const Scene& scene, const WaveEquation& equation, const peers::PeerInfo& info, const Resolution& r)
-      : equation_(equation), h_(r.time_step), phi_(static_cast<std::size_t>(r.sites)), phi_t_(phi_.size()) {
+      : equation_(equation),
+        h_(r.time_step),
+        forces_(equation.potential == WaveEquation::Potential::none ? WorkPrecisionRun::unknown
+                                                                    : static_cast<double>(info.forces)),
+        phi_(static_cast<std::size_t>(r.sites)),
+        phi_t_(phi_.size()) {
     equation_.sites = r.sites;
     const Lattice lattice = lattice_of(scene, r.sites);
     const auto state = make_state(scene.initial, lattice);
@@ -82,6 +88,7 @@ class PeerRacer final : public Racer {
     for (const double v : out)
       if (!std::isfinite(v)) throw NotFinite("the field is no longer finite");
   }
+  double forces() const override { return forces_; }
   // k Σ ½φ_t² + ½φ_x² + V, with φ_x by central differences of order eight
   double energy() const override {
     peer_->copy(phi_, phi_t_);
@@ -104,7 +111,7 @@ class PeerRacer final : public Racer {
 
  private:
   WaveEquation equation_;
-  double h_;
+  double h_, forces_;
   mutable std::vector<double> phi_, phi_t_;
   std::vector<double> first_, first_t_;
   std::unique_ptr<peers::Peer> peer_;

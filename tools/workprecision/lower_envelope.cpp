@@ -30,8 +30,10 @@ std::optional<std::size_t> cheapest(const std::vector<WorkPrecisionRun>& runs, s
   return best;
 }
 
-double slope_of(const std::vector<WorkPrecisionRun>& runs, std::span<const std::size_t> front) {
-  std::vector<std::size_t> rising(front.begin(), front.end());
+namespace {
+
+/// Least squares slope of log error over log x along runs that become more accurate, without floor and coarse half.
+double asymptotic_slope(const std::vector<WorkPrecisionRun>& runs, std::vector<std::size_t> rising, const auto& x_of) {
   while (rising.size() > 2 && runs[rising.back()].error_linf > 0.5 * runs[rising[rising.size() - 2]].error_linf)
     rising.pop_back();
   // the more accurate half, on the logarithmic scale: coarse runs are not asymptotic
@@ -46,10 +48,37 @@ double slope_of(const std::vector<WorkPrecisionRun>& runs, std::span<const std::
   double x = 0, y = 0, xx = 0, xy = 0;
   const auto n = static_cast<double>(rising.size());
   for (const std::size_t i : rising) {
-    const double s = std::log(runs[i].seconds), e = std::log(std::max(runs[i].error_linf, 1e-300));
+    const double s = std::log(x_of(runs[i])), e = std::log(std::max(runs[i].error_linf, 1e-300));
     x += s, y += e, xx += s * s, xy += s * e;
   }
   return (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace
+
+double slope_of(const std::vector<WorkPrecisionRun>& runs, std::span<const std::size_t> front) {
+  return asymptotic_slope(runs, {front.begin(), front.end()}, [](const WorkPrecisionRun& r) { return r.seconds; });
+}
+
+double order_of(const std::vector<WorkPrecisionRun>& runs, std::span<const std::size_t> members) {
+  constexpr double same = 1.02;  // h is rounded so that steps end at the end
+  const auto x_of = [](const WorkPrecisionRun& r) { return r.sites > 1 ? r.sites : static_cast<double>(r.steps); };
+  const auto ratio = [](const WorkPrecisionRun& r) { return r.sites > 1 ? r.time_step / r.space_step : 1; };
+  const auto error = [&](std::size_t i) { return runs[i].error_linf; };
+  std::vector<std::size_t> best;
+  for (const std::size_t one : members) {
+    std::vector<std::size_t> group;
+    for (const std::size_t i : members)
+      if (std::isfinite(error(i)) && std::abs(std::log(ratio(runs[i]) / ratio(runs[one]))) < std::log(same))
+        group.push_back(i);
+    std::ranges::sort(group, {}, [&](std::size_t i) { return x_of(runs[i]); });
+    const auto repeated = std::ranges::unique(group, {}, [&](std::size_t i) { return x_of(runs[i]); });
+    group.erase(repeated.begin(), repeated.end());
+    if (group.size() > best.size() ||
+        (group.size() == best.size() && !group.empty() && error(group.back()) < error(best.back())))
+      best = group;
+  }
+  return -asymptotic_slope(runs, best, x_of);
 }
 
 void compare(WorkPrecisionOutcome& outcome, const std::vector<double>& accuracies) {
@@ -63,7 +92,7 @@ void compare(WorkPrecisionOutcome& outcome, const std::vector<double>& accuracie
     const auto line = std::ranges::find(outcome.lines, runs[i].scheme, &WorkPrecisionLine::scheme);
     const auto at = static_cast<std::size_t>(line - outcome.lines.begin());
     if (line == outcome.lines.end()) {
-      outcome.lines.push_back({runs[i].scheme, runs[i].peer, {}, WorkPrecisionRun::unknown});
+      outcome.lines.push_back({runs[i].scheme, runs[i].peer, {}});
       members.emplace_back();
     }
     members[at].push_back(i);
@@ -71,6 +100,7 @@ void compare(WorkPrecisionOutcome& outcome, const std::vector<double>& accuracie
   for (std::size_t l = 0; l < members.size(); ++l) {
     outcome.lines[l].front = lower_envelope(runs, members[l]);
     outcome.lines[l].slope = slope_of(runs, outcome.lines[l].front);
+    outcome.lines[l].order = order_of(runs, members[l]);
   }
   for (const auto& side : sides)
     for (const std::size_t i : lower_envelope(runs, side)) runs[i].on_envelope = true;

@@ -22,6 +22,11 @@ std::optional<std::size_t> cheapest(const std::vector<WorkPrecisionRun>&, std::s
 /// time for them went up more than the error went down. Not a number for less than two runs.
 double slope_of(const std::vector<WorkPrecisionRun>&, std::span<const std::size_t> front);
 
+/// The observed order in N of a scheme's runs: least squares of log error over log N at one h/k, that of which there are
+/// most runs (of equals, with the least error), their floor and their coarse half left out as in slope_of. On a point,
+/// where there is no N, over the number of steps. Not a number for less than two runs.
+double order_of(const std::vector<WorkPrecisionRun>&, std::span<const std::size_t> runs);
+
 /// Lines, envelopes and costs of the runs that an outcome holds.
 void compare(WorkPrecisionOutcome&, const std::vector<double>& accuracies);
 

@@ -38,6 +38,8 @@ ExitCode workprecision_in(const fs::path& folder, const Scene& scene) {
   make_results_folder(folder);
   write_text_file(folder / "workprecision.json", workprecision_json(scene, request, outcome));
   write_text_file(folder / "workprecision.csv", workprecision_csv(outcome));
+  write_text_file(folder / "workprecision.md", workprecision_markdown(scene, request, outcome));
+  write_text_file(folder / "workprecision.tex", workprecision_latex(scene, request, outcome));
   std::string missing;
   std::error_code none;
   for (const char* ending : {".png", ".svg"})
@@ -51,7 +53,8 @@ ExitCode workprecision_in(const fs::path& folder, const Scene& scene) {
   }
   fmt::print("{}", workprecision_report(scene, request, outcome));
   const bool drawn = fs::exists(folder / "figures" / "workprecision.svg", none);
-  fmt::print("{}: workprecision.json workprecision.csv{}\n", folder.string(), drawn ? " figures" : "");
+  fmt::print("{}: workprecision.json workprecision.csv workprecision.md workprecision.tex{}\n", folder.string(),
+             drawn ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
   if (outcome.status == "interrupted") return ExitCode::interrupted;
   return outcome.runs.empty() ? ExitCode::numerics_failed : ExitCode::done;

@@ -13,7 +13,7 @@ namespace delf {
 /// Interrupt::asked().
 WorkPrecisionOutcome compare_schemes(const Scene&, const WorkPrecisionRequest&);
 
-/// `delf workprecision`: error against run time. Leaves workprecision.json, workprecision.csv and a figure in `folder`,
+/// `delf workprecision`: error against run time. Leaves workprecision.json, .csv, the table by scheme as .md and .tex, and a figure in `folder`,
 /// and tables on stdout.
 ExitCode workprecision(const Scene&, const std::filesystem::path& folder);
 

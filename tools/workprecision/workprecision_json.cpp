@@ -20,6 +20,7 @@ Json json_of(const WorkPrecisionRun& r) {
           {"error_linf", r.error_linf},
           {"error_l2", r.error_l2},
           {"energy_error_max", r.energy_error_max},
+          {"forces_per_step", r.forces_per_step},
           {"position_error", r.position_error},
           {"velocity_error", r.velocity_error},
           {"seconds", r.seconds},
@@ -61,8 +62,14 @@ std::string workprecision_json(const Scene& scene, const WorkPrecisionRequest& r
   json["seconds"] = o.seconds;
   json["tried"] = o.tried;
   json["runs"] = json_list(o.runs, [](const WorkPrecisionRun& run) { return json_of(run); });
-  json["schemes"] = json_list(o.lines, [](const WorkPrecisionLine& line) {
-    return Json{{"scheme", line.scheme}, {"peer", line.peer}, {"slope", line.slope}, {"front", line.front}};
+  json["schemes"] = json_list(o.lines, [&](const WorkPrecisionLine& line) {
+    return Json{
+        {"scheme", line.scheme},
+        {"peer", line.peer},
+        {"slope", line.slope},
+        {"order", line.order},
+        {"forces_per_step", line.front.empty() ? WorkPrecisionRun::unknown : o.runs[line.front.back()].forces_per_step},
+        {"front", line.front}};
   });
   json["cheapest"] = json_list(o.costs, [&](const WorkPrecisionCost& cost) {
     return Json{{"accuracy", cost.accuracy},
@@ -78,12 +85,12 @@ std::string workprecision_json(const Scene& scene, const WorkPrecisionRequest& r
 std::string workprecision_csv(const WorkPrecisionOutcome& o) {
   std::string text =
       "scheme,peer,sites,time_step,steps,error_linf,error_l2,energy_error_max,position_error,velocity_error,seconds,"
-      "seconds_min,seconds_max,seconds_setup,repeats,on_envelope\n";
+      "seconds_min,seconds_max,seconds_setup,repeats,on_envelope,forces_per_step\n";
   for (const WorkPrecisionRun& r : o.runs)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.scheme), r.peer ? 1 : 0, r.sites,
-                        r.time_step, r.steps, r.error_linf, r.error_l2, r.energy_error_max, r.position_error,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.scheme), r.peer ? 1 : 0,
+                        r.sites, r.time_step, r.steps, r.error_linf, r.error_l2, r.energy_error_max, r.position_error,
                         r.velocity_error, r.seconds, r.seconds_min, r.seconds_max, r.seconds_setup, r.repeats,
-                        r.on_envelope ? 1 : 0);
+                        r.on_envelope ? 1 : 0, r.forces_per_step);
   return text;
 }
 

@@ -22,6 +22,7 @@ struct WorkPrecisionRun {
   std::int64_t steps = 0;
   double error_linf = unknown, error_l2 = unknown;            ///< of all fields of the last row; L2 = √(k Σ e²)
   double energy_error_max = unknown;                          ///< the largest |E − E₀|/|E₀| of some fifty rows
+  double forces_per_step = unknown;  ///< evaluations of the force at each site in a step, the mean of some fifty steps
   double position_error = unknown, velocity_error = unknown;  ///< of the centre of φ_x²
   double seconds = unknown, seconds_min = unknown, seconds_max = unknown;  ///< of the steps: median, least, most
   double seconds_setup = unknown;                                          ///< to build and start it, the first time
@@ -35,6 +36,7 @@ struct WorkPrecisionLine {
   bool peer = false;
   std::vector<std::size_t> front;            ///< its runs that no other of them beats, from cheap to accurate
   double slope = WorkPrecisionRun::unknown;  ///< of log error over log seconds along the front
+  double order = WorkPrecisionRun::unknown;  ///< observed: error ∝ N^−order at a fixed h/k, or steps^−order on a point
 };
 
 /// The cost of an accuracy: the cheapest run with at most that error. Nothing is interpolated.
@@ -64,6 +66,9 @@ struct WorkPrecisionOutcome {
 
 std::string workprecision_json(const Scene&, const WorkPrecisionRequest&, const WorkPrecisionOutcome&);
 std::string workprecision_csv(const WorkPrecisionOutcome&);
+/// The table by scheme for a paper, as Markdown and as LaTeX.
+std::string workprecision_markdown(const Scene&, const WorkPrecisionRequest&, const WorkPrecisionOutcome&);
+std::string workprecision_latex(const Scene&, const WorkPrecisionRequest&, const WorkPrecisionOutcome&);
 /// For the terminal.
 std::string workprecision_report(const Scene&, const WorkPrecisionRequest&, const WorkPrecisionOutcome&);
 /// Draws `folder`/figures/workprecision; returns what is missing, in one line, or an empty string.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "tools/run/in_words.hpp"
 #include "tools/files/text_columns.hpp"
+#include "tools/run/in_words.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {
@@ -47,13 +48,15 @@ std::string runs_table(const WorkPrecisionOutcome& o, bool all) {
                     rows, terminal);
 }
 
-std::string lines_table(const WorkPrecisionOutcome& o) {
+// The table by scheme: a row of cells for each, by the heads that follow.
+std::vector<std::vector<std::string>> scheme_rows(const WorkPrecisionOutcome& o) {
   std::vector<std::vector<std::string>> rows;
   for (const WorkPrecisionLine& line : o.lines) {
     if (line.front.empty()) continue;
     const auto runs = std::ranges::count(o.runs, line.scheme, &WorkPrecisionRun::scheme);
     const WorkPrecisionRun& best = o.runs[line.front.back()];
     std::vector<std::string> row{line.scheme + (line.peer ? " (peer)" : ""), std::to_string(runs),
+                                 number("{:.2f}", line.order), number("{:.3g}", best.forces_per_step),
                                  number("{:.2f}", line.slope)};
     for (const double accuracy : {1e-2, 1e-4, 1e-6, 1e-8}) {
       const auto found = std::ranges::find_if(line.front, [&](auto i) { return o.runs[i].error_linf <= accuracy; });
@@ -63,16 +66,29 @@ std::string lines_table(const WorkPrecisionOutcome& o) {
     row.push_back(milliseconds(best.seconds));
     rows.push_back(row);
   }
-  return text_table({{"scheme", false, 32},
-                     {"runs", true},
-                     {"slope", true},
-                     {"ms to 1e-2", true},
-                     {"1e-4", true},
-                     {"1e-6", true},
-                     {"1e-8", true},
-                     {"least L∞", true},
-                     {"in ms", true}},
-                    rows, terminal);
+  return rows;
+}
+std::vector<TextColumn> scheme_columns() {
+  return {{"scheme", false, 32}, {"runs", true},       {"order", true}, {"forces", true},
+          {"slope", true},       {"ms to 1e-2", true}, {"1e-4", true},  {"1e-6", true},
+          {"1e-8", true},        {"least L∞", true},   {"in ms", true}};
+}
+std::string lines_table(const WorkPrecisionOutcome& o) {
+  return text_table(scheme_columns(), scheme_rows(o), terminal);
+}
+
+constexpr auto what_columns_are =
+    "order: of the error in N at one h/k; forces: evaluations at each site in a step; slope: of log error over log "
+    "time; "
+    "times of the steps alone, of the cheapest run with at most that error";
+
+std::string escaped(const std::string& text, std::string_view special) {
+  std::string out;
+  for (const char c : text) {
+    if (special.find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
 }
 
 std::string costs_table(const WorkPrecisionOutcome& o) {
@@ -104,6 +120,41 @@ std::string costs_table(const WorkPrecisionOutcome& o) {
 
 }  // namespace
 
+std::string workprecision_markdown(const Scene& scene, const WorkPrecisionRequest& request,
+                                   const WorkPrecisionOutcome& o) {
+  std::string text = fmt::format("{}: {} to t = {:.6g}, error against {}. {}.\n\n|", scene.name, scene.problem.theory,
+                                 request.until, o.reference, what_columns_are);
+  for (const TextColumn& column : scheme_columns()) text += fmt::format(" {} |", column.heading);
+  text += "\n|";
+  for (const TextColumn& column : scheme_columns()) text += column.right ? "---:|" : "---|";
+  for (const auto& row : scheme_rows(o)) {
+    text += "\n|";
+    for (const std::string& cell : row) text += fmt::format(" {} |", escaped(cell, "|"));
+  }
+  return text + "\n";
+}
+
+std::string workprecision_latex(const Scene& scene, const WorkPrecisionRequest& request,
+                                const WorkPrecisionOutcome& o) {
+  constexpr auto special = "&%$#_{}";
+  std::string text = fmt::format("% {}: {} to t = {:.6g}, error against {}\n% {}\n\\begin{{tabular}}{{", scene.name,
+                                 scene.problem.theory, request.until, o.reference, what_columns_are);
+  const auto row_of = [](const std::vector<std::string>& cells) {
+    return fmt::format("{} \\\\\n", fmt::join(cells, " & "));
+  };
+  std::vector<std::string> heads;
+  for (const TextColumn& column : scheme_columns()) {
+    text += column.right ? 'r' : 'l';
+    heads.push_back(column.heading == "least L∞" ? "least $L_\\infty$" : column.heading);
+  }
+  text += "}\n\\hline\n" + row_of(heads) + "\\hline\n";
+  for (std::vector<std::string> row : scheme_rows(o)) {
+    for (std::string& cell : row) cell = escaped(cell, special);
+    text += row_of(row);
+  }
+  return text + "\\hline\n\\end{tabular}\n";
+}
+
 std::string workprecision_report(const Scene& scene, const WorkPrecisionRequest& request,
                                  const WorkPrecisionOutcome& o) {
   std::string text = fmt::format("{}: {} to t = {:.6g}, error against {}\n", scene.name, scene.problem.theory,
@@ -119,7 +170,8 @@ std::string workprecision_report(const Scene& scene, const WorkPrecisionRequest&
                         all ? "runs (* no other is both cheaper and as accurate)"
                             : "runs on the lower envelopes (all of them are in workprecision.csv)",
                         runs_table(o, all));
-    text += "\nschemes (slope of log error over log time; nothing is interpolated)\n" + lines_table(o);
+    text += "\nschemes (nothing is interpolated)\n" + lines_table(o);
+    for (const std::string& line : wrapped(what_columns_are, terminal - 2)) text += "  " + line + "\n";
     text +=
         "\nthe cheapest run with at most an error; ratio: time of the peer over that of the engine\n" + costs_table(o);
   }

@@ -69,6 +69,30 @@ TEST_CASE("workprecision runs a ladder of two schemes, and writes every field of
   CHECK(csv[1].starts_with("rectangle-symmetric,0,"));
 }
 
+TEST_CASE("workprecision shows the observed order and the forces in a step, in tables that a paper can print") {
+  const WithScene folder;
+  const Json json = compared(folder,
+                             "small.ini --workprecision.schemes=triangle-vertex,rectangle-symmetric,composition "
+                             "--workprecision.sites=128,256 --workprecision.courants=0.5 --workprecision.repeats=1");
+  const auto of = [&](const std::string& scheme) {
+    return *std::ranges::find_if(json["schemes"], [&](const Json& line) { return line["scheme"] == scheme; });
+  };
+  CHECK(std::abs(of("triangle-vertex")["order"].get<double>() - 2) < 0.1);
+  CHECK(std::abs(of("composition (4,4)")["order"].get<double>() - 4) < 0.3);
+  CHECK(of("triangle-vertex")["forces_per_step"] == 1);
+  CHECK(of("composition (2,4)")["forces_per_step"] == 1);
+  CHECK(of("composition (4,4)")["forces_per_step"] == 6);
+  CHECK(of("rectangle-symmetric")["forces_per_step"].get<double>() >= 1);
+  CHECK(lines(read(folder / "out/workprecision.csv"))[0].ends_with(",forces_per_step"));
+  const std::string markdown = read(folder / "out/workprecision.md"), latex = read(folder / "out/workprecision.tex");
+  const std::size_t rows = json["schemes"].size();
+  CHECK(lines(markdown).size() == rows + 4);  // what it is, a blank line, two lines of heads
+  CHECK(contains(markdown, "| triangle-vertex | 2 | "));
+  CHECK(contains(latex, "\\begin{tabular}{lrrrrrrrrrr}"));
+  CHECK(contains(latex, "triangle-vertex & 2 & "));
+  CHECK(lines(latex).size() == rows + 8);
+}
+
 TEST_CASE("errors of workprecision are those of a run, to the last bit") {
   const WithScene folder;
   const auto stencil = GENERATE(as<std::string>(), "rectangle-symmetric", "triangle-vertex", "hexagon");
@@ -240,6 +264,7 @@ TEST_CASE("peers are in the same run as the engine, and the tables compare them"
   INFO(ran.err);
   REQUIRE(ran.code == 0);
   const Json json = Json::parse(read(folder / "out/workprecision.json"));
+  for (const Json& line : json["schemes"]) CHECK(line["forces_per_step"] >= 1);
   const auto peers = std::ranges::count_if(json["runs"], [](const Json& run) { return run["peer"] == true; });
   CHECK(peers > 0);
   CHECK(peers + 1 == static_cast<std::ptrdiff_t>(json["runs"].size()));
@@ -250,6 +275,20 @@ TEST_CASE("peers are in the same run as the engine, and the tables compare them"
   }
   CHECK(json["cheapest"][0]["ratio"] > 0);
   CHECK(contains(ran.out, "cheapest peer"));
+
+  // names that hold commas select what they name, alone and in a list
+  const Ran two_peers = delf_program(folder,
+                                     "workprecision small.ini --workprecision.sites=64 --workprecision.courants=0.1 "
+                                     "--workprecision.repeats=1 --out named --workprecision.schemes='leapfrog, Fourier "
+                                     "split-step 6, mass in the flow,odeint fehlberg 8, differences 4'");
+  INFO(two_peers.err);
+  REQUIRE(two_peers.code == 0);
+  std::vector<std::string> named;
+  const Json of_named = Json::parse(read(folder / "named/workprecision.json"));
+  for (const Json& run : of_named["runs"]) named.push_back(run["scheme"].get<std::string>());
+  std::ranges::sort(named);
+  CHECK(named == std::vector<std::string>{"Fourier split-step 6, mass in the flow", "odeint fehlberg 8, differences 4",
+                                          "triangle-vertex"});
 
   // there is no peer for another equation
   const Ran other = delf_program(folder,

@@ -97,6 +97,30 @@ TEST_CASE("the slope is that of the asymptotic runs, without the floor") {
   CHECK(std::isnan(slope_of(runs, std::vector<std::size_t>{0})));
 }
 
+TEST_CASE("the observed order is that of N at one h/k, whatever else was tried") {
+  std::vector<WorkPrecisionRun> runs;
+  const auto add = [&](int sites, double courant, double error) {
+    WorkPrecisionRun r = run("a", error, 1);
+    r.sites = sites, r.space_step = 40.0 / sites, r.time_step = courant * r.space_step;
+    r.steps = std::lround(8 / r.time_step);
+    runs.push_back(r);
+  };
+  for (int N : {64, 128, 256, 512}) add(N, 0.5, 1e3 * std::pow(N, -4));
+  add(256, 0.25, 1e-7), add(512, 0.125, 1e-9), add(512, 0.5, 1e3 * std::pow(512, -4));  // of other h/k, and twice
+  CHECK(std::abs(order_of(runs, all_of(runs)) - 4) < 1e-12);
+  add(1024, 0.5, 0.99 * 1e3 * std::pow(512, -4));  // its floor
+  CHECK(std::abs(order_of(runs, all_of(runs)) - 4) < 1e-12);
+  CHECK(std::isnan(order_of(runs, std::vector<std::size_t>{0, 4})));  // h/k differ: no order in N
+  // on a point over steps
+  runs.clear();
+  for (int steps : {100, 200, 400}) {
+    WorkPrecisionRun r = run("p", std::pow(steps, -2.0), 1);
+    r.sites = 1, r.time_step = 8.0 / steps, r.steps = steps;
+    runs.push_back(r);
+  }
+  CHECK(std::abs(order_of(runs, all_of(runs)) - 2) < 1e-12);
+}
+
 TEST_CASE("repeats are shared so that the longest runs have the fewest, and each has one") {
   CHECK(shared_repeats({1, 1, 1}, 5, 100) == std::vector<int>{5, 5, 5});
   const std::vector<double> costs{0.01, 0.1, 1, 10};
