@@ -79,15 +79,6 @@ inline Pack smaller(Pack a, Pack b) {
   return {a.v < b.v ? a.v : b.v};
 #endif
 }
-/// The larger of a ≥ 0 and |b|, and a where b is NaN.
-inline Pack larger_magnitude(Pack a, Pack b) {
-#if defined(__AVX512DQ__)
-  constexpr int of_magnitudes = 0b0011, without_sign = 0b1000;
-  return {_mm512_maskz_range_pd(0xff, a.v, b.v, of_magnitudes | without_sign)};
-#else
-  return larger(abs(b), a);
-#endif
-}
 /// Is any lane above the bound, or NaN?
 inline bool any_above(Pack x, double bound) {
 #if defined(__AVX512F__)
@@ -129,18 +120,6 @@ template <int by, int... l>
 inline Pack rotated(Pack a, std::integer_sequence<int, l...>) {
   return {__builtin_shufflevector(a.v, a.v, ((l + by) % lanes)...)};
 }
-/// The same within each half.
-template <int by, int... l>
-inline Pack rotated_halves(Pack a, std::integer_sequence<int, l...>) {
-  constexpr int half = lanes / 2;
-  return {__builtin_shufflevector(a.v, a.v, (l / half * half + (l + by) % half)...)};
-}
-/// One half of a, and of b.
-template <int which, int... l>
-inline Pack halves(Pack a, Pack b, std::integer_sequence<int, l...>) {
-  constexpr int half = lanes / 2;
-  return {__builtin_shufflevector(a.v, b.v, (l / half * lanes + l % half + which * half)...)};
-}
 }  // namespace detail
 /// Lane l of what lane l + 1, or l − 1, was; round the end.
 inline Pack from_lane_above(Pack a) { return detail::rotated<1>(a, std::make_integer_sequence<int, lanes>()); }
@@ -159,14 +138,6 @@ inline double max_or_nan(Pack a) {
   if constexpr (lanes > 4) a = detail::larger(a, detail::rotated<4>(a, all));
   if constexpr (lanes > 2) a = detail::larger(a, detail::rotated<2>(a, all));
   return detail::larger(a, detail::rotated<1>(a, all))[0];
-}
-/// Of two at once that are not negative: each takes half of the lanes.
-inline std::pair<double, double> both_largest_sizes(Pack a, Pack b) {
-  constexpr auto all = std::make_integer_sequence<int, lanes>();
-  Pack both = larger_size(detail::halves<0>(a, b, all), detail::halves<1>(a, b, all));
-  if constexpr (lanes > 4) both = larger_size(both, detail::rotated_halves<2>(both, all));
-  if constexpr (lanes > 2) both = larger_size(both, detail::rotated_halves<1>(both, all));
-  return {both[0], both[lanes / 2]};
 }
 
 }  // namespace delf

@@ -63,15 +63,11 @@ class RowLayout {
   /// Whether packs of a halo are packs of the row, moved by a lane; and then the one before the first.
   bool finds_halos_by_packs() const { return by_packs_; }
   Pack before_first(const double* row) const { return before_.pack(row, -lanes); }
-  /// The same, and number `j` after the last, of packs that `read(at)` gives: what has just been stored would be waited for.
+  /// The same, of packs that `read(at)` gives: what has just been stored would be waited for.
   template <class Read>
     requires std::invocable<Read, std::ptrdiff_t>
   Pack before_first(const Read& read) const {
     return before_.pack_of(read, -lanes);
-  }
-  template <class Read>
-  Pack after_last(const Read& read, int j) const {
-    return after_.pack_of(read, static_cast<std::ptrdiff_t>(j) * lanes);
   }
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {

@@ -54,9 +54,6 @@ class RowSum {
     for (auto* terms : {&plain_, &pairs_, &single_, &double_})
       for (Term& t : *terms) t.coefficient *= factor;
   }
-  bool is_empty() const {
-    return plain_.empty() && pairs_.empty() && single_.empty() && double_.empty() && constant_ == 0;
-  }
   /// The row and shift, in doubles, that the sum is alone; null if it is more.
   struct OneRow {
     int row = -1;

@@ -239,16 +239,6 @@ void LatticeSystem::equations(const Window& window, std::int64_t row, std::vecto
   for (std::size_t n = 0; n < E.size(); ++n) values[n] = {E[n], absolute[n]};
 }
 
-LatticeSystem::Value LatticeSystem::equation(const Window& window, std::int64_t row, int site, int component,
-                                             double time_step) const {
-  Assembly assembly(*this, {.equations = {{{0, site}, component}}, .parity = static_cast<int>(row & 1),
-                            .past = height_, .future = height_, .turn = window.turn});
-  assembly.set_time_step(time_step);
-  std::vector<double> E, absolute;
-  assembly.residual(SectionRing(window, row - height_, row + height_), row, E, &absolute);
-  return {E[0], absolute[0]};
-}
-
 void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, int component, std::int64_t unknown_row,
                              double time_step, std::vector<Entry>& entries) const {
   std::vector<Node> unknowns;

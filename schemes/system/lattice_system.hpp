@@ -130,8 +130,6 @@ class LatticeSystem {
   };
   /// E of every site and component of a row, [i·C + c], whether it is an equation there or not (Assembly).
   void equations(const Window&, std::int64_t row, std::vector<Value>& values) const;
-  /// E(site) for a window around it; h may differ from the system's own (continuation).
-  Value equation(const Window&, std::int64_t row, int site, int component, double time_step) const;
 
   using Entry = MatrixEntry;
   /// ∂E(row, site, component)/∂y(unknown_row, ·) appended as entries with row and column site·d + component.

@@ -100,6 +100,14 @@ inline Window window_of(const Evolution& evolution, double turn = 0) {
   return window;
 }
 
+/// E of one site and component in a window around it.
+inline LatticeSystem::Value equation_at(const LatticeSystem& system, const Window& window, std::int64_t row, int site,
+                                        int component = 0) {
+  std::vector<LatticeSystem::Value> values;
+  system.equations(window, row, values);
+  return values[static_cast<std::size_t>(site * system.components() + component)];
+}
+
 /// max |E| over the sites, of the equations that determine the last row of the window; relative to the largest
 /// Σ |∂E/∂y| times the largest |y|, of which E is a difference.
 inline double equation_defect(const Evolution& evolution, const Window& window) {

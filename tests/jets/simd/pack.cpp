@@ -73,19 +73,6 @@ TEST_CASE("max_or_nan is the larger, and a NaN in any lane of either stays one")
   }
 }
 
-TEST_CASE("the larger magnitude has no sign, and a NaN goes by") {
-  using detail::larger_magnitude;
-  const double infinity = std::numeric_limits<double>::infinity();
-  for (int l = 0; l < lanes; ++l) {
-    for (double b : {-3.0, 3.0, -0.5, 0.5, -0.0, 0.0, -infinity, infinity, -1e-310, 2.0, -2.0}) {
-      const double found = larger_magnitude(Pack(2.0), with(Pack(0.25), l, b))[l];
-      CHECK(found == std::max(2.0, std::abs(b)));
-      CHECK_FALSE(std::signbit(larger_magnitude(Pack(0.0), with(Pack(0.25), l, b))[l]));
-    }
-    CHECK(larger_magnitude(Pack(2.0), with(Pack(7.0), l, not_a_number))[l] == 2);
-  }
-}
-
 TEST_CASE("the largest magnitude has no sign, and a NaN in either stays one") {
   const double infinity = std::numeric_limits<double>::infinity();
   for (int l = 0; l < lanes; ++l) {
@@ -111,21 +98,6 @@ TEST_CASE("the maximum over lanes is found wherever it is") {
       CHECK(std::isnan(
           max_or_nan(with(with(Pack(1.0), l, std::numeric_limits<double>::infinity()), other, not_a_number))));
   }
-}
-
-TEST_CASE("two largest sizes at once are the two, and a NaN shows in its own alone") {
-  for (int l = 0; l < lanes; ++l)
-    for (int other = 0; other < lanes; ++other)
-      for (double sign : {1.0, -1.0}) {
-        const double nan = std::copysign(not_a_number, sign);
-        const Pack a = with(ramp(1, 0.5), l, 30), b = with(Pack(0.25), other, 6);
-        CHECK(both_largest_sizes(a, b) == std::pair(30.0, 6.0));
-        CHECK(both_largest_sizes(b, a) == std::pair(6.0, 30.0));
-        const auto [of_a, of_b] = both_largest_sizes(with(a, other, nan), b);
-        CHECK((std::isnan(of_a) && of_b == 6));
-        const auto [of_b_first, of_a_last] = both_largest_sizes(b, with(a, other, nan));
-        CHECK((of_b_first == 6 && std::isnan(of_a_last)));
-      }
 }
 
 TEST_CASE("abs clears the sign, that of -0 too") {

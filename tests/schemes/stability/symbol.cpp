@@ -69,7 +69,7 @@ double plane_wave_defect(const Symbol& symbol, const LatticeSystem& system, Comp
     Complex sum = 0;
     for (int b = 0; b < symbol.size(); ++b)
       sum += P[static_cast<std::size_t>(a * symbol.size() + b)] * v[static_cast<std::size_t>(b)];
-    const auto E = system.equation(window, 0, site, a % C, system.time_step());
+    const auto E = equation_at(system, window, 0, site, a % C);
     worst = std::max(worst, std::abs(E.sum - std::real(sum * std::polar(1.0, theta * site))));
     scale = std::max(scale, E.absolute);
   }

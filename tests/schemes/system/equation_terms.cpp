@@ -57,7 +57,7 @@ double assembly_defect(const std::string& theory, const std::string& scheme, con
       }
       sum += (term.coefficient + sign * term.alternating) * source;
     }
-    const double E = evolution.system().equation(window, row, i, 0, h).sum;
+    const double E = equation_at(evolution.system(), window, row, i).sum;
     worst = std::max(worst, std::abs(sum - E));
     largest = std::max(largest, std::abs(E));
   }

@@ -98,7 +98,7 @@ double against_print(const LatticeSystem& system,
     for (int row : {0, 1})
       for (int i = 0; i < N; ++i) {
         const Field y = [&](int j, int s) { return window(row + j, i + s, 0); };
-        const double E = system.equation(window, row, i, 0, h).sum / (h * k);
+        const double E = equation_at(system, window, row, i).sum / (h * k);
         worst = std::max(worst, std::abs(E - equation(y, i, row)) / (6 / (h * h)));
       }
   }
@@ -221,7 +221,7 @@ TEST_CASE("a difference quotient of equal values is N′, where the quotient its
     const LatticeSystem system(ring, {family_of(sine_gordon(), scheme)}, h);
     for (int i = 0; i < N; ++i) {
       const Field y = [&](int j, int s) { return window(j, i + s, 0); };
-      CHECK(std::abs(system.equation(window, 0, i, 0, h).sum / (h * k) - (d2k(y, 0) + slope(y(0, 0), m))) <
+      CHECK(std::abs(equation_at(system, window, 0, i).sum / (h * k) - (d2k(y, 0) + slope(y(0, 0), m))) <
             1e-13 * 6 / (h * h));
     }
   }
@@ -291,7 +291,7 @@ TEST_CASE("the Jacobian of the equations is that of finite differences, across t
         constexpr double e = 1e-4;
         Window above = window, below = window;
         above.rows[3][s] += e, below.rows[3][s] -= e;
-        by_difference[s] = (system.equation(above, 0, i, 0, h).sum - system.equation(below, 0, i, 0, h).sum) / (2 * e);
+        by_difference[s] = (equation_at(system, above, 0, i).sum - equation_at(system, below, 0, i).sum) / (2 * e);
       }
       CHECK(distance(by_entries, by_difference) < 1e-7);
     }
