@@ -6,7 +6,8 @@ namespace delf {
 enum class Space { circle, interval, point };
 
 /// The condition at a wall of an interval: `fixed` keeps the initial value (no equation there, V = 0);
-/// `natural` varies it too, so that the equation is what the stencils inside the lattice give.
+/// `natural` varies it too, so that the equation is what the stencils inside the lattice and the action's terms at the
+/// wall give.
 enum class Wall { fixed, natural };
 
 /// A regular lattice: ℤ in time, and in space N sites on a circle (x_i = iL/N), on an interval that holds both walls

@@ -28,7 +28,7 @@ void for_stencils_inside(const Stencils& all, const SiteSet& u, Visit visit) {
     const StencilPattern& pattern = all.families()[static_cast<std::size_t>(family)];
     for (const Site site : u.sites()) {
       const Site anchor = site - pattern.vertices.front();
-      if (anchor.node != 0 || !pattern.placed_at(anchor)) continue;
+      if (!all.exists(family, anchor)) continue;
       places.clear();
       for (const Site offset : pattern.vertices) {
         places.push_back(u.index(all.reduced(anchor + offset)));

@@ -16,11 +16,20 @@ void require_closing(const Lattice& lattice, Placement placement) {
                                         std::to_string(lattice.sites() + 1));
 }
 
-bool has_stencil(const Lattice& lattice, const StencilPattern& pattern, Site anchor) {
-  return pattern.placed_at(anchor) && (lattice.is_circle() || std::ranges::all_of(pattern.vertices, [&](Site offset) {
-           const int x = anchor.space + offset.space;
+bool has_column(const Lattice& lattice, const StencilPattern& pattern, int column) {
+  if (pattern.is_of_wall()) {
+    const bool left = pattern.placement == Placement::left_wall;
+    return lattice.space() == Space::interval && (left ? lattice.left() : lattice.right()) == Wall::natural &&
+           column == (left ? 0 : lattice.sites() - 1);
+  }
+  return lattice.is_circle() || std::ranges::all_of(pattern.vertices, [&](Site offset) {
+           const int x = column + offset.space;
            return 0 <= x && x < lattice.sites();
-         }));
+         });
+}
+
+bool has_stencil(const Lattice& lattice, const StencilPattern& pattern, Site anchor) {
+  return pattern.placed_at(anchor) && has_column(lattice, pattern, anchor.space);
 }
 
 Stencils::Stencils(const Lattice& lattice, std::vector<StencilPattern> families)

@@ -13,7 +13,9 @@ namespace delf {
 /// At which sites of the lattice a stencil is anchored.
 enum class Placement {
   every_site,  ///< one stencil for each site
-  brick_wall   ///< only where time + space is even, so that rows of bricks are laid half a brick apart
+  brick_wall,  ///< only where time + space is even, so that rows of bricks are laid half a brick apart
+  left_wall,   ///< at the first column of an interval, if the wall there is natural: a term of the boundary
+  right_wall   ///< at the last column, likewise
 };
 
 /// A tuple of n sites, written as offsets from its anchor; the order is that of the paper's Δ¹, Δ², …, Δⁿ.
@@ -53,8 +55,10 @@ struct StencilPattern {
   int size() const { return static_cast<int>(vertices.size()); }
   /// Whether a stencil of this pattern is anchored at `site`, without regard to walls.
   bool placed_at(Site site) const {
-    return placement == Placement::every_site || (site.time + site.space) % 2 == 0;
+    return placement != Placement::brick_wall || (site.time + site.space) % 2 == 0;
   }
+  /// It stands at a natural wall alone: all of space, and a circle, have none.
+  bool is_of_wall() const { return placement == Placement::left_wall || placement == Placement::right_wall; }
 };
 
 /// One of the numbers that a stencil reads: the component `component` of the section at a vertex of its pattern.

@@ -8,6 +8,7 @@
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/vertex_constraint.hpp"
+#include "schemes/families/wall_families.hpp"
 #include "schemes/stepping/evolution.hpp"
 
 namespace delf {
@@ -42,6 +43,7 @@ class Scheme {
   std::shared_ptr<const JetFamily> family() const { return std::make_shared<JetFamily>(table_, batches_); }
   Evolution on(const Lattice& lattice, double time_step, const StepOptions& options = {}) const {
     std::vector<std::shared_ptr<const StencilFamily>> families{family()};
+    for (auto& term : wall_families(table_, batches_, lattice)) families.push_back(std::move(term));
     std::vector<Component> components = fields(components_of<D>());
     if constexpr (Constrained<D>) {
       families.push_back(std::make_shared<LagrangianFamily<VertexConstraint<D>>>(VertexConstraint<D>{density_}));

@@ -40,6 +40,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                     theory.symmetries()};
   if (!parts.families[0]) throw unknown_name("lattice.stencil", p.stencil, stencil_names_and_aliases());
   check_walls(p, *parts.families[0]);
+  for (auto& term : theory.at_walls(p.stencil, p.lattice)) parts.families.push_back(std::move(term));
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));
     parts.components.push_back({"lambda", Role::multiplier, {}});

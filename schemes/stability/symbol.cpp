@@ -75,6 +75,7 @@ Symbol::Symbol(const LatticeSystem& system, double constant)
       throw BadInput("theory.name",
                      "theory.name: a density that depends on t or x has no symbol, since its equations "
                      "differ from site to site; use a theory that is the same everywhere");
+    if (family->pattern().is_of_wall()) continue;  // there are no walls here
     const std::size_t n = index(family->size());
     std::vector<double> y(n, constant), J(n * n);
     family->jacobian({time_step_, space_step_, 0, 0}, y, J);

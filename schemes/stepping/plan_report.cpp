@@ -79,7 +79,12 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
     for (const Site& v : family->pattern().vertices)
       if (std::ranges::find(sites, std::pair(v.time, v.space)) == sites.end()) sites.emplace_back(v.time, v.space);
     for (const auto& [time, space] : sites) out += fmt::format("({:+d},{:+d}) ", time, space);
-    out += family->pattern().placement == Placement::brick_wall ? " in a brick wall" : "";
+    switch (family->pattern().placement) {
+      case Placement::every_site: break;
+      case Placement::brick_wall: out += " in a brick wall"; break;
+      case Placement::left_wall: out += " at the left wall, natural"; break;
+      case Placement::right_wall: out += " at the right wall, natural"; break;
+    }
     out += family->is_variational() ? "\nresidual     dL/dy of a discrete Lagrangian\n"
                                     : "\nresidual     given directly: no Lagrangian, not multisymplectic\n";
   }

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "lattice/error.hpp"
+#include "lattice/stencil.hpp"
 
 namespace delf {
 namespace {
@@ -93,8 +94,8 @@ void add_linear_terms(const std::map<std::tuple<int, int, int>, std::pair<double
   }
 }
 
-/// Outputs of every stencil that could touch the site; those of stencils that are not there are kept at zero.
-void add_output_terms(const LatticeSystem& system, int site, bool everywhere, int a, EquationTerms& equation) {
+/// Outputs of every stencil that could touch the site in some row; bricks that are not there are left out later.
+void add_output_terms(const LatticeSystem& system, int site, int a, EquationTerms& equation) {
   for (std::size_t f = 0; f < system.families().size(); ++f) {
     const StencilFamily& family = *system.families()[f];
     const SourceTerms& sources = *family.sources();
@@ -102,11 +103,7 @@ void add_output_terms(const LatticeSystem& system, int site, bool everywhere, in
     for (int i = 0; i < family.size(); ++i) {
       if (family.values()[static_cast<std::size_t>(i)].component != a) continue;
       const Site anchor = Site{} - family.site(i);
-      const bool inside = everywhere || std::ranges::all_of(family.pattern().vertices, [&](Site v) {
-        const int x = site + anchor.space + v.space;
-        return x >= 0 && x < system.lattice().sites();
-      });
-      if (!inside) continue;
+      if (!has_column(system.lattice(), family.pattern(), site + anchor.space)) continue;
       for (int c = 0; c < sources.outputs(); ++c)
         if (const double w = hk * sources.weight(c, i); w != 0)
           equation.terms.push_back({Source::output, 1 - equation.shift + anchor.time, 0, static_cast<int>(f), c,
@@ -137,7 +134,7 @@ AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) 
   const bool bricks = system.placement() == Placement::brick_wall;
   AssembledEquations result;
 
-  const auto equation_at = [&](int site, int a, bool everywhere, std::vector<UnknownEntry>& unknowns) {
+  const auto equation_at = [&](int site, int a, std::vector<UnknownEntry>& unknowns) {
     EquationTerms equation;
     equation.shift = plan.shift(site, a);
     const LinearEquation even = linear_equation(system, {site % 2, site}, a);
@@ -145,7 +142,7 @@ AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) 
     add_linear_terms(mean_and_alternating(even.A, odd.A), a, equation);
     equation.constant = (even.constant + odd.constant) / 2;
     equation.constant_alternating = (even.constant - odd.constant) / 2;
-    add_output_terms(system, site, everywhere, a, equation);
+    add_output_terms(system, site, a, equation);
     for (const auto& [key, value] : mean_and_alternating(even.A, odd.A)) {
       const auto& [m, s, b] = key;
       if (m == equation.shift) unknowns.push_back({s, b, value.first, value.second});
@@ -158,7 +155,7 @@ AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) 
   for (int a = 0; a < d; ++a) {
     result.bulk.emplace_back();
     result.unknowns.emplace_back();
-    if (circle || N > 2 * width) result.bulk.back() = equation_at(N / 2, a, true, result.unknowns.back());
+    if (circle || N > 2 * width) result.bulk.back() = equation_at(N / 2, a, result.unknowns.back());
   }
   if (circle) return result;
   for (int i = 0; i < N; ++i) {
@@ -168,7 +165,7 @@ AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) 
     }
     for (int a = 0; a < d; ++a) {
       SiteEquation special{i, a, !plan.solved(i, a), {}, {}};
-      if (!special.fixed) special.equation = equation_at(i, a, false, special.unknowns);
+      if (!special.fixed) special.equation = equation_at(i, a, special.unknowns);
       result.exceptional.push_back(std::move(special));
     }
   }

@@ -5,12 +5,20 @@
 
 #include "jets/tables/named_tables.hpp"
 #include "schemes/families/jet_family.hpp"
+#include "schemes/families/wall_families.hpp"
 
 namespace delf {
 
 std::shared_ptr<const StencilFamily> FieldTheory::variational(const std::string& stencil) const {
   const auto found = std::ranges::find(named_tables(), stencil, &NamedTable::name);
   return found == named_tables().end() ? nullptr : on_table(found->table);
+}
+
+std::vector<std::shared_ptr<const StencilFamily>> FieldTheory::at_walls(const std::string& stencil,
+                                                                        const Lattice& lattice) const {
+  const auto found = std::ranges::find(named_tables(), stencil, &NamedTable::name);
+  if (found == named_tables().end()) return {};
+  return wall_families(found->table, density_, lattice);
 }
 
 std::shared_ptr<const StencilFamily> FieldTheory::on_table(StencilTable table, bool values_are_sources) const {

@@ -3,9 +3,11 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "jets/batch_of.hpp"
 #include "jets/tables/stencil_table.hpp"
+#include "lattice/lattice.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/residual_family.hpp"
 #include "schemes/families/vertex_constraint.hpp"
@@ -26,6 +28,8 @@ class FieldTheory {
 
   /// The action on a stencil of named_tables(); null if there is none of that name.
   std::shared_ptr<const StencilFamily> variational(const std::string& stencil) const;
+  /// The terms that it needs at the natural walls of a lattice.
+  std::vector<std::shared_ptr<const StencilFamily>> at_walls(const std::string& stencil, const Lattice&) const;
   /// The action on any table: an element, the sub-steps of a composition.
   std::shared_ptr<const StencilFamily> on_table(StencilTable, bool values_are_sources = false) const;
   /// The constraint that the theory declares, with its multiplier; null if it declares none.

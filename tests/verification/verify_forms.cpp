@@ -132,8 +132,8 @@ TEST_CASE(
           const Result result = at_random_sections(p, 5);
           ++tried;
           require_round_off(result);
-          // Where means over neighbours are all that is solved for (no φ_x: mechanics), (−1)ⁱ is in no equation; the
-          // triangle has no inertia at one natural end. There is no evolution picture then, and none is needed.
+          // Where means over neighbours are all that is solved for (no φ_x: mechanics), (−1)ⁱ is in no equation. There
+          // is no evolution picture then, and none is needed.
           const bool evolved =
               std::ranges::none_of(result.left_out, [](const auto& words) { return words.starts_with("evolved"); });
           CHECK((evolved || theory.name == "pendulum" || theory.name == "kepler" ||

@@ -125,10 +125,12 @@ void RowEquations::build_rows(RowTable& table, int source_rows) {
           }
       };
       for (const auto& equation : equations_.bulk) scan(equation);
+      const bool in_bulk = oldest <= newest;
       for (const auto& special : equations_.exceptional) scan(special.equation);
       if (oldest > newest) oldest = newest = 0;
       row.oldest = oldest, row.newest = newest;
       row.reads_unknown = newest + terms.groups[at(row.group)].latest_time() >= 1;
+      find_packs(row, in_bulk || row.reads_unknown);
       row.is_local = !row.reads_unknown && oldest == newest && row.lowest == 0 && row.highest == 0 && !bricks &&
                      !has_walls();
       const int held = std::max(newest - oldest + 1, row.reads_unknown ? source_rows * row.stride + 1 : 1);
@@ -143,6 +145,19 @@ void RowEquations::build_rows(RowTable& table, int source_rows) {
       inputs_.push_back(make_inputs(terms.groups[at(row.group)], sources_.back()));
     }
   }
+}
+
+/// The term of a natural wall is read there alone, and evaluated nowhere else.
+void RowEquations::find_packs(SourceRow& row, bool everywhere) const {
+  row.first_pack = everywhere ? 0 : layout_.packs();
+  row.last_pack = everywhere ? layout_.packs() : 0;
+  if (everywhere) return;
+  for (const SiteEquation& special : equations_.exceptional)
+    for (const Term& t : special.equation.terms)
+      if (t.source == Source::output && t.family == row.family) {
+        const int pack = layout_.slot(special.site + t.shift) / lanes - layout_.halo();
+        row.first_pack = std::min(row.first_pack, pack), row.last_pack = std::max(row.last_pack, pack + 1);
+      }
 }
 
 /// Quadrature values as sums of rows. Rows before the newest that is read are taken from it and the increments,
@@ -348,6 +363,7 @@ double RowEquations::value_at(const SiteEquation& special, const RowTable& table
 void RowEquations::evaluate(const RowTable& table, std::int64_t n, const SourceRow& source, int back, int from, int to,
                             double* const* out) const {
   constexpr int most_packs = 64;
+  from = std::max(from, source.first_pack), to = std::min(to, source.last_pack);
   const Inputs& inputs = inputs_[static_cast<std::size_t>(&source - sources_.data())];
   const int count = static_cast<int>(inputs.values.size()), outputs = inputs.outputs;
   const bool bricks = source.stride == 2, placed = positions_.rows() > 0;

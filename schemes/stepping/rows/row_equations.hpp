@@ -45,6 +45,7 @@ struct SourceRow {
   int outputs = 1;               ///< of its group; of these, this is number `component`
   int left = 0, right = 0;       ///< shifts at which it reads rows itself
   bool reads_back = false;       ///< it reads rows before n too
+  int first_pack = 0, last_pack = 0;  ///< equations read it in these packs: all, or those near a wall
   int stride = 1;                ///< of bricks, those of the row before stand elsewhere: 2
   int change = -1;               ///< row: its last change by an iteration
 };
@@ -111,6 +112,7 @@ class RowEquations {
     double time = 0, space = 0;
   };
   void build_rows(RowTable&, int source_rows);
+  void find_packs(SourceRow&, bool everywhere) const;
   Inputs make_inputs(const SourceTerms::Group&, SourceRow&);
   void build_sums();
   void build_solvers();

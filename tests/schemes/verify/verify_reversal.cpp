@@ -121,8 +121,7 @@ TEST_CASE("wave maps with their multiplier and bodies at a point come back to th
   }
 }
 
-// A moving kink's tail changes at fixed walls from row 0 to row 1; at a natural wall on its right the triangle of
-// footnote 3 has no inertia, and gives the wall a value that the starting rows do not have.
+// A moving kink's tail changes at fixed walls from row 0 to row 1.
 TEST_CASE("schemes come back to their start between walls, which the starting rows do not fit") {
   for (const char* stencil : {"rectangle", "rectangle-symmetric", "triangle-vertex"})
     for (const Wall left : {Wall::fixed, Wall::natural})
