@@ -8,6 +8,8 @@
 #include <sstream>
 #include <utility>
 
+#include "schemes/stability/constraint_ghost.hpp"
+
 namespace delf {
 namespace {
 
@@ -112,6 +114,9 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   if (!lattice.is_circle())
     for (int i : {0, lattice.sites() - 1})
       append_table(out, system, {0, i}, i == 0 ? " at the left wall" : " at the right wall");
+  if (const auto ghost = ghost_under_constraint(system))
+    out += fmt::format("\nghost        {};\n             {}\n", in_words_under_constraint(*ghost),
+                       without_ghost_under_constraint);
   out += fmt::format("\nmemory       {} bytes: {}, monitors {} B\n",
                      asked.bytes + asked.bytes_to_come + monitor_bytes, asked.memory,
                      monitor_bytes);

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "jets/simd/pack_gather.hpp"
+#include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/newton.hpp"
 #include "schemes/system/slab_extent.hpp"
@@ -168,10 +170,11 @@ void SlabStepper::predict_without_past(const Unknowns& unknowns, std::int64_t J)
 }
 
 void SlabStepper::fail(std::int64_t J, const char* why) const {
-  throw NoConvergence(
-      fmt::format("step {}, t = {:.6g}: the equations of the slab were not solved: {}; reduce lattice.courant or "
-                  "lattice.time_step",
-                  J, static_cast<double>(J) * system_.time_step(), why));
+  std::string remedy = "reduce lattice.courant or lattice.time_step";
+  if (const auto ghost = ghost_under_constraint(system_))
+    remedy = fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint);
+  throw NoConvergence(fmt::format("step {}, t = {:.6g}: the equations of the slab were not solved: {}; {}", J,
+                                  static_cast<double>(J) * system_.time_step(), why, remedy));
 }
 
 /// The first of two neighbouring sites that have passed each other in a row, where a component is the position of the

@@ -5,7 +5,9 @@
 
 #include <cstdio>
 
+#include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/energy.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
@@ -63,12 +65,20 @@ void say_what_is_there(const fs::path& folder) {
   fmt::print("  {:<10} {}:{}\n", "files", folder.string(), names);
 }
 
+// A run would end in growing rounding errors.
+void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
+  if (const auto ghost = ghost_under_constraint(system))
+    throw scene.settings.error("lattice.stencil",
+                               fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
+}
+
 ExitCode run_in(const fs::path& folder, const Scene& scene) {
   const Interrupt interrupt;
   const InitialRows initial(scene);
   Outcome outcome;
   outcome.winding = initial.winding();
   Simulation simulation = build(scene, outcome.winding);
+  refuse_ghost(scene, simulation.evolution().system());
   outcome.state = initial.description();
   outcome.start = initial.rule();
   outcome.solve = simulation.solve_summary();

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "schemes/stability/constraint_ghost.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "tools/stability/corner_list.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
@@ -25,6 +27,20 @@ void remove_figures(const fs::path& folder, std::size_t schemes) {
   std::error_code error;
   for (const std::string& name : stability_figure_names(schemes))
     for (const char* ending : {".png", ".svg"}) fs::remove(folder / "figures" / (name + ending), error);
+}
+
+// Limits are those of a field without constraint; the scene's own theory may have one. Empty: it has none, or no such
+// wave grows.
+std::string growth_under_constraint(Problem problem) {
+  constexpr int sites = 32;  // of a circle that is only asked for its equations
+  problem.lattice = Lattice::circle(sites, sites * problem.lattice.space_step());
+  problem.winding = 0;
+  try {
+    const auto ghost = ghost_under_constraint(Simulation(problem).evolution().system());
+    return ghost ? in_words_under_constraint(*ghost) : "";
+  } catch (const BadInput&) {  // the scheme is not for this theory
+    return {};
+  }
 }
 
 }  // namespace
@@ -69,6 +85,9 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
     f.maps.push_back(make_stability_map(scheme, request.limit.most, request.limit.seed));
     advance(map_parts);
   }
+  for (const NamedScheme& scheme : request.schemes)
+    if (auto words = growth_under_constraint(scheme.problem); !words.empty())
+      f.constraints.push_back({scheme.name, std::move(words)});
   for (Corner& corner : all) {
     if (Interrupt::asked()) break;
     CornerResult result = run_corner_apart(corner, request.budget);

@@ -30,9 +30,15 @@ struct CornerFinding {
   CornerResult result;
 };
 
+/// A scheme whose rounding errors grow off the surface that the scene's theory is kept on.
+struct ConstraintFinding {
+  std::string scheme, words;
+};
+
 /// The results of `delf stability`.
 struct StabilityFindings {
   std::vector<Limit> limits;
+  std::vector<ConstraintFinding> constraints;
   std::vector<CornerFinding> corners;
   std::vector<StabilityMap> maps;
   std::vector<DispersionCurve> dispersion;

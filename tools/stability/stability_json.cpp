@@ -45,6 +45,8 @@ Json json_of(const Limit& l) {
           {"disagreements", l.disagreements}};
 }
 
+Json json_of(const ConstraintFinding& c) { return {{"scheme", c.scheme}, {"what", c.words}}; }
+
 Json json_of(const CornerFinding& f) {
   Json parameters = Json::object();
   for (const Setting& key : keys_of(f.corner)) parameters[key.key] = key.value;
@@ -103,6 +105,7 @@ std::string stability_json(const Scene& scene, const StabilityFindings& f) {
   json["growth_least"] = f.least_growth;
   json["unresolved"] = f.unresolved();
   json["limits"] = json_list(f.limits, of_each);
+  json["constraint_ghosts"] = json_list(f.constraints, of_each);
   json["corners"] = json_list(f.corners, of_each);
   json["maps"] = json_list(f.maps, of_each);
   json["dispersion"] = {{"courant", number_or_null(f.dispersion_courant)},

@@ -68,6 +68,14 @@ std::string limits(const StabilityFindings& f) {
          unresolved;
 }
 
+std::string constraints(const StabilityFindings& f) {
+  if (f.constraints.empty()) return {};
+  std::string text = "\nunder the constraint of the scene's theory\n";
+  for (const ConstraintFinding& c : f.constraints)
+    for (const std::string& line : wrapped(c.scheme + ": " + c.words, widest_line - 2)) text += "  " + line + "\n";
+  return text;
+}
+
 std::string cell(const CornerResult& r) {
   std::string word;
   switch (r.verdict) {
@@ -180,7 +188,7 @@ std::int64_t StabilityFindings::must_not_be() const {
 std::string stability_report(const Scene& scene, const StabilityFindings& f) {
   return fmt::format("{}: stability of phi_tt - phi_xx + m^2 phi = 0, and stress cases; seed {}\n", scene.name,
                      f.seed) +
-         limits(f) + corner_table(f) + failures(f) + "\n" + conclusion(f);
+         limits(f) + constraints(f) + corner_table(f) + failures(f) + "\n" + conclusion(f);
 }
 
 }  // namespace delf

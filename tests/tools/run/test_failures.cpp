@@ -53,6 +53,23 @@ TEST_CASE("an implicit step that cannot be solved ends with exit code 3") {
   CHECK(lines(read(folder / "hard/series.csv")).size() >= 2);
 }
 
+TEST_CASE("a wave map on a stencil with a staggered ghost is refused with exit code 2, and its plan names the ghost") {
+  const Folder folder;
+  const std::string symmetric = " wave-map --lattice.stencil=rectangle-symmetric --lattice.sites=16 --run.steps=4 "
+                                "--output.figures=off";
+  const Ran ran = delf_program(folder, "run" + symmetric + " --out out");
+  INFO(ran.err);
+  CHECK(ran.code == 2);
+  REQUIRE(lines(ran.err).size() == 1);
+  CHECK(contains(ran.err, "lattice.stencil = rectangle-symmetric: waves near theta = pi, z = -1"));
+  CHECK(contains(ran.err, "lattice.stencil = rectangle"));
+  CHECK_FALSE(contains(ran.err, "reduce"));
+  const Ran planned = delf_program(folder, "plan" + symmetric);
+  CHECK(planned.code == 0);
+  CHECK(contains(planned.out, "ghost        waves near theta = pi, z = -1"));
+  CHECK(delf_program(folder, "run wave-map --lattice.sites=16 --run.steps=4 --output.figures=off --out out").code == 0);
+}
+
 TEST_CASE("a mesh that crosses itself ends with exit code 3, and the last mesh in order is saved") {
   const Folder folder;
   const Ran ran = delf_program(folder,

@@ -314,6 +314,23 @@ TEST_CASE("findings pass, and numbers that are not finite are reported as null")
   CHECK(stability_report(scene, f).find("passed: 2 limits") != std::string::npos);
 }
 
+TEST_CASE("under the constraint of the scene's theory a staggered wave that grows is named, with its scheme") {
+  StabilityRequest request = small_request();
+  request.schemes = chosen_schemes({"rectangle-symmetric", "rectangle", "triangle-vertex"}, Problem{});
+  for (NamedScheme& one : request.schemes)
+    one.problem.theory = "wave-map", one.problem.lattice = coarse().lattice, one.problem.time_step = 0.1;
+  request.mass_steps.clear(), request.corners.clear();
+  const StabilityFindings f = find_stability(request, coarse());
+  REQUIRE(f.constraints.size() == 1);
+  CHECK(f.constraints[0].scheme == "rectangle-symmetric");
+  const Scene scene(Settings("test.ini", {}, {}));
+  CHECK(stability_report(scene, f).find("rectangle-symmetric: waves near theta = pi, z = -1") != std::string::npos);
+  CHECK(Json::parse(stability_json(scene, f))["constraint_ghosts"].size() == 1);
+  // none without a constraint
+  for (NamedScheme& one : request.schemes) one.problem.theory = "wave";
+  CHECK(find_stability(request, coarse()).constraints.empty());
+}
+
 TEST_CASE("findings fail when theory is wrong, or a stress case ends in a forbidden verdict") {
   StabilityRequest request = small_request();
   request.schemes.pop_back();
