@@ -11,9 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "schemes/stepping/evolution.hpp"
-#include "schemes/theories/field_theory.hpp"
-#include "schemes/theories/theory_registry.hpp"
+#include "jets/tables/rectangle_jet.hpp"
+#include "jets/tables/triangle_jet.hpp"
+#include "schemes/scheme.hpp"
+#include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/experiment.hpp"
 
@@ -178,27 +179,26 @@ TEST_CASE("the order between all pairs of walls stays two up to 2561 sites", "[s
     for (const char* stencil : stencils_with_walls) check_second_order(stencil, left, right, {320, 640, 1280, 2560});
 }
 
-TEST_CASE("natural walls are of second order for triangles with the terms of the walls, and of first without") {
-  const auto order_of = [](const char* stencil, bool with_terms) {
+TEST_CASE("between natural walls tables are of second order with the terms of the walls, and of first without") {
+  // (5.9) as printed, φ_t on the left edge alone
+  const StencilTable printed = stencil_table(JetTable<4, 1>{
+      shapes::rectangle, 1, {{{1, {.25, .25, .25, .25}, {-1, 1, 0, 0}, {-.5, -.5, .5, .5}}}}});
+  const auto order_of = [](const StencilTable& table, bool with_terms) {
     const auto error = [&](int cells) {
       const Lattice lattice = Lattice::interval(cells + 1, 30, natural, natural);
       const BothWalls state(lattice);
       const double h = 0.5 * lattice.space_step();
-      const auto theory = make_theory(find_theory("sine-gordon"), {});
-      std::vector<std::shared_ptr<const StencilFamily>> families{theory->variational(stencil)};
-      const auto terms = theory->at_walls(stencil, lattice);
-      REQUIRE(terms.size() == 2);
-      if (with_terms) families.insert(families.end(), terms.begin(), terms.end());
-      Evolution evolution(lattice, families, h);
+      const Scheme scheme{table, SineGordon{}};
+      Evolution evolution = with_terms ? scheme.on(lattice, h) : Evolution(lattice, {scheme.family()}, h);
       evolution.stepper().start({values(state, 0, lattice), values(state, h, lattice)});
       while (evolution.stepper().newest() < std::lround(6 / h)) evolution.stepper().step();
       return distance(evolution.stepper().row(0), values(state, 6, lattice));
     };
     return order(error(320), error(640), 2);
   };
-  for (const char* stencil : {"triangle", "triangle-vertex"}) {
-    const double with = order_of(stencil, true), without = order_of(stencil, false);
-    CAPTURE(stencil, with, without);
+  for (const StencilTable& table : {stencil_table(Triangle::table), stencil_table(TriangleVertex::table), printed}) {
+    const double with = order_of(table, true), without = order_of(table, false);
+    CAPTURE(table.pattern.size(), table.points[0][JetSlot::phi].size(), with, without);
     CHECK(second(with));
     CHECK(without < 1.3);
   }

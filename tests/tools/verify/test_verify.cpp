@@ -131,6 +131,8 @@ TEST_CASE("verify passes on intervals, points, elements, moving meshes and const
   const auto arguments =
       GENERATE(as<std::string>(), "interval --lattice.sites=33 --run.steps=20",
                "interval --lattice.sites=33 --run.steps=20 --boundary.left=natural --lattice.stencil=rectangle",
+               "interval --lattice.sites=33 --run.steps=20 --boundary.left=natural --lattice.stencil=triangle",
+               "interval --lattice.sites=32 --run.steps=20 --lattice.stencil=triangle-vertex",
                "interval --lattice.sites=32 --run.steps=20 --boundary.right=fixed",
                "kink --theory.fibre=S1 --lattice.sites=65 --run.steps=20",
                "kink-train --lattice.length=30 --lattice.sites=60 --boundary.winding=3 --run.steps=20",
