@@ -204,6 +204,28 @@ TEST_CASE("between natural walls tables are of second order with the terms of th
   }
 }
 
+TEST_CASE("between all pairs of walls the energy stays to second order too") {
+  for (const auto& [left, right] : pairs_of_walls)
+    for (const char* stencil : stencils_with_walls) {
+      const auto error = [&, left = left, right = right](int cells) {
+        const Lattice lattice = Lattice::interval(cells + 1, 30, left, right);
+        const Problem p = problem_for({stencil}, "sine-gordon", lattice, 0.5);
+        Simulation simulation(p);
+        start(simulation, p, BothWalls(lattice), Start::exact);
+        const double first = simulation.monitors().energy;
+        double most = 0;
+        while (simulation.newest() < std::lround(6 / p.time_step)) {
+          simulation.step();
+          most = std::max(most, std::abs(simulation.monitors().energy - first) / first);
+        }
+        return most;
+      };
+      const double p = order(error(160), error(320), 2);
+      CAPTURE(stencil, left == natural, right == natural, p);
+      CHECK(second(p));
+    }
+}
+
 TEST_CASE("to rectangles a natural wall is a mirror, and a fixed wall one that changes the sign") {
   for (const SchemeName& scheme : {SchemeName{"rectangle"}, SchemeName{"rectangle-symmetric"}})
     for (const Wall wall : {natural, fixed}) {
