@@ -4,20 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <memory>
 #include <numbers>
+#include <vector>
 
 #include "lattice/error.hpp"
+#include "schemes/stability/symbol.hpp"
 
 namespace delf {
 namespace {
-
-/// "pi", or a number.
-std::string angle(double value) {
-  const double share = std::abs(value) / std::numbers::pi;
-  if (share < 1e-6) return "0";
-  return std::abs(share - 1) < 1e-6 ? "pi" : fmt::format("{:.4g}", std::abs(value));
-}
 
 /// The families that read no multiplier; none if there are other components than fields besides.
 std::vector<std::shared_ptr<const StencilFamily>> without_constraints(const LatticeSystem& system) {
@@ -34,35 +29,29 @@ std::vector<std::shared_ptr<const StencilFamily>> without_constraints(const Latt
 
 }  // namespace
 
-std::optional<Ghost> ghost_under_constraint(const LatticeSystem& system) {
+std::optional<ConstraintGhost> ghost_under_constraint(const LatticeSystem& system) {
   const auto families = without_constraints(system);
   if (families.empty()) return std::nullopt;
-  const auto at = [&](double time_step) {
-    try {
-      return linear_stability(LatticeSystem(system.lattice(), families, time_step)).ghosts;
-    } catch (const BadInput&) {  // no symbol: a placed density, or one that is not defined at zero
-      return std::vector<Ghost>();
-    }
-  };
-  // At a stability limit two roots meet as well, but not below it.
-  const std::vector<Ghost> shorter = at(0.7 * system.time_step());
-  for (const Ghost& ghost : at(system.time_step()))
-    if (std::ranges::any_of(shorter, [&](const Ghost& other) {
-          return std::abs(other.theta - ghost.theta) < 1e-4 && std::abs(other.z - ghost.z) < 1e-3;
-        }))
-      return ghost;
+  try {
+    // At a stability limit a root is −1 as well, but not below it.
+    const Symbol symbol(LatticeSystem(system.lattice(), families, system.time_step()));
+    const Symbol shorter(LatticeSystem(system.lattice(), families, 0.7 * system.time_step()));
+    for (const double theta : {std::numbers::pi, 0.0})
+      for (const int z : {-1, 1}) {
+        // Bricks have two names for a wave, (z, θ) and (−z, θ + π).
+        const bool is_constant = (theta == 0 && z == 1) || (symbol.brick() && theta != 0 && z == -1);
+        if (!is_constant && symbol.is_root(z, theta) && shorter.is_root(z, theta)) return ConstraintGhost{theta, z};
+      }
+  } catch (const BadInput&) {  // no symbol: a placed density, or one that is not defined at zero
+  }
   return std::nullopt;
 }
 
-std::string in_words_under_constraint(const Ghost& ghost) {
-  const double turn = std::abs(std::arg(ghost.z));
-  const std::string z = turn < 1e-6                      ? "1"
-                        : std::numbers::pi - turn < 1e-6 ? "-1"
-                                                         : fmt::format("exp({}i)", angle(turn));
+std::string in_words_under_constraint(const ConstraintGhost& ghost) {
   return fmt::format(
       "waves near theta = {}, z = {} off the constraint's surface grow from rounding, and faster for a shorter time "
       "step",
-      angle(ghost.theta), z);
+      ghost.theta == 0 ? "0" : "pi", ghost.z);
 }
 
 }  // namespace delf
