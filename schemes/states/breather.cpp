@@ -60,6 +60,11 @@ std::unique_ptr<State> breather(const StateBuild& build) {
   return std::make_unique<Breather>(build, PulseFrame{x0, v, 0, until}, m, omega);
 }
 
+// 1/(γm): the slopes of a slow breather are those of kinks, and the tails of a fast one longer.
+double breather_width(const StateBuild& build) {
+  return 1 / (lorentz_factor(subluminal(build, "breather")) * pulse_mass(build));
+}
+
 }  // namespace
 }  // namespace initial
 
@@ -72,6 +77,9 @@ const StateEntry breather_state{
     {"sine-gordon"},
     {"sine-gordon-impurity"},
     Place::line,
-    initial::breather};
+    initial::breather,
+    false,
+    {},
+    initial::breather_width};
 
 }  // namespace delf

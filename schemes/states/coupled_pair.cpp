@@ -71,7 +71,10 @@ const StateEntry coupled_kinks_state{
     {"coupled-sine-gordon"},
     {},
     Place::line,
-    [](const StateBuild& build) { return initial::coupled(build, kink_state); }};
+    [](const StateBuild& build) { return initial::coupled(build, kink_state); },
+    false,
+    {},
+    [](const StateBuild& build) { return kink_state.width(build); }};
 
 extern const StateEntry coupled_breathers_state;
 const StateEntry coupled_breathers_state{
@@ -81,6 +84,9 @@ const StateEntry coupled_breathers_state{
     {"coupled-sine-gordon"},
     {},
     Place::line,
-    [](const StateBuild& build) { return initial::coupled(build, breather_state); }};
+    [](const StateBuild& build) { return initial::coupled(build, breather_state); },
+    false,
+    {},
+    [](const StateBuild& build) { return breather_state.width(build); }};
 
 }  // namespace delf

@@ -59,6 +59,11 @@ std::unique_ptr<State> any_kink(const StateBuild& build, bool mirrored) {
   return std::make_unique<Kink>(build, frame, mirrored, std::move(profile));
 }
 
+// 1/(γ rate)
+double kink_width(const StateBuild& build) {
+  return 1 / (lorentz_factor(subluminal(build, build.entry.name)) * kink_profile(build)->tail_rate());
+}
+
 }  // namespace
 }  // namespace initial
 
@@ -71,7 +76,10 @@ const StateEntry kink_state{
     {"sine-gordon", "double-sine-gordon", "phi4"},
     {"sine-gordon-impurity"},
     Place::line,
-    [](const StateBuild& build) { return initial::any_kink(build, false); }};
+    [](const StateBuild& build) { return initial::any_kink(build, false); },
+    false,
+    {},
+    initial::kink_width};
 
 extern const StateEntry antikink_state;
 const StateEntry antikink_state{"antikink",
@@ -80,6 +88,9 @@ const StateEntry antikink_state{"antikink",
                                 {"sine-gordon", "double-sine-gordon", "phi4"},
                                 {"sine-gordon-impurity"},
                                 Place::line,
-                                [](const StateBuild& build) { return initial::any_kink(build, true); }};
+                                [](const StateBuild& build) { return initial::any_kink(build, true); },
+                                false,
+                                {},
+                                initial::kink_width};
 
 }  // namespace delf

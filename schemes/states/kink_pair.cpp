@@ -95,6 +95,12 @@ std::unique_ptr<State> kink_pair(const StateBuild& build, int winding) {
   return std::make_unique<Pulses>(build, PulseFrame{pair.position, 0, winding, lasts_until(build, pair)}, pair);
 }
 
+// 1/(γm)
+double pair_width(const StateBuild& build) {
+  const Pair pair = read(build);
+  return 1 / (pair.gamma() * pair.mass);
+}
+
 std::vector<Parameter> pair_parameters() {
   Parameter separation = separation_parameter();
   separation.otherwise = "L/4";
@@ -112,7 +118,10 @@ const StateEntry kink_antikink_state{
     {"sine-gordon"},
     {"sine-gordon-impurity"},
     Place::line,
-    [](const StateBuild& build) { return initial::kink_pair<initial::KinkAntikink>(build, 0); }};
+    [](const StateBuild& build) { return initial::kink_pair<initial::KinkAntikink>(build, 0); },
+    false,
+    {},
+    initial::pair_width};
 
 extern const StateEntry kink_kink_state;
 const StateEntry kink_kink_state{
@@ -122,6 +131,9 @@ const StateEntry kink_kink_state{
     {"sine-gordon"},
     {"sine-gordon-impurity"},
     Place::line,
-    [](const StateBuild& build) { return initial::kink_pair<initial::KinkKink>(build, 2); }};
+    [](const StateBuild& build) { return initial::kink_pair<initial::KinkKink>(build, 2); },
+    false,
+    {},
+    initial::pair_width};
 
 }  // namespace delf

@@ -39,6 +39,13 @@ class KinkTrain final : public State {
   double sign_, position_, mass_;
 };
 
+TrainProfile profile_of(const StateBuild& build) {
+  const double m = pulse_mass(build),
+               period = build.lattice.length() / std::abs(static_cast<double>(build.request.winding.value_or(1)));
+  return build.values.has("initial.speed") ? TrainProfile::from_speed(subluminal(build, "kink"), period, m)
+                                           : TrainProfile::from_epsilon(build.number("initial.epsilon"), period, m);
+}
+
 std::unique_ptr<State> kink_train(const StateBuild& build) {
   const int n = build.request.winding.value_or(1), sites = build.lattice.sites();
   if (n == 0)
@@ -47,11 +54,7 @@ std::unique_ptr<State> kink_train(const StateBuild& build) {
     throw BadInput("boundary.winding", "boundary.winding = " + std::to_string(n) + ": " + std::to_string(sites) +
                                            " sites resolve at most " + std::to_string(sites / 2) +
                                            " kinks; raise lattice.sites");
-  const double m = pulse_mass(build), period = build.lattice.length() / std::abs(static_cast<double>(n));
-  const TrainProfile profile = build.values.has("initial.speed")
-                                   ? TrainProfile::from_speed(subluminal(build, "kink"), period, m)
-                                   : TrainProfile::from_epsilon(build.number("initial.epsilon"), period, m);
-  return std::make_unique<KinkTrain>(profile, n, centre(build), m);
+  return std::make_unique<KinkTrain>(profile_of(build), n, centre(build), pulse_mass(build));
 }
 
 Parameter speed() {
@@ -73,6 +76,9 @@ const StateEntry kink_train_state{
     {"sine-gordon"},
     {},
     Place::circle,
-    initial::kink_train};
+    initial::kink_train,
+    false,
+    {},
+    [](const StateBuild& build) { return initial::profile_of(build).width(); }};
 
 }  // namespace delf

@@ -68,9 +68,12 @@ class MpsCollision final : public State {
   double epsilon_, mass_;
 };
 
+TrainProfile profile_of(const StateBuild& build) {
+  return TrainProfile::from_epsilon(build.number("initial.epsilon"), build.lattice.length() / 4, pulse_mass(build));
+}
+
 std::unique_ptr<State> mps_collision(const StateBuild& build) {
-  const double m = pulse_mass(build), epsilon = build.number("initial.epsilon");
-  return std::make_unique<MpsCollision>(TrainProfile::from_epsilon(epsilon, build.lattice.length() / 4, m), epsilon, m);
+  return std::make_unique<MpsCollision>(profile_of(build), build.number("initial.epsilon"), pulse_mass(build));
 }
 
 }  // namespace
@@ -85,6 +88,9 @@ const StateEntry mps_collision_state{
     {},
     {"sine-gordon"},
     Place::circle,
-    initial::mps_collision};
+    initial::mps_collision,
+    false,
+    {},
+    [](const StateBuild& build) { return initial::profile_of(build).width(); }};
 
 }  // namespace delf

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -78,6 +79,13 @@ void check_finite(const ParameterValues& values) {
       throw BadInput(key, key + " = " + initial::text(*number) + ": not a finite number; choose a finite one");
 }
 
+StateBuild build_of(const StateEntry& entry, const StateRequest& request, const Lattice& lattice) {
+  StateBuild build{entry, request, lattice, request.values, holds(entry.exact, request.theory)};
+  check_finite(build.values);
+  complete(build.values, entry.parameters);
+  return build;
+}
+
 }  // namespace
 
 const std::vector<const StateEntry*>& state_entries() { return registry(); }
@@ -101,6 +109,11 @@ std::string theories_in_words(const StateEntry& entry) {
   return joined(entry.exact) + "; approximately: " + joined(entry.approximate);
 }
 
+double width_of(const StateRequest& request, const Lattice& lattice) {
+  const StateEntry& entry = find_state(request.name);
+  return entry.width ? entry.width(build_of(entry, request, lattice)) : std::numeric_limits<double>::infinity();
+}
+
 std::unique_ptr<State> make_state(const StateRequest& request, const Lattice& lattice) {
   const StateEntry& entry = find_state(request.name);
   const std::string what = "initial.state = " + request.name + ": ";
@@ -110,10 +123,7 @@ std::unique_ptr<State> make_state(const StateRequest& request, const Lattice& la
                    what + "not a state of " + request.theory + "; it belongs to " + theories_in_words(entry));
   check_place(entry, lattice, what);
 
-  StateBuild build{entry, request, lattice, request.values, holds(entry.exact, request.theory)};
-  check_finite(build.values);
-  complete(build.values, entry.parameters);
-  auto state = entry.build(build);
+  auto state = entry.build(build_of(entry, request, lattice));
   if (lattice.is_circle() && request.winding && *request.winding != state->winding())
     throw BadInput("boundary.winding", "boundary.winding = " + std::to_string(*request.winding) + ": the state " +
                                            request.name + " winds " + std::to_string(state->winding()) +

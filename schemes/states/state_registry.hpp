@@ -40,6 +40,8 @@ struct StateEntry {
   std::unique_ptr<State> (*build)(const StateBuild&);
   bool any_theory = false;            ///< every theory may start from it …
   std::vector<std::string> but = {};  ///< … but these
+  /// The length over which the narrowest pulse changes, as it moves: 1/(γm) for a kink of sine-Gordon. Null: no pulses.
+  double (*width)(const StateBuild&) = nullptr;
 };
 
 /// All states, the built-in ones first: a new state adds one line there.
@@ -48,6 +50,8 @@ const std::vector<const StateEntry*>& state_entries();
 void register_state(const StateEntry&);
 /// Throws BadInput, with the nearest name, if there is none of that name.
 const StateEntry& find_state(const std::string& name);
+/// The width of a state that make_state() makes, as its entry declares it; infinite for what has no pulses.
+double width_of(const StateRequest&, const Lattice&);
 /// "sine-gordon, phi4; approximately: sine-gordon-impurity"
 std::string theories_in_words(const StateEntry&);
 

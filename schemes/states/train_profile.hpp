@@ -17,6 +17,8 @@ struct TrainProfile {
   double phi(double xi) const;
   /// dφ̃/dξ
   double slope(double xi) const;
+  /// √(1 − v²)/m = Λ/2κK, of each kink
+  double width() const { return period / (2 * jacobi.modulus() * jacobi.K()); }
 
   /// From κ = 1 − ε; the speed follows. Throws BadInput (initial.epsilon) if the kinks are too wide for the period.
   static TrainProfile from_epsilon(double epsilon, double period, double mass);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/stepping/newton.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -161,7 +163,8 @@ Newton follow(SlabProblem& problem, const std::function<Vector(double)>& predict
   int iterations = 0, sign = 0;
   const auto root_at = [&](double where, const Vector& off) {
     problem.set(where);
-    Newton found = newton(problem, predict(where) + off, absolute_tolerance, std::min(max_iterations, 12), tame_ratio);
+    Newton found = newton(problem, predict(where) + off, absolute_tolerance,
+                          std::min(max_iterations, enough_iterations), tame_ratio);
     iterations += found.iterations;
     found.converged = found.converged && found.tame && (sign == 0 || found.sign == sign);
     return found;
@@ -200,6 +203,12 @@ NewtonResult as_result(const Newton& found, int iterations) {
 }
 
 }  // namespace
+
+std::string remedy_for(int max_iterations) {
+  return max_iterations < enough_iterations
+             ? fmt::format("scheme.max_iterations = {} leaves it too few: raise it", max_iterations)
+             : "reduce lattice.courant or lattice.time_step";
+}
 
 NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, const Window& past,
                         double tolerance, int max_iterations) {
@@ -252,8 +261,8 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
   const Newton followed = follow(problem, predict, absolute, max_iterations);
   if (!followed.converged)
     throw NoConvergence(
-        "the starting row of initial.start = centred was not found: Newton's method did not converge; "
-        "reduce lattice.courant or lattice.time_step");
+        "the starting row of initial.start = centred was not found: Newton's method did not converge; " +
+        remedy_for(max_iterations));
   return as_result(followed, iterations + followed.iterations);
 }
 

@@ -3,12 +3,18 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "lattice/plan/solve_plan.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
+
+/// What Newton's method has not found after so many iterations, more of them do not find.
+inline constexpr int enough_iterations = 12;
+/// What a user can do who has allowed so many.
+std::string remedy_for(int max_iterations);
 
 struct NewtonResult {
   bool converged = false;

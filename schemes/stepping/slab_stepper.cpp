@@ -170,7 +170,7 @@ void SlabStepper::predict_without_past(const Unknowns& unknowns, std::int64_t J)
 }
 
 void SlabStepper::fail(std::int64_t J, const char* why) const {
-  std::string remedy = "reduce lattice.courant or lattice.time_step";
+  std::string remedy = remedy_for(options_.max_iterations);
   if (const auto ghost = ghost_under_constraint(system_))
     remedy = fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint);
   throw NoConvergence(fmt::format("step {}, t = {:.6g}: the equations of the slab were not solved: {}; {}", J,
@@ -210,7 +210,7 @@ SlabStepper::Change SlabStepper::take_change(const Parity& p, std::int64_t J) {
 }
 
 double SlabStepper::wanted(const Change& c) const {
-  return std::max(options_.tolerance, 4 * epsilon) * c.value;
+  return options_.tolerance * c.value;
 }
 
 /// With one matrix for all iterations corrections shrink by a ratio ρ: what is left after this one is ρ/(1 − ρ) of it.

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct StepOptions {
   int threads = 1;           ///< that explicit steps are shared by; the bits are the same for any number
 };
 
+/// Rounding allows no smaller one: Stepper takes this in its place.
+inline constexpr double smallest_tolerance = 4 * std::numeric_limits<double>::epsilon();
+
 /// Tolerances below this ask for all that rounding allows: there nothing is left to an estimate.
 inline constexpr double smallest_estimated = 0.99e-13;
 
@@ -28,10 +32,19 @@ inline constexpr double smallest_estimated = 0.99e-13;
 inline constexpr double largest_finite = 1e150;
 inline bool overflowed(double largest_value) { return !(largest_value <= largest_finite); }
 
+/// Why a step was solved by continuation, its root followed from a small time step, at a thousand times the cost.
+enum class Continued { no, stiff, slow, out_of_iterations };
+inline const char* in_words(Continued why) {
+  return why == Continued::stiff  ? "the equations are stiff, and may have several roots"
+         : why == Continued::slow ? "the simplified Newton method does not contract"
+                                  : "scheme.max_iterations was reached";
+}
+
 /// Where a stepper stands.
 struct StepState {
   std::int64_t newest = -1;  ///< row of the fields
   int iterations = 0;        ///< of the last step: evaluations of the nonlinear part; 0 if it was solved at once
+  Continued continued = Continued::no;  ///< of the last step
 };
 
 /// What a stepper is like.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/stepping/stepper.hpp"
 
+#include <algorithm>
+
 #include "schemes/stepping/composition_stepper.hpp"
 #include "schemes/system/equation_terms.hpp"
 #include "schemes/stepping/rows/row_stepper.hpp"
@@ -9,7 +11,8 @@
 namespace delf {
 namespace {
 
-std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options) {
+std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan& plan, StepOptions options) {
+  options.tolerance = std::max(options.tolerance, smallest_tolerance);
   if (goes_by_rows(system, plan)) {
     try {
       return std::make_unique<RowStepper>(system, plan, options);

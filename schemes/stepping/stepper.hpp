@@ -58,6 +58,8 @@ class Stepper {
   double residual() const { return method_->residual(); }
   /// Of the last step: evaluations of the nonlinear part; 0 if it was solved at once.
   int iterations() const { return method_->state().iterations; }
+  /// Whether the last step was solved by continuation, and why.
+  Continued continued() const { return method_->state().continued; }
 
   /// Of rows by lanes with halos; null when stepped slab by slab.
   const RowLayout* layout() const { return report_.layout; }

@@ -14,6 +14,7 @@ const TheoryEntry complex_klein_gordon_theory{
     [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<ComplexKleinGordon>>(
           ComplexKleinGordon{p.get<double>("theory.mass"), p.get<double>("theory.lambda")});
-    }};
+    },
+    false, 0.0};
 
 }  // namespace delf

@@ -14,6 +14,6 @@ const TheoryEntry coupled_sine_gordon_theory{"coupled-sine-gordon",
                                                return std::make_unique<TheoryOf<CoupledSineGordon>>(CoupledSineGordon{
                                                    p.get<double>("theory.mass"), p.get<double>("theory.lambda")});
                                              },
-                                             true};
+                                             true, 0.0};
 
 }  // namespace delf

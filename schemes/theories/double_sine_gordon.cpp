@@ -14,6 +14,6 @@ const TheoryEntry double_sine_gordon_theory{"double-sine-gordon",
                                               return std::make_unique<TheoryOf<DoubleSineGordon>>(DoubleSineGordon{
                                                   p.get<double>("theory.mass"), p.get<double>("theory.lambda")});
                                             },
-                                            true};
+                                            true, 0.0};
 
 }  // namespace delf

@@ -13,6 +13,7 @@ const TheoryEntry klein_gordon_theory{
     {mass_parameter()},
     [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<KleinGordon>>(KleinGordon{p.get<double>("theory.mass")});
-    }};
+    },
+    false, 0.0};
 
 }  // namespace delf

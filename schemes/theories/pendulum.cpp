@@ -13,6 +13,6 @@ const TheoryEntry pendulum_theory{"pendulum",
                                   [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
                                     return std::make_unique<TheoryOf<Pendulum>>(Pendulum{p.get<double>("theory.mass")});
                                   },
-                                  true};
+                                  true, 0.0};
 
 }  // namespace delf

@@ -12,6 +12,7 @@ const TheoryEntry phi4_theory{"phi4",
                               {lambda_parameter()},
                               [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
                                 return std::make_unique<TheoryOf<PhiFour>>(PhiFour{p.get<double>("theory.lambda")});
-                              }};
+                              },
+                              false, 1.0};
 
 }  // namespace delf

@@ -14,6 +14,6 @@ const TheoryEntry sine_gordon_theory{
     [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<SineGordon>>(SineGordon{p.get<double>("theory.mass")});
     },
-    true};
+    true, 0.0};
 
 }  // namespace delf

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,8 @@ struct TheoryEntry {
   /// From the values of all its parameters.
   std::unique_ptr<FieldTheory> (*make)(const ParameterValues&);
   bool angle = false;  ///< the field is an angle: values 2π apart are the same state
+  /// All components have this value in the state about which the linear limits of a run are found; none: they are not.
+  std::optional<double> vacuum = {};
 };
 
 /// m and λ, which several theories have.

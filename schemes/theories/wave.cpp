@@ -10,6 +10,7 @@ extern const TheoryEntry wave_theory;
 const TheoryEntry wave_theory{
     "wave", "φ_tt − φ_xx = 0", {}, [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<Wave>>(Wave{});
-    }};
+    },
+    false, 0.0};
 
 }  // namespace delf

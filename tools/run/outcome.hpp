@@ -2,9 +2,11 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "schemes/stepping/step_method.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
@@ -35,11 +37,14 @@ struct Outcome {
   double seconds = 0;  ///< of the steps alone
   double iterations_mean = 0, residual_max = 0;
   int iterations_max = 0;
+  bool iterates = false;  ///< a step is not one solve
+  std::map<Continued, std::int64_t> continued;  ///< steps that were solved by continuation, by the reason
   double energy_initial = unknown, energy_final = unknown, energy_error_max = unknown;
   double momentum_initial = unknown, momentum_final = unknown, charge_final = unknown;
   double constraint_max = unknown;  ///< the largest |G|, if the scheme has constraints
   std::vector<Conserved> conserved;
   double error_linf = unknown, error_l2 = unknown;
+  std::vector<std::string> warnings;  ///< why the result may be wrong although the status is done
 
   double ns_per_site_step(int sites) const {
     return steps_taken == 0 ? unknown : 1e9 * seconds / (static_cast<double>(steps_taken) * sites);

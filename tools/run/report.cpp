@@ -35,7 +35,15 @@ std::string report(const Scene& scene, const Outcome& o) {
   if (!o.threads.empty()) line("threads", o.threads);
   const std::string iterations =
       o.iterations_max == 0 ? "none" : fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max);
-  line("iterations", iterations + fmt::format("; residual {:.2g} at most", o.residual_max));
+  line("iterations", iterations);
+  for (const auto& [why, steps] : o.continued)
+    line("continued", fmt::format("{} of {} steps were followed from a small time step: {}", steps, o.steps_taken,
+                                  in_words(why)));
+  // Two measures: of the equations, and of the field.
+  line("residual", fmt::format("{:.2g} at most, relative to the terms of the equations{}", o.residual_max,
+                               o.iterates ? fmt::format("; scheme.tolerance = {:.3g} is of the last change of the field",
+                                                        p.tolerance)
+                                          : ""));
   if (std::isfinite(o.energy_final))
     line("energy", fmt::format("{:.10g}{}", o.energy_final,
                                std::isfinite(o.energy_error_max)  // there is none relative to an energy of zero
@@ -47,6 +55,7 @@ std::string report(const Scene& scene, const Outcome& o) {
   if (std::isfinite(o.error_linf))
     line("error",
          fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));
+  for (const std::string& warning : o.warnings) line("warning", warning);
   line("status", o.status);
   return text;
 }

@@ -52,11 +52,17 @@ std::string threads_in_words(const Simulation& simulation, int asked) {
 
 Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,
                    Outcome& outcome)
-    : scene_(scene), initial_(initial), simulation_(simulation), outcome_(outcome), names_(names) {
+    : scene_(scene),
+      initial_(initial),
+      simulation_(simulation),
+      outcome_(outcome),
+      names_(names),
+      warnings_(scene, initial, simulation) {
   const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
   for (const Role role : all_roles) row_[role].resize(sites * names.of[role].size());
   for (const std::string& name : simulation.conserved_names())
     outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+  outcome.iterates = simulation.evolution().stepper().iterates();
   outcome.threads = threads_in_words(simulation, scene.problem.threads);
 }
 
@@ -137,6 +143,7 @@ void Stepping::count_step() {
   last_iterations_ = simulation_.iterations();
   iterations_ += last_iterations_;
   outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);
+  if (const Continued why = simulation_.evolution().stepper().continued(); why != Continued::no) ++outcome_.continued[why];
 }
 
 bool Stepping::to_be_recorded(std::int64_t row) const {
@@ -170,6 +177,7 @@ void Stepping::record(std::int64_t row) {
     if (!(record.residual <= outcome_.residual_max)) outcome_.residual_max = record.residual;
   }
   recorded_ = row;
+  if (started_) warnings_.see(record.time, row_[Role::field]);
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
   outcome_.charge_final = record.charge;
@@ -201,6 +209,7 @@ void Stepping::close_outcome() {
   if (outcome_.steps_taken > 0) outcome_.iterations_mean = iterations_ / static_cast<double>(outcome_.steps_taken);
   outcome_.energy_error_max = recorder_->largest_energy_error();
   measure_error();
+  if (started_) outcome_.warnings = warnings_.of(outcome_, recorder_->energy_errors(), row_[Role::field]);
 }
 
 // of the last row, which is still in row_

@@ -4,6 +4,7 @@
 #include "tools/run/outcome.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/recorder.hpp"
+#include "tools/run/warnings.hpp"
 
 namespace delf {
 
@@ -39,6 +40,7 @@ class Stepping {
   Outcome& outcome_;
   Recorder* recorder_ = nullptr;
   const RowNames& names_;
+  Warnings warnings_;
   RecordedRow row_;
   bool started_ = false;
   std::int64_t newest_ = 0, recorded_ = -1;

@@ -35,6 +35,8 @@ std::string summary_json(const Scene& scene, const Outcome& o) {
   json["bytes"] = o.bytes;
   json["iterations_mean"] = o.iterations_mean;
   json["iterations_max"] = o.iterations_max;
+  auto& continued = json["continued"] = nlohmann::ordered_json::array();
+  for (const auto& [why, steps] : o.continued) continued.push_back({{"steps", steps}, {"reason", in_words(why)}});
   json["residual_max"] = o.residual_max;
   json["energy_initial"] = o.energy_initial;
   json["energy_final"] = o.energy_final;
@@ -48,6 +50,8 @@ std::string summary_json(const Scene& scene, const Outcome& o) {
     conserved.push_back({{"name", c.name}, {"initial", c.initial}, {"final", c.final}, {"error_max", c.error_max}});
   json["error_linf"] = o.error_linf;
   json["error_l2"] = o.error_l2;
+  json["warnings"] = scene.warnings;
+  for (const std::string& warning : o.warnings) json["warnings"].push_back(warning);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -24,6 +24,8 @@ class InitialRows {
   /// The fields of row 0, for when there is nothing else to show.
   std::vector<double> row0() const;
   void start(Simulation&) const;
+  /// The state, or null if the rows come from a file.
+  const State* state() const { return state_.get(); }
   /// The solution to compare with, or null.
   const State* exact() const { return state_ && state_->exact() ? state_.get() : nullptr; }
 

@@ -65,6 +65,7 @@ constexpr double largest_int = std::numeric_limits<int>::max();
 constexpr double largest_count = 9007199254740992;  // 2⁵³: every integer below it is a double
 constexpr Limits any{};
 constexpr Limits positive{0, any.high, true};
+constexpr Limits at_most_a_hundredth{0, 0.01, true};
 constexpr Limits not_negative{0, any.high};
 constexpr Limits count{0, largest_count};
 constexpr Limits whole{-largest_int, largest_int};
@@ -97,7 +98,9 @@ std::vector<Key> general_keys() {
       Key{"scheme.method", choice, "multisymplectic", "", "the scheme; see `delf list schemes`", "", any,
           method_names()},
       Key{"scheme.tolerance", real, "1e-14", "",
-          "an implicit step ends when its next change is below this times what the field spans", "", positive},
+          "an implicit step ends when its next change is below this times what the field spans; rounding allows "
+          "8.9e-16 at least",
+          "", at_most_a_hundredth},
       Key{"scheme.seed_order", integer, "8", "", "rows that the first guess of an implicit step is extrapolated from",
           "", up_to_eight},
       Key{"scheme.max_iterations", integer, "50", "", "iterations of an implicit step before it has failed", "",

@@ -20,6 +20,9 @@ std::string resolved(const Scene& scene, const Key& key, StartRule start) {
   if (key.name == "lattice.time_step") return fmt::format("{}", scene.problem.time_step);
   if (key.name == "run.steps") return fmt::format("{}", scene.steps);
   if (key.name == "output.every") return fmt::format("{}", scene.every);
+  // its text, unless another one is in force
+  if (key.name == "scheme.tolerance" && Values(scene.settings).real(key.name) < scene.problem.tolerance)
+    return fmt::format("{}", scene.problem.tolerance);
   if (key.name == "initial.start") return to_string(start);
   if (key.name == "initial.file") return scene.initial_file.string();
   return Values(scene.settings).text(key.name).value_or("");

@@ -9,6 +9,7 @@
 
 #include "jets/tables/named_tables.hpp"
 #include "schemes/states/state_registry.hpp"
+#include "schemes/stepping/step_method.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/scene/keys.hpp"
@@ -64,7 +65,7 @@ Problem read_problem(const Settings& settings, const Values& values) {
   p.lattice = read_lattice(settings, values);
   p.stencil = stencil_name(values.choice("lattice.stencil"), p.lattice.space() == Space::point);
   p.method = values.choice("scheme.method");
-  p.tolerance = values.real("scheme.tolerance");
+  p.tolerance = std::max(values.real("scheme.tolerance"), smallest_tolerance);
   p.seed_order = static_cast<int>(values.integer("scheme.seed_order"));
   p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
   p.threads = static_cast<int>(values.integer("run.threads"));
@@ -168,11 +169,16 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   scene.figures = values.toggle("output.figures");
   scene.fields = values.toggle("output.fields");
   scene.times = values.times("output.times");
+  const auto warn = [&](const Setting& s, const std::string& why) {
+    scene.warnings.push_back(
+        fmt::format("{}: {}{} = {}: warning: {}", settings.place(s.key), s.line == 0 ? "--" : "", s.key, s.value, why));
+  };
   for (const Key& key : keys())
     if (const Setting* s = settings.find(key.name))
-      if (const std::string why = why_without_effect(scene, key.name); !why.empty())
-        scene.warnings.push_back(fmt::format("{}: {}{} = {}: warning: {}", settings.place(key.name),
-                                             s->line == 0 ? "--" : "", key.name, s->value, why));
+      if (const std::string why = why_without_effect(scene, key.name); !why.empty()) warn(*s, why);
+  if (values.real("scheme.tolerance") < smallest_tolerance)
+    warn(*settings.find("scheme.tolerance"),
+         fmt::format("rounding allows no less than {:.2g}, which is in force; raise it", smallest_tolerance));
   return scene;
 }
 

@@ -67,6 +67,7 @@ struct RowStepper::Impl {
   int past_sources = 0;       ///< rows of source terms that are there before row n + 1
   int source_rows_there = 0;  ///< the same as predictions count them
   int iterations = 0;
+  Continued continued = Continued::no;  ///< of the last step
   double largest = 0, largest_before = 0, span = 0, contracts_by = -1;
   // Steps in place are written over the newest row; the row before the first of them is kept.
   std::vector<double*> spare;
@@ -431,9 +432,8 @@ struct RowStepper::Impl {
   /// What the tolerance allows: relative to what the field spans, for where it has drifted to says nothing, but not
   /// below what rounding leaves at its size.
   double allowed(double size) const {
-    const double tolerance = std::max(options.tolerance, 4 * round_off);
     const double spanned = span > 0 ? std::min(span, size) : size;
-    return std::max(tolerance * spanned, 4 * round_off * size);
+    return std::max(options.tolerance * spanned, 4 * round_off * size);
   }
   /// What is left to a prediction has the same sign step after step, and moves the energy: over 5000 collisions (N = 255,
   /// h = k/8, tolerance 6e-8) by 1e-4 of it where all of the tolerance was, within what the exact root does with this
@@ -488,11 +488,12 @@ struct RowStepper::Impl {
     return effect;
   }
 
-  /// The new row, beside the old one or over it. False if it could not be solved for.
+  /// The new row, beside the old one or over it. False if it could not be solved for; `continued` then says why.
   bool solve_step() {
     const bool iterates = equations.iterates();
     begin_step();
     iterations = 0;
+    continued = Continued::no;
     Pack found = pass(Kind::step, iterates);
     double value = max_or_nan(found);
     if (overflowed(value)) return set_largest(value);
@@ -500,7 +501,8 @@ struct RowStepper::Impl {
     const double by = contraction_now(), enough = share_of_tolerance() * allowed(std::max({value, largest, largest_before}));
     double effect = effect_of_changes();
     for (iterations = 1; !(effect <= enough);) {
-      if (iterations >= options.max_iterations || !(effect < 1e100)) return false;
+      if (!(effect < 1e100)) return give_up(Continued::slow);
+      if (iterations >= options.max_iterations) return give_up(Continued::out_of_iterations);
       if (iterations == 1 && source_rows_there > 0) find_changes();
       // An estimate of what is left after this correction may spare its evaluation.
       const bool is_last = options.tolerance >= smallest_estimated && by * effect <= enough;
@@ -514,10 +516,14 @@ struct RowStepper::Impl {
       // Changes that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
       if (iterations >= 3 && effect > 0.5 * before) {
         if (effect <= 64 * round_off * std::max({value, largest, largest_before})) break;
-        return false;
+        return give_up(Continued::slow);
       }
     }
     return set_largest(value);
+  }
+  bool give_up(Continued why) {
+    continued = why;
+    return false;
   }
   bool set_largest(double value) {
     largest_before = largest, largest = value;
@@ -545,10 +551,10 @@ struct RowStepper::Impl {
     iterations += result.iterations;
     if (!result.converged)
       throw NoConvergence(fmt::format(
-          "step {}, t = {:.6g}: the implicit equations were not solved: the simplified Newton method does not "
-          "contract, and the root could not be followed from a small time step by full Newton steps; reduce "
-          "lattice.courant or lattice.time_step",
-          n + 1, static_cast<double>(n + 1) * system.time_step()));
+          "step {}, t = {:.6g}: the implicit equations were not solved: {}, and the root could not be followed from a "
+          "small time step by full Newton steps; {}",
+          n + 1, static_cast<double>(n + 1) * system.time_step(), in_words(continued),
+          remedy_for(options.max_iterations)));
     set_row(0, result.row);
     find_increment(0);
     evaluate_unknown();
@@ -561,7 +567,7 @@ struct RowStepper::Impl {
     leave_place();
     known = std::min(known, history);  // the oldest is written over
     const bool stiff = equations.iterates() && contraction->is_stiff();
-    if (stiff) begin_step(), iterations = 0;
+    if (stiff) begin_step(), iterations = 0, continued = Continued::stiff;
     if (stiff || !solve_step()) follow_root();
     if (overflowed(largest)) {
       largest = largest_before;
@@ -759,7 +765,7 @@ void RowStepper::step(bool looked_at) {
   const FlushDenormals guard;
   impl_->step(looked_at);
 }
-StepState RowStepper::state() const { return {impl_->n, impl_->iterations}; }
+StepState RowStepper::state() const { return {impl_->n, impl_->iterations, impl_->continued}; }
 std::vector<double> RowStepper::row(int back) const {
   impl_->require(back + 1);
   return impl_->row(impl_->number(back + 1));

@@ -29,6 +29,7 @@ TEST_CASE("errors in a scene name file, line, key, value, reason and remedy") {
       {"[scheme]\nseed_order = 9", "scheme.seed_order = 9", "at most 8"},
       {"[scheme]\nseed_order = 2.5", "scheme.seed_order = 2.5", "not an integer"},
       {"[scheme]\ntolerance = 0", "scheme.tolerance = 0", "above 0"},
+      {"[scheme]\ntolerance = 1", "scheme.tolerance = 1", "at most 0.01; lower"},
       {"[initial]\nspeed = 1", "initial.speed = 1", "slower than light"},
       {"[initial]\nstart = legendre", "initial.start = legendre", "needs scheme.method = spacetime"},
       {"[scheme]\nquadrature = simpson", "scheme.quadrature = simpson", "not known"},

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+
+using namespace delf::testing;
+
+namespace {
+
+/// A run that ends with exit code 0, without figures: its summary, report, stderr and scene.ini.
+struct Done {
+  nlohmann::json summary;
+  std::string report, err, scene;
+
+  explicit Done(const std::string& arguments) {
+    const Folder folder;
+    folder.write("small.ini", small_scene());
+    const Ran ran = delf_program(folder, "run " + arguments + " --output.figures=off --out out");
+    INFO(arguments << "\n" << ran.err);
+    REQUIRE(ran.code == 0);
+    summary = nlohmann::json::parse(read(folder / "out/summary.json"));
+    report = ran.out, err = ran.err, scene = read(folder / "out/scene.ini");
+  }
+  /// How many warnings have these words.
+  int warnings(const std::string& words) const {
+    int count = 0;
+    for (const auto& warning : summary["warnings"]) count += contains(warning.get<std::string>(), words) ? 1 : 0;
+    return count;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a run that ends well and may be wrong says why, in the report and in the summary") {
+  const std::string lobatto = "spacetime-element --scheme.degree_space=3 --scheme.quadrature=lobatto --run.until=10";
+  const auto [arguments, words] = GENERATE_COPY(values<std::pair<std::string, std::string>>({
+      {"kepler --initial.eccentricity=0.999 --run.until=30", "the energy of row 0 is 1.9"},
+      {"kepler --initial.eccentricity=0.999 --run.until=30", "larger than the range of the solution, 2"},
+      {"kepler --initial.eccentricity=0.95 --run.until=30", "the energy of row 0 is -2.67"},
+      {"fast-kink --lattice.sites=60", "a pulse of the initial state is 0.141 wide, less than two cells"},
+      {"collision --lattice.sites=32", "theta = pi (even N only)"},
+      {lobatto, "beyond the linear limit of the scheme"},
+      {lobatto, "the energy leaves ten times its early band"},
+      {"small.ini --scheme.max_iterations=2 --run.steps=10", "raise scheme.max_iterations, which is 2"},
+  }));
+  INFO(arguments);
+  const Done done(arguments);
+  INFO(done.summary["warnings"].dump(1));
+  CHECK(done.warnings(words) == 1);
+  for (const auto& warning : done.summary["warnings"])
+    CHECK(contains(done.report, "  warning    " + warning.get<std::string>() + "\n"));
+}
+
+TEST_CASE("shipped scenes as they are, and near misses, warn of nothing") {
+  const std::string arguments =
+      GENERATE(as<std::string>(), "kepler", "pendulum", "fast-kink", "kink", "kink-train", "collision --run.until=20",
+               "collision --lattice.sites=256 --run.until=20", "phi4-kink", "spacetime-element --scheme.degree_space=3",
+               "wave-packet", "wave-map", "r-adaptive --run.steps=50", "small.ini");
+  const Done done(arguments);
+  INFO(arguments << "\n" << done.summary["warnings"].dump(1));
+  CHECK(done.summary["warnings"].empty());
+  CHECK(done.summary["continued"].empty());
+  CHECK_FALSE(contains(done.report, "warning"));
+}
+
+TEST_CASE("steps followed by continuation are counted, with the reason") {
+  const Done done("small.ini --scheme.max_iterations=2 --run.steps=10");
+  REQUIRE(done.summary["continued"].size() == 1);
+  CHECK(done.summary["continued"][0]["steps"] == 9);
+  CHECK(done.summary["continued"][0]["reason"] == "scheme.max_iterations was reached");
+  CHECK(contains(done.report, "  continued  9 of 9 steps"));
+}
+
+TEST_CASE("a tolerance below what rounding allows is reported, and scene.ini has the one in force") {
+  const Done done("small.ini --scheme.tolerance=1e-20 --run.steps=10");
+  CHECK(contains(done.err, "--scheme.tolerance = 1e-20: warning: rounding allows no less than 8.9e-16"));
+  CHECK(done.warnings("scheme.tolerance = 1e-20") == 1);
+  CHECK(contains(done.scene, "tolerance = 8.881784197001252e-16\n"));
+  CHECK(contains(Done("small.ini --run.steps=10").scene, "tolerance = 1e-14\n"));
+}
+
+TEST_CASE("the report says what residual and tolerance are of") {
+  CHECK(contains(Done("small.ini --run.steps=10").report, "scheme.tolerance = 1e-14 is of the last change of the field"));
+  CHECK_FALSE(contains(Done("wave-packet --run.steps=10").report, "scheme.tolerance"));
+}

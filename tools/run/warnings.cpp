@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "jets/simd/scratch_rows.hpp"
+#include "lattice/error.hpp"
+#include "schemes/stability/linear_stability.hpp"
+#include "schemes/states/state_registry.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
+#include "tools/run/exact_energy.hpp"
+#include "tools/run/solution_error.hpp"
+
+namespace delf {
+
+namespace {
+
+constexpr double one_percent = 0.01;
+// Symbols of more components take as long as many a run.
+constexpr int most_components = 12;
+
+// The theory's vacuum, if no constant field is unstable there: −∂²ℓ/∂φᵃ∂φᵇ is positive by the sums of its rows.
+std::optional<double> stable_vacuum(const TheoryEntry& entry, const BatchDensity& density) {
+  if (!entry.vacuum || density.is_placed()) return std::nullopt;
+  const int d = density.components();
+  const ScratchRows phi(d, lanes), curvature(d * d, lanes);
+  for (int a = 0; a < d; ++a) std::fill_n(phi[a], lanes, *entry.vacuum);
+  density.curvature({lanes, phi.data()}, curvature.data());
+  for (int a = 0; a < d; ++a) {
+    double least = -curvature[a * d + a][0];
+    for (int b = 0; b < d; ++b)
+      if (b != a) least -= std::abs(curvature[a * d + b][0]);
+    if (!(least >= 0)) return std::nullopt;
+  }
+  return entry.vacuum;
+}
+
+// The verdict about the vacuum; nothing where there is none, or it would cost too much.
+std::optional<Symbol> symbol_of(const Scene& scene, const Simulation& simulation) {
+  const auto vacuum = stable_vacuum(find_theory(scene.problem.theory), simulation.theory().density());
+  const LatticeSystem& system = simulation.evolution().system();
+  if (!vacuum || system.components() > most_components) return std::nullopt;
+  try {
+    return Symbol(system, *vacuum);
+  } catch (const BadInput&) {  // a scheme that has no symbol
+    return std::nullopt;
+  }
+}
+
+// The largest |z| of the waves that the lattice has near θ: θ_j = 2πj/N on a circle, πj/(N − 1) between walls.
+double growth_near(const Symbol& symbol, const Lattice& lattice, double theta) {
+  if (lattice.space() == Space::point) return symbol.amplification(0);
+  const double apart = (lattice.is_circle() ? 2 : 1) * std::numbers::pi / lattice.cells();
+  const auto nearest = static_cast<int>(std::lround(theta / apart));
+  constexpr int window = 16;
+  double most = 1;
+  for (int j = std::max(0, nearest - window); j <= nearest + window; ++j)
+    most = std::max(most, symbol.amplification(std::min(j * apart, std::numbers::pi)));
+  return most;
+}
+
+struct Range {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  void add(double x) { least = std::min(least, x), most = std::max(most, x); }
+  double width() const { return std::max(0.0, most - least); }
+};
+
+// The largest range of a component, of so many rows of the solution until `end`.
+double range_of(const State& state, const Lattice& lattice, double end) {
+  const auto d = static_cast<std::size_t>(state.components()), N = static_cast<std::size_t>(lattice.sites());
+  const int times = std::clamp(2048 / lattice.sites(), 2, 64);
+  std::vector<double> row(N * d);
+  std::vector<Range> ranges(d);
+  for (int n = 0; n < times; ++n) {
+    state.values(end * n / (times - 1), lattice, row);
+    for (std::size_t at = 0; at < row.size(); ++at) ranges[at % d].add(row[at]);
+  }
+  double most = 0;
+  for (const Range& range : ranges) most = std::max(most, range.width());
+  return most;
+}
+
+}  // namespace
+
+Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulation& simulation)
+    : scene_(scene), initial_(initial), simulation_(simulation) {
+  if (initial.state()) width_ = width_of(scene.initial, scene.problem.lattice);
+  // A pulse moves by less than a quarter of the length from there to the end.
+  const double end = static_cast<double>(scene.steps) * scene.problem.time_step;
+  late_ = end - std::min(end, scene.problem.lattice.length()) / 4;
+}
+
+/// What makes steps finer, in keys.
+std::string Warnings::finer() const {
+  return scene_.problem.lattice.space() == Space::point ? "reduce lattice.time_step" : "raise lattice.sites";
+}
+/// Elements have several, and are as fine as their nodes.
+int Warnings::nodes_in_cell() const {
+  std::set<double> places;
+  for (const Component& component : simulation_.components()) places.insert(component.at.space);
+  return static_cast<int>(places.size());
+}
+double Warnings::turn() const { return 2 * std::numbers::pi * initial_.winding(); }
+double Warnings::centre(std::span<const double> fields) const {
+  return gradient_centre(scene_.problem.lattice, fields, simulation_.count(Role::field), turn());
+}
+double Warnings::exact_centre(double time) const {
+  const State& state = *initial_.exact();
+  std::vector<double> row(static_cast<std::size_t>(scene_.problem.lattice.sites() * state.components()));
+  state.values(time, scene_.problem.lattice, row);
+  return gradient_centre(scene_.problem.lattice, row, state.components(), turn());
+}
+
+void Warnings::see(double time, std::span<const double> fields) {
+  if (late_time_ || time < late_ || !initial_.exact() || !std::isfinite(width_)) return;
+  late_time_ = time;
+  late_centre_ = centre(fields);
+}
+
+std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energy_errors,
+                                      std::span<const double> last_row) const {
+  std::vector<std::string> all;
+  for (Found& found :
+       std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row), energy(outcome),
+                          energy_band(energy_errors), error(outcome), pinned(outcome, last_row)})
+    if (found) all.push_back(std::move(*found));
+  std::ranges::move(continued(outcome), std::back_inserter(all));
+  return all;
+}
+
+Warnings::Found Warnings::narrow_pulse() const {
+  const State* state = initial_.state();
+  const double two_cells = 2 * scene_.problem.lattice.space_step() / nodes_in_cell();
+  if (!state || !(width_ < two_cells) || scene_.problem.lattice.space() == Space::point) return {};
+  return fmt::format("a pulse of the initial state is {:.3g} wide, less than two cells, or {:.3g}; {}", width_,
+                     two_cells, finer());
+}
+
+Warnings::Found Warnings::linear_limit(const Outcome& outcome) const {
+  const auto symbol = symbol_of(scene_, simulation_);
+  if (!symbol || outcome.steps == 0) return {};
+  // A few wave numbers for the many roots of an element; between them the analysis looks where roots meet.
+  const StabilityVerdict verdict = linear_stability(*symbol, symbol->size() > 1 ? 33 : 101);
+  if (verdict.stable) return {};
+  const double growth = growth_near(*symbol, scene_.problem.lattice, verdict.worst_theta);
+  const double decades = static_cast<double>(outcome.steps) * std::log10(growth);
+  if (!(decades > 1)) return {};
+  return fmt::format(
+      "beyond the linear limit of the scheme: waves near qk = {:.3g} grow by {:.4g} in each step, by "
+      "1e{:.0f} in all; reduce {} (`delf stability` finds the limit)",
+      verdict.worst_theta, growth, decades,
+      scene_.problem.lattice.space() == Space::point ? "lattice.time_step" : "lattice.courant");
+}
+
+/// A mode that the scheme has and the theory has not, as far as it is there in the last row.
+Warnings::Found Warnings::spurious_mode(std::span<const double> last_row) const {
+  const Lattice& lattice = scene_.problem.lattice;
+  if (!lattice.is_circle() || lattice.sites() % 2 != 0) return {};
+  // The amplitude a of (−1)ⁱ a: Σ (−1)ⁱ (y_{i−1} − 2y_i + y_{i+1}) = −4 N a, in which a winding plays no part.
+  const int N = lattice.sites(), d = simulation_.count(Role::field);
+  double largest = 0, range = 0;
+  for (int c = 0; c < d; ++c) {
+    const auto y = [&](int i) {
+      return last_row[static_cast<std::size_t>(lattice.wrapped(i) * d + c)] + (i < 0 ? -turn() : i >= N ? turn() : 0);
+    };
+    double sum = 0;
+    Range values;
+    for (int i = 0; i < N; ++i) sum += (i % 2 == 0 ? 1 : -1) * (y(i - 1) - 2 * y(i) + y(i + 1)), values.add(y(i));
+    largest = std::max(largest, std::abs(sum) / (4 * N));
+    range = std::max(range, values.width());
+  }
+  if (!(largest > one_percent * range)) return {};
+  const auto symbol = symbol_of(scene_, simulation_);
+  if (!symbol) return {};
+  for (const Ghost& ghost : linear_stability(*symbol, 3).ghosts)
+    if (std::abs(ghost.theta - std::numbers::pi) < 1e-6)
+      return fmt::format("the last row has {:.2g} of a mode that the theory has not, {}; take lattice.sites odd",
+                         largest, ghost.words);
+  return {};
+}
+
+Warnings::Found Warnings::energy(const Outcome& outcome) const {
+  const State* state = initial_.state();
+  // The energy is taken from vertices alone: of an element it says little.
+  if (!state || nodes_in_cell() > 1) return {};
+  const auto exact = exact_energy(*state, simulation_.theory().density(), scene_.problem.lattice, width_, 0);
+  if (!exact || *exact == 0) return {};
+  for (const auto& [which, energy] :
+       {std::pair{"row 0", outcome.energy_initial}, {"the last row", outcome.energy_final}})
+    if (std::abs(energy - *exact) > one_percent * std::abs(*exact))
+      return fmt::format("the energy of {} is {:.6g}, and that of the initial state {:.6g}; {}", which, energy, *exact,
+                         finer());
+  return {};
+}
+
+/// The band of the first tenth of the run; a hundredth of the energy is no reason to warn.
+Warnings::Found Warnings::energy_band(const Trace& energy_errors) const {
+  const auto& intervals = energy_errors.intervals();
+  if (intervals.empty()) return {};
+  const double early = intervals.back().end / 10;
+  Range band;
+  for (const auto& interval : intervals)
+    if (interval.end <= early || &interval == intervals.data()) band.add(interval.least), band.add(interval.most);
+  const double middle = (band.least + band.most) / 2, allowed = std::max(5 * band.width(), one_percent);
+  for (const auto& interval : intervals)
+    if (std::max(interval.most - middle, middle - interval.least) > allowed)
+      return fmt::format(
+          "the energy leaves ten times its early band, {:.2g} of itself, at t = {:.6g}; reduce "
+          "lattice.time_step, or run less far",
+          band.width(), interval.begin);
+  return {};
+}
+
+Warnings::Found Warnings::error(const Outcome& outcome) const {
+  if (!(outcome.error_linf > 0)) return {};
+  const double range = range_of(*initial_.exact(), scene_.problem.lattice, outcome.time);
+  if (!(outcome.error_linf > range)) return {};
+  return fmt::format("the error of the last row, {:.3g}, is larger than the range of the solution, {:.3g}; {}",
+                     outcome.error_linf, range, finer());
+}
+
+Warnings::Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row) const {
+  if (!late_time_ || !(outcome.time > *late_time_) || outcome.time > initial_.exact()->exact_until()) return {};
+  const Lattice& lattice = scene_.problem.lattice;
+  const double k = lattice.space_step(), now = centre(last_row);
+  const double moved = separation(lattice, now, *late_centre_);
+  const double wanted = separation(lattice, exact_centre(outcome.time), exact_centre(*late_time_));
+  if (!(std::abs(wanted) > 4 * k && std::abs(moved) < k)) return {};
+  return fmt::format(
+      "the pulse has stood still at x = {:.4g} since t = {:.4g}, and ought to have moved by {:.3g}: pinned "
+      "by the lattice; {}",
+      now < 0 ? now + lattice.length() : now, *late_time_, wanted, finer());
+}
+
+std::vector<std::string> Warnings::continued(const Outcome& outcome) const {
+  std::vector<std::string> all;
+  for (const auto& [why, steps] : outcome.continued)
+    all.push_back(
+        fmt::format("{} of {} steps took a thousand times as long, followed from a small time step: {}; {}", steps,
+                    outcome.steps_taken, in_words(why),
+                    why == Continued::out_of_iterations
+                        ? fmt::format("raise scheme.max_iterations, which is {}", scene_.problem.max_iterations)
+                        : "reduce lattice.time_step"));
+  return all;
+}
+
+}  // namespace delf

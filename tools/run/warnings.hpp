@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/run/outcome.hpp"
+#include "tools/run/trace.hpp"
+#include "tools/scene/initial_rows.hpp"
+
+namespace delf {
+
+/// Finds why a run that ended well may be wrong all the same: too coarse for its state, beyond the linear limit of its
+/// scheme, off its energy or its exact solution, solved at a thousand times the cost. It uses what the state, the theory
+/// and the recorded rows say anyway; a step costs nothing more.
+class Warnings {
+ public:
+  Warnings(const Scene&, const InitialRows&, const Simulation&);
+
+  /// A recorded row of the fields.
+  void see(double time, std::span<const double> fields);
+  /// One line each, with a remedy, after the last row.
+  std::vector<std::string> of(const Outcome&, const Trace& energy_errors, std::span<const double> last_row) const;
+
+ private:
+  using Found = std::optional<std::string>;
+  Found narrow_pulse() const;
+  Found linear_limit(const Outcome&) const;
+  Found spurious_mode(std::span<const double> last_row) const;
+  Found energy(const Outcome&) const;
+  Found energy_band(const Trace& energy_errors) const;
+  Found error(const Outcome&) const;
+  Found pinned(const Outcome&, std::span<const double> last_row) const;
+  std::vector<std::string> continued(const Outcome&) const;
+
+  std::string finer() const;
+  int nodes_in_cell() const;
+  double turn() const;
+  double centre(std::span<const double> fields) const;
+  double exact_centre(double time) const;
+
+  const Scene& scene_;
+  const InitialRows& initial_;
+  const Simulation& simulation_;
+  double width_ = std::numeric_limits<double>::infinity();  ///< of the narrowest pulse of the state
+  double late_ = 0;  ///< from this time on a row is kept to tell whether a pulse still moves
+  std::optional<double> late_time_, late_centre_;
+};
+
+}  // namespace delf
