@@ -92,9 +92,14 @@ double range_of(const State& state, const Lattice& lattice, double end) {
 Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulation& simulation)
     : scene_(scene), initial_(initial), simulation_(simulation) {
   if (initial.state()) width_ = width_of(scene.initial, scene.problem.lattice);
-  // A pulse moves by less than a quarter of the length from there to the end.
   const double end = static_cast<double>(scene.steps) * scene.problem.time_step;
-  late_ = end - std::min(end, scene.problem.lattice.length()) / 4;
+  if (!initial.exact() || !std::isfinite(width_) || end > initial.exact()->exact_until()) return;
+  // The last stretch of time in which the solution's pulse moves by some cells: the shorter ones by less.
+  const Lattice& lattice = scene.problem.lattice;
+  const double at_end = exact_centre(end);
+  for (double stretch = lattice.space_step(); stretch <= end && !std::isfinite(late_); stretch *= 1.3)
+    if (std::abs(separation(lattice, at_end, exact_centre(end - stretch))) > 5 * lattice.space_step())
+      late_ = end - stretch;
 }
 
 /// What makes steps finer, in keys.
@@ -119,7 +124,7 @@ double Warnings::exact_centre(double time) const {
 }
 
 void Warnings::see(double time, std::span<const double> fields) {
-  if (late_time_ || time < late_ || !initial_.exact() || !std::isfinite(width_)) return;
+  if (late_time_ || time < late_) return;
   late_time_ = time;
   late_centre_ = centre(fields);
 }
@@ -227,7 +232,7 @@ Warnings::Found Warnings::error(const Outcome& outcome) const {
 }
 
 Warnings::Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row) const {
-  if (!late_time_ || !(outcome.time > *late_time_) || outcome.time > initial_.exact()->exact_until()) return {};
+  if (!late_time_ || !(outcome.time > *late_time_)) return {};
   const Lattice& lattice = scene_.problem.lattice;
   const double k = lattice.space_step(), now = centre(last_row);
   const double moved = separation(lattice, now, *late_centre_);

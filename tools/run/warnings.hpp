@@ -45,7 +45,8 @@ class Warnings {
   const InitialRows& initial_;
   const Simulation& simulation_;
   double width_ = std::numeric_limits<double>::infinity();  ///< of the narrowest pulse of the state
-  double late_ = 0;  ///< from this time on a row is kept to tell whether a pulse still moves
+  /// The first row recorded from this time on is kept, to tell whether a pulse still moves.
+  double late_ = std::numeric_limits<double>::infinity();
   std::optional<double> late_time_, late_centre_;
 };
 

@@ -8,6 +8,7 @@
 #include "jets/tables/rectangle_jet.hpp"
 #include "jets/tables/triangle_jet.hpp"
 #include "schemes/scheme.hpp"
+#include "schemes/stepping/newton.hpp"
 #include "schemes/theories/klein_gordon.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
@@ -405,5 +406,51 @@ TEST_CASE("a step before a start is refused, and a start from rows of another si
     CHECK_THROWS_AS(simulation.step(), std::logic_error);
     start(values);
     CHECK_NOTHROW(simulation.step());
+  }
+}
+
+TEST_CASE("a step says whether it was followed by continuation, and why") {
+  const auto why = [](double mass, int max_iterations) {
+    Problem p = problem_of("sine-gordon");
+    p.parameters["theory.mass"] = mass;
+    StepOptions options;
+    options.max_iterations = max_iterations;
+    Evolution evolution = evolution_of(p, "rectangle", Lattice::circle(21, 21 * k), h, options);
+    worst_of(evolution);
+    return evolution.stepper().continued();
+  };
+  CHECK(why(1.2, 50) == Continued::no);
+  CHECK(why(1.2, 2) == Continued::out_of_iterations);
+  CHECK(why(25, 50) == Continued::stiff);
+}
+
+TEST_CASE("where few iterations are allowed the advice is to allow more, or else a smaller step") {
+  const auto advice = [](int max_iterations, const Row& velocity) {
+    StepOptions options;
+    options.max_iterations = max_iterations;
+    Evolution evolution = evolution_of(problem_of("sine-gordon"), "rectangle", Lattice::circle(21, 21 * k), h, options);
+    const Row row(21, 0.5);
+    return message_of([&] {
+      evolution.stepper().start_centred(row, velocity);
+      evolution.stepper().step();
+    });
+  };
+  const std::string few = advice(1, Row(21, 0.3));
+  CHECK(contains(few, "scheme.max_iterations = 1 leaves it too few: raise it"));
+  CHECK_FALSE(contains(few, "lattice.courant"));
+  CHECK(contains(remedy_for(50), "reduce lattice.courant"));
+}
+
+TEST_CASE("a tolerance below what rounding allows is the least that it allows, to the bit") {
+  for (const char* scheme : {"rectangle", "hexagon"}) {
+    const auto row = [&](double tolerance) {
+      StepOptions options;
+      options.tolerance = tolerance;
+      Evolution evolution = evolution_of(problem_of("sine-gordon"), scheme, Lattice::circle(22, 22 * k), h, options);
+      worst_of(evolution);
+      return evolution.stepper().row(0);
+    };
+    CHECK(row(1e-300) == row(smallest_tolerance));
+    CHECK(row(1e-4) != row(smallest_tolerance));
   }
 }
