@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <concepts>
 #include <memory>
 #include <utility>
 
@@ -13,6 +14,16 @@
 
 namespace delf {
 
+template <class D>
+concept InBatches = std::convertible_to<D, std::shared_ptr<const BatchDensity>>;
+
+/// Told in one line where it is not so.
+template <class D>
+consteval bool is_functor_or_in_batches() {
+  if constexpr (InBatches<D>) return true;
+  else return is_density<D>();
+}
+
 /// A scheme is a stencil with its jet map, and a density; the equations, their Jacobian, the forms and the plan are
 /// generated:
 ///
@@ -21,10 +32,11 @@ namespace delf {
 ///     evolution.stepper().start({row0, row1});
 ///     evolution.stepper().step();
 ///
-/// A constraint that the density declares is kept by a multiplier, which is one more component.
+/// A constraint that the density declares is kept by a multiplier, which is one more component. A density in batches will do
+/// as well, such as delf::expression("0.5*phi_t^2 - 0.5*phi_x^2 - 0.25*(phi^2 - 1)^2").
 template <class D>
 class Scheme {
-  static_assert(is_density<D>());
+  static_assert(is_functor_or_in_batches<D>());
 
  public:
   template <JetMap Map>
@@ -35,6 +47,7 @@ class Scheme {
       throw BadInput("lattice.stencil",
                      "the weights of a table must sum to 1 and be exact on affine fields; correct the table");
     if constexpr (Density<D>) batches_ = std::make_shared<BatchOf<D>>(density_);
+    else if constexpr (InBatches<D>) batches_ = density_;
   }
 
   const D& density() const { return density_; }
@@ -44,7 +57,7 @@ class Scheme {
   Evolution on(const Lattice& lattice, double time_step, const StepOptions& options = {}) const {
     std::vector<std::shared_ptr<const StencilFamily>> families{family()};
     for (auto& term : wall_families(table_, batches_, lattice)) families.push_back(std::move(term));
-    std::vector<Component> components = fields(components_of<D>());
+    std::vector<Component> components = fields(batches_->components());
     if constexpr (Constrained<D>) {
       families.push_back(std::make_shared<LagrangianFamily<VertexConstraint<D>>>(VertexConstraint<D>{density_}));
       components.push_back({"lambda", Role::multiplier, {}});

@@ -311,7 +311,7 @@ const std::vector<TheoryInfo>& theories() {
   static const std::vector<TheoryInfo> list = [] {
     std::vector<TheoryInfo> result;
     for (const TheoryEntry* entry : theory_entries()) {
-      result.push_back({entry->name, entry->formula, {}, make_theory(*entry)->components()});
+      result.push_back({entry->name, entry->formula, {}, entry->further ? 0 : make_theory(*entry)->components()});
       for (const Parameter& p : entry->parameters) result.back().parameters.push_back(p.key);
     }
     return result;
@@ -338,7 +338,7 @@ const std::vector<NamedFormula>& methods() {
 }
 
 Problem completed(Problem p) {
-  complete(p.parameters, find_theory(p.theory).parameters);
+  complete(p.parameters, parameters_of(find_theory(p.theory), p.parameters));
   complete(p.parameters, find_method(p.method).parameters);
   p.stencil = stencil_name(p.stencil, p.lattice.space() == Space::point);
   return p;

@@ -134,7 +134,7 @@ class Simulation {
 struct TheoryInfo {
   std::string name, formula;
   std::vector<std::string> parameters;   ///< keys that it reads, such as "theory.mass"
-  int components = 1;
+  int components = 1;                    ///< 0: its parameters say it
 };
 const std::vector<TheoryInfo>& theories();
 

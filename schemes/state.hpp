@@ -19,6 +19,7 @@ struct StateRequest {
   std::string theory;               ///< theory.name
   ParameterValues values = {};      ///< initial.KEY as given, and theory.KEY; a mass or lambda that is not here is 1
   int components = 1;               ///< of the theory's field
+  std::vector<std::string> fields = {"phi"};  ///< their names
   std::optional<int> winding = {};  ///< boundary.winding, if the scene gives it
   std::uint64_t seed = 1;           ///< run.seed
 };

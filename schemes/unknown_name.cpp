@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "schemes/nearest_name.hpp"
+#include "lattice/nearest_name.hpp"
 
 namespace delf {
 

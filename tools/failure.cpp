@@ -19,8 +19,9 @@ const char* status_of(const NumericalFailure& error) {
 std::string error_line(const std::exception& error) {
   std::string line = error.what();
   if (dynamic_cast<const std::bad_alloc*>(&error)) line = "out of memory; ask for fewer sites or records";
-  for (char& c : line)
-    if (c == '\n' || c == '\r') c = ' ';
+  // one line, but for a quoted text and the caret below it, which are indented
+  for (std::size_t i = 0; i < line.size(); ++i)
+    if (line[i] == '\r' || (line[i] == '\n' && line.compare(i + 1, 2, "  ") != 0)) line[i] = ' ';
   return dynamic_cast<const BadScene*>(&error) ? line : "delf: " + line;
 }
 

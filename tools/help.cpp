@@ -24,11 +24,62 @@ void print_keys(std::string_view only) {
   }
 }
 
+constexpr const char* lagrangians = R"page(A Lagrangian density of your own is a key of a scene; equations, Jacobian, forms and plan are generated from it:
+
+  [theory]
+  density = 0.5*phi_t^2 - 0.5*phi_x^2 + m^2*(cos(phi) - 1)
+  parameters = m = 1
+
+Each parameter is a key of its own, which the command line can set: --theory.m=2. Without theory.fields there is one field,
+phi. Several are named by it:
+
+  [theory]
+  fields = u, v
+  parameters = m = 1, g = 0.3
+  density = let w = u - v; 0.5*(u_t^2 - u_x^2 + v_t^2 - v_x^2) + m^2*(cos(u) + cos(v) - 2) + g*(cos(w) - 1)
+
+Names      u, its derivatives u_t, u_x, and u_tt, u_tx, u_xx (on a stencil that has them); t, x, pi; parameters
+Numbers    2, 0.5, 1e-3
+Operators  + - * / ^, from weak to strong; -x^2 is -(x^2), 2^3^2 is 2^(3^2)
+Functions  sin cos cosm1 (cos x - 1) tan exp log sqrt sinh cosh tanh atan, pow(x, p) as x^p
+let        let w = ...; defines a name for the rest of the text; in C++ the end of a line will do for the semicolon
+
+  text    = { "let" name "=" sum ";" } sum
+  sum     = product { ("+" | "-") product }
+  product = signed { ("*" | "/") signed }
+  signed  = { "+" | "-" } power
+  power   = primary [ "^" { "+" | "-" } power ]
+  primary = number | name | function "(" sum [ "," sum ] ")" | "(" sum ")"
+
+Every field needs its rate: a density without phi_t determines no phi. abs, min and max are refused, for they are not
+differentiable. Where a density has no value at a field (log of a negative number), a run ends with exit code 3.
+
+Starting fields may be formulas too, of x, the parameters and the length L of space; or of t and x, for a solution to start
+from and to compare with. In place of initial.state:
+
+  [initial]                                                [exact]
+  phi = 4*atan(exp(x - 20))                                phi = 4*atan(exp((x - 20 - 0.5*t)/sqrt(0.75)))
+  phi_t = 0
+
+The states noise and file work for every theory. From C++:
+
+  auto scheme = delf::Scheme{delf::hexagon, delf::expression("0.5*phi_t^2 - 0.5*phi_x^2 - 0.25*(phi^2 - 1)^2")};
+
+Examples: `delf run phi6-kink`, `delf run sinh-gordon`, `delf run sine-gordon-text`.
+)page";
+
+/// What help explains besides commands.
+struct Topic {
+  const char *name, *summary, *text;
+};
+constexpr Topic topics[] = {{"lagrangians", "a theory of your own, as text", lagrangians}};
+
 }  // namespace
 
 std::string usage() {
   std::string text = "delf: a discrete multisymplectic lattice engine\n\n";
   for (const Command& c : commands()) text += fmt::format("  {:<52} {}\n", c.usage, c.summary);
+  for (const Topic& t : topics) text += fmt::format("  {:<52} {}\n", fmt::format("delf help {}", t.name), t.summary);
   return text + "  delf --version\n\nSCENE is a file, or the name of a shipped scene: `delf run collision`.\n";
 }
 
@@ -37,6 +88,11 @@ ExitCode help(const std::string& name) {
     fmt::print("{}`delf help run` lists the keys of a scene.\n", usage());
     return ExitCode::done;
   }
+  for (const Topic& topic : topics)
+    if (name == topic.name) {
+      fmt::print("{}", topic.text);
+      return ExitCode::done;
+    }
   const Command& command = find_command(name);
   fmt::print("{}\n\n{}\n", command.usage, command.details);
   if (command.reads_scene) print_keys(command.section);

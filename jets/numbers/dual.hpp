@@ -105,6 +105,7 @@ struct Dual {
     const T t = tanh(u.value);
     return chain(u, t, T(1.0) - t * t);
   }
+  friend Dual atan(const Dual& u) { return chain(u, atan(u.value), T(1.0) / (T(1.0) + u.value * u.value)); }
   friend Dual pow(const Dual& u, double p) {
     if (p == 0) return Dual(1.0);  // u⁰ is a constant, at 0 too
     return chain(u, pow(u.value, p), T(p) * pow(u.value, p - 1.0));

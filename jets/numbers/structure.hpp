@@ -118,6 +118,9 @@ struct Abstract {
   friend Abstract tanh(const Abstract& u) {
     return function(u, [](double x) { return std::tanh(x); });
   }
+  friend Abstract atan(const Abstract& u) {
+    return function(u, [](double x) { return std::atan(x); });
+  }
   friend Abstract sinc(const Abstract& u) {
     return function(u, [](double x) { return delf::sinc(x); });
   }
@@ -142,17 +145,10 @@ struct DensityStructure {
   Abstract of_density;  ///< the density's own abstract value
 };
 
-template <Density D>
-DensityStructure structure_of(const D& density) {
-  constexpr int d = components_of<D>(), m = slots_of<D>() * d;
-  static_assert(m + 2 <= Abstract::most_variables, "delf: raise Abstract::most_variables for this many components");
-  JetFor<Abstract, D> jet;
-  for (int s = 0; s < slots_of<D>(); ++s)
-    for (int a = 0; a < d; ++a) jet_slot(jet, s, a) = Abstract::variable(s * d + a);
-  if constexpr (is_placed<D>()) jet.t = Abstract::variable(m), jet.x = Abstract::variable(m + 1);
+/// Of a density of m variables, d of them values, from its abstract value.
+inline DensityStructure structure_of(const Abstract& density, int m, int d) {
   DensityStructure s;
-  s.of_density = density(jet);
-
+  s.of_density = density;
   const auto lowest = [](int bits) { return (std::uint64_t{1} << bits) - 1; };
   const std::uint64_t values = lowest(d), field = lowest(m), place = lowest(m + 2) & ~field;
   bool beyond_values = false, any = false;
@@ -164,6 +160,17 @@ DensityStructure structure_of(const D& density) {
   }
   s.nonlinearity = !any ? Nonlinearity::none : beyond_values ? Nonlinearity::all : Nonlinearity::values;
   return s;
+}
+
+template <Density D>
+DensityStructure structure_of(const D& density) {
+  constexpr int d = components_of<D>(), m = slots_of<D>() * d;
+  static_assert(m + 2 <= Abstract::most_variables, "delf: raise Abstract::most_variables for this many components");
+  JetFor<Abstract, D> jet;
+  for (int s = 0; s < slots_of<D>(); ++s)
+    for (int a = 0; a < d; ++a) jet_slot(jet, s, a) = Abstract::variable(s * d + a);
+  if constexpr (is_placed<D>()) jet.t = Abstract::variable(m), jet.x = Abstract::variable(m + 1);
+  return structure_of(density(jet), m, d);
 }
 
 }  // namespace delf

@@ -8,6 +8,7 @@ namespace delf {
 
 // Densities call sin, cos, … unqualified; inside namespace delf these must also find the scalar functions.
 using std::abs;
+using std::atan;
 using std::cos;
 using std::cosh;
 using std::exp;
@@ -295,6 +296,9 @@ inline Pack log(Pack x) {
 }
 inline Pack tan(Pack x) {
   return detail::by_lane(x, [](double y) { return std::tan(y); });
+}
+inline Pack atan(Pack x) {
+  return detail::by_lane(x, [](double y) { return std::atan(y); });
 }
 inline Pack pow(Pack x, double p) {
   return detail::by_lane(x, [p](double y) { return std::pow(y, p); });

@@ -27,7 +27,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p, DirectResidual st
     throw BadInput(
         p.lattice.left() == Wall::natural ? "boundary.left" : "boundary.right",
         fmt::format("a natural wall varies the action, and scheme.method = {} has none; use fixed walls", p.method));
-  return {{std::move(family)}, fields(theory.components())};
+  return {{std::move(family)}, theory.fields()};
 }
 
 }  // namespace

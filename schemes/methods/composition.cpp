@@ -37,13 +37,13 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                                p.lattice.sites(), space_order, 2 * pairs + 1));
   const StencilTable element = pair_element(splitting, pairs);
   // Between sub-steps momenta change by ∂ℓ/∂φ, linear or not.
-  SchemeParts parts{{theory.on_table(element, true)}, fields(theory.components()), theory.symmetries()};
+  SchemeParts parts{{theory.on_table(element, true)}, theory.fields(), theory.symmetries()};
   if (theory.density().nonlinearity() == Nonlinearity::all)
     throw BadInput("theory.name", fmt::format("theory.name = {}: scheme.method = composition takes densities that are "
                                               "nonlinear in phi alone; use scheme.method = multisymplectic",
                                               p.theory));
   for (std::size_t s = 1; s < element.nodes.size(); ++s)
-    for (const Component& field : fields(theory.components()))
+    for (const Component& field : theory.fields())
       parts.components.push_back({fmt::format("{} after {} sub-steps", field.name, s), Role::inner, element.nodes[s],
                                   false, field.field});
   return parts;

@@ -36,7 +36,7 @@ void check_walls(const Problem& p, const StencilFamily& family) {
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   SchemeParts parts{{theory.variational(p.stencil)},
-                    fields(theory.components()),
+                    theory.fields(),
                     theory.symmetries()};
   if (!parts.families[0]) throw unknown_name("lattice.stencil", p.stencil, stencil_names_and_aliases());
   check_walls(p, *parts.families[0]);

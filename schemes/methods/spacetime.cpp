@@ -36,9 +36,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   const StencilTable element =
       spacetime_element(keys.degree_time, keys.degree_space,
                         keys.quadrature == "gauss" ? TimeQuadrature::gauss : TimeQuadrature::lobatto);
-  SchemeParts parts{{theory.on_table(element)}, fields(theory.components()), theory.symmetries()};
+  SchemeParts parts{{theory.on_table(element)}, theory.fields(), theory.symmetries()};
   for (std::size_t node = 1; node < element.nodes.size(); ++node)
-    for (const Component& field : fields(theory.components()))
+    for (const Component& field : theory.fields())
       parts.components.push_back(
           {fmt::format("{} at ({:.4g}, {:.4g})", field.name, element.nodes[node].time, element.nodes[node].space),
            Role::inner, element.nodes[node], false, field.field});

@@ -11,7 +11,7 @@
 
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
-#include "schemes/nearest_name.hpp"
+#include "lattice/nearest_name.hpp"
 #include "schemes/states/parameters.hpp"
 
 namespace delf {
@@ -19,7 +19,7 @@ namespace delf {
 extern const StateEntry mps_collision_state, kink_state, antikink_state, kink_antikink_state, kink_kink_state,
     breather_state, kink_train_state, plane_wave_state, wave_packet_state, kepler_orbit_state, pendulum_swing_state,
     coupled_kinks_state, coupled_breathers_state, charged_wave_state, charged_packet_state, great_circle_state,
-    noise_state, rows_of_file_state;
+    noise_state, formula_state, rows_of_file_state;
 
 namespace {
 
@@ -43,6 +43,7 @@ std::vector<const StateEntry*>& registry() {
       &charged_packet_state,
       &great_circle_state,
       &noise_state,
+      &formula_state,
       &rows_of_file_state,
   };
   // clang-format on
@@ -82,7 +83,7 @@ void check_finite(const ParameterValues& values) {
 StateBuild build_of(const StateEntry& entry, const StateRequest& request, const Lattice& lattice) {
   StateBuild build{entry, request, lattice, request.values, holds(entry.exact, request.theory)};
   check_finite(build.values);
-  complete(build.values, entry.parameters);
+  complete(build.values, parameters_of(entry, request.fields));
   return build;
 }
 
@@ -91,6 +92,13 @@ StateBuild build_of(const StateEntry& entry, const StateRequest& request, const 
 const std::vector<const StateEntry*>& state_entries() { return registry(); }
 
 void register_state(const StateEntry& entry) { registry().push_back(&entry); }
+
+std::vector<Parameter> parameters_of(const StateEntry& entry, const std::vector<std::string>& fields) {
+  std::vector<Parameter> all = entry.parameters;
+  if (entry.further)
+    for (Parameter& p : entry.further(fields)) all.push_back(std::move(p));
+  return all;
+}
 
 const StateEntry& find_state(const std::string& name) {
   std::vector<std::string> known;

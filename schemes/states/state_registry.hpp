@@ -42,7 +42,13 @@ struct StateEntry {
   std::vector<std::string> but = {};  ///< … but these
   /// The length over which the narrowest pulse changes, as it moves: 1/(γm) for a kink of sine-Gordon. Null: no pulses.
   double (*width)(const StateBuild&) = nullptr;
+  /// Parameters that belong to fields of these names; null: none. Where a scene gives one of them, and no initial.state, the
+  /// state is chosen by that.
+  std::vector<Parameter> (*further)(const std::vector<std::string>& fields) = nullptr;
 };
+
+/// All that it reads from fields of these names.
+std::vector<Parameter> parameters_of(const StateEntry&, const std::vector<std::string>& fields);
 
 /// All states, the built-in ones first: a new state adds one line there.
 const std::vector<const StateEntry*>& state_entries();

@@ -11,17 +11,23 @@
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/residual_family.hpp"
 #include "schemes/families/vertex_constraint.hpp"
+#include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 
 /// A theory as a registry hands it out: its density in batches, and the constraint that it declares.
 class FieldTheory {
  public:
-  FieldTheory(std::shared_ptr<const BatchDensity> density, std::shared_ptr<const StencilFamily> constraint = nullptr)
-      : density_(std::move(density)), constraint_(std::move(constraint)) {}
+  FieldTheory(std::shared_ptr<const BatchDensity> density, std::shared_ptr<const StencilFamily> constraint = nullptr,
+              std::vector<Component> fields = {})
+      : density_(std::move(density)),
+        constraint_(std::move(constraint)),
+        fields_(fields.empty() ? delf::fields(density_->components()) : std::move(fields)) {}
 
   const BatchDensity& density() const { return *density_; }
   int components() const { return density_->components(); }
+  /// The components of the field, by name.
+  const std::vector<Component>& fields() const { return fields_; }
   bool is_placed() const { return density_->is_placed(); }
   /// What leaves the density as it is, as the theory declares it.
   const std::vector<LinearSymmetry>& symmetries() const { return density_->symmetries(); }
@@ -40,6 +46,7 @@ class FieldTheory {
  private:
   std::shared_ptr<const BatchDensity> density_;
   std::shared_ptr<const StencilFamily> constraint_;
+  std::vector<Component> fields_;
 };
 
 template <Density D>

@@ -9,7 +9,7 @@ namespace delf {
 
 extern const TheoryEntry wave_theory, klein_gordon_theory, sine_gordon_theory, phi4_theory, double_sine_gordon_theory,
     sine_gordon_impurity_theory, pendulum_theory, kepler_theory, coupled_sine_gordon_theory,
-    complex_klein_gordon_theory, wave_map_theory;
+    complex_klein_gordon_theory, wave_map_theory, text_theory;
 
 namespace {
 
@@ -24,7 +24,8 @@ std::vector<const TheoryEntry*>& entries() {
                                              &complex_klein_gordon_theory,
                                              &wave_map_theory,
                                              &pendulum_theory,
-                                             &kepler_theory};
+                                             &kepler_theory,
+                                             &text_theory};
   return all;
 }
 
@@ -46,8 +47,15 @@ void register_theory(const TheoryEntry& entry) { entries().push_back(&entry); }
 
 const TheoryEntry& find_theory(const std::string& name) { return find_entry(theory_entries(), "theory.name", name); }
 
+std::vector<Parameter> parameters_of(const TheoryEntry& entry, const ParameterValues& values) {
+  std::vector<Parameter> all = entry.parameters;
+  if (entry.further)
+    for (Parameter& p : entry.further(values)) all.push_back(std::move(p));
+  return all;
+}
+
 std::unique_ptr<FieldTheory> make_theory(const TheoryEntry& entry, ParameterValues given) {
-  complete(given, entry.parameters);
+  complete(given, parameters_of(entry, given));
   return entry.make(given);
 }
 

@@ -23,6 +23,11 @@ struct TheoryEntry {
   bool angle = false;  ///< the field is an angle: values 2π apart are the same state
   /// All components have this value in the state about which the linear limits of a run are found; none: they are not.
   std::optional<double> vacuum = {};
+
+  /// A key of its own that chooses it where a scene does not give theory.name.
+  std::string chosen_by = {};
+  /// Parameters that the values of those above declare; null: none.
+  std::vector<Parameter> (*further)(const ParameterValues&) = nullptr;
 };
 
 /// m and λ, which several theories have.
@@ -35,6 +40,8 @@ const std::vector<const TheoryEntry*>& theory_entries();
 void register_theory(const TheoryEntry&);
 /// Throws BadInput, with the nearest name, if there is none of that name.
 const TheoryEntry& find_theory(const std::string& name);
+/// All that it reads, with what these values declare. Throws BadInput for values that declare none.
+std::vector<Parameter> parameters_of(const TheoryEntry&, const ParameterValues&);
 /// With the fallbacks of the parameters that are not given. Throws BadInput for values out of range.
 std::unique_ptr<FieldTheory> make_theory(const TheoryEntry&, ParameterValues given = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/nearest_name.hpp"
+#include "lattice/nearest_name.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/refused.hpp"
@@ -11,7 +11,7 @@ using namespace delf::testing;
 TEST_CASE("help, version and lists go to stdout and succeed") {
   const Folder folder;
   for (const char* arguments :
-       {"help", "--help", "-h", "help run", "run --help", "help plan", "help verify", "verify --help", "list",
+       {"help", "--help", "-h", "help run", "run --help", "help plan", "help verify", "help lagrangians", "verify --help", "list",
         "list theories", "list stencils", "list schemes", "list states", "list scenes", "--version"}) {
     const Ran ran = delf_program(folder, arguments);
     INFO(arguments);
@@ -98,4 +98,5 @@ TEST_CASE("every kind of failure has its exit code") {
   CHECK(exit_code(SystemFailure("")) == ExitCode::system_failed);
   CHECK(exit_code(std::bad_alloc()) == ExitCode::system_failed);
   CHECK(lines(error_line(SystemFailure("two\nlines"))).size() == 1);
+  CHECK(lines(error_line(BadInput("", "a formula\n  x + * y\n      ^"))).size() == 3);
 }

@@ -10,7 +10,7 @@
 #include "jets/tables/named_tables.hpp"
 #include "schemes/declared.hpp"
 #include "schemes/methods/method_registry.hpp"
-#include "schemes/nearest_name.hpp"
+#include "lattice/nearest_name.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
@@ -172,13 +172,6 @@ std::vector<Key> general_keys() {
   };
 }
 
-// Behind the last key of its section.
-void insert(std::vector<Key>& table, Key key) {
-  const auto last = std::find_if(table.rbegin(), table.rend(),
-                                 [&](const Key& k) { return section_of(k.name) == section_of(key.name); });
-  table.insert(last == table.rend() ? table.end() : last.base(), std::move(key));
-}
-
 std::vector<Key> all_keys() {
   std::vector<Key> table = general_keys();
   for (const Declaration& declaration : declarations())
@@ -192,7 +185,7 @@ std::vector<Key> all_keys() {
         key.meaning = fmt::format("state = {}: {}", owners.front(), key.meaning);
       if (declaration.kind == DeclaredBy::state && owners.size() > 1)
         key.fallback.clear(), key.otherwise = own;  // each has its own
-      insert(table, std::move(key));
+      insert_key(table, std::move(key));
     }
   return table;
 }
@@ -243,18 +236,28 @@ std::vector<std::string> declared_by(std::string_view key) {
   return names;
 }
 
-std::string nearest_key(std::string_view unknown) {
+void insert_key(std::vector<Key>& table, Key key) {
+  if (const auto same = std::ranges::find(table, key.name, &Key::name); same != table.end()) {
+    *same = std::move(key);
+    return;
+  }
+  const auto last = std::find_if(table.rbegin(), table.rend(),
+                                 [&](const Key& k) { return section_of(k.name) == section_of(key.name); });
+  table.insert(last == table.rend() ? table.end() : last.base(), std::move(key));
+}
+
+std::string nearest_key(std::string_view unknown, std::span<const Key> known) {
   // without its section, or with a wrong one, a key is known by its last part: --sites, lattice.position
   const auto last = [](std::string_view name) { return name.substr(name.rfind('.') + 1); };
   Names full, same_last;
-  for (const Key& key : table()) {
+  for (const Key& key : known) {
     full.emplace_back(key.name);
     if (last(key.name) == last(unknown)) same_last.emplace_back(key.name);
   }
   if (const auto close = nearest(unknown, full)) return *close;
   if (!same_last.empty()) return same_last.front();
   Names lasts;
-  for (const Key& key : table()) lasts.emplace_back(last(key.name));
+  for (const Key& key : known) lasts.emplace_back(last(key.name));
   const auto close = nearest(last(unknown), lasts);
   const auto at = close ? std::find(lasts.begin(), lasts.end(), *close) : lasts.end();
   return at == lasts.end() ? std::string() : full[static_cast<std::size_t>(at - lasts.begin())];

@@ -35,7 +35,9 @@ std::span<const Key> keys();
 /// The key of that name, as the first that declares it does; or null.
 const Key* find_key(std::string_view name);
 /// The key that an unknown name was probably meant to be, or an empty string.
-std::string nearest_key(std::string_view unknown);
+std::string nearest_key(std::string_view unknown, std::span<const Key> known);
+/// Puts the key behind the last one of its section, or in place of the one of its name.
+void insert_key(std::vector<Key>& table, Key);
 
 enum class DeclaredBy { theory, method, state };
 /// The key whose value is the name: theory.name, scheme.method, initial.state.

@@ -37,12 +37,12 @@ std::string resolved_text(const Scene& scene, StartRule in_force, const std::str
       "#\n# {}\n# space step {}, Courant number {:.6g}, time of the last row {:.10g}\n",
       DELF_VERSION, state_in_words, p.lattice.space_step(), p.time_step / p.lattice.space_step(),
       static_cast<double>(scene.steps) * p.time_step);
-  std::string_view section;
-  for (const Key& key : keys()) {
+  std::string section;
+  for (const Key& key : scene.settings.all_keys()) {
     const std::string value = resolved(scene, key, in_force);
     if (value.empty()) continue;
     if (section != section_of(key.name)) {
-      section = section_of(key.name);
+      section = std::string(section_of(key.name));
       text += fmt::format("\n[{}]\n", section);
     }
     text += fmt::format("{} = {}\n", key.name.substr(section.size() + 1), value);

@@ -52,10 +52,15 @@ void read_parameters(const Values& values, Problem& p) {
     if (declaration.kind == DeclaredBy::state) continue;
     const std::string& name = declaration.kind == DeclaredBy::theory ? p.theory : p.method;
     for (const Parameter& parameter : declaration.parameters)
-      if (name == declaration.name) p.parameters[parameter.key] = values.parameter(parameter);
+      if (name == declaration.name && (parameter.otherwise.empty() || values.given(parameter.key)))
+        p.parameters[parameter.key] = values.parameter(parameter);
       else if (values.given(parameter.key) && !p.parameters.has(parameter.key))
         p.parameters[parameter.key] = values.parameter(parameter);
   }
+  const TheoryEntry& theory = find_theory(p.theory);
+  if (theory.further)
+    for (const Parameter& parameter : theory.further(p.parameters))
+      p.parameters[parameter.key] = values.parameter(parameter);
 }
 
 Problem read_problem(const Settings& settings, const Values& values) {
@@ -82,10 +87,16 @@ StateRequest read_initial(const Values& values, const Problem& problem) {
   StateRequest r;
   r.name = values.choice("initial.state");
   r.theory = problem.theory;
-  for (const Parameter& p : find_theory(problem.theory).parameters) r.values[p.key] = values.parameter(p);
-  for (const Parameter& p : find_state(r.name).parameters)
+  const TheoryEntry& entry = find_theory(problem.theory);
+  ParameterValues in_force = problem.parameters;
+  for (const Parameter& p : parameters_of(entry, problem.parameters))
+    if (in_force.has(p.key)) r.values[p.key] = in_force[p.key];
+  const auto theory = make_theory(entry, problem.parameters);
+  r.components = theory->components();
+  r.fields.clear();
+  for (const Component& field : theory->fields()) r.fields.push_back(field.name);
+  for (const Parameter& p : parameters_of(find_state(r.name), r.fields))
     if (values.given(p.key)) r.values[p.key] = values.parameter(p);
-  r.components = make_theory(find_theory(problem.theory), problem.parameters)->components();
   if (const auto winding = values.maybe_integer("boundary.winding"); winding && problem.lattice.is_circle())
     r.winding = static_cast<int>(*winding);
   r.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
@@ -132,6 +143,11 @@ std::int64_t read_steps(const Settings& settings, const Values& values, double t
 // For a key that theories, methods or states declare; empty where the scene's own does, and for other keys.
 std::string why_not_read(const Scene& scene, std::string_view key) {
   std::optional<DeclaredBy> kind;
+  for (const DeclaredKey& own : scene.settings.declared()) {
+    if (own.key.name != key) continue;
+    if (chosen(scene, own.kind) == own.owner) return {};
+    kind = own.kind;
+  }
   for (const Declaration& declaration : declarations()) {
     if (std::ranges::find(declaration.parameters, key, &Parameter::key) == declaration.parameters.end()) continue;
     if (chosen(scene, declaration.kind) == declaration.name) return {};
@@ -151,15 +167,15 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   scene.name = file.stem().string();
   Settings& settings = scene.settings;
   const Values values(settings);
-  for (const Key& key : keys()) values.check(key);  // in the order of the table, whatever reads them below
+  for (const Key& key : settings.all_keys()) values.check(key);  // in the order of the table, whatever reads them below
   settings.keep_one_of("lattice.courant", "lattice.time_step", "give one of them, such as lattice.courant = 0.5");
   settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 100");
   try {
     scene.problem = read_problem(settings, values);
+    scene.initial = read_initial(values, scene.problem);
   } catch (const BadInput& bad) {
     throw settings.located(bad);
   }
-  scene.initial = read_initial(values, scene.problem);
   if (!find_state(scene.initial.name).build) scene.initial_file = find_initial_file(settings, values);
   scene.initial_frame = static_cast<int>(values.integer("initial.frame"));
   scene.start = read_start(settings, values, scene.problem);
@@ -173,7 +189,7 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
     scene.warnings.push_back(
         fmt::format("{}: {}{} = {}: warning: {}", settings.place(s.key), s.line == 0 ? "--" : "", s.key, s.value, why));
   };
-  for (const Key& key : keys())
+  for (const Key& key : settings.all_keys())
     if (const Setting* s = settings.find(key.name))
       if (const std::string why = why_without_effect(scene, key.name); !why.empty()) warn(*s, why);
   if (values.real("scheme.tolerance") < smallest_tolerance)

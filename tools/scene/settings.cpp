@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "tools/scene/declared_keys.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/scene_text.hpp"
 
@@ -39,10 +40,14 @@ boost::program_options::parsed_options parsed(const std::string& text) {
   return po::parse_config_file(in, known, true);  // unknown keys are kept, to be told with their line
 }
 
-std::string unknown_key(const std::string& key) {
-  const std::string meant = nearest_key(key);
+std::string unknown_key(const std::string& key, std::span<const Key> known) {
+  const std::string meant = nearest_key(key, known);
   return meant.empty() ? "unknown key; `delf help run` lists all keys"
                        : fmt::format("unknown key; did you mean {}?", meant);
+}
+
+BadScene unknown_on_command_line(const std::string& key, std::span<const Key> known) {
+  return BadScene(fmt::format("command line: --{}: {}", key, unknown_key(key, known)));
 }
 
 const Setting* given_twice(const std::vector<Setting>& settings, const Setting*& first) {
@@ -77,6 +82,22 @@ void Settings::keep_one_of(std::string_view key, std::string_view other, std::st
   }
   const std::string forgotten(a->line == 0 ? other : key);
   std::erase_if(all_, [&](const Setting& s) { return s.key == forgotten; });
+}
+
+void Settings::imply(std::string_view key, std::string_view value, std::string_view by) {
+  const Setting* const reason = find(by);
+  if (!find(key)) all_.push_back({std::string(key), std::string(value), reason ? reason->line : 0});
+}
+
+const Key* Settings::key(std::string_view name) const {
+  const auto own = std::ranges::find(declared_, name, [](const DeclaredKey& d) -> const std::string& { return d.key.name; });
+  return own == declared_.end() ? find_key(name) : &own->key;
+}
+
+std::vector<Key> Settings::all_keys() const {
+  std::vector<Key> all(keys().begin(), keys().end());
+  for (const DeclaredKey& own : declared_) insert_key(all, own.key);
+  return all;
 }
 
 std::string Settings::place(std::string_view key) const {
@@ -114,19 +135,24 @@ Settings read_settings(const std::filesystem::path& file, const std::vector<Sett
   }
   if (in_file.empty())
     throw BadScene(fmt::format("{}: the scene is empty; `delf list scenes` names some to copy", file.string()));
-  for (const Setting& s : in_file)
-    if (!find_key(s.key))
-      throw BadScene(fmt::format("{}:{}: {}: {}", file.string(), s.line, s.key, unknown_key(s.key)));
   const Setting* first = nullptr;
   if (const Setting* again = given_twice(in_file, first))
     throw BadScene(fmt::format("{}:{}: {} = {}: line {} gives it already; keep one of them", file.string(), again->line,
                                again->key, again->value, first->line));
-  return {file, std::move(in_file), on_command_line};
+  Settings settings(file, in_file, on_command_line);
+  declare_keys(settings);
+  const std::vector<Key> known = settings.all_keys();
+  for (const Setting& s : in_file)
+    if (!settings.key(s.key))
+      throw BadScene(fmt::format("{}:{}: {}: {}", file.string(), s.line, s.key, unknown_key(s.key, known)));
+  for (const Setting& s : on_command_line)
+    if (!settings.key(s.key)) throw unknown_on_command_line(s.key, known);
+  return settings;
 }
 
 void check_command_line(const std::vector<Setting>& on_command_line) {
   for (const Setting& s : on_command_line) {
-    if (!find_key(s.key)) throw BadScene(fmt::format("command line: --{}: {}", s.key, unknown_key(s.key)));
+    if (!find_key(s.key) && !may_be_declared(s.key)) throw unknown_on_command_line(s.key, keys());
     if (s.value.find_first_of("#\n\r") != std::string::npos)
       throw BadScene(
           fmt::format("command line: --{}: a value holds neither # nor line breaks, for no scene could "

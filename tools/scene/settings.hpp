@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/failure.hpp"
+#include "tools/scene/keys.hpp"
 
 namespace delf {
 
@@ -13,6 +14,13 @@ namespace delf {
 struct Setting {
   std::string key, value;
   int line = 0;
+};
+
+/// A key that a scene declares, and the theory or state that reads it.
+struct DeclaredKey {
+  Key key;
+  DeclaredBy kind;
+  std::string owner;
 };
 
 /// What a scene and a command line give, before anything is made of it. The command line wins over the file.
@@ -26,6 +34,17 @@ class Settings {
   /// the other is forgotten.
   void keep_one_of(std::string_view key, std::string_view other, std::string_view remedy);
 
+  /// Gives a key that nothing gives the value that another key implies, at the place of that key.
+  void imply(std::string_view key, std::string_view value, std::string_view by);
+
+  /// Keys that this scene declares itself, such as theory.m by theory.parameters.
+  void declare(DeclaredKey key) { declared_.push_back(std::move(key)); }
+  const std::vector<DeclaredKey>& declared() const { return declared_; }
+  /// The key of that name as this scene declares it, or else as the table has it; or null.
+  const Key* key(std::string_view name) const;
+  /// The table of keys with those that the scene declares behind the others of their sections.
+  std::vector<Key> all_keys() const;
+
   /// "FILE:LINE", "FILE" for a key that is not given, or "command line".
   std::string place(std::string_view key) const;
   /// "FILE:LINE: key = value: what is wrong; remedy"
@@ -36,6 +55,7 @@ class Settings {
  private:
   std::filesystem::path file_;
   std::vector<Setting> all_;
+  std::vector<DeclaredKey> declared_;
 };
 
 /// Reads the scene `file` by Boost.Program_options. Throws BadScene for whatever is no scene, for unknown keys and for

@@ -50,7 +50,7 @@ Key Values::known(std::string_view name) const {
     const Setting* chosen = settings_.find(by);
     if (declaration.name == (chosen ? chosen->value : find_key(by)->fallback)) return key_of(*p);
   }
-  return *find_key(name);
+  return *settings_.key(name);
 }
 
 std::string Values::required(std::string_view key) const {

@@ -206,7 +206,7 @@ std::vector<Setting> keys_of(const Corner& corner) {
     for (const Parameter& parameter : declared)
       if (p.parameters.has(parameter.key)) add(parameter.key, to_text(p.parameters[parameter.key]));
   };
-  add_all(find_theory(p.theory).parameters);
+  add_all(parameters_of(find_theory(p.theory), p.parameters));
   if (method.reads_stencil) add("lattice.stencil", p.stencil);
   if (p.method != Problem{}.method) add("scheme.method", p.method);
   add_all(method.parameters);

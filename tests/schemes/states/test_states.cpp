@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/nearest_name.hpp"
+#include "lattice/nearest_name.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "tests/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/nearest_name.hpp"
+#include "lattice/nearest_name.hpp"
 
 #include "tests/catch.hpp"
 

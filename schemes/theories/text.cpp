@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <string_view>
+
+#include "jets/expressions/expression.hpp"
+#include "lattice/error.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
+
+namespace delf {
+namespace {
+
+constexpr auto density_key = "theory.density", fields_key = "theory.fields", parameters_key = "theory.parameters";
+
+std::string trimmed_part(std::string_view text) {
+  constexpr auto white = " \t\r\n";
+  const auto first = text.find_first_not_of(white);
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(white) - first + 1));
+}
+
+std::vector<std::string> parts_of(std::string_view text) {
+  std::vector<std::string> parts;
+  for (;;) {
+    const auto comma = text.find(',');
+    parts.push_back(trimmed_part(text.substr(0, comma)));
+    if (comma == std::string_view::npos) return parts;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+/// Fields, and parameters with the numbers that theory.parameters gives them.
+ExpressionNames names_of(const ParameterValues& values) {
+  ExpressionNames names;
+  if (const auto fields = values.maybe<std::string>(fields_key)) names.fields = parts_of(*fields);
+  if (const auto parameters = values.maybe<std::string>(parameters_key))
+    for (const std::string& part : parts_of(*parameters)) {
+      const auto equals = part.find('=');
+      if (equals == std::string::npos)
+        throw BadInput(parameters_key, std::string(parameters_key) + ": \"" + part.substr(0, 60) +
+                                           "\" is not NAME = NUMBER; write a list like m = 1, g = 0.3");
+      names.parameters.emplace_back(trimmed_part(std::string_view(part).substr(0, equals)),
+                                    number_of(std::string_view(part).substr(equals + 1), parameters_key));
+    }
+  check_names(names, fields_key, parameters_key);
+  return names;
+}
+
+std::string key_of(const std::string& parameter) { return "theory." + parameter; }
+
+std::vector<Parameter> further(const ParameterValues& values) {
+  std::vector<Parameter> parameters;
+  for (const auto& [name, number] : names_of(values).parameters) {
+    for (const char* taken : {density_key, fields_key, parameters_key, "theory.name", "theory.fibre"})
+      if (key_of(name) == taken)
+        throw BadInput(parameters_key, std::string(parameters_key) + ": the key " + taken +
+                                           " has a meaning already; choose another name than " + name);
+    parameters.push_back({.key = key_of(name), .fallback = number, .help = name + ", as theory.parameters declares it"});
+  }
+  return parameters;
+}
+
+std::unique_ptr<FieldTheory> make(const ParameterValues& values) {
+  const auto text = values.maybe<std::string>(density_key);
+  if (!text)
+    throw BadInput(density_key, std::string(density_key) + ": must be given; write one like 0.5*phi_t^2 - 0.5*phi_x^2");
+  ExpressionNames names = names_of(values);
+  for (auto& [name, number] : names.parameters) number = values.maybe<double>(key_of(name)).value_or(number);
+  std::vector<Component> components = fields(static_cast<int>(names.fields.size()));
+  for (std::size_t a = 0; a < components.size(); ++a) components[a].name = names.fields[a];
+  return std::make_unique<FieldTheory>(expression(*text, names, density_key), nullptr, std::move(components));
+}
+
+}  // namespace
+
+extern const TheoryEntry text_theory;
+const TheoryEntry text_theory{
+    .name = "text",
+    .formula = "the field equations of theory.density",
+    .parameters = {{.key = density_key,
+                    .fallback = std::string(),
+                    .help = "a Lagrangian density as text, in place of theory.name; see `delf help lagrangians`",
+                    .otherwise = "none"},
+                   {.key = fields_key, .fallback = std::string("phi"), .help = "the fields of theory.density: u, v"},
+                   {.key = parameters_key,
+                    .fallback = std::string(),
+                    .help = "numbers that theory.density reads, each a key theory.NAME: m = 1, g = 0.3",
+                    .otherwise = "none"}},
+    .make = make,
+    .chosen_by = density_key,
+    .further = further};
+
+}  // namespace delf

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "tools/scene/declared_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+
+#include "schemes/states/state_registry.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
+#include "tools/scene/keys.hpp"
+
+namespace delf {
+namespace {
+
+// Keys that no theory, method or state declares are not to be redefined.
+void declare(Settings& settings, const Parameter& p, DeclaredBy kind, const std::string& owner) {
+  if (find_key(p.key) && declared_by(p.key).empty())
+    throw BadScene(fmt::format("{}: {} has a meaning already; choose another name in the theory", settings.file().string(),
+                               p.key));
+  settings.declare({key_of(p), kind, owner});
+}
+
+const TheoryEntry* chosen_theory(Settings& settings) {
+  const std::string name(chosen_by(DeclaredBy::theory));
+  for (const TheoryEntry* entry : theory_entries()) {
+    if (entry->chosen_by.empty() || !settings.find(entry->chosen_by)) continue;
+    if (const Setting* given = settings.find(name); given && given->value != entry->name)
+      settings.keep_one_of(name, entry->chosen_by, {});
+    if (settings.find(entry->chosen_by)) settings.imply(name, entry->name, entry->chosen_by);
+  }
+  const Setting* given = settings.find(name);
+  const auto at = std::ranges::find(theory_entries(), given ? given->value : find_key(name)->fallback,
+                                    [](const TheoryEntry* entry) { return entry->name; });
+  return at == theory_entries().end() ? nullptr : *at;  // whoever reads theory.name says so
+}
+
+// What the settings give; numbers that cannot be read are left to whoever reads them.
+void read(const Settings& settings, const Parameter& p, ParameterValues& values) {
+  const Setting* given = settings.find(p.key);
+  if (!given) return;
+  if (std::holds_alternative<std::string>(p.fallback)) values[p.key] = given->value;
+  double number = 0;
+  const char* const end = given->value.data() + given->value.size();
+  if (std::holds_alternative<double>(p.fallback) && std::from_chars(given->value.data(), end, number).ptr == end)
+    values[p.key] = number;
+}
+
+std::vector<std::string> declare_theory(Settings& settings, const TheoryEntry& entry) {
+  ParameterValues values;
+  if (entry.further) {
+    for (const Parameter& p : entry.parameters) read(settings, p, values);
+    for (const Parameter& p : entry.further(values)) {
+      declare(settings, p, DeclaredBy::theory, entry.name);
+      read(settings, p, values);
+    }
+  }
+  std::vector<std::string> fields;
+  const auto theory = make_theory(entry, values);
+  for (const Component& field : theory->fields()) fields.push_back(field.name);
+  return fields;
+}
+
+void declare_states(Settings& settings, const std::vector<std::string>& fields) {
+  const std::string name(chosen_by(DeclaredBy::state));
+  for (const StateEntry* entry : state_entries()) {
+    if (!entry->further) continue;
+    for (const Parameter& p : entry->further(fields)) {
+      declare(settings, p, DeclaredBy::state, entry->name);
+      const Setting *given = settings.find(p.key), *other = settings.find(name);
+      if (!given) continue;
+      // the command line wins, as it does for keys of one name
+      if (other && other->value != entry->name && given->line == 0 && other->line != 0) settings.keep_one_of(name, p.key, {});
+      settings.imply(name, entry->name, p.key);
+    }
+  }
+}
+
+}  // namespace
+
+void declare_keys(Settings& settings) {
+  try {
+    if (const TheoryEntry* entry = chosen_theory(settings)) declare_states(settings, declare_theory(settings, *entry));
+  } catch (const BadInput& bad) {
+    throw settings.located(bad);
+  }
+}
+
+bool may_be_declared(std::string_view key) {
+  return std::ranges::any_of(theory_entries(), [key](const TheoryEntry* e) { return e->further && key.starts_with("theory."); }) ||
+         key.starts_with("initial.") || key.starts_with("exact.");
+}
+
+}  // namespace delf
