@@ -79,7 +79,7 @@ class Builder {
     At stop = where + 1;
     if (is_letter(*where) || is_digit(*where))
       while (stop != end && stop - where < 30 && (is_letter(*stop) || is_digit(*stop))) ++stop;
-    return "\"" + std::string(where, stop) + "\"";
+    return std::string(1, '"').append(where, stop).append(1, '"');
   }
 
   /// A node that came out as a number must be a finite one.
@@ -278,8 +278,9 @@ void check_bounds(const Builder& make, std::string_view text, const std::string&
     if (white || (c >= ' ' && c <= '~')) continue;
     constexpr const char* digits = "0123456789abcdef";
     const auto byte = static_cast<unsigned char>(c);
-    make.refuse(&c, std::string("the byte 0x") + digits[byte / 16] + digits[byte % 16] +
-                        " is no character of a formula; write names in plain letters, such as phi");
+    std::string wrong = "the byte 0x";
+    wrong.append({digits[byte / 16], digits[byte % 16]});
+    make.refuse(&c, wrong.append(" is no character of a formula; write names in plain letters, such as phi"));
   }
 }
 
