@@ -29,6 +29,8 @@ class BatchDensity {
   bool is_placed() const { return placed_; }
   const std::vector<LinearSymmetry>& symmetries() const { return symmetries_; }
   Nonlinearity nonlinearity() const { return structure_.nonlinearity; }
+  /// ℓ may depend on variable a.
+  bool depends_on(int a) const { return bit(structure_.of_density.depends, a); }
   /// ∂²ℓ/∂a∂b is proved to be the same at every jet, everywhere.
   bool is_constant(int a, int b) const {
     return !bit(structure_.of_density.varying[a], b);

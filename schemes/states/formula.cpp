@@ -84,10 +84,10 @@ std::unique_ptr<State> formula(const StateBuild& build) {
       throw BadInput(exact_key(name), exact_key(name) + " = " + *exact + ": gives the start too; remove " +
                                           (value ? value_key(name) : velocity_key(name)));
     if (!exact && !value)
-      throw BadInput(value_key(name), value_key(name) + ": must be given, as a formula of x, or " + exact_key(name) +
+      throw BadInput(value_key(name), value_key(name) + ": must be given; write it as a formula of x, or " + exact_key(name) +
                                           " as one of t and x");
     if (all_exact.value_or(exact.has_value()) != exact.has_value())
-      throw BadInput(exact_key(name), exact_key(name) + ": must be given for all fields or for none");
+      throw BadInput(exact_key(name), exact_key(name) + ": must be given for all fields or for none; complete or remove it");
     all_exact = exact.has_value();
     if (exact) fields.push_back({Formula(*exact, numbers, exact_key(name)), std::nullopt, name + " = " + *exact});
     else {

@@ -48,6 +48,7 @@ inline std::vector<Row> random_rows(Random& random, int count, int sites, double
 inline Problem problem_of(const std::string& theory) {
   Problem p;
   p.theory = theory, p.parameters["theory.mass"] = 1.2, p.parameters["theory.lambda"] = 0.4;
+  p.parameters["theory.density"] = std::string("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)");
   p.parameters["theory.strength"] = 0.6, p.parameters["theory.width"] = 0.8, p.parameters["theory.position"] = 0.3;
   return p;
 }

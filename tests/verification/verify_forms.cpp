@@ -127,6 +127,7 @@ TEST_CASE(
         Problem p;
         p.theory = theory.name, p.stencil = stencil.name, p.lattice = lattice;
         p.time_step = 0.4 * lattice.space_step();
+        if (theory.name == "text") p.parameters["theory.density"] = std::string("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)");
         CAPTURE(theory.name, stencil.name, static_cast<int>(lattice.space()));
         try {
           const Result result = at_random_sections(p, 5);
