@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <boost/math/special_functions/legendre.hpp>
-#include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "jets/tables/line_basis.hpp"
+#include "jets/tables/line_rule.hpp"
 #include "jets/tables/stencil_table.hpp"
 #include "lattice/error.hpp"
 
@@ -15,94 +14,6 @@ namespace delf {
 
 /// The quadrature in time: Lobatto with p_t + 1 points, at the nodes, or Gauss with p_t points.
 enum class TimeQuadrature { lobatto, gauss };
-
-/// Points and weights on [0, 1]; Σ w = 1.
-struct LineRule {
-  std::vector<double> points, weights;
-  int size() const { return static_cast<int>(points.size()); }
-};
-
-/// 0, the zeros of P′_p and 1, moved from [−1, 1] to [0, 1]: exact to degree 2p − 1.
-inline LineRule lobatto_rule(int p) {
-  const auto n = static_cast<std::size_t>(p);
-  LineRule rule{std::vector<double>(n + 1), std::vector<double>(n + 1)};
-  for (int i = 0; 2 * i <= p; ++i) {
-    double x = 2 * i == p ? 0.0 : std::cos(std::numbers::pi * i / p);
-    // Newton on (1 − x²) P′_p, whose derivative is −p(p + 1) P_p
-    if (i > 0 && 2 * i < p)
-      for (int iteration = 0; iteration < 10; ++iteration)
-        x += (1 - x * x) * boost::math::legendre_p_prime(p, x) / (p * (p + 1) * boost::math::legendre_p(p, x));
-    const double legendre = boost::math::legendre_p(p, x);
-    const auto low = static_cast<std::size_t>(i), high = static_cast<std::size_t>(p - i);
-    rule.points[low] = (1 - x) / 2;
-    rule.points[high] = (1 + x) / 2;
-    rule.weights[low] = rule.weights[high] = 1 / (p * (p + 1) * legendre * legendre);
-  }
-  return rule;
-}
-
-/// The zeros of P_R, moved to [0, 1]: exact to degree 2R − 1.
-inline LineRule gauss_rule(int R) {
-  const auto n = static_cast<std::size_t>(R);
-  LineRule rule{std::vector<double>(n), std::vector<double>(n)};
-  std::size_t middle = n / 2;  // of the smallest zero ≥ 0; the zeros ascend
-  for (const double x : boost::math::legendre_p_zeros<double>(R)) {
-    const double slope = boost::math::legendre_p_prime(R, x);
-    const std::size_t high = middle++, low = n - 1 - high;
-    rule.points[low] = (1 - x) / 2;
-    rule.points[high] = (1 + x) / 2;
-    rule.weights[low] = rule.weights[high] = 1 / ((1 - x * x) * slope * slope);
-  }
-  return rule;
-}
-
-/// The Lagrange basis ψ_j on given nodes, and its derivative, at any point.
-class LagrangeBasis {
- public:
-  explicit LagrangeBasis(std::vector<double> nodes)
-      : nodes_(std::move(nodes)), weights_(nodes_.size(), 1.0), slopes_(nodes_.size() * nodes_.size(), 0.0) {
-    const std::size_t n = nodes_.size();
-    // b_j = 1 / Π_{m≠j} (x_j − x_m)
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t m = 0; m < n; ++m)
-        if (m != j) weights_[j] /= nodes_[j] - nodes_[m];
-    // ψ′_j(x_m) = (b_j / b_m) / (x_m − x_j), and Σ_j ψ′_j = 0
-    for (std::size_t m = 0; m < n; ++m)
-      for (std::size_t j = 0; j < n; ++j) {
-        if (j == m) continue;
-        slopes_[m * n + j] = weights_[j] / weights_[m] / (nodes_[m] - nodes_[j]);
-        slopes_[m * n + m] -= slopes_[m * n + j];
-      }
-  }
-
-  /// ψ_j(x) = (b_j / (x − x_j)) / Σ_m b_m / (x − x_m)
-  std::vector<double> values(double x) const {
-    const std::size_t n = nodes_.size();
-    std::vector<double> psi(n, 0.0);
-    for (std::size_t j = 0; j < n; ++j)
-      if (x == nodes_[j]) {
-        psi[j] = 1;
-        return psi;
-      }
-    double sum = 0;
-    for (std::size_t j = 0; j < n; ++j) sum += psi[j] = weights_[j] / (x - nodes_[j]);
-    for (double& value : psi) value /= sum;
-    return psi;
-  }
-
-  /// ψ′_j(x) = Σ_m ψ_m(x) ψ′_j(x_m), exact since ψ′_j has a lower degree
-  std::vector<double> slopes(double x) const {
-    const std::size_t n = nodes_.size();
-    const std::vector<double> psi = values(x);
-    std::vector<double> slope(n, 0.0);
-    for (std::size_t m = 0; m < n; ++m)
-      for (std::size_t j = 0; j < n; ++j) slope[j] += psi[m] * slopes_[m * n + j];
-    return slope;
-  }
-
- private:
-  std::vector<double> nodes_, weights_, slopes_;
-};
 
 /// The spacetime Galerkin element of degree (p_t, p_x): φ = Σ_ab ψ_a(t/h) ψ_b(x/k) y_ab on the Lobatto nodes.
 ///
@@ -119,7 +30,7 @@ inline StencilTable spacetime_element(int degree_time, int degree_space, TimeQua
   check("scheme.degree_time", degree_time);
   check("scheme.degree_space", degree_space);
 
-  const LineRule time_nodes = lobatto_rule(degree_time), space = lobatto_rule(degree_space);
+  const LineRule time_nodes = lobatto_rule(degree_time + 1), space = lobatto_rule(degree_space + 1);
   const LineRule time = quadrature == TimeQuadrature::lobatto ? time_nodes : gauss_rule(degree_time);
   const LagrangeBasis in_time(time_nodes.points), in_space(space.points);
   const auto at = [](const std::vector<double>& v, int i) { return v[static_cast<std::size_t>(i)]; };

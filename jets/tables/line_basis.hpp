@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace delf {
+
+/// The Lagrange basis ψ_j on given nodes, and its derivative, at any point.
+class LagrangeBasis {
+ public:
+  explicit LagrangeBasis(std::vector<double> nodes);
+
+  /// ψ_j(x) = (b_j / (x − x_j)) / Σ_m b_m / (x − x_m)
+  std::vector<double> values(double x) const;
+  /// ψ′_j(x) = Σ_m ψ_m(x) ψ′_j(x_m), exact since ψ′_j has a lower degree
+  std::vector<double> slopes(double x) const;
+
+ private:
+  std::vector<double> nodes_, weights_, slopes_;
+};
+
+/// S functions φ_j on [0, 1] that span the polynomials of degree S − 1, with Σ φ_j = 1. Coefficient j belongs to the place
+/// τ_j: the field τ has the coefficients τ_j.
+struct LineBasis {
+  std::vector<double> places;
+  std::function<std::vector<double>(double x)> values, slopes;  ///< φ_j(x) and φ′_j(x)
+
+  int size() const { return static_cast<int>(places.size()); }
+  /// Whether the first coefficient is the value at 0, and the last one that at 1: both can be shared with neighbours.
+  bool has_end_nodes() const;
+};
+
+LineBasis lagrange_basis(std::vector<double> nodes);
+/// B_j(x) = C(S − 1, j) x^j (1 − x)^{S−1−j}
+LineBasis bernstein_basis(int S);
+
+/// A basis as a scene names it, of any S ≥ 2.
+struct NamedLineBasis {
+  std::string name;
+  LineBasis (*make)(int S);
+};
+/// lagrange-lobatto, lagrange-gauss, lagrange-radau (0 is a node), lagrange-chebyshev (the extrema, both ends with them),
+/// bernstein.
+const std::vector<NamedLineBasis>& named_line_bases();
+
+}  // namespace delf
