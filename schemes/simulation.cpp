@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 
@@ -19,6 +20,7 @@
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/plan_report.hpp"
 #include "schemes/system/momenta.hpp"
+#include "schemes/system/slab_extent.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
@@ -55,6 +57,7 @@ struct Simulation::Impl {
   std::vector<const double*> monitored;
   int winding;
   bool has_multipliers;  ///< it has constraints
+  int field_lag;         ///< rows from the newest row of fields up to the newest slab
   std::vector<std::string> conserved_names;
 
   Impl(const Problem& p, std::unique_ptr<FieldTheory> t, SchemeParts parts)
@@ -66,7 +69,8 @@ struct Simulation::Impl {
         stepper(evolution.stepper()),
         system(evolution.system()),
         winding(p.winding),
-        has_multipliers(std::ranges::count(system.all_components(), Role::multiplier, &Component::role) > 0) {
+        has_multipliers(std::ranges::count(system.all_components(), Role::multiplier, &Component::role) > 0),
+        field_lag(has_multipliers ? slab_extent(system, evolution.plan()).field_lag : 0) {
     if (!method.energy && system.fields() != theory->components())
       throw std::logic_error("scheme.method = " + method.name + ": has other fields than the theory, and no energy");
     // Stencils of more than two rows would need rows that are no longer held.
@@ -86,16 +90,21 @@ struct Simulation::Impl {
 
   const RowLayout& layout() const { return own_layout ? *own_layout : *stepper.layout(); }
 
-  /// max |G| over the constraints at the newest row.
+  /// max |G| over the constraints of the newest slab, each at the row that the plan has it in.
   double constraint() const {
     if (!has_multipliers || stepper.newest() < 2) return 0;
+    const std::int64_t slab = stepper.newest() + field_lag;
     double worst = 0;
-    std::vector<LatticeSystem::Value> values;
-    system.equations(stepper.window(3), stepper.newest(), values);
+    std::map<std::int64_t, std::vector<LatticeSystem::Value>> of_row;
     for (int c = 0; c < system.components(); ++c)
-      for (int i = 0; i < problem.lattice.sites(); ++i)
-        if (system.component(c).role == Role::multiplier && evolution.plan().solved(i, c))
-          worst = std::max(worst, std::abs(values[static_cast<std::size_t>(i * system.components() + c)].sum));
+      for (int i = 0; i < problem.lattice.sites(); ++i) {
+        if (system.component(c).role != Role::multiplier || !evolution.plan().solved(i, c)) continue;
+        const std::int64_t row = slab - evolution.plan().shift(i, c, static_cast<int>(slab & 1));
+        const auto [at, fresh] = of_row.try_emplace(row);
+        if (fresh)
+          system.equations(stepper.window(std::max(3, static_cast<int>(stepper.newest() - row) + 2)), row, at->second);
+        worst = std::max(worst, std::abs(at->second[static_cast<std::size_t>(i * system.components() + c)].sum));
+      }
     return worst;
   }
 
@@ -235,13 +244,16 @@ void Simulation::start_legendre(std::span<const double> row0, std::span<const do
         phi_t.push_back(velocity[places.back()]);
       }
       p.resize(places.size());
-      any = family->momentum({impl_->problem.time_step, lattice.space_step(), 0, lattice.position(cell)}, phi, phi_t, p);
-      if (!any) break;
+      // constraints and trace stencils have none
+      if (!family->momentum({impl_->problem.time_step, lattice.space_step(), 0, lattice.position(cell)}, phi, phi_t, p))
+        break;
+      any = true;
       for (std::size_t n = 0; n < places.size(); ++n) momenta[places[n]] += p[n];
     }
   }
   if (!any)
-    throw BadInput("initial.start", "initial.start = legendre: for scheme.method = spacetime; use exact or centred");
+    throw BadInput("initial.start", "initial.start = legendre: for schemes of elements, and scheme.method = " +
+                                        impl_->method.name + " has none; use exact or centred");
   impl_->stepper.start_legendre({row0.begin(), row0.end()}, momenta);
 }
 

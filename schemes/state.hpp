@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -22,6 +23,10 @@ struct StateRequest {
   std::vector<std::string> fields = {"phi"};  ///< their names
   std::optional<int> winding = {};  ///< boundary.winding, if the scene gives it
   std::uint64_t seed = 1;           ///< run.seed
+  /// The theory's velocities of given momenta, ∂ℓ/∂q̇(q, q̇) = p; nothing where there are none. Asked by states that are
+  /// given by momenta.
+  std::function<std::optional<std::vector<double>>(std::span<const double> q, std::span<const double> p)> velocity_of =
+      {};
 };
 
 /// One component of a field at one point of spacetime.

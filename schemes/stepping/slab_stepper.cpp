@@ -109,6 +109,7 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
     p.curvature = 0, p.unseen = 0, p.last_iterations = p.fresh_iterations = 0;
   }
   wait_ = 1, waiting_ = 0;
+  by_momenta_ = false;
 }
 
 void SlabStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
@@ -121,11 +122,37 @@ void SlabStepper::start_centred(const std::vector<double>& row0, const std::vect
 }
 
 void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
-  if (plan_.history != 2 || future_ != 0 || lag_ != 0)
+  if (plan_.history > 2 || lag_ != 0)
     throw BadInput("initial.start", "initial.start = legendre: this scheme is not one slab's map; use exact");
   start({row0});
+  solve_slab_of_start(momenta);
   solve(1, &momenta);
   J_ = 1;
+  by_momenta_ = true;
+}
+
+/// What slab 0 finds besides row 0 itself: a plan may solve for a multiplier, or for the nodes of the cell above, as soon
+/// as the row is there. Nothing for fields alone, whose equations at row 0 belong to slab 1.
+void SlabStepper::solve_slab_of_start(const std::vector<double>& momenta) {
+  const Assembly::Parts whole = Assembly::slab(plan_, 0, past_, future_, options_.turn);
+  if (!whole.matched) return;
+  Assembly::Parts parts = whole;
+  parts.equations.clear(), parts.unknowns.clear();
+  for (std::size_t n = 0; n < whole.equations.size(); ++n) {
+    const Node &equation = whole.equations[n], &unknown = whole.unknowns[n];
+    const bool data = unknown.site.time == 0 && system_.component(unknown.component).role == Role::field;
+    if (equation.site.time < 0 || unknown.site.time < 0 || data) continue;
+    parts.equations.push_back(equation), parts.unknowns.push_back(unknown);
+  }
+  if (parts.equations.empty()) return;
+  Assembly equations(system_, parts);
+  BlockSolver solver = solver_of(equations);
+  std::vector<Unknowns> unknowns = list_unknowns(equations);
+  Parity first{std::move(equations), std::move(solver), std::move(unknowns)};
+  // newton() begins with the row before, which here is row 0 itself
+  std::ranges::copy(std::vector<double>(ring_->row(0), ring_->row(0) + predicted_.size()), ring_->row(-1));
+  iterations_ = 0;
+  if (const char* why = newton(first, 0, least_points, &momenta)) fail(0, why);
 }
 
 /// The polynomial through the values that the last slabs gave, `most_points` of them or as many as there are:
@@ -355,7 +382,7 @@ double SlabStepper::residual() const {
   if (known_ == 0) return 0;
   const Parity& p = parity(J_);
   // After a Legendre start slab 1 has no stencils below row 0.
-  if (J_ == 1 && plan_.history > 1) return 0;
+  if (J_ == 1 && by_momenta_) return 0;
   for (std::vector<double>* numbers : {&residual_, &absolute_}) numbers->reserve(unknowns() + 1);
   p.equations.residual(*ring_, J_, residual_, &absolute_);
   // The equation of a multiplier is a constraint, whose terms cancel within one stencil: it is measured on its own.

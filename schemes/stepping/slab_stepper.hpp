@@ -75,6 +75,7 @@ class SlabStepper final : public StepMethod {
   bool iterate(Parity&, std::int64_t J);
   bool may_iterate(const Parity&);
   const char* newton(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
+  void solve_slab_of_start(const std::vector<double>& momenta);
   void solve(std::int64_t J, const std::vector<double>* momenta);
   std::optional<int> crossing(const double* row) const;
   [[noreturn]] void fail(std::int64_t J, const char* why) const;
@@ -92,6 +93,7 @@ class SlabStepper final : public StepMethod {
   std::unique_ptr<SectionRing> ring_;
   std::int64_t J_ = -1;     ///< newest slab
   std::int64_t known_ = 0;  ///< slabs whose every component is known
+  bool by_momenta_ = false;  ///< the run began with the discrete Legendre transform
   int iterations_ = 0;
   double largest_[2] = {0, 0};  ///< |y| of the newest two slabs, or of the starting rows
   int wait_ = 1,

@@ -25,22 +25,24 @@ void generator(const LatticeSystem& system, const StencilFamily& family, const L
   for (std::size_t n = 0; n < values.size(); ++n) {
     const Component& here = system.component(values[n].component);
     const auto a = static_cast<std::size_t>(here.field);
-    if (!is_value_of_field(here) || a >= d) continue;
-    // ξ_a = Σ_b A_ab y_b + b_a
-    xi[n] = symmetry.shift[a];
+    if (!(is_value_of_field(here) || here.momentum) || a >= d) continue;
+    // ξ_a = Σ_b A_ab y_b + b_a; of a momentum −Σ_b A_ba p_b, so that p·(q − q′) stays as it is
+    const auto coefficient = [&](std::size_t b) {
+      return here.momentum ? -symmetry.matrix[b * d + a] : symmetry.matrix[a * d + b];
+    };
+    if (!here.momentum) xi[n] = symmetry.shift[a];
     for (std::size_t b = 0; b < d; ++b) {
-      if (symmetry.matrix[a * d + b] == 0) continue;
+      if (coefficient(b) == 0) continue;
       // the same node of field b
       const auto found = std::ranges::find_if(values, [&](const VertexValue& value) {
         const Component& there = system.component(value.component);
-        return value.vertex == values[n].vertex && there.role == here.role && there.at.time == here.at.time &&
-               there.at.space == here.at.space &&
-               there.field == static_cast<int>(b);
+        return value.vertex == values[n].vertex && there.role == here.role && there.momentum == here.momentum &&
+               there.at.time == here.at.time && there.at.space == here.at.space && there.field == static_cast<int>(b);
       });
       if (found == values.end())
         throw BadInput("verify.generator", "a stencil does not read field " + std::to_string(b + 1) + " where " +
                                                here.name + " is and the generator needs it; leave it out");
-      xi[n] += symmetry.matrix[a * d + b] * y[static_cast<std::size_t>(found - values.begin())];
+      xi[n] += coefficient(b) * y[static_cast<std::size_t>(found - values.begin())];
     }
   }
 }

@@ -9,7 +9,8 @@
 namespace delf {
 
 /// ξ at each value that a stencil of the family reads, for a symmetry of the fields at one node: it acts alike at every
-/// node, and not at all on multipliers. Throws BadInput if the stencil does not read a field that ξ needs.
+/// node, on multipliers that are momenta by −Aᵀ, and not at all on others. Throws BadInput if the stencil does not read a
+/// field that ξ needs.
 void generator(const LatticeSystem&, const StencilFamily&, const LinearSymmetry&, std::span<const double> y,
                std::vector<double>& xi);
 

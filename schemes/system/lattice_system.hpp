@@ -34,6 +34,7 @@ struct Component {
   NodePosition at = {};   ///< in the cell, as fractions of h and k
   bool position = false;  ///< of the sites themselves, which move: it grows along every row
   int field = 0;          ///< inner and trace: the field that it is a value of; a field is its own, counted from 0
+  bool momentum = false;  ///< a multiplier that is a momentum of `field`: symmetries act on it by −Aᵀ
 };
 /// d fields at the vertices: "phi", or "phi1", "phi2", …
 std::vector<Component> fields(int d);

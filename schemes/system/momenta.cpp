@@ -20,8 +20,17 @@ std::vector<double> momenta(const LatticeSystem& system, const Window& window, s
   std::vector<double> p(static_cast<std::size_t>(N * C), 0.0), y, r;
   for (const auto& family : system.families()) {
     const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
-    if (low.time == high.time) continue;
-    const std::int64_t anchor = row - (side == Side::below ? high.time : low.time);
+    int top = high.time;
+    if (low.time == top) {
+      // in the row alone; or in the cell above it, an element or its lower end
+      if (std::ranges::none_of(family->values(), [&](const VertexValue& value) {
+            const Component& c = system.component(value.component);
+            return c.at.time != 0 || c.momentum;
+          }))
+        continue;
+      ++top;
+    }
+    const std::int64_t anchor = row - (side == Side::below ? top : low.time);
     for (int i = 0; i < N; ++i) {
       if (!system.has_stencil(*family, anchor, i)) continue;
       y.clear();

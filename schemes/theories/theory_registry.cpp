@@ -9,7 +9,8 @@ namespace delf {
 
 extern const TheoryEntry wave_theory, klein_gordon_theory, sine_gordon_theory, phi4_theory, double_sine_gordon_theory,
     sine_gordon_impurity_theory, pendulum_theory, kepler_theory, coupled_sine_gordon_theory,
-    complex_klein_gordon_theory, wave_map_theory, text_theory;
+    complex_klein_gordon_theory, wave_map_theory, harmonic_oscillator_theory, henon_heiles_theory,
+    double_pendulum_theory, text_theory;
 
 namespace {
 
@@ -25,6 +26,9 @@ std::vector<const TheoryEntry*>& entries() {
                                              &wave_map_theory,
                                              &pendulum_theory,
                                              &kepler_theory,
+                                             &harmonic_oscillator_theory,
+                                             &henon_heiles_theory,
+                                             &double_pendulum_theory,
                                              &text_theory};
   return all;
 }

@@ -61,7 +61,8 @@ inline std::unique_ptr<FieldTheory> theory_named(const Problem& p) {
 inline std::vector<std::string> theory_names() {
   std::vector<std::string> names;
   for (const TheoryInfo& theory : theories())
-    if (theory.components == 1 && theory.name != "pendulum") names.push_back(theory.name);
+    if (theory.components == 1 && theory.name != "pendulum" && theory.name != "harmonic-oscillator")
+      names.push_back(theory.name);
   return names;
 }
 /// Stencils for fields: not the two sites of a time lattice.

@@ -176,7 +176,12 @@ std::vector<Key> all_keys() {
   std::vector<Key> table = general_keys();
   for (const Declaration& declaration : declarations())
     for (const Parameter& p : declaration.parameters) {
-      if (std::ranges::find(table, p.key, &Key::name) != table.end()) continue;
+      if (const auto known = std::ranges::find(table, p.key, &Key::name); known != table.end()) {
+        // each of several methods has its own choices (Values::known): the table lists all of them
+        for (const std::string& name : p.choices)
+          if (std::ranges::find(known->choices, name) == known->choices.end()) known->choices.push_back(name);
+        continue;
+      }
       Key key = key_of(p);
       const Names owners = declared_by(p.key);
       if (declaration.kind == DeclaredBy::method)

@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
 #include "jets/tables/named_tables.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/step_method.hpp"
+#include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/scene/keys.hpp"
@@ -33,14 +36,21 @@ Wall wall(const Values& values, std::string_view key) {
   return values.choice(key) == "natural" ? Wall::natural : Wall::fixed;
 }
 
+Space read_space(const Values& values) {
+  static const std::map<std::string, Space> spaces{
+      {"circle", Space::circle}, {"interval", Space::interval}, {"point", Space::point}};
+  return spaces.at(values.choice("lattice.space"));
+}
+
 Lattice read_lattice(const Settings& settings, const Values& values) {
-  const std::string space = values.choice("lattice.space");
-  if (space == "point") return Lattice::point();
+  const Space space = read_space(values);
+  if (space == Space::point) return Lattice::point();
   const auto sites = static_cast<int>(values.integer("lattice.sites"));
   const double length = values.real("lattice.length");
-  const Lattice lattice = space == "circle" ? Lattice::circle(sites, length)
-                                            : Lattice::interval(sites, length, wall(values, "boundary.left"),
-                                                                wall(values, "boundary.right"));
+  const Lattice lattice = space == Space::circle
+                              ? Lattice::circle(sites, length)
+                              : Lattice::interval(sites, length, wall(values, "boundary.left"),
+                                                  wall(values, "boundary.right"));
   if (!std::isnormal(lattice.space_step()))
     throw settings.error("lattice.length", "L/N is too small for double precision; use a longer one");
   return lattice;
@@ -52,7 +62,8 @@ void read_parameters(const Values& values, Problem& p) {
     if (declaration.kind == DeclaredBy::state) continue;
     const std::string& name = declaration.kind == DeclaredBy::theory ? p.theory : p.method;
     for (const Parameter& parameter : declaration.parameters)
-      if (name == declaration.name && (parameter.otherwise.empty() || values.given(parameter.key)))
+      // a key that is not given, and has no fallback, is left to what declares it
+      if (name == declaration.name && (values.given(parameter.key) || parameter.otherwise.empty()))
         p.parameters[parameter.key] = values.parameter(parameter);
       else if (values.given(parameter.key) && !p.parameters.has(parameter.key))
         p.parameters[parameter.key] = values.parameter(parameter);
@@ -91,12 +102,13 @@ StateRequest read_initial(const Values& values, const Problem& problem) {
   ParameterValues in_force = problem.parameters;
   for (const Parameter& p : parameters_of(entry, problem.parameters))
     if (in_force.has(p.key)) r.values[p.key] = in_force[p.key];
-  const auto theory = make_theory(entry, problem.parameters);
+  const std::shared_ptr<const FieldTheory> theory = make_theory(entry, problem.parameters);
   r.components = theory->components();
   r.fields.clear();
   for (const Component& field : theory->fields()) r.fields.push_back(field.name);
   for (const Parameter& p : parameters_of(find_state(r.name), r.fields))
     if (values.given(p.key)) r.values[p.key] = values.parameter(p);
+  r.velocity_of = [theory](auto q, auto p) { return velocity_of(theory->density(), q, p); };
   if (const auto winding = values.maybe_integer("boundary.winding"); winding && problem.lattice.is_circle())
     r.winding = static_cast<int>(*winding);
   r.seed = static_cast<std::uint64_t>(values.integer("run.seed"));

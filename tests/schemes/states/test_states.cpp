@@ -340,6 +340,13 @@ TEST_CASE("exact states of mechanics and of several components solve their equat
 namespace {
 
 // States that solve no equation, and give derivatives all the same.
+StateRequest body(const std::string& q, const std::string& v, const char* theory = "henon-heiles") {
+  StateRequest r = request("point", theory);
+  r.components = 2;
+  r.values["initial.q"] = q, r.values["initial.v"] = v;
+  return r;
+}
+
 std::vector<Case> inexact_cases() {
   const Lattice ring = Lattice::circle(400, 12), interval = Lattice::interval(401, 12);
   const Lattice mixed = Lattice::interval(401, 12, Wall::natural, Wall::fixed);
@@ -352,7 +359,8 @@ std::vector<Case> inexact_cases() {
           {"noise of two components", two, ring},
           {"charged packet", request("charged-packet", "complex-klein-gordon"), ring},
           {"small plane wave", request("plane-wave", "double-sine-gordon"), ring},
-          {"small wave packet", request("wave-packet"), ring}};
+          {"small wave packet", request("wave-packet"), ring},
+          {"a point in phase space", body("0.25, 0.125", "-1e-2,0.5"), Lattice::point()}};
 }
 
 // max |φ_t or φ_x − differences of φ| over points between the sites; sign = −1 plants an error.
@@ -408,6 +416,29 @@ TEST_CASE("every state gives phi, phi_t and phi_x at any point, and the same at 
   }
   for (const StateEntry* entry : state_entries())
     if (entry->build) CHECK(seen.contains(entry->name));
+}
+
+TEST_CASE("a point in phase space has the numbers that are given, and velocities by its momenta", "[states]") {
+  const Lattice point = Lattice::point();
+  const auto state = make_state(body("0.25, 0.125", " -1e-2,0.5 "), point);
+  CHECK(values(*state, 0, point) == std::vector<double>{0.25, 0.125});
+  CHECK(velocities(*state, 0, point) == std::vector<double>{-1e-2, 0.5});
+  CHECK(velocities(*make_state(request("point", "pendulum"), point), 0, point) == std::vector<double>{0});
+
+  // p = 2v
+  StateRequest r = request("point", "pendulum");
+  r.values["initial.q"] = std::string("0.7"), r.values["initial.p"] = std::string("0.3");
+  CHECK(key_of(r, point) == "initial.p");  // nobody tells the velocity
+  r.velocity_of = [](auto, auto p) { return std::optional(std::vector<double>{p[0] / 2}); };
+  CHECK(velocities(*make_state(r, point), 0, point) == std::vector<double>{0.15});
+  r.values["initial.v"] = std::string("0");
+  CHECK(key_of(r, point) == "initial.p");
+  for (const char* bad : {"1", "1, 2, 3", "1, x", "1,", "1, inf", "1 2"}) {
+    CAPTURE(bad);
+    CHECK(key_of(body(bad, "0, 0"), point) == "initial.q");
+    CHECK(key_of(body("0, 0", bad), point) == "initial.v");
+  }
+  CHECK(key_of(body("0, 0", "0, 0"), point) == "none");
 }
 
 TEST_CASE("an orbit keeps its energy and its angular momentum, and starts at the pericentre", "[states]") {
@@ -552,12 +583,12 @@ TEST_CASE("states of several components and of a point refuse what they cannot b
     const StateEntry& info = *entry;
     if (!info.build || info.name == "formula") continue;  // of any theory and space
     const auto words = theories_in_words(info), theory = words.substr(0, words.find_first_of(",;"));
-    const bool at_a_point = theory == "kepler" || theory == "pendulum", any = info.name == "noise";
+    const bool at_a_point = info.place == Place::point, any = info.any_theory;
     CAPTURE(info.name);
     CHECK(key_of(request(info.name, any ? "pendulum" : theory), point) == (at_a_point ? "none" : "initial.state"));
     for (const char* several : {"kepler", "coupled-sine-gordon", "complex-klein-gordon", "wave-map"}) {
       const bool refused =
-          any ? several == std::string("kepler") || several == std::string("wave-map") : several != theory;
+          any ? std::ranges::find(info.but, several) != info.but.end() : several != theory;
       if (refused) CHECK(key_of(request(info.name, several), at_a_point ? point : circle) == "initial.state");
     }
   }
@@ -908,7 +939,7 @@ TEST_CASE("the list of states has every state that can be made", "[states]") {
     CHECK_FALSE(words.empty());
     if (!info.build) continue;
     const auto theory = info.any_theory ? "wave" : words.substr(0, words.find_first_of(",;"));
-    const bool point = theory == "kepler" || theory == "pendulum";
+    const bool point = info.place == Place::point;
     CHECK_FALSE(make_state(request(info.name, theory), point ? Lattice::point() : circle)->description().empty());
     ++made;
   }

@@ -140,3 +140,40 @@ TEST_CASE("an alias of a stencil is the stencil that it is on this lattice, and 
   CHECK(on_point("midpoint") == "midpoint");    // a name stays what it is
   CHECK(on_point("yee") == "triangle-vertex");  // which no point has room for: refused, by its name, when it is built
 }
+
+TEST_CASE("a key of two methods has the choices of the one in the scene, and may be left to it") {
+  const Folder folder;
+  const std::string mechanics =
+      "[theory]\nname = henon-heiles\n[lattice]\nspace = point\ntime_step = 0.1\n[initial]\nstate = point\n"
+      "[run]\nsteps = 3\n[scheme]\nmethod = cgvi\n";
+  const Scene radau = scene_of(folder, mechanics + "quadrature = radau\n");
+  CHECK(radau.problem.parameters.get<std::string>("scheme.quadrature") == "radau");
+  CHECK_FALSE(radau.problem.parameters.has("scheme.points"));
+  CHECK_FALSE(radau.problem.parameters.has("scheme.continuity"));
+  CHECK(scene_of(folder, mechanics + "points = 4\n").problem.parameters.get<int>("scheme.points") == 4);
+  const auto refused = [&](const std::string& more) {
+    try {
+      scene_of(folder, small_scene("[scheme]\nmethod = spacetime\nquadrature = " + more + "\n"));
+    } catch (const BadInput& bad) {
+      return std::string(bad.what());
+    }
+    return std::string();
+  };
+  CHECK(refused("lobatto").empty());
+  CHECK(contains(refused("radau"), "scheme.quadrature = radau: is not known"));
+  CHECK(contains(delf_program(folder, "help run").out, "clenshaw-curtis"));
+}
+
+TEST_CASE("a body may start by its momenta, where mass depends on where it is") {
+  const Folder folder;
+  const Scene scene = scene_of(folder,
+                               "[theory]\nname = double-pendulum\n[lattice]\nspace = point\ntime_step = 0.1\n"
+                               "[initial]\nstate = point\nq = 0.7, -0.4\np = 0.3, 1.1\n[run]\nsteps = 3\n");
+  const auto state = make_state(scene.initial, scene.problem.lattice);
+  std::vector<double> v(2);
+  state->velocities(0, scene.problem.lattice, v);
+  // p = (2 v1 + v2 cos(q1 − q2), v2 + v1 cos(q1 − q2))
+  const double c = std::cos(1.1);
+  CHECK(std::abs(2 * v[0] + c * v[1] - 0.3) < 1e-15);
+  CHECK(std::abs(v[1] + c * v[0] - 1.1) < 1e-15);
+}

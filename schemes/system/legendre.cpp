@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/system/legendre.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "jets/simd/scratch_rows.hpp"
+
+namespace delf {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr int most_iterations = 50;
+
+/// A jet (q, q̇, 0, …) at x = 0, and what the density makes of it.
+class PointJet {
+ public:
+  PointJet(const BatchDensity& density, std::span<const double> q, double t)
+      : density_(density),
+        t_(t),
+        d_(density.components()),
+        m_(density.variables()),
+        jet_(m_ + 1, lanes),
+        g_(m_ + 1, lanes),
+        H_(m_ * m_, lanes) {
+    for (int a = 0; a <= m_; ++a) std::fill_n(jet_[a], lanes, 0.0);
+    for (int a = 0; a < d_; ++a) std::fill_n(jet_[a], lanes, q[static_cast<std::size_t>(a)]);
+  }
+  void set_velocity(const Eigen::VectorXd& v) {
+    for (int a = 0; a < d_; ++a) std::fill_n(jet_[d_ + a], lanes, v[a]);
+  }
+  /// ∂ℓ/∂q̇, and ℓ behind it
+  Eigen::VectorXd momentum_and_density() {
+    density_.gradient(batch(), g_.data(), g_[m_]);
+    Eigen::VectorXd p(d_ + 1);
+    for (int a = 0; a < d_; ++a) p[a] = g_[d_ + a][0];
+    p[d_] = g_[m_][0];
+    return p;
+  }
+  /// ∂²ℓ/∂q̇∂q̇
+  Eigen::MatrixXd mass() {
+    density_.hessian(batch(), H_.data());
+    Eigen::MatrixXd M(d_, d_);
+    for (int a = 0; a < d_; ++a)
+      for (int b = 0; b < d_; ++b) M(a, b) = H_[(d_ + a) * m_ + d_ + b][0];
+    return M;
+  }
+
+ private:
+  JetBatch batch() const { return {lanes, jet_.data(), t_, jet_[m_]}; }
+
+  const BatchDensity& density_;
+  double t_;
+  int d_, m_;
+  ScratchRows jet_, g_, H_;
+};
+
+}  // namespace
+
+std::optional<std::vector<double>> velocity_of(const BatchDensity& density, std::span<const double> q,
+                                               std::span<const double> p, double t) {
+  const int d = density.components();
+  PointJet jet(density, q, t);
+  const Eigen::Map<const Eigen::VectorXd> wanted(p.data(), d);
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(d);
+  double before = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    jet.set_velocity(v);
+    const Eigen::FullPivLU<Eigen::MatrixXd> mass(jet.mass());
+    if (!mass.isInvertible()) return std::nullopt;
+    const Eigen::VectorXd change = mass.solve(wanted - jet.momentum_and_density().head(d));
+    if (!change.allFinite()) return std::nullopt;
+    v += change;
+    const double size = change.lpNorm<Eigen::Infinity>(), scale = v.lpNorm<Eigen::Infinity>();
+    // corrections that no longer shrink are rounding, if they are small
+    if (size <= 4 * epsilon * scale || (size > 0.25 * before && size <= 512 * epsilon * scale))
+      return std::vector<double>(v.begin(), v.end());
+    before = size;
+  }
+  return std::nullopt;
+}
+
+double hamiltonian(const BatchDensity& density, std::span<const double> q, std::span<const double> p, double t) {
+  const auto velocity = velocity_of(density, q, p, t);
+  if (!velocity) return std::numeric_limits<double>::quiet_NaN();
+  PointJet jet(density, q, t);
+  const Eigen::Map<const Eigen::VectorXd> v(velocity->data(), density.components());
+  jet.set_velocity(v);
+  const Eigen::VectorXd at = jet.momentum_and_density();
+  double H = -at[density.components()];
+  for (int a = 0; a < density.components(); ++a) H += p[static_cast<std::size_t>(a)] * v[a];
+  return H;
+}
+
+}  // namespace delf
