@@ -37,6 +37,7 @@ Window random_window(const LatticeSystem& system, const std::string& theory, int
         const double k = system.lattice().space_step();
         if (position) row.push_back((i + 0.2 * uniform(random)) * k);  // a mesh that does not cross
         else if (theory == "kepler") row.push_back(c % 2 == 0 ? 1.5 + 0.5 * uniform(random) : 0.5 * uniform(random));
+        else if (theory == "henon-heiles") row.push_back(0.5 * uniform(random));  // where its motions are bounded
         else row.push_back(2 * uniform(random));
       }
   return system.window(0, std::move(values), 0);
