@@ -45,7 +45,7 @@ TEST_CASE("bases of one size span the same polynomials: each has x to the power 
   }
 }
 
-TEST_CASE("bases with a node at both ends can share them; others are refused") {
+TEST_CASE("bases with a node at both ends can share them, and others are refused") {
   for (const NamedLineBasis& named : named_line_bases())
     for (const int S : {2, 3, 5}) {
       CAPTURE(named.name, S);

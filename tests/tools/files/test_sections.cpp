@@ -168,7 +168,7 @@ TEST_CASE("incompatible keys are refused in one line") {
   refused("kepler --lattice.stencil=rectangle", "lattice.stencil = rectangle");
   refused("wave-map --initial.state=noise", "initial.state = noise");
   refused("kepler --initial.eccentricity=1", "initial.eccentricity = 1");
-  refused("breather --initial.start=legendre", "needs scheme.method = spacetime");
+  refused("breather --initial.start=legendre", "needs scheme.method = cgvi or spacetime or composition");
   refused("breather --scheme.method=r-adaptive", "");
   refused("breather --scheme.method=r-adaptive --lattice.space=interval",
           "has 1 field, and the scheme has 2 fields (phi, X)");
@@ -189,7 +189,7 @@ TEST_CASE("keys of another method are warned of") {
     CHECK(contains(ran.err, part));
   };
   warned("breather --scheme.degree_time=3", "only scheme.method = spacetime reads it");
-  warned("breather --scheme.quadrature=lobatto", "only scheme.method = spacetime reads it");
+  warned("breather --scheme.quadrature=lobatto", "only scheme.method = spacetime or cgvi reads it");
   warned("breather --scheme.alpha=3", "only scheme.method = r-adaptive reads it");
   warned("breather --initial.eccentricity=0.3", "the state breather does not read it");
 }

@@ -31,7 +31,7 @@ TEST_CASE("errors in a scene name file, line, key, value, reason and remedy") {
       {"[scheme]\ntolerance = 0", "scheme.tolerance = 0", "above 0"},
       {"[scheme]\ntolerance = 1", "scheme.tolerance = 1", "at most 0.01; lower"},
       {"[initial]\nspeed = 1", "initial.speed = 1", "slower than light"},
-      {"[initial]\nstart = legendre", "initial.start = legendre", "needs scheme.method = spacetime"},
+      {"[initial]\nstart = legendre", "initial.start = legendre", "needs scheme.method = cgvi or spacetime or composition"},
       {"[scheme]\nquadrature = simpson", "scheme.quadrature = simpson", "not known"},
       {"[output]\nfields = maybe", "output.fields = maybe", "on or off"},
       {"[output]\ntimes = 1, x", "output.times = 1, x", "not a number"},

@@ -161,7 +161,6 @@ TEST_CASE("a key of two methods has the choices of the one in the scene, and may
   };
   CHECK(refused("lobatto").empty());
   CHECK(contains(refused("radau"), "scheme.quadrature = radau: is not known"));
-  CHECK(contains(delf_program(folder, "help run").out, "clenshaw-curtis"));
 }
 
 TEST_CASE("a body may start by its momenta, where mass depends on where it is") {
