@@ -42,6 +42,8 @@ TEST_CASE("a run that ends well and may be wrong says why, in the report and in 
       {"collision --lattice.sites=32", "theta = pi (even N only)"},
       {lobatto, "beyond the linear limit of the scheme"},
       {lobatto, "the energy leaves ten times its early band"},
+      {"kink --initial.speed=0.1 --lattice.sites=21 --run.until=160 --lattice.stencil=triangle-vertex",
+       "pinned by the lattice"},
       {"small.ini --scheme.max_iterations=2 --run.steps=10", "raise scheme.max_iterations, which is 2"},
   }));
   INFO(arguments);
@@ -56,7 +58,8 @@ TEST_CASE("shipped scenes as they are, and near misses, warn of nothing") {
   const std::string arguments =
       GENERATE(as<std::string>(), "kepler", "pendulum", "fast-kink", "kink", "kink-train", "collision --run.until=20",
                "collision --lattice.sites=256 --run.until=20", "phi4-kink", "spacetime-element --scheme.degree_space=3",
-               "wave-packet", "wave-map", "r-adaptive --run.steps=50", "small.ini");
+               "wave-packet", "wave-map", "henon-heiles", "phi6-kink", "sinh-gordon", "sine-gordon-text",
+               "r-adaptive --run.steps=50", "small.ini");
   const Done done(arguments);
   INFO(arguments << "\n" << done.summary["warnings"].dump(1));
   CHECK(done.summary["warnings"].empty());
