@@ -7,10 +7,10 @@
 #include <csignal>
 #include <cstdio>
 
+#include "schemes/text_parts.hpp"
 #include "tools/commands.hpp"
 #include "tools/help.hpp"
 #include "tools/scene/keys.hpp"
-#include "tools/scene/scene_text.hpp"
 
 namespace delf {
 

@@ -20,6 +20,12 @@ struct Alone {
   }
 };
 
+std::vector<int> numbers_to(int n) {
+  std::vector<int> numbers(static_cast<std::size_t>(n));
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
 }  // namespace
 
 int SourceTerms::Group::latest_time() const {
@@ -37,20 +43,18 @@ void StencilFamily::residual(const Cell& cell, std::span<const double> y, std::s
 }
 
 void StencilFamily::jacobian(const Cell& cell, std::span<const double> y, std::span<double> J) const {
-  const Alone one(cell, y);
-  std::vector<int> all(y.size());
-  std::iota(all.begin(), all.end(), 0);
-  std::vector<Pack> out(y.size() * y.size());
-  jacobian(one.batch, all, all, reinterpret_cast<double*>(out.data()));
-  for (std::size_t i = 0; i < J.size(); ++i) J[i] = out[i][0];
+  rows_of_jacobian(numbers_to(size()), cell, y, J);
 }
 
 void StencilFamily::jacobian_row(int equation, const Cell& cell, std::span<const double> y, std::span<double> J) const {
+  rows_of_jacobian({&equation, 1}, cell, y, J);
+}
+
+void StencilFamily::rows_of_jacobian(std::span<const int> equations, const Cell& cell, std::span<const double> y,
+                                     std::span<double> J) const {
   const Alone one(cell, y);
-  std::vector<int> all(y.size());
-  std::iota(all.begin(), all.end(), 0);
-  std::vector<Pack> out(y.size());
-  jacobian(one.batch, {&equation, 1}, all, reinterpret_cast<double*>(out.data()));
+  std::vector<Pack> out(equations.size() * y.size());
+  jacobian(one.batch, equations, numbers_to(size()), reinterpret_cast<double*>(out.data()));
   for (std::size_t i = 0; i < J.size(); ++i) J[i] = out[i][0];
 }
 

@@ -106,6 +106,9 @@ class StencilFamily {
   void jacobian_row(int equation, const Cell&, std::span<const double> y, std::span<double> J) const;
   virtual std::optional<double> lagrangian(const Cell&, std::span<const double> y) const;
 
+ private:
+  void rows_of_jacobian(std::span<const int> equations, const Cell&, std::span<const double> y, std::span<double> J) const;
+
  protected:
   StencilFamily(StencilPattern pattern, std::vector<VertexValue> values, bool variational)
       : pattern_(std::move(pattern)), values_(std::move(values)), variational_(variational) {}

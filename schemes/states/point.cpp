@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <charconv>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include "lattice/error.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/state_registry.hpp"
+#include "schemes/text_parts.hpp"
 
 namespace delf {
 namespace initial {
@@ -40,14 +40,7 @@ std::vector<double> numbers(const StateBuild& build, const std::string& key, int
   std::vector<double> list;
   if (!given) return std::vector<double>(static_cast<std::size_t>(count), 0.0);
   const auto refuse = [&](const std::string& why) { throw BadInput(key, key + " = " + *given + ": " + why); };
-  std::string_view rest = *given;
-  for (bool more = true; more;) {
-    const std::size_t comma = rest.find(',');
-    more = comma != std::string_view::npos;
-    std::string_view word = rest.substr(0, comma);
-    if (more) rest.remove_prefix(comma + 1);
-    while (!word.empty() && (word.front() == ' ' || word.front() == '\t')) word.remove_prefix(1);
-    while (!word.empty() && (word.back() == ' ' || word.back() == '\t')) word.remove_suffix(1);
+  for (const std::string& word : parts_of(*given)) {
     double x = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(x))

@@ -16,7 +16,8 @@ enum class Side { below, above };
 ///     p = Σ_{Δ below} ∂L/∂y = −Σ_{Δ above} ∂L/∂y
 ///
 /// A stencil that lies in the row alone, such as a constraint at its sites, belongs to neither side; one that reads nodes
-/// inside the cell above the row, or joins them to it, lies above it. The window holds the rows on that side that the stencils reach. Throws BadInput for a scheme without a Lagrangian.
+/// inside the cell above the row, or joins them to it, lies above it. The window holds the rows on that side that the
+/// stencils reach. Throws BadInput for a scheme without a Lagrangian.
 std::vector<double> momenta(const LatticeSystem&, const Window&, std::int64_t row, Side);
 /// Throws that BadInput.
 void require_lagrangian(const LatticeSystem&);

@@ -4,6 +4,7 @@
 
 #include "jets/expressions/expression.hpp"
 #include "lattice/error.hpp"
+#include "schemes/text_parts.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
@@ -11,23 +12,6 @@ namespace delf {
 namespace {
 
 constexpr auto density_key = "theory.density", fields_key = "theory.fields", parameters_key = "theory.parameters";
-
-std::string trimmed_part(std::string_view text) {
-  constexpr auto white = " \t\r\n";
-  const auto first = text.find_first_not_of(white);
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(white) - first + 1));
-}
-
-std::vector<std::string> parts_of(std::string_view text) {
-  std::vector<std::string> parts;
-  for (;;) {
-    const auto comma = text.find(',');
-    parts.push_back(trimmed_part(text.substr(0, comma)));
-    if (comma == std::string_view::npos) return parts;
-    text.remove_prefix(comma + 1);
-  }
-}
 
 /// Fields, and parameters with the numbers that theory.parameters gives them.
 ExpressionNames names_of(const ParameterValues& values) {
@@ -39,7 +23,7 @@ ExpressionNames names_of(const ParameterValues& values) {
       if (equals == std::string::npos)
         throw BadInput(parameters_key, std::string(parameters_key) + ": \"" + part.substr(0, 60) +
                                            "\" is not NAME = NUMBER; write a list like m = 1, g = 0.3");
-      names.parameters.emplace_back(trimmed_part(std::string_view(part).substr(0, equals)),
+      names.parameters.emplace_back(trimmed(std::string_view(part).substr(0, equals)),
                                     number_of(std::string_view(part).substr(equals + 1), parameters_key));
     }
   check_names(names, fields_key, parameters_key);

@@ -94,11 +94,11 @@ Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulat
   if (initial.state()) width_ = width_of(scene.initial, scene.problem.lattice);
   const double end = static_cast<double>(scene.steps) * scene.problem.time_step;
   if (!initial.exact() || !std::isfinite(width_) || end > initial.exact()->exact_until()) return;
-  // The last stretch of time in which the solution's pulse moves by some cells: the shorter ones by less.
+  // The last stretch of time in which the solution's pulse moves by some cells: it is slower than light.
   const Lattice& lattice = scene.problem.lattice;
-  const double at_end = exact_centre(end);
-  for (double stretch = lattice.space_step(); stretch <= end && !std::isfinite(late_); stretch *= 1.3)
-    if (std::abs(separation(lattice, at_end, exact_centre(end - stretch))) > 5 * lattice.space_step())
+  const double at_end = exact_centre(end), some_cells = 5 * lattice.space_step();
+  for (double stretch = some_cells; stretch <= end && !std::isfinite(late_); stretch *= 1.3)
+    if (std::abs(separation(lattice, at_end, exact_centre(end - stretch))) > some_cells)
       late_ = end - stretch;
 }
 

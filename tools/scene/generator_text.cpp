@@ -9,23 +9,13 @@
 #include <optional>
 
 #include "lattice/error.hpp"
-#include "tools/scene/scene_text.hpp"
+#include "schemes/text_parts.hpp"
 
 namespace delf {
 
 namespace {
 
 BadInput wrong(const std::string& what) { return {"verify.generator", what}; }
-
-std::vector<std::string> parts_of(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.push_back(trimmed(text.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return parts;
-}
 
 std::optional<double> number(const std::string& text) {
   double value{};

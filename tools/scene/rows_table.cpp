@@ -12,22 +12,12 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "schemes/text_parts.hpp"
 #include "tools/files/fields_reader.hpp"
-#include "tools/scene/scene_text.hpp"
 
 namespace delf {
 
 namespace {
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    cells.push_back(trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return cells;
-}
 
 // a number, or nothing if the text is none
 template <class Number>
@@ -59,7 +49,7 @@ RowsTable::RowsTable(const std::filesystem::path& path) {
     if (at == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
     line = trimmed(line);
     if (line.empty() || line.front() == '#') continue;
-    const auto cells = cells_of(line);
+    const auto cells = parts_of(line);
     if (columns == 0) {
       if (cells.size() < 3 || cells[0] != "row" || cells[1] != "site")
         throw wrong("is no header of rows; begin the table with row,site and the names of the fields");

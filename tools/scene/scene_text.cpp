@@ -53,11 +53,4 @@ std::string read_scene_text(const std::filesystem::path& file) {
   return text;
 }
 
-std::string trimmed(std::string_view text) {
-  constexpr auto white = " \t\r\n";
-  const auto first = text.find_first_not_of(white);
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(white) - first + 1));
-}
-
 }  // namespace delf

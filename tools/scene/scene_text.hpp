@@ -10,7 +10,4 @@ namespace delf {
 /// that is missing, too large, or binary.
 std::string read_scene_text(const std::filesystem::path&);
 
-/// Without the white space around it.
-std::string trimmed(std::string_view);
-
 }  // namespace delf

@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "schemes/text_parts.hpp"
 #include "tools/scene/declared_keys.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/scene_text.hpp"

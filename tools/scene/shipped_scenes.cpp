@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "schemes/text_parts.hpp"
 #include "tools/failure.hpp"
-#include "tools/scene/scene_text.hpp"
 #include "tools/scene/suggestion.hpp"
 
 namespace delf {

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "tools/scene/scene_text.hpp"
+#include "schemes/text_parts.hpp"
 #include "tools/scene/suggestion.hpp"
 
 namespace delf {

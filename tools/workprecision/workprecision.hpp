@@ -13,8 +13,8 @@ namespace delf {
 /// Interrupt::asked().
 WorkPrecisionOutcome compare_schemes(const Scene&, const WorkPrecisionRequest&);
 
-/// `delf workprecision`: error against run time. Leaves workprecision.json, .csv, the table by scheme as .md and .tex, and a figure in `folder`,
-/// and tables on stdout.
+/// `delf workprecision`: error against run time. Leaves workprecision.json, .csv, the table by scheme as .md and .tex, and
+/// a figure in `folder`, and tables on stdout.
 ExitCode workprecision(const Scene&, const std::filesystem::path& folder);
 
 }  // namespace delf
