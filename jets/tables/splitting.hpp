@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
+
+#include "jets/tables/stencil_table.hpp"
 
 namespace delf {
 
@@ -59,6 +63,43 @@ inline Splitting splitting_of_order(int order) {
     default:
       return {};
   }
+}
+
+/// A splitting on one site, whose nodes are the rows between the sub-steps. In sub-step s, of the length a_s h,
+///
+///     L = Σ w ℓ(φ, φ_t)       over both rows of the sub-step, with φ of the row and φ_t = (q_above − q)/(a_s h).
+///
+/// The rows' weights w sum to a_s in a sub-step, and to the kick b at a row: leapfrog with its halves where both are
+/// alike. Weights may be negative: a sub-step goes back then, and its measure is negative.
+inline StencilTable splitting_element(const Splitting& splitting) {
+  const std::vector<double>& fractions = splitting.drifts;
+  const int S = static_cast<int>(fractions.size());
+  StencilTable element{.pattern = {}, .points = {}, .nodes = {}};
+  std::vector<double> times{0};
+  for (const double fraction : fractions) {
+    element.nodes.push_back({.time = times.back()});
+    times.push_back(times.back() + fraction);
+  }
+  times.back() = 1;
+  for (int s = 0; s <= S; ++s) element.pattern.vertices.push_back({.time = s / S, .space = 0, .node = s % S});
+  double lower = 0, upper = 0;  // w of the two rows of a sub-step
+  for (std::size_t s = 0; s < fractions.size(); ++s) {
+    lower = splitting.kicks[s] - upper;
+    upper = fractions[s] - lower;
+    std::vector phi_t(fractions.size() + 1, 0.0);
+    phi_t[s + 1] = 1 / fractions[s];
+    phi_t[s] = -1 / fractions[s];
+    for (const std::size_t row : {s, s + 1}) {
+      const double weight = row == s ? lower : upper;
+      if (std::abs(weight) < 1e-14) continue;  // no kick at this end of a step
+      std::vector phi(phi_t.size(), 0.0);
+      phi[row] = 1;
+      TablePoint point{.weight = weight, .time = times[row], .slots = {}};
+      point.set(JetSlot::phi, phi), point.set(JetSlot::phi_t, phi_t);
+      element.points.push_back(std::move(point));
+    }
+  }
+  return element;
 }
 
 }  // namespace delf

@@ -57,6 +57,10 @@ struct StencilTable {
   /// Elements: the quadrature of the lower side, where a step starts: weights, and φ and φ_x of the vertices there
   /// (time and node's time 0), in their order. φ_t has the weights of φ.
   std::vector<TablePoint> lower_side = {};
+  /// Of methods that are not variational, what a point's ∂ℓ/∂j adds to the residuals in place of M_qᵀ: as many as points.
+  std::vector<TablePoint> tests = {};
+
+  const TablePoint& test(std::size_t point) const { return tests.empty() ? points[point] : tests[point]; }
 };
 
 /// Whether the weights of every point are exact on affine fields and those of the points sum to 1: the rule that

@@ -66,25 +66,30 @@ struct JetFamily::Jets {
 };
 
 JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> density, bool values_are_sources)
-    : StencilFamily(table.pattern, values_at_every_vertex(table.pattern, density->components()), true),
+    : StencilFamily(table.pattern, values_at_every_vertex(table.pattern, density->components()), table.tests.empty()),
       table_(std::move(table)),
       density_(std::move(density)),
       d_(density_->components()),
       has_sources_(density_->nonlinearity() == Nonlinearity::values ||
                    (values_are_sources && density_->nonlinearity() == Nonlinearity::none)) {
   placed_ = density_->is_placed();
-  for (const TablePoint& p : table_.points) {
-    Point point{std::vector<std::vector<Weight>>(at(pattern_.size())), {}};
+  const auto by_vertex = [this](const TablePoint& p) {
+    std::vector<std::vector<Weight>> weights(at(pattern_.size()));
     for (int s = 0; s < density_->slots(); ++s)
-      for (const auto& [vertex, weight] : p.slots[at(s)]) point.of_vertex[at(vertex)].push_back({s, weight});
+      for (const auto& [vertex, weight] : p.slots[at(s)]) weights[at(vertex)].push_back({s, weight});
+    return weights;
+  };
+  for (std::size_t q = 0; q < table_.points.size(); ++q) {
+    Point point{by_vertex(table_.points[q]), by_vertex(table_.test(q)), {}};
     for (int i = 0; i < size(); ++i)
-      if (!point.of_vertex[at(i / d_)].empty()) point.values.push_back(i);
+      if (!point.of_vertex[at(i / d_)].empty() || !point.of_test[at(i / d_)].empty()) point.values.push_back(i);
     points_.push_back(std::move(point));
   }
   find_sources();
 }
 
 bool JetFamily::lagrangian(const StencilBatch& batch, double* L) const {
+  if (!is_variational()) return false;
   Jets jets(*this, batch);
   const ScratchRows l(1, Jets::most);
   fill_zero(L, batch.count);
@@ -104,11 +109,12 @@ void JetFamily::residual(const StencilBatch& batch, double* r) const {
   fill_zero(r, size() * batch.count);
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
-    for (const TablePoint& p : table_.points) {
+    for (std::size_t q = 0; q < points_.size(); ++q) {
+      const TablePoint& p = table_.points[q];
       density_->gradient(jets.at_point(p, first, count), g.data());
       // r += |Δ| w_q M_qᵀ ∂ℓ/∂j
       for (int s = 0; s < density_->slots(); ++s)
-        for (const auto& [vertex, weight] : p.slots[at(s)])
+        for (const auto& [vertex, weight] : table_.test(q).slots[at(s)])
           for (int a = 0; a < d_; ++a)
             add(r + static_cast<std::ptrdiff_t>(vertex * d_ + a) * batch.count + first,
                 jets.area * p.weight * jets.scales[at(s)] * weight, g[s * d_ + a], count);
@@ -126,8 +132,8 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
     for (std::size_t q = 0; q < points_.size(); ++q) {
-      const auto reads = [&](int i) { return !points_[q].of_vertex[at(i / d_)].empty(); };
-      if (!std::ranges::any_of(equations, reads)) continue;
+      const auto adds_to = [&](int i) { return !points_[q].of_test[at(i / d_)].empty(); };
+      if (!std::ranges::any_of(equations, adds_to)) continue;
       const TablePoint& p = table_.points[q];
       density_->hessian(jets.at_point(p, first, count), H.data());
       // J += |Δ| w_q M_qᵀ ∂²ℓ/∂j∂j M_q
@@ -135,7 +141,7 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
         for (std::size_t u = 0; u < unknowns.size(); ++u) {
           double* const to = J + (static_cast<std::ptrdiff_t>(e) * columns + static_cast<std::ptrdiff_t>(u)) * batch.count + first;
           const int a = equations[e] % d_, b = unknowns[u] % d_;
-          for (const Weight& left : points_[q].of_vertex[at(equations[e] / d_)])
+          for (const Weight& left : points_[q].of_test[at(equations[e] / d_)])
             for (const Weight& right : points_[q].of_vertex[at(unknowns[u] / d_)]) {
               const int row = left.slot * d_ + a, column = right.slot * d_ + b;
               if (density_->is_zero(row, column)) continue;
@@ -160,7 +166,7 @@ std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
   for (std::size_t q = 0; q < points_.size(); ++q) {
     const double w = area * table_.points[q].weight;
     for (const int i : points_[q].values)
-      for (const Weight& left : points_[q].of_vertex[at(i / d_)]) {
+      for (const Weight& left : points_[q].of_test[at(i / d_)]) {
         const double to = w * scales[at(left.slot)] * left.weight;
         const int row = left.slot * d_ + i % d_;
         if (!(has_sources_ && row < d_)) part.r0[at(i)] += to * density_->constant_gradient()[at(row)];
@@ -179,9 +185,10 @@ void JetFamily::find_sources() {
   if (!has_sources_) return;
   sources_.outputs_per_group = d_;
   std::vector<const TablePoint*> representatives;
-  for (const TablePoint& p : table_.points) {
-    const auto same = [&p](const TablePoint* q) {
-      return std::ranges::equal(p[JetSlot::phi], (*q)[JetSlot::phi], [](const auto& e, const auto& f) {
+  for (std::size_t q = 0; q < table_.points.size(); ++q) {
+    const TablePoint& p = table_.points[q];
+    const auto same = [&p](const TablePoint* other) {
+      return std::ranges::equal(p[JetSlot::phi], (*other)[JetSlot::phi], [](const auto& e, const auto& f) {
         return e.vertex == f.vertex && e.weight == f.weight;
       });
     };
@@ -199,7 +206,7 @@ void JetFamily::find_sources() {
       sources_.groups.push_back(std::move(made));
       sources_.weights.resize(sources_.groups.size() * at(d_ * size()), 0.0);
     }
-    for (const auto& [vertex, weight] : p[JetSlot::phi])
+    for (const auto& [vertex, weight] : table_.test(q)[JetSlot::phi])
       for (int a = 0; a < d_; ++a)
         sources_.weights[(group * at(d_) + at(a)) * at(size()) + at(vertex * d_ + a)] +=
             table_.measure * p.weight * weight;

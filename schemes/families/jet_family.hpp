@@ -13,7 +13,7 @@ namespace delf {
 ///     ∂L/∂y = |Δ| Σ_q w_q M_qᵀ ∂ℓ/∂j(j_q),    ∂²L/∂y∂y = |Δ| Σ_q w_q M_qᵀ ∂²ℓ/∂j∂j(j_q) M_q
 ///
 /// Stencils of sites, elements with nodes inside and the sub-steps of a composition alike: value l·d + a is component
-/// node·d + a of the section at vertex l.
+/// node·d + a of the section at vertex l. A table with tests N_q has N_qᵀ in the place of the left M_qᵀ, and no L.
 class JetFamily final : public StencilFamily {
  public:
   /// Where ∂ℓ/∂φ is linear it is part of the constant part, or a source term if `values_are_sources`.
@@ -45,8 +45,8 @@ class JetFamily final : public StencilFamily {
     double weight;
   };
   struct Point {
-    std::vector<std::vector<Weight>> of_vertex;
-    std::vector<int> values;  ///< numbers in values() of those that the jet here reads
+    std::vector<std::vector<Weight>> of_vertex, of_test;
+    std::vector<int> values;  ///< numbers in values() of those that the jet here reads, or that it adds to
   };
   struct Jets;
 

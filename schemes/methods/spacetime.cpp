@@ -6,6 +6,7 @@
 
 #include "jets/tables/spacetime_element.hpp"
 #include "lattice/error.hpp"
+#include "schemes/methods/element_parts.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -22,7 +23,6 @@ struct Keys {
   std::string quadrature;
 };
 
-/// Every node of the unit cell carries the d fields: component = node · d + a.
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   if (p.lattice.space() == Space::point)
     throw BadInput("scheme.method",
@@ -33,16 +33,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                    "scheme.method = spacetime: this version has no constraints at the nodes of elements; "
                    "use scheme.method = multisymplectic");
   const Keys keys(p);
-  const StencilTable element =
-      spacetime_element(keys.degree_time, keys.degree_space,
-                        keys.quadrature == "gauss" ? TimeQuadrature::gauss : TimeQuadrature::lobatto);
-  SchemeParts parts{{theory.on_table(element)}, theory.fields(), theory.symmetries()};
-  for (std::size_t node = 1; node < element.nodes.size(); ++node)
-    for (const Component& field : theory.fields())
-      parts.components.push_back(
-          {fmt::format("{} at ({:.4g}, {:.4g})", field.name, element.nodes[node].time, element.nodes[node].space),
-           Role::inner, element.nodes[node], false, field.field});
-  return parts;
+  return element_parts(theory,
+                       spacetime_element(keys.degree_time, keys.degree_space,
+                                         keys.quadrature == "gauss" ? TimeQuadrature::gauss : TimeQuadrature::lobatto));
 }
 
 /// Degrees of which the nodal orders in time and space, 2p_t and p_x + 2, go together.
@@ -88,6 +81,7 @@ const MethodEntry spacetime_method{
     .label = label,
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,
+    .energy = element_energy,
     .variants = variants};
 
 }  // namespace delf

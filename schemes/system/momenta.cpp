@@ -9,12 +9,17 @@ namespace delf {
 
 void require_lagrangian(const LatticeSystem& system) {
   if (!is_variational(system))
-    throw BadInput("scheme.method", "scheme.method: momenta are derivatives of a discrete Lagrangian, and this scheme "
-                                    "has none; use a variational one");
+    throw BadInput("scheme.method",
+                   "scheme.method: momenta are derivatives of a discrete Lagrangian, and this scheme "
+                   "has none; use a variational one");
 }
 
 std::vector<double> momenta(const LatticeSystem& system, const Window& window, std::int64_t row, Side side) {
   require_lagrangian(system);
+  return half_equations(system, window, row, side);
+}
+
+std::vector<double> half_equations(const LatticeSystem& system, const Window& window, std::int64_t row, Side side) {
   const Lattice& lattice = system.lattice();
   const int C = system.components(), N = lattice.sites();
   std::vector<double> p(static_cast<std::size_t>(N * C), 0.0), y, r;
@@ -46,8 +51,8 @@ std::vector<double> momenta(const LatticeSystem& system, const Window& window, s
         if (anchor + v.time != row || !family->is_varied(m)) continue;
         const int x = i + v.space, home = lattice.home(x);
         const int c = family->values()[static_cast<std::size_t>(m)].component;
-        p[static_cast<std::size_t>(home * C + c)] += side == Side::below ? r[static_cast<std::size_t>(m)]
-                                                                         : -r[static_cast<std::size_t>(m)];
+        p[static_cast<std::size_t>(home * C + c)] +=
+            side == Side::below ? r[static_cast<std::size_t>(m)] : -r[static_cast<std::size_t>(m)];
       }
     }
   }

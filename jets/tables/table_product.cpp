@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "jets/tables/table_product.hpp"
+
+#include <vector>
+
+namespace delf {
+namespace {
+
+using Entries = std::vector<TablePoint::Entry>;
+
+/// y_ab weighs what a weighs in time times what b weighs in space.
+Entries product(const Entries& time, const Entries& space, int width) {
+  Entries entries;
+  for (const auto& [a, of_time] : time)
+    for (const auto& [b, of_space] : space) entries.push_back({a * width + b, of_time * of_space});
+  return entries;
+}
+TablePoint product(const TablePoint& r, const TablePoint& s, int width) {
+  TablePoint point{.weight = r.weight * s.weight, .time = r.time, .space = s.space, .slots = {}};
+  const auto fill = [&](JetSlot slot, JetSlot of_time, JetSlot of_space) {
+    point.slots[static_cast<std::size_t>(slot)] = product(r[of_time], s[of_space], width);
+  };
+  fill(JetSlot::phi, JetSlot::phi, JetSlot::phi);
+  fill(JetSlot::phi_t, JetSlot::phi_t, JetSlot::phi);
+  fill(JetSlot::phi_x, JetSlot::phi, JetSlot::phi_x);
+  return point;
+}
+
+}  // namespace
+
+StencilTable product(const StencilTable& time, const StencilTable& space) {
+  const int width = space.pattern.size(), nodes = static_cast<int>(space.nodes.size());
+  StencilTable table{.pattern = {}, .points = {}, .nodes = {}, .measure = time.measure * space.measure};
+  for (const NodePosition& a : time.nodes)
+    for (const NodePosition& b : space.nodes) table.nodes.push_back({a.time, b.space});
+  for (const Site& a : time.pattern.vertices)
+    for (const Site& b : space.pattern.vertices)
+      table.pattern.vertices.push_back({.time = a.time, .space = b.space, .node = a.node * nodes + b.node});
+  const auto multiply = [&](const std::vector<TablePoint>& points, std::vector<TablePoint>& to) {
+    for (const TablePoint& r : points)
+      for (const TablePoint& s : space.points) to.push_back(product(r, s, width));
+  };
+  multiply(time.points, table.points);
+  multiply(time.tests, table.tests);
+  table.lower_side = space.points;
+  return table;
+}
+
+}  // namespace delf

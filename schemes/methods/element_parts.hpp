@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "jets/tables/stencil_table.hpp"
+#include "schemes/methods/method_registry.hpp"
+
+namespace delf {
+
+/// A time element that is broken: φ_j(0) and φ_j(1), by which the multipliers tie it to the traces q_n and q_{n+1}, and
+/// the space whose nodes have them.
+struct Traces {
+  std::vector<double> lower, upper;
+  StencilTable space;
+};
+
+/// A theory on an element (jets/tables/table_product.hpp). Every node of the unit cell carries the d fields, component =
+/// node · d + a. With traces, λ_n and μ_{n+1} of every node in space follow.
+SchemeParts element_parts(const FieldTheory&, const StencilTable& element, const std::optional<Traces>& traces = {});
+
+/// The energy of such a scheme at the newest row: H of the momenta there and of the rows, summed over space. And the
+/// momentum −Σ φ_x ∂ℓ/∂φ_t, at the same points.
+EnergyMomentum element_energy(const RowsInTime&);
+
+}  // namespace delf

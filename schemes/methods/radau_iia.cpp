@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <string>
+
+#include "jets/tables/radau_element.hpp"
+#include "jets/tables/table_product.hpp"
+#include "lattice/error.hpp"
+#include "schemes/methods/element_parts.hpp"
+#include "schemes/methods/method_registry.hpp"
+#include "schemes/methods/space_keys.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/stepping/energy.hpp"
+#include "schemes/theories/field_theory.hpp"
+
+namespace delf {
+namespace {
+
+int stages(const Problem& p) { return p.parameters.get<int>("scheme.stages"); }
+
+/// No action has these equations, and so Noether's theorem says nothing of the theory's symmetries.
+SchemeParts build(const FieldTheory& theory, const Problem& p) {
+  if (theory.constraint())
+    throw BadInput("scheme.method",
+                   "scheme.method = radau-iia: this version has no constraints at its stages; use scheme.method = "
+                   "multisymplectic");
+  SchemeParts parts = element_parts(theory, product(radau_element(stages(p)), space_table(p)));
+  parts.symmetries.clear();
+  return parts;
+}
+
+std::string label(const Problem& p) {
+  return fmt::format("Radau IIA, {} stages{}{}", stages(p), p.lattice.space() == Space::point ? "" : ", ",
+                     p.lattice.space() == Space::point ? "" : space_label(p));
+}
+
+}  // namespace
+
+extern const MethodEntry radau_iia_method;
+const MethodEntry radau_iia_method{
+    .name = "radau-iia",
+    .formula = "comparator: Runge-Kutta method Radau IIA of scheme.stages, loses energy, is not multisymplectic",
+    .build = build,
+    .parameters = with_space_keys({{.key = "scheme.stages",
+                                    .fallback = 3,
+                                    .help = "stages s: the order is 2s - 1",
+                                    .range = {.low = 2, .high = 8}}}),
+    .label = label,
+    .starts = {StartRule::legendre},
+    .start = StartRule::legendre,
+    .energy = element_energy};
+
+}  // namespace delf

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/methods/space_keys.hpp"
+
+#include <fmt/format.h>
+
+#include "jets/tables/space_table.hpp"
+#include "lattice/error.hpp"
+#include "schemes/simulation.hpp"
+
+namespace delf {
+namespace {
+
+constexpr int usual_order = 4, usual_degree = 2;
+
+std::string space_of(const Problem& p) { return p.parameters.maybe<std::string>("scheme.space").value_or("lumped"); }
+int order_of(const Problem& p) { return p.parameters.maybe<int>("lattice.space_order").value_or(usual_order); }
+int degree_of(const Problem& p) { return p.parameters.maybe<int>("scheme.degree_space").value_or(usual_degree); }
+
+/// A key of another space would have no effect.
+void require_of(const Problem& p, const char* key, const char* of) {
+  if (p.parameters.has(key) && space_of(p) != of)
+    throw BadInput(
+        key, fmt::format("{}: belongs to scheme.space = {}, and here it is {}; leave it out", key, of, space_of(p)));
+}
+
+StencilTable pairs_on(const Lattice& lattice, int order) {
+  if (!lattice.is_circle())
+    throw BadInput("scheme.space",
+                   "scheme.space = pairs: wide stencils have no walls in this version; use scheme.space = spectral, or "
+                   "lattice.space = circle");
+  if (order % 2 != 0)
+    throw BadInput("lattice.space_order",
+                   fmt::format("lattice.space_order = {}: pairs are of order 2, 4, 6, 8, 10 or 12; choose one", order));
+  if (lattice.sites() < order + 1)
+    throw BadInput("lattice.sites",
+                   fmt::format("lattice.sites = {}: a stencil of space order {} is {} sites wide; give "
+                               "more",
+                               lattice.sites(), order, order + 1));
+  return pair_space(order / 2);
+}
+
+}  // namespace
+
+std::vector<Parameter> with_space_keys(std::vector<Parameter> keys) {
+  keys.push_back({.key = "scheme.space",
+                  .fallback = "lumped",
+                  .help = "space: linear elements lumped or consistent, pairs of sites, or spectral elements",
+                  .choices = {"lumped", "linear", "pairs", "spectral"},
+                  .otherwise = "lumped on a circle and an interval"});
+  keys.push_back({.key = "lattice.space_order",
+                  .fallback = usual_order,
+                  .help = "order of pairs in space: 2, 4, ..., 12",
+                  .range = {.low = 2, .high = 2 * widest_pair},
+                  .otherwise = "4 for pairs"});
+  keys.push_back({.key = "scheme.degree_space",
+                  .fallback = usual_degree,
+                  .help = "degree of spectral elements in space",
+                  .range = {.low = 1, .high = 12},
+                  .otherwise = "2 for spectral elements"});
+  return keys;
+}
+
+StencilTable space_table(const Problem& p) {
+  if (p.lattice.space() == Space::point) {
+    for (const char* key : {"scheme.space", "lattice.space_order", "scheme.degree_space"})
+      if (p.parameters.has(key))
+        throw BadInput(key, fmt::format("{}: lattice.space = point has no space; leave it out", key));
+    return point_space();
+  }
+  require_of(p, "lattice.space_order", "pairs");
+  require_of(p, "scheme.degree_space", "spectral");
+  const std::string space = space_of(p);
+  if (space == "pairs") return pairs_on(p.lattice, order_of(p));
+  if (space == "spectral") return spectral_space(degree_of(p));
+  return space == "linear" ? linear_space() : spectral_space(1);
+}
+
+std::string space_label(const Problem& p) {
+  const std::string space = space_of(p);
+  if (space == "pairs") return fmt::format("pairs of order {}", order_of(p));
+  if (space == "spectral") return fmt::format("spectral of degree {}", degree_of(p));
+  return space;
+}
+
+}  // namespace delf

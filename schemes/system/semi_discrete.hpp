@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "schemes/families/jet_family.hpp"
+#include "schemes/stepping/energy.hpp"
+#include "schemes/system/lattice_system.hpp"
+
+namespace delf {
+
+/// Energy and momentum at one row of an element, from the momenta p there, [i·C + c]. With the quadrature of the
+/// element's lower side, L(y, v) = k Σ w ℓ(φ, φ_t, φ_x), φ_t = Σ φ_b v_b, is a Lagrangian of mechanics, and
+///
+///     H = p·v − L(y, v)   where   p = ∂L/∂v(y, v),         P = −k Σ w φ_x ∂ℓ/∂φ_t.
+///
+/// v is found by Newton's method with the mass matrix ∂²L/∂v∂v; it is zero at fixed walls. Not a number where that
+/// finds none.
+EnergyMomentum semi_discrete_energy(const JetFamily&, const LatticeSystem&, const Window&, std::int64_t row,
+                                    std::span<const double> p);
+
+}  // namespace delf
