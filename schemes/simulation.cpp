@@ -133,6 +133,20 @@ struct Simulation::Impl {
     return rows;
   }
 
+  /// A fixed wall does not move: the nodes of a step on it have the value of its vertex, and no velocity.
+  void hold_walls(std::vector<double>& row, bool velocity) const {
+    const int C = system.components();
+    for (int c = 0; c < C; ++c) {
+      const Component& component = system.component(c);
+      const bool inner = component.role == Role::inner || component.role == Role::trace;
+      if (!inner && !(velocity && component.role == Role::field)) continue;
+      for (const int i : {0, system.lattice().sites() - 1})
+        if (system.is_held(i, c))
+          row[static_cast<std::size_t>(i * C + c)] =
+              velocity ? 0 : row[static_cast<std::size_t>(i * C + system.field_component(component.field))];
+    }
+  }
+
   std::size_t monitor_bytes() const {
     return cell_weights.bytes() + positions.bytes() + last_rows.bytes() + (own_layout ? own_layout->bytes() : 0);
   }
@@ -208,7 +222,10 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 
 int Simulation::starting_rows() const { return impl_->stepper.starting_rows(); }
 
-void Simulation::start(const std::vector<std::vector<double>>& rows) {
+void Simulation::start(const std::vector<std::vector<double>>& given) {
+  for (const auto& row : given) impl_->stepper.require_row(row.size());
+  std::vector<std::vector<double>> rows = given;
+  for (auto& row : rows) impl_->hold_walls(row, false);
   impl_->stepper.start(impl_->problem.circle_valued ? impl_->lifted(rows) : rows);
 }
 
@@ -222,11 +239,13 @@ void Simulation::step(bool looked_at) { impl_->stepper.step(looked_at); }
 void Simulation::steps(int count) { impl_->stepper.steps(count); }
 std::int64_t Simulation::newest() const { return impl_->stepper.newest(); }
 
-void Simulation::start_legendre(std::span<const double> row0, std::span<const double> velocity) {
+void Simulation::start_legendre(std::span<const double> fields, std::span<const double> rates) {
   const LatticeSystem& system = impl_->system;
   const Lattice& lattice = system.lattice();
   const int C = system.components(), N = lattice.sites();
-  for (const std::size_t values : {row0.size(), velocity.size()}) impl_->stepper.require_row(values);
+  for (const std::size_t values : {fields.size(), rates.size()}) impl_->stepper.require_row(values);
+  std::vector<double> row0(fields.begin(), fields.end()), velocity(rates.begin(), rates.end());
+  impl_->hold_walls(row0, false), impl_->hold_walls(velocity, true);
   const double turn = 2 * std::numbers::pi * impl_->winding;
   std::vector<double> momenta(row0.size(), 0.0), phi, phi_t, p;
   bool any = false;
@@ -254,7 +273,7 @@ void Simulation::start_legendre(std::span<const double> row0, std::span<const do
   if (!any)
     throw BadInput("initial.start", "initial.start = legendre: for schemes of elements, and scheme.method = " +
                                         impl_->method.name + " has none; use exact or centred");
-  impl_->stepper.start_legendre({row0.begin(), row0.end()}, momenta);
+  impl_->stepper.start_legendre(row0, momenta);
 }
 
 void Simulation::copy_row(int back, std::span<double> out, Role role) const {

@@ -2,14 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
+#include <iterator>
+#include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "jets/tables/table_product.hpp"
 #include "jets/tables/time_element.hpp"
 #include "lattice/error.hpp"
+#include "schemes/families/trace_stencil.hpp"
 #include "schemes/methods/element_parts.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/space_keys.hpp"
@@ -47,17 +50,43 @@ struct Keys {
   Continuity continuity;
 };
 
+std::vector<Component> multipliers(const char* name, int d) {
+  std::vector<Component> list;
+  for (const Component& field : fields(d))
+    list.push_back(
+        {fmt::format("{} of {}", name, field.name), Role::multiplier, {}, false, static_cast<int>(list.size()), true});
+  return list;
+}
+
+/// Every node of the unit cell carries the d fields, component = node · d + a; multipliers follow.
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   if (theory.constraint())
     throw BadInput("scheme.method",
                    "scheme.method = cgvi: this version has no constraints at the nodes of elements; use scheme.method "
                    "= multisymplectic");
   const Keys keys(p);
-  const StencilTable space = space_table(p);
-  std::optional<Traces> traces;
-  // r⁺ = φ(0) and r⁻ = φ(1)
-  if (keys.continuity == Continuity::multipliers) traces = {keys.basis.values(0), keys.basis.values(1), space};
-  return element_parts(theory, product(time_element(keys.basis, keys.rule(), keys.continuity), space), traces);
+  const int d = theory.components();
+  const StencilTable element = time_element(keys.basis, keys.rule(), keys.continuity), space = space_table(p);
+  if (p.lattice.space() != Space::point)
+    return keys.continuity == Continuity::shared
+               ? element_parts(theory, product(element, space))
+               : element_parts(theory, product(element, space),
+                               Traces{keys.basis.values(0), keys.basis.values(1), space});
+  SchemeParts parts{{theory.on_table(element)}, fields(d), theory.symmetries()};
+  for (std::size_t node = 1; node < element.nodes.size(); ++node)
+    for (int a = 0; a < d; ++a)
+      parts.components.push_back(
+          {fmt::format("{} at {:.4g}", fields(d)[static_cast<std::size_t>(a)].name, element.nodes[node].time),
+           Role::inner, element.nodes[node], false, a});
+  if (keys.continuity == Continuity::shared) return parts;
+  // λ_n·(r⁺x_n − q_n) and μ_{n+1}·(r⁻x_n − q_{n+1}), with r⁺ = φ(0) and r⁻ = φ(1)
+  for (const auto& [end, name, at] :
+       {std::tuple{TraceStencil::End::lower, "lambda", 0.0}, std::tuple{TraceStencil::End::upper, "mu", 1.0}}) {
+    parts.families.push_back(std::make_shared<LagrangianFamily<TraceStencil>>(
+        TraceStencil(end, d, keys.basis.values(at), static_cast<int>(parts.components.size()))));
+    std::ranges::copy(multipliers(name, d), std::back_inserter(parts.components));
+  }
+  return parts;
 }
 
 /// H(q, p) at the newest row, p = ∂L/∂q of what lies below it: an observable of the scheme's own phase space.
@@ -69,37 +98,50 @@ EnergyMomentum energy(const RowsInTime& rows) {
   return {hamiltonian(rows.theory.density(), q, p, static_cast<double>(rows.newest) * rows.time_step), 0};
 }
 
-/// Gauss of S − 1 points has the order 2S − 2 of the basis; Lobatto has it with S points. On a circle and an interval
-/// with each space; spectral ones are scheme.method = spacetime.
-std::vector<NamedScheme> variants(const Problem& base) {
-  const bool point = base.lattice.space() == Space::point;
-  std::vector<std::string> spaces{point ? "" : "lumped"};
-  if (!point) spaces.emplace_back("linear");
+/// Fields: with each space; spectral ones are scheme.method = spacetime.
+std::vector<NamedScheme> on_spaces(const Problem& base) {
+  std::vector<std::string> spaces{"lumped", "linear"};
   if (base.lattice.is_circle()) spaces.emplace_back("pairs");
   std::vector<NamedScheme> schemes;
-  for (int S = 2; S <= (point ? 6 : 4); ++S)
+  for (int S = 2; S <= 4; ++S)
     for (const auto& [quadrature, points] : {std::pair{"gauss", S - 1}, {"lobatto", S}})
       for (const std::string& space : spaces) {
-        schemes.push_back({fmt::format("cgvi S={} {} R={}{}{}", S, quadrature, points, point ? "" : " ", space), base});
+        schemes.push_back({fmt::format("cgvi S={} {} R={} {}", S, quadrature, points, space), base});
         ParameterValues& parameters = schemes.back().problem.parameters;
         parameters["scheme.basis"] = "lagrange-lobatto";
         parameters["scheme.functions"] = S;
         parameters["scheme.quadrature"] = quadrature;
         parameters["scheme.points"] = points;
         parameters["scheme.continuity"] = "shared";
-        if (!point) parameters["scheme.space"] = space;
+        parameters["scheme.space"] = space;
         if (space == "pairs") parameters["lattice.space_order"] = 2 * S - 2;
-        schemes.back().rank = point && points == S - 1 ? 2 * S : 0;
       }
+  return schemes;
+}
+
+/// Gauss of S − 1 points has the order 2S − 2 of the basis; Lobatto has it with S points.
+std::vector<NamedScheme> variants(const Problem& base) {
+  if (base.lattice.space() != Space::point) return on_spaces(base);
+  std::vector<NamedScheme> schemes;
+  for (int S = 2; S <= 6; ++S)
+    for (const auto& [quadrature, points] : {std::pair{"gauss", S - 1}, {"lobatto", S}}) {
+      schemes.push_back({fmt::format("cgvi S={} {} R={}", S, quadrature, points), base});
+      ParameterValues& parameters = schemes.back().problem.parameters;
+      parameters["scheme.basis"] = "lagrange-lobatto";
+      parameters["scheme.functions"] = S;
+      parameters["scheme.quadrature"] = quadrature;
+      parameters["scheme.points"] = points;
+      parameters["scheme.continuity"] = "shared";
+      schemes.back().rank = points == S - 1 ? 2 * S : 0;
+    }
   return schemes;
 }
 
 std::string label(const Problem& p) {
   const Keys keys(p);
-  return fmt::format("cgvi, {} {} functions, {} {} points, {}{}{}", keys.basis_name, keys.functions, keys.quadrature,
-                     keys.points, keys.continuity == Continuity::shared ? "shared" : "multipliers",
-                     p.lattice.space() == Space::point ? "" : ", ",
-                     p.lattice.space() == Space::point ? "" : space_label(p));
+  return fmt::format("cgvi, {} {} functions, {} {} points, {}", keys.basis_name, keys.functions, keys.quadrature,
+                     keys.points, keys.continuity == Continuity::shared ? "shared" : "multipliers") +
+         space_label(p);
 }
 
 template <class Named>
@@ -116,29 +158,31 @@ const MethodEntry cgvi_method{
     .name = "cgvi",
     .formula = "continuous Galerkin variational integrators: scheme.functions of scheme.basis, scheme.quadrature",
     .build = build,
-    .parameters =
-        with_space_keys({{.key = "scheme.basis",
-                          .fallback = "lagrange-lobatto",
-                          .help = "the functions on a step",
-                          .choices = names_of(named_line_bases())},
-                         {.key = "scheme.functions",
-                          .fallback = 3,
-                          .help = "S: how many; their degree is S - 1",
-                          .range = {.low = 2, .high = 20}},
-                         {.key = "scheme.quadrature",
-                          .fallback = "gauss",
-                          .help = "the quadrature in time",
-                          .choices = names_of(named_line_rules())},
-                         {.key = "scheme.points",
-                          .fallback = 2,
-                          .help = "R: points of the quadrature",
-                          .range = {.low = 1, .high = 40},
-                          .otherwise = "functions - 1"},
-                         {.key = "scheme.continuity",
-                          .fallback = "shared",
-                          .help = "what joins the steps: end nodes that they share, or multipliers",
-                          .choices = {"shared", "multipliers"},
-                          .otherwise = "shared where the basis has a node at both ends, or else multipliers"}}),
+    .parameters = {{.key = "scheme.basis",
+                    .fallback = "lagrange-lobatto",
+                    .help = "the functions on a step",
+                    .choices = names_of(named_line_bases())},
+                   {.key = "scheme.functions",
+                    .fallback = 3,
+                    .help = "S: how many; their degree is S - 1",
+                    .range = {.low = 2, .high = 20}},
+                   {.key = "scheme.quadrature",
+                    .fallback = "gauss",
+                    .help = "the quadrature in time",
+                    .choices = names_of(named_line_rules())},
+                   {.key = "scheme.points",
+                    .fallback = 2,
+                    .help = "R: points of the quadrature",
+                    .range = {.low = 1, .high = 40},
+                    .otherwise = "functions - 1"},
+                   {.key = "scheme.continuity",
+                    .fallback = "shared",
+                    .help = "what joins the steps: end nodes that they share, or multipliers",
+                    .choices = {"shared", "multipliers"},
+                    .otherwise = "shared where the basis has a node at both ends, or else multipliers"},
+                   space_key(),
+                   space_order_key(),
+                   degree_space_key()},
     .label = label,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,

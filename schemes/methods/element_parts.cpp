@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <memory>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/trace_stencil.hpp"
@@ -26,10 +28,11 @@ void add_traces(SchemeParts& parts, const std::vector<Component>& fields, const 
                                            std::tuple{TraceStencil::End::upper, "mu", &traces.upper}}) {
     const int multiplier = static_cast<int>(parts.components.size());
     for (const bool inside : {false, true}) {
-      const int first = inside ? d : 0, count = inside ? all - d : d;
-      if (count > 0)
-        parts.families.push_back(std::make_shared<LagrangianFamily<TraceStencil>>(
-            TraceStencil(end, all, *weights, multiplier, {first, count, inside})));
+      std::vector<std::pair<int, int>> tied;
+      for (int a = inside ? d : 0; a < (inside ? all : d); ++a) tied.push_back({a, multiplier + a});
+      if (!tied.empty())
+        parts.families.push_back(
+            std::make_shared<LagrangianFamily<TraceStencil>>(TraceStencil(end, all, *weights, tied, inside)));
     }
     for (const NodePosition& node : nodes)
       for (const Component& field : fields)

@@ -29,10 +29,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   return parts;
 }
 
-std::string label(const Problem& p) {
-  return fmt::format("Radau IIA, {} stages{}{}", stages(p), p.lattice.space() == Space::point ? "" : ", ",
-                     p.lattice.space() == Space::point ? "" : space_label(p));
-}
+std::string label(const Problem& p) { return fmt::format("Radau IIA, {} stages{}", stages(p), space_label(p)); }
 
 }  // namespace
 
@@ -41,10 +38,13 @@ const MethodEntry radau_iia_method{
     .name = "radau-iia",
     .formula = "comparator: Runge-Kutta method Radau IIA of scheme.stages, loses energy, is not multisymplectic",
     .build = build,
-    .parameters = with_space_keys({{.key = "scheme.stages",
-                                    .fallback = 3,
-                                    .help = "stages s: the order is 2s - 1",
-                                    .range = {.low = 2, .high = 8}}}),
+    .parameters = {{.key = "scheme.stages",
+                    .fallback = 3,
+                    .help = "stages s: the order is 2s - 1",
+                    .range = {.low = 2, .high = 8}},
+                   space_key(),
+                   space_order_key(),
+                   degree_space_key()},
     .label = label,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,

@@ -41,23 +41,26 @@ StencilTable pairs_on(const Lattice& lattice, int order) {
 
 }  // namespace
 
-std::vector<Parameter> with_space_keys(std::vector<Parameter> keys) {
-  keys.push_back({.key = "scheme.space",
-                  .fallback = "lumped",
-                  .help = "space: linear elements lumped or consistent, pairs of sites, or spectral elements",
-                  .choices = {"lumped", "linear", "pairs", "spectral"},
-                  .otherwise = "lumped on a circle and an interval"});
-  keys.push_back({.key = "lattice.space_order",
-                  .fallback = usual_order,
-                  .help = "order of pairs in space: 2, 4, ..., 12",
-                  .range = {.low = 2, .high = 2 * widest_pair},
-                  .otherwise = "4 for pairs"});
-  keys.push_back({.key = "scheme.degree_space",
-                  .fallback = usual_degree,
-                  .help = "degree of spectral elements in space",
-                  .range = {.low = 1, .high = 12},
-                  .otherwise = "2 for spectral elements"});
-  return keys;
+Parameter space_key() {
+  return {.key = "scheme.space",
+          .fallback = "lumped",
+          .help = "space: linear elements lumped or consistent, pairs of sites, or spectral elements",
+          .choices = {"lumped", "linear", "pairs", "spectral"},
+          .otherwise = "lumped on a circle and an interval"};
+}
+Parameter space_order_key() {
+  return {.key = "lattice.space_order",
+          .fallback = usual_order,
+          .help = "order of pairs in space: 2, 4, ..., 12",
+          .range = {.low = 2, .high = 2 * widest_pair},
+          .otherwise = "4 for pairs"};
+}
+Parameter degree_space_key() {
+  return {.key = "scheme.degree_space",
+          .fallback = usual_degree,
+          .help = "degree of spectral elements in space",
+          .range = {.low = 1, .high = 12},
+          .otherwise = "2 for spectral elements"};
 }
 
 StencilTable space_table(const Problem& p) {
@@ -76,10 +79,11 @@ StencilTable space_table(const Problem& p) {
 }
 
 std::string space_label(const Problem& p) {
+  if (p.lattice.space() == Space::point) return {};
   const std::string space = space_of(p);
-  if (space == "pairs") return fmt::format("pairs of order {}", order_of(p));
-  if (space == "spectral") return fmt::format("spectral of degree {}", degree_of(p));
-  return space;
+  if (space == "pairs") return fmt::format(", pairs of order {}", order_of(p));
+  if (space == "spectral") return fmt::format(", spectral of degree {}", degree_of(p));
+  return ", " + space;
 }
 
 }  // namespace delf

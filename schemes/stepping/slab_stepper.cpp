@@ -140,7 +140,8 @@ void SlabStepper::solve_slab_of_start(const std::vector<double>& momenta) {
   parts.equations.clear(), parts.unknowns.clear();
   for (std::size_t n = 0; n < whole.equations.size(); ++n) {
     const Node &equation = whole.equations[n], &unknown = whole.unknowns[n];
-    const bool data = unknown.site.time == 0 && system_.component(unknown.component).role == Role::field;
+    const Role role = system_.component(unknown.component).role;
+    const bool data = unknown.site.time == 0 && (role == Role::field || role == Role::trace);
     if (equation.site.time < 0 || unknown.site.time < 0 || data) continue;
     parts.equations.push_back(equation), parts.unknowns.push_back(unknown);
   }

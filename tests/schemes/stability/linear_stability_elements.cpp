@@ -93,3 +93,38 @@ TEST_CASE("elements: Gauss in time is stable at any step tried, where nodes betw
       CHECK(linear_stability(element(degree_time, 2, "gauss", 1, r, 0.4), 0, 101).stable);
     }
 }
+
+namespace {
+
+/// The first limit in h/k of Lobatto's rule of S points in time over a space.
+double first_limit_on(const char* space, int of_space, int S, double most) {
+  const auto system = [&](double r) {
+    Problem p;
+    p.theory = "klein-gordon", p.method = "cgvi", p.lattice = Lattice::circle(8, 8), p.time_step = r;
+    p.parameters["theory.mass"] = 0.0;
+    p.parameters["scheme.functions"] = p.parameters["scheme.points"] = S;
+    p.parameters["scheme.quadrature"] = "lobatto", p.parameters["scheme.space"] = space;
+    if (of_space > 0) p.parameters["lattice.space_order"] = of_space;
+    return Simulation(p).evolution().system();
+  };
+  const auto set = stable_courants(system, most, {5, 1e-8, 0, 101});
+  return set.empty() || set[0].from != 0 ? 0 : set[0].to;
+}
+
+}  // namespace
+
+TEST_CASE("elements in time on every space: Lobatto is stable while dt omega_max is below its limit") {
+  struct Space {
+    const char* name;
+    int order;
+    double edge;  // k ω_max, at θ = π
+  };
+  // lumped 2; consistent √12, of 4 over the mass ⅓; pairs of order 4: ω² = (4/3)·4 − (1/3)·0
+  for (const Space& space : {Space{"lumped", 0, 2}, Space{"linear", 0, std::sqrt(12.)},
+                             Space{"pairs", 4, std::sqrt(16. / 3)}})
+    for (const auto& [S, z] : {std::pair{2, 2.}, {3, std::sqrt(8.)}, {4, 3.113}}) {
+      const double found = first_limit_on(space.name, space.order, S, 1.05 * z / space.edge);
+      CAPTURE(space.name, S, found);
+      CHECK(found * space.edge == Approx(z).margin(S == 4 ? 1e-3 : 1e-6));
+    }
+}
