@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -27,29 +29,22 @@ class TraceStencil {
       if (ends[j] != 0) coefficients_.push_back({static_cast<int>(j), ends[j]});
     for (int a = 0; a < d; ++a) tied_.push_back({a, multiplier + a});
   }
-  /// Some fields alone, each with the component of its multiplier. Those at a node inside a cell of space stand where
-  /// there is a cell: not at the right end of an interval.
-  TraceStencil(End end, int d, const std::vector<double>& ends, std::vector<std::pair<int, int>> tied,
-               bool in_cell = false)
+  /// Some fields alone, each with the component of its multiplier.
+  TraceStencil(End end, int d, const std::vector<double>& ends, std::vector<std::pair<int, int>> tied)
       : TraceStencil(end, d, ends, 0) {
-    tied_ = std::move(tied), in_cell_ = in_cell;
+    tied_ = std::move(tied);
+  }
+  /// In a lattice of space, with `fields` at each node of the unit cell, d at all nodes of a row: values are read at their
+  /// nodes, as the element reads them. Those at nodes inside a cell of space stand where there is a cell: not at the right
+  /// end of an interval.
+  TraceStencil(End end, int d, const std::vector<double>& ends, std::vector<std::pair<int, int>> tied, int fields,
+               bool in_cell)
+      : TraceStencil(end, d, ends, std::move(tied)) {
+    fields_ = fields, in_cell_ = in_cell;
   }
 
-  StencilPattern pattern() const {
-    std::vector<Site> vertices{{0, 0}};
-    if (end_ == End::upper) vertices.push_back({1, 0});
-    if (in_cell_) vertices.push_back({0, 1});
-    return StencilPattern(vertices);
-  }
-  std::vector<VertexValue> values() const {
-    const int vertex = end_ == End::lower ? 0 : 1;
-    std::vector<VertexValue> list;
-    for (const auto& [a, multiplier] : tied_) list.push_back({vertex, trace_ + a});
-    for (const auto& [a, multiplier] : tied_) list.push_back({vertex, multiplier});
-    for (const auto& [j, weight] : coefficients_)
-      for (const auto& [a, multiplier] : tied_) list.push_back({0, (1 + j) * d_ + a});
-    return list;
-  }
+  StencilPattern pattern() const { return StencilPattern(read().vertices); }
+  std::vector<VertexValue> values() const { return read().values; }
   template <class T>
   T operator()(std::span<const T> y, const Cell&) const {
     const std::size_t d = tied_.size();
@@ -63,10 +58,33 @@ class TraceStencil {
   }
 
  private:
+  struct Reads {
+    std::vector<Site> vertices;
+    std::vector<VertexValue> values;
+  };
+  Reads read() const {
+    const int row = end_ == End::lower ? 0 : 1;
+    Reads reads{{{0, 0}}, {}};
+    if (row == 1) reads.vertices.push_back({1, 0});
+    if (in_cell_) reads.vertices.push_back({0, 1});
+    const auto add = [&](int time, int place, int component) {
+      const Site site{time, 0, fields_ > 0 ? place / fields_ : 0};
+      const auto at = std::ranges::find(reads.vertices, site) - reads.vertices.begin();
+      if (at == std::ssize(reads.vertices)) reads.vertices.push_back(site);
+      reads.values.push_back({static_cast<int>(at), component});
+    };
+    for (const auto& [a, multiplier] : tied_) add(row, a, trace_ + a);
+    for (const auto& [a, multiplier] : tied_) add(row, a, multiplier);
+    for (const auto& [j, weight] : coefficients_)
+      for (const auto& [a, multiplier] : tied_) add(0, (1 + j) * d_ + a, (1 + j) * d_ + a);
+    return reads;
+  }
+
   End end_;
   int d_, trace_;
   std::vector<std::pair<int, double>> coefficients_;
   std::vector<std::pair<int, int>> tied_;  ///< fields, with the components of their multipliers
+  int fields_ = 0;                         ///< at a node; 0: all values are read at the vertex
   bool in_cell_ = false;
 };
 

@@ -32,7 +32,7 @@ void add_traces(SchemeParts& parts, const std::vector<Component>& fields, const 
       for (int a = inside ? d : 0; a < (inside ? all : d); ++a) tied.push_back({a, multiplier + a});
       if (!tied.empty())
         parts.families.push_back(
-            std::make_shared<LagrangianFamily<TraceStencil>>(TraceStencil(end, all, *weights, tied, inside)));
+            std::make_shared<LagrangianFamily<TraceStencil>>(TraceStencil(end, all, *weights, tied, d, inside)));
     }
     for (const NodePosition& node : nodes)
       for (const Component& field : fields)

@@ -354,6 +354,8 @@ TEST_CASE("what the method cannot be built for is refused with the key and a rem
   };
   Problem circle = problem_of("sine-gordon", 0.1, shared);
   circle.lattice = Lattice::circle(31, 20);
+  CHECK(refusal(circle) == "accepted");
+  circle.theory = "wave-map";
   CHECK(refusal(circle) == "scheme.method");
   CHECK(refusal(problem_of("pendulum", 0.1, {2, "lobatto", 1})) == "scheme.points");
   CHECK(refusal(problem_of("pendulum", 0.1, {3, "gauss", 2, "lagrange-gauss", "shared"})) == "scheme.continuity");
