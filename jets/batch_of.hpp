@@ -5,12 +5,13 @@
 #include <utility>
 
 #include "jets/batch_density.hpp"
+#include "jets/value_derivatives.hpp"
 
 namespace delf {
 
-/// A functor as a density in batches: the one template that is compiled for each density, four loops.
+/// A functor as a density in batches: the one template that is compiled for each density.
 template <Density D>
-class BatchOf final : public BatchDensity {
+class BatchOf final : public BatchDensity, public ValueDerivatives {
   static constexpr int d = components_of<D>(), m = slots_of<D>() * d;
 
  public:
@@ -84,6 +85,47 @@ class BatchOf final : public BatchDensity {
         place<Number>(jet, batch, at);
         const Number r = density_(jet);
         for (int a = 0; a < d; ++a) r.derivative(a).derivative(0).store(c[row * d + a] + at);
+      });
+  }
+  [[gnu::__flatten__]] void slope_and_curvature(const JetBatch& given, double* const* g,
+                                                double* const* c) const override {
+    using Inner = Dual<Pack, 1>;
+    using Number = Dual<Inner, d>;
+    const D density = density_;
+    const JetBatch batch = given;
+    for (int row = 0; row < d; ++row)
+      for_each_pack(batch, [&](int at) {
+        JetFor<Number, D> jet = still<Number>();
+        for (int a = 0; a < d; ++a) {
+          Inner value(Pack::load(batch.slots[a] + at));
+          value.d[0] = Pack(a == row ? 1.0 : 0.0);
+          jet_slot(jet, 0, a) = Number::variable(value, a);
+        }
+        place<Number>(jet, batch, at);
+        const Number r = density(jet);
+        r.derivative(row).value.store(g[row] + at);
+        for (int a = 0; a < d; ++a) r.derivative(a).derivative(0).store(c[row * d + a] + at);
+      });
+  }
+  /// The outermost derivative is the one along v.
+  void curvature_along(const JetBatch& batch, const double* const* v, double* const* c) const override {
+    using Along = Dual<Pack, 1>;
+    using Inner = Dual<Along, 1>;
+    using Number = Dual<Inner, d>;
+    for (int row = 0; row < d; ++row)
+      for_each_pack(batch, [&](int at) {
+        JetFor<Number, D> jet = still<Number>();
+        for (int a = 0; a < d; ++a) {
+          Along phi(Pack::load(batch.slots[a] + at));
+          phi.d[0] = Pack::load(v[a] + at);
+          Inner value(phi);
+          value.d[0] = Along(Pack(a == row ? 1.0 : 0.0));
+          jet_slot(jet, 0, a) = Number::variable(value, a);
+        }
+        if constexpr (delf::is_placed<D>())
+          jet.t = Number(Inner(Along(Pack(batch.t)))), jet.x = Number(Inner(Along(Pack::load(batch.x + at))));
+        const Number r = density_(jet);
+        for (int a = 0; a < d; ++a) r.derivative(a).derivative(0).derivative(0).store(c[row * d + a] + at);
       });
   }
   void place_gradient(const JetBatch& batch, double* l_t, double* l_x) const override {

@@ -7,6 +7,8 @@
 
 #include "jets/expressions/parse.hpp"
 #include "jets/expressions/tape.hpp"
+#include "jets/simd/scratch_rows.hpp"
+#include "jets/value_derivatives.hpp"
 #include "lattice/error.hpp"
 
 namespace delf {
@@ -75,7 +77,7 @@ Abstract abstract_value(const Graph& graph, int root, const Numbering& number, i
   return *values[at(root)];
 }
 
-class ExpressionDensity final : public BatchDensity {
+class ExpressionDensity final : public BatchDensity, public ValueDerivatives {
  public:
   ExpressionDensity(std::string_view text, const ExpressionNames& names, const std::string& key)
       : number_{static_cast<int>(names.fields.size())} {
@@ -100,6 +102,21 @@ class ExpressionDensity final : public BatchDensity {
   void hessian(const JetBatch& batch, double* const* H) const override { run(hessian_, batch, H); }
   void slope(const JetBatch& batch, double* const* g) const override { run(slope_, batch, g, components_); }
   void curvature(const JetBatch& batch, double* const* c) const override { run(curvature_, batch, c, components_); }
+  void slope_and_curvature(const JetBatch& phi, double* const* g, double* const* c) const override {
+    slope(phi, g);
+    curvature(phi, c);
+  }
+  void curvature_along(const JetBatch& phi, const double* const* v, double* const* c) const override {
+    const int d = components_;
+    const ScratchRows third(d * d * d, phi.count);
+    run(third_, phi, third.data(), d);
+    for (int ab = 0; ab < d * d; ++ab)
+      for (int i = 0; i < phi.count; i += lanes) {
+        Pack sum(0.0);
+        for (int e = 0; e < d; ++e) sum += Pack::load(third[ab * d + e] + i) * Pack::load(v[e] + i);
+        sum.store(c[ab] + i);
+      }
+  }
   void place_gradient(const JetBatch& batch, double* l_t, double* l_x) const override {
     const std::array<double*, 2> out{l_t, l_x};
     run(by_place_, batch, out.data());
@@ -150,7 +167,7 @@ class ExpressionDensity final : public BatchDensity {
 
   void make_tapes(Graph& graph, int l) {
     const int m = variables(), d = components_, zero = graph.constant(0);
-    std::vector<int> g, H(at(m * m), zero), slopes, curvatures;
+    std::vector<int> g, H(at(m * m), zero), slopes, curvatures, thirds;
     for (int a = 0; a < m; ++a) g.push_back(depends_on(a) ? graph.differentiate(l, a) : zero);
     for (int a = 0; a < m; ++a)
       for (int b = 0; b <= a; ++b)
@@ -163,6 +180,8 @@ class ExpressionDensity final : public BatchDensity {
     for (int a = 0; a < d; ++a) slopes.push_back(at_rest(g[at(a)]));
     for (int a = 0; a < d; ++a)
       for (int b = 0; b < d; ++b) curvatures.push_back(at_rest(H[at(a * m + b)]));
+    for (const int curvature : curvatures)
+      for (int e = 0; e < d; ++e) thirds.push_back(graph.differentiate(curvature, e));
     const std::vector<int> places{graph.differentiate(l, number_.t()), graph.differentiate(l, number_.x())};
 
     const int count = number_.count();
@@ -173,6 +192,7 @@ class ExpressionDensity final : public BatchDensity {
     hessian_ = Tape(graph, H, count);
     slope_ = Tape(graph, slopes, count);
     curvature_ = Tape(graph, curvatures, count);
+    third_ = Tape(graph, thirds, count);
     by_place_ = Tape(graph, places, count);
   }
 
@@ -185,7 +205,7 @@ class ExpressionDensity final : public BatchDensity {
   }
 
   Numbering number_;
-  Tape value_, gradient_, gradient_and_value_, hessian_, slope_, curvature_, by_place_;
+  Tape value_, gradient_, gradient_and_value_, hessian_, slope_, curvature_, third_, by_place_;
 };
 
 }  // namespace

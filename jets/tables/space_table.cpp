@@ -50,8 +50,8 @@ std::vector<double> pair_weights(int p) {
   return weights;
 }
 
-StencilTable pair_space(int p) {
-  const std::vector<double> pairs = pair_weights(p);
+StencilTable pair_space(const std::vector<double>& pairs) {
+  const int p = static_cast<int>(pairs.size());
   StencilTable table{.pattern = {}, .points = {}};
   for (int m = 0; m <= p; ++m) table.pattern.vertices.push_back({.time = 0, .space = m});
   for (int m = 1; m <= p; ++m)

@@ -24,15 +24,15 @@ StencilTable spectral_space(int degree);
 /// The linear element, integrated by Gauss's rule of two points: its mass couples neighbours, (1, 4, 1)/6 for ½φ_t².
 StencilTable linear_space();
 
-/// Pairs of sites as far apart as this make space of order 12.
-inline constexpr int widest_pair = 6;
+/// Pairs of sites as far apart as this make space of order 20.
+inline constexpr int widest_pair = 10;
 /// What the pairs {i, i + m}, m = 1 … p, weigh in the action of order 2p:
 ///
 ///     m² β_m = 2 (−1)^{m+1} p!² / ((p − m)! (p + m)!),    Σ_m m² β_m = 1
 ///
 std::vector<double> pair_weights(int p);
-/// Pairs of sites, Σ_m m² β_m ½[ℓ(y_i, D_m) + ℓ(y_{i+m}, D_m)] with D_m = (y_{i+m} − y_i)/(mk): order 2p for any
-/// density. Wider than a cell for p > 1, and then for circles.
-StencilTable pair_space(int p);
+/// Pairs of sites of the weights m² β_m, Σ_m m² β_m ½[ℓ(y_i, D_m) + ℓ(y_{i+m}, D_m)] with D_m = (y_{i+m} − y_i)/(mk): any density,
+/// and of order 2p with pair_weights(p). Wider than a cell for p > 1, and then for circles.
+StencilTable pair_space(const std::vector<double>& weights);
 
 }  // namespace delf

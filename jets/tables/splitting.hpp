@@ -2,6 +2,7 @@
 #pragma once
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,11 +10,22 @@
 
 namespace delf {
 
+/// What makes a kernel accurate: kicks and drifts by turns, kicks[0], drifts[0], kicks[1], …, as fractions of h, one kick
+/// more than drifts. Applied once to φ and its rate, they give the first row of the kernel, with the momenta below that
+/// row; undone on a copy of a row, the same with signs turned in reverse order, they give φ and its rate there.
+struct Processor {
+  std::vector<double> kicks, drifts;
+  bool empty() const { return kicks.empty(); }
+};
+
 /// One time step of length 1 in sub-steps: a sub-step s goes on by drifts[s], and between sub-steps, at its beginning
 /// and at its end the potential part of the action acts with the weights kicks[0 … S]. Palindromes; both sum to 1, and
 /// some weights go back in time. The kicks of two steps that meet are one.
 struct Splitting {
   std::vector<double> kicks, drifts;
+  Processor processor = {};  ///< none: rows are what they stand for
+  double gradient = 0;  ///< g, if its one kick has g h² F₂² in the action, F₂ the force of the potential part
+  double offset = 0;    ///< of its rows in time from the steps: fractions of h
 };
 
 inline constexpr int highest_splitting_order = 8;
@@ -94,12 +106,44 @@ inline StencilTable splitting_element(const Splitting& splitting) {
       if (std::abs(weight) < 1e-14) continue;  // no kick at this end of a step
       std::vector phi(phi_t.size(), 0.0);
       phi[row] = 1;
-      TablePoint point{.weight = weight, .time = times[row], .slots = {}};
+      TablePoint point{.weight = weight, .time = times[row] + splitting.offset, .slots = {}};
       point.set(JetSlot::phi, phi), point.set(JetSlot::phi_t, phi_t);
       element.points.push_back(std::move(point));
     }
   }
   return element;
+}
+
+/// Kernels that a processor makes accurate: fewer kicks a step than a Splitting of their effective order.
+///
+/// ti4, effective order 4, one kick a step, with a gradient: M. Takahashi, M. Imada, J. Phys. Soc. Jpn. 53 (1984) 3765.
+/// It is half a drift, the kick, and half a drift; rows here are those of its kick, half a step after the steps'. b6,
+/// effective order 6, six kicks a step. Both processors and b6 solve the order conditions modulo [B, [B, [B, A]]], found for
+/// delf. Without weights for another name.
+inline Splitting processed_splitting(std::string_view kernel) {
+  if (kernel == "ti4") {
+    return {.kicks = {0.5, 0.5},
+            .drifts = {1},
+            .processor = {.kicks = {0.14517794752584913, -0.23490285351377259, 0.08972490598792346, 0},
+                          .drifts = {0.10962581259747214, -0.28700410342450847, 0.17737829082703633 + 0.5}},
+            .gradient = 1. / 24,
+            .offset = 0.5};
+  }
+  if (kernel == "b6") {
+    const std::vector<double> kicks{0.15426122198939585, 0.31853107603989516,  -0.04360543987449397,
+                                    0.14162628369040591, -0.04360543987449397, 0.31853107603989516,
+                                    0.15426122198939585};
+    // Below the kernel's first row, half of whose kick belongs to the step before.
+    return {
+        .kicks = kicks,
+        .drifts = {0.30369867247212499, 0.45239193016891718, -0.25609060264104217, -0.25609060264104217,
+                   0.45239193016891718, 0.30369867247212499},
+        .processor = {.kicks = {0.059548543876326097, -0.026547929323253723, -0.10727531364448431,
+                                -0.00010536307839572923, 0.073854548493523367, 0.00052551367628429908, -kicks.front()},
+                      .drifts = {-0.16768434077177133, 0.24251221352932537, 0.14636529932537761, -0.086198192245715179,
+                                 -0.24525447662922846, 0.11025949680201199}}};
+  }
+  return {};
 }
 
 }  // namespace delf

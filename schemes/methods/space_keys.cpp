@@ -36,7 +36,7 @@ StencilTable pairs_on(const Lattice& lattice, int order) {
                    fmt::format("lattice.sites = {}: a stencil of space order {} is {} sites wide; give "
                                "more",
                                lattice.sites(), order, order + 1));
-  return pair_space(order / 2);
+  return pair_space(pair_weights(order / 2));
 }
 
 }  // namespace

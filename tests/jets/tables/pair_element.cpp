@@ -112,3 +112,49 @@ TEST_CASE(
     CHECK(std::abs(found(JetSlot::phi_x) - 5) < 1e-13);
   }
 }
+
+TEST_CASE("kernels with their processors make a pendulum's steps of their effective order, and of order 2 without") {
+  // q″ = −sin q; a kick with a gradient is of F + 2g h² F′F
+  const auto at_1 = [](const char* kernel, int steps, bool processed) {
+    const Splitting s = processed_splitting(kernel);
+    const long double h = 1.0L / steps;
+    long double q = 0.3L, p = 1.2L;
+    const auto kick = [&](long double b, long double gradient) {
+      p -= h * b * (std::sin(q) - 2 * gradient * h * h * std::cos(q) * std::sin(q));
+    };
+    const auto& P = s.processor;
+    for (std::size_t i = 0; processed && i < P.kicks.size(); ++i) {
+      kick(P.kicks[i], 0);
+      if (i < P.drifts.size()) q += h * P.drifts[i] * p;
+    }
+    for (int n = 0; n < steps; ++n)
+      for (std::size_t i = 0; i < s.drifts.size(); ++i) {
+        // the half kick that the step before leaves to this one
+        kick(i == 0 ? (n == 0 && !processed ? s.kicks[0] : s.kicks[0] + s.kicks.back()) : s.kicks[i],
+             n == 0 && !processed ? s.gradient / 2 : s.gradient);
+        q += h * s.drifts[i] * p;
+      }
+    for (std::size_t i = P.kicks.size(); processed && i-- > 0;) {
+      kick(-P.kicks[i], 0);
+      if (i > 0) q -= h * P.drifts[i - 1] * p;
+    }
+    return q;
+  };
+  const long double exact = pendulum_at_1(splitting_of_order(8), 64);
+  struct Case {
+    const char* kernel;
+    bool processed;
+    int steps;
+    double order;
+  };
+  for (const auto& [kernel, processed, steps, order] :
+       {Case{"ti4", true, 8, 4}, {"b6", true, 2, 6}, {"ti4", false, 8, 2}, {"b6", false, 4, 2}}) {
+    const long double coarse = std::abs(at_1(kernel, steps, processed) - exact),
+                      fine = std::abs(at_1(kernel, 2 * steps, processed) - exact);
+    const auto found = static_cast<double>(std::log2(coarse / fine));
+    CAPTURE(kernel, processed, found);
+    CHECK(found > order - 0.3);
+    CHECK(found < order + 0.3);
+  }
+  CHECK(processed_splitting("b7").drifts.empty());
+}

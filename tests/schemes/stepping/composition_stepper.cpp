@@ -166,7 +166,7 @@ TEST_CASE("compositions refuse what they cannot start from or be built on") {
   CHECK(refused([](Problem& p) { p.parameters["scheme.order"] = 3; }) == "scheme.order");
   CHECK(refused([](Problem& p) { p.parameters["scheme.order"] = 10; }) == "scheme.order");
   CHECK(refused([](Problem& p) { p.parameters["lattice.space_order"] = 5; }) == "lattice.space_order");
-  CHECK(refused([](Problem& p) { p.parameters["lattice.space_order"] = 14; }) == "lattice.space_order");
+  CHECK(refused([](Problem& p) { p.parameters["lattice.space_order"] = 22; }) == "lattice.space_order");
   CHECK(refused([](Problem& p) { p.parameters["lattice.space_order"] = 12, p.lattice = Lattice::circle(12, 12); }) ==
         "lattice.sites");
   CHECK(refused([](Problem& p) { p.lattice = Lattice::interval(30, 12); }) == "lattice.space");
