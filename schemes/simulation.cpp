@@ -36,9 +36,11 @@ SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
 }
 
 Evolution make_evolution(SchemeParts parts, const Problem& p) {
-  return {p.lattice, std::move(parts.families), p.time_step,
+  return {p.lattice,
+          std::move(parts.families),
+          p.time_step,
           {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
-           2 * std::numbers::pi * p.winding, p.threads},
+           2 * std::numbers::pi * p.winding, p.threads, std::move(parts.processor)},
           std::move(parts.components)};
 }
 
@@ -49,6 +51,7 @@ struct Simulation::Impl {
   const MethodEntry& method;
   std::unique_ptr<FieldTheory> theory;
   std::vector<LinearSymmetry> symmetries;
+  std::vector<std::string> remarks;  ///< of the method, for the plan
   Evolution evolution;
   Stepper& stepper;
   const LatticeSystem& system;
@@ -65,6 +68,7 @@ struct Simulation::Impl {
         method(find_method(p.method)),
         theory(std::move(t)),
         symmetries(std::move(parts.symmetries)),
+        remarks(std::move(parts.remarks)),
         evolution(make_evolution(std::move(parts), p)),
         stepper(evolution.stepper()),
         system(evolution.system()),
@@ -84,7 +88,8 @@ struct Simulation::Impl {
     const double h = problem.time_step;
     return delf::energy_momentum(theory->density(),
                                  {&layout(), monitored.data(), positions.rows() ? positions.row(0) : nullptr,
-                                  static_cast<double>(stepper.newest() - 1) * h, h, problem.lattice.space_step()},
+                                  (static_cast<double>(stepper.newest()) - (stepper.is_processed() ? 0.5 : 1)) * h, h,
+                                  problem.lattice.space_step()},
                                  cell_weights.row(0));
   }
 
@@ -163,6 +168,7 @@ struct Simulation::Impl {
   /// What monitors look at, where steps do not go by rows.
   void copy_newest_pair() {
     const int C = system.components(), d = theory->components();
+    if (stepper.is_processed()) return copy_observed_pair();
     const std::vector<double> newest = stepper.row(0), before = stepper.row(1);
     std::vector<double> before_newest(static_cast<std::size_t>(problem.lattice.sites())), value(before_newest),
         step(before_newest);
@@ -177,6 +183,22 @@ struct Simulation::Impl {
       own_layout->scatter(step, last_rows.row(2 * d + a));
     }
     for (int r = 0; r < 3 * d; ++r) monitored[static_cast<std::size_t>(r)] = last_rows.row(r);
+  }
+  /// Half a step before and after the observed row: y ∓ ½h φ_t.
+  void copy_observed_pair() {
+    const auto d = static_cast<std::size_t>(theory->components());
+    const double h = problem.time_step, turn = 2 * std::numbers::pi * winding;
+    std::vector<double> fields, rates, value(static_cast<std::size_t>(problem.lattice.sites()));
+    stepper.observe(0, fields, rates);
+    const auto put = [&](double of_field, double of_rate, std::size_t row, double gained) {
+      for (std::size_t a = 0; a < d; ++a) {
+        for (std::size_t i = 0; i < value.size(); ++i)
+          value[i] = of_field * fields[i * d + a] + of_rate * rates[i * d + a];
+        own_layout->scatter(value, last_rows.row(static_cast<int>(row * d + a)), gained);
+      }
+    };
+    put(1, -0.5 * h, 0, turn), put(1, 0.5 * h, 1, turn), put(0, h, 2, 0);
+    for (int r = 0; r < static_cast<int>(3 * d); ++r) monitored[static_cast<std::size_t>(r)] = last_rows.row(r);
   }
   double charge() const {
     if (problem.lattice.is_circle()) return winding;
@@ -284,6 +306,14 @@ void Simulation::copy_row(int back, std::span<double> out, Role role) const {
     if (s.system.component(static_cast<int>(at) % s.system.components()).role == role) out[next++] = row[at];
 }
 
+void Simulation::observe(int back, std::span<double> out) const {
+  if (!is_processed()) return copy_row(back, out);
+  std::vector<double> fields, rates;
+  impl_->stepper.observe(back, fields, rates);
+  std::ranges::copy(fields, out.begin());
+}
+bool Simulation::is_processed() const { return impl_->stepper.is_processed(); }
+
 std::vector<double> Simulation::momenta(int back) const {
   const Stepper& stepper = impl_->stepper;
   require_lagrangian(impl_->system);
@@ -327,8 +357,10 @@ double Simulation::residual() const { return impl_->stepper.residual(); }
 const char* Simulation::solve_kind() const { return to_string(impl_->evolution.plan().kind); }
 std::string Simulation::solve_summary() const { return solve_in_words(impl_->evolution.plan(), impl_->stepper); }
 std::string Simulation::plan_report() const {
-  return delf::plan_report(impl_->evolution.system(), impl_->evolution.plan(), impl_->stepper,
-                           impl_->monitor_bytes_of_run());
+  std::string report = delf::plan_report(impl_->evolution.system(), impl_->evolution.plan(), impl_->stepper,
+                                         impl_->monitor_bytes_of_run());
+  for (const std::string& remark : impl_->remarks) report += remark + '\n';
+  return report;
 }
 std::size_t Simulation::bytes() const { return impl_->stepper.bytes() + impl_->monitor_bytes(); }
 std::size_t Simulation::bytes_of_run(Looks looks) const {

@@ -45,6 +45,7 @@ struct NamedScheme {
   Problem problem;
   int nodes = 1;  ///< in a cell of space
   int rank = 0;   ///< as a reference solution: the highest is taken; 0: never
+  bool tuned = false;  ///< its keys tell it of the solution: comparisons have a column of its own for it
 };
 /// Every scheme of every method, for the lattice, the theory and the other keys of `base`; what cannot be built for them
 /// says so when it is built.
@@ -91,6 +92,11 @@ class Simulation {
   /// The components of one role of the row `back` rows before the newest, back < starting_rows(): out[i·count + a].
   /// Multipliers and inner nodes are those that were found together with the row.
   void copy_row(int back, std::span<double> out, Role = Role::field) const;
+  /// What a run records of the fields at that row: as copy_row() gives them, or, where rows are those of a kernel, with the
+  /// processor undone.
+  void observe(int back, std::span<double> out) const;
+  /// Rows are those of a kernel. The checks and the form formula are for these.
+  bool is_processed() const;
   /// The momenta at the row `back` rows before the newest, of all components, [i·C + c]: the half of the field equation
   /// there (schemes/system/momenta.hpp). Throws BadInput for a scheme without a Lagrangian.
   std::vector<double> momenta(int back = 0) const;

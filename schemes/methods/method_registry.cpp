@@ -6,14 +6,15 @@
 namespace delf {
 
 extern const MethodEntry multisymplectic_method, vu_quoc_li_method, guo_method, spacetime_method, r_adaptive_method,
-    damped_method, composition_method, cgvi_method, radau_iia_method;
+    damped_method, composition_method, processed_method, cgvi_method, radau_iia_method;
 
 namespace {
 
 std::vector<const MethodEntry*>& entries() {
-  static std::vector<const MethodEntry*> all{
-      &multisymplectic_method, &composition_method, &spacetime_method, &cgvi_method,     &r_adaptive_method,
-      &vu_quoc_li_method,      &guo_method,         &damped_method,    &radau_iia_method};
+  static std::vector<const MethodEntry*> all{&multisymplectic_method, &composition_method, &processed_method,
+                                             &spacetime_method,       &cgvi_method,        &r_adaptive_method,
+                                             &vu_quoc_li_method,      &guo_method,         &damped_method,
+                                             &radau_iia_method};
   return all;
 }
 

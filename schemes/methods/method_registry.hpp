@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "jets/symmetry.hpp"
+#include "jets/tables/splitting.hpp"
 #include "schemes/parameter.hpp"
 #include "schemes/system/lattice_system.hpp"
 
@@ -23,6 +24,8 @@ struct SchemeParts {
   std::vector<Component> components;
   std::vector<LinearSymmetry> symmetries =
       {};  ///< that the families have: the theory's, where it is its density that they carry
+  Processor processor = {};               ///< if rows are those of a kernel
+  std::vector<std::string> remarks = {};  ///< lines for `delf plan`
 };
 
 /// What gives row 1: the known solution; the field equation at row 0; the discrete Legendre transform there.

@@ -2,12 +2,14 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "schemes/system/lattice_system.hpp"
+#include "jets/force_squared.hpp"
 #include "schemes/solvers/row_layout.hpp"
 #include "schemes/stepping/step_method.hpp"
+#include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 
@@ -16,7 +18,9 @@ namespace delf {
 ///
 ///     P_s = P_{s−1} + Σ_m g_m (y_s(i + m) − 2y_s(i) + y_s(i − m)) + b_s ∂ℓ/∂φ(y_s),     y_{s+1} = y_s − P_s/c_s,
 ///
-/// where all numbers come from the constant part of the element's Jacobian. A step that no one looks at writes rows over
+/// where all numbers come from the constant part of the element's Jacobian. A second family, the squares of the force at
+/// node 0, adds its gradient there. Where rows are those of a kernel, its processor gives the first one, and is undone on
+/// copies of rows that are observed. A step that no one looks at writes rows over
 /// each other; one that is looked at keeps those between its sub-steps.
 class CompositionStepper final : public StepMethod {
  public:
@@ -31,6 +35,7 @@ class CompositionStepper final : public StepMethod {
   StepState state() const override { return {n_, 0}; }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
+  void observe(int back, std::vector<double>& fields, std::vector<double>& rates) const override;
   double residual() const override;
 
   StepReport report(bool residual) const override;
@@ -42,18 +47,34 @@ class CompositionStepper final : public StepMethod {
     std::vector<double> nonlinear;  ///< b / K
     double stride = 0;              ///< −K / c
     double time = 0;                ///< of the row, from that of the step
+    double gradient = 0;            ///< times that of the squared force
+  };
+  /// The squares of the force at node 0: their density, and what the sites m apart weigh in φ_xx.
+  struct ForceGradient {
+    const ForceSquared* density = nullptr;
+    std::vector<double> weights;  ///< Σ_{m > j} w_m/k² at [j]
+    double kick = 0;              ///< hk/K
   };
 
   CompositionStepper(const LatticeSystem&, const StepOptions&);
   /// False where an equation is not of the form above.
   bool assemble();
   SubStep read_sub_step(int s, bool from_below, bool& fits) const;
+  static std::optional<ForceGradient> read_gradient(const StencilFamily& of, const StencilFamily&, double k);
+  void prepare_processor();
+  void add_gradient(std::int64_t n, const SubStep&, const double* from, const double* differences,
+                    double* velocity) const;
+  void undo_processor(std::int64_t n) const;
   double sub_step(std::int64_t n, const SubStep&, const double* from, const double* differences, double* to,
                   double* next_differences, double* velocity) const;
   void find_differences(const double* row, double* differences) const;
   double* newest_row() { return newest_.row(0); }
   const double* newest_row() const { return newest_.row(0); }
   double advance(const SubStep& first, bool looked_at);
+  /// A row of y has a halo of one pack.
+  void fill_ends(double* row) const {
+    ends_.fill_halo(row + static_cast<std::ptrdiff_t>(layout_.halo() - 1) * lanes, options_.turn);
+  }
   double* node(std::int64_t row, int s) { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
   const double* node(std::int64_t row, int s) const { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
   void copy_components(const double* rows, int first_component, std::vector<double>& section) const;
@@ -68,12 +89,18 @@ class CompositionStepper final : public StepMethod {
   const LatticeSystem& system_;
   StepOptions options_;
   const StencilFamily& family_;
+  ForceGradient gradient_;  ///< without a density where there is none
   int d_, S_, reach_;
   double scale_ = 1;  ///< K: velocities are P/K
-  RowLayout layout_;
+  RowLayout layout_, ends_;  ///< with the halo of differences, and of rows: one pack
   std::size_t size_;  ///< of a row of d components
+  // Room of a sub-step: where its strip begins, where a gradient goes, the last values of the strip before.
+  mutable std::vector<const double*> now_;
+  mutable std::vector<double*> out_;
+  mutable std::vector<Pack> before_;
   std::vector<SubStep> steps_;
   SubStep first_;  ///< from row 0, with nothing below
+  std::vector<SubStep> process_, undo_;  ///< of the processor
   RowBuffer positions_;
   // Each "row" has the rows of its d components one after the other.
   RowBuffer newest_, velocity_;  ///< y_n; P/K of the sub-step before it
@@ -82,6 +109,9 @@ class CompositionStepper final : public StepMethod {
   mutable RowBuffer slabs_;      ///< of the newest steps: S nodes each; the oldest is room to work in
   RowBuffer saved_;              ///< y and P/K, now and then: a row that overflows is found again from there
   mutable RowBuffer scratch_;    ///< of the residual, where S nodes are too few
+  mutable RowBuffer squares_;    ///< ∂ℓ̃/∂φ, ∂ℓ̃/∂φ_xx of the squared force, and ∂ℓ/∂φ
+  mutable RowBuffer observed_;   ///< a row to be observed: y and P/K
+  mutable RowBuffer observed_differences_;
   std::int64_t n_ = 0, saved_row_ = -1;
   int known_ = 0;  ///< newest slabs that are held
 };

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "jets/fibre.hpp"
+#include "jets/tables/splitting.hpp"
 #include "lattice/error.hpp"
-#include "schemes/system/lattice_system.hpp"
 #include "schemes/solvers/row_layout.hpp"
+#include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 
@@ -20,6 +21,8 @@ struct StepOptions {
   Fibre fibre = Fibre::real;
   double turn = 0;           ///< φ(x + L) − φ(x)
   int threads = 1;           ///< that explicit steps are shared by; the bits are the same for any number
+  Processor processor =
+      {};  ///< rows are those of a kernel: it gives the first, and is undone on copies that are observed
 };
 
 /// Rounding allows no smaller one: Stepper takes this in its place.
@@ -77,6 +80,9 @@ class StepMethod {
   virtual StepState state() const = 0;
   virtual std::vector<double> row(int back) const = 0;
   virtual Window window(int rows) const = 0;
+  virtual void observe(int /*back*/, std::vector<double>& /*fields*/, std::vector<double>& /*rates*/) const {
+    throw std::logic_error("delf: these rows have no processor");
+  }
   virtual double residual() const = 0;
   virtual void newest_pair(const double** /*rows*/) const {}
   virtual StepReport report(bool residual) const = 0;

@@ -13,7 +13,8 @@ namespace {
 
 std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan& plan, StepOptions options) {
   options.tolerance = std::max(options.tolerance, smallest_tolerance);
-  if (goes_by_rows(system, plan)) {
+  const bool processed = !options.processor.empty();
+  if (!processed && goes_by_rows(system, plan)) {
     try {
       return std::make_unique<RowStepper>(system, plan, options);
     } catch (const NoConvergence&) {
@@ -21,6 +22,10 @@ std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan&
     }
   }
   if (auto stepper = CompositionStepper::make(system, options)) return stepper;
+  if (processed)
+    throw BadInput("scheme.method",
+                   "scheme.method: a processed kernel is explicit sub-steps over pairs of sites, and these "
+                   "equations are not; use scheme.method = multisymplectic");
   return std::make_unique<SlabStepper>(system, plan, options);
 }
 
@@ -30,7 +35,8 @@ Stepper::Stepper(const LatticeSystem& system, const SolvePlan& plan, const StepO
     : method_(choose(system, plan, options)),
       report_(method_->report(false)),
       components_(static_cast<std::size_t>(system.components())),
-      row_size_(static_cast<std::size_t>(system.lattice().sites() * system.components())) {}
+      row_size_(static_cast<std::size_t>(system.lattice().sites() * system.components())),
+      processed_(!options.processor.empty()) {}
 
 void Stepper::start(const std::vector<std::vector<double>>& rows) {
   if (static_cast<int>(rows.size()) < starting_rows())

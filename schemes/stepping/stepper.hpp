@@ -51,6 +51,13 @@ class Stepper {
   }
   /// The newest row, or one before it: fields at that row, multipliers and inner nodes as they were found with it.
   std::vector<double> row(int back) const { return method_->row(back); }
+  /// Rows are those of a kernel: a processor makes them of φ and φ_t at the start.
+  bool is_processed() const { return processed_; }
+  /// The fields and their rates [i·d + a] at the newest row or one before it, the processor undone on a copy. For
+  /// is_processed() alone.
+  void observe(int back, std::vector<double>& fields, std::vector<double>& rates) const {
+    method_->observe(back, fields, rates);
+  }
   /// The newest rows, every component at its own row: for checks.
   Window window(int rows) const { return method_->window(rows); }
   /// The residual of the field equations that were solved for the newest row: max |Σ terms| / max Σ |terms| over the
@@ -82,7 +89,7 @@ class Stepper {
   std::unique_ptr<StepMethod> method_;
   StepReport report_;  ///< what does not change
   std::size_t components_, row_size_;
-  bool started_ = false;
+  bool processed_, started_ = false;
 };
 
 }  // namespace delf

@@ -25,6 +25,7 @@ class FieldTheory {
         fields_(fields.empty() ? delf::fields(density_->components()) : std::move(fields)) {}
 
   const BatchDensity& density() const { return *density_; }
+  const std::shared_ptr<const BatchDensity>& shared_density() const { return density_; }
   int components() const { return density_->components(); }
   /// The components of the field, by name.
   const std::vector<Component>& fields() const { return fields_; }

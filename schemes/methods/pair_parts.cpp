@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/methods/pair_parts.hpp"
+
+#include <fmt/format.h>
+
+#include "jets/tables/pair_element.hpp"
+#include "lattice/error.hpp"
+#include "schemes/theories/field_theory.hpp"
+
+namespace delf {
+
+int pairs_of_order(const Problem& p, const char* key, int order) {
+  if (order % 2 != 0 || order < 2 || order > 2 * widest_pair)
+    throw BadInput(
+        key, fmt::format("{} = {}: wide stencils are of order 2, 4, ..., {}; choose one", key, order, 2 * widest_pair));
+  if (p.lattice.sites() < order + 1)
+    throw BadInput("lattice.sites",
+                   fmt::format("lattice.sites = {}: a stencil of space order {} is {} sites wide; give more",
+                               p.lattice.sites(), order, order + 1));
+  return order / 2;
+}
+
+SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitting& splitting,
+                       const std::vector<double>& pairs) {
+  if (!p.lattice.is_circle())
+    throw BadInput("lattice.space", fmt::format("scheme.method = {}: wide stencils have no walls in this version; use "
+                                                "lattice.space = circle",
+                                                p.method));
+  if (theory.constraint())
+    throw BadInput("scheme.method",
+                   fmt::format("scheme.method = {}: this version has no constraints between sub-steps; "
+                               "use scheme.method = multisymplectic",
+                               p.method));
+  if (theory.density().nonlinearity() == Nonlinearity::all)
+    throw BadInput("theory.name", fmt::format("theory.name = {}: scheme.method = {} takes densities that are "
+                                              "nonlinear in phi alone; use scheme.method = multisymplectic",
+                                              p.theory, p.method));
+  const StencilTable element = pair_element(splitting, pairs);
+  // Between sub-steps momenta change by ∂ℓ/∂φ, linear or not.
+  SchemeParts parts{{theory.on_table(element, true)}, theory.fields(), theory.symmetries(), splitting.processor, {}};
+  for (std::size_t s = 1; s < element.nodes.size(); ++s)
+    for (const Component& field : theory.fields())
+      parts.components.push_back(
+          {fmt::format("{} after {} sub-steps", field.name, s), Role::inner, element.nodes[s], false, field.field});
+  return parts;
+}
+
+}  // namespace delf

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <vector>
+
+#include "jets/tables/splitting.hpp"
+#include "schemes/methods/method_registry.hpp"
+#include "schemes/simulation.hpp"
+
+namespace delf {
+
+/// Checks lattice.space_order, an even number, and gives the number of pairs p.
+int pairs_of_order(const Problem&, const char* key, int order);
+
+/// The sub-steps of a splitting over pairs of these weights, on a circle, for densities that are nonlinear in φ alone. The row
+/// after s sub-steps carries the d fields: component = s · d + a. Throws BadInput for what there is no scheme for.
+SchemeParts pair_parts(const FieldTheory&, const Problem&, const Splitting&, const std::vector<double>& pairs);
+
+}  // namespace delf

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "jets/force_squared.hpp"
+#include "jets/tables/pair_element.hpp"
+#include "jets/tables/splitting.hpp"
+#include "jets/tables/suited_pairs.hpp"
+#include "lattice/error.hpp"
+#include "schemes/families/jet_family.hpp"
+#include "schemes/methods/pair_parts.hpp"
+#include "schemes/stability/splitting_limit.hpp"
+#include "schemes/theories/field_theory.hpp"
+
+namespace delf {
+namespace {
+
+constexpr int usual_gradient_order = 6;
+
+/// κ = g h²/M, where ℓ has ½M φ_t² for every field and nothing else that is quadratic in rates.
+double gradient_scale(const BatchDensity& density, double gradient, double h) {
+  const int d = density.components(), m = density.variables();
+  const auto rates = [&](int a, int b) {
+    return density.constant_hessian()[static_cast<std::size_t>((d + a) * m + d + b)];
+  };
+  for (int a = 0; a < d; ++a)
+    for (int b = 0; b < d; ++b)
+      if (rates(a, b) != (a == b ? rates(0, 0) : 0) || rates(a, a) == 0)
+        throw BadInput("theory.name",
+                       "theory.name: a force gradient takes densities with the same 0.5*M*phi_t^2 for every "
+                       "field; use scheme.kernel = b6");
+  return gradient * h * h / rates(0, 0);
+}
+
+struct Chosen {
+  Splitting splitting;
+  std::vector<double> pairs;
+  int gradient_pairs = 0;
+};
+
+Chosen chosen(const Problem& p) {
+  const std::string kernel = p.parameters.get<std::string>("scheme.kernel");
+  Chosen c{processed_splitting(kernel), {}};
+  const int order = p.parameters.get<int>("lattice.space_order"),
+            pairs = pairs_of_order(p, "lattice.space_order", order);
+  const double rho = p.parameters.get<double>("lattice.analyticity");
+  c.pairs = p.parameters.get<std::string>("lattice.pairs") == "suited"
+                ? suited_pairs(pairs, rho / p.lattice.space_step())
+                : pair_weights(pairs);
+  if (c.splitting.gradient != 0)
+    c.gradient_pairs = pairs_of_order(
+        p, "lattice.gradient_order",
+        p.parameters.maybe<int>("lattice.gradient_order").value_or(std::min(order, usual_gradient_order)));
+  if (c.gradient_pairs > pairs)
+    throw BadInput("lattice.gradient_order",
+                   fmt::format("lattice.gradient_order = {}: above lattice.space_order = {}; lower it",
+                               2 * c.gradient_pairs, order));
+  return c;
+}
+
+SchemeParts build(const FieldTheory& theory, const Problem& p) {
+  const Chosen c = chosen(p);
+  SchemeParts parts = pair_parts(theory, p, c.splitting, c.pairs);
+  if (c.gradient_pairs > 0)
+    parts.families.push_back(std::make_shared<JetFamily>(
+        force_table(c.gradient_pairs, c.splitting.offset),
+        std::make_shared<ForceSquared>(theory.shared_density(),
+                                       gradient_scale(theory.density(), c.splitting.gradient, p.time_step))));
+  const double k = p.lattice.space_step(), decay = p.parameters.get<double>("lattice.analyticity") / k;
+  const std::vector<double> force = c.gradient_pairs > 0 ? pair_weights(c.gradient_pairs) : c.pairs;
+  parts.remarks = {
+      "rows         of a kernel; residuals and the form formula are theirs. Recorded rows have the processor undone",
+      fmt::format("pairs        weights {:.10g}", fmt::join(c.pairs, ", ")),
+      fmt::format("dispersion   max |S(θ) − θ²| e^(−ρθ/k)/θ = {:.3g}, ρ = {:g}", weighted_defect(c.pairs, decay),
+                  decay * k),
+      fmt::format("limits       ωh < {:.4g}; without a mass h/k < {:.4g}", frequency_limit(c.splitting),
+                  courant_limit(c.splitting, c.pairs, force))};
+  return parts;
+}
+
+std::string name_of(const Problem& p) {
+  return fmt::format("processed ({},{}){}", p.parameters.get<std::string>("scheme.kernel"),
+                     p.parameters.get<int>("lattice.space_order"),
+                     p.parameters.get<std::string>("lattice.pairs") == "suited" ? " suited" : "");
+}
+
+std::vector<NamedScheme> variants(const Problem& base) {
+  std::vector<NamedScheme> schemes;
+  for (const char* pairs : {"maximal", "suited"})
+    for (const char* kernel : {"ti4", "b6"})
+      for (int space = 6; space <= 2 * widest_pair; space += 2) {
+        if (kernel == std::string("ti4") && space > 14) continue;
+        Problem problem = base;
+        problem.parameters["scheme.kernel"] = std::string(kernel);
+        problem.parameters["lattice.space_order"] = space;
+        problem.parameters["lattice.pairs"] = std::string(pairs);
+        schemes.push_back(
+            {fmt::format("processed ({},{}){}", kernel, space, pairs == std::string("suited") ? " suited" : ""),
+             std::move(problem)});
+        schemes.back().tuned = pairs == std::string("suited");
+      }
+  return schemes;
+}
+
+}  // namespace
+
+extern const MethodEntry processed_method;
+const MethodEntry processed_method{
+    .name = "processed",
+    .formula = "kernels of effective order 4 and 6 over wide pairs, processed where rows are recorded: explicit",
+    .build = build,
+    .parameters = {{.key = "lattice.analyticity",
+                    .fallback = 2.2,
+                    .help = "half-width of the strip in which the field is analytic, for suited pairs",
+                    .unit = "length",
+                    .range = {.low = 0}},
+                   {.key = "lattice.gradient_order",
+                    .fallback = usual_gradient_order,
+                    .help = "order in space of the force that the kick of ti4 has the gradient of",
+                    .range = {.low = 2, .high = 2 * widest_pair},
+                    .otherwise = "6, or lattice.space_order if that is less"},
+                   {.key = "lattice.pairs",
+                    .fallback = std::string("maximal"),
+                    .help = "weights of pairs: of maximal order, or suited to lattice.analyticity",
+                    .choices = {"maximal", "suited"}},
+                   {.key = "lattice.space_order",
+                    .fallback = 4,
+                    .help = "order in space: 2, 4, ..., 20",
+                    .range = {.low = 2, .high = 2 * widest_pair}},
+                   {.key = "scheme.kernel",
+                    .fallback = std::string("b6"),
+                    .help = "ti4: one kick a step, with a force gradient; b6: six kicks",
+                    .choices = {"ti4", "b6"}}},
+    .label = name_of,
+    .starts = {StartRule::legendre},
+    .start = StartRule::legendre,
+    .variants = variants};
+
+}  // namespace delf
