@@ -29,6 +29,7 @@ struct PeerInfo {
   double stable_courant;  ///< h/k, k = L/N, below which it may be run, masses aside; 0 if none is known
   std::size_t forces;     ///< evaluations of the force in a step
   std::unique_ptr<Peer> (*make)(const WaveEquation&);  ///< throws std::invalid_argument for what it cannot run
+  bool processed = false;                              ///< by a processor of its own at the start, undone on copies
 };
 
 /// All peers of this build.

@@ -70,6 +70,7 @@ struct Kick : Force {
 struct SineKickBeyondMass : SineForce {
   static constexpr bool mass_in_flow = true;
   static Pack shape(Pack phi) { return sin(phi) - phi; }
+  static Pack slope(Pack phi) { return cos(phi) - 1.0; }
 };
 
 // The solution is kept in Fourier space, divided by N, so that c2r gives φ: a kick is two transforms of one real row,
@@ -105,15 +106,17 @@ class SplitStep final : public Peer {
     if (phi.size() != sites_ || phi_t.size() != sites_) throw std::invalid_argument("a row has the wrong length");
     transform(phi_t, speed_, false);
     transform(phi, field_, true);
-    if (kicked && !splitting_.flows_first) {
-      spectrum_ = field_;
-      find_force();
-    }
+    processed_ = false;
+    if (kicked && !splitting_.flows_first) force_here(kernel_gradient());
   }
 
   void advance(double h, std::int64_t steps) override {
     const FlushToZero guard;
     prepare(h);
+    if (!splitting_.processor.empty() && !std::exchange(processed_, true)) {
+      process(1);
+      if (!splitting_.flows_first) force_here(kernel_gradient());
+    }
     if (steps <= 0) return;
     if constexpr (!kicked) {
       for (std::int64_t n = 0; n < steps; ++n) sweep<false>(0, flows_.back());
@@ -127,7 +130,8 @@ class SplitStep final : public Peer {
   void copy(std::span<double> phi, std::span<double> phi_t) const override {
     if (phi.size() != sites_ || phi_t.size() != sites_) throw std::invalid_argument("a row has the wrong length");
     // The spectrum may be that of the force, which the next kick wants, and c2r destroys what it reads.
-    const Row kept = spectrum_;
+    const Row kept = spectrum_, kept_field = field_, kept_speed = speed_;
+    if (processed_) process(-1);
     const auto back = [&](const Row& modes, std::span<double> row) {
       spectrum_ = modes;
       backward_.execute();
@@ -135,7 +139,7 @@ class SplitStep final : public Peer {
     };
     back(field_, phi);
     back(speed_, phi_t);
-    spectrum_ = kept;
+    spectrum_ = kept, field_ = kept_field, speed_ = kept_speed;
     for (std::size_t i = 0; i < sites_; ++i) phi[i] += ramp_[i];
   }
 
@@ -162,24 +166,54 @@ class SplitStep final : public Peer {
       for (const double a : splitting_.inner) stages_.push_back(index(a));
     }
     flows_.assign(lengths_.size(), FlowFactors(kappa_.size()));
+    process_.assign(splitting_.processor.drifts.size(), FlowFactors(kappa_.size()));
+    undo_ = process_;
   }
 
   void prepare(double h) {
     if (h == step_) return;
     for (std::size_t f = 0; f < flows_.size(); ++f) flows_[f].prepare(lengths_[f] * h, kappa_, inverse_);
+    for (std::size_t i = 0; i < process_.size(); ++i) {
+      process_[i].prepare(splitting_.processor.drifts[i] * h, kappa_, inverse_);
+      undo_[i].prepare(-splitting_.processor.drifts[i] * h, kappa_, inverse_);
+    }
     step_ = h;
+  }
+
+  /// Once forwards, or back on what is a copy.
+  void process(int sign) const {
+    if constexpr (!kicked) return;
+    const auto& kicks = splitting_.processor.kicks;
+    const std::size_t last = kicks.size() - 1;
+    for (std::size_t i = 0; i <= last; ++i) {
+      const std::size_t which = sign > 0 ? i : last - i;
+      if (kicks[which] != 0) {
+        force_here(0);
+        const double c = sign * strength_ * step_ * kicks[which];
+        for (std::size_t j = 0; j < speed_.size(); ++j) speed_[j] += c * spectrum_[j];
+      }
+      if (i < last) sweep<false>(0, sign > 0 ? process_[which] : undo_[which - 1]);
+    }
+  }
+  /// 2g h², times the strength that a force is in units of.
+  double kernel_gradient() const {
+    return 2 * splitting_.gradient * step_ * step_ * strength_ * static_cast<double>(sites_);
+  }
+  void force_here(double gradient) const {
+    spectrum_ = field_;
+    find_force(gradient);
   }
 
   void flow_first(std::int64_t steps) {
     const auto& kicks = splitting_.inner;
-    const double scale = strength_ * step_;
+    const double scale = strength_ * step_, gradient = kernel_gradient();
     sweep<false>(0, flows_[stages_[0]]);
     for (std::int64_t n = 0; n < steps; ++n) {
       for (std::size_t i = 0; i + 1 < kicks.size(); ++i) {
-        find_force();
+        find_force(gradient);
         sweep<true>(scale * kicks[i], flows_[stages_[i + 1]]);
       }
-      find_force();
+      find_force(gradient);
       sweep<true>(scale * kicks.back(), flows_[n + 1 < steps ? merged_ : stages_[0]]);
     }
   }
@@ -192,7 +226,7 @@ class SplitStep final : public Peer {
       for (std::size_t i = 0; i < stages_.size(); ++i) {
         const double weight = i > 0 ? kicks[i] : n > 0 ? 2 * kicks[0] : kicks[0];
         sweep<true>(scale * weight, flows_[stages_[i]]);
-        find_force();
+        find_force(0);
       }
     }
     for (std::size_t j = 0; j < speed_.size(); ++j) speed_[j] += scale * kicks.back() * spectrum_[j];
@@ -202,7 +236,7 @@ class SplitStep final : public Peer {
   //     φ̂_t += c F̂,   (φ̂, φ̂_t) ← (cos κt φ̂ + sin(κt)/κ φ̂_t, −κ sin κt φ̂ + cos κt φ̂_t);
   // a second copy of φ̂ takes the place of F̂, for the inverse transform to destroy.
   template <bool kick>
-  void sweep(double c, const FlowFactors& flow) {
+  void sweep(double c, const FlowFactors& flow) const {
     constexpr auto all = std::make_integer_sequence<int, lanes>();
     double *u = field_.data(), *v = speed_.data(), *f = spectrum_.data();
     const auto half = [&](Pack cosine, Pack sinc, Pack slope) {
@@ -221,11 +255,17 @@ class SplitStep final : public Peer {
     }
   }
 
-  /// The spectrum of φ becomes that of the force.
-  void find_force() {
+  /// The spectrum of φ becomes that of the force, F + gradient F′F in units of the strength.
+  void find_force(double gradient) const {
     backward_.execute();
     double* const y = values_.data();
-    if (turns_) {
+    if (gradient != 0) {
+      for (std::size_t i = 0; i < values_.size(); i += lanes) {
+        const Pack phi = turns_ ? Pack::load(y + i) + Pack::load(&ramp_[i]) : Pack::load(y + i);
+        const Pack force = Force::shape(phi);
+        (force + gradient * (Force::slope(phi) * force)).store(y + i);
+      }
+    } else if (turns_) {
       for (std::size_t i = 0; i < values_.size(); i += lanes)
         Force::shape(Pack::load(y + i) + Pack::load(&ramp_[i])).store(y + i);
     } else {
@@ -246,13 +286,15 @@ class SplitStep final : public Peer {
   double strength_, step_ = 0;
   Row ramp_;
   mutable Row values_;
-  Row kappa_, inverse_, field_, speed_;
-  mutable Row spectrum_;
+  Row kappa_, inverse_;
+  mutable Row field_, speed_, spectrum_;  ///< a copy is processed in them
   FftwPlan forward_, backward_;
   std::vector<double> lengths_;      ///< of flows, over h; no two alike
   std::vector<FlowFactors> flows_;   ///< of those lengths
   std::vector<std::size_t> stages_;  ///< the flows of a step, one after the other
   std::size_t merged_ = 0;
+  std::vector<FlowFactors> process_, undo_;  ///< the flows of the processor, and back
+  bool processed_ = false;
 };
 
 template <class Force>
@@ -262,12 +304,16 @@ std::unique_ptr<Peer> made(const WaveEquation& equation, const Splitting& splitt
 
 template <Splitting splitting(), int order, MassIn mass>
 PeerInfo info() {
-  return {"Fourier split-step " + std::to_string(order) + (mass == MassIn::flow ? ", mass in the flow" : ""),
+  const char* const kernel = splitting().gradient != 0       ? ", processed gradient"
+                             : splitting().processor.empty() ? ""
+                                                             : ", processed";
+  return {"Fourier split-step " + std::to_string(order) + kernel + (mass == MassIn::flow ? ", mass in the flow" : ""),
           order,
           0,
           0,
           splitting().inner.size(),
-          [](const WaveEquation& equation) { return make_split_step(equation, splitting(), mass); }};
+          [](const WaveEquation& equation) { return make_split_step(equation, splitting(), mass); },
+          !splitting().processor.empty()};
 }
 
 }  // namespace
@@ -295,6 +341,8 @@ std::unique_ptr<Peer> make_split_step(const WaveEquation& equation, const Splitt
 std::vector<PeerInfo> split_step_peers() {
   return {info<strang, 2, MassIn::kick>(),         info<blanes_moan_4, 4, MassIn::kick>(),
           info<blanes_moan_6b, 6, MassIn::kick>(), info<kahan_li_8_kicks, 8, MassIn::kick>(),
+          info<processed_ti4, 4, MassIn::kick>(),  info<processed_b6, 6, MassIn::kick>(),
+          info<processed_ti4, 4, MassIn::flow>(),  info<processed_b6, 6, MassIn::flow>(),
           info<strang, 2, MassIn::flow>(),         info<blanes_moan_4, 4, MassIn::flow>(),
           info<blanes_moan_6a, 6, MassIn::flow>(), info<kahan_li_8_flows, 8, MassIn::flow>()};
 }

@@ -30,16 +30,32 @@ Splitting composed(bool flows_first, const std::vector<double>& half) {
   std::vector<double> outer{inner.front() / 2};
   for (std::size_t i = 1; i < inner.size(); ++i) outer.push_back((inner[i - 1] + inner[i]) / 2);
   outer.push_back(inner.back() / 2);
-  return {flows_first, outer, inner};
+  return {flows_first, outer, inner, {}};
 }
 
 Splitting strang() { return composed(true, {1}); }
 
 // With their sources in jets/tables/splitting.hpp: the peers get the splittings of the engine too.
-static Splitting kicks_first(const delf::Splitting& splitting) { return {false, splitting.kicks, splitting.drifts}; }
+static Splitting kicks_first(const delf::Splitting& splitting) {
+  return {false, splitting.kicks, splitting.drifts, {}};
+}
 Splitting blanes_moan_4() { return kicks_first(splitting_of_order(4)); }
 Splitting blanes_moan_6b() { return kicks_first(splitting_of_order(6)); }
 Splitting kahan_li_8_kicks() { return kicks_first(splitting_of_order(8)); }
+
+// States are those between flows, and in the middle of kicks: the engine's processors go on to the rows of its kernels.
+Splitting processed_ti4() {
+  const delf::Splitting kernel = processed_splitting("ti4");
+  Processor processor = kernel.processor;
+  processor.drifts.back() -= kernel.offset;
+  return {true, {0.5, 0.5}, {1}, processor, kernel.gradient};
+}
+Splitting processed_b6() {
+  const delf::Splitting kernel = processed_splitting("b6");
+  Processor processor = kernel.processor;
+  processor.kicks.back() += kernel.kicks.front();
+  return {false, kernel.kicks, kernel.drifts, processor};
+}
 
 // S. Blanes and P. C. Moan, J. Comput. Appl. Math. 142 (2002), Table 3: SRKN of order 6 with 14 stages, "a".
 Splitting blanes_moan_6a() {
@@ -49,7 +65,8 @@ Splitting blanes_moan_6a() {
                           true),
           mirrored_to_one({0.09171915262446165, 0.183983170005006, -0.05653436583288827, 0.004914688774712854,
                            0.143761127168358, 0.328567693746804},
-                          false)};
+                          false),
+          {}};
 }
 
 Splitting kahan_li_8_flows() {

@@ -2,6 +2,8 @@
 #pragma once
 #include <vector>
 
+#include "jets/tables/splitting.hpp"
+
 namespace delf::peers {
 
 /// One step of an integrator of q′ = p, p′ = A(q) + F(q) as flows of q′ = p, p′ = A(q), A linear, and kicks p′ = F(q):
@@ -13,6 +15,8 @@ namespace delf::peers {
 struct Splitting {
   bool flows_first;
   std::vector<double> outer, inner;
+  Processor processor = {};  ///< kicks and flows by turns, once before the first step, undone on copies
+  double gradient = 0;       ///< g: a kick is of F + 2g h² F′F
 };
 
 // The [B, [B, [B, A]]] that vanishes for Nyström methods vanishes here too: the energy of a flow is quadratic in p.
@@ -23,6 +27,10 @@ Splitting blanes_moan_6a();    ///< order 6, 14 kicks, flows first
 Splitting blanes_moan_6b();    ///< order 6, 11 kicks, kicks first
 Splitting kahan_li_8_flows();  ///< order 8, 17 kicks, flows first
 Splitting kahan_li_8_kicks();  ///< the same, kicks first
+
+// The kernels of the engine: ti4, one kick with a gradient, flows first; b6, six kicks, kicks first.
+Splitting processed_ti4();
+Splitting processed_b6();
 
 /// The symmetric composition of Strang steps of lengths γ_1 h, …, γ_s h, neighbours merged; `half` is γ_1 … γ_(s+1)/2.
 Splitting composed(bool flows_first, const std::vector<double>& half);

@@ -21,6 +21,8 @@ TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants
                  r,
                  {.scheme = contestant.name,
                   .peer = contestant.peer,
+                  .processed = contestant.processed,
+                  .tuned = contestant.tuned,
                   .sites = r.sites,
                   .space_step = lattice.space_step(),
                   .time_step = r.time_step,

@@ -45,6 +45,8 @@ class Racer {
 struct Contestant {
   std::string name;
   bool peer = false;
+  bool processed = false;  ///< a peer with a processor of its own
+  bool tuned = false;      ///< a scheme of the engine that is told of the solution
   int nodes = 1;  ///< that a cell has in space: how much coarser its lattices may begin
   int rank = 0;   ///< the more, the sooner it is to be the reference; 0: never
   /// Builds and starts it. Throws BadInput or NumericalFailure.

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "lattice/error.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/stability/linear_stability.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/force_evaluations.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/scene/initial_rows.hpp"
@@ -30,7 +35,7 @@ class EngineRacer final : public Racer {
     }
     if (steps > 0) simulation_.step(true);
   }
-  void copy(std::span<double> out) const override { simulation_.copy_row(0, out); }
+  void copy(std::span<double> out) const override { simulation_.observe(0, out); }
   double energy() const override { return simulation_.monitors().energy; }
   // those of a pass; an explicit step is one, an implicit one as many as it has iterations
   double forces() const override {
@@ -41,7 +46,21 @@ class EngineRacer final : public Racer {
   Simulation build() {
     Problem problem = scene_.problem;
     problem.winding = initial_.winding();
-    return Simulation(problem);
+    Simulation simulation(problem);
+    refuse_unstable(simulation);
+    return simulation;
+  }
+
+  // A kernel is free of error about its own rows only: beyond its limit a short run may still look accurate.
+  void refuse_unstable(const Simulation& simulation) const {
+    if (!simulation.is_processed()) return;
+    const auto vacuum = find_theory(scene_.problem.theory).vacuum;
+    if (!vacuum || simulation.theory().density().is_placed()) return;
+    constexpr int wave_numbers = 65;
+    const StabilityVerdict verdict = linear_stability(Symbol(simulation.evolution().system(), *vacuum), wave_numbers);
+    if (!verdict.stable)
+      throw BadInput("lattice.courant", fmt::format("h/k = {:.4g}: beyond the linear limit of the scheme",
+                                                    scene_.problem.time_step / scene_.problem.lattice.space_step()));
   }
 
   Scene scene_;
@@ -68,7 +87,7 @@ Scene scene_of(const Scene& scene, const Problem& problem, const Resolution& r) 
 std::vector<Contestant> engine_contestants(const Scene& scene) {
   std::vector<Contestant> all;
   for (NamedScheme& scheme : named_schemes(scene.problem))
-    all.push_back({scheme.name, false, scheme.nodes, scheme.rank,
+    all.push_back({scheme.name, false, false, scheme.tuned, scheme.nodes, scheme.rank,
                    [&scene, problem = std::move(scheme.problem)](const Resolution& r) -> std::unique_ptr<Racer> {
                      return std::make_unique<EngineRacer>(scene_of(scene, problem, r));
                    }});

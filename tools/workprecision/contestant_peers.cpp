@@ -71,6 +71,7 @@ class PeerRacer final : public Racer {
   }
   void restart() override {
     peer_->start(first_, first_t_);
+    peer_->advance(h_, 0);  // a processor is no step
     newest_ = 0;
   }
   std::int64_t newest() const override { return newest_; }
@@ -125,9 +126,10 @@ std::vector<Contestant> peer_contestants(const Scene& scene) {
   const auto equation = equation_of(scene);
   if (!equation) return all;
   for (const peers::PeerInfo& info : peers::peers())
-    all.push_back({info.name, true, 1, 0, [&scene, &info, equation = *equation](const Resolution& r) {
-                     return std::unique_ptr<Racer>(new PeerRacer(scene, equation, info, r));
-                   }});
+    all.push_back(
+        {info.name, true, info.processed, false, 1, 0, [&scene, &info, equation = *equation](const Resolution& r) {
+           return std::unique_ptr<Racer>(new PeerRacer(scene, equation, info, r));
+         }});
   return all;
 }
 

@@ -85,10 +85,13 @@ void compare(WorkPrecisionOutcome& outcome, const std::vector<double>& accuracie
   std::vector<WorkPrecisionRun>& runs = outcome.runs;
   outcome.lines.clear(), outcome.costs.clear();
   std::vector<std::size_t> sides[2];  // of the engine, of the peers
+  std::vector<std::size_t> plain[2], special[2];  // without and with tuned schemes and processed peers
   std::vector<std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     runs[i].on_envelope = false;
-    sides[runs[i].peer ? 1 : 0].push_back(i);
+    const std::size_t side = runs[i].peer ? 1 : 0;
+    sides[side].push_back(i);
+    (runs[i].tuned || runs[i].processed ? special : plain)[side].push_back(i);
     const auto line = std::ranges::find(outcome.lines, runs[i].scheme, &WorkPrecisionLine::scheme);
     const auto at = static_cast<std::size_t>(line - outcome.lines.begin());
     if (line == outcome.lines.end()) {
@@ -105,9 +108,14 @@ void compare(WorkPrecisionOutcome& outcome, const std::vector<double>& accuracie
   for (const auto& side : sides)
     for (const std::size_t i : lower_envelope(runs, side)) runs[i].on_envelope = true;
   for (const double accuracy : accuracies) {
-    WorkPrecisionCost cost{accuracy, cheapest(runs, sides[0], accuracy), cheapest(runs, sides[1], accuracy),
-                           WorkPrecisionRun::unknown};
-    if (cost.engine && cost.peer) cost.ratio = runs[*cost.peer].seconds / runs[*cost.engine].seconds;
+    WorkPrecisionCost cost{accuracy, cheapest(runs, plain[0], accuracy), cheapest(runs, plain[1], accuracy),
+                           cheapest(runs, special[0], accuracy), cheapest(runs, special[1], accuracy)};
+    const auto ratio = [&runs](const auto& slow, const auto& fast) {
+      return slow && fast ? runs[*slow].seconds / runs[*fast].seconds : WorkPrecisionRun::unknown;
+    };
+    cost.ratio = ratio(cost.peer, cost.engine);
+    cost.tuned_ratio = ratio(cost.peer, cost.tuned);
+    cost.processed_ratio = ratio(cost.processed_peer, cost.engine);
     outcome.costs.push_back(cost);
   }
 }

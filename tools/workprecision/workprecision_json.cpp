@@ -75,7 +75,11 @@ std::string workprecision_json(const Scene& scene, const WorkPrecisionRequest& r
     return Json{{"accuracy", cost.accuracy},
                 {"engine", winner(o, cost.engine)},
                 {"peer", winner(o, cost.peer)},
-                {"ratio", cost.ratio}};
+                {"ratio", cost.ratio},
+                {"tuned", winner(o, cost.tuned)},
+                {"tuned_ratio", cost.tuned_ratio},
+                {"processed_peer", winner(o, cost.processed_peer)},
+                {"processed_ratio", cost.processed_ratio}};
   });
   json["left_out"] =
       json_list(o.left_out, [](const auto& one) { return Json{{"scheme", one.scheme}, {"reason", one.reason}}; });

@@ -17,6 +17,7 @@ struct WorkPrecisionRun {
 
   std::string scheme;
   bool peer = false;  ///< another program
+  bool processed = false, tuned = false;  ///< as of the contestant
   int sites = 0;
   double space_step = 1, time_step = 0;
   std::int64_t steps = 0;
@@ -42,9 +43,10 @@ struct WorkPrecisionLine {
 /// The cost of an accuracy: the cheapest run with at most that error. Nothing is interpolated.
 struct WorkPrecisionCost {
   double accuracy = 0;
-  std::optional<std::size_t> engine, peer;  ///< indices of runs
-  /// seconds of the peer over seconds of the engine
-  double ratio = WorkPrecisionRun::unknown;
+  /// Indices of runs: of the engine, of peers without a processor; of tuned schemes, of processed peers.
+  std::optional<std::size_t> engine, peer, tuned, processed_peer;
+  /// Seconds of the peer over seconds of the engine; the same over the tuned scheme; of the processed peer over the engine.
+  double ratio = WorkPrecisionRun::unknown, tuned_ratio = ratio, processed_ratio = ratio;
 };
 
 /// Everything in workprecision.json, the tables and the figure.

@@ -118,6 +118,34 @@ std::string costs_table(const WorkPrecisionOutcome& o) {
   return text_table(columns, rows, terminal);
 }
 
+// Schemes that are told of the solution against the peers of the first table, and its engine against processed peers.
+std::string special_costs_table(const WorkPrecisionOutcome& o) {
+  std::vector<std::vector<std::string>> rows;
+  const auto cells = [&](std::vector<std::string>& row, const std::optional<std::size_t>& index, double ratio) {
+    if (!index) return void(row.insert(row.end(), {"none gets there", "", "", "", ""}));
+    const WorkPrecisionRun& r = o.runs[*index];
+    row.insert(row.end(), {r.scheme, std::to_string(r.sites), number("{:.3g}", r.time_step / r.space_step),
+                           milliseconds(r.seconds), number("{:.2f}", ratio)});
+  };
+  for (const WorkPrecisionCost& cost : o.costs) {
+    rows.push_back({fmt::format("{:.0e}", cost.accuracy)});
+    cells(rows.back(), cost.tuned, cost.tuned_ratio);
+    cells(rows.back(), cost.processed_peer, cost.processed_ratio);
+  }
+  return text_table({{"L∞ ≤", true},
+                     {"cheapest suited scheme", false, 26},
+                     {"N", true},
+                     {"h/k", true},
+                     {"ms", true},
+                     {"ratio", true},
+                     {"cheapest processed peer", false, 30},
+                     {"N", true},
+                     {"h/k", true},
+                     {"ms", true},
+                     {"ratio", true}},
+                    rows, terminal);
+}
+
 }  // namespace
 
 std::string workprecision_markdown(const Scene& scene, const WorkPrecisionRequest& request,
@@ -174,6 +202,10 @@ std::string workprecision_report(const Scene& scene, const WorkPrecisionRequest&
     for (const std::string& line : wrapped(what_columns_are, terminal - 2)) text += "  " + line + "\n";
     text +=
         "\nthe cheapest run with at most an error; ratio: time of the peer over that of the engine\n" + costs_table(o);
+    if (std::ranges::any_of(o.runs, [](const WorkPrecisionRun& r) { return r.tuned || r.processed; }))
+      text +=
+          "\nschemes with pairs that suit the solution, and the peers above; processed peers, and the engine above\n" +
+          special_costs_table(o);
   }
   if (!o.left_out.empty()) text += "\nleft out\n";
   for (const auto& one : o.left_out) text += fmt::format("  {}: {}\n", one.scheme, one.reason);
