@@ -164,8 +164,9 @@ void Stepping::record(std::int64_t row) {
     record.further.assign(names_.further.size(), Outcome::unknown);
   } else {
     const int back = static_cast<int>(newest_ - row);
+    simulation_.observe(back, row_[Role::field]);
     for (const Role role : all_roles)
-      if (!row_[role].empty()) simulation_.copy_row(back, row_[role], role);
+      if (role != Role::field && !row_[role].empty()) simulation_.copy_row(back, row_[role], role);
     const auto monitors = simulation_.monitors();
     record.energy = monitors.energy;
     record.energy_error = (monitors.energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);

@@ -110,6 +110,8 @@ void InitialRows::start(Simulation& simulation) const {
   try {
     if (file_ && simulation.count(Role::inner) + simulation.count(Role::trace) > 0)
       throw BadInput("initial.state", "a file has no values at the nodes inside the cells; choose another state");
+    if (file_ && simulation.is_processed())
+      throw BadInput("initial.state", "a file has no rates, which a kernel starts from; choose another state");
     if (rule() == StartRule::centred)
       return simulation.start_centred(section(simulation, 0), section(simulation, &State::velocities, 0, true));
     if (rule() == StartRule::legendre)

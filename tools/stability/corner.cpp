@@ -102,7 +102,7 @@ class Watched {
   }
 
   void look() {
-    simulation_.copy_row(0, row_);
+    simulation_.observe(0, row_);
     const Extent extent = extent_of(row_, fields_);
     const double t = static_cast<double>(simulation_.newest()) * corner_.problem.time_step;
     if (!extent.finite) return judge(CornerVerdict::silent, fmt::format("t = {:.6g}: the row is not finite", t));

@@ -57,7 +57,14 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
       plan_(simulation_.evolution().plan()),
       random_(scene.initial.seed) {
   verdict_.seed = scene.initial.seed;
-  verdict_.subject = fields ? "rows of " + *fields : "rows computed here";
+  verdict_.subject = fields ? "rows of " + *fields
+                     : simulation_.is_processed()
+                         ? "rows of the kernel, computed here; recorded rows have the processor undone"
+                         : "rows computed here";
+  if (fields && simulation_.is_processed())
+    throw scene.settings.error("scheme.method",
+                               "recorded rows of a kernel have its processor undone, and only the kernel's own rows "
+                               "solve its equations; leave --fields out");
   if (fields) open_files(*fields, nearby);
 
   moment_rows_ = FormCheck::rows_wanted(system_, plan_, request.regions);

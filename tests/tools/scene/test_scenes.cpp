@@ -41,11 +41,29 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
     REQUIRE_FALSE(commands.empty());
     CHECK(commands.front() == "run " + scene.name);
   }
-  CHECK(names == std::vector<std::string>{"breather", "collision", "complex-klein-gordon", "coupled-sine-gordon",
-                                          "fast-kink", "gauss-kink", "henon-heiles", "interval", "kepler", "kink",
-                                          "kink-train", "pendulum", "phi4-kink", "phi6-kink", "r-adaptive",
-                                          "sine-gordon-text", "sinh-gordon", "spacetime-element", "wave-map",
-                                          "wave-packet", "workprecision-breather"});
+  CHECK(names == std::vector<std::string>{"breather",
+                                          "collision",
+                                          "complex-klein-gordon",
+                                          "coupled-sine-gordon",
+                                          "fast-kink",
+                                          "gauss-kink",
+                                          "henon-heiles",
+                                          "interval",
+                                          "kepler",
+                                          "kink",
+                                          "kink-train",
+                                          "pendulum",
+                                          "phi4-kink",
+                                          "phi6-kink",
+                                          "r-adaptive",
+                                          "sine-gordon-text",
+                                          "sinh-gordon",
+                                          "spacetime-element",
+                                          "wave-map",
+                                          "wave-packet",
+                                          "workprecision-breather",
+                                          "workprecision-collision",
+                                          "workprecision-moving"});
 }
 
 TEST_CASE("every command that a scene names runs, and warns of nothing") {
