@@ -66,28 +66,35 @@ ForceSquared::ForceSquared(std::shared_ptr<const BatchDensity> of, double scale)
   find_constants();
 }
 
+namespace {
+
+/// to += factor · row
+void add_row(double* to, double factor, const double* row, int count) {
+  for (int at = 0; at < count; at += lanes) (Pack::load(to + at) + factor * Pack::load(row + at)).store(to + at);
+}
+
+}  // namespace
+
 void ForceSquared::gradient_at_rest(const JetBatch& phi, const double* const* given, double* const* g) const {
-  const int d = components_;
-  const ScratchRows c(d * d, phi.count);
+  const int d = components_, count = phi.count;
+  const ScratchRows c(d * d, count), force(d, count);
   double* const* const slope = g + 2 * d;
   derivatives_->slope_and_curvature(phi, slope, c.data());
-  for (int at = 0; at < phi.count; at += lanes) {
-    for (int a = 0; a < d; ++a) {
-      Pack force = Pack::load(slope[a] + at);
-      for (int b = 0; b < d; ++b) force += stiffness(a, b) * Pack::load(given[b] + at);
-      force.store(g[d + a] + at);
-    }
-    for (int a = 0; a < d; ++a) {
-      Pack by_phi(0.0);
-      for (int b = 0; b < d; ++b) by_phi += Pack::load(c[a * d + b] + at) * Pack::load(g[d + b] + at);
-      (2 * scale_ * by_phi).store(g[a] + at);
-    }
-    for (int b = 0; b < d; ++b) Pack::load(g[d + b] + at).store(c[b] + at);  // F, in the place of what is used up
-    for (int a = 0; a < d; ++a) {
-      Pack by_second(0.0);
-      for (int b = 0; b < d; ++b) by_second += stiffness(b, a) * Pack::load(c[b] + at);
-      (2 * scale_ * by_second).store(g[d + a] + at);
-    }
+  for (int a = 0; a < d; ++a) {
+    std::copy_n(slope[a], count, force[a]);
+    for (int b = 0; b < d; ++b)
+      if (stiffness(a, b) != 0) add_row(force[a], stiffness(a, b), given[b], count);
+  }
+  const double twice = 2 * scale_;
+  for (int a = 0; a < d; ++a) {
+    for (int at = 0; at < count; at += lanes)
+      (twice * (Pack::load(c[a * d] + at) * Pack::load(force[0] + at))).store(g[a] + at);
+    for (int b = 1; b < d; ++b)
+      for (int at = 0; at < count; at += lanes)
+        (Pack::load(g[a] + at) + twice * (Pack::load(c[a * d + b] + at) * Pack::load(force[b] + at))).store(g[a] + at);
+    std::fill_n(g[d + a], count, 0.0);
+    for (int b = 0; b < d; ++b)
+      if (stiffness(b, a) != 0) add_row(g[d + a], twice * stiffness(b, a), force[b], count);
   }
 }
 

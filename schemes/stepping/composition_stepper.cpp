@@ -11,74 +11,12 @@
 #include <utility>
 
 #include "jets/simd/scratch_rows.hpp"
-#include "schemes/families/jet_family.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
+#include "schemes/stepping/pair_strips.hpp"
 
 namespace delf {
 
 namespace {
-
-/// A strip of a row in a sub-step.
-struct Strip {
-  int packs;
-  const double* linear;
-  int reach;
-  double nonlinear, stride;
-  const double *D, *y, *slope;  ///< slope: null without source terms
-  double *u, *next, *next_D;
-};
-
-/// Pairs of up to R sites apart, loaded directly; 0: of any number. `last` is the value before the strip, and then its last.
-template <int R>
-void step_strip_of(const Strip& given, Pack& last_value, Pack& largest_value) {
-  const Strip rows = given;  // stores cannot change it
-  const int reach = R > 0 ? R : rows.reach;
-  Pack weights[R > 0 ? R : 1];
-  for (int j = 0; j < R; ++j) weights[j] = Pack(rows.linear[j]);
-  Pack last = last_value, largest = largest_value;
-  for (std::ptrdiff_t at = 0; at < rows.packs * lanes; at += lanes) {
-    Pack force = Pack::load(rows.u + at);
-    if (rows.slope) force += rows.nonlinear * Pack::load(rows.slope + at);
-    for (int j = 0; j < reach; ++j)
-      force += (R > 0 ? weights[R > 0 ? j : 0] : Pack(rows.linear[j])) *
-               (Pack::load(rows.D + at + j * lanes) - Pack::load(rows.D + at - (j + 1) * lanes));
-    const Pack value = Pack::load(rows.y + at) + rows.stride * force;
-    largest = largest_magnitude(largest, value);
-    force.store(rows.u + at);
-    value.store(rows.next + at);
-    // The first of these lies in the halo, which is filled afterwards.
-    (value - last).store(rows.next_D + at - lanes);
-    last = value;
-  }
-  last_value = last, largest_value = largest;
-}
-
-void step_strip(const Strip& rows, Pack& last, Pack& largest) {
-  switch (rows.reach) {
-    case 1:
-      return step_strip_of<1>(rows, last, largest);
-    case 2:
-      return step_strip_of<2>(rows, last, largest);
-    case 3:
-      return step_strip_of<3>(rows, last, largest);
-    case 4:
-      return step_strip_of<4>(rows, last, largest);
-    case 5:
-      return step_strip_of<5>(rows, last, largest);
-    case 6:
-      return step_strip_of<6>(rows, last, largest);
-    case 7:
-      return step_strip_of<7>(rows, last, largest);
-    case 8:
-      return step_strip_of<8>(rows, last, largest);
-    case 9:
-      return step_strip_of<9>(rows, last, largest);
-    case 10:
-      return step_strip_of<10>(rows, last, largest);
-    default:
-      return step_strip_of<0>(rows, last, largest);
-  }
-}
 
 int reach_of(const StencilFamily& family) {
   const auto [least, most] = std::ranges::minmax(family.pattern().vertices, {}, &Site::space);
@@ -115,29 +53,6 @@ CompositionStepper::CompositionStepper(const LatticeSystem& system, const StepOp
       now_(static_cast<std::size_t>(d_)),
       out_(static_cast<std::size_t>(3 * d_)),
       before_(static_cast<std::size_t>(d_), Pack(0.0)) {}
-
-/// Nothing for a family that is not the square of the first one's force at the sites of row 0.
-std::optional<CompositionStepper::ForceGradient> CompositionStepper::read_gradient(const StencilFamily& of,
-                                                                                   const StencilFamily& given,
-                                                                                   double k) {
-  const auto* family = dynamic_cast<const JetFamily*>(&given);
-  const auto* density = family ? dynamic_cast<const ForceSquared*>(&family->density()) : nullptr;
-  if (!density || family->table().points.size() != 1) return std::nullopt;
-  if (const auto* first = dynamic_cast<const JetFamily*>(&of); !first || &first->density() != &density->of())
-    return std::nullopt;
-  const auto& vertices = family->pattern().vertices;
-  const TablePoint& point = family->table().points[0];
-  ForceGradient gradient{density, {}, point.weight * family->table().measure};
-  for (const TablePoint::Entry& e : point[JetSlot::phi_xx]) {
-    const Site v = vertices[static_cast<std::size_t>(e.vertex)];
-    if (v.time != 0 || v.node != 0) return std::nullopt;
-    if (v.space <= 0) continue;  // differences alone, the same on both sides
-    gradient.weights.resize(std::max(gradient.weights.size(), static_cast<std::size_t>(v.space)), 0.0);
-    gradient.weights[static_cast<std::size_t>(v.space - 1)] += e.weight / (k * k);
-  }
-  for (std::size_t j = gradient.weights.size(); j-- > 1;) gradient.weights[j - 1] += gradient.weights[j];
-  return gradient;
-}
 
 /// The numbers of the equation at node s, from the elements that read it: all of them, or those above it alone.
 CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_below, bool& fits) const {
@@ -241,82 +156,6 @@ bool CompositionStepper::assemble() {
   return true;
 }
 
-/// Kicks and drifts by turns are sub-steps: kick b h F, then drift a h. The kicks of a whole step sum to h F.
-void CompositionStepper::prepare_processor() {
-  const Processor& p = options_.processor;
-  const double h = system_.time_step();
-  SubStep whole{std::vector(steps_[0].linear.size(), 0.0), std::vector(steps_[0].nonlinear.size(), 0.0)};
-  for (const SubStep& s : steps_) {
-    for (std::size_t j = 0; j < s.linear.size(); ++j) whole.linear[j] += s.linear[j];
-    for (std::size_t a = 0; a < s.nonlinear.size(); ++a) whole.nonlinear[a] += s.nonlinear[a];
-  }
-  const auto sub_step_of = [&](double kick, double drift, double time) {
-    SubStep step = whole;
-    for (double& g : step.linear) g *= kick;
-    for (double& b : step.nonlinear) b *= kick;
-    step.stride = drift * h, step.time = time * h;
-    return step;
-  };
-  double time = 0;
-  for (std::size_t i = 0; i < p.kicks.size(); ++i) {
-    const double drift = i < p.drifts.size() ? p.drifts[i] : 0;
-    process_.push_back(sub_step_of(p.kicks[i], drift, time));
-    time += drift;
-  }
-  for (std::size_t i = p.kicks.size(); i-- > 0;) {
-    const double drift = i > 0 ? -p.drifts[i - 1] : 0;
-    undo_.push_back(sub_step_of(-p.kicks[i], drift, time));
-    time += drift;
-  }
-  observed_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
-  observed_differences_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
-}
-
-/// u += (hk/K) (∂ℓ̃/∂φ + Σ_m w_m (G(i + m) − 2G(i) + G(i − m))) of the squared force ℓ̃, G = ∂ℓ̃/∂φ_xx.
-void CompositionStepper::add_gradient(std::int64_t n, const SubStep& step, const double* from,
-                                      const double* differences, double* velocity) const {
-  constexpr int strip = 32;
-  const ScratchRows second(d_, strip * lanes);
-  const int Q = static_cast<int>(gradient_.weights.size());
-  for (int first = 0; first < layout_.packs(); first += strip) {
-    const int packs = std::min(strip, layout_.packs() - first);
-    const std::ptrdiff_t begin = layout_.at(first);
-    for (int a = 0; a < d_; ++a) {
-      const auto row = static_cast<std::ptrdiff_t>(a) * static_cast<std::ptrdiff_t>(size_) + begin;
-      now_[static_cast<std::size_t>(a)] = from + row;
-      for (int part = 0; part < 3; ++part) out_[static_cast<std::size_t>(part * d_ + a)] = squares_.row(part) + row;
-      const double* const D = differences + row;
-      for (std::ptrdiff_t at = 0; at < packs * lanes; at += lanes) {
-        Pack sum(0.0);
-        for (int j = 0; j < Q; ++j)
-          sum += gradient_.weights[static_cast<std::size_t>(j)] *
-                 (Pack::load(D + at + j * lanes) - Pack::load(D + at - (j + 1) * lanes));
-        sum.store(second[a] + at);
-      }
-    }
-    gradient_.density->gradient_at_rest(
-        {packs * lanes, now_.data(), static_cast<double>(n) * system_.time_step() + step.time,
-         positions_.rows() ? positions_.row(0) + begin : nullptr},
-        second.data(), out_.data());
-  }
-  const double kick = step.gradient * gradient_.kick;
-  for (int a = 0; a < d_; ++a) {
-    const auto row = static_cast<std::ptrdiff_t>(a) * static_cast<std::ptrdiff_t>(size_);
-    layout_.fill_halo(squares_.row(1) + row);
-    const double *const by_phi = squares_.row(0) + row, *const G = squares_.row(1) + row;
-    double* const u = velocity + row;
-    for (std::ptrdiff_t at = layout_.at(0); at < layout_.at(layout_.packs()); at += lanes) {
-      Pack sum = Pack::load(by_phi + at);
-      // by the weights of differences
-      for (int j = 0; j < Q; ++j)
-        sum += gradient_.weights[static_cast<std::size_t>(j)] *
-               ((Pack::load(G + at + (j + 1) * lanes) - Pack::load(G + at + j * lanes)) -
-                (Pack::load(G + at - j * lanes) - Pack::load(G + at - (j + 1) * lanes)));
-      (Pack::load(u + at) + kick * sum).store(u + at);
-    }
-  }
-}
-
 /// One sub-step of a row, with D(i) = y(i + 1) − y(i):
 ///
 ///     u += Σ_m g_m (y(i + m) − 2y(i) + y(i − m)) + nonlinear ∂ℓ/∂φ(y(i)),    next = y + stride u
@@ -357,7 +196,9 @@ double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const d
                        velocity + at,
                        to + at,
                        next_differences + at};
-      step_strip(rows, before_[static_cast<std::size_t>(a)], largest);
+      with_reach(reach_, [&]<int R>(std::integral_constant<int, R>) {
+        step_strip<R>(rows, before_[static_cast<std::size_t>(a)], largest);
+      });
     }
   }
   const std::ptrdiff_t last = layout_.at(layout_.packs() - 1);
@@ -522,45 +363,6 @@ Window CompositionStepper::window(int rows) const {
     for (int s = 0; s < S_; ++s) copy_components(r == n_ ? newest_row() : node(r, s), s * d_, sections.back());
   }
   return system_.window(n_ - rows + 1, std::move(sections), options_.turn);
-}
-
-/// The momenta below an older row are those above it, less its kick.
-void CompositionStepper::observe(int back, std::vector<double>& fields, std::vector<double>& rates) const {
-  require(back);
-  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
-  double *const y = observed_.row(0), *const u = observed_.row(1);
-  const FlushDenormals guard;
-  std::copy_n(back == 0 ? newest_row() : node(n_ - back, 0), doubles, y);
-  find_differences(y, observed_differences_.row(0));
-  if (back == 0) std::copy_n(velocity_.row(0), doubles, u);
-  else {
-    const double* const next = S_ > 1 ? node(n_ - back, 1) : back > 1 ? node(n_ - back + 1, 0) : newest_row();
-    for (std::size_t at = 0; at < doubles; ++at) u[at] = (next[at] - y[at]) / steps_[0].stride;
-    SubStep less = steps_[0];
-    for (double& g : less.linear) g = -g;
-    for (double& b : less.nonlinear) b = -b;
-    less.stride = 0, less.gradient = -less.gradient;
-    sub_step(n_ - back, less, y, observed_differences_.row(0), y, observed_differences_.row(1), u);
-  }
-  undo_processor(n_ - back);
-  const auto d = static_cast<std::size_t>(d_);
-  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
-  fields.resize(site.size() * d), rates.resize(site.size() * d);
-  for (const auto& [from, to] : {std::pair{y, &fields}, {u, &rates}})
-    for (std::size_t a = 0; a < d; ++a) {
-      layout_.gather(from + a * size_, site);
-      for (std::size_t i = 0; i < site.size(); ++i) (*to)[i * d + a] = site[i];
-    }
-}
-
-void CompositionStepper::undo_processor(std::int64_t n) const {
-  double *const y = observed_.row(0), *const u = observed_.row(1);
-  find_differences(y, observed_differences_.row(0));
-  int at = 0;
-  for (const SubStep& s : undo_) {
-    sub_step(n, s, y, observed_differences_.row(at), y, observed_differences_.row(1 - at), u);
-    at = 1 - at;
-  }
 }
 
 /// E/K = (y_s − y_{s−1})/stride_{s−1} + w_s − (y_{s+1} − y_s)/stride_s over the nodes of the newest slab.

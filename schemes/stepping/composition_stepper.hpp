@@ -52,7 +52,7 @@ class CompositionStepper final : public StepMethod {
   /// The squares of the force at node 0: their density, and what the sites m apart weigh in φ_xx.
   struct ForceGradient {
     const ForceSquared* density = nullptr;
-    std::vector<double> weights;  ///< Σ_{m > j} w_m/k² at [j]
+    std::vector<double> weights, sums;  ///< w_m/k² at [m − 1]; Σ_{m > j} w_m/k² at [j]
     double kick = 0;              ///< hk/K
   };
 

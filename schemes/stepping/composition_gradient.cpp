@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "jets/simd/scratch_rows.hpp"
+#include "schemes/families/jet_family.hpp"
+#include "schemes/stepping/composition_stepper.hpp"
+#include "schemes/stepping/pair_strips.hpp"
+
+// The force gradient of a CompositionStepper.
+
+namespace delf {
+
+/// Nothing for a family that is not the square of the first one's force at the sites of row 0.
+std::optional<CompositionStepper::ForceGradient> CompositionStepper::read_gradient(const StencilFamily& of,
+                                                                                   const StencilFamily& given,
+                                                                                   double k) {
+  const auto* family = dynamic_cast<const JetFamily*>(&given);
+  const auto* density = family ? dynamic_cast<const ForceSquared*>(&family->density()) : nullptr;
+  if (!density || family->table().points.size() != 1) return std::nullopt;
+  if (const auto* first = dynamic_cast<const JetFamily*>(&of); !first || &first->density() != &density->of())
+    return std::nullopt;
+  const auto& vertices = family->pattern().vertices;
+  const TablePoint& point = family->table().points[0];
+  ForceGradient gradient{density, {}, {}, point.weight * family->table().measure};
+  for (const TablePoint::Entry& e : point[JetSlot::phi_xx]) {
+    const Site v = vertices[static_cast<std::size_t>(e.vertex)];
+    if (v.time != 0 || v.node != 0) return std::nullopt;
+    if (v.space <= 0) continue;  // differences alone, the same on both sides
+    gradient.weights.resize(std::max(gradient.weights.size(), static_cast<std::size_t>(v.space)), 0.0);
+    gradient.weights[static_cast<std::size_t>(v.space - 1)] += e.weight / (k * k);
+  }
+  gradient.sums = gradient.weights;
+  for (std::size_t j = gradient.sums.size(); j-- > 1;) gradient.sums[j - 1] += gradient.sums[j];
+  return gradient;
+}
+
+/// u += (hk/K) (∂ℓ̃/∂φ + Σ_m w_m (G(i + m) − 2G(i) + G(i − m))) of the squared force ℓ̃, G = ∂ℓ̃/∂φ_xx.
+void CompositionStepper::add_gradient(std::int64_t n, const SubStep& step, const double* from,
+                                      const double* differences, double* velocity) const {
+  constexpr int strip = 32;
+  const ScratchRows second(d_, strip * lanes);
+  const int Q = static_cast<int>(gradient_.weights.size());
+  for (int first = 0; first < layout_.packs(); first += strip) {
+    const int packs = std::min(strip, layout_.packs() - first);
+    const std::ptrdiff_t begin = layout_.at(first);
+    for (int a = 0; a < d_; ++a) {
+      const auto row = static_cast<std::ptrdiff_t>(a) * static_cast<std::ptrdiff_t>(size_) + begin;
+      now_[static_cast<std::size_t>(a)] = from + row;
+      for (int part = 0; part < 3; ++part) out_[static_cast<std::size_t>(part * d_ + a)] = squares_.row(part) + row;
+      with_reach(Q, [&]<int R>(std::integral_constant<int, R>) {
+        sum_pairs<R>(packs, gradient_.sums.data(), Q, differences + row, second[a]);
+      });
+    }
+    gradient_.density->gradient_at_rest(
+        {packs * lanes, now_.data(), static_cast<double>(n) * system_.time_step() + step.time,
+         positions_.rows() ? positions_.row(0) + begin : nullptr},
+        second.data(), out_.data());
+  }
+  const double kick = step.gradient * gradient_.kick;
+  for (int a = 0; a < d_; ++a) {
+    const auto row = static_cast<std::ptrdiff_t>(a) * static_cast<std::ptrdiff_t>(size_);
+    layout_.fill_halo(squares_.row(1) + row);
+    const std::ptrdiff_t at = row + layout_.at(0);
+    with_reach(Q, [&]<int R>(std::integral_constant<int, R>) {
+      add_squares<R>(layout_.packs(), kick, gradient_.weights.data(), Q, squares_.row(0) + at, squares_.row(1) + at,
+                     velocity + at);
+    });
+  }
+}
+
+}  // namespace delf
