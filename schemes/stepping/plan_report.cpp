@@ -47,7 +47,9 @@ void append_table(std::string& out, const LatticeSystem& system, Site site, cons
 std::string solve_in_words(const SolvePlan& plan, const Stepper& stepper) {
   std::string words = plan.describe();
   const std::string solver = stepper.report(false).solver;
-  if (plan.kind == SolveKind::explicit_ && !stepper.iterates()) return words + "; solved at once, no iteration";
+  if (plan.kind == SolveKind::explicit_ && !stepper.iterates())
+    return words + "; solved at once, no iteration" +
+           (stepper.is_processed() ? "; rows of a kernel, processed where recorded" : "");
   if (!stepper.iterates() && !stepper.layout()) return words + "; " + solver;
   if (!stepper.layout()) return words + "; Newton's method: " + solver;
   words += stepper.iterates() ? "; iterated with the constant part: " : "; solved at once, no iteration: ";

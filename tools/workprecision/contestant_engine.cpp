@@ -7,6 +7,7 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/force_evaluations.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/run/interrupt.hpp"
