@@ -298,6 +298,11 @@ void Simulation::start_legendre(std::span<const double> fields, std::span<const 
   impl_->stepper.start_legendre(row0, momenta);
 }
 
+void Simulation::start_momenta(std::span<const double> row0, std::span<const double> momenta) {
+  for (const std::size_t values : {row0.size(), momenta.size()}) impl_->stepper.require_row(values);
+  impl_->stepper.start_legendre({row0.begin(), row0.end()}, {momenta.begin(), momenta.end()});
+}
+
 void Simulation::copy_row(int back, std::span<double> out, Role role) const {
   const Impl& s = *impl_;
   const std::vector<double> row = s.stepper.row(back);
@@ -323,6 +328,21 @@ std::vector<double> Simulation::momenta(int back) const {
   const int rows = back + 1 + (side == Side::below ? height : 0);
   if (rows > stepper.newest() + 1) throw std::logic_error("momenta need rows before the first");
   return delf::momenta(impl_->system, stepper.window(rows), stepper.newest() - back, side);
+}
+
+std::vector<Simulation::DatasetInfo> Simulation::datasets() const {
+  std::vector<DatasetInfo> infos;
+  for (const Dataset& dataset : impl_->method.datasets)
+    infos.push_back({dataset.name, dataset.meaning, dataset.components(*impl_->theory)});
+  return infos;
+}
+
+std::vector<double> Simulation::dataset(std::size_t which, int back) const {
+  const Impl& s = *impl_;
+  const std::int64_t newest = s.stepper.newest();
+  const int rows = static_cast<int>(std::min<std::int64_t>(newest + 1, back + 2));
+  return s.method.datasets.at(which).values({*s.theory, s.system, s.stepper.window(rows), newest, s.problem.time_step},
+                                            newest - back);
 }
 
 const Evolution& Simulation::evolution() const { return impl_->evolution; }

@@ -79,6 +79,10 @@ class Simulation {
   /// an element scheme. Throws BadInput for other schemes.
   void start_legendre(std::span<const double> row0, std::span<const double> velocity);
 
+  /// The same with the momenta at row 0 themselves, of all components [i·C + c]; those of multipliers and inner nodes are
+  /// not read. For schemes that start_legendre() is for.
+  void start_momenta(std::span<const double> row0, std::span<const double> momenta);
+
   /// One step. Throws NoConvergence or NotFinite; the rows held are then still the last good ones. Throws
   /// std::logic_error before a start.
   /// A row that is not to be `looked_at` costs an explicit step, or one through long rows, less memory traffic: the row
@@ -100,6 +104,15 @@ class Simulation {
   /// The momenta at the row `back` rows before the newest, of all components, [i·C + c]: the half of the field equation
   /// there (schemes/system/momenta.hpp). Throws BadInput for a scheme without a Lagrangian.
   std::vector<double> momenta(int back = 0) const;
+
+  /// What the method declares that fields.h5 has beside the components (schemes/methods/method_registry.hpp).
+  struct DatasetInfo {
+    std::string name, meaning;
+    std::vector<std::string> components;  ///< names of the values at a site
+  };
+  std::vector<DatasetInfo> datasets() const;
+  /// Dataset `which` of the row `back` rows before the newest, [i · components + a].
+  std::vector<double> dataset(std::size_t which, int back = 0) const;
 
   /// k Σ (φ_t ∂ℓ/∂φ_t − ℓ) and −k Σ φ_x ∂ℓ/∂φ_t over the symmetric rectangle's jets of the last two rows; not a
   /// number where the sites move.

@@ -119,6 +119,18 @@ std::vector<NamedScheme> on_spaces(const Problem& base) {
   return schemes;
 }
 
+/// p = ∂L/∂q of what lies below the row; at the start, where nothing does, −∂L/∂q of what lies above it.
+std::vector<double> momentum(const RowsInTime& rows, std::int64_t row) {
+  std::vector<double> p = momenta(rows.system, rows.rows, row, row == rows.newest ? Side::below : Side::above);
+  p.resize(static_cast<std::size_t>(rows.theory.components()));  // one site; fields come first
+  return p;
+}
+std::vector<std::string> momentum_names(const FieldTheory& theory) {
+  std::vector<std::string> names;
+  for (const Component& field : fields(theory.components())) names.push_back("p of " + field.name);
+  return names;
+}
+
 /// Gauss of S − 1 points has the order 2S − 2 of the basis; Lobatto has it with S points.
 std::vector<NamedScheme> variants(const Problem& base) {
   if (base.lattice.space() != Space::point) return on_spaces(base);
@@ -187,6 +199,10 @@ const MethodEntry cgvi_method{
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
     .energy = energy,
+    .datasets = {{.name = "momentum",
+                  .meaning = "p = dL/dq of the step below the row: the momenta of q",
+                  .components = momentum_names,
+                  .values = momentum}},
     .variants = variants};
 
 }  // namespace delf

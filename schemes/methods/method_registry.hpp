@@ -36,7 +36,7 @@ const char* to_string(StartRule);
 struct RowsInTime {
   const FieldTheory& theory;
   const LatticeSystem& system;
-  Window rows;          ///< the newest two
+  Window rows;          ///< the newest two; for a dataset of a row below, that row and all above it
   std::int64_t newest;  ///< index of the newest
   double time_step;
 };
@@ -45,6 +45,17 @@ struct RowsInTime {
 struct Monitor {
   std::string name;
   double (*value)(const RowsInTime&);
+};
+
+/// What fields.h5 has of every recorded row beside the components, frames × sites × values: declared, as data, by a
+/// method. It is found where a row is recorded, and costs nothing elsewhere.
+struct Dataset {
+  std::string name;     ///< of the dataset: "momentum" is /momentum; not the name of a role
+  std::string meaning;  ///< its attribute `meaning`
+  /// The names of the values at a site.
+  std::vector<std::string> (*components)(const FieldTheory&);
+  /// Of one row, [i · components + a]: the newest, or at the start of a run one below it.
+  std::vector<double> (*values)(const RowsInTime&, std::int64_t row);
 };
 
 /// A method that a scene can name by scheme.method: one constant of this type stands at the end of each file in
@@ -67,6 +78,7 @@ struct MethodEntry {
   /// The energy and momentum of the newest two rows; null: the theory's, on the jets of the symmetric rectangle.
   EnergyMomentum (*energy)(const RowsInTime&) = nullptr;
   std::vector<Monitor> monitors = {};
+  std::vector<Dataset> datasets = {};
 
   /// The schemes that its keys tell apart; null: one, of the method's name. `base.method` is the method's.
   std::vector<NamedScheme> (*variants)(const Problem& base) = nullptr;

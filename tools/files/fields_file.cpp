@@ -77,6 +77,7 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   constexpr std::size_t block = 1 << 17;  // doubles: 1 MiB
   std::size_t columns = 0;
   for (const Role role : all_roles) columns = std::max(columns, names.of[role].size());
+  for (const auto& dataset : names.datasets) columns = std::max(columns, dataset.components.size());
   frames_per_block_ = std::clamp<std::size_t>(block / (sites_ * columns), 1, 1024);
   frames_per_block_ = std::min(frames_per_block_, static_cast<std::size_t>(std::max<std::int64_t>(1, expected_frames)));
   quiet_hdf5();
@@ -108,6 +109,11 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
     for (const Role role : all_roles) describe(rows_[role], names.of[role]);
     if (names.mesh) describe(mesh_, {names.of[names.mesh->role][names.mesh->index]});
   }
+  for (const auto& [name, meaning, components] : names.datasets) {
+    datasets_.push_back(rows(name.c_str(), {sites, components.size()}));
+    describe(datasets_.back(), components);
+    require(datasets_.back().dataset && write_text(datasets_.back().dataset, "meaning", meaning), "cannot be written");
+  }
   require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
   times_.reserve(frames_per_block_);
 }
@@ -126,10 +132,11 @@ std::vector<FieldsFile::Rows*> FieldsFile::all_rows() {
   std::vector<Rows*> all;
   for (const Role role : all_roles) all.push_back(&rows_[role]);
   all.push_back(&mesh_);
+  for (Rows& rows : datasets_) all.push_back(&rows);
   return all;
 }
 
-void FieldsFile::append(double time, const RecordedRow& row) {
+void FieldsFile::append(double time, const RecordedRow& row, const RecordedDatasets& datasets) {
   times_.push_back(time);
   const auto add = [](Rows& to, std::span<const double> values) {
     to.waiting.insert(to.waiting.end(), values.begin(), values.end());
@@ -139,6 +146,7 @@ void FieldsFile::append(double time, const RecordedRow& row) {
   if (const auto& mesh = names_.mesh)
     for (std::size_t i = mesh->index; i < row[mesh->role].size(); i += names_.of[mesh->role].size())
       mesh_.waiting.push_back(row[mesh->role][i]);
+  for (std::size_t d = 0; d < datasets_.size(); ++d) add(datasets_[d], datasets[d]);
   if (times_.size() == frames_per_block_) write_block();
 }
 

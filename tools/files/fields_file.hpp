@@ -20,6 +20,7 @@ namespace delf {
 ///     /field  frames × sites × fields      values as they are, not reduced modulo 2π
 ///     /inner, /multiplier, /trace, /slaved  the same of components of these roles; if there are any
 ///     /mesh   frames × sites               of a mesh that moves: its positions
+///     /NAME   frames × sites × values      what the method declares beside them, such as /momentum; with `meaning`
 /// Where there is more than one field at the vertices, each has an attribute `components`: names, comma separated.
 ///
 ///     /       attributes scene (the resolved scene), version, winding
@@ -31,7 +32,7 @@ class FieldsFile {
              const std::string& scene, int winding, const RowNames& = {});
   ~FieldsFile();
 
-  void append(double time, const RecordedRow&);
+  void append(double time, const RecordedRow&, const RecordedDatasets& = {});
   /// Writes the buffered rows. Until then they may be missing on the disk.
   void close();
 
@@ -54,6 +55,7 @@ class FieldsFile {
   std::vector<Rows*> all_rows();
   ByRole<Rows> rows_;
   Rows mesh_;
+  std::vector<Rows> datasets_;  ///< of the method
 };
 
 }  // namespace delf

@@ -47,6 +47,7 @@ FieldsReader::FieldsReader(const std::filesystem::path& path) {
   file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
   if (!file_) throw bad_file("is not an HDF5 file that can be read; name the fields.h5 of a run");
   time_ = {H5Dopen2(file_, "time", H5P_DEFAULT), H5Dclose};
+  momentum_ = {H5Dopen2(file_, "momentum", H5P_DEFAULT), H5Dclose};
   for (const Role role : all_roles) {
     const bool needed = role == Role::field;
     Hdf5Handle dataset(H5Dopen2(file_, to_string(role), H5P_DEFAULT), H5Dclose);
@@ -93,6 +94,19 @@ std::vector<double> FieldsReader::row(int frame) const {
       throw bad_file(fmt::format("frame {} is not finite at site {}; take an earlier frame", frame,
                                  i / static_cast<std::size_t>(components())));
   return row;
+}
+
+std::optional<std::vector<double>> FieldsReader::momenta(int frame) const {
+  const auto extent = momentum_ ? extent_of(momentum_) : std::nullopt;
+  const hsize_t frames = static_cast<hsize_t>(this->frames()), sites = static_cast<hsize_t>(this->sites()),
+                fields = static_cast<hsize_t>(components());
+  if (!extent || *extent != std::array{frames, sites, fields}) return std::nullopt;
+  std::vector<double> p(sites * fields);
+  const std::array<hsize_t, 3> offset{static_cast<hsize_t>(frame), 0, 0}, count{1, sites, fields};
+  if (frame >= this->frames() || !read_slice(momentum_, 3, offset.data(), count.data(), p.data())) return std::nullopt;
+  for (const double value : p)
+    if (!std::isfinite(value)) return std::nullopt;
+  return p;
 }
 
 std::optional<int> FieldsReader::winding() const {

@@ -22,6 +22,8 @@ class FieldsReader final : public RowsFile {
   int components() const override { return shape(Role::field).components; }
   std::optional<double> time(int frame) const override;
   std::vector<double> row(int frame) const override;
+  /// Of /momentum; nothing where it is not of the shape of /field, or not finite.
+  std::optional<std::vector<double>> momenta(int frame) const override;
   std::optional<int> winding() const override;
 
   struct Shape {
@@ -39,7 +41,7 @@ class FieldsReader final : public RowsFile {
   };
   const Part& part(Role role) const { return parts_[static_cast<std::size_t>(role)]; }
 
-  Hdf5Handle file_, time_;
+  Hdf5Handle file_, time_, momentum_;
   std::array<Part, all_roles.size()> parts_;  ///< by role; held open, so that HDF5 keeps the block that a frame is in
 };
 

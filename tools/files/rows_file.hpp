@@ -19,6 +19,8 @@ class RowsFile {
   virtual std::optional<double> time(int frame) const = 0;
   /// Site by site: row[i·components + a].
   virtual std::vector<double> row(int frame) const = 0;
+  /// The momenta of the fields in a frame, in the same order, if the file has them.
+  virtual std::optional<std::vector<double>> momenta(int) const { return std::nullopt; }
   /// What the field gains around the circle, in units of 2π, if the file says so.
   virtual std::optional<int> winding() const = 0;
 };

@@ -18,9 +18,9 @@ Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, cons
   if (scene.figures) film_.emplace(lattice, expected, names.drawn().size());
 }
 
-void Recorder::append(const Record& record, const RecordedRow& row) {
+void Recorder::append(const Record& record, const RecordedRow& row, const RecordedDatasets& datasets) {
   series_.append(record);
-  if (fields_) fields_->append(record.time, row);
+  if (fields_) fields_->append(record.time, row, datasets);
   if (film_) film_->append(record.time, drawn(row));
   if (std::isfinite(record.energy_error)) energy_errors_.append(record.time, record.energy_error);
   const double error = std::abs(record.energy_error);

@@ -22,7 +22,7 @@ class Recorder {
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&);
 
-  void append(const Record&, const RecordedRow&);
+  void append(const Record&, const RecordedRow&, const RecordedDatasets&);
   /// Writes all buffered rows. A failure does not prevent the other files; the first one is then thrown.
   void close();
 

@@ -60,6 +60,7 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
       warnings_(scene, initial, simulation) {
   const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
   for (const Role role : all_roles) row_[role].resize(sites * names.of[role].size());
+  if (scene.fields) datasets_.resize(names.datasets.size());
   for (const std::string& name : simulation.conserved_names())
     outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   outcome.iterates = simulation.evolution().stepper().iterates();
@@ -159,14 +160,18 @@ void Stepping::record(std::int64_t row) {
   record.row = row;
   record.time = static_cast<double>(row) * scene_.problem.time_step;
   if (!started_) {
+    const auto sites = static_cast<std::size_t>(scene_.problem.lattice.sites());
     row_[Role::field] = initial_.row0();
     record.energy = record.energy_error = record.momentum = record.charge = Outcome::unknown;
     record.further.assign(names_.further.size(), Outcome::unknown);
+    for (std::size_t d = 0; d < datasets_.size(); ++d)
+      datasets_[d].assign(sites * names_.datasets[d].components.size(), Outcome::unknown);
   } else {
     const int back = static_cast<int>(newest_ - row);
     simulation_.observe(back, row_[Role::field]);
     for (const Role role : all_roles)
       if (role != Role::field && !row_[role].empty()) simulation_.copy_row(back, row_[role], role);
+    for (std::size_t d = 0; d < datasets_.size(); ++d) datasets_[d] = simulation_.dataset(d, back);
     const auto monitors = simulation_.monitors();
     record.energy = monitors.energy;
     record.energy_error = (monitors.energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);
@@ -182,7 +187,7 @@ void Stepping::record(std::int64_t row) {
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
   outcome_.charge_final = record.charge;
-  recorder_->append(record, row_);
+  recorder_->append(record, row_, datasets_);
   ++outcome_.records;
 }
 

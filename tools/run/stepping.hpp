@@ -42,6 +42,7 @@ class Stepping {
   const RowNames& names_;
   Warnings warnings_;
   RecordedRow row_;
+  RecordedDatasets datasets_;
   bool started_ = false;
   std::int64_t newest_ = 0, recorded_ = -1;
   double iterations_ = 0;

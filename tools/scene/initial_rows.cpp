@@ -17,7 +17,7 @@ InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
       return;
     }
     file_ = open_rows(scene.initial_file);
-    if (scene.start && scene.start != StartRule::exact)
+    if (scene.start && scene.start != StartRule::exact && scene.start != rule())
       throw settings.error("initial.start", "a file has rows, but no velocities; leave initial.start out");
     if (scene.problem.lattice.space() == Space::point && file_->sites() != 1)
       throw settings.error("lattice.space", fmt::format("the file {} has {} sites, and a point is one",
@@ -37,6 +37,9 @@ int InitialRows::winding() const {
 }
 
 StartRule InitialRows::rule() const {
+  // of a method that starts from momenta, where the file has them
+  if (file_ && find_method(scene_.problem.method).start == StartRule::legendre && file_->momenta(scene_.initial_frame))
+    return StartRule::legendre;
   if (file_) return StartRule::exact;
   if (scene_.start) return *scene_.start;
   return find_method(scene_.problem.method)
@@ -104,12 +107,28 @@ std::vector<double> InitialRows::section(const Simulation& simulation, int row) 
   return section(simulation, &State::values, row, true);
 }
 
+void InitialRows::start_momenta(Simulation& simulation) const {
+  const auto& components = simulation.components();
+  const std::vector<double> of_fields = *file_->momenta(scene_.initial_frame);
+  const auto d = components.size(), fields = static_cast<std::size_t>(simulation.count(Role::field));
+  const std::vector<double> row0 = section(simulation, 0);
+  std::vector<double> momenta(row0.size(), 0.0);
+  for (std::size_t c = 0; c < d; ++c)
+    if (components[c].role == Role::field)
+      for (std::size_t i = 0; i * d < momenta.size(); ++i)
+        momenta[i * d + c] = of_fields[i * fields + static_cast<std::size_t>(components[c].field)];
+  simulation.start_momenta(row0, momenta);
+}
+
 void InitialRows::start(Simulation& simulation) const {
   check(simulation);
   const double h = scene_.problem.time_step;
   try {
+    if (file_ && rule() == StartRule::legendre) return start_momenta(simulation);
     if (file_ && simulation.count(Role::inner) + simulation.count(Role::trace) > 0)
-      throw BadInput("initial.state", "a file has no values at the nodes inside the cells; choose another state");
+      throw BadInput("initial.state",
+                     "a file has no values at the nodes inside the cells, and this one no /momentum to start elements "
+                     "from; give a file that has it, or choose another state");
     if (file_ && simulation.is_processed())
       throw BadInput("initial.state", "a file has no rates, which a kernel starts from; choose another state");
     if (rule() == StartRule::centred)

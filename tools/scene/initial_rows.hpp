@@ -34,6 +34,8 @@ class InitialRows {
   /// A row of all components from what the state gives at their nodes; time fractions count only `with_times`.
   std::vector<double> section(const Simulation&, Writer, int row, bool with_times) const;
   std::vector<double> section(const Simulation&, int row) const;
+  /// Row 0 and the momenta there, of a file that has them.
+  void start_momenta(Simulation&) const;
   std::vector<double> values(Writer, double time, const Lattice&) const;
 
   const Scene& scene_;

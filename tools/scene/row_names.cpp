@@ -10,6 +10,7 @@ RowNames::RowNames(const Simulation& simulation) : of() {
     if (c.position) mesh = {c.role, of[c.role].size()};
     of[c.role].push_back(c.name);
   }
+  datasets = simulation.datasets();
   if (!of[Role::multiplier].empty()) further.emplace_back("constraint");
   const std::vector<std::string> of_method = simulation.monitor_names();
   further.insert(further.end(), of_method.begin(), of_method.end());

@@ -25,6 +25,7 @@ struct RowNames {
 
   ByRole<std::vector<std::string>> of{{{std::vector<std::string>{"phi"}}}};  ///< names of the components
   std::vector<std::string> further;                ///< columns of series.csv after the residual
+  std::vector<Simulation::DatasetInfo> datasets;   ///< what fields.h5 has beside the components
   struct Mesh {
     Role role;
     std::size_t index;
