@@ -30,8 +30,15 @@ SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
   if (!(p.time_step > 0) || !std::isfinite(p.time_step))
     throw BadInput("lattice.time_step", "lattice.time_step must be a positive, finite number");
   SchemeParts parts = find_method(p.method).build(theory, p);
-  if (p.circle_valued && parts.components.size() > 1)
-    throw BadInput("theory.fibre", "theory.fibre = S1: for one field on a lattice without nodes inside; use R");
+  // on a point one value starts, and there is nothing beside it that it would have to be lifted to
+  const auto is_of_one_field = [&](const Component& c) {
+    return c.role == Role::field || (c.role == Role::inner && p.lattice.space() == Space::point);
+  };
+  if (p.circle_valued && (std::ranges::count(parts.components, Role::field, &Component::role) > 1 ||
+                          !std::ranges::all_of(parts.components, is_of_one_field)))
+    throw BadInput("theory.fibre",
+                   "theory.fibre = S1: for one field, without multipliers, and on space without nodes "
+                   "inside the cells; use R");
   return parts;
 }
 

@@ -6,8 +6,10 @@
 
 #include "jets/tables/named_tables.hpp"
 #include "schemes/declared.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/states/state_registry.hpp"
+#include "tools/files/text_columns.hpp"
 #include "tools/scene/shipped_scenes.hpp"
 #include "tools/scene/suggestion.hpp"
 
@@ -20,16 +22,25 @@ void print_theories() {
     fmt::print("  {:<22} {}{}\n", t.name, t.formula,
                t.parameters.empty() ? "" : fmt::format("   [{}]", fmt::join(t.parameters, ", ")));
 }
-void print_formulas(const std::vector<NamedFormula>& all) {
-  for (const NamedFormula& n : all) fmt::print("  {:<22} {}\n", n.name, n.formula);
-}
 void print_stencils() {
   for (const NamedTable& t : named_tables()) {
     fmt::print("  {:<22} {}\n", t.name, t.description);
     if (!t.aliases.empty()) fmt::print("  {:<22}   also found by {}\n", "", fmt::join(t.aliases, ", "));
   }
 }
-void print_schemes() { print_formulas(methods()); }
+void print_schemes() {
+  constexpr std::size_t widest_line = 120, indent = 49;
+  for (const MethodEntry* m : method_entries()) {
+    fmt::print("  {:<22} {}\n", m->name, m->formula);
+    for (const Parameter& p : m->parameters) {
+      fmt::print("  {:<22}   {:<22} {} ({})\n", "", p.key, p.help,
+                 p.otherwise.empty() ? to_text(p.fallback) : p.otherwise);
+      if (p.choices.empty()) continue;
+      for (const std::string& line : wrapped(fmt::format("{}", fmt::join(p.choices, ", ")), widest_line - indent))
+        fmt::print("{:<{}}{}\n", "", indent, line);
+    }
+  }
+}
 void print_states() {
   for (const StateEntry* s : state_entries()) {
     fmt::print("  {:<22} {}\n", s->name, s->formula);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "jets/tables/line_basis.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include "jets/tables/line_rule.hpp"
@@ -86,6 +87,14 @@ std::vector<double> bernstein_slopes(int S, double x) {
 LineBasis lagrange_gauss(int S) { return lagrange_basis(gauss_rule(S).points); }
 LineBasis lagrange_lobatto(int S) { return lagrange_basis(lobatto_rule(S).points); }
 LineBasis lagrange_radau(int S) { return lagrange_basis(radau_rule(S).points); }
+/// Two functions leave no room for a bubble between both ends.
+LineBasis lagrange_lobatto_bubble(int S) {
+  if (S == 2) return lagrange_lobatto(2);
+  std::vector<double> nodes = lobatto_rule(S - 1).points;
+  const auto above = nodes.begin() + S / 2;  // the middle of the two nodes, or of the middle node and the next
+  nodes.insert(above, (*(above - 1) + *above) / 2);
+  return lagrange_basis(std::move(nodes));
+}
 LineBasis lagrange_chebyshev(int S) { return lagrange_basis(clenshaw_curtis_rule(S).points); }
 
 }  // namespace
@@ -98,12 +107,79 @@ LineBasis bernstein_basis(int S) {
   return basis;
 }
 
+namespace {
+
+/// The knots t of B-splines, and their values by the recursion of de Boor and Cox.
+class Spline {
+ public:
+  Spline(int S, int degree) : S_(S), p_(degree), t_(static_cast<std::size_t>(S + degree + 1), 0.0) {
+    const int spans = S - p_;
+    for (int i = 0; i <= S; ++i) t_[static_cast<std::size_t>(i + p_)] = std::min(1.0, static_cast<double>(i) / spans);
+    std::fill(t_.end() - p_ - 1, t_.end(), 1.0);
+  }
+  std::vector<double> inner_knots() const { return {t_.begin() + p_ + 1, t_.end() - p_ - 1}; }
+  /// (t_{j+1} + … + t_{j+p})/p: the field τ has these coefficients (Greville).
+  std::vector<double> places() const {
+    std::vector<double> places(static_cast<std::size_t>(S_), 0.0);
+    for (int j = 0; j < S_; ++j)
+      for (int m = 1; m <= p_; ++m) places[static_cast<std::size_t>(j)] += t(j + m) / p_;
+    return places;
+  }
+  /// N_{j,q} = (x − t_j)/(t_{j+q} − t_j) N_{j,q−1} + (t_{j+q+1} − x)/(t_{j+q+1} − t_{j+1}) N_{j+1,q−1}, from N_{j,0} = 1 on
+  /// the span of x; q = p, or p − 1 for slopes. Beyond the ends the last spans go on.
+  std::vector<double> values(double x, int q) const {
+    std::vector<double> N(t_.size() - 1, 0.0);
+    int span = p_;
+    while (span + 1 < S_ && x >= t(span + 1)) ++span;
+    N[static_cast<std::size_t>(span)] = 1;
+    for (int degree = 1; degree <= q; ++degree)
+      for (int j = std::max(0, span - degree); j <= span; ++j) {
+        const auto at = static_cast<std::size_t>(j);
+        N[at] = share(x - t(j), t(j + degree) - t(j)) * N[at] +
+                share(t(j + degree + 1) - x, t(j + degree + 1) - t(j + 1)) * (at + 1 < N.size() ? N[at + 1] : 0.0);
+      }
+    return N;
+  }
+  /// N′_{j,p} = p (N_{j,p−1}/(t_{j+p} − t_j) − N_{j+1,p−1}/(t_{j+p+1} − t_{j+1}))
+  std::vector<double> slopes(double x) const {
+    const std::vector<double> lower = values(x, p_ - 1);
+    std::vector<double> slopes(static_cast<std::size_t>(S_));
+    for (int j = 0; j < S_; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      slopes[at] = p_ * (share(lower[at], t(j + p_) - t(j)) - share(lower[at + 1], t(j + p_ + 1) - t(j + 1)));
+    }
+    return slopes;
+  }
+
+ private:
+  double t(int j) const { return t_[static_cast<std::size_t>(j)]; }
+  static double share(double part, double whole) { return whole > 0 ? part / whole : 0; }  // 0/0 = 0
+  int S_, p_;
+  std::vector<double> t_;
+};
+
+LineBasis cubic_b_spline(int S) { return b_spline_basis(S, std::min(3, S - 1)); }
+
+}  // namespace
+
+LineBasis b_spline_basis(int S, int degree) {
+  const auto spline = std::make_shared<const Spline>(S, degree);
+  const auto values = [spline, S, degree](double x) {
+    std::vector<double> N = spline->values(x, degree);
+    N.resize(static_cast<std::size_t>(S));
+    return N;
+  };
+  return {spline->places(), values, [spline](double x) { return spline->slopes(x); }, spline->inner_knots()};
+}
+
 const std::vector<NamedLineBasis>& named_line_bases() {
   static const std::vector<NamedLineBasis> bases{{"lagrange-lobatto", lagrange_lobatto},
                                                  {"lagrange-gauss", lagrange_gauss},
                                                  {"lagrange-radau", lagrange_radau},
                                                  {"lagrange-chebyshev", lagrange_chebyshev},
-                                                 {"bernstein", bernstein_basis}};
+                                                 {"lagrange-lobatto-bubble", lagrange_lobatto_bubble},
+                                                 {"bernstein", bernstein_basis},
+                                                 {"b-spline", cubic_b_spline, b_spline_basis}};
   return bases;
 }
 

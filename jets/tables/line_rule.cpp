@@ -97,6 +97,21 @@ LineRule fejer_rule(int n) {
   return rule;
 }
 
+LineRule on_spans(const LineRule& rule, const std::vector<double>& knots) {
+  if (knots.empty()) return rule;
+  LineRule all;
+  double from = 0;
+  for (std::size_t span = 0; span <= knots.size(); ++span) {
+    const double to = span < knots.size() ? knots[span] : 1.0;
+    for (std::size_t i = 0; i < rule.points.size(); ++i) {
+      all.points.push_back(from + (to - from) * rule.points[i]);
+      all.weights.push_back((to - from) * rule.weights[i]);
+    }
+    from = to;
+  }
+  return all;
+}
+
 const std::vector<NamedLineRule>& named_line_rules() {
   static const std::vector<NamedLineRule> rules{{"gauss", gauss_rule, 1},
                                                 {"lobatto", lobatto_rule, 2},

@@ -25,6 +25,9 @@ LineRule clenshaw_curtis_rule(int n);
 /// degree n.
 LineRule fejer_rule(int n);
 
+/// The rule on every span between 0, the knots and 1.
+LineRule on_spans(const LineRule&, const std::vector<double>& knots);
+
 /// A rule as a scene names it.
 struct NamedLineRule {
   std::string name;

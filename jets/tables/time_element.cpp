@@ -9,7 +9,8 @@
 
 namespace delf {
 
-StencilTable time_element(const LineBasis& basis, const LineRule& rule, Continuity continuity) {
+StencilTable time_element(const LineBasis& basis, const LineRule& of_a_span, Continuity continuity) {
+  const LineRule rule = on_spans(of_a_span, basis.knots);
   const bool broken = continuity == Continuity::multipliers;
   if (!broken && !basis.has_end_nodes())
     throw BadInput(

@@ -9,7 +9,7 @@ namespace delf {
 /// What makes the pieces of a trajectory one: nodes that neighbours share, or multipliers at the ends of broken elements.
 enum class Continuity { shared, multipliers };
 
-/// An element of time on one site: q = Σ_j φ_j(t/h) x_j, with a quadrature rule.
+/// An element of time on one site: q = Σ_j φ_j(t/h) x_j, with a quadrature rule on every span between the basis's knots.
 ///
 ///     q_n   x⁰ x¹ … x^{S−1}           q_{n+1}      multipliers: node 0 of the unit cell is the vertex q_n, which no point
 ///      ●    ∘──∘──…──∘                  ○          reads, nodes 1 … S are the coefficients. Trace stencils join them.

@@ -36,8 +36,10 @@ std::optional<ConstraintGhost> ghost_under_constraint(const LatticeSystem& syste
     // At a stability limit a root is −1 as well, but not below it.
     const Symbol symbol(LatticeSystem(system.lattice(), families, system.time_step()));
     const Symbol shorter(LatticeSystem(system.lattice(), families, 0.7 * system.time_step()));
+    const bool point = system.lattice().space() == Space::point;  // it has no neighbours, and no waves but θ = 0
     for (const double theta : {std::numbers::pi, 0.0})
       for (const int z : {-1, 1}) {
+        if (point && theta != 0) continue;
         // Bricks have two names for a wave, (z, θ) and (−z, θ + π).
         const bool is_constant = (theta == 0 && z == 1) || (symbol.brick() && theta != 0 && z == -1);
         if (!is_constant && symbol.is_root(z, theta) && shorter.is_root(z, theta)) return ConstraintGhost{theta, z};

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "jets/fibre.hpp"
 #include "jets/simd/pack_gather.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
@@ -352,8 +353,24 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
     throw MeshCrossing(fmt::format(
         "step {}, t = {:.6g}: sites {} and {} of the mesh pass each other; reduce lattice.time_step or scheme.alpha", J,
         static_cast<double>(J) * system_.time_step(), *i, *i + 1));
+  if (options_.fibre == Fibre::circle) check_increments(J);
   ++known_;
   largest_[1] = std::exchange(largest_[0], largest_of(ring_->row(J - lag_)));
+}
+
+/// On S¹ the values of an element follow each other, from its lower vertex by the nodes inside to its upper one: none may
+/// be so far from the last that it could be its complement.
+void SlabStepper::check_increments(std::int64_t J) const {
+  const double *const lower = ring_->row(J - 1), *const upper = ring_->row(J);
+  for (int c = 0; c < components_; ++c) {
+    const double next = c + 1 < components_ ? lower[c + 1] : upper[0];
+    if (!(std::abs(next - lower[c]) <= largest_wrapped_difference))
+      throw NotFinite(
+          fmt::format("step {}, t = {:.6g}: on the fibre S1 an increment within an element is above 0.9 pi, "
+                      "where it cannot be told from its complement; reduce lattice.time_step, or use "
+                      "theory.fibre = R",
+                      J, static_cast<double>(J) * system_.time_step()));
+  }
 }
 
 void SlabStepper::step(bool /*looked_at*/) {

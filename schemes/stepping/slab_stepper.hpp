@@ -76,6 +76,7 @@ class SlabStepper final : public StepMethod {
   bool may_iterate(const Parity&);
   const char* newton(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
   void solve_slab_of_start(const std::vector<double>& momenta);
+  void check_increments(std::int64_t J) const;
   void solve(std::int64_t J, const std::vector<double>* momenta);
   std::optional<int> crossing(const double* row) const;
   [[noreturn]] void fail(std::int64_t J, const char* why) const;

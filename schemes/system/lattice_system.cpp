@@ -208,7 +208,8 @@ SystemPattern LatticeSystem::pattern() const {
         couplings.push_back({c.offset, c.component, c.dependence});
       return couplings;
     };
-    if (!lattice.is_circle()) return find();
+    // between walls sites differ; round a circle and on a point all are alike
+    if (!lattice.is_circle() && lattice.space() != Space::point) return find();
     const bool bricks = placement_ == Placement::brick_wall;
     const auto [at, fresh] = known->try_emplace({component, bricks ? (site.time + site.space) & 1 : 0});
     if (fresh) at->second = find();

@@ -18,69 +18,14 @@
 #include "schemes/system/conserved.hpp"
 #include "schemes/verify/form_check.hpp"
 #include "tests/catch.hpp"
+#include "tests/verification/time_elements.hpp"
 
 using namespace delf;
+using namespace delf::testing;
 
 namespace {
 
-using Numbers = std::vector<double>;
-
-struct Elements {
-  int functions;
-  std::string quadrature;
-  int points;
-  std::string basis = "lagrange-lobatto";
-  std::string continuity = {};  ///< empty: the method's own choice
-};
-
-Problem problem_of(const std::string& theory, double h, const Elements& e) {
-  Problem p;
-  p.theory = theory, p.method = "cgvi", p.lattice = Lattice::point(), p.time_step = h;
-  p.parameters["scheme.functions"] = e.functions, p.parameters["scheme.quadrature"] = e.quadrature;
-  p.parameters["scheme.points"] = e.points, p.parameters["scheme.basis"] = e.basis;
-  if (!e.continuity.empty()) p.parameters["scheme.continuity"] = e.continuity;
-  return p;
-}
-
-/// A body that starts at q with the velocity v.
-class Body {
- public:
-  Body(const std::string& theory, double h, const Elements& e, const Numbers& q, const Numbers& v)
-      : simulation_(problem_of(theory, h, e)), fields_(q.size()) {
-    Numbers row, rate;
-    for (const Component& c : simulation_.components()) {
-      const bool has_value = c.role != Role::multiplier;
-      row.push_back(has_value ? q[static_cast<std::size_t>(c.field)] : 0);
-      rate.push_back(has_value ? v[static_cast<std::size_t>(c.field)] : 0);
-    }
-    simulation_.start_legendre(row, rate);
-  }
-  Body& to(int row) {
-    while (simulation_.newest() < row) simulation_.step();
-    return *this;
-  }
-  Numbers q() const {
-    Numbers row(fields_);
-    simulation_.copy_row(0, row);
-    return row;
-  }
-  Numbers p() const {
-    Numbers all = simulation_.momenta();
-    all.resize(fields_);
-    return all;
-  }
-  Simulation& simulation() { return simulation_; }
-
- private:
-  Simulation simulation_;
-  std::size_t fields_;
-};
-
-double distance(const Numbers& a, const Numbers& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
-}
+using delf::testing::distance;
 
 /// max |difference of (q, p)| of two schemes over the rows 1 … steps.
 double distance(const std::string& theory, double h, const Elements& a, const Elements& b, int steps) {
@@ -93,17 +38,6 @@ double distance(const std::string& theory, double h, const Elements& a, const El
     most = std::max({most, distance(one.q(), other.q()), distance(one.p(), other.p())});
   }
   return most;
-}
-
-/// The error at t = 2 of a pendulum let go at 2, in n steps.
-double swing_error(const Elements& e, int n) {
-  StateRequest request;
-  request.name = "pendulum-swing", request.theory = "pendulum";
-  const auto state = make_state(request, Lattice::point());
-  Numbers q(1), exact(1), v(1);
-  state->values(0, Lattice::point(), q), state->velocities(0, Lattice::point(), v);
-  state->values(2, Lattice::point(), exact);
-  return distance(Body("pendulum", 2.0 / n, e, q, v).to(n).q(), exact);
 }
 
 /// Gauss's collocation method of R stages for q″ = −sin q, its stages by iteration.
@@ -211,16 +145,21 @@ TEST_CASE("with S functions and a rule of order r the order is the smaller of 2S
     Elements elements;
     int order, steps;
   };
-  for (const Case& c :
-       {Case{{2, "gauss", 1}, 2, 40}, Case{{2, "gauss", 2}, 2, 40}, Case{{2, "lobatto", 2}, 2, 40},
-        Case{{2, "radau", 2}, 2, 40}, Case{{3, "gauss", 2}, 4, 16}, Case{{3, "gauss", 3}, 4, 16},
-        Case{{3, "lobatto", 3}, 4, 16}, Case{{3, "clenshaw-curtis", 3}, 4, 16}, Case{{3, "fejer", 3}, 4, 16},
-        Case{{3, "lobatto", 2}, 2, 40}, Case{{3, "radau", 2}, 3, 24}, Case{{4, "gauss", 3}, 6, 8},
-        Case{{4, "gauss", 4}, 6, 8}, Case{{4, "lobatto", 4}, 6, 8}, Case{{4, "radau", 4}, 6, 8},
-        Case{{4, "clenshaw-curtis", 4}, 4, 16}, Case{{4, "fejer", 5}, 6, 8}, Case{{4, "lobatto", 3}, 4, 16}}) {
+  for (const Case& c : {Case{{2, "gauss", 1}, 2, 40},          Case{{2, "gauss", 2}, 2, 40},
+                        Case{{2, "lobatto", 2}, 2, 40},        Case{{2, "radau", 2}, 2, 40},
+                        Case{{3, "gauss", 2}, 4, 16},          Case{{3, "gauss", 3}, 4, 16},
+                        Case{{3, "lobatto", 3}, 4, 16},        Case{{3, "clenshaw-curtis", 3}, 4, 16},
+                        Case{{3, "fejer", 3}, 4, 16},          Case{{3, "lobatto", 2}, 2, 40},
+                        Case{{3, "radau", 2}, 3, 24},          Case{{4, "gauss", 3}, 6, 8},
+                        Case{{4, "gauss", 4}, 6, 8},           Case{{4, "lobatto", 4}, 6, 8},
+                        Case{{4, "radau", 4}, 6, 8},           Case{{4, "clenshaw-curtis", 4}, 4, 16},
+                        Case{{4, "fejer", 5}, 6, 8},           Case{{4, "lobatto", 3}, 4, 16},
+                        Case{{5, "gauss", 4}, 8, 5},           Case{{5, "gauss", 5}, 8, 5},
+                        Case{{5, "lobatto", 5}, 8, 6},         Case{{5, "radau", 4}, 7, 6},
+                        Case{{5, "clenshaw-curtis", 5}, 6, 8}, Case{{5, "lobatto", 4}, 6, 8}}) {
     const double slope = std::log2(swing_error(c.elements, c.steps) / swing_error(c.elements, 2 * c.steps));
     CAPTURE(c.elements.functions, c.elements.quadrature, c.elements.points, slope);
-    CHECK(std::abs(slope - c.order) < 0.15);
+    CHECK(std::abs(slope - c.order) < (c.order == 8 ? 0.35 : 0.15));  // of order 8 rounding leaves coarse steps only
   }
 }
 

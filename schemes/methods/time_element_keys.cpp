@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/methods/time_element_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "jets/tables/time_tableau.hpp"
+#include "lattice/error.hpp"
+
+namespace delf {
+namespace {
+
+constexpr const char* stood_for[] = {"scheme.basis", "scheme.functions", "scheme.degree", "scheme.quadrature",
+                                     "scheme.points"};
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& list) {
+  std::vector<std::string> names;
+  for (const Named& named : list) names.push_back(named.name);
+  return names;
+}
+
+}  // namespace
+
+TimeElementKeys::TimeElementKeys(const ParameterValues& values)
+    : tableau(values.maybe<std::string>("scheme.tableau").value_or("")) {
+  if (!tableau.empty()) {
+    for (const char* key : stood_for)
+      if (values.has(key))
+        throw BadInput("scheme.tableau",
+                       fmt::format("scheme.tableau = {}: stands for {} too; give one of the two", tableau, key));
+    const TimeTableau& t = *std::ranges::find(time_tableaux(), tableau, &TimeTableau::name);
+    basis_name = t.basis, functions = t.functions, quadrature = t.quadrature, points = t.points;
+    degree = functions - 1;
+  } else {
+    basis_name = values.maybe<std::string>("scheme.basis").value_or(basis_name);
+    functions = values.maybe<int>("scheme.functions").value_or(functions);
+    quadrature = values.maybe<std::string>("scheme.quadrature").value_or(quadrature);
+  }
+  const NamedLineBasis& named = *std::ranges::find(named_line_bases(), basis_name, &NamedLineBasis::name);
+  if (tableau.empty()) {
+    degree = values.maybe<int>("scheme.degree").value_or(named.of_degree ? std::min(3, functions - 1) : functions - 1);
+    if (degree != functions - 1 && !named.of_degree)
+      throw BadInput("scheme.degree",
+                     fmt::format("scheme.degree = {}: {} functions of {} are polynomials of degree {}; "
+                                 "leave it out, or use scheme.basis = b-spline",
+                                 degree, functions, basis_name, functions - 1));
+    if (degree > functions - 1)
+      throw BadInput("scheme.degree", fmt::format("scheme.degree = {}: B-splines of degree p are p + 1 functions at "
+                                                  "least; raise scheme.functions",
+                                                  degree));
+    points = values.maybe<int>("scheme.points").value_or(degree);
+  }
+  basis = named.of_degree ? named.of_degree(functions, degree) : named.make(functions);
+  const auto given = values.maybe<std::string>("scheme.continuity");
+  continuity = (given ? *given == "shared" : basis.has_end_nodes()) ? Continuity::shared : Continuity::multipliers;
+}
+
+LineRule TimeElementKeys::rule() const {
+  const auto named = std::ranges::find(named_line_rules(), quadrature, &NamedLineRule::name);
+  if (points < named->fewest)
+    throw BadInput("scheme.points", fmt::format("scheme.points = {}: the rule {} has {} points at least; raise "
+                                                "scheme.points",
+                                                points, quadrature, named->fewest));
+  return named->make(points);
+}
+
+std::string TimeElementKeys::in_words() const {
+  return (tableau.empty()
+              ? fmt::format("{} {} functions{}, {} {} points", basis_name, functions,
+                            degree == functions - 1 ? "" : fmt::format(" of degree {}", degree), quadrature, points)
+              : tableau) +
+         (continuity == Continuity::shared ? ", shared" : ", multipliers");
+}
+
+std::vector<Parameter> TimeElementKeys::parameters() {
+  return {{.key = "scheme.tableau",
+           .fallback = std::string(),
+           .help = "a Runge-Kutta method by its name, in place of basis, functions, quadrature and points",
+           .choices = names_of(time_tableaux()),
+           .otherwise = "none"},
+          {.key = "scheme.basis",
+           .fallback = "lagrange-lobatto",
+           .help = "the functions on a step",
+           .choices = names_of(named_line_bases()),
+           .otherwise = "lagrange-lobatto"},
+          {.key = "scheme.functions",
+           .fallback = 3,
+           .help = "S: how many; their degree is S - 1",
+           .range = {.low = 2, .high = 20},
+           .otherwise = "3"},
+          {.key = "scheme.degree",
+           .fallback = 3,
+           .help = "basis = b-spline: the degree of its pieces",
+           .range = {.low = 1, .high = 19},
+           .otherwise = "functions - 1, of b-spline 3 at most"},
+          {.key = "scheme.quadrature",
+           .fallback = "gauss",
+           .help = "the quadrature in time",
+           .choices = names_of(named_line_rules()),
+           .otherwise = "gauss"},
+          {.key = "scheme.points",
+           .fallback = 2,
+           .help = "R: points of the quadrature, on every span of a b-spline",
+           .range = {.low = 1, .high = 40},
+           .otherwise = "the degree of the functions"},
+          {.key = "scheme.continuity",
+           .fallback = "shared",
+           .help = "what joins the steps: end nodes that they share, or multipliers",
+           .choices = {"shared", "multipliers"},
+           .otherwise = "shared where the basis has a node at both ends, or else multipliers"}};
+}
+
+}  // namespace delf
