@@ -63,9 +63,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                    "multisymplectic");
   const TimeElementKeys keys(p.parameters);
   const StencilTable time = keys.element(), space = space_table(p), element = product(time, space);
-  if (keys.continuity == Continuity::multipliers)
-    return element_parts(theory, element, Traces{keys.basis.values(0), keys.basis.values(1), space});
-  SchemeParts parts = element_parts(theory, element);
+  SchemeParts parts = keys.continuity == Continuity::shared
+                          ? element_parts(theory, element)
+                          : element_parts(theory, element, Traces{keys.basis.values(0), keys.basis.values(1), space});
   if (theory.constraint()) add_constraints(parts, theory, keys, element);
   return parts;
 }

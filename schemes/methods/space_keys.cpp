@@ -30,7 +30,7 @@ StencilTable pairs_on(const Lattice& lattice, int order) {
                    "lattice.space = circle");
   if (order % 2 != 0)
     throw BadInput("lattice.space_order",
-                   fmt::format("lattice.space_order = {}: pairs are of order 2, 4, 6, 8, 10 or 12; choose one", order));
+                   fmt::format("lattice.space_order = {}: pairs are of an even order up to 20; choose one", order));
   if (lattice.sites() < order + 1)
     throw BadInput("lattice.sites",
                    fmt::format("lattice.sites = {}: a stencil of space order {} is {} sites wide; give "
@@ -51,7 +51,7 @@ Parameter space_key() {
 Parameter space_order_key() {
   return {.key = "lattice.space_order",
           .fallback = usual_order,
-          .help = "order of pairs in space: 2, 4, ..., 12",
+          .help = "order of pairs in space: 2, 4, ..., 20",
           .range = {.low = 2, .high = 2 * widest_pair},
           .otherwise = "4 for pairs"};
 }

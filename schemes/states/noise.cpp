@@ -129,6 +129,6 @@ const StateEntry noise_state{
     Place::line,
     initial::noise,
     true,
-    {"kepler", "wave-map"}};  // singular at 0; not on the sphere
+    {"kepler", "solar-system", "wave-map", "spherical-pendulum"}};  // singular at 0; not on the sphere
 
 }  // namespace delf

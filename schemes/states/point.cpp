@@ -88,6 +88,6 @@ const StateEntry point_state{
     Place::point,
     initial::point,
     true,
-    {"wave-map"}};  // its constraint would be broken
+    {"wave-map", "spherical-pendulum"}};  // their constraint would be broken
 
 }  // namespace delf

@@ -135,6 +135,7 @@ TEST_CASE(
   for (const TheoryInfo& theory : theories())
     for (const NamedFormula& stencil : stencils())
       for (const Lattice& lattice : lattices_for(stencil.name)) {
+        if (theory.components > 6 && lattice.space() != Space::point) continue;  // 18 coordinates: on a point
         Problem p;
         p.theory = theory.name, p.stencil = stencil.name, p.lattice = lattice;
         p.time_step = 0.4 * lattice.space_step();
@@ -151,9 +152,9 @@ TEST_CASE(
           CHECK((evolved || is_mechanics(theory.name) ||
                  (theory.name == "wave-map" && stencil.name.starts_with("triangle"))));
         } catch (const BadInput& bad) {
-          // The wave map's constraint leaves nothing to solve for on some stencils: they are refused by the plan.
+          // A constraint leaves nothing to solve for on some stencils: they are refused by the plan.
           CAPTURE(bad.what());
-          CHECK(theory.name == "wave-map");
+          CHECK((theory.name == "wave-map" || theory.name == "spherical-pendulum"));
         }
       }
   CHECK(tried > 150);

@@ -216,7 +216,9 @@ TEST_CASE("the residual is its constant part and its source terms, for every the
       CHECK(split_jacobian_defect(*family) < 3e-15);
       const auto part = family->constant_part(cell);
       CHECK(part->is_all == family->sources()->groups.empty());
-      if (!part->is_all) CHECK(split_defect(*family, 1.001) > 1e-6);  // of other source terms
+      // of other source terms; those of the planets are small, with G and their masses
+      const double found = family->values().size() > 30 ? 1e-11 : 1e-6;
+      if (!part->is_all) CHECK(split_defect(*family, 1.001) > found);
     }
 }
 

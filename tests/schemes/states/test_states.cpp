@@ -360,6 +360,8 @@ std::vector<Case> inexact_cases() {
           {"charged packet", request("charged-packet", "complex-klein-gordon"), ring},
           {"small plane wave", request("plane-wave", "double-sine-gordon"), ring},
           {"small wave packet", request("wave-packet"), ring},
+          {"a pendulum on a sphere", request("spherical-swing", "spherical-pendulum"), Lattice::point()},
+          {"the planets", request("solar-system", "solar-system"), Lattice::point()},
           {"a point in phase space", body("0.25, 0.125", "-1e-2,0.5"), Lattice::point()}};
 }
 
@@ -943,7 +945,7 @@ TEST_CASE("the list of states has every state that can be made", "[states]") {
     CHECK_FALSE(make_state(request(info.name, theory), point ? Lattice::point() : circle)->description().empty());
     ++made;
   }
-  CHECK(made == 19);
+  CHECK(made == 21);
 }
 
 TEST_CASE("the nearest name is the one a typing error away", "[states]") {

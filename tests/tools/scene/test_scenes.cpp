@@ -64,6 +64,12 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
                                           "workprecision-breather",
                                           "workprecision-collision",
                                           "workprecision-moving"});
+                                          "solar-system",
+                                          "spacetime-element",
+                                          "spherical-pendulum",
+                                          "wave-map",
+                                          "wave-packet",
+                                          "workprecision-breather"});
 }
 
 TEST_CASE("every command that a scene names runs, and warns of nothing") {
