@@ -7,6 +7,7 @@
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/energy_figure.hpp"
 #include "tools/figures/figure_style.hpp"
+#include "tools/figures/section_figure.hpp"
 #include "tools/figures/spacetime_figure.hpp"
 #include "tools/figures/trajectory_figure.hpp"
 #include "tools/figures/waveforms_figure.hpp"
@@ -21,11 +22,9 @@ struct Figure {
   const char* name;
   std::string (*body)(const FigureSource&, const fs::path& scratch);  // empty: there is nothing to show
 };
-constexpr Figure all[] = {{"spacetime", spacetime_figure},
-                          {"waveforms", waveforms_figure},
-                          {"trajectory", trajectory_figure},
-                          {"orbit", orbit_figure},
-                          {"energy", energy_figure}};
+constexpr Figure all[] = {{"spacetime", spacetime_figure},   {"waveforms", waveforms_figure},
+                          {"trajectory", trajectory_figure}, {"orbit", orbit_figure},
+                          {"section", section_figure},       {"energy", energy_figure}};
 
 }  // namespace
 

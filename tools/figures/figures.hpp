@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "lattice/lattice.hpp"
 #include "tools/figures/film.hpp"
-#include "tools/scene/row_names.hpp"
 #include "tools/run/trace.hpp"
+#include "tools/scene/row_names.hpp"
 
 namespace delf {
+
+/// A Poincaré section: its table with a heading, what it is, and the columns that show it, from 1; 0: none do.
+struct DrawnSection {
+  std::string table = {}, title = {};
+  std::array<int, 2> columns{0, 0};
+};
 
 /// What the figures of a run are drawn from.
 struct FigureSource {
@@ -23,6 +30,7 @@ struct FigureSource {
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread
   RowNames names = {};
   std::string energy = {};  ///< one line: what the energy is
+  DrawnSection section = {};
 };
 
 /// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into

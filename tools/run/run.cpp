@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <utility>
 
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/energy.hpp"
@@ -32,7 +33,8 @@ void prepare(const fs::path& folder, const Scene& scene) {
       throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
   make_results_folder(folder);
   std::vector<fs::path> earlier;
-  for (const char* name : {"summary.json", "series.csv", "fields.h5", "scene.ini"}) earlier.push_back(folder / name);
+  for (const char* name : {"summary.json", "series.csv", "section.csv", "fields.h5", "scene.ini"})
+    earlier.push_back(folder / name);
   for (const std::string& name : figure_names())
     for (const char* ending : {".png", ".svg"}) earlier.push_back(folder / "figures" / (name + ending));
   for (const fs::path& file : earlier) fs::remove(file, error);
@@ -44,14 +46,14 @@ std::string energy_in_words(const Problem& problem) {
 
 // Figures of the rows that the recorder kept. A run does not fail if a figure cannot be drawn.
 std::string drawn(const Scene& scene, int winding, const RowNames& names, const Recorder& recorder,
-                  const fs::path& folder) {
+                  DrawnSection section, const fs::path& folder) {
   if (!recorder.film()) return {};
   const std::string& theory = scene.problem.theory;
   const bool angle = scene.problem.circle_valued || find_theory(theory).angle;
   try {
     return draw_figures(
         {scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding, *recorder.film(),
-         recorder.energy_errors(), scene.times, names, energy_in_words(scene.problem)},
+         recorder.energy_errors(), scene.times, names, energy_in_words(scene.problem), std::move(section)},
         folder);
   } catch (const std::exception& error) {
     return error.what();
@@ -60,7 +62,7 @@ std::string drawn(const Scene& scene, int winding, const RowNames& names, const 
 
 void say_what_is_there(const fs::path& folder) {
   std::string names;
-  for (const char* name : {"summary.json", "series.csv", "scene.ini", "fields.h5", "figures"})
+  for (const char* name : {"summary.json", "series.csv", "section.csv", "scene.ini", "fields.h5", "figures"})
     if (std::error_code none; fs::exists(folder / name, none)) names += std::string(" ") + name;
   fmt::print("  {:<10} {}:{}\n", "files", folder.string(), names);
 }
@@ -110,7 +112,13 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
   outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
   attempt([&] { recorder.close(); });
   std::string missing;
-  if (outcome.status != "system-failure") missing = drawn(scene, outcome.winding, names, recorder, folder);
+  DrawnSection section;
+  if (const Section* points = stepping.section()) {
+    section = {points->table(), points->title(), points->drawn_columns()};
+    attempt([&] { write_text_file(folder / "section.csv", section.table); });
+  }
+  if (outcome.status != "system-failure")
+    missing = drawn(scene, outcome.winding, names, recorder, std::move(section), folder);
   attempt([&] { write_text_file(folder / "summary.json", summary_json(scene, outcome)); });
 
   if (outcome.status != "system-failure") {

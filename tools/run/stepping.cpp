@@ -9,6 +9,7 @@
 
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
+#include "schemes/system/momenta.hpp"
 #include "tools/run/field_error.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
@@ -60,6 +61,14 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
       warnings_(scene, initial, simulation) {
   const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
   for (const Role role : all_roles) row_[role].resize(sites * names.of[role].size());
+  if (!scene.section.empty() && scene.problem.lattice.space() == Space::point) {
+    try {
+      require_lagrangian(simulation.evolution().system());
+      section_.emplace(scene.section, simulation.count(Role::field), scene.problem.time_step);
+    } catch (const BadInput& bad) {
+      throw scene.settings.located(bad);
+    }
+  }
   if (scene.fields) datasets_.resize(names.datasets.size());
   for (const std::string& name : simulation.conserved_names())
     outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
@@ -83,6 +92,20 @@ void Stepping::start() {
     outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0};
   }
   if (!names_.of[Role::multiplier].empty()) outcome_.constraint_max = 0;
+  for (std::int64_t row = 0; section_ && row <= newest_; ++row)
+    section_->see(phase_point(static_cast<int>(newest_ - row)));
+}
+
+/// (q, p) of the row `back` rows before the newest: the momenta that the method records, or those of its equations.
+std::vector<double> Stepping::phase_point(int back) const {
+  const auto d = static_cast<std::size_t>(simulation_.count(Role::field));
+  std::vector<double> point(d), p;
+  simulation_.copy_row(back, point);
+  for (std::size_t which = 0; which < names_.datasets.size() && p.empty(); ++which)
+    if (names_.datasets[which].name == "momentum") p = simulation_.dataset(which, back);
+  if (p.empty()) p = simulation_.momenta(back);  // of all components, fields first
+  point.insert(point.end(), p.begin(), p.begin() + static_cast<std::ptrdiff_t>(d));
+  return point;
 }
 
 void Stepping::run(Recorder& recorder) {
@@ -131,10 +154,11 @@ void Stepping::step_until(std::int64_t row, Progress& progress) {
   bool looked_at = true;  // as the row that an interruption leaves must be: it is recorded
   while (newest_ < row && !(looked_at && Interrupt::asked())) {
     const std::int64_t unseen = Interrupt::asked() ? 0 : row - 1 - newest_;
-    looked_at = unseen == 0;
+    looked_at = unseen == 0 || section_;
     simulation_.step(looked_at);
     ++newest_;
     count_step();
+    if (section_) section_->see(phase_point(0));
     progress.at(newest_);
   }
 }
@@ -210,6 +234,7 @@ void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
 }
 
 void Stepping::close_outcome() {
+  if (section_) section_->finish();
   outcome_.steps = std::max<std::int64_t>(0, recorded_);
   outcome_.time = static_cast<double>(outcome_.steps) * scene_.problem.time_step;
   if (outcome_.steps_taken > 0) outcome_.iterations_mean = iterations_ / static_cast<double>(outcome_.steps_taken);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "tools/scene/initial_rows.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/recorder.hpp"
+#include "tools/run/section.hpp"
 #include "tools/run/warnings.hpp"
+#include "tools/scene/initial_rows.hpp"
 
 namespace delf {
 
@@ -21,6 +22,8 @@ class Stepping {
   void start();
   /// Until the end, or an interruption. Throws NumericalFailure, with the step, after recording the last good row.
   void run(Recorder&);
+  /// The points of output.section; null without it.
+  const Section* section() const { return section_ ? &*section_ : nullptr; }
 
  private:
   void record_and_step();
@@ -32,6 +35,7 @@ class Stepping {
   std::int64_t next_record() const;
   void close_outcome();
   void measure_error();
+  std::vector<double> phase_point(int back) const;
   void monitor(const Simulation::Monitors&, Record&);
 
   const Scene& scene_;
@@ -43,6 +47,7 @@ class Stepping {
   Warnings warnings_;
   RecordedRow row_;
   RecordedDatasets datasets_;
+  std::optional<Section> section_;
   bool started_ = false;
   std::int64_t newest_ = 0, recorded_ = -1;
   double iterations_ = 0;

@@ -129,6 +129,9 @@ std::vector<Key> general_keys() {
       Key{"output.times", KeyType::times, "", "six, evenly spread", "times of the waveforms figure: 0, 10, 20", "time",
           not_negative},
 
+      Key{"output.section", KeyType::text, "", "none",
+          "a Poincare section: q1 = 0, p1 > 0; its points are in section.csv"},
+
       Key{"verify.regions", KeyType::text, "", "rectangle staircase hole wall slab random",
           "kinds of regions, drawn from run.seed; or ROWSxSITES, such as 0:8x10:30-3:5x18:22, rows from each moment's "
           "first"},
@@ -149,7 +152,8 @@ std::vector<Key> general_keys() {
 
       Key{"stability.schemes", KeyType::text, "", "eight, one of each sort", "schemes, separated by commas, or all"},
       Key{"stability.mass_steps", KeyType::text, "", "0.5, 1, 2.3", "values of mh at which limits are found"},
-      Key{"stability.most_courant", real, "3", "", "Courant numbers are looked at up to this", "", positive},
+      Key{"stability.most_courant", real, "3", "",
+          "Courant numbers are looked at up to this; on a point, wh up to 8 unless it is given", "", positive},
       Key{"stability.steps", integer, "2000", "", "steps of a run from noise", "", Limits{100, 1e7}},
       Key{"stability.agreement", real, "0.01", "", "theory and runs may differ by this, relative", "", positive},
       Key{"stability.corners", KeyType::text, "", "all",

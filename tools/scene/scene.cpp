@@ -197,6 +197,7 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   scene.figures = values.toggle("output.figures");
   scene.fields = values.toggle("output.fields");
   scene.times = values.times("output.times");
+  scene.section = values.text("output.section").value_or("");
   const auto warn = [&](const Setting& s, const std::string& why) {
     scene.warnings.push_back(
         fmt::format("{}: {}{} = {}: warning: {}", settings.place(s.key), s.line == 0 ? "--" : "", s.key, s.value, why));
@@ -214,6 +215,7 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
   const bool circle = scene.problem.lattice.is_circle(), point = scene.problem.lattice.space() == Space::point;
   if (const auto unread = why_not_read(scene, key); !unread.empty()) return unread;
   if ((key == "lattice.sites" || key == "lattice.length") && point) return "a point has neither length nor sites";
+  if (key == "output.section" && !point) return "sections are of mechanics, lattice.space = point";
   if (key == "boundary.winding" && point) return "a point has no winding";
   if (key == "boundary.winding" && !circle) return "an interval has no winding";
   if ((key == "boundary.left" || key == "boundary.right") && point) return "a point has no walls";

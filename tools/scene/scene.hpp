@@ -29,6 +29,7 @@ struct Scene {
   std::int64_t steps = 0;          ///< after row 0
   std::int64_t every = 1;          ///< 0: the last row only
   bool figures = true, fields = true;
+  std::string section;        ///< output.section as it is; empty: none
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread
 
   bool from_file() const { return !initial_file.empty(); }

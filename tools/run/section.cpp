@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/section.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <optional>
+
+#include "jets/tables/line_basis.hpp"
+#include "lattice/error.hpp"
+#include "schemes/text_parts.hpp"
+
+namespace delf {
+
+namespace {
+
+constexpr std::size_t rows_around = 8;
+
+// "q", "p" of one coordinate; "q1", "q2", … of several
+std::string name_of(std::size_t place, std::size_t coordinates) {
+  const std::string letter = place < coordinates ? "q" : "p";
+  return coordinates == 1 ? letter : letter + std::to_string(place % coordinates + 1);
+}
+
+std::optional<double> number(const std::string& text) {
+  double value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value) ? std::optional(value)
+                                                                                          : std::nullopt;
+}
+
+SectionRequest::Term term_of(const std::string& text, std::size_t coordinates) {
+  const auto refuse = [&](const std::string& why) {
+    return BadInput("output.section",
+                    fmt::format("output.section: \"{}\" {}; write one like q1 = 0, p1 > 0", text, why));
+  };
+  const auto at = text.find_first_of("=<>");
+  if (at == std::string::npos) throw refuse("has none of =, < and >");
+  const std::string name = trimmed(text.substr(0, at));
+  const auto value = number(trimmed(text.substr(at + 1)));
+  if (!value) throw refuse("has no number at its right");
+  for (std::size_t place = 0; place < 2 * coordinates; ++place)
+    if (name == name_of(place, coordinates)) return {place, text[at], *value};
+  throw refuse(
+      fmt::format("begins with none of {} to {}", name_of(0, coordinates), name_of(2 * coordinates - 1, coordinates)));
+}
+
+}  // namespace
+
+SectionRequest::SectionRequest(const std::string& text, int coordinates) : surface{} {
+  std::vector<Term> terms;
+  for (const std::string& part : parts_of(text)) terms.push_back(term_of(part, static_cast<std::size_t>(coordinates)));
+  const auto is_surface = [](const Term& term) { return term.relation == '='; };
+  if (std::ranges::count_if(terms, is_surface) != 1)
+    throw BadInput("output.section",
+                   fmt::format("output.section = {}: a section has one =, and conditions with < or >; "
+                               "write one like q1 = 0, p1 > 0",
+                               text));
+  surface = *std::ranges::find_if(terms, is_surface);
+  std::ranges::copy_if(terms, std::back_inserter(conditions), [&](const Term& term) { return !is_surface(term); });
+}
+
+Section::Section(const std::string& text, int coordinates, double time_step)
+    : title_(text),
+      request_(text, coordinates),
+      coordinates_(static_cast<std::size_t>(coordinates)),
+      time_step_(time_step) {}
+
+void Section::see(std::vector<double> point) {
+  ++newest_;
+  rows_.push_back(std::move(point));
+  if (rows_.size() > rows_around) rows_.pop_front(), --crossed_;
+  // up to the one in the middle: later ones wait for the rows after them
+  if (rows_.size() == rows_around)
+    while (crossed_ < rows_around / 2) cross(crossed_++);
+}
+
+void Section::finish() {
+  while (crossed_ + 1 < rows_.size()) cross(crossed_++);
+}
+
+/// The point between rows_[first] and the next one, if there is one.
+void Section::cross(std::size_t first) {
+  const auto off = [&](const std::vector<double>& point) {
+    return point[request_.surface.place] - request_.surface.value;
+  };
+  const double before = off(rows_[first]), after = off(rows_[first + 1]);
+  if ((before < 0) == (after < 0)) return;
+  std::vector<double> nodes;
+  for (std::size_t n = 0; n < rows_.size(); ++n) nodes.push_back(static_cast<double>(n));
+  const LagrangeBasis psi(std::move(nodes));
+  const auto at = [&](double s) {
+    const std::vector<double> weights = psi.values(s);
+    std::vector<double> point(2 * coordinates_, 0.0);
+    for (std::size_t n = 0; n < rows_.size(); ++n)
+      for (std::size_t a = 0; a < point.size(); ++a) point[a] += weights[n] * rows_[n][a];
+    return point;
+  };
+  const double low = static_cast<double>(first);
+  double s = low + (before == 0 ? 0 : 1);
+  if (before != 0 && after != 0) {
+    std::uintmax_t iterations = 100;
+    const auto [left, right] =
+        boost::math::tools::toms748_solve([&](double x) { return off(at(x)); }, low, low + 1, before, after,
+                                          boost::math::tools::eps_tolerance<double>(52), iterations);
+    s = std::midpoint(left, right);
+  }
+  const std::vector<double> point = at(s);
+  for (const SectionRequest::Term& term : request_.conditions)
+    if (!(term.relation == '<' ? point[term.place] < term.value : point[term.place] > term.value)) return;
+  ++points_;
+  lines_ += fmt::format("{}", (static_cast<double>(newest_) + s - static_cast<double>(rows_.size() - 1)) * time_step_);
+  for (const double x : point) lines_ += fmt::format(",{}", x);
+  lines_ += "\n";
+}
+
+std::string Section::table() const {
+  std::string heading = "time";
+  for (std::size_t place = 0; place < 2 * coordinates_; ++place) heading += "," + name_of(place, coordinates_);
+  return heading + "\n" + lines_;
+}
+
+std::array<int, 2> Section::drawn_columns() const {
+  for (std::size_t a = 0; points_ > 0 && a < coordinates_; ++a)
+    if (a != request_.surface.place % coordinates_)
+      return {static_cast<int>(a) + 2, static_cast<int>(a + coordinates_) + 2};
+  return {0, 0};
+}
+
+}  // namespace delf
