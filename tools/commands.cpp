@@ -141,7 +141,10 @@ const std::vector<Command>& table() {
        "run\n"
        "with a verdict. Into DIR (results/NAME of the scene, if not given) go stability.json and figures. Exit code 1 "
        "if\n"
-       "runs disagree with theory, or a stress case crashes, hangs, or reports a wrong result as valid.\n\n"
+       "runs disagree with theory, or a stress case crashes, hangs, or reports a wrong result as valid.\n"
+       "On lattice.space = point: limits in wh on q_tt = -w^2 q, with the order and the cost of each method of "
+       "mechanics,\n"
+       "as a table, stability.json and methods.md.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_stability, "stability"},
       {"list", "delf list [theories|stencils|schemes|states|scenes]", "what there is",

@@ -9,13 +9,14 @@
 
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "tools/stability/corner_list.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/seconds_since.hpp"
+#include "tools/scene/text_file.hpp"
+#include "tools/stability/corner_list.hpp"
+#include "tools/stability/point_limits.hpp"
 #include "tools/stability/stability_figures.hpp"
 #include "tools/stability/stability_map.hpp"
-#include "tools/scene/text_file.hpp"
 
 namespace delf {
 
@@ -101,6 +102,7 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
 }
 
 ExitCode stability(const Scene& scene, const fs::path& folder) {
+  if (scene.problem.lattice.space() == Space::point) return point_stability(scene, folder);
   const Interrupt interrupt;
   const StabilityRequest request = read_stability_request(scene);
   const StabilityFindings findings = find_stability(request, scene.problem);

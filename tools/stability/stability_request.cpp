@@ -81,10 +81,6 @@ StabilityRequest read_stability_request(const Scene& scene) {
   const Values values(scene.settings);
   const auto list = [&](const char* key) { return names_in_list(values.text(key).value_or("")); };
   StabilityRequest request;
-  if (scene.problem.lattice.space() == Space::point)
-    throw scene.settings.error("lattice.space",
-                               "a point has no Courant number; `delf stability` is for circles and "
-                               "intervals");
   try {
     request.schemes = chosen_schemes(list("stability.schemes"), scene.problem);
   } catch (const BadInput& bad) {

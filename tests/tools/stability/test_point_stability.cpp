@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
+#include "tools/stability/point_limits.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+PointFinding found(const std::string& tableau, int functions = 0, int points = 0) {
+  Problem p;
+  p.method = "cgvi", p.lattice = Lattice::point();
+  if (functions == 0) p.parameters["scheme.tableau"] = tableau;
+  else {
+    p.parameters["scheme.functions"] = functions, p.parameters["scheme.points"] = points;
+    p.parameters["scheme.quadrature"] = tableau;
+  }
+  return find_point_limit({tableau, p}, {.schemes = {}, .most = 6, .steps = 500});
+}
+
+}  // namespace
+
+TEST_CASE("limits of elements of time in ωh are those of theory, by theory and by running") {
+  struct Known {
+    PointFinding finding;
+    double limit, order;
+  };
+  for (const Known& known : {Known{found("stormer-verlet"), 2, 2}, Known{found("lobatto3"), std::sqrt(8.0), 4},
+                             Known{found("gauss", 2, 2), std::sqrt(12.0), 2}}) {
+    const PointFinding& f = known.finding;
+    CAPTURE(f.scheme, f.theory, f.observed, f.order);
+    CHECK(std::abs(f.theory - known.limit) < 1e-4 * known.limit);
+    CHECK(std::abs(f.observed - known.limit) < 0.01 * known.limit);
+    CHECK(f.agrees);
+    CHECK(std::abs(f.order - known.order) < 0.15);
+    CHECK(f.microseconds > 0);
+  }
+  // stable again: 3.464 to 4.899
+  const PointFinding lobatto = found("lobatto3");
+  REQUIRE(lobatto.stable.size() == 2);
+  CHECK(std::abs(lobatto.stable[1].first - std::sqrt(12.0)) < 1e-4);
+  CHECK(std::abs(lobatto.stable[1].second - std::sqrt(24.0)) < 1e-4);
+  CHECK(std::isinf(found("gauss2").theory));
+}
+
+TEST_CASE("the table of mechanics is written, a planted limit is found, and unknown schemes are refused") {
+  const Folder folder;
+  const std::string run =
+      "stability pendulum --stability.steps=300 --stability.schemes=\"trapezoidal, cgvi lobatto2\" ";
+  const Ran ran = delf_program(folder, run + "--out out");
+  INFO(ran.out << ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK(contains(ran.out, "3 of 3 limits agree"));
+  CHECK(contains(read(folder / "out/methods.md"), "| cgvi lobatto2 | 2.0"));
+  const auto json = nlohmann::json::parse(read(folder / "out/stability.json"));
+  REQUIRE(json["point_limits"].size() == 3);
+  CHECK(std::abs(json["point_limits"][1]["theory"].get<double>() - 2) < 1e-4);
+  CHECK(delf_program(folder, run + "--stability.fault=limit --out fault").code == 1);
+  check_refused(delf_program(folder, "stability pendulum --stability.schemes=lobato3"),
+                {"stability.schemes", "lobato3"});
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "jets/tables/named_tables.hpp"
+#include "tools/files/text_columns.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/outcome.hpp"
+#include "tools/scene/suggestion.hpp"
+#include "tools/scene/text_file.hpp"
+#include "tools/scene/values.hpp"
+#include "tools/stability/point_limits.hpp"
+#include "tools/stability/stability_request.hpp"
+
+namespace delf {
+
+namespace {
+
+/// The scene's own scheme, then all of mechanics or those that the scene names.
+std::vector<NamedScheme> schemes_of(const Scene& scene, const std::vector<std::string>& asked) {
+  std::vector<NamedScheme> all = named_schemes(scene.problem), chosen;
+  const bool takes_all = asked.empty() || asked == std::vector<std::string>{"all"};
+  const std::string own = scheme_label(scene.problem);
+  if (!takes_all || std::ranges::find(all, own, &NamedScheme::name) == all.end())
+    chosen.push_back({own, scene.problem});
+  if (takes_all) {
+    std::ranges::move(all, std::back_inserter(chosen));
+    return chosen;
+  }
+  for (const std::string& given : asked) {
+    const std::string name = stencil_name(given, true);
+    const std::size_t before = chosen.size();
+    for (const NamedScheme& scheme : all)
+      if (scheme.name == name || scheme.name.starts_with(name + " ")) chosen.push_back(scheme);
+    if (chosen.size() > before) continue;
+    std::vector<std::string> names;
+    for (const NamedScheme& scheme : all) names.push_back(scheme.name);
+    throw scene.settings.error("stability.schemes",
+                               fmt::format("{} is no scheme here{}", given, suggestion(given, names)));
+  }
+  return chosen;
+}
+
+PointRequest request_of(const Scene& scene) {
+  const Values values(scene.settings);
+  PointRequest request;
+  request.schemes = schemes_of(scene, names_in_list(values.text("stability.schemes").value_or("")));
+  if (scene.settings.find("stability.most_courant")) request.most = values.real("stability.most_courant");
+  request.agreement = values.real("stability.agreement");
+  request.steps = static_cast<int>(values.integer("stability.steps"));
+  if (values.choice("stability.fault") == "limit") request.theory_factor = 1.05;
+  return request;
+}
+
+std::string limit_in_words(double limit, double most) {
+  return std::isnan(limit)   ? "not found"
+         : std::isinf(limit) ? fmt::format("none to {:g}", most)
+                             : fmt::format("{:.4f}", limit);
+}
+
+std::string again(const PointFinding& f) {
+  std::string text;
+  for (std::size_t i = 1; i < f.stable.size(); ++i)
+    text +=
+        fmt::format("{}{:.4g} to {:.4g}", i == 1 ? "stable again from " : ", ", f.stable[i].first, f.stable[i].second);
+  return text;
+}
+
+std::vector<std::string> cells(const PointFinding& f, const PointRequest& request) {
+  return {f.scheme,
+          fmt::format("{:.2f}", f.order),
+          limit_in_words(f.theory, request.most),
+          limit_in_words(f.observed, request.most),
+          fmt::format("{:.2f}", f.microseconds),
+          fmt::format("{:.1f}", f.iterations),
+          !f.agrees      ? "FAILED"
+          : f.too_narrow ? again(f) + "; too narrow for runs"
+                         : again(f)};
+}
+
+const std::vector<std::string> headings{"scheme",    "order",      "wh, theory", "by running",
+                                        "us a step", "iterations", "remarks"};
+
+std::string markdown(const std::vector<PointFinding>& findings, const PointRequest& request) {
+  std::string text, rule;
+  for (const std::string& heading : headings) text += "| " + heading + " ", rule += "|---";
+  text += "|\n" + rule + "|\n";
+  for (const PointFinding& f : findings) {
+    for (const std::string& cell : cells(f, request)) text += "| " + cell + " ";
+    text += "|\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json number(double x) {
+  if (std::isfinite(x)) return x;
+  return nullptr;
+}
+
+std::string json(const Scene& scene, const std::vector<PointFinding>& findings, const PointRequest& request) {
+  nlohmann::ordered_json limits = nlohmann::ordered_json::array();
+  for (const PointFinding& f : findings) {
+    nlohmann::ordered_json intervals = nlohmann::ordered_json::array();
+    for (const auto& [from, to] : f.stable) intervals.push_back({from, to});
+    limits.push_back({{"scheme", f.scheme},
+                      {"theory", number(f.theory)},
+                      {"observed", number(f.observed)},
+                      {"unlimited", std::isinf(f.theory)},
+                      {"stable", intervals},
+                      {"agrees", f.agrees},
+                      {"order", number(f.order)},
+                      {"microseconds", number(f.microseconds)},
+                      {"iterations", number(f.iterations)}});
+  }
+  return nlohmann::ordered_json{{"version", DELF_VERSION},
+                                {"scene", scene.name},
+                                {"most_frequency_step", request.most},
+                                {"agreement", request.agreement},
+                                {"point_limits", limits}}
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace
+
+ExitCode point_stability(const Scene& scene, const std::filesystem::path& folder) {
+  const Interrupt interrupt;
+  const PointRequest request = request_of(scene);
+  std::vector<PointFinding> findings;
+  std::string left_out;
+  int count_left_out = 0;
+  for (const NamedScheme& scheme : request.schemes) {
+    if (Interrupt::asked()) return ExitCode::interrupted;
+    PointFinding found = find_point_limit(scheme, request);
+    if (found.left_out.empty()) findings.push_back(std::move(found));
+    else left_out += "  " + shortened(found.scheme + ": " + found.left_out, 118) + "\n", ++count_left_out;
+  }
+  make_results_folder(folder);
+  write_text_file(folder / "stability.json", json(scene, findings, request));
+  write_text_file(folder / "methods.md", markdown(findings, request));
+  std::vector<TextColumn> columns;
+  for (const std::string& heading : headings) columns.push_back({heading, heading != "scheme" && heading != "remarks"});
+  std::vector<std::vector<std::string>> rows;
+  for (const PointFinding& f : findings) rows.push_back(cells(f, request));
+  fmt::print("{}: limits on q_tt = -w^2 q; order and cost on a pendulum\n\n{}", scene.name,
+             text_table(columns, rows, 120));
+  if (scene.settings.find("stability.schemes") && count_left_out > 0) fmt::print("\nleft out\n{}", left_out);
+  else if (count_left_out > 0) fmt::print("\nleft out: {} schemes that are not of mechanics\n", count_left_out);
+  const auto failed = std::ranges::count(findings, false, &PointFinding::agrees);
+  fmt::print("\n{} of {} limits agree\n{}: stability.json methods.md\n",
+             findings.size() - static_cast<std::size_t>(failed), findings.size(), folder.string());
+  return failed == 0 ? ExitCode::done : ExitCode::check_failed;
+}
+
+}  // namespace delf
