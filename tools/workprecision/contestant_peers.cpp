@@ -12,8 +12,9 @@
 
 #include "lattice/error.hpp"
 #include "schemes/state.hpp"
-#include "tools/run/interrupt.hpp"
+#include "tools/peers/body_peers.hpp"
 #include "tools/peers/peer.hpp"
+#include "tools/run/interrupt.hpp"
 
 namespace delf {
 
@@ -119,9 +120,67 @@ class PeerRacer final : public Racer {
   std::int64_t newest_ = 0;
 };
 
+class BodyRacer final : public Racer {
+ public:
+  BodyRacer(const Scene& scene, peers::BodyPeerInfo info, const Resolution& r)
+      : info_(std::move(info)), mass_(mass_of(scene)), h_(r.time_step), peer_(info_.make(mass_)) {
+    const auto state = make_state(scene.initial, scene.problem.lattice);
+    for (std::vector<double>* row : {&q_, &q_t_, &first_, &first_t_})
+      row->resize(static_cast<std::size_t>(state->components()));
+    state->values(0, scene.problem.lattice, first_);
+    state->velocities(0, scene.problem.lattice, first_t_);
+    BodyRacer::restart();
+  }
+  static double mass_of(const Scene& scene) {
+    return scene.problem.parameters.maybe<double>("theory.mass").value_or(1);
+  }
+  void restart() override {
+    peer_->start(first_, first_t_);
+    newest_ = 0;
+  }
+  std::int64_t newest() const override { return newest_; }
+  void advance(std::int64_t steps) override {
+    constexpr std::int64_t between_interrupts = 1 << 20;
+    while (steps > 0 && !Interrupt::asked()) {
+      const std::int64_t now = std::min(steps, between_interrupts);
+      peer_->advance(h_, now);
+      newest_ += now, steps -= now;
+    }
+  }
+  void copy(std::span<double> out) const override {
+    peer_->copy(out, q_t_);
+    for (const double q : out)
+      if (!std::isfinite(q)) throw NotFinite("the body is no longer at a finite place");
+  }
+  double forces() const override { return static_cast<double>(info_.forces); }
+  double energy() const override {
+    peer_->copy(q_, q_t_);
+    return info_.energy(mass_, q_, q_t_);
+  }
+
+ private:
+  peers::BodyPeerInfo info_;
+  double mass_, h_;
+  std::unique_ptr<peers::Peer> peer_;
+  mutable std::vector<double> q_, q_t_;
+  std::vector<double> first_, first_t_;
+  std::int64_t newest_ = 0;
+};
+
+std::vector<Contestant> body_contestants(const Scene& scene) {
+  std::vector<Contestant> all;
+  if (scene.from_file()) return all;
+  for (const peers::BodyPeerInfo& info : peers::body_peers(scene.problem.theory))
+    all.push_back({info.name, true, 1, 0, [&scene, info](const Resolution& r) {
+                     return std::unique_ptr<Racer>(new BodyRacer(scene, info, r));
+                   }});
+  return all;
+}
+
 }  // namespace
 
 std::vector<Contestant> peer_contestants(const Scene& scene) {
+  if (scene.problem.lattice.space() == Space::point) return body_contestants(scene);
   std::vector<Contestant> all;
   const auto equation = equation_of(scene);
   if (!equation) return all;
