@@ -79,8 +79,10 @@ std::vector<double> q_of(const RowsInTime& rows, std::int64_t row) {
 /// p = ∂L/∂q of what lies below the row; at the start, where nothing does, −∂L/∂q of what lies above it. Under a
 /// constraint the part along its surface.
 std::vector<double> momentum(const RowsInTime& rows, std::int64_t row) {
-  std::vector<double> p = momenta(rows.system, rows.rows, row, row == rows.newest ? Side::below : Side::above);
-  p.resize(static_cast<std::size_t>(rows.theory.components()));  // one site; fields come first
+  const std::vector<double> all = momenta(rows.system, rows.rows, row, row == rows.newest ? Side::below : Side::above);
+  std::vector<double> p;  // at each site the fields come first
+  for (auto site = all.begin(); site != all.end(); site += rows.system.components())
+    p.insert(p.end(), site, site + rows.theory.components());
   if (const auto constraint = rows.theory.constraint())
     return tangent_momentum(rows.theory.density(), *constraint, q_of(rows, row), std::move(p),
                             static_cast<double>(row) * rows.time_step);
