@@ -8,8 +8,7 @@
 namespace delf {
 
 /// One step of a splitting over wide stencils of the weights m² β_m in `pairs`, anchored at a site i: nodes are the rows
-/// between the sub-steps. In
-/// sub-step s, of the length a_s h, with D_m = (y_{i+m} − y_i)/(mk),
+/// between the sub-steps. In sub-step s, of the length a_s h, with D_m = (y_{i+m} − y_i)/(mk),
 ///
 ///     L = Σ_m m² β_m Σ ½ w ℓ(φ, φ_t, D_m)       over both ends of a pair and both rows of the sub-step,
 ///
