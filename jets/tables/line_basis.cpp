@@ -174,8 +174,8 @@ LineBasis b_spline_basis(int S, int degree) {
 
 const std::vector<NamedLineBasis>& named_line_bases() {
   static const std::vector<NamedLineBasis> bases{{"lagrange-lobatto", lagrange_lobatto},
-                                                 {"lagrange-gauss", lagrange_gauss},
-                                                 {"lagrange-radau", lagrange_radau},
+                                                 {"lagrange-gauss", lagrange_gauss, nullptr, 1},
+                                                 {"lagrange-radau", lagrange_radau, nullptr, 1},
                                                  {"lagrange-chebyshev", lagrange_chebyshev},
                                                  {"lagrange-lobatto-bubble", lagrange_lobatto_bubble},
                                                  {"bernstein", bernstein_basis},

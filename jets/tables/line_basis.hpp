@@ -41,12 +41,13 @@ LineBasis bernstein_basis(int S);
 /// B-splines of a degree p ≤ S − 1 on S − p equal spans, each end a knot p + 1 times: p − 1 derivatives are continuous.
 LineBasis b_spline_basis(int S, int degree);
 
-/// A basis as a scene names it, of any S ≥ 2.
+/// A basis as a scene names it.
 struct NamedLineBasis {
   std::string name;
   LineBasis (*make)(int S);
   /// Where the degree is not S − 1: of that degree. Null for polynomials.
   LineBasis (*of_degree)(int S, int degree) = nullptr;
+  int fewest = 2;  ///< functions
 };
 /// lagrange-lobatto, lagrange-gauss, lagrange-radau (0 is a node), lagrange-chebyshev (the extrema, both ends with them),
 /// lagrange-lobatto-bubble (S − 1 Lobatto nodes c_i, and one between them, whose function is the bubble Π(τ − c_i) up to

@@ -56,7 +56,19 @@ void add_constraints(SchemeParts& parts, const FieldTheory& theory, const TimeEl
   }
 }
 
+/// p = ∂ℓ/∂q_t must have velocities: the densities of dgvi have none.
+void require_mass(const FieldTheory& theory) {
+  const int d = theory.components();
+  for (int a = d; a < 2 * d; ++a)
+    for (int b = d; b < 2 * d; ++b)
+      if (!theory.density().is_zero(a, b)) return;
+  throw BadInput("scheme.method",
+                 "scheme.method = cgvi: the density is linear in the velocities, so that momenta do not determine them; "
+                 "use scheme.method = dgvi");
+}
+
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
+  require_mass(theory);
   if (theory.constraint() && p.lattice.space() != Space::point)
     throw BadInput("scheme.method",
                    "scheme.method = cgvi: constraints of elements are for lattice.space = point; use scheme.method = "

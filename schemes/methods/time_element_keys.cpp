@@ -14,10 +14,9 @@ namespace {
 constexpr const char* stood_for[] = {"scheme.basis", "scheme.functions", "scheme.degree", "scheme.quadrature",
                                      "scheme.points"};
 
-template <class Named>
-std::vector<std::string> names_of(const std::vector<Named>& list) {
+std::vector<std::string> names_of(const std::vector<TimeTableau>& list) {
   std::vector<std::string> names;
-  for (const Named& named : list) names.push_back(named.name);
+  for (const TimeTableau& tableau : list) names.push_back(tableau.name);
   return names;
 }
 
@@ -57,15 +56,6 @@ TimeElementKeys::TimeElementKeys(const ParameterValues& values)
   continuity = (given ? *given == "shared" : basis.has_end_nodes()) ? Continuity::shared : Continuity::multipliers;
 }
 
-LineRule TimeElementKeys::rule() const {
-  const auto named = std::ranges::find(named_line_rules(), quadrature, &NamedLineRule::name);
-  if (points < named->fewest)
-    throw BadInput("scheme.points", fmt::format("scheme.points = {}: the rule {} has {} points at least; raise "
-                                                "scheme.points",
-                                                points, quadrature, named->fewest));
-  return named->make(points);
-}
-
 std::string TimeElementKeys::in_words() const {
   return (tableau.empty()
               ? fmt::format("{} {} functions{}, {} {} points", basis_name, functions,
@@ -75,36 +65,25 @@ std::string TimeElementKeys::in_words() const {
 }
 
 std::vector<Parameter> TimeElementKeys::parameters() {
+  // what a tableau stands for has no default beside it
+  const auto otherwise = [](Parameter parameter, const char* words) {
+    parameter.otherwise = words;
+    return parameter;
+  };
   return {{.key = "scheme.tableau",
            .fallback = std::string(),
            .help = "a Runge-Kutta method by its name, in place of basis, functions, quadrature and points",
            .choices = names_of(time_tableaux()),
            .otherwise = "none"},
-          {.key = "scheme.basis",
-           .fallback = "lagrange-lobatto",
-           .help = "the functions on a step",
-           .choices = names_of(named_line_bases()),
-           .otherwise = "lagrange-lobatto"},
-          {.key = "scheme.functions",
-           .fallback = 3,
-           .help = "S: how many; their degree is S - 1",
-           .range = {.low = 2, .high = 20},
-           .otherwise = "3"},
+          otherwise(basis_parameter("lagrange-lobatto"), "lagrange-lobatto"),
+          otherwise(functions_parameter(3, 2), "3"),
           {.key = "scheme.degree",
            .fallback = 3,
            .help = "basis = b-spline: the degree of its pieces",
            .range = {.low = 1, .high = 19},
            .otherwise = "functions - 1, of b-spline 3 at most"},
-          {.key = "scheme.quadrature",
-           .fallback = "gauss",
-           .help = "the quadrature in time",
-           .choices = names_of(named_line_rules()),
-           .otherwise = "gauss"},
-          {.key = "scheme.points",
-           .fallback = 2,
-           .help = "R: points of the quadrature, on every span of a b-spline",
-           .range = {.low = 1, .high = 40},
-           .otherwise = "the degree of the functions"},
+          otherwise(quadrature_parameter(), "gauss"),
+          points_parameter("the degree of the functions", 2),
           {.key = "scheme.continuity",
            .fallback = "shared",
            .help = "what joins the steps: end nodes that they share, or multipliers",

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+#include <vector>
+
+#include "jets/tables/line_basis.hpp"
+#include "jets/tables/line_rule.hpp"
+#include "jets/tables/stencil_table.hpp"
+#include "schemes/parameter.hpp"
+#include "schemes/system/lattice_system.hpp"
+
+namespace delf {
+
+struct Problem;
+
+/// The keys that elements in time share: S functions of a basis, and a quadrature rule of R points.
+struct ElementKeys {
+  /// R is S + `more` if scheme.points is not given. Throws BadInput for a basis that has not so few functions.
+  ElementKeys(const Problem&, int more);
+  /// Throws BadInput for a rule that has not so few points.
+  LineRule rule() const;
+
+  std::string basis_name = "lagrange-lobatto", quadrature = "gauss";
+  int functions = 3, points = 2;
+  LineBasis basis;
+
+ protected:
+  ElementKeys() = default;
+};
+
+Parameter basis_parameter(const std::string& fallback);
+Parameter functions_parameter(int fallback, int fewest);
+Parameter quadrature_parameter();
+Parameter points_parameter(const std::string& otherwise, int fallback);
+
+/// The coefficients inside an element, nodes 1, 2, … of its table: component = node · d + a.
+std::vector<Component> inner_components(const StencilTable& element, int d);
+/// Multipliers that are momenta of the d fields.
+std::vector<Component> momentum_components(const char* name, int d);
+
+}  // namespace delf
