@@ -9,10 +9,10 @@
 
 #include "tools/engine.hpp"
 #include "tools/run/in_words.hpp"
-#include "tools/scene/initial_rows.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/seconds_since.hpp"
 #include "tools/run/stepping.hpp"
+#include "tools/scene/initial_rows.hpp"
 
 namespace delf {
 
@@ -93,6 +93,7 @@ ExitCode plan(const Scene& scene) {
     fmt::print("  state      {}; row 1 is {}\n", initial.description(),
                initial.rule() == StartRule::exact     ? "known"
                : initial.rule() == StartRule::centred ? "solved for, with y(-1) = y(1) - 2 h phi_t"
+               : initial.rule() == StartRule::values  ? "the first step, from the values of row 0 alone"
                                                       : "solved for, by the discrete Legendre transform");
     fmt::print("  recorded   {}\n{}\n{}", recording(scene), output(scene, simulation.components().size()),
                simulation.plan_report());

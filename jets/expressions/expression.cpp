@@ -149,13 +149,15 @@ class ExpressionDensity final : public BatchDensity, public ValueDerivatives {
       }
   }
 
-  /// A field whose rate enters no second derivative of ℓ has no equation that a step could solve for it.
+  /// A field has an equation that a step could solve for it if its rate enters a second derivative of ℓ, or if the field
+  /// itself does together with the rate of another: p in p q_t.
   void require_determined(int a, const std::string& field, const std::string& key) const {
     bool present = false, in_motion = false;
     for (int s = 0; s < slots_; ++s) present = present || depends_on(s * components_ + a);
     for (const int rate : {1, 3, 4})
       for (int b = 0; rate < slots_ && b < variables(); ++b)
-        in_motion = in_motion || !is_zero(rate * components_ + a, b);
+        in_motion = in_motion || !is_zero(rate * components_ + a, b) ||
+                    (b < components_ && b != a && !is_zero(rate * components_ + b, a));
     const auto refuse = [&](const std::string& why) {
       throw BadInput(key, key + ": does not determine the field " + field + ": " + why);
     };

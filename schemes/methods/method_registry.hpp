@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -28,8 +29,11 @@ struct SchemeParts {
   std::vector<std::string> remarks = {};  ///< lines for `delf plan`
 };
 
-/// What gives row 1: the known solution; the field equation at row 0; the discrete Legendre transform there.
-enum class StartRule { exact, centred, legendre };
+/// What gives row 1: the known solution; the field equation at row 0; the discrete Legendre transform there; a step of a
+/// scheme of first order in time, which needs no more than the values of row 0.
+enum class StartRule { exact, centred, legendre, values };
+inline constexpr std::array all_start_rules{StartRule::exact, StartRule::centred, StartRule::legendre,
+                                            StartRule::values};
 const char* to_string(StartRule);
 
 /// The last rows of a run, of all components.
@@ -45,6 +49,8 @@ struct RowsInTime {
 struct Monitor {
   std::string name;
   double (*value)(const RowsInTime&);
+  /// A run warns by these words, what it means and a remedy, if the value grows far beyond what it is early; null: never.
+  const char* when_it_grows = nullptr;
 };
 
 /// What fields.h5 has of every recorded row beside the components, frames × sites × values: declared, as data, by a

@@ -33,7 +33,10 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
   back_ = std::move(extent.behind);
   points_ = std::clamp(options.seed_order, 1, most_points);
   past_ = std::max(plan.history, points_ + extent.below);
-  starting_rows_ = std::max(plan.history, 1) + future_;
+  // Traces are the state of a row: of first order in time, a scheme goes on from one.
+  by_values_ =
+      plan.history <= 1 && lag_ == 0 && std::ranges::count(system.all_components(), Role::trace, &Component::role) > 0;
+  starting_rows_ = by_values_ ? 1 : std::max(plan.history, 1) + future_;
   const std::size_t row = static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_);
   ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row);
   for (int p = 0; p < plan.table.parities; ++p) {
@@ -111,6 +114,10 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
   }
   wait_ = 1, waiting_ = 0;
   by_momenta_ = false;
+  if (by_values_ && rows.size() == 1) {
+    J_ = 0;
+    if (solve_slab_of_start(nullptr)) known_ = 1;
+  }
 }
 
 void SlabStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
@@ -126,27 +133,58 @@ void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vec
   if (plan_.history > 2 || lag_ != 0)
     throw BadInput("initial.start", "initial.start = legendre: this scheme is not one slab's map; use exact");
   start({row0});
-  solve_slab_of_start(momenta);
+  solve_slab_of_start(&momenta);
   solve(1, &momenta);
   J_ = 1;
   by_momenta_ = true;
 }
 
+namespace {
+
+/// A value of row 0 that a start gives.
+bool is_data(const LatticeSystem& system, const Node& value) {
+  const Role role = system.component(value.component).role;
+  return value.site.time == 0 && (role == Role::field || role == Role::trace);
+}
+
+/// Leaves out the equations that contain what lies before row 0, or what is found there by other equations than these,
+/// and the unknowns that they are solved for.
+void leave_out_earlier_rows(const LatticeSystem& system, Assembly::Parts& parts) {
+  const auto is_known = [&](const Node& value) {
+    return is_data(system, value) || std::ranges::find(parts.unknowns, value) != parts.unknowns.end();
+  };
+  const auto is_whole = [&](const Node& equation) {
+    return std::ranges::all_of(system.linearised(equation.site, equation.component), [&](const Coefficient& c) {
+      Site site = equation.site + c.offset;
+      site.space = system.lattice().home(site.space), site.node = 0;  // components tell nodes apart
+      return is_known({site, c.component});
+    });
+  };
+  for (std::size_t n = 0; n < parts.equations.size();)
+    if (is_whole(parts.equations[n])) ++n;
+    else {
+      const auto at = static_cast<std::ptrdiff_t>(n);
+      parts.equations.erase(parts.equations.begin() + at), parts.unknowns.erase(parts.unknowns.begin() + at);
+      n = 0;
+    }
+}
+
+}  // namespace
+
 /// What slab 0 finds besides row 0 itself: a plan may solve for a multiplier, or for the nodes of the cell above, as soon
-/// as the row is there. Nothing for fields alone, whose equations at row 0 belong to slab 1.
-void SlabStepper::solve_slab_of_start(const std::vector<double>& momenta) {
+/// as the row is there. Nothing for fields alone, whose equations at row 0 belong to slab 1. Whether there was anything.
+bool SlabStepper::solve_slab_of_start(const std::vector<double>* momenta) {
   const Assembly::Parts whole = Assembly::slab(plan_, 0, past_, future_, options_.turn);
-  if (!whole.matched) return;
+  if (!whole.matched) return false;
   Assembly::Parts parts = whole;
   parts.equations.clear(), parts.unknowns.clear();
   for (std::size_t n = 0; n < whole.equations.size(); ++n) {
     const Node &equation = whole.equations[n], &unknown = whole.unknowns[n];
-    const Role role = system_.component(unknown.component).role;
-    const bool data = unknown.site.time == 0 && (role == Role::field || role == Role::trace);
-    if (equation.site.time < 0 || unknown.site.time < 0 || data) continue;
+    if (equation.site.time < 0 || unknown.site.time < 0 || is_data(system_, unknown)) continue;
     parts.equations.push_back(equation), parts.unknowns.push_back(unknown);
   }
-  if (parts.equations.empty()) return;
+  if (!momenta) leave_out_earlier_rows(system_, parts);
+  if (parts.equations.empty()) return false;
   Assembly equations(system_, parts);
   BlockSolver solver = solver_of(equations);
   std::vector<Unknowns> unknowns = list_unknowns(equations);
@@ -154,7 +192,8 @@ void SlabStepper::solve_slab_of_start(const std::vector<double>& momenta) {
   // newton() begins with the row before, which here is row 0 itself
   std::ranges::copy(std::vector<double>(ring_->row(0), ring_->row(0) + predicted_.size()), ring_->row(-1));
   iterations_ = 0;
-  if (const char* why = newton(first, 0, least_points, &momenta)) fail(0, why);
+  if (const char* why = newton(first, 0, least_points, momenta)) fail(0, why);
+  return true;
 }
 
 /// The polynomial through the values that the last slabs gave, `most_points` of them or as many as there are:
@@ -238,9 +277,7 @@ SlabStepper::Change SlabStepper::take_change(const Parity& p, std::int64_t J) {
   return result;
 }
 
-double SlabStepper::wanted(const Change& c) const {
-  return options_.tolerance * c.value;
-}
+double SlabStepper::wanted(const Change& c) const { return options_.tolerance * c.value; }
 
 /// With one matrix for all iterations corrections shrink by a ratio ρ: what is left after this one is ρ/(1 − ρ) of it.
 bool SlabStepper::arrived(const Change& c, double before) const {
@@ -319,8 +356,8 @@ const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std
     } else {
       ++p.unseen;
     }
-    const bool seen = always && (iteration > 1 || p.unseen < 8) && p.curvature > 0 &&
-                      options_.tolerance >= smallest_estimated;
+    const bool seen =
+        always && (iteration > 1 || p.unseen < 8) && p.curvature > 0 && options_.tolerance >= smallest_estimated;
     if (seen && 4 * p.curvature * c.change * c.change <= wanted(c)) break;
     if (always ? c.change <= wanted(c) : arrived(c, before)) break;
     if (is_rounding(c, before)) break;
@@ -347,6 +384,8 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
     const char* why = newton(p, J, points_, momenta);
     // Rough sections are predicted better by a few slabs.
     if (why && points_ > least_points) why = newton(p, J, least_points, momenta);
+    // Traces alternate about their mean: what is extrapolated may lie where the density is not defined.
+    if (why && by_values_) why = newton(p, J, 1, momenta);
     if (why) fail(J, why);
   }
   if (const auto i = crossing(ring_->row(J - lag_)))
@@ -426,8 +465,7 @@ std::size_t SlabStepper::matrix_bytes() const {
 std::size_t SlabStepper::work_bytes() const {
   std::size_t total = 0;
   const std::vector<double>* const all[] = {&E_, &known_E_, &change_, &predicted_, &residual_, &absolute_};
-  for (const std::vector<double>* numbers : all)
-    total += numbers->capacity() * sizeof(double);
+  for (const std::vector<double>* numbers : all) total += numbers->capacity() * sizeof(double);
   for (const Parity& p : parities_)
     for (const Unknowns& list : p.unknowns) total += (list.numbers.capacity() + list.places.capacity()) * sizeof(int);
   return total;

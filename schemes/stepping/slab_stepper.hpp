@@ -48,9 +48,9 @@ class SlabStepper final : public StepMethod {
     Assembly equations;
     BlockSolver solver;
     std::vector<Unknowns> unknowns;
-    bool has_constant = false;       ///< there is a constant part, and it has an inverse
-    bool has_values = false;         ///< the solver has had the values of a matrix, and keeps them
-    Matrix factored = Matrix::none;  ///< what the solver holds
+    bool has_constant = false;                      ///< there is a constant part, and it has an inverse
+    bool has_values = false;                        ///< the solver has had the values of a matrix, and keeps them
+    Matrix factored = Matrix::none;                 ///< what the solver holds
     int last_iterations = 0, fresh_iterations = 0;  ///< of the last slab, and of the last one with a new Jacobian
     double curvature = 0;  ///< the last correction over the square of that before, with a fresh Jacobian each time
     int unseen = 0;        ///< iterations since it was seen
@@ -75,7 +75,7 @@ class SlabStepper final : public StepMethod {
   bool iterate(Parity&, std::int64_t J);
   bool may_iterate(const Parity&);
   const char* newton(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
-  void solve_slab_of_start(const std::vector<double>& momenta);
+  bool solve_slab_of_start(const std::vector<double>* momenta);
   void check_increments(std::int64_t J) const;
   void solve(std::int64_t J, const std::vector<double>* momenta);
   std::optional<int> crossing(const double* row) const;
@@ -88,12 +88,13 @@ class SlabStepper final : public StepMethod {
   const SolvePlan& plan_;
   StepOptions options_;
   int components_, past_ = 0, future_ = 0, lag_ = 0, starting_rows_ = 0;
-  int points_;  ///< slabs that a predictor goes through, if there are as many
-  std::vector<int> back_;  ///< of each component: rows that its newest value lies behind the newest field
+  bool by_values_ = false;  ///< runs begin with the values of row 0 alone
+  int points_;              ///< slabs that a predictor goes through, if there are as many
+  std::vector<int> back_;   ///< of each component: rows that its newest value lies behind the newest field
   std::vector<Parity> parities_;
   std::unique_ptr<SectionRing> ring_;
-  std::int64_t J_ = -1;     ///< newest slab
-  std::int64_t known_ = 0;  ///< slabs whose every component is known
+  std::int64_t J_ = -1;      ///< newest slab
+  std::int64_t known_ = 0;   ///< slabs whose every component is known
   bool by_momenta_ = false;  ///< the run began with the discrete Legendre transform
   int iterations_ = 0;
   double largest_[2] = {0, 0};  ///< |y| of the newest two slabs, or of the starting rows

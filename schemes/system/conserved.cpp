@@ -37,7 +37,9 @@ void generator(const LatticeSystem& system, const StencilFamily& family, const L
       const auto found = std::ranges::find_if(values, [&](const VertexValue& value) {
         const Component& there = system.component(value.component);
         return value.vertex == values[n].vertex && there.role == here.role && there.momentum == here.momentum &&
-               there.at.time == here.at.time && there.at.space == here.at.space && there.field == static_cast<int>(b);
+               there.at.time == here.at.time && there.at.space == here.at.space && there.field == static_cast<int>(b) &&
+               // q⁻ and q⁺ have the same place
+               (here.role != Role::trace || value.component - there.field == values[n].component - here.field);
       });
       if (found == values.end())
         throw BadInput("verify.generator", "a stencil does not read field " + std::to_string(b + 1) + " where " +

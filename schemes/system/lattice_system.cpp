@@ -67,11 +67,12 @@ LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr
     const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
     height_ = std::max(height_, high.time - low.time);
     if (!lattice_.is_circle() && most.space - least.space >= lattice_.sites())
-      throw BadInput("lattice.stencil",
-                     lattice_.space() == Space::point
-                         ? "lattice.stencil: this stencil has sites side by side, and on lattice.space = point there is "
-                           "one; use midpoint, trapezoidal or vertex"
-                         : "lattice.stencil: the interval is shorter than the stencil; raise lattice.sites");
+      throw BadInput(
+          "lattice.stencil",
+          lattice_.space() == Space::point
+              ? "lattice.stencil: this stencil has sites side by side, and on lattice.space = point there is "
+                "one; use midpoint, trapezoidal or vertex"
+              : "lattice.stencil: the interval is shorter than the stencil; raise lattice.sites");
   }
   if (names_.empty()) names_ = delf::fields(read);
   int field = 0;
@@ -92,7 +93,8 @@ int LatticeSystem::fields() const {
 }
 
 int LatticeSystem::field_component(int a) const {
-  const auto at = std::ranges::find_if(names_, [a](const Component& c) { return c.role == Role::field && c.field == a; });
+  const auto at =
+      std::ranges::find_if(names_, [a](const Component& c) { return c.role == Role::field && c.field == a; });
   if (at == names_.end()) throw std::logic_error("the system has no field " + std::to_string(a));
   return static_cast<int>(at - names_.begin());
 }
@@ -124,7 +126,7 @@ std::vector<Coefficient> LatticeSystem::linearised(const Lattice& lattice, Site 
   for (double amplitude = 2; amplitude > 1e-8; amplitude /= 10)
     if (auto coefficients = linearised(lattice, site, component, amplitude)) return *coefficients;
   throw BadInput("theory.name",
-                 "the density has no finite second derivatives near the zero field; shift the field so that "
+                 "the density has no finite second derivatives near the field 0, nor near 1; shift the field so that "
                  "zero is a state of the theory");
 }
 
@@ -144,53 +146,60 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
     double constant = 0;
     Sum here, wide;
   };
-  std::map<std::tuple<Site, int>, Sample> samples;
-  std::mt19937_64 engine(20250901);
-  const auto number = [&] { return amplitude * (2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0); };
-  // One random value for each unknown near the site, the same for all stencils that contain it.
-  std::map<std::tuple<Site, int>, std::array<double, 3>> field;
-  std::map<const StencilFamily*, std::optional<ConstantPart>> constant;
-  for (const Touch& touch : touching(lattice, site, component)) {
-    const int size = touch.family->size();
-    std::vector<double> y(static_cast<std::size_t>(size)), J(y.size());
-    // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
-    const Cell cell = cell_at(lattice, site.time + touch.anchor.time, site.space + touch.anchor.space, time_step_);
-    const double widened = 1 / std::min(1.0, std::max(cell.time_step, cell.space_step));
-    Cell wide = cell;
-    wide.time_step *= widened, wide.space_step *= widened;
-    const auto key = [&](int m) {
-      const Site vertex = touch.family->site(m);
-      return std::tuple{touch.anchor + Site{vertex.time, vertex.space},
-                        touch.family->values()[static_cast<std::size_t>(m)].component};
+  const auto around = [&](double centre) -> std::optional<std::vector<Coefficient>> {
+    std::map<std::tuple<Site, int>, Sample> samples;
+    std::mt19937_64 engine(20250901);
+    const auto number = [&] {
+      return centre + amplitude * (2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0);
     };
-    const auto [part, first] = constant.try_emplace(touch.family);
-    if (first) part->second = touch.family->constant_part(cell);
-    if (part->second)
-      for (int m = 0; m < size; ++m)
-        samples[key(m)].constant += part->second->J[static_cast<std::size_t>(touch.index * size + m)];
-    for (int s = 0; s < 3; ++s) {
-      for (int m = 0; m < size; ++m) {
-        auto [where, fresh] = field.try_emplace(key(m));
-        if (fresh) where->second = {number(), number(), number()};
-        y[static_cast<std::size_t>(m)] = where->second[static_cast<std::size_t>(s)];
+    // One random value for each unknown near the site, the same for all stencils that contain it.
+    std::map<std::tuple<Site, int>, std::array<double, 3>> field;
+    std::map<const StencilFamily*, std::optional<ConstantPart>> constant;
+    for (const Touch& touch : touching(lattice, site, component)) {
+      const int size = touch.family->size();
+      std::vector<double> y(static_cast<std::size_t>(size)), J(y.size());
+      // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
+      const Cell cell = cell_at(lattice, site.time + touch.anchor.time, site.space + touch.anchor.space, time_step_);
+      const double widened = 1 / std::min(1.0, std::max(cell.time_step, cell.space_step));
+      Cell wide = cell;
+      wide.time_step *= widened, wide.space_step *= widened;
+      const auto key = [&](int m) {
+        const Site vertex = touch.family->site(m);
+        return std::tuple{touch.anchor + Site{vertex.time, vertex.space},
+                          touch.family->values()[static_cast<std::size_t>(m)].component};
+      };
+      const auto [part, first] = constant.try_emplace(touch.family);
+      if (first) part->second = touch.family->constant_part(cell);
+      if (part->second)
+        for (int m = 0; m < size; ++m)
+          samples[key(m)].constant += part->second->J[static_cast<std::size_t>(touch.index * size + m)];
+      for (int s = 0; s < 3; ++s) {
+        for (int m = 0; m < size; ++m) {
+          auto [where, fresh] = field.try_emplace(key(m));
+          if (fresh) where->second = {number(), number(), number()};
+          y[static_cast<std::size_t>(m)] = where->second[static_cast<std::size_t>(s)];
+        }
+        touch.family->jacobian_row(touch.index, cell, y, J);
+        for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[static_cast<std::size_t>(m)]);
+        touch.family->jacobian_row(touch.index, wide, y, J);
+        for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[static_cast<std::size_t>(m)]);
       }
-      touch.family->jacobian_row(touch.index, cell, y, J);
-      for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[static_cast<std::size_t>(m)]);
-      touch.family->jacobian_row(touch.index, wide, y, J);
-      for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[static_cast<std::size_t>(m)]);
     }
-  }
-  std::vector<Coefficient> result;
-  for (const auto& [where, sample] : samples) {
-    const Sum& here = sample.here;
-    if (!std::isfinite(here.scale)) return std::nullopt;
-    const bool constant = here.is_constant() && (sample.wide.is_constant() || !std::isfinite(sample.wide.scale));
-    if (constant && std::max(std::abs(here.least()), std::abs(here.most())) <= here.round_off()) continue;
-    const double value = std::abs(sample.constant) <= here.round_off() ? 0.0 : sample.constant;
-    result.push_back(
-        {std::get<0>(where), std::get<1>(where), value, constant ? Dependence::linear : Dependence::nonlinear});
-  }
-  return result;
+    std::vector<Coefficient> result;
+    for (const auto& [where, sample] : samples) {
+      const Sum& here = sample.here;
+      if (!std::isfinite(here.scale)) return std::nullopt;
+      const bool constant = here.is_constant() && (sample.wide.is_constant() || !std::isfinite(sample.wide.scale));
+      if (constant && std::max(std::abs(here.least()), std::abs(here.most())) <= here.round_off()) continue;
+      const double value = std::abs(sample.constant) <= here.round_off() ? 0.0 : sample.constant;
+      result.push_back(
+          {std::get<0>(where), std::get<1>(where), value, constant ? Dependence::linear : Dependence::nonlinear});
+    }
+    return result;
+  };
+  // Where a density is not defined around 0 (a logarithm), it may be around 1.
+  auto found = around(0);
+  return found ? found : around(1);
 }
 
 SystemPattern LatticeSystem::pattern() const {
@@ -232,8 +241,11 @@ void LatticeSystem::equations(const Window& window, std::int64_t row, std::vecto
   std::vector<Node> all;
   for (int i = 0; i < lattice_.sites(); ++i)
     for (int c = 0; c < components(); ++c) all.push_back({{0, i}, c});
-  const Assembly assembly(*this, {.equations = std::move(all), .parity = static_cast<int>(row & 1), .past = height_,
-                                  .future = height_, .turn = window.turn});
+  const Assembly assembly(*this, {.equations = std::move(all),
+                                  .parity = static_cast<int>(row & 1),
+                                  .past = height_,
+                                  .future = height_,
+                                  .turn = window.turn});
   std::vector<double> E, absolute;
   assembly.residual(SectionRing(window, row - height_, row + height_), row, E, &absolute);
   values.resize(E.size());
@@ -245,8 +257,11 @@ void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, i
   std::vector<Node> unknowns;
   for (int i = 0; i < lattice_.sites(); ++i)
     for (int c = 0; c < components(); ++c) unknowns.push_back({{static_cast<int>(unknown_row - row), i}, c});
-  Assembly assembly(*this, {.equations = {{{0, site}, component}}, .unknowns = std::move(unknowns),
-                            .parity = static_cast<int>(row & 1), .past = height_, .future = height_,
+  Assembly assembly(*this, {.equations = {{{0, site}, component}},
+                            .unknowns = std::move(unknowns),
+                            .parity = static_cast<int>(row & 1),
+                            .past = height_,
+                            .future = height_,
                             .turn = window.turn});
   assembly.set_time_step(time_step);
   std::vector<double> values;

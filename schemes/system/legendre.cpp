@@ -82,16 +82,18 @@ std::optional<std::vector<double>> velocity_of(const BatchDensity& density, std:
   return std::nullopt;
 }
 
-double hamiltonian(const BatchDensity& density, std::span<const double> q, std::span<const double> p, double t) {
-  const auto velocity = velocity_of(density, q, p, t);
-  if (!velocity) return std::numeric_limits<double>::quiet_NaN();
+double energy_of(const BatchDensity& density, std::span<const double> q, std::span<const double> velocity, double t) {
+  const int d = density.components();
   PointJet jet(density, q, t);
-  const Eigen::Map<const Eigen::VectorXd> v(velocity->data(), density.components());
+  const Eigen::Map<const Eigen::VectorXd> v(velocity.data(), d);
   jet.set_velocity(v);
   const Eigen::VectorXd at = jet.momentum_and_density();
-  double H = -at[density.components()];
-  for (int a = 0; a < density.components(); ++a) H += p[static_cast<std::size_t>(a)] * v[a];
-  return H;
+  return at.head(d).dot(v) - at[d];
+}
+
+double hamiltonian(const BatchDensity& density, std::span<const double> q, std::span<const double> p, double t) {
+  const auto velocity = velocity_of(density, q, p, t);
+  return velocity ? energy_of(density, q, *velocity, t) : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace delf

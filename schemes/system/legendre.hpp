@@ -14,6 +14,8 @@ namespace delf {
 /// singular, or it does not converge.
 std::optional<std::vector<double>> velocity_of(const BatchDensity&, std::span<const double> q,
                                                std::span<const double> p, double t = 0);
+/// q̇·∂ℓ/∂q̇ − ℓ(q, q̇)
+double energy_of(const BatchDensity&, std::span<const double> q, std::span<const double> velocity, double t = 0);
 /// H(q, p) = p·q̇ − ℓ(q, q̇) with these velocities; not a number where there are none.
 double hamiltonian(const BatchDensity&, std::span<const double> q, std::span<const double> p, double t = 0);
 

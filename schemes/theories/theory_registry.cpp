@@ -10,7 +10,8 @@ namespace delf {
 extern const TheoryEntry wave_theory, klein_gordon_theory, sine_gordon_theory, phi4_theory, double_sine_gordon_theory,
     sine_gordon_impurity_theory, pendulum_theory, kepler_theory, coupled_sine_gordon_theory,
     complex_klein_gordon_theory, wave_map_theory, harmonic_oscillator_theory, henon_heiles_theory,
-    double_pendulum_theory, spherical_pendulum_theory, solar_system_theory, text_theory;
+    double_pendulum_theory, spherical_pendulum_theory, solar_system_theory, lotka_volterra_theory,
+    point_vortices_theory, two_vortices_theory, charged_particle_theory, guiding_centre_theory, text_theory;
 
 namespace {
 
@@ -31,6 +32,11 @@ std::vector<const TheoryEntry*>& entries() {
                                              &double_pendulum_theory,
                                              &spherical_pendulum_theory,
                                              &solar_system_theory,
+                                             &lotka_volterra_theory,
+                                             &point_vortices_theory,
+                                             &two_vortices_theory,
+                                             &charged_particle_theory,
+                                             &guiding_centre_theory,
                                              &text_theory};
   return all;
 }

@@ -14,6 +14,12 @@ InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
       state_ = make_state(scene.initial, scene.problem.lattice);
       if (rule() == StartRule::exact && !state_->knows_second_row())
         throw settings.error("initial.start", "the second row of this state is not known; use centred");
+      if (rule() == StartRule::values)
+        for (const char* key : {"initial.v", "initial.p"})
+          if (scene.initial.values.has(key))
+            throw settings.error(key, fmt::format("scheme.method = {} is of first order in time, and starts from "
+                                                  "values alone; leave {} out",
+                                                  scene.problem.method, key));
       return;
     }
     file_ = open_rows(scene.initial_file);
@@ -86,8 +92,7 @@ std::vector<double> InitialRows::section(const Simulation& simulation, Writer wr
     if (components[c].role == Role::slaved) {
       // sites that move start from where those of the lattice are, at rest
       if (components[c].position && write == &State::values)
-        for (std::size_t i = 0; i < sites; ++i)
-          out[i * d + c] = scene_.problem.lattice.position(static_cast<int>(i));
+        for (std::size_t i = 0; i < sites; ++i) out[i * d + c] = scene_.problem.lattice.position(static_cast<int>(i));
       continue;
     }
     const auto a = static_cast<std::size_t>(components[c].field);

@@ -8,9 +8,9 @@
 #include <iterator>
 
 #include "jets/tables/named_tables.hpp"
+#include "lattice/nearest_name.hpp"
 #include "schemes/declared.hpp"
 #include "schemes/methods/method_registry.hpp"
-#include "lattice/nearest_name.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
@@ -44,15 +44,14 @@ Names faults() { return verify_faults(); }
 Names stability_fault_names() { return stability_faults(); }
 Names starts() {
   Names names;
-  for (const StartRule rule : {StartRule::exact, StartRule::centred, StartRule::legendre})
-    names.emplace_back(to_string(rule));
+  for (const StartRule rule : all_start_rules) names.emplace_back(to_string(rule));
   return names;
 }
 
 // "legendre for method = a or b; else …"
 std::string usual_start() {
   std::string text;
-  for (const StartRule rule : {StartRule::exact, StartRule::centred, StartRule::legendre}) {
+  for (const StartRule rule : all_start_rules) {
     Names names;
     for (const MethodEntry* entry : method_entries())
       if (entry->start == rule) names.push_back(entry->name);

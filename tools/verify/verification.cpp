@@ -12,6 +12,7 @@
 
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/verify/derivatives.hpp"
+#include "schemes/verify/flux_check.hpp"
 #include "schemes/verify/newton_order.hpp"
 #include "schemes/verify/wrong_sign.hpp"
 #include "tools/engine.hpp"
@@ -305,6 +306,8 @@ void Verification::collect() {
                   : "Noether: the scheme has no Lagrangian");
   }
   if (!fields_ && request_.wants("derivatives")) add(check_derivatives(system_, seed()));
+  if (!fields_ && request_.wants("equations") && !first_rows_.empty())
+    add(check_fluxes(system_, fields_of(system_, first_rows_[0])));
   add(std::move(later));
   if (fields_ && request_.chosen)
     for (const char* name : {"reversal", "derivatives", "newton"})

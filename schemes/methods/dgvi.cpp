@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "jets/tables/flux_table.hpp"
+#include "jets/tables/time_element.hpp"
+#include "lattice/error.hpp"
+#include "schemes/families/trace_stencil.hpp"
+#include "schemes/methods/element_keys.hpp"
+#include "schemes/methods/method_registry.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/stepping/energy.hpp"
+#include "schemes/system/legendre.hpp"
+#include "schemes/theories/field_theory.hpp"
+
+namespace delf {
+namespace {
+
+struct Keys : ElementKeys {
+  explicit Keys(const Problem& p)
+      : ElementKeys(p, 0),
+        flux(*std::ranges::find(named_fluxes(), p.parameters.get<std::string>("scheme.flux"), &NamedFlux::name)),
+        nu(p.parameters.get<double>("scheme.nu")) {}
+
+  const NamedFlux& flux;
+  double nu;
+};
+
+/// Nodes of the unit cell: 0 the observed q, 1 … S the coefficients, then the traces and the multipliers.
+struct Nodes {
+  explicit Nodes(int S) : minus(S + 1), plus(S + 2), lambda(S + 3), mu(S + 4), observed(S + 5) {}
+  int minus, plus, lambda, mu, observed;
+};
+
+int variable(JetSlot slot, int d, int a) { return static_cast<int>(slot) * d + a; }
+
+/// ℓ = θ(q)·q̇ − H(q), proved from the density: ∂²ℓ/∂q̇∂q̇ = 0, and every field has a partner, ∂²ℓ/∂q̇∂q ≠ 0.
+void require_first_order(const FieldTheory& theory) {
+  const BatchDensity& density = theory.density();
+  const int d = theory.components();
+  const auto name = [&](int a) { return theory.fields()[static_cast<std::size_t>(a)].name; };
+  const auto refuse = [](const std::string& why) {
+    throw BadInput("scheme.method", "scheme.method = dgvi: for densities theta(q).q_t - H(q), and " + why);
+  };
+  for (int a = 0; a < d; ++a)
+    for (int b = 0; b <= a; ++b)
+      if (!density.is_zero(variable(JetSlot::phi_t, d, a), variable(JetSlot::phi_t, d, b)))
+        refuse(fmt::format("this one is not linear in {}_t; use scheme.method = cgvi", name(a)));
+  for (int a = 0; a < d; ++a) {
+    bool coupled = false;
+    for (int b = 0; b < d; ++b)
+      for (const auto& [v, u] : {std::pair{a, b}, {b, a}})
+        if (!density.is_zero(variable(JetSlot::phi_t, d, v), variable(JetSlot::phi, d, u))) coupled = true;
+    if (!coupled) refuse(fmt::format("in this one no term of theta moves {}: no step determines it", name(a)));
+  }
+  if (d % 2 != 0) refuse(fmt::format("this one has {} field{}: theta needs an even number", d, d == 1 ? "" : "s"));
+}
+
+/// One-sided fluxes are for gauges in which half of the fields have momenta: those, and the others.
+std::pair<std::vector<int>, std::vector<int>> halves(const FieldTheory& theory) {
+  std::vector<int> with, without;
+  const int d = theory.components();
+  for (int a = 0; a < d; ++a)
+    (theory.density().depends_on(variable(JetSlot::phi_t, d, a)) ? with : without).push_back(a);
+  if (with.size() != without.size())
+    throw BadInput(
+        "scheme.flux",
+        fmt::format("scheme.flux = one-sided: needs a gauge theta = (theta_x, 0) in which half of the fields "
+                    "have velocities in the density, and here {} of {} have; choose such a theory.gauge, or "
+                    "use gauss2",
+                    with.size(), d));
+  return {with, without};
+}
+
+std::vector<Component> traces(const char* name, int d) {
+  std::vector<Component> list;
+  for (const Component& field : fields(d))
+    list.push_back({fmt::format("{}{}", field.name, name), Role::trace, {}, false, field.field});
+  return list;
+}
+
+/// What the vertex observes of its traces, and with what multipliers κ; both are in nobody else's way: κ = 0.
+///
+///     straight lines   κ·(½(q⁻ + q⁺) − q)
+///     one-sided        κ·(θ(q) − θ(q⁻)) and κ·(x⁺ − x): the phase space is (x⁺, θ_x(q⁻))
+///     nodal            nothing: the flux reads q itself
+void observe(SchemeParts& parts, const FieldTheory& theory, const Keys& keys, const Nodes& nodes) {
+  const int d = theory.components();
+  const FluxNodes at{nodes.minus, 0, nodes.plus};
+  std::vector<double> weights(static_cast<std::size_t>(nodes.plus), 0.0);
+  double &of_minus = weights[static_cast<std::size_t>(nodes.minus - 1)],
+         &of_plus = weights[static_cast<std::size_t>(nodes.plus - 1)];
+  const auto tie = [&](const TraceStencil& stencil) {
+    parts.families.push_back(std::make_shared<LagrangianFamily<TraceStencil>>(stencil));
+  };
+  if (keys.flux.observed == NamedFlux::Observed::vertex) return;
+  std::vector<Component> kappa = momentum_components("kappa", d);
+  if (keys.flux.observed == NamedFlux::Observed::momentum) {
+    const auto [with, without] = halves(theory);
+    std::vector<std::pair<int, int>> tied;
+    for (std::size_t i = 0; i < with.size(); ++i) tied.emplace_back(with[i], nodes.observed * d + without[i]);
+    of_plus = 1;
+    tie({TraceStencil::End::lower, d, weights, tied});
+    parts.families.push_back(theory.on_table(momentum_tie_table(at, nodes.observed)));
+    for (Component& c : kappa) c.momentum = false;
+  } else {
+    of_minus = of_plus = 0.5;
+    tie({TraceStencil::End::lower, d, weights, nodes.observed * d});
+  }
+  std::ranges::move(kappa, std::back_inserter(parts.components));
+}
+
+/// The action of the sources' discontinuous Galerkin integrators, with the ends of the cells as traces of their own:
+///
+///     Σ_n h Σ_i b_i ℓ(Q_i, V_i) + λ_n·(r⁺x_n − q_n⁺) + μ_{n+1}·(r⁻x_n − q⁻_{n+1}) + J(q_n⁻, q_n⁺)
+///
+/// Then λ = ∂₊J and μ = ∂₋J.
+SchemeParts build(const FieldTheory& theory, const Problem& p) {
+  if (p.lattice.space() != Space::point)
+    throw BadInput("scheme.method",
+                   "scheme.method = dgvi: an integrator of mechanics; use lattice.space = point, or scheme.method = "
+                   "multisymplectic");
+  if (theory.constraint())
+    throw BadInput("scheme.method",
+                   "scheme.method = dgvi: the theory has a constraint, and this scheme has none; use "
+                   "scheme.method = multisymplectic");
+  require_first_order(theory);
+  const Keys keys(p);
+  const int d = theory.components();
+  const Nodes nodes(keys.functions);
+  const StencilTable element = time_element(keys.basis, keys.rule(), Continuity::multipliers);
+  SchemeParts parts{{theory.on_table(element)}, fields(d), theory.symmetries()};
+  for (const auto& more : {inner_components(element, d), traces("-", d), traces("+", d),
+                           momentum_components("lambda", d), momentum_components("mu", d)})
+    std::ranges::copy(more, std::back_inserter(parts.components));
+
+  using enum TraceStencil::End;
+  for (const TraceStencil& end : {TraceStencil(lower, d, keys.basis.values(0), nodes.lambda * d, nodes.plus * d),
+                                  TraceStencil(upper, d, keys.basis.values(1), nodes.mu * d, nodes.minus * d)})
+    parts.families.push_back(std::make_shared<LagrangianFamily<TraceStencil>>(end));
+  std::vector<FluxPoint> jump = keys.flux.points;
+  std::ranges::copy(gauge_of_jumps(keys.nu), std::back_inserter(jump));
+  parts.families.push_back(theory.on_table(flux_table(jump, {nodes.minus, 0, nodes.plus})));
+  observe(parts, theory, keys, nodes);
+  return parts;
+}
+
+/// H at the newest row's q.
+EnergyMomentum energy(const RowsInTime& rows) {
+  const int d = rows.theory.components();
+  std::vector<double> q;
+  for (int a = 0; a < d; ++a) q.push_back(rows.rows(rows.newest, 0, a));
+  const std::vector<double> still(q.size(), 0.0);
+  return {energy_of(rows.theory.density(), q, still, static_cast<double>(rows.newest) * rows.time_step), 0};
+}
+
+/// max |q⁺ − q⁻|, as twice the distance of q⁻ from the observed q: a nodal flux finds q⁺ with the next row.
+double jump(const RowsInTime& rows) {
+  double most = 0;
+  for (int c = 0; c < rows.system.components(); ++c) {
+    const Component& trace = rows.system.component(c);
+    if (trace.role != Role::trace || !trace.name.ends_with('-')) continue;
+    most = std::max(most, 2 * std::abs(rows.rows(rows.newest, 0, c) - rows.rows(rows.newest, 0, trace.field)));
+  }
+  return most;
+}
+
+std::string label(const Problem& p) {
+  const Keys keys(p);
+  return fmt::format("dgvi, {} flux, {} {} functions, {} {} points{}", keys.flux.name, keys.basis_name, keys.functions,
+                     keys.quadrature, keys.points, keys.nu == 0 ? "" : fmt::format(", nu = {}", keys.nu));
+}
+
+std::vector<std::string> fluxes() {
+  std::vector<std::string> names;
+  for (const NamedFlux& flux : named_fluxes()) names.push_back(flux.name);
+  return names;
+}
+
+}  // namespace
+
+extern const MethodEntry dgvi_method;
+const MethodEntry dgvi_method{
+    .name = "dgvi",
+    .formula = "discontinuous Galerkin variational integrators of theta(q).q_t - H(q): scheme.functions, scheme.flux",
+    .build = build,
+    .parameters = {basis_parameter("lagrange-gauss"),
+                   functions_parameter(3, 1),
+                   quadrature_parameter(),
+                   points_parameter("functions", 3),
+                   {.key = "scheme.flux", .fallback = "gauss2", .help = "the action of a jump", .choices = fluxes()},
+                   {.key = "scheme.nu",
+                    .fallback = 0.0,
+                    .help = "a fault for `delf verify` to find: a gauge -nu d(theta.q)/dt on the jumps alone"}},
+    .label = label,
+    .starts = {StartRule::values},
+    .start = StartRule::values,
+    .energy = energy,
+    .monitors = {{.name = "jump",
+                  .value = jump,
+                  .when_it_grows = "a mode of the doubled phase space takes over, and the energy does not show it; run "
+                                   "less far, or use scheme.flux = one-sided in a gauge that allows it"}}};
+
+}  // namespace delf

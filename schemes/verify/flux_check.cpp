@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/verify/flux_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "jets/simd/scratch_rows.hpp"
+#include "schemes/families/jet_family.hpp"
+
+namespace delf {
+namespace {
+
+/// It reads traces, and perhaps the field between them: no multipliers, no coefficients.
+bool joins_traces(const LatticeSystem& system, const StencilFamily& family) {
+  bool any = false;
+  for (const VertexValue& value : family.values()) {
+    const Role role = system.component(value.component).role;
+    if (role == Role::trace) any = true;
+    else if (role != Role::field) return false;
+  }
+  return any;
+}
+
+/// ∂ℓ/∂q̇ at (q, 0)
+std::vector<double> momenta_of(const BatchDensity& density, std::span<const double> q, const Cell& cell) {
+  const int d = density.components(), m = density.variables();
+  const ScratchRows jet(m + 1, lanes), g(m, lanes);
+  for (int v = 0; v <= m; ++v) std::fill_n(jet[v], lanes, v < d ? q[static_cast<std::size_t>(v)] : 0.0);
+  std::fill_n(jet[m], lanes, cell.x);
+  density.gradient({lanes, jet.data(), cell.t, jet[m]}, g.data());
+  std::vector<double> p;
+  for (int a = 0; a < d; ++a) p.push_back(g[static_cast<int>(JetSlot::phi_t) * d + a][0]);
+  return p;
+}
+
+}  // namespace
+
+std::vector<Check> check_fluxes(const LatticeSystem& system, std::span<const double> fields, double tolerance) {
+  std::vector<Check> checks;
+  for (const auto& family : system.families()) {
+    const auto* jets = dynamic_cast<const JetFamily*>(family.get());
+    if (!jets || !joins_traces(system, *family)) continue;
+    const Cell cell{system.time_step(), system.lattice().space_step(), 0, system.lattice().position(0)};
+    std::vector<double> y, r(static_cast<std::size_t>(family->size()));
+    for (const VertexValue& value : family->values())
+      y.push_back(fields[static_cast<std::size_t>(system.component(value.component).field)]);
+    family->residual(cell, y, r);
+    const std::vector<double> p = momenta_of(jets->density(), fields, cell);
+    double scale = 0;
+    for (const double x : p) scale = std::max(scale, std::abs(x));
+    Check check{.name = "flux consistency", .region = {}, .value = 0, .tolerance = tolerance};
+    check.normaliser = scale, check.count = family->size(), check.samples = family->size();
+    for (std::size_t n = 0; n < r.size(); ++n) {
+      const Component& c = system.component(family->values()[n].component);
+      const double of_density = p[static_cast<std::size_t>(c.field)];
+      double off = std::min(std::abs(r[n] - of_density), std::abs(r[n] + of_density));
+      if (c.role == Role::field) off = std::abs(r[n]);
+      off /= scale;
+      if (n > 0 && off <= check.value) continue;
+      check.value = off;
+      check.region = fmt::format("a jump that closes at row 0, worst at {}", c.name);
+      check.failure = fmt::format(
+          "where q- = q+ the momentum of {} is {:.6g}, and that of the density {:.6g} or its negative, or 0 between: "
+          "cells and jumps are in different gauges; set scheme.nu = 0",
+          c.name, r[n], of_density);
+    }
+    checks.push_back(std::move(check));
+  }
+  return checks;
+}
+
+}  // namespace delf
