@@ -151,7 +151,7 @@ void Stepping::fail(const NumericalFailure& error) {
 void Stepping::step_until(std::int64_t row, Progress& progress) {
   const Stopwatch watch(outcome_.seconds);
   const FlushDenormals for_all_steps;  // each would set and restore it
-  bool looked_at = true;  // as the row that an interruption leaves must be: it is recorded
+  bool looked_at = true;               // as the row that an interruption leaves must be: it is recorded
   while (newest_ < row && !(looked_at && Interrupt::asked())) {
     const std::int64_t unseen = Interrupt::asked() ? 0 : row - 1 - newest_;
     looked_at = unseen == 0 || section_;
@@ -168,7 +168,8 @@ void Stepping::count_step() {
   last_iterations_ = simulation_.iterations();
   iterations_ += last_iterations_;
   outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);
-  if (const Continued why = simulation_.evolution().stepper().continued(); why != Continued::no) ++outcome_.continued[why];
+  if (const Continued why = simulation_.evolution().stepper().continued(); why != Continued::no)
+    ++outcome_.continued[why];
 }
 
 bool Stepping::to_be_recorded(std::int64_t row) const {
@@ -183,6 +184,7 @@ void Stepping::record(std::int64_t row) {
   Record record;
   record.row = row;
   record.time = static_cast<double>(row) * scene_.problem.time_step;
+  std::vector<double> of_method;
   if (!started_) {
     const auto sites = static_cast<std::size_t>(scene_.problem.lattice.sites());
     row_[Role::field] = initial_.row0();
@@ -202,12 +204,13 @@ void Stepping::record(std::int64_t row) {
     record.momentum = monitors.momentum;
     record.charge = monitors.charge;
     monitor(monitors, record);
+    of_method = monitors.of_method;
     record.iterations = last_iterations_;
     record.residual = row == newest_ ? simulation_.residual() : 0;  // the starting rows solve no equation
     if (!(record.residual <= outcome_.residual_max)) outcome_.residual_max = record.residual;
   }
   recorded_ = row;
-  if (started_) warnings_.see(record.time, row_[Role::field]);
+  if (started_) warnings_.see(record.time, row_[Role::field], of_method);
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
   outcome_.charge_final = record.charge;

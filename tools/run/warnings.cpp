@@ -10,6 +10,7 @@
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -98,8 +99,7 @@ Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulat
   const Lattice& lattice = scene.problem.lattice;
   const double at_end = exact_centre(end), some_cells = 5 * lattice.space_step();
   for (double stretch = some_cells; stretch <= end && !std::isfinite(late_); stretch *= 1.3)
-    if (std::abs(separation(lattice, at_end, exact_centre(end - stretch))) > some_cells)
-      late_ = end - stretch;
+    if (std::abs(separation(lattice, at_end, exact_centre(end - stretch))) > some_cells) late_ = end - stretch;
 }
 
 /// What makes steps finer, in keys.
@@ -123,7 +123,15 @@ double Warnings::exact_centre(double time) const {
   return gradient_centre(scene_.problem.lattice, row, state.components(), turn());
 }
 
-void Warnings::see(double time, std::span<const double> fields) {
+void Warnings::see(double time, std::span<const double> fields, std::span<const double> monitors) {
+  growth_.resize(monitors.size());
+  const double end = static_cast<double>(scene_.steps) * scene_.problem.time_step;
+  for (std::size_t m = 0; m < monitors.size(); ++m) {
+    Growth& g = growth_[m];
+    const bool early = time <= end / 10;
+    double &most = early ? g.early : g.later, &when = early ? g.early_time : g.later_time;
+    if (monitors[m] > most) most = monitors[m], when = time;
+  }
   if (late_time_ || time < late_) return;
   late_time_ = time;
   late_centre_ = centre(fields);
@@ -136,6 +144,7 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
        std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row), energy(outcome),
                           energy_band(energy_errors), error(outcome), pinned(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
+  std::ranges::move(grown(), std::back_inserter(all));
   std::ranges::move(continued(outcome), std::back_inserter(all));
   return all;
 }
@@ -242,6 +251,20 @@ Warnings::Found Warnings::pinned(const Outcome& outcome, std::span<const double>
       "the pulse has stood still at x = {:.4g} since t = {:.4g}, and ought to have moved by {:.3g}: pinned "
       "by the lattice; {}",
       now < 0 ? now + lattice.length() : now, *late_time_, wanted, finer());
+}
+
+/// A monitor that ends a hundred times above all that it is in the first tenth of the run.
+std::vector<std::string> Warnings::grown() const {
+  std::vector<std::string> all;
+  const std::vector<Monitor>& monitors = find_method(scene_.problem.method).monitors;
+  for (std::size_t m = 0; m < std::min(monitors.size(), growth_.size()); ++m) {
+    const Growth& g = growth_[m];
+    if (!monitors[m].when_it_grows || !(g.early > 0) || !(g.later > 100 * g.early)) continue;
+    all.push_back(fmt::format("{} grows from {:.2g} at t = {:.4g} to {:.2g} at t = {:.4g}, like exp({:.3g} t): {}",
+                              monitors[m].name, g.early, g.early_time, g.later, g.later_time,
+                              std::log(g.later / g.early) / (g.later_time - g.early_time), monitors[m].when_it_grows));
+  }
+  return all;
 }
 
 std::vector<std::string> Warnings::continued(const Outcome& outcome) const {

@@ -19,8 +19,8 @@ class Warnings {
  public:
   Warnings(const Scene&, const InitialRows&, const Simulation&);
 
-  /// A recorded row of the fields.
-  void see(double time, std::span<const double> fields);
+  /// A recorded row of the fields, with the monitors of the method.
+  void see(double time, std::span<const double> fields, std::span<const double> monitors);
   /// One line each, with a remedy, after the last row.
   std::vector<std::string> of(const Outcome&, const Trace& energy_errors, std::span<const double> last_row) const;
 
@@ -33,6 +33,7 @@ class Warnings {
   Found energy_band(const Trace& energy_errors) const;
   Found error(const Outcome&) const;
   Found pinned(const Outcome&, std::span<const double> last_row) const;
+  std::vector<std::string> grown() const;
   std::vector<std::string> continued(const Outcome&) const;
 
   std::string finer() const;
@@ -48,6 +49,11 @@ class Warnings {
   /// The first row recorded from this time on is kept, to tell whether a pulse still moves.
   double late_ = std::numeric_limits<double>::infinity();
   std::optional<double> late_time_, late_centre_;
+  /// The largest value of a monitor in the first tenth of the run, the largest later, and when.
+  struct Growth {
+    double early = 0, early_time = 0, later = 0, later_time = 0;
+  };
+  std::vector<Growth> growth_;
 };
 
 }  // namespace delf
