@@ -13,14 +13,14 @@
 #include "jets/tables/named_tables.hpp"
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
-#include "schemes/system/conserved.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/theories/field_theory.hpp"
-#include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/plan_report.hpp"
+#include "schemes/system/conserved.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/system/slab_extent.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
@@ -216,6 +216,12 @@ struct Simulation::Impl {
     return (at(problem.lattice.sites() - 1) - at(0)) / (2 * std::numbers::pi);
   }
   void find_conserved(Monitors& monitors) const {
+    // A run that starts from row 0 alone has no stencils below it, nor their sums.
+    if (stepper.newest() < system.height()) {
+      monitors.conserved.assign(symmetries.size(), std::numeric_limits<double>::quiet_NaN());
+      monitors.conserved_scale = monitors.conserved;
+      return;
+    }
     const Window window = stepper.window(2);
     for (const LinearSymmetry& symmetry : symmetries) {
       double scale = 0;

@@ -436,7 +436,7 @@ Window SlabStepper::window(int rows) const {
 }
 
 double SlabStepper::residual() const {
-  if (known_ == 0) return 0;
+  if (known_ == 0 || J_ == 0) return 0;  // of row 0 there are no equations
   const Parity& p = parity(J_);
   // After a Legendre start slab 1 has no stencils below row 0.
   if (J_ == 1 && by_momenta_) return 0;

@@ -229,6 +229,8 @@ void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
     Conserved& c = outcome_.conserved[j];
     c.final = monitors.conserved[j];
     record.further.push_back(c.final);
+    if (std::isnan(c.final)) continue;  // at row 0 of a start from that row alone
+    if (std::isnan(c.initial)) c.initial = c.final;
     // relative to the sum of the absolute values of the terms: the sum itself may be zero
     const double scale = monitors.conserved_scale[j];
     const double error = std::abs(c.final - c.initial) / (scale > 0 ? scale : 1);

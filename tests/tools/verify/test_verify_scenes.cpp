@@ -29,3 +29,13 @@ TEST_CASE("every shipped scene passes verification, and fails with a planted fau
   }
   CHECK(regions > 50);
 }
+
+TEST_CASE("a gauge on the jumps alone, which keeps the form, is found by the check of fluxes") {
+  const Folder folder;
+  const Ran ran =
+      delf_program(folder, "verify lotka-volterra --scheme.nu=0.01 --run.steps=30 --output.figures=off --out out");
+  CAPTURE(ran.out, ran.err);
+  CHECK(ran.code == 1);
+  const auto json = nlohmann::json::parse(read(folder / "out/verify.json"));
+  for (const auto& check : json["checks"]) CHECK((check["passed"] == false) == (check["name"] == "flux consistency"));
+}
