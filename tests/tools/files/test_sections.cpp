@@ -178,6 +178,10 @@ TEST_CASE("incompatible keys are refused in one line") {
   refused("spacetime-element --scheme.degree_space=13", "must be at most 12");
   refused("spacetime-element --scheme.quadrature=gaus", "did you mean gauss?");
   refused("r-adaptive --scheme.alpha=0", "must be above 0");
+  refused("lotka-volterra --initial.v=1,1", "starts from values alone; leave initial.v out");
+  refused("lotka-volterra --initial.start=centred", "use values");
+  refused("lotka-volterra --scheme.flux=one-sided", "choose such a theory.gauge, or use gauss2");
+  refused("pendulum --scheme.method=dgvi", "not linear in phi_t; use scheme.method = cgvi");
 }
 
 TEST_CASE("keys of another method are warned of") {
@@ -189,7 +193,7 @@ TEST_CASE("keys of another method are warned of") {
     CHECK(contains(ran.err, part));
   };
   warned("breather --scheme.degree_time=3", "only scheme.method = spacetime reads it");
-  warned("breather --scheme.quadrature=lobatto", "only scheme.method = spacetime or cgvi reads it");
+  warned("breather --scheme.quadrature=lobatto", "only scheme.method = spacetime or cgvi or dgvi reads it");
   warned("breather --scheme.alpha=3", "only scheme.method = r-adaptive reads it");
   warned("breather --initial.eccentricity=0.3", "the state breather does not read it");
 }

@@ -44,6 +44,7 @@ TEST_CASE("a run that ends well and may be wrong says why, in the report and in 
       {lobatto, "the energy leaves ten times its early band"},
       {"kink --initial.speed=0.1 --lattice.sites=21 --run.until=160 --lattice.stencil=triangle-vertex",
        "pinned by the lattice"},
+      {"guiding-centre --initial.q=2.5,0,0,0.19 --lattice.time_step=2 --run.until=1500", "jump grows from"},
       {"small.ini --scheme.max_iterations=2 --run.steps=10", "raise scheme.max_iterations, which is 2"},
   }));
   INFO(arguments);
@@ -58,8 +59,8 @@ TEST_CASE("shipped scenes as they are, and near misses, warn of nothing") {
   const std::string arguments =
       GENERATE(as<std::string>(), "kepler", "pendulum", "fast-kink", "kink", "kink-train", "collision --run.until=20",
                "collision --lattice.sites=256 --run.until=20", "phi4-kink", "spacetime-element --scheme.degree_space=3",
-               "wave-packet", "wave-map", "henon-heiles", "phi6-kink", "sinh-gordon", "sine-gordon-text",
-               "r-adaptive --run.steps=50", "small.ini");
+               "wave-packet", "wave-map", "henon-heiles", "lotka-volterra", "guiding-centre", "phi6-kink",
+               "sinh-gordon", "sine-gordon-text", "r-adaptive --run.steps=50", "small.ini");
   const Done done(arguments);
   INFO(arguments << "\n" << done.summary["warnings"].dump(1));
   CHECK(done.summary["warnings"].empty());
@@ -84,6 +85,7 @@ TEST_CASE("a tolerance below what rounding allows is reported, and scene.ini has
 }
 
 TEST_CASE("the report says what residual and tolerance are of") {
-  CHECK(contains(Done("small.ini --run.steps=10").report, "scheme.tolerance = 1e-14 is of the last change of the field"));
+  CHECK(
+      contains(Done("small.ini --run.steps=10").report, "scheme.tolerance = 1e-14 is of the last change of the field"));
   CHECK_FALSE(contains(Done("wave-packet --run.steps=10").report, "scheme.tolerance"));
 }
