@@ -33,6 +33,7 @@ constexpr Command commands[] = {
     {"density", "a user's density against the same one built in", time_density},
     {"monitors", "what monitors and residuals cost at every step", time_monitors},
     {"threads", "two threads against one", time_threads},
+    {"slabs", "steps slab by slab against programs written for one system", time_slabs},
     {"verify", "checking a stencil against stepping it", time_verify},
 };
 

@@ -11,6 +11,7 @@ void time_sizes(const Request&);
 void time_density(const Request&);
 void time_monitors(const Request&);
 void time_threads(const Request&);
+void time_slabs(const Request&);
 void time_verify(const Request&);
 
 }  // namespace delf::bench
