@@ -20,11 +20,12 @@ RowLayout::RowLayout(const Lattice& lattice, int halo, int aligned)
       const int i = start(l) + v, to = static_cast<int>(at(v)) + l;
       const bool inside = v >= 0 && v < packs_;
       if (inside) {
-        if (slot(i) != to) overlap_copies_.push_back({to, slot(i), 0});
+        // A point stands in all lanes, which find the same.
+        if (slot(i) != to && sites_ > 1) overlap_copies_.push_back({to, slot(i), 0});
       } else if (lattice.is_circle()) {
         const int home = lattice.wrapped(i);
         halo_copies_.push_back({to, slot(home), (i - home) / sites_});
-      } else {
+      } else if (sites_ > 1) {
         halo_copies_.push_back({to, slot(std::clamp(i, 0, sites_ - 1)), 0});
       }
     }
@@ -32,6 +33,11 @@ RowLayout::RowLayout(const Lattice& lattice, int halo, int aligned)
 }
 
 void RowLayout::fill_halo_turned(double* row, double turn) const {
+  if (sites_ == 1) {
+    const Pack point = Pack::load(row + at(0));
+    for (int v = -halo_; v <= halo_; ++v) point.store(row + at(v));
+    return;
+  }
   if (!by_packs_) {
     for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * turn;
     return;

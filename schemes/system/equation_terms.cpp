@@ -151,13 +151,14 @@ AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) 
   };
 
   const int width = std::max(1, system.width());
-  const bool circle = lattice.is_circle();
+  // A point has no walls either: its equations are those of the bulk.
+  const bool uniform = lattice.is_circle() || lattice.space() == Space::point;
   for (int a = 0; a < d; ++a) {
     result.bulk.emplace_back();
     result.unknowns.emplace_back();
-    if (circle || N > 2 * width) result.bulk.back() = equation_at(N / 2, a, result.unknowns.back());
+    if (uniform || N > 2 * width) result.bulk.back() = equation_at(N / 2, a, result.unknowns.back());
   }
-  if (circle) return result;
+  if (uniform) return result;
   for (int i = 0; i < N; ++i) {
     if (i >= width && i < N - width) {
       i = N - width - 1;

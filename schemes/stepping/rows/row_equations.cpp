@@ -71,7 +71,7 @@ void RowEquations::build_solvers() {
       coupled = coupled || e.component != static_cast<int>(a);
       alternating = alternating || e.alternating != 0;
     }
-  if (lattice.is_circle() && !coupled && !alternating) {
+  if (!has_walls() && !coupled && !alternating) {
     std::vector<std::unique_ptr<LinearSolver>> solvers;
     for (const auto& unknowns : equations_.unknowns) {
       std::vector<BandEntry> stencil;
