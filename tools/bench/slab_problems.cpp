@@ -106,6 +106,20 @@ std::shared_ptr<PackedSlab<PackedWaveMap>> WaveMapOnCircle::by_hand(bool keeps_j
       PackedWaveMap::Rectangle{time_step(), lattice().space_step()}, PackedWaveMap::Sphere{});
 }
 
+Problem SpacetimeBreather::problem() const {
+  Problem problem = problem_of("sine-gordon", Lattice::circle(cells, length), time_step, tolerance);
+  problem.method = "spacetime";
+  problem.parameters["scheme.degree_time"] = problem.parameters["scheme.degree_space"] = 2;
+  problem.parameters["scheme.quadrature"] = "gauss";
+  return problem;
+}
+std::vector<double> SpacetimeBreather::phi() const {
+  std::vector<double> values;
+  for (int i = 0; i < 2 * cells; ++i)
+    values.push_back(4 * std::atan(0.8 / 0.6 / std::cosh(0.8 * (0.5 * i * space_step() - length / 2))));
+  return values;
+}
+
 Problem Mechanics::problem() const {
   Problem problem = problem_of(theory, Lattice::point(), time_step, tolerance);
   if (!stencil.empty()) problem.stencil = stencil;

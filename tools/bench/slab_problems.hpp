@@ -39,6 +39,18 @@ struct WaveMapOnCircle {
   std::shared_ptr<PackedSlab<PackedWaveMap>> by_hand(bool keeps_jacobian) const;
 };
 
+/// The breather of sine-Gordon by spacetime elements of degree (2, 2), from where it turns back.
+struct SpacetimeBreather {
+  static constexpr double length = 40, time_step = 0.2;
+
+  int cells;
+  double tolerance;
+
+  double space_step() const { return length / cells; }
+  Problem problem() const;
+  std::vector<double> phi() const;  ///< at the vertices and the nodes between them in turn; φ_t is zero
+};
+
 struct Mechanics {
   std::string theory, stencil;
   double time_step, tolerance;

@@ -13,6 +13,7 @@
 #include "tools/bench/packed_systems.hpp"
 #include "tools/bench/sides.hpp"
 #include "tools/bench/slab_problems.hpp"
+#include "tools/bench/spacetime_by_hand.hpp"
 #include "tools/bench/table.hpp"
 
 namespace delf::bench {
@@ -103,6 +104,22 @@ void mechanics(const Compared& compare, double tolerance) {
   }
 }
 
+void spacetime(const Compared& compare, double tolerance) {
+  const SpacetimeBreather problem{80, tolerance};
+  const std::vector<double> phi = problem.phi(), phi_t(phi.size(), 0.0);
+  const auto simulation = std::make_shared<Simulation>(problem.problem());
+  Side engine = side_of(simulation, TwoRows{});
+  engine.restart = [=] {
+    // Of the four components of a cell two lie in the lowest row.
+    std::vector<double> row, velocity(2 * phi.size(), 0.0);
+    for (std::size_t i = 0; i < phi.size(); i += 2) row.insert(row.end(), {phi[i], phi[i + 1], phi[i], phi[i + 1]});
+    simulation->start_legendre(row, velocity);
+  };
+  compare("spacetime (2,2), 80 cells", engine,
+          loop_side(SpacetimeByHand{problem.cells, problem.space_step(), SpacetimeBreather::time_step, tolerance},
+                    [=](auto& loop) { loop.start(phi, phi_t); }));
+}
+
 }  // namespace
 
 void time_slabs(const Request& request) {
@@ -116,6 +133,7 @@ void time_slabs(const Request& request) {
   moving_meshes(compare, request.sites_or({15, 22, 44, 63, 90}), tolerance);
   if (!request.sites.empty()) return;
   wave_map(compare, tolerance);
+  spacetime(compare, tolerance);
   mechanics(compare, tolerance);
 }
 

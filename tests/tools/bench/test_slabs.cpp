@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/catch.hpp"
 #include "tools/bench/mechanics_by_hand.hpp"
 #include "tools/bench/slab_problems.hpp"
+#include "tools/bench/spacetime_by_hand.hpp"
 
 using namespace delf;
 using namespace delf::bench;
@@ -87,4 +88,26 @@ TEST_CASE("loops of mechanics by hand and the engine step the same equations") {
     CHECK(std::abs(loop.q - q) < 1e-10);
     CHECK(std::abs(wrong.q - q) > 1e-3);
   }
+}
+
+TEST_CASE("spacetime elements by hand and the engine step the same equations") {
+  const SpacetimeBreather problem{40, 1e-14};
+  Simulation engine(problem.problem());
+  const std::vector<double> phi = problem.phi(), phi_t(phi.size(), 0.0);
+  SpacetimeByHand loop(40, problem.space_step(), SpacetimeBreather::time_step, 1e-14),
+      wrong(40, problem.space_step(), 1.01 * SpacetimeBreather::time_step, 1e-14);
+  std::vector<double> row, at_rest(2 * phi.size(), 0.0);
+  for (std::size_t i = 0; i < phi.size(); i += 2) row.insert(row.end(), {phi[i], phi[i + 1], phi[i], phi[i + 1]});
+  engine.start_legendre(row, at_rest), loop.start(phi, phi_t), wrong.start(phi, phi_t);
+  loop.step(), wrong.step();  // a start has row 1
+  for (int n = 0; n < 50; ++n) engine.step(), loop.step(), wrong.step();
+  std::vector<double> vertices(40);
+  engine.copy_row(0, vertices);
+  double worst = 0, of_wrong = 0;
+  for (int i = 0; i < 40; ++i) {
+    worst = std::max(worst, std::abs(vertices[static_cast<std::size_t>(i)] - loop.newest(2 * i)));
+    of_wrong = std::max(of_wrong, std::abs(vertices[static_cast<std::size_t>(i)] - wrong.newest(2 * i)));
+  }
+  CHECK(worst < 1e-10);
+  CHECK(of_wrong > 1e-3);
 }
