@@ -15,9 +15,11 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// h^−time k^−space of each slot.
 std::array<double, jet_slots> slot_scales(const Cell& cell) {
   std::array<double, jet_slots> scales;
-  for (int s = 0; s < jet_slots; ++s)
-    scales[at(s)] = std::pow(cell.time_step, -slot_powers[at(s)].time) *
-                    std::pow(cell.space_step, -slot_powers[at(s)].space);
+  for (int s = 0; s < jet_slots; ++s) {
+    double& scale = scales[at(s)] = 1;
+    for (int power = slot_powers[at(s)].time; power > 0; --power) scale /= cell.time_step;
+    for (int power = slot_powers[at(s)].space; power > 0; --power) scale /= cell.space_step;
+  }
   return scales;
 }
 
@@ -47,9 +49,12 @@ struct JetFamily::Jets {
     for (int s = 0; s * d < variables; ++s)
       for (int a = 0; a < d; ++a) {
         double* const jet = jets[s * d + a];
-        fill_zero(jet, count);
-        for (const auto& [vertex, weight] : p.slots[at(s)])
-          add(jet, weight * scales[at(s)], value(vertex * d + a) + first, count);
+        for (int i = 0; i < count; i += lanes) {
+          Pack sum(0.0);
+          for (const auto& [vertex, weight] : p.slots[at(s)])
+            sum += (weight * scales[at(s)]) * Pack::load(value(vertex * d + a) + first + i);
+          sum.store(jet + i);
+        }
       }
     for (int i = 0; i < count; ++i) x[0][i] = batch_.x[first + i] + p.space * batch_.cell.space_step;
     return {count, jets.data(), batch_.cell.t + p.time * batch_.cell.time_step, x[0]};
@@ -103,21 +108,25 @@ bool JetFamily::lagrangian(const StencilBatch& batch, double* L) const {
   return true;
 }
 
-void JetFamily::residual(const StencilBatch& batch, double* r) const {
+bool JetFamily::adds_to(const Point& point, std::span<const int> equations) const {
+  return std::ranges::any_of(equations, [&](int i) { return !point.of_test[at(i / d_)].empty(); });
+}
+
+void JetFamily::residual(const StencilBatch& batch, std::span<const int> equations, double* r) const {
   Jets jets(*this, batch);
-  const ScratchRows g(jets.variables, Jets::most);
-  fill_zero(r, size() * batch.count);
+  const ScratchRows g(jets.variables, std::min(batch.count, Jets::most));
+  fill_zero(r, static_cast<int>(equations.size()) * batch.count);
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
     for (std::size_t q = 0; q < points_.size(); ++q) {
+      if (!adds_to(points_[q], equations)) continue;
       const TablePoint& p = table_.points[q];
       density_->gradient(jets.at_point(p, first, count), g.data());
       // r += |Δ| w_q M_qᵀ ∂ℓ/∂j
-      for (int s = 0; s < density_->slots(); ++s)
-        for (const auto& [vertex, weight] : table_.test(q).slots[at(s)])
-          for (int a = 0; a < d_; ++a)
-            add(r + static_cast<std::ptrdiff_t>(vertex * d_ + a) * batch.count + first,
-                jets.area * p.weight * jets.scales[at(s)] * weight, g[s * d_ + a], count);
+      for (std::size_t e = 0; e < equations.size(); ++e)
+        for (const auto& [slot, weight] : points_[q].of_test[at(equations[e] / d_)])
+          add(r + static_cast<std::ptrdiff_t>(e) * batch.count + first,
+              jets.area * p.weight * jets.scales[at(slot)] * weight, g[slot * d_ + equations[e] % d_], count);
     }
   }
 }
@@ -126,26 +135,28 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
                          double* J) const {
   Jets jets(*this, batch);
   const int m = jets.variables;
-  const ScratchRows H(m * m, Jets::most);
+  const ScratchRows H(m * m, std::min(batch.count, Jets::most));
   const auto columns = static_cast<std::ptrdiff_t>(unknowns.size());
   fill_zero(J, static_cast<int>(equations.size() * unknowns.size()) * batch.count);
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
     for (std::size_t q = 0; q < points_.size(); ++q) {
-      const auto adds_to = [&](int i) { return !points_[q].of_test[at(i / d_)].empty(); };
-      if (!std::ranges::any_of(equations, adds_to)) continue;
+      if (!adds_to(points_[q], equations)) continue;
       const TablePoint& p = table_.points[q];
       density_->hessian(jets.at_point(p, first, count), H.data());
       // J += |Δ| w_q M_qᵀ ∂²ℓ/∂j∂j M_q
       for (std::size_t e = 0; e < equations.size(); ++e)
         for (std::size_t u = 0; u < unknowns.size(); ++u) {
-          double* const to = J + (static_cast<std::ptrdiff_t>(e) * columns + static_cast<std::ptrdiff_t>(u)) * batch.count + first;
+          double* const to =
+              J + (static_cast<std::ptrdiff_t>(e) * columns + static_cast<std::ptrdiff_t>(u)) * batch.count + first;
           const int a = equations[e] % d_, b = unknowns[u] % d_;
           for (const Weight& left : points_[q].of_test[at(equations[e] / d_)])
             for (const Weight& right : points_[q].of_vertex[at(unknowns[u] / d_)]) {
               const int row = left.slot * d_ + a, column = right.slot * d_ + b;
               if (density_->is_zero(row, column)) continue;
-              add(to, jets.area * p.weight * jets.scales[at(left.slot)] * left.weight * jets.scales[at(right.slot)] * right.weight,
+              add(to,
+                  jets.area * p.weight * jets.scales[at(left.slot)] * left.weight * jets.scales[at(right.slot)] *
+                      right.weight,
                   H[row * m + column], count);
             }
         }
@@ -172,7 +183,8 @@ std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
         if (!(has_sources_ && row < d_)) part.r0[at(i)] += to * density_->constant_gradient()[at(row)];
         for (const int k : points_[q].values)
           for (const Weight& right : points_[q].of_vertex[at(k / d_)])
-            part.J[at(i * n + k)] += to * scales[at(right.slot)] * right.weight * hessian(row, right.slot * d_ + k % d_);
+            part.J[at(i * n + k)] +=
+                to * scales[at(right.slot)] * right.weight * hessian(row, right.slot * d_ + k % d_);
       }
   }
   for (const auto* numbers : {&part.J, &part.r0})
@@ -199,8 +211,7 @@ void JetFamily::find_sources() {
       for (int a = 0; a < d_; ++a) {
         SourceTerms::QuadratureValue value;
         for (const auto& [vertex, weight] : p[JetSlot::phi])
-          value.push_back({pattern_.vertices[at(vertex)],
-                           pattern_.vertices[at(vertex)].node * d_ + a, weight});
+          value.push_back({pattern_.vertices[at(vertex)], pattern_.vertices[at(vertex)].node * d_ + a, weight});
         made.inputs.push_back(std::move(value));
       }
       sources_.groups.push_back(std::move(made));
@@ -244,8 +255,7 @@ bool JetFamily::momentum(const Cell& cell, std::span<const double> phi, std::spa
     std::fill_n(x[0], lanes, cell.x + point.space * cell.space_step);
     density_->gradient({lanes, jet.data(), cell.t, x[0]}, g.data());
     for (const auto& [vertex, weight] : point[JetSlot::phi])
-      for (int a = 0; a < d_; ++a)
-        p[at(vertex * d_ + a)] += cell.space_step * point.weight * weight * g[d_ + a][0];
+      for (int a = 0; a < d_; ++a) p[at(vertex * d_ + a)] += cell.space_step * point.weight * weight * g[d_ + a][0];
   }
   return true;
 }

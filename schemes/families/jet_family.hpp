@@ -25,7 +25,7 @@ class JetFamily final : public StencilFamily {
   using StencilFamily::jacobian;
   using StencilFamily::lagrangian;
   using StencilFamily::residual;
-  void residual(const StencilBatch&, double* r) const override;
+  void residual(const StencilBatch&, std::span<const int> equations, double* r) const override;
   void jacobian(const StencilBatch&, std::span<const int> equations, std::span<const int> unknowns,
                 double* J) const override;
   bool lagrangian(const StencilBatch&, double* L) const override;
@@ -51,6 +51,7 @@ class JetFamily final : public StencilFamily {
   struct Jets;
 
   void find_sources();
+  bool adds_to(const Point&, std::span<const int> equations) const;  ///< to one of them
 
   StencilTable table_;
   std::shared_ptr<const BatchDensity> density_;

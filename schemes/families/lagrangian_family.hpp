@@ -46,50 +46,39 @@ class LagrangianFamily final : public StencilFamily {
     return true;
   }
 
-  /// A sweep of derivatives by eight values for every pack of stencils.
-  void residual(const StencilBatch& batch, double* r) const override {
-    if (placed_) return StencilFamily::residual(batch, r);
-    using Number = Dual<Pack, 8>;
-    thread_local std::vector<Number> y;
-    y.resize(values_.size());
-    for (int s = 0; s < batch.count; s += lanes) {
-      load(batch, s, y, [](Number& number) -> Pack& { return number.value; });
-      for (int first = 0; first < size(); first += 8) {
-        const int last = std::min(first + 8, size());
-        for (int i = first; i < last; ++i) y[at(i)].d[at(i - first)] = Pack(1.0);
-        const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
-        for (int i = first; i < last; ++i) {
-          value.d[at(i - first)].store(r + i * batch.count + s);
-          y[at(i)].d[at(i - first)] = Pack(0.0);
-        }
-      }
-    }
+  using StencilFamily::residual;
+  void residual(const StencilBatch& batch, std::span<const int> equations, double* r) const override {
+    if (placed_) return StencilFamily::residual(batch, equations, r);
+    // Most batches need one sweep.
+    if (equations.size() == 1) slopes<1>(batch, equations, r);
+    else if (equations.size() <= 4) slopes<4>(batch, equations, r);
+    else slopes<8>(batch, equations, r);
   }
   /// A sweep of second derivatives for each value of the shorter list, by four of the longer one: ∂²L is symmetric.
   [[gnu::__flatten__]] void jacobian(const StencilBatch& batch, std::span<const int> equations,
-                                 std::span<const int> unknowns, double* J) const override {
+                                     std::span<const int> unknowns, double* J) const override {
     if (placed_) return StencilFamily::jacobian(batch, equations, unknowns, J);
     constexpr int chunk = 4;
     using Number = Dual<Dual<Pack, chunk>, 1>;
     thread_local std::vector<Number> y;
-    y.resize(values_.size());
+    y.assign(values_.size(), Number(0.0));
     const std::size_t U = unknowns.size();
     const bool by_unknown = U < equations.size();
     const std::span<const int> rows = by_unknown ? unknowns : equations, columns = by_unknown ? equations : unknowns;
-    for (int s = 0; s < batch.count; s += lanes) {
-      load(batch, s, y, [](Number& number) -> Pack& { return number.value.value; });
-      for (std::size_t first = 0; first < columns.size(); first += chunk) {
-        const std::size_t last = std::min(first + chunk, columns.size());
-        for (std::size_t m = first; m < last; ++m) y[at(columns[m])].value.d[m - first] = Pack(1.0);
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-          y[at(rows[i])].d[0].value = Pack(1.0);
+    for (std::size_t first = 0; first < columns.size(); first += chunk) {
+      const std::size_t last = std::min(first + chunk, columns.size());
+      for (std::size_t m = first; m < last; ++m) y[at(columns[m])].value.d[m - first] = Pack(1.0);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        y[at(rows[i])].d[0].value = Pack(1.0);
+        for (int s = 0; s < batch.count; s += lanes) {
+          for (int n = 0; n < size(); ++n) y[at(n)].value.value = Pack::load(batch.y + n * batch.count + s);
           const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
-          y[at(rows[i])].d[0].value = Pack(0.0);
           for (std::size_t m = first; m < last; ++m)
             value.d[0].d[m - first].store(J + (by_unknown ? m * U + i : i * U + m) * at(batch.count) + at(s));
         }
-        for (std::size_t m = first; m < last; ++m) y[at(columns[m])].value.d[m - first] = Pack(0.0);
+        y[at(rows[i])].d[0].value = Pack(0.0);
       }
+      for (std::size_t m = first; m < last; ++m) y[at(columns[m])].value.d[m - first] = Pack(0.0);
     }
   }
   /// The second derivatives that the form of L alone proves constant.
@@ -118,12 +107,21 @@ class LagrangianFamily final : public StencilFamily {
 
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  /// Values of the pack of stencils from s on, without derivatives.
-  template <class Number, class Value>
-  void load(const StencilBatch& batch, int s, std::vector<Number>& y, Value value) const {
-    for (int i = 0; i < size(); ++i) {
-      y[at(i)] = Number(0.0);
-      value(y[at(i)]) = Pack::load(batch.y + i * batch.count + s);
+  /// ∂L/∂y of some values for every pack of stencils, `width` of them a sweep.
+  template <std::size_t width>
+  [[gnu::__flatten__]] void slopes(const StencilBatch& batch, std::span<const int> equations, double* r) const {
+    using Number = Dual<Pack, static_cast<int>(width)>;
+    thread_local std::vector<Number> y;
+    y.assign(values_.size(), Number(0.0));
+    for (std::size_t first = 0; first < equations.size(); first += width) {
+      const std::size_t last = std::min(first + width, equations.size());
+      for (std::size_t e = first; e < last; ++e) y[at(equations[e])].d[e - first] = Pack(1.0);
+      for (int s = 0; s < batch.count; s += lanes) {
+        for (int i = 0; i < size(); ++i) y[at(i)].value = Pack::load(batch.y + i * batch.count + s);
+        const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
+        for (std::size_t e = first; e < last; ++e) value.d[e - first].store(r + e * at(batch.count) + at(s));
+      }
+      for (std::size_t e = first; e < last; ++e) y[at(equations[e])].d[e - first] = Pack(0.0);
     }
   }
   /// L as a function of y alone.

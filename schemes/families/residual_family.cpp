@@ -43,13 +43,13 @@ double ResidualFamily::linear(const Cell& cell, int l) const {
   return stencil_.by_xx[at(l)] * h / k - stencil_.by_tt[at(l)] * k / h + by_t * k;
 }
 
-void ResidualFamily::residual(const StencilBatch& batch, double* r) const {
+void ResidualFamily::residual(const StencilBatch& batch, std::span<const int> equations, double* r) const {
   const int n = batch.count;
   const double hk = batch.cell.time_step * batch.cell.space_step;
-  const ScratchRows q(d_, n);
+  const ScratchRows q(d_, n), sums(d_, n);
   std::vector<const double*> inputs(at(2 * d_));
-  std::fill_n(r, static_cast<std::ptrdiff_t>(size()) * n, 0.0);
-  double* const E = r + static_cast<std::ptrdiff_t>(stencil_.centre * d_) * n;
+  double* const E = sums[0];
+  std::fill_n(E, d_ * n, 0.0);
   for (int l = 0; l < pattern_.size(); ++l)
     if (const double w = linear(batch.cell, l); w != 0)
       for (int i = 0; i < d_ * n; ++i) E[i] += w * batch.y[static_cast<std::ptrdiff_t>(l * d_) * n + i];
@@ -61,6 +61,10 @@ void ResidualFamily::residual(const StencilBatch& batch, double* r) const {
     density_->difference_quotient({n, inputs.data()}, q.data());
     for (int a = 0; a < d_; ++a)
       for (int i = 0; i < n; ++i) E[a * n + i] += hk * quotient.weight * q[a][i];
+  }
+  for (std::size_t e = 0; e < equations.size(); ++e, r += n) {
+    if (equations[e] / d_ == stencil_.centre) std::copy_n(sums[equations[e] % d_], n, r);
+    else std::fill_n(r, n, 0.0);
   }
 }
 
@@ -107,8 +111,7 @@ std::optional<ConstantPart> ResidualFamily::constant_part(const Cell& cell) cons
     return part;
   }
   for (int l = 0; l < pattern_.size(); ++l)
-    for (int a = 0; a < d_; ++a)
-      part.J[at((stencil_.centre * d_ + a) * size() + l * d_ + a)] = linear(cell, l);
+    for (int a = 0; a < d_; ++a) part.J[at((stencil_.centre * d_ + a) * size() + l * d_ + a)] = linear(cell, l);
   return part;
 }
 

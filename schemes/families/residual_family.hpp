@@ -32,7 +32,7 @@ class ResidualFamily final : public StencilFamily {
 
   using StencilFamily::jacobian;
   using StencilFamily::residual;
-  void residual(const StencilBatch&, double* r) const override;
+  void residual(const StencilBatch&, std::span<const int> equations, double* r) const override;
   void jacobian(const StencilBatch&, std::span<const int> equations, std::span<const int> unknowns,
                 double* J) const override;
   std::optional<ConstantPart> constant_part(const Cell&) const override;

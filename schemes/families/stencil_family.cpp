@@ -65,7 +65,9 @@ std::optional<double> StencilFamily::lagrangian(const Cell& cell, std::span<cons
   return L[0];
 }
 
-void StencilFamily::residual(const StencilBatch& batch, double* r) const {
+void StencilFamily::residual(const StencilBatch& batch, double* r) const { residual(batch, numbers_to(size()), r); }
+
+void StencilFamily::residual(const StencilBatch& batch, std::span<const int> equations, double* r) const {
   const auto size = static_cast<std::size_t>(this->size()), count = static_cast<std::size_t>(batch.count);
   std::vector<double> y(size), out(size);
   for (std::size_t s = 0; s < count; ++s) {
@@ -73,7 +75,7 @@ void StencilFamily::residual(const StencilBatch& batch, double* r) const {
     cell.x = batch.x[s];
     for (std::size_t i = 0; i < size; ++i) y[i] = batch.y[i * count + s];
     residual(cell, y, out);
-    for (std::size_t i = 0; i < size; ++i) r[i * count + s] = out[i];
+    for (std::size_t e = 0; e < equations.size(); ++e) r[e * count + s] = out[static_cast<std::size_t>(equations[e])];
   }
 }
 

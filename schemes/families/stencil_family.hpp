@@ -76,8 +76,9 @@ class StencilFamily {
   bool is_varied(int i) const { return varied_.empty() || varied_[static_cast<std::size_t>(i)]; }
   bool is_placed() const { return placed_; }
 
-  /// r of a batch: r[i·count + s].
-  virtual void residual(const StencilBatch&, double* r) const;
+  /// r of a batch for some equations e, indices of values(): r[e·count + s], where e counts in the list.
+  virtual void residual(const StencilBatch&, std::span<const int> equations, double* r) const;
+  void residual(const StencilBatch&, double* r) const;  ///< for all of them
   /// ∂rᵉ/∂yᵘ of a batch for some equations e and unknowns u, both indices of values():
   /// J[(e·unknowns.size() + u)·count + s], where e and u count in the lists.
   virtual void jacobian(const StencilBatch&, std::span<const int> equations, std::span<const int> unknowns,

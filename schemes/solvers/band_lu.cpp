@@ -2,8 +2,10 @@
 #include "schemes/solvers/band_lu.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace delf {
 namespace {
@@ -13,23 +15,42 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// The largest multiple of a pack's width that is not above i ≥ 0.
 int whole_packs(int i) { return i / lanes * lanes; }
 
-// One by one: packs would wait for what was just stored at places that differ from theirs.
-/// x −= by l
-[[gnu::optimize("no-tree-vectorize")]] void subtract(const double* l, double by, double* x, int count) {
-  for (int i = 0; i < count; ++i) x[i] -= l[i] * by;
-}
-
-/// sum − u_count x_count − … − u_1 x_1
-[[gnu::optimize("no-tree-vectorize")]] double subtracted(double sum, const double* u, const double* x, int count) {
-  for (int j = count; j > 0; --j) sum -= u[j] * x[j];
-  return sum;
-}
-
 Pack unaligned(const double* p) {
   Pack a;
   std::memcpy(&a, p, sizeof a);
   return a;
 }
+
+// Loops of a length known when they are compiled, for the widths that are common; 0 stands for any.
+
+/// x −= by l
+template <int known>
+[[gnu::always_inline]] inline void subtract(const double* l, double by, double* x, int count) {
+  for (int i = 0; i < (known ? known : count); ++i) x[i] -= l[i] * by;
+}
+
+/// x_k+1 … x_k+lower −= x_k times their multipliers, for all k.
+template <int known>
+void eliminate(int n, int any_lower, const int* pivot, const double* multipliers, double* x) {
+  const int lower = known ? known : any_lower;
+  int k = 0;
+  for (; k < n - lower; ++k, multipliers += lower) {
+    const double by = x[pivot[k]];
+    x[pivot[k]] = x[k], x[k] = by;
+    subtract<known>(multipliers, by, x + k + 1, lower);
+  }
+  for (; k < n; ++k, multipliers += lower) {
+    std::swap(x[k], x[pivot[k]]);
+    subtract<0>(multipliers, x[k], x + k + 1, n - 1 - k);
+  }
+}
+using Eliminate = void (*)(int, int, const int*, const double*, double*);
+
+template <int... lower>
+constexpr std::array<Eliminate, sizeof...(lower)> eliminations(std::integer_sequence<int, lower...>) {
+  return {eliminate<lower>...};
+}
+constexpr auto common = eliminations(std::make_integer_sequence<int, 16>{});
 
 }  // namespace
 
@@ -67,24 +88,25 @@ bool BandLU::factor() {
   return true;
 }
 
+/// x_k = (x_k − Σ_{j>0} u_j x_{k+j})/u_0. The numbers found last are needed last and kept out of memory: a row waits for
+/// those before it by three products.
 void BandLU::solve(double* x) const {
-  for (int k = 0; k < n_; ++k) {
-    std::swap(x[k], x[pivot_[at(k)]]);
-    subtract(multipliers_.data() + at(k * lower_), x[k], x + k + 1, std::min(lower_, n_ - 1 - k));
-  }
-  // Terms of numbers known long ago by packs, those just found one by one and the newest last: a row waits for that alone.
-  const int recent = upper_ < 2 * lanes ? upper_ : lanes + upper_ % lanes;
+  const bool is_common = at(lower_) < common.size();
+  (is_common ? common[at(lower_)] : eliminate<0>)(n_, lower_, pivot_.data(), multipliers_.data(), x);
+  double x1 = 0, x2 = 0, x3 = 0;  // x_{k+1}, …
   for (int k = n_ - 1; k >= 0; --k) {
     const double* const u = numbers() + place(k, k);
     const int count = std::min(upper_, n_ - 1 - k);
+    Pack old(0.0);
     int j = count;
-    double sum_of_row = x[k];
-    if (count == upper_ && recent < upper_) {
-      Pack old(0.0);
-      for (; j > recent; j -= lanes) old += unaligned(u + j - lanes + 1) * unaligned(x + k + j - lanes + 1);
-      sum_of_row -= sum(old);
-    }
-    x[k] = subtracted(sum_of_row, u, x + k, j) * inverse_[at(k)];
+    for (; j >= 3 + lanes; j -= lanes) old += unaligned(u + j - lanes + 1) * unaligned(x + k + j - lanes + 1);
+    double s = x[k] - sum(old);
+    for (; j > 3; --j) s -= u[j] * x[k + j];
+    // Beyond the last number stand zeros.
+    if (count > 2) s -= u[3] * x3;
+    if (count > 1) s -= u[2] * x2;
+    if (count > 0) s -= u[1] * x1;
+    x3 = x2, x2 = x1, x1 = x[k] = s * inverse_[at(k)];
   }
 }
 

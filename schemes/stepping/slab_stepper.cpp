@@ -212,12 +212,15 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
       continue;
     }
     // Whole rows at once: what else lies in them costs less than to leave it out.
-    std::ranges::fill(predicted_, 0.0);
-    double weight = -1;
-    for (int m = 1; m <= points; ++m) {
+    const SectionView rows = ring_->view();
+    const int newest_row = rows.index(J + unknowns.time);
+    double weight = points;
+    const double* past = rows.beside(newest_row, -1);
+    for (std::size_t at = 0; at < size; ++at) predicted_[at] = weight * past[at];
+    for (int m = 2; m <= points; ++m) {
       weight *= -static_cast<double>(points - m + 1) / m;
-      const double* const row = ring_->row(J + unknowns.time - m);
-      for (std::size_t at = 0; at < size; ++at) predicted_[at] += weight * row[at];
+      past = rows.beside(newest_row, -m);
+      for (std::size_t at = 0; at < size; ++at) predicted_[at] += weight * past[at];
     }
     double* const row = ring_->row(J + unknowns.time);
     for (const int place : unknowns.places) row[place] = predicted_[static_cast<std::size_t>(place)];

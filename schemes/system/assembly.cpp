@@ -37,9 +37,6 @@ class NodeNumbers {
   std::vector<int> numbers_;
 };
 
-/// to[index] += r, lane by lane.
-void add(Pack r, double* to, const int* index) { scatter(gather(to, index) + r, to, index); }
-
 }  // namespace
 
 SectionRing::SectionRing(const Window& window, std::int64_t first, std::int64_t last)
@@ -54,8 +51,13 @@ Assembly::Parts Assembly::slab(const SolvePlan& plan, int parity, int past, int 
   Slab slab = plan.slab(parity);
   for (auto* nodes : {&slab.unknowns, &slab.equations})
     for (Node& node : *nodes) node.site.time -= parity;
-  return {.equations = std::move(slab.equations), .unknowns = std::move(slab.unknowns), .matched = slab.matched,
-          .parity = parity, .past = past, .future = future, .turn = turn};
+  return {.equations = std::move(slab.equations),
+          .unknowns = std::move(slab.unknowns),
+          .matched = slab.matched,
+          .parity = parity,
+          .past = past,
+          .future = future,
+          .turn = turn};
 }
 
 Assembly::Parts Assembly::across(const LatticeSystem& system, int parity, double turn) {
@@ -67,7 +69,11 @@ Assembly::Parts Assembly::across(const LatticeSystem& system, int parity, double
       for (int i = 0; i < system.lattice().sites(); ++i)
         if (system.has_stencil(family, row + parity, i)) anchors.push_back({f, {row, i}});
   }
-  return {.equations = {}, .parity = parity, .past = system.height(), .future = system.height(), .turn = turn,
+  return {.equations = {},
+          .parity = parity,
+          .past = system.height(),
+          .future = system.height(),
+          .turn = turn,
           .stencils = std::move(anchors)};
 }
 
@@ -90,8 +96,7 @@ void Assembly::list_stencils(const LatticeSystem& system) {
     for (const Node& e : parts_.equations)
       for (const auto& touch : system.touching(e.site + Site{parts_.parity, 0}, e.component)) {
         const Site site = e.site + touch.anchor;
-        anchors.push_back(
-            {touch.family_index, {site.time, lattice.home(site.space)}});
+        anchors.push_back({touch.family_index, {site.time, lattice.home(site.space)}});
       }
   std::ranges::sort(anchors);
   anchors.erase(std::ranges::unique(anchors).begin(), anchors.end());
@@ -99,8 +104,13 @@ void Assembly::list_stencils(const LatticeSystem& system) {
     const auto [number, site] = anchor;
     if (batches_.empty() || batches_.back().number != number || batches_.back().row != site.time) {
       const StencilFamily& family = *system.families()[at(number)];
-      batches_.push_back({.family = &family, .number = number, .size = family.size(), .row = site.time,
-                          .lowest_row = site.time, .stencils = 0, .padded = 0});
+      batches_.push_back({.family = &family,
+                          .number = number,
+                          .size = family.size(),
+                          .row = site.time,
+                          .lowest_row = site.time,
+                          .stencils = 0,
+                          .padded = 0});
       for (int i = 0; i < family.size(); ++i) {
         batches_.back().rows.push_back(site.time + family.site(i).time);
         batches_.back().lowest_row = std::min(batches_.back().lowest_row, batches_.back().rows.back());
@@ -192,11 +202,14 @@ void Assembly::take_constant_parts() {
     const auto part = b.family->constant_part(cell(b, 0, b.x[0][0]));
     b.linear = part && part->is_all;
     if (!b.linear) continue;
-    b.at_zero = part->r0;
-    b.terms.clear();
-    for (int i = 0; i < b.size; ++i)
+    b.at_zero.clear(), b.terms.clear();
+    for (std::size_t e = 0; e < b.equations.size(); ++e) {
+      const int i = b.equations[e];
+      b.at_zero.push_back(part->r0[at(i)]);
       for (int m = 0; m < b.size; ++m)
-        if (const double value = part->J[at(i * b.size + m)]; value != 0) b.terms.push_back({i, m, value});
+        if (const double value = part->J[at(i * b.size + m)]; value != 0)
+          b.terms.push_back({static_cast<int>(e), m, value});
+    }
     add_constant(b, part->J, fixed_);
   }
 }
@@ -218,17 +231,20 @@ Pack Assembly::gathered(const Batch& b, SectionView section, std::int64_t J, int
 template <class Use>
 void Assembly::strips(const Batch& b, SectionView section, std::int64_t J, int numbers, const Use& use) const {
   // A strip's numbers stay in the cache of first level.
+  const int at_J = section.index(J);
   const int most = std::clamp(largest_strip / std::max(numbers, 1) / lanes * lanes, lanes, most_together);
   for (int first = 0; first < b.padded; first += most) {
     const int count = std::min(most, b.padded - first);
     y_.resize(at(b.size * count / lanes)), out_.resize(at(numbers * count / lanes));
     Pack* y = y_.data();
     for (int i = 0; i < b.size; ++i) {
-      const double* const row = section.row(J + b.rows[at(i)]);
+      const double* const row = section.beside(at_J, b.rows[at(i)]);
       for (int s = first; s < first + count; s += lanes, ++y) {
-        *y = delf::gather(row, b.place.data() + b.read(i, s));
+        const int* const place = b.place.data() + b.read(i, s);
+        Pack read = b.stencils == 1 ? Pack(row[*place]) : delf::gather(row, place);
         if (!b.gained.empty())
-          for (int l = 0; l < lanes; ++l) y->v[l] += b.gained[at(b.read(i, s + l))];
+          for (int l = 0; l < lanes; ++l) read.v[l] += b.gained[at(b.read(i, s + l))];
+        *y = read;
       }
     }
     use(StencilBatch{cell(b, J, 0), count, numbers_of(b.x.data() + first / lanes), numbers_of(y_.data())}, first,
@@ -237,21 +253,24 @@ void Assembly::strips(const Batch& b, SectionView section, std::int64_t J, int n
 }
 
 void Assembly::add_residual(const Batch& b, SectionView section, std::int64_t J, double* E, double* absolute) const {
-  strips(b, section, J, b.size, [&](const StencilBatch& strip, int first, Pack* r) {
+  const int equations = static_cast<int>(b.equations.size());
+  if (equations == 0) return;
+  strips(b, section, J, equations, [&](const StencilBatch& strip, int first, Pack* r) {
     const int packs = strip.count / lanes;
     if (b.linear) {
-      for (int i = 0; i < b.size; ++i) std::fill_n(r + i * packs, packs, Pack(b.at_zero[at(i)]));
-      for (const auto& [i, m, value] : b.terms)
-        for (int p = 0; p < packs; ++p) r[i * packs + p] += Pack(value) * y_[at(m * packs + p)];
+      for (int e = 0; e < equations; ++e) std::fill_n(r + e * packs, packs, Pack(b.at_zero[at(e)]));
+      for (const auto& [e, m, value] : b.terms)
+        for (int p = 0; p < packs; ++p) r[e * packs + p] += Pack(value) * y_[at(m * packs + p)];
     } else {
-      b.family->residual(strip, numbers_of(r));
+      b.family->residual(strip, b.equations, numbers_of(r));
     }
     // No two stencils of a row have the same equation at the same value.
     for (const int i : b.equations)
-      for (int p = 0; p < packs; ++p) {
-        const int* const equation = b.equation.data() + b.read(i, first + p * lanes);
-        add(r[i * packs + p], E, equation);
-        if (absolute) add(abs(r[i * packs + p]), absolute, equation);
+      for (int p = 0; p < packs; ++p, ++r) {
+        const int s = first + p * lanes, own = b.stencils - s;
+        const int* const equation = b.equation.data() + b.read(i, s);
+        scatter_add(*r, E, equation, own);
+        if (absolute) scatter_add(abs(*r), absolute, equation, own);
       }
   });
 }
@@ -295,7 +314,7 @@ void Assembly::jacobian(SectionView section, std::int64_t J, std::vector<double>
       b.family->jacobian(strip, b.equations, b.unknowns, numbers_of(derivatives));
       for (int n = 0; n < pairs; ++n)
         for (int s = 0; s < strip.count; s += lanes)
-          add(*derivatives++, values.data(), b.entry.data() + n * b.padded + first + s);
+          scatter_add(*derivatives++, values.data(), b.entry.data() + n * b.padded + first + s, b.stencils - first - s);
     });
   }
   values.resize(places_.size());
@@ -339,8 +358,8 @@ void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V,
       for (std::size_t e = 0; e < b.equations.size(); ++e)
         for (std::size_t u = 0; u < b.unknowns.size(); ++u, entry += b.padded)
           for (int p = 0; p < packs; ++p)
-            add(derivatives[(static_cast<int>(e) * b.size + b.unknowns[u]) * packs + p], values.data(),
-                entry + p * lanes);
+            scatter_add(derivatives[(static_cast<int>(e) * b.size + b.unknowns[u]) * packs + p], values.data(),
+                        entry + p * lanes, b.stencils - first - p * lanes);
       for (Variation& v : V)
         for (std::size_t e = 0; e < b.equations.size(); ++e)
           for (int p = 0; p < packs; ++p) {
@@ -351,8 +370,8 @@ void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V,
               sum += term, absolute += abs(term);
             }
             const int* const equation = b.equation.data() + b.read(b.equations[e], s);
-            add(sum, v.E.data(), equation);
-            add(absolute, v.absolute.data(), equation);
+            scatter_add(sum, v.E.data(), equation, b.stencils - s);
+            scatter_add(absolute, v.absolute.data(), equation, b.stencils - s);
           }
     });
   }
@@ -369,7 +388,7 @@ void Assembly::each(bool jacobian, SectionView section, std::int64_t J, const Vi
     derivatives.resize(jacobian ? at(b.size * b.size) : at(b.size));
     strips(b, section, J, static_cast<int>(derivatives.size()), [&](const StencilBatch& strip, int first, Pack* out) {
       if (jacobian) b.family->jacobian(strip, all, all, numbers_of(out));
-      else b.family->residual(strip, numbers_of(out));
+      else b.family->residual(strip, all, numbers_of(out));
       for (int s = 0; s < std::min(strip.count, b.stencils - first); ++s) {
         for (int i = 0; i < b.size; ++i) {
           places[at(i)] = b.place[at(b.read(i, first + s))];

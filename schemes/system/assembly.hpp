@@ -16,14 +16,29 @@
 namespace delf {
 
 /// Rows of a section, row[i·C + c]: a ring of the newest `depth`.
-struct SectionView {
-  const double* values;
-  int depth;
-  std::size_t row_size;
+class SectionView {
+ public:
+  SectionView(const double* values, int depth, std::size_t row_size)
+      : values_(values), depth_(depth), row_size_(row_size) {}
 
-  const double* row(std::int64_t r) const {
-    return values + static_cast<std::size_t>(((r % depth) + depth) % depth) * row_size;
+  const double* row(std::int64_t r) const { return at(index(r)); }
+  /// Where row r stands in the ring, and the row `by` rows after the one that stands at an index: divisions are slow.
+  int index(std::int64_t r) const {
+    const auto i = static_cast<int>(r % depth_);
+    return i < 0 ? i + depth_ : i;
   }
+  const double* beside(int i, int by) const {
+    for (i += by; i < 0;) i += depth_;
+    while (i >= depth_) i -= depth_;
+    return at(i);
+  }
+
+ private:
+  const double* at(int i) const { return values_ + static_cast<std::size_t>(i) * row_size_; }
+
+  const double* values_;
+  int depth_;
+  std::size_t row_size_;
 };
 class SectionRing {
  public:
@@ -67,9 +82,9 @@ class Assembly {
     int parity = 0;        ///< of row J: brick walls
     /// Rows J − past … J + future are there; stencils that reach further do not depend on what they read there.
     int past = 0, future = 0;
-    double turn = 0;                                    ///< φ(x + L) − φ(x)
-    std::optional<std::vector<Anchor>> stencils = {};   ///< those that touch an equation, if not given
-    std::function<int(Site)> place = {};  ///< in a row of the section; the number in space, if not given
+    double turn = 0;                                   ///< φ(x + L) − φ(x)
+    std::optional<std::vector<Anchor>> stencils = {};  ///< those that touch an equation, if not given
+    std::function<int(Site)> place = {};               ///< in a row of the section; the number in space, if not given
   };
   Assembly(const LatticeSystem&, Parts);
   /// The equations and the unknowns of a plan's slabs of one parity.
@@ -143,13 +158,13 @@ class Assembly {
  private:
   using Numbers = std::vector<double>;
   using Packs = std::vector<Pack>;
-  static constexpr int most_together = 64;     ///< stencils of a strip
-  static constexpr int largest_strip = 2048;   ///< doubles of its results: half of a cache of first level
+  static constexpr int most_together = 64;    ///< stencils of a strip
+  static constexpr int largest_strip = 2048;  ///< doubles of its results: half of a cache of first level
   static double* numbers_of(Pack* packs) { return reinterpret_cast<double*>(packs); }
   static const double* numbers_of(const Pack* packs) { return reinterpret_cast<const double*>(packs); }
-  /// An entry of a constant J that is not zero.
+  /// An entry of a constant J that is not zero, in the row of equations[e].
   struct Term {
-    int i, m;
+    int e, m;
     double value;
   };
   /// As many lanes as fill whole packs: the last stencil is repeated, and what it repeats goes to an equation that
@@ -171,7 +186,7 @@ class Assembly {
     std::vector<int> entry = {};
     bool linear = false;  ///< r = r(0) + J y with the same J everywhere
     std::vector<Term> terms = {};
-    Numbers at_zero = {};
+    Numbers at_zero = {};  ///< of equations[e]
 
     int read(int i, int s) const { return i * padded + s; }
   };
@@ -196,7 +211,7 @@ class Assembly {
   Parts parts_;
   std::vector<Batch> batches_;
   std::vector<Place> places_;
-  Numbers fixed_;                     ///< the values of places() that linear batches give
+  Numbers fixed_;          ///< the values of places() that linear batches give
   mutable Packs y_, out_;  ///< of a strip
 };
 

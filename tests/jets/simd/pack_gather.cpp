@@ -33,3 +33,13 @@ TEST_CASE("of lanes that are scattered to one place the last stays there") {
   scatter(numbers, to.data(), places.data());
   CHECK(to == std::array<double, 3>{0, lanes, 0});
 }
+
+TEST_CASE("lanes are added to places that others add to, as many as are asked for") {
+  std::array<double, 3> to{1, 1, 1};
+  std::array<int, static_cast<std::size_t>(lanes)> places{};
+  places.fill(1);
+  scatter_add(Pack(2.0), to.data(), places.data(), lanes);
+  CHECK(to == std::array<double, 3>{1, 1 + 2 * lanes, 1});
+  scatter_add(Pack(2.0), to.data(), places.data(), 1);
+  CHECK(to == std::array<double, 3>{1, 3 + 2 * lanes, 1});
+}
