@@ -15,10 +15,11 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// h^−time k^−space of each slot.
 std::array<double, jet_slots> slot_scales(const Cell& cell) {
   std::array<double, jet_slots> scales;
+  const double per_h = 1 / cell.time_step, per_k = 1 / cell.space_step;
   for (int s = 0; s < jet_slots; ++s) {
     double& scale = scales[at(s)] = 1;
-    for (int power = slot_powers[at(s)].time; power > 0; --power) scale /= cell.time_step;
-    for (int power = slot_powers[at(s)].space; power > 0; --power) scale /= cell.space_step;
+    for (int power = slot_powers[at(s)].time; power > 0; --power) scale *= per_h;
+    for (int power = slot_powers[at(s)].space; power > 0; --power) scale *= per_k;
   }
   return scales;
 }
