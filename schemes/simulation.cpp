@@ -20,6 +20,7 @@
 #include "schemes/system/conserved.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/system/slab_extent.hpp"
+#include "schemes/system/without_value.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
@@ -98,6 +99,22 @@ struct Simulation::Impl {
                                   (static_cast<double>(stepper.newest()) - (stepper.is_processed() ? 0.5 : 1)) * h, h,
                                   problem.lattice.space_step()},
                                  cell_weights.row(0));
+  }
+
+  /// Carries out steps; where they fail because the density has no value, the failure says so.
+  template <class Steps>
+  void with_reasons(const Steps& steps) const {
+    try {
+      steps();
+    } catch (const NotFinite& failure) {
+      throw NotFinite(with_reason(failure));
+    } catch (const NoConvergence& failure) {
+      throw NoConvergence(with_reason(failure));
+    }
+  }
+  std::string with_reason(const NumericalFailure& failure) const {
+    const std::string reason = stepper.newest() < 1 ? std::string() : without_value(system, stepper.window(2));
+    return reason.empty() ? failure.what() : fmt::format("{}; {}", failure.what(), reason);
   }
 
   const RowLayout& layout() const { return own_layout ? *own_layout : *stepper.layout(); }
@@ -270,8 +287,12 @@ void Simulation::start_centred(std::span<const double> row0, std::span<const dou
   impl_->stepper.start_centred(rows[0], {velocity.begin(), velocity.end()});
 }
 
-void Simulation::step(bool looked_at) { impl_->stepper.step(looked_at); }
-void Simulation::steps(int count) { impl_->stepper.steps(count); }
+void Simulation::step(bool looked_at) {
+  impl_->with_reasons([&] { impl_->stepper.step(looked_at); });
+}
+void Simulation::steps(int count) {
+  impl_->with_reasons([&] { impl_->stepper.steps(count); });
+}
 std::int64_t Simulation::newest() const { return impl_->stepper.newest(); }
 
 void Simulation::start_legendre(std::span<const double> fields, std::span<const double> rates) {

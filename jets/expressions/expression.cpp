@@ -5,8 +5,11 @@
 #include <array>
 #include <cmath>
 
+#include "jets/expressions/evaluate.hpp"
 #include "jets/expressions/parse.hpp"
+#include "jets/expressions/quotient.hpp"
 #include "jets/expressions/tape.hpp"
+#include "jets/field_motion.hpp"
 #include "jets/simd/scratch_rows.hpp"
 #include "jets/value_derivatives.hpp"
 #include "lattice/error.hpp"
@@ -34,61 +37,34 @@ Names names_of(const ExpressionNames& given) {
   const Numbering number{static_cast<int>(given.fields.size())};
   Names names{{{"t", number.t()}, {"x", number.x()}}, {}};
   for (int a = 0; a < number.d; ++a)
-    for (int s = 0; s < 6; ++s) names.variables.emplace_back(given.fields[at(a)] + slot_endings[at(s)], s * number.d + a);
+    for (int s = 0; s < 6; ++s)
+      names.variables.emplace_back(given.fields[at(a)] + slot_endings[at(s)], s * number.d + a);
   names.constants = given.parameters;
   return names;
 }
 
-/// The expression on abstract numbers: in the order of nodes, as if it were computed.
+/// The expression on abstract numbers: x and t follow the slots that occur.
 Abstract abstract_value(const Graph& graph, int root, const Numbering& number, int m) {
-  const std::vector<bool> wanted = graph.reachable({root});
-  std::vector<int> last_use(at(root + 1), -1), free;
-  std::vector<std::unique_ptr<Abstract>> values(at(root + 1));  // an abstract number is a kilobyte: they are let go
-  for (int i = 0; i <= root; ++i) {
-    if (!wanted[at(i)]) continue;
-    const Node& n = graph[i];
-    if (n.operation != O::constant && n.operation != O::variable) {
-      last_use[at(n.a)] = i;
-      if (has_two_operands(n.operation)) last_use[at(n.b)] = i;
-    }
-  }
-  const auto of = [&](const Node& n) -> Abstract {
-    const auto a = [&]() -> const Abstract& { return *values[at(n.a)]; };
-    const auto b = [&]() -> const Abstract& { return *values[at(n.b)]; };
-    switch (n.operation) {
-      case O::constant: return n.value;
-      case O::variable: return Abstract::variable(n.a == number.t() ? m : n.a == number.x() ? m + 1 : n.a);
-      case O::add: return a() + b();
-      case O::subtract: return a() - b();
-      case O::multiply: return a() * b();
-      case O::divide: return a() / b();
-      case O::negate: return -a();
-      default: return unknown_function(a());
-    }
-  };
-  for (int i = 0; i <= root; ++i) {
-    if (!wanted[at(i)]) continue;
-    const Node& n = graph[i];
-    values[at(i)] = std::make_unique<Abstract>(of(n));
-    if (n.operation == O::constant || n.operation == O::variable) continue;
-    if (last_use[at(n.a)] == i) values[at(n.a)].reset();
-    if (has_two_operands(n.operation) && last_use[at(n.b)] == i) values[at(n.b)].reset();
-  }
-  return *values[at(root)];
+  return Evaluation(graph, root).operator()<Abstract>([&](int variable) {
+    return Abstract::variable(variable == number.t() ? m : variable == number.x() ? m + 1 : variable);
+  });
 }
 
-class ExpressionDensity final : public BatchDensity, public ValueDerivatives {
+class ExpressionDensity final : public SymbolicDensity, public ValueDerivatives {
  public:
-  ExpressionDensity(std::string_view text, const ExpressionNames& names, const std::string& key)
-      : number_{static_cast<int>(names.fields.size())} {
+  ExpressionDensity(std::string_view text, const ExpressionNames& names, const std::string& key,
+                    const BesidesDensity& besides)
+      : SymbolicDensity(text, names, besides), number_{static_cast<int>(names.fields.size())} {
     Graph graph;
     const int l = parse(graph, text, names_of(names), key);
     try {
       find_structure(graph, l, names, key);
       make_tapes(graph, l);
+      make_quotient(graph, l);
     } catch (const TooLarge& large) {
       throw BadInput(key, key + ": " + large.what() + "; simplify it");
     }
+    symmetries_.insert(symmetries_.end(), besides.symmetries.begin(), besides.symmetries.end());
     find_constants();
   }
 
@@ -117,6 +93,10 @@ class ExpressionDensity final : public BatchDensity, public ValueDerivatives {
         sum.store(c[ab] + i);
       }
   }
+  void difference_quotient(const JetBatch& ab, double* const* q) const override { quotient_.value(ab, q[0]); }
+  void differentiate_quotient(const JetBatch& ab, double* const* d) const override {
+    quotient_.derivatives(ab, d[0], d[1]);
+  }
   void place_gradient(const JetBatch& batch, double* l_t, double* l_x) const override {
     const std::array<double*, 2> out{l_t, l_x};
     run(by_place_, batch, out.data());
@@ -141,7 +121,7 @@ class ExpressionDensity final : public BatchDensity, public ValueDerivatives {
     structure_ = structure_of(abstract_value(graph, l, number_, m), m, d);
     for (int a = 0; a < d; ++a) require_determined(a, names.fields[at(a)], key);
     for (int a = 0; a < d; ++a)
-      if (!depends_on(a)) {  // φᵃ ↦ φᵃ + ε
+      if (!depends_on(a) && constraint().empty()) {  // φᵃ ↦ φᵃ + ε
         LinearSymmetry shift{"translation" + (d > 1 ? " of " + names.fields[at(a)] : ""),
                              std::vector<double>(at(d * d), 0.0), std::vector<double>(at(d), 0.0)};
         shift.shift[at(a)] = 1;
@@ -152,19 +132,20 @@ class ExpressionDensity final : public BatchDensity, public ValueDerivatives {
   /// A field has an equation that a step could solve for it if its rate enters a second derivative of ℓ, or if the field
   /// itself does together with the rate of another: p in p q_t.
   void require_determined(int a, const std::string& field, const std::string& key) const {
-    bool present = false, in_motion = false;
+    bool present = false;
     for (int s = 0; s < slots_; ++s) present = present || depends_on(s * components_ + a);
-    for (const int rate : {1, 3, 4})
-      for (int b = 0; rate < slots_ && b < variables(); ++b)
-        in_motion = in_motion || !is_zero(rate * components_ + a, b) ||
-                    (b < components_ && b != a && !is_zero(rate * components_ + b, a));
+    FieldMotion fields(components_);
+    fields.add(*this);
     const auto refuse = [&](const std::string& why) {
       throw BadInput(key, key + ": does not determine the field " + field + ": " + why);
     };
-    if (!present) refuse("neither it nor its derivatives occur; add terms such as 0.5*" + field + "_t^2, or remove it from the fields");
-    if (!in_motion)
-      refuse(depends_on(components_ + a) ? field + "_t occurs only linearly, with a constant factor; add a term such as 0.5*" + field + "_t^2"
-                                          : field + "_t does not occur; add a term such as 0.5*" + field + "_t^2");
+    if (!present)
+      refuse("neither it nor its derivatives occur; add terms such as 0.5*" + field +
+             "_t^2, or remove it from the fields");
+    if (!fields.moving[at(a)])
+      refuse(depends_on(components_ + a)
+                 ? field + "_t occurs only linearly, with a constant factor; add a term such as 0.5*" + field + "_t^2"
+                 : field + "_t does not occur; add a term such as 0.5*" + field + "_t^2");
   }
 
   void make_tapes(Graph& graph, int l) {
@@ -175,9 +156,8 @@ class ExpressionDensity final : public BatchDensity, public ValueDerivatives {
       for (int b = 0; b <= a; ++b)
         if (!is_zero(a, b)) H[at(a * m + b)] = H[at(b * m + a)] = graph.differentiate(g[at(a)], b);
     const auto at_rest = [&](int root) {
-      return graph.substitute(root, [&](int v) {
-        return v >= d && v != number_.t() && v != number_.x() ? zero : graph.variable(v);
-      });
+      return graph.substitute(
+          root, [&](int v) { return v >= d && v != number_.t() && v != number_.x() ? zero : graph.variable(v); });
     };
     for (int a = 0; a < d; ++a) slopes.push_back(at_rest(g[at(a)]));
     for (int a = 0; a < d; ++a)
@@ -198,9 +178,23 @@ class ExpressionDensity final : public BatchDensity, public ValueDerivatives {
     by_place_ = Tape(graph, places, count);
   }
 
+  /// Comparators read the potential N(φ) = ℓ(φ, 0, 0) of one field alone.
+  void make_quotient(Graph& graph, int l) {
+    constexpr int longest = 3000;  // eight derivatives of longer ones would take longer than a start may
+    if (components_ != 1 || slots_ != 3 || placed_ || nonlinearity() == Nonlinearity::all || graph.size() > longest)
+      return;
+    const int potential = graph.substitute(l, [&](int v) { return v == 0 ? graph.variable(0) : graph.constant(0); });
+    try {
+      quotient_ = Quotient(graph, potential, number_.count());
+      has_difference_quotient_ = true;
+    } catch (const TooLarge&) {  // of eight derivatives; nothing but comparators misses them
+    }
+  }
+
   void run(const Tape& tape, const JetBatch& batch, double* const* out) const { run(tape, batch, out, variables()); }
   void run(const Tape& tape, const JetBatch& batch, double* const* out, int given) const {
-    std::array<const double*, 2 * Abstract::most_variables> in;  // a call is short: no more of it is written than is read
+    std::array<const double*, 2 * Abstract::most_variables>
+        in;  // a call is short: no more of it is written than is read
     std::fill(std::copy_n(batch.slots, given, in.begin()), in.begin() + number_.count(), nullptr);
     in[at(number_.x())] = batch.x;
     tape.run(batch.count, in.data(), batch.t, out);
@@ -208,6 +202,7 @@ class ExpressionDensity final : public BatchDensity, public ValueDerivatives {
 
   Numbering number_;
   Tape value_, gradient_, gradient_and_value_, hessian_, slope_, curvature_, third_, by_place_;
+  Quotient quotient_;
 };
 
 }  // namespace
@@ -228,10 +223,10 @@ void check_names(const ExpressionNames& given, const std::string& key_of_fields,
   }
 }
 
-std::shared_ptr<const BatchDensity> expression(std::string_view text, const ExpressionNames& names,
-                                               const std::string& key) {
+std::shared_ptr<const SymbolicDensity> expression(std::string_view text, const ExpressionNames& names,
+                                                  const std::string& key, const BesidesDensity& besides) {
   check_names(names, key, key);
-  return std::make_shared<ExpressionDensity>(text, names, key);
+  return std::make_shared<ExpressionDensity>(text, names, key, besides);
 }
 
 struct Formula::Impl {
@@ -260,9 +255,10 @@ double Formula::operator()(double t, double x) const { return (*impl_)(t, x)[0];
 double Formula::by_t(double t, double x) const { return (*impl_)(t, x)[1]; }
 double Formula::by_x(double t, double x) const { return (*impl_)(t, x)[2]; }
 
-double number_of(std::string_view text, const std::string& key) {
+double number_of(std::string_view text, const std::string& key,
+                 const std::vector<std::pair<std::string, double>>& parameters) {
   Graph graph;
-  return graph[parse(graph, text, {}, key)].value;
+  return graph[parse(graph, text, {{}, parameters}, key)].value;
 }
 
 }  // namespace delf

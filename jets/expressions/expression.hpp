@@ -1,19 +1,53 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "jets/batch_density.hpp"
+#include "jets/symmetry.hpp"
 
 namespace delf {
 
 /// What the names in the text of a density stand for.
 struct ExpressionNames {
-  std::vector<std::string> fields = {"phi"};                   ///< each with its derivatives: phi_t, phi_x, phi_tt, …
+  std::vector<std::string> fields = {"phi"};  ///< each with its derivatives: phi_t, phi_x, phi_tt, …
   std::vector<std::pair<std::string, double>> parameters = {};
+};
+
+/// What a text states besides a density: symmetries, which require_symmetry() tells apart, and a constraint on the fields.
+struct BesidesDensity {
+  std::vector<LinearSymmetry> symmetries = {}, up_to_divergence = {};
+  std::string constraint = {};
+};
+
+/// A density that knows the text it is made of.
+class SymbolicDensity : public BatchDensity {
+ public:
+  const std::string& text() const { return text_; }
+  const ExpressionNames& names() const { return names_; }
+  /// The innermost part of the density, or of its gradient, that has no value at a jet, the variables in the order of a
+  /// JetBatch: "log(phi) has no value, where phi = -0.1". Empty if all have values.
+  std::string without_value(std::span<const double> jet, double t, double x) const;
+  /// Symmetries that change the density by a divergence. What they conserve is not a sum over a row alone, so that they are
+  /// none of symmetries().
+  const std::vector<LinearSymmetry>& up_to_divergence() const { return besides_.up_to_divergence; }
+  /// G of the constraint G = 0; empty if there is none.
+  const std::string& constraint() const { return besides_.constraint; }
+
+ protected:
+  SymbolicDensity(std::string_view text, ExpressionNames names, BesidesDensity besides)
+      : text_(text), names_(std::move(names)), besides_(std::move(besides)) {}
+
+ private:
+  bool has_values(std::span<const double> jet, double t, double x) const;
+
+  std::string text_;
+  ExpressionNames names_;
+  BesidesDensity besides_;
 };
 
 /// A Lagrangian density given as text, as fast as a compiled one:
@@ -25,9 +59,10 @@ struct ExpressionNames {
 /// is in jets/expressions/parse.hpp. Derivatives are exact, and what is proved of the density is as for compiled ones.
 ///
 /// Throws BadInput for `key` with line, character and a caret for what cannot be read, and for a density that does not
-/// determine each of its fields.
-std::shared_ptr<const BatchDensity> expression(std::string_view text, const ExpressionNames& names = {},
-                                               const std::string& key = "theory.density");
+/// determine each of its fields. Symmetries are taken as they are, besides the translations that the form proves.
+std::shared_ptr<const SymbolicDensity> expression(std::string_view text, const ExpressionNames& names = {},
+                                                  const std::string& key = "theory.density",
+                                                  const BesidesDensity& = {});
 
 /// A formula of t and x alone, such as a starting field.
 class Formula {
@@ -46,8 +81,9 @@ class Formula {
   std::unique_ptr<const Impl> impl_;
 };
 
-/// The value of a text without any names but pi. Throws BadInput for `key`.
-double number_of(std::string_view text, const std::string& key);
+/// The value of a text of numbers, pi and `parameters`. Throws BadInput for `key`.
+double number_of(std::string_view text, const std::string& key,
+                 const std::vector<std::pair<std::string, double>>& parameters = {});
 
 /// Throws BadInput for `key` if names are no names, mean something already, or occur twice.
 void check_names(const ExpressionNames&, const std::string& key_of_fields, const std::string& key_of_parameters);

@@ -18,18 +18,30 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double apply(Operation function, double x) {
   switch (function) {
-    case O::sin: return std::sin(x);
-    case O::cos: return std::cos(x);
-    case O::cosm1: return delf::cosm1(x);
-    case O::tan: return std::tan(x);
-    case O::exp: return std::exp(x);
-    case O::log: return std::log(x);
-    case O::sqrt: return std::sqrt(x);
-    case O::sinh: return std::sinh(x);
-    case O::cosh: return std::cosh(x);
-    case O::tanh: return std::tanh(x);
-    case O::atan: return std::atan(x);
-    default: throw std::logic_error("no function of one operand");
+    case O::sin:
+      return std::sin(x);
+    case O::cos:
+      return std::cos(x);
+    case O::cosm1:
+      return delf::cosm1(x);
+    case O::tan:
+      return std::tan(x);
+    case O::exp:
+      return std::exp(x);
+    case O::log:
+      return std::log(x);
+    case O::sqrt:
+      return std::sqrt(x);
+    case O::sinh:
+      return std::sinh(x);
+    case O::cosh:
+      return std::cosh(x);
+    case O::tanh:
+      return std::tanh(x);
+    case O::atan:
+      return std::atan(x);
+    default:
+      throw std::logic_error("no function of one operand");
   }
 }
 
@@ -140,7 +152,8 @@ int Graph::power(int a, double exponent) {
   if (exponent == 0) return constant(1);
   if (is_constant(a)) return constant(std::pow((*this)[a].value, exponent));
   if (exponent < 0 && exponent >= -most_products) return divide(constant(1), power(a, -exponent));
-  if (exponent == std::round(exponent) && exponent <= most_products) return integer_power(a, static_cast<int>(exponent));
+  if (exponent > 0 && exponent == std::round(exponent) && exponent <= most_products)
+    return integer_power(a, static_cast<int>(exponent));
   if (exponent == 0.5) return apply(O::sqrt, a);
   return intern({O::power, a, -1, exponent});
 }
@@ -175,25 +188,42 @@ int Graph::derivative(int node, int a, int b) {
   if (has_two_operands(n.operation) ? a == zero && b == zero : a == zero) return zero;
   const auto squared = [this](int u) { return multiply(u, u); };
   switch (n.operation) {
-    case O::add: return add(a, b);
-    case O::subtract: return subtract(a, b);
-    case O::multiply: return add(multiply(a, n.b), multiply(n.a, b));
-    case O::divide: return divide(subtract(a, multiply(node, b)), n.b);  // (u/v)′ = (u′ − (u/v) v′)/v
-    case O::negate: return negate(a);
-    case O::power: return multiply(constant(n.value), multiply(power(n.a, n.value - 1), a));
-    case O::sin: return multiply(apply(O::cos, n.a), a);
+    case O::add:
+      return add(a, b);
+    case O::subtract:
+      return subtract(a, b);
+    case O::multiply:
+      return add(multiply(a, n.b), multiply(n.a, b));
+    case O::divide:
+      return divide(subtract(a, multiply(node, b)), n.b);  // (u/v)′ = (u′ − (u/v) v′)/v
+    case O::negate:
+      return negate(a);
+    case O::power:
+      return multiply(constant(n.value), multiply(power(n.a, n.value - 1), a));
+    case O::sin:
+      return multiply(apply(O::cos, n.a), a);
     case O::cos:
-    case O::cosm1: return negate(multiply(apply(O::sin, n.a), a));
-    case O::tan: return multiply(add(constant(1), squared(node)), a);
-    case O::exp: return multiply(node, a);
-    case O::log: return divide(a, n.a);
-    case O::sqrt: return divide(multiply(constant(0.5), a), node);
-    case O::sinh: return multiply(apply(O::cosh, n.a), a);
-    case O::cosh: return multiply(apply(O::sinh, n.a), a);
-    case O::tanh: return multiply(subtract(constant(1), squared(node)), a);
-    case O::atan: return divide(a, add(constant(1), squared(n.a)));
+    case O::cosm1:
+      return negate(multiply(apply(O::sin, n.a), a));
+    case O::tan:
+      return multiply(add(constant(1), squared(node)), a);
+    case O::exp:
+      return multiply(node, a);
+    case O::log:
+      return divide(a, n.a);
+    case O::sqrt:
+      return divide(multiply(constant(0.5), a), node);
+    case O::sinh:
+      return multiply(apply(O::cosh, n.a), a);
+    case O::cosh:
+      return multiply(apply(O::sinh, n.a), a);
+    case O::tanh:
+      return multiply(subtract(constant(1), squared(node)), a);
+    case O::atan:
+      return divide(a, add(constant(1), squared(n.a)));
     case O::constant:
-    case O::variable: break;
+    case O::variable:
+      break;
   }
   throw std::logic_error("delf: an operation without a derivative");
 }
@@ -221,15 +251,32 @@ int Graph::substitute(int root, const std::function<int(int variable)>& in_place
     const auto b = [&] { return made[at(n.b)]; };
     int& to = made[at(i)];
     switch (n.operation) {
-      case O::constant: to = i; break;
-      case O::variable: to = in_place_of(n.a); break;
-      case O::add: to = add(a(), b()); break;
-      case O::subtract: to = subtract(a(), b()); break;
-      case O::multiply: to = multiply(a(), b()); break;
-      case O::divide: to = divide(a(), b()); break;
-      case O::negate: to = negate(a()); break;
-      case O::power: to = power(a(), n.value); break;
-      default: to = apply(n.operation, a());
+      case O::constant:
+        to = i;
+        break;
+      case O::variable:
+        to = in_place_of(n.a);
+        break;
+      case O::add:
+        to = add(a(), b());
+        break;
+      case O::subtract:
+        to = subtract(a(), b());
+        break;
+      case O::multiply:
+        to = multiply(a(), b());
+        break;
+      case O::divide:
+        to = divide(a(), b());
+        break;
+      case O::negate:
+        to = negate(a());
+        break;
+      case O::power:
+        to = power(a(), n.value);
+        break;
+      default:
+        to = apply(n.operation, a());
     }
   }
   return made[at(root)];

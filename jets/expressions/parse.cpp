@@ -67,9 +67,10 @@ class Builder {
     const auto character = std::to_string(where - line + 1);
     const At from = where - std::min(where - line, before_caret), to = where + std::min(line_end - where, after_caret);
     std::string shown(from, to);
-    std::ranges::replace_if(shown, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-    throw BadInput(key_, key_ + ": line " + number + ", character " + character + ": " + wrong + "\n  " + shown + "\n  " +
-                             std::string(static_cast<std::size_t>(where - from), ' ') + "^");
+    std::ranges::replace_if(
+        shown, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    throw BadInput(key_, key_ + ": line " + number + ", character " + character + ": " + wrong + "\n  " + shown +
+                             "\n  " + std::string(static_cast<std::size_t>(where - from), ' ') + "^");
   }
 
   std::string found(At where) const {
@@ -99,8 +100,10 @@ class Builder {
   int name(At first, At last) const {
     const std::string_view name(first, static_cast<std::size_t>(last - first));
     if (const auto let = find_name(lets_, name); let != lets_.end()) return let->second;
-    if (const auto v = find_name(names_.variables, name); v != names_.variables.end()) return graph_.variable(v->second);
-    if (const auto c = find_name(names_.constants, name); c != names_.constants.end()) return graph_.constant(c->second);
+    if (const auto v = find_name(names_.variables, name); v != names_.variables.end())
+      return graph_.variable(v->second);
+    if (const auto c = find_name(names_.constants, name); c != names_.constants.end())
+      return graph_.constant(c->second);
     if (name == "pi") return graph_.constant(std::numbers::pi);
     if (is_function(name)) refuse(last, "expected ( after the function " + std::string(name));
     refuse_unknown(first, name);
@@ -122,7 +125,8 @@ class Builder {
       return checked(graph_.apply(f->second, operands[0]), first);
     }
     if (std::ranges::find(not_differentiable, name) != not_differentiable.end())
-      refuse(first, std::string(name) + " is not differentiable, and field equations are derivatives; use a smooth function" +
+      refuse(first, std::string(name) +
+                        " is not differentiable, and field equations are derivatives; use a smooth function" +
                         (name == "abs" ? ", such as sqrt(u^2 + 1e-6)" : ""));
     if (known(name)) refuse(first, std::string(name) + " is not a function; write * for a product");
     refuse_unknown(first, name);
@@ -141,7 +145,8 @@ class Builder {
 
   bool known(std::string_view name) const {
     return find_name(lets_, name) != lets_.end() || find_name(names_.variables, name) != names_.variables.end() ||
-           find_name(names_.constants, name) != names_.constants.end() || name == "pi" || name == "let" || is_function(name);
+           find_name(names_.constants, name) != names_.constants.end() || name == "pi" || name == "let" ||
+           is_function(name);
   }
 
  private:
@@ -219,13 +224,11 @@ const auto raise = [](auto& c) {
   };
   int value = base(exponents.size());
   for (std::size_t i = exponents.size(); i-- > 0;)
-    value = make.checked(
-        make.graph().power(base(i), negated_by(make, boost::fusion::at_c<0>(exponents[i]), value)), place(c));
+    value = make.checked(make.graph().power(base(i), negated_by(make, boost::fusion::at_c<0>(exponents[i]), value)),
+                         place(c));
   x3::_val(c) = value;
 };
-const auto make_number = [](auto& c) {
-  x3::_val(c) = builder(c).number(x3::_attr(c).begin(), x3::_attr(c).end());
-};
+const auto make_number = [](auto& c) { x3::_val(c) = builder(c).number(x3::_attr(c).begin(), x3::_attr(c).end()); };
 const auto make_name = [](auto& c) { x3::_val(c) = builder(c).name(x3::_attr(c).begin(), x3::_attr(c).end()); };
 const auto make_call = [](auto& c) {
   const auto& name = boost::fusion::at_c<0>(x3::_attr(c));
@@ -247,20 +250,24 @@ At skip_space(At from, At end) {
 
 /// A sum that fills first … last.
 int parse_sum(Builder& make, At first, At last) {
+  const At begin = first;
   int node = -1;
   try {
-    x3::phrase_parse(first, last, x3::with<InBuilder>(std::ref(make))[x3::eps > sum[([&](auto& c) { node = x3::_attr(c); })] > x3::eoi],
-                     x3::space);
+    x3::phrase_parse(
+        first, last,
+        x3::with<InBuilder>(std::ref(make))[x3::eps > sum[([&](auto& c) { node = x3::_attr(c); })] > x3::eoi],
+        x3::space);
     return node;
   } catch (const x3::expectation_failure<At>& failure) {
     const At where = skip_space(failure.where(), last);
     const bool inside = failure.which() == "')'", at_end = failure.which().find("eoi") != std::string::npos;
     if (!inside && !at_end) {
-      const bool power_of_other_languages = where != last && *where == '*' && where[-1] == '*';
+      const bool power_of_other_languages = where != begin && where != last && *where == '*' && where[-1] == '*';
       make.refuse(where, "expected a number, a name or (, found " + make.found(where) +
                              (power_of_other_languages ? "; powers are written with ^" : ""));
     }
-    make.refuse(where, std::string("expected an operator or ") + (inside ? ")" : "the end") + ", found " + make.found(where));
+    make.refuse(where,
+                std::string("expected an operator or ") + (inside ? ")" : "the end") + ", found " + make.found(where));
   }
 }
 
@@ -318,7 +325,8 @@ int parse(Graph& graph, std::string_view text, const Names& names, const std::st
 
 void check_new_name(std::string_view name, const Names& names, const std::string& key) {
   const std::string quoted = "\"" + std::string(name.substr(0, 60)) + "\"";
-  if (!is_name(name)) throw BadInput(key, key + ": " + quoted + " is no name; use letters, digits and _, a letter first");
+  if (!is_name(name))
+    throw BadInput(key, key + ": " + quoted + " is no name; use letters, digits and _, a letter first");
   Graph none;
   if (Builder(none, {}, names, key).known(name))
     throw BadInput(key, key + ": " + quoted + " has a meaning already; choose another name");

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string_view>
 
 #include "jets/expressions/expression.hpp"
+#include "jets/expressions/generator.hpp"
+#include "jets/expressions/stencil_expression.hpp"
 #include "lattice/error.hpp"
+#include "schemes/families/lagrangian_family.hpp"
 #include "schemes/text_parts.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
@@ -11,7 +16,8 @@
 namespace delf {
 namespace {
 
-constexpr auto density_key = "theory.density", fields_key = "theory.fields", parameters_key = "theory.parameters";
+constexpr auto density_key = "theory.density", fields_key = "theory.fields", parameters_key = "theory.parameters",
+               constraint_key = "theory.constraint", symmetry_key = "theory.symmetry";
 
 /// Fields, and parameters with the numbers that theory.parameters gives them.
 ExpressionNames names_of(const ParameterValues& values) {
@@ -35,13 +41,32 @@ std::string key_of(const std::string& parameter) { return "theory." + parameter;
 std::vector<Parameter> further(const ParameterValues& values) {
   std::vector<Parameter> parameters;
   for (const auto& [name, number] : names_of(values).parameters) {
-    for (const char* taken : {density_key, fields_key, parameters_key, "theory.name", "theory.fibre"})
+    for (const char* taken :
+         {density_key, fields_key, parameters_key, constraint_key, symmetry_key, "theory.name", "theory.fibre"})
       if (key_of(name) == taken)
         throw BadInput(parameters_key, std::string(parameters_key) + ": the key " + taken +
                                            " has a meaning already; choose another name than " + name);
-    parameters.push_back({.key = key_of(name), .fallback = number, .help = name + ", as theory.parameters declares it"});
+    parameters.push_back(
+        {.key = key_of(name), .fallback = number, .help = name + ", as theory.parameters declares it"});
   }
   return parameters;
+}
+
+/// The constraint, and the symmetries, separated by semicolons; each is tried on the density and the constraint.
+BesidesDensity besides(const ParameterValues& values, const ExpressionNames& names, const std::string& density,
+                       const std::string& constraint) {
+  BesidesDensity all{.constraint = constraint};
+  const auto given = values.maybe<std::string>(symmetry_key);
+  if (!given) return all;
+  const std::vector<std::string> parts = parts_of(*given, ';');
+  for (const std::string& part : parts) {
+    const std::size_t number = all.symmetries.size() + all.up_to_divergence.size() + 1;
+    LinearSymmetry symmetry =
+        generator_of(part, names, parts.size() == 1 ? "symmetry" : fmt::format("symmetry_{}", number), symmetry_key);
+    const bool exact = require_symmetry(symmetry, density, constraint, names, symmetry_key);
+    (exact ? all.symmetries : all.up_to_divergence).push_back(std::move(symmetry));
+  }
+  return all;
 }
 
 std::unique_ptr<FieldTheory> make(const ParameterValues& values) {
@@ -52,7 +77,13 @@ std::unique_ptr<FieldTheory> make(const ParameterValues& values) {
   for (auto& [name, number] : names.parameters) number = values.maybe<double>(key_of(name)).value_or(number);
   std::vector<Component> components = fields(static_cast<int>(names.fields.size()));
   for (std::size_t a = 0; a < components.size(); ++a) components[a].name = names.fields[a];
-  return std::make_unique<FieldTheory>(expression(*text, names, density_key), nullptr, std::move(components));
+  const auto constraint = values.maybe<std::string>(constraint_key);
+  return std::make_unique<FieldTheory>(
+      expression(*text, names, density_key, besides(values, names, *text, constraint.value_or(""))),
+      constraint ? std::make_shared<LagrangianFamily<StencilExpression>>(
+                       StencilExpression::constraint(*constraint, names, constraint_key))
+                 : nullptr,
+      std::move(components));
 }
 
 }  // namespace
@@ -61,15 +92,25 @@ extern const TheoryEntry text_theory;
 const TheoryEntry text_theory{
     .name = "text",
     .formula = "the field equations of theory.density",
-    .parameters = {{.key = density_key,
-                    .fallback = std::string(),
-                    .help = "a Lagrangian density as text, in place of theory.name; see `delf help lagrangians`",
-                    .otherwise = "none"},
-                   {.key = fields_key, .fallback = std::string("phi"), .help = "the fields of theory.density: u, v"},
-                   {.key = parameters_key,
-                    .fallback = std::string(),
-                    .help = "numbers that theory.density reads, each a key theory.NAME: m = 1, g = 0.3",
-                    .otherwise = "none"}},
+    .parameters =
+        {{.key = density_key,
+          .fallback = std::string(),
+          .help = "a Lagrangian density as text, in place of theory.name; see `delf help lagrangians`",
+          .otherwise = "none"},
+         {.key = fields_key, .fallback = std::string("phi"), .help = "the fields of theory.density: u, v"},
+         {.key = parameters_key,
+          .fallback = std::string(),
+          .help = "numbers that theory.density reads, each a key theory.NAME: m = 1, g = 0.3",
+          .otherwise = "none"},
+         {.key = constraint_key,
+          .fallback = std::string(),
+          .help = "an expression of the fields that is kept at 0 at every site, by a multiplier: u^2 + v^2 - 1",
+          .otherwise = "none"},
+         {.key = symmetry_key,
+          .fallback = std::string(),
+          .help = "changes of the fields that leave theory.density as it is, for Noether's theorem: -v, u; several "
+                  "are separated by semicolons",
+          .otherwise = "none"}},
     .make = make,
     .chosen_by = density_key,
     .further = further};

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT
+#include "jets/expressions/equations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "jets/expressions/euler_lagrange.hpp"
+#include "jets/expressions/evaluate.hpp"
+
+namespace delf {
+namespace {
+
+using namespace expressions;
+
+constexpr const char* too_large = "too large to be written here";
+
+std::string name_of(const std::string& name, Notation notation) {
+  return notation == Notation::latex ? latex_name(name) : name;
+}
+
+/// λ, unless something else is called that.
+std::string multiplier_name(const ExpressionNames& names) {
+  const auto taken = [&](const std::string& name) {
+    return std::ranges::count(names.fields, name) > 0 ||
+           std::ranges::count(names.parameters, name, &std::pair<std::string, double>::first) > 0;
+  };
+  return taken("lambda") ? "multiplier" : "lambda";
+}
+
+std::string jet_name(int variable, const JetVariables& jets, const ExpressionNames& names, Notation notation) {
+  if (variable == jets.x()) return "x";
+  if (variable == jets.t()) return "t";
+  if (variable == jets.multiplier()) return name_of(multiplier_name(names), notation);
+  if (!jets.is_derivative(variable))
+    return name_of(names.parameters[static_cast<std::size_t>(variable - jets.parameter(0))].first, notation);
+  const auto [a, in_t, in_x] = jets.of(variable);
+  const std::string by =
+      std::string(static_cast<std::size_t>(in_t), 't') + std::string(static_cast<std::size_t>(in_x), 'x');
+  const std::string field = name_of(names.fields[static_cast<std::size_t>(a)], notation);
+  if (by.empty()) return field;
+  if (notation == Notation::plain) return field + "_" + by;
+  // one subscript: u_1 and its derivative u_{1,tt}
+  if (field.back() == '}' && field.find("_{") != std::string::npos)
+    return field.substr(0, field.size() - 1) + "," + by + "}";
+  return field + "_{" + by + "}";
+}
+
+/// The terms of ℓ and of its field equations come by derivatives: φ_tt before φ_xx before φ_t before φ.
+int rank_of(int variable, const JetVariables& jets) {
+  if (!jets.is_derivative(variable)) return 0;
+  const auto [a, in_t, in_x] = jets.of(variable);
+  return 10 * (in_t + in_x) + in_t;
+}
+
+Naming jet_naming(const JetVariables& jets, const ExpressionNames& names, Notation notation) {
+  return {[&jets, &names, notation](int v) { return jet_name(v, jets, names, notation); },
+          [&jets](int v) { return rank_of(v, jets); }};
+}
+
+bool none(int) { return false; }
+
+/// Values of fields at sites, h, k, parameters, x and t of the site: variables of the discrete equations.
+class SiteVariables {
+ public:
+  enum : int { h, k, x, t, multiplier, parameters };
+  explicit SiteVariables(const ExpressionNames& names) : names_(names) {}
+
+  int at(int field, int time, int space) {
+    const auto [place, made] = known_.try_emplace({field, time, space}, first_site() + static_cast<int>(sites_.size()));
+    if (made) sites_.push_back({field, time, space});
+    return place->second;
+  }
+  bool is_site(int v) const { return v >= first_site(); }
+  int rank(int v) const {  // later rows first, and in a row from left to right
+    if (!is_site(v)) return 0;
+    const auto& [field, time, space] = sites_[static_cast<std::size_t>(v - first_site())];
+    return 1000 + 100 * time - space;
+  }
+  std::string name(int v, Notation notation) const {
+    constexpr const char* letters[] = {"h", "k", "x", "t"};
+    if (v == multiplier) {
+      const std::string lambda = name_of(multiplier_name(names_), notation);
+      return lambda + (notation == Notation::latex ? "_{i}^{j}" : "(j,i)");
+    }
+    if (v < parameters)
+      return v == x   ? (notation == Notation::latex ? "x_i" : "x(i)")
+             : v == t ? (notation == Notation::latex ? "t_j" : "t(j)")
+                      : letters[v];
+    if (!is_site(v)) return name_of(names_.parameters[static_cast<std::size_t>(v - parameters)].first, notation);
+    const auto& [field, time, space] = sites_[static_cast<std::size_t>(v - first_site())];
+    const auto index = [](const char* letter, int offset) {
+      std::string text(letter);
+      if (offset > 0) text += '+';
+      return offset == 0 ? text : text.append(std::to_string(offset));
+    };
+    const std::string u = name_of(names_.fields[static_cast<std::size_t>(field)], notation);
+    if (notation == Notation::plain) return u + "(" + index("j", time) + "," + index("i", space) + ")";
+    const std::string sub = index("i", space);
+    if (u.back() == '}' && u.find("_{") != std::string::npos)
+      return u.substr(0, u.size() - 1) + ",\\," + sub + "}^{" + index("j", time) + "}";
+    return u + "_{" + sub + "}^{" + index("j", time) + "}";
+  }
+
+ private:
+  int first_site() const { return parameters + static_cast<int>(names_.parameters.size()); }
+
+  const ExpressionNames& names_;
+  std::map<std::tuple<int, int, int>, int> known_;
+  std::vector<std::tuple<int, int, int>> sites_;
+};
+
+class DiscreteEquations {
+ public:
+  DiscreteEquations(const SymbolicDensity& density, const StencilTable& table)
+      : table_(table), jets_(density.names()), sites_(density.names()) {
+    l_ = parse(graph_, density.text(), jets_.names, "theory.density");
+    if (!density.constraint().empty()) G_ = parse(graph_, density.constraint(), jets_.names, "theory.constraint");
+  }
+
+  std::string equation(int a, std::optional<int> parity, Notation notation) {
+    std::vector<int> terms;
+    const auto& vertices = table_.pattern.vertices;
+    for (std::size_t l = 0; l < vertices.size(); ++l) {
+      if (parity && (vertices[l].time + vertices[l].space - *parity) % 2 != 0) continue;
+      for (const TablePoint& point : table_.points) add(a, static_cast<int>(l), point, terms);
+    }
+    if (G_ >= 0) {  // hk λ G at the site
+      const int force = graph_.substitute(graph_.differentiate(G_, a), [&](int v) {
+        return jets_.is_derivative(v) ? graph_.variable(sites_.at(v, 0, 0))
+                                      : graph_.variable(SiteVariables::parameters + v - jets_.parameter(0));
+      });
+      terms.push_back(graph_.negate(graph_.multiply(graph_.variable(SiteVariables::multiplier), force)));
+    }
+    Sums sums(graph_, [](int v) { return v == SiteVariables::h || v == SiteVariables::k; });
+    const Naming naming{[&](int v) { return sites_.name(v, notation); }, [&](int v) { return sites_.rank(v); }};
+    return printed(sums, sums.of(terms), naming, notation, [&](int v) { return sites_.is_site(v); }) + " = 0";
+  }
+
+ private:
+  // −measure · w_q Σ_slots ∂ℓ/∂(slot)(j_q) ∂(slot)/∂yˡ, where vertex l of the stencil is the site (j, i)
+  void add(int a, int l, const TablePoint& point, std::vector<int>& terms) {
+    for (int s = 0; s < jet_slots; ++s)
+      for (const TablePoint::Entry& entry : point.slots[static_cast<std::size_t>(s)]) {
+        if (entry.vertex != l) continue;
+        const int slope = graph_.differentiate(l_, s * jets_.d + a);
+        if (graph_.is_constant(slope, 0)) continue;
+        const int here = graph_.substitute(slope, [&](int v) { return at_point(v, l, point); });
+        const int weight = graph_.constant(-table_.measure * point.weight * entry.weight);
+        terms.push_back(graph_.multiply(weight, graph_.divide(here, scale(s))));
+      }
+  }
+  /// A variable of the density at a quadrature point, by the values at sites.
+  int at_point(int v, int l, const TablePoint& point) {
+    const Site own = table_.pattern.vertices[static_cast<std::size_t>(l)];
+    const auto shifted = [&](int variable, double by, int step) {
+      return graph_.add(graph_.variable(variable), graph_.multiply(graph_.constant(by), graph_.variable(step)));
+    };
+    if (v == jets_.x()) return shifted(SiteVariables::x, point.space - own.space, SiteVariables::k);
+    if (v == jets_.t()) return shifted(SiteVariables::t, point.time - own.time, SiteVariables::h);
+    if (!jets_.is_derivative(v)) return graph_.variable(SiteVariables::parameters + v - jets_.parameter(0));
+    const int s = v / jets_.d;
+    int sum = graph_.constant(0);
+    for (const TablePoint::Entry& entry : point.slots[static_cast<std::size_t>(s)]) {
+      const Site site = table_.pattern.vertices[static_cast<std::size_t>(entry.vertex)];
+      const int y = graph_.variable(sites_.at(v % jets_.d, site.time - own.time, site.space - own.space));
+      sum = graph_.add(sum, graph_.multiply(graph_.constant(entry.weight), y));
+    }
+    return graph_.divide(sum, scale(s));
+  }
+  int scale(int slot) {
+    const auto [time, space] = slot_powers[static_cast<std::size_t>(slot)];
+    return graph_.multiply(graph_.power(graph_.variable(SiteVariables::h), static_cast<double>(time)),
+                           graph_.power(graph_.variable(SiteVariables::k), static_cast<double>(space)));
+  }
+
+  const StencilTable& table_;
+  JetVariables jets_;
+  SiteVariables sites_;
+  Graph graph_;
+  int l_ = 0, G_ = -1;
+};
+
+std::string number(double value) {
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6).ptr;
+  return {text.data(), end};
+}
+
+}  // namespace
+
+bool SymbolicDensity::has_values(std::span<const double> jet, double t, double x) const {
+  const std::size_t m = jet.size();
+  std::vector<Pack> in, out(m + 1);
+  for (const double value : jet) in.emplace_back(value);
+  in.emplace_back(x);
+  std::vector<const double*> slots;
+  std::vector<double*> gradient_rows;
+  for (std::size_t a = 0; a < m; ++a) slots.push_back(reinterpret_cast<const double*>(&in[a]));
+  for (std::size_t a = 0; a <= m; ++a) gradient_rows.push_back(reinterpret_cast<double*>(&out[a]));
+  gradient({lanes, slots.data(), t, reinterpret_cast<const double*>(&in[m])}, gradient_rows.data(), gradient_rows[m]);
+  return std::ranges::all_of(out, [](const Pack& p) { return std::isfinite(p[0]); });
+}
+
+std::string SymbolicDensity::without_value(std::span<const double> jet, double t, double x) const {
+  if (has_values(jet, t, x)) return {};
+  const JetVariables jets(names());
+  Graph graph;
+  try {
+    std::vector<int> roots{parse(graph, text(), jets.names, "theory.density")};
+    for (int v = 0; v < static_cast<int>(jet.size()); ++v) roots.push_back(graph.differentiate(roots[0], v));
+    const auto value_of = [&](int v) {
+      if (v == jets.t() || v == jets.x()) return v == jets.t() ? t : x;
+      if (!jets.is_derivative(v)) return names().parameters[static_cast<std::size_t>(v - jets.parameter(0))].second;
+      return v < static_cast<int>(jet.size()) ? jet[static_cast<std::size_t>(v)] : 0.0;
+    };
+    const std::vector<bool> wanted = graph.reachable(roots);
+    for (int i = 0; i < graph.size(); ++i) {  // operands come first: so does what has no value by itself
+      if (!wanted[static_cast<std::size_t>(i)]) continue;
+      const Evaluation part(graph, i);
+      if (std::isfinite(part.operator()<double>(value_of))) continue;
+      Sums sums(graph, none);
+      std::string reason =
+          printed(sums, sums.of({i}), jet_naming(jets, names(), Notation::plain), Notation::plain) + " has no value";
+      const char* next = ", where ";
+      for (int v = 0; v < jets.parameter(static_cast<int>(names().parameters.size())); ++v)
+        if (part.reads(v))
+          reason += next + jet_name(v, jets, names(), Notation::plain) + " = " + number(value_of(v)), next = ", ";
+      return reason;
+    }
+  } catch (const TooLarge&) {
+  }
+  return {};
+}
+
+std::string density_formula(const SymbolicDensity& density, Notation notation) {
+  if (notation == Notation::plain) return density.text();
+  const JetVariables jets(density.names());
+  try {
+    Graph graph;
+    const int l = parse(graph, density.text(), jets.names, "theory.density");
+    Sums sums(graph, none);
+    return printed(sums, sums.of({l}), jet_naming(jets, density.names(), notation), notation);
+  } catch (const TooLarge&) {
+    return too_large;
+  }
+}
+
+namespace {
+
+std::string constraint_formula(const SymbolicDensity& density, Notation notation) {
+  const JetVariables jets(density.names());
+  Graph graph;
+  Sums sums(graph, none);
+  const int G = parse(graph, density.constraint(), jets.names, "theory.constraint");
+  return printed(sums, sums.of({G}), jet_naming(jets, density.names(), notation), notation) + " = 0";
+}
+
+}  // namespace
+
+std::vector<std::string> field_equations(const SymbolicDensity& density, Notation notation) {
+  const JetVariables jets(density.names());
+  std::vector<std::string> equations;
+  for (int a = 0; a < jets.d; ++a) try {
+      Graph graph;
+      const int l = parse(graph, density.text(), jets.names, "theory.density");
+      Sums sums(graph, none);
+      std::vector<int> terms = euler_lagrange(graph, l, a, jets);
+      if (!density.constraint().empty()) {  // of ℓ + λ G
+        const int G = parse(graph, density.constraint(), jets.names, "theory.constraint");
+        terms.push_back(graph.negate(graph.multiply(graph.variable(jets.multiplier()), graph.differentiate(G, a))));
+      }
+      equations.push_back(printed(sums, sums.of(terms), jet_naming(jets, density.names(), notation), notation) +
+                          " = 0");
+    } catch (const TooLarge&) {
+      equations.emplace_back(too_large);
+    }
+  if (!density.constraint().empty()) equations.push_back(constraint_formula(density, notation));
+  return equations;
+}
+
+std::vector<std::string> discrete_field_equations(const SymbolicDensity& density, const StencilTable& table,
+                                                  Notation notation) {
+  std::vector<std::string> equations;
+  std::vector<std::optional<int>> parities{std::nullopt};
+  if (table.pattern.placement == Placement::brick_wall) parities = {0, 1};
+  for (int a = 0; a < density.components(); ++a)
+    for (const auto& parity : parities) try {
+        equations.push_back(DiscreteEquations(density, table).equation(a, parity, notation));
+        if (parity)
+          equations.back() += std::string(notation == Notation::latex ? "\\quad (i + j \\text{ " : "  (i + j ") +
+                              (*parity == 0 ? "even" : "odd") + (notation == Notation::latex ? "})" : ")");
+      } catch (const TooLarge&) {
+        equations.emplace_back(too_large);
+      }
+  return equations;
+}
+
+}  // namespace delf
