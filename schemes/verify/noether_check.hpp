@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -26,10 +27,14 @@ class NoetherCheck {
  private:
   /// Σ_l Jˡ(ξ) = dL(ξ) on single stencils at random jets, which is zero where ξ is a symmetry of L.
   Check invariance(const LinearSymmetry&, std::mt19937_64&) const;
+  /// Of a change δL of L that is linear in the values, and the same everywhere: that its terms cancel at every site, so that
+  /// the sum of δL over a region is one over its boundary. Nothing if δL is not of that form.
+  std::optional<Check> divergence(const LinearSymmetry&, std::mt19937_64&) const;
 
   const LatticeSystem& system_;
   std::vector<LinearSymmetry> symmetries_;
   std::vector<Check> invariant_, sums_;
+  std::vector<bool> up_to_divergence_;
   bool forced_;
 };
 

@@ -32,7 +32,9 @@ RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int6
   solved_.assign(nodes(), false);
   held_.assign(nodes(), false);
   const auto C = static_cast<std::size_t>(components_);
-  Assembly::Parts parts{.equations = {}, .parity = static_cast<int>(origin & 1), .turn = turn,
+  Assembly::Parts parts{.equations = {},
+                        .parity = static_cast<int>(origin & 1),
+                        .turn = turn,
                         .stencils = std::vector<Assembly::Anchor>(),
                         .place = [region = region_](Site site) { return static_cast<int>(region.place(site)); }};
   region_.visit_stencils([&](int f, Site anchor, std::span<const std::size_t> places) {
@@ -230,14 +232,19 @@ std::vector<double> RegionSystem::boundary_terms(const Values& y, const Pair& pa
   return terms;
 }
 
-Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry) const {
+Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry, bool up_to_divergence) const {
   Balance balance;
   std::vector<double> xi;
   assembly_->each_residual(row(y), origin_, [&](const Assembly::Local& at) {
-    if (std::ranges::none_of(at.places, [&](int node) { return at_boundary(node); })) return;
+    if (!up_to_divergence && std::ranges::none_of(at.places, [&](int node) { return at_boundary(node); })) return;
     generator(system_, at.family, symmetry, at.y, xi);
-    for (std::size_t i = 0; i < at.places.size(); ++i)
-      if (at_boundary(at.places[i])) balance.add(momentum_map(static_cast<int>(i), 1, at.derivatives, xi));
+    double change = 0;
+    for (std::size_t i = 0; i < at.places.size(); ++i) {
+      const double J = momentum_map(static_cast<int>(i), 1, at.derivatives, xi);
+      if (at_boundary(at.places[i])) balance.add(J);
+      change += J;
+    }
+    if (up_to_divergence) balance.add(-change);
   });
   return balance;
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "jets/symmetry.hpp"
-#include "lattice/region.hpp"
 #include "lattice/plan/solve_plan.hpp"
+#include "lattice/region.hpp"
 #include "schemes/system/assembly.hpp"
 #include "schemes/verify/check.hpp"
 
@@ -84,7 +84,9 @@ class RegionSystem {
   std::vector<double> boundary_terms(const Values& y, const Pair&) const;
 
   /// Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} Jˡ(ξ)                                                            (5.7)
-  Balance noether(const Values& y, const LinearSymmetry&) const;
+  ///
+  /// and, for a symmetry up to a divergence, less what L changes by on all Δ ⊂ U: Σ_{Δ ⊂ U} Σ_l ∂L/∂yˡ ξ(yˡ).
+  Balance noether(const Values& y, const LinearSymmetry&, bool up_to_divergence = false) const;
 
  private:
   enum Kind : char { outside, inside, boundary };  ///< outside: in U, but neither in int U nor in ∂U
@@ -106,9 +108,10 @@ class RegionSystem {
   bool variational_;
   std::vector<Kind> kind_;  ///< of each site
   std::vector<std::size_t> equations_;
-  std::vector<char> solved_;           ///< of each node: it is in equations_
-  std::vector<char> held_;             ///< of each node: at a fixed wall, where V = 0
-  std::optional<Assembly> assembly_;  ///< of equations_, in their order, and all stencils in U; rows count from the origin
+  std::vector<char> solved_;  ///< of each node: it is in equations_
+  std::vector<char> held_;    ///< of each node: at a fixed wall, where V = 0
+  std::optional<Assembly>
+      assembly_;  ///< of equations_, in their order, and all stencils in U; rows count from the origin
 };
 
 }  // namespace delf

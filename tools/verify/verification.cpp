@@ -10,6 +10,7 @@
 #include <numbers>
 #include <set>
 
+#include "jets/expressions/generator.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/verify/derivatives.hpp"
 #include "schemes/verify/flux_check.hpp"
@@ -152,9 +153,12 @@ void Verification::choose_moments() {
 
 std::vector<LinearSymmetry> Verification::symmetries() const {
   std::vector<LinearSymmetry> all = simulation_.symmetries();
+  if (const auto* density = dynamic_cast<const SymbolicDensity*>(&simulation_.theory().density()))
+    all.insert(all.end(), density->up_to_divergence().begin(), density->up_to_divergence().end());
   if (!request_.generator.empty()) {
     try {
-      all.push_back(read_generator(request_.generator, field_names(system_)));
+      all.push_back(generator_of(request_.generator, {field_names(system_), {}},
+                                 "generator (" + request_.generator + ")", "verify.generator"));
     } catch (const BadInput& bad) {
       throw scene_.settings.located(bad);
     }
