@@ -20,7 +20,7 @@ namespace po = boost::program_options;
 
 po::parsed_options parsed(const std::vector<std::string>& words) {
   po::options_description known;
-  known.add_options()("help", "")("version", "")("out", po::value<std::string>());
+  known.add_options()("help", "")("version", "")("latex", "")("out", po::value<std::string>());
   known.add_options()("fields", po::value<std::string>())("nearby", po::value<std::string>());
   for (const Key& key : keys()) known.add_options()(std::string(key.name).c_str(), po::value<std::string>());
   using namespace po::command_line_style;
@@ -40,6 +40,8 @@ Arguments taken_apart(const std::vector<std::string>& words) {
       arguments.help = true;
     } else if (option.string_key == "version" && !option.unregistered) {
       arguments.version = true;
+    } else if (option.string_key == "latex" && !option.unregistered) {
+      arguments.latex = true;
     } else if (option.string_key == "out") {
       if (arguments.out || value.empty()) throw BadScene("command line: --out: give one directory, as --out DIR");
       arguments.out = value;
@@ -84,6 +86,8 @@ ExitCode carry_out(const std::vector<std::string>& words) {
   }
   const Command& command = find_command(arguments.words.front());
   check_files_of_rows(command, arguments);
+  if (arguments.latex && !command.writes_latex)
+    throw BadScene(fmt::format("command line: --latex: `{}` prints no formulas; `delf plan` does", command.name));
   return command.carry_out(arguments);
 }
 

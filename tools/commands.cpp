@@ -58,7 +58,7 @@ ExitCode carry_out_run(const Arguments& arguments) {
 
 ExitCode carry_out_plan(const Arguments& arguments) {
   refuse(arguments, false);
-  return plan(scene_of(arguments));
+  return plan(scene_of(arguments), arguments.latex);
 }
 
 ExitCode carry_out_verify(const Arguments& arguments) {
@@ -106,10 +106,18 @@ const std::vector<Command>& table() {
            "\n\n"
            "Keys, with what holds if they are not given (a key on the command line wins over the file):",
        true, carry_out_run},
-      {"plan", "delf plan SCENE [--KEY=VALUE ...]", "what a run would solve, how, and at what cost",
-       "Prints what would be solved and how, what it costs, what would be written and what is left out. The keys are\n"
-       "those of `delf run`:",
-       true, carry_out_plan},
+      {"plan",
+       "delf plan SCENE [--latex] [--KEY=VALUE ...]",
+       "what a run would solve, how, and at what cost",
+       "Prints what would be solved and how, what it costs, what would be written and what is left out. For a theory "
+       "that\n"
+       "is given as text these are formulas: its density, its field equations, and those of the stencil.\n\n"
+       "  --latex   these formulas in LaTeX, and nothing else\n\nThe keys are those of `delf run`:",
+       true,
+       carry_out_plan,
+       {},
+       false,
+       true},
       {"verify", "delf verify SCENE [--fields FILE] [--KEY=VALUE ...]", "whether its rows are what theory promises",
        "Steps a scene, or reads the rows that another program made of it, and checks the field equations at every "
        "site, the\n"

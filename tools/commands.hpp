@@ -18,6 +18,7 @@ struct Arguments {
   std::optional<std::string> fields;  ///< --fields: recorded rows to verify
   std::vector<std::string> nearby;    ///< --nearby, as often as given: solutions near those rows
   bool help = false, version = false;
+  bool latex = false;  ///< --latex: the equations of a plan for a paper
 };
 
 struct Command {
@@ -25,7 +26,8 @@ struct Command {
   bool reads_scene;
   ExitCode (*carry_out)(const Arguments&);
   std::string_view section = {};  ///< of the keys that its help lists; all if empty
-  bool reads_rows = false;  ///< takes --fields and --nearby; they are refused before any other is carried out
+  bool reads_rows = false;        ///< takes --fields and --nearby; they are refused before any other is carried out
+  bool writes_latex = false;      ///< takes --latex
 };
 
 /// The commands of this version.

@@ -24,7 +24,8 @@ void print_keys(std::string_view only) {
   }
 }
 
-constexpr const char* lagrangians = R"page(A Lagrangian density of your own is a key of a scene; equations, Jacobian, forms and plan are generated from it:
+constexpr const char* lagrangians =
+    R"page(A Lagrangian density of your own is a key of a scene; equations, Jacobian, forms and plan are generated from it:
 
   [theory]
   density = 0.5*phi_t^2 - 0.5*phi_x^2 + m^2*(cos(phi) - 1)
@@ -51,8 +52,17 @@ let        let w = ...; defines a name for the rest of the text; in C++ the end 
   power   = primary [ "^" { "+" | "-" } power ]
   primary = number | name | function "(" sum [ "," sum ] ")" | "(" sum ")"
 
+A constraint is kept at every site by a multiplier; symmetries, one change for each field, are tested before a run, and
+conserve what series.csv and `delf verify` then show (Noether). Several are separated by semicolons:
+
+  fields = u, v
+  constraint = u^2 + v^2 - 1
+  symmetry = -v, u
+
 Every field needs its rate: a density without phi_t determines no phi. abs, min and max are refused, for they are not
-differentiable. Where a density has no value at a field (log of a negative number), a run ends with exit code 3.
+differentiable. Where a density has no value at a field (log of a negative number), a run ends with exit code 3, and
+says which part has none. Numbers of a scene may be formulas of numbers, pi and parameters: length = 2*pi, until = 10*sqrt(2).
+`delf plan` prints the field equations of a density, and those of the stencil; with --latex for a paper.
 
 Starting fields may be formulas too, of x, the parameters and the length L of space; or of t and x, for a solution to start
 from and to compare with. In place of initial.state:
@@ -61,11 +71,19 @@ from and to compare with. In place of initial.state:
   phi = 4*atan(exp(x - 20))                                phi = 4*atan(exp((x - 20 - 0.5*t)/sqrt(0.75)))
   phi_t = 0
 
+A stencil may be text too: its sites, (time, space), and at each quadrature point a weight, and the jet there as a weight of
+each site for h = k = 1. Points are lines of their own:
+
+  [stencil]
+  sites = (0,0) (1,0) (1,1)
+  point = 1; phi: 1/3 1/3 1/3; phi_t: -1 1 0; phi_x: 0 -1 1
+
 The states noise and file work for every theory. From C++:
 
   auto scheme = delf::Scheme{delf::hexagon, delf::expression("0.5*phi_t^2 - 0.5*phi_x^2 - 0.25*(phi^2 - 1)^2")};
 
-Examples: `delf run phi6-kink`, `delf run sinh-gordon`, `delf run sine-gordon-text`.
+Examples: `delf run phi6-kink`, `delf run liouville`, `delf run born-infeld`, `delf run wave-map-text`, `delf run toda-chain`,
+`delf run coupled-pendula`.
 )page";
 
 /// What help explains besides commands.

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "tools/engine.hpp"
+#include "tools/equations.hpp"
 #include "tools/run/in_words.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/seconds_since.hpp"
@@ -83,11 +84,19 @@ std::string cost(const Scene& scene, const InitialRows& initial, Simulation& sim
 
 }  // namespace
 
-ExitCode plan(const Scene& scene) {
+ExitCode plan(const Scene& scene, bool latex) {
   return with_memory_for(scene, [&] {
     const InitialRows initial(scene);
     Simulation simulation = build(scene, initial.winding());
     initial.check(simulation);
+    if (latex) {
+      try {
+        fmt::print("{}", equations_in_latex(scene.problem, simulation));
+      } catch (const BadInput& bad) {
+        throw scene.settings.located(bad);
+      }
+      return ExitCode::done;
+    }
     fmt::print("{}: {}, {}, {} steps to t = {:.6g}\n", scene.name, scene.problem.theory, scheme_in_words(scene.problem),
                scene.steps, static_cast<double>(scene.steps) * scene.problem.time_step);
     fmt::print("  state      {}; row 1 is {}\n", initial.description(),
@@ -95,6 +104,7 @@ ExitCode plan(const Scene& scene) {
                : initial.rule() == StartRule::centred ? "solved for, with y(-1) = y(1) - 2 h phi_t"
                : initial.rule() == StartRule::values  ? "the first step, from the values of row 0 alone"
                                                       : "solved for, by the discrete Legendre transform");
+    fmt::print("{}", equations_in_words(scene.problem, simulation));
     fmt::print("  recorded   {}\n{}\n{}", recording(scene), output(scene, simulation.components().size()),
                simulation.plan_report());
     if (const std::string threads = threads_in_words(simulation, scene.problem.threads); !threads.empty())

@@ -6,7 +6,7 @@
 namespace delf {
 
 /// `delf plan`: the equations that a run of the scene would solve, how, its files, what it leaves out, and its cost by
-/// trial steps.
-ExitCode plan(const Scene&);
+/// trial steps. `latex`: the equations alone, for a paper.
+ExitCode plan(const Scene&, bool latex);
 
 }  // namespace delf

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 
+#include "jets/expressions/stencil_text.hpp"
 #include "jets/tables/named_tables.hpp"
 #include "lattice/error.hpp"
+#include "schemes/families/jet_family.hpp"
+#include "schemes/families/wall_families.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -34,13 +37,34 @@ void check_walls(const Problem& p, const StencilFamily& family) {
                     p.stencil));
 }
 
+constexpr auto sites_key = "stencil.sites", point_key = "stencil.point";
+
+/// The action on the stencil that the scene gives as text, with the terms of natural walls.
+std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheory& theory, const Problem& p) {
+  const auto text_of = [&](const char* key) {
+    const auto text = p.parameters.maybe<std::string>(key);
+    if (!text)
+      throw BadInput(
+          key, fmt::format("{}: must be given for lattice.stencil = {}; see `delf help lagrangians`", key, p.stencil));
+    return *text;
+  };
+  const std::string sites = text_of(sites_key), points = text_of(point_key);
+  const auto family =
+      std::static_pointer_cast<const JetFamily>(theory.on_table(stencil_of(sites, points, sites_key, point_key)));
+  std::vector<std::shared_ptr<const StencilFamily>> families{family};
+  const std::shared_ptr<const BatchDensity> density(family, &family->density());
+  for (auto& term : wall_families(family->table(), density, p.lattice)) families.push_back(std::move(term));
+  return families;
+}
+
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
-  SchemeParts parts{{theory.variational(p.stencil)},
-                    theory.fields(),
+  const bool own = p.stencil == stencil_as_text;
+  SchemeParts parts{own ? on_own_stencil(theory, p) : std::vector{theory.variational(p.stencil)}, theory.fields(),
                     theory.symmetries()};
   if (!parts.families[0]) throw unknown_name("lattice.stencil", p.stencil, stencil_names_and_aliases());
   check_walls(p, *parts.families[0]);
-  for (auto& term : theory.at_walls(p.stencil, p.lattice)) parts.families.push_back(std::move(term));
+  if (!own)
+    for (auto& term : theory.at_walls(p.stencil, p.lattice)) parts.families.push_back(std::move(term));
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));
     parts.components.push_back({"lambda", Role::multiplier, {}});
@@ -50,6 +74,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
 
 std::vector<NamedScheme> variants(const Problem& base) {
   std::vector<NamedScheme> schemes;
+  if (base.stencil == stencil_as_text) schemes.push_back({stencil_as_text, base});
   for (const NamedFormula& stencil : stencils()) {
     schemes.push_back({stencil.name, base});
     schemes.back().problem.stencil = stencil.name;
@@ -61,11 +86,23 @@ std::vector<NamedScheme> variants(const Problem& base) {
 }  // namespace
 
 extern const MethodEntry multisymplectic_method;
-const MethodEntry multisymplectic_method{.name = "multisymplectic",
-                                         .formula = "discrete Euler-Lagrange field equations of lattice.stencil (5.2)",
-                                         .build = build,
-                                         .reads_stencil = true,
-                                         .label = [](const Problem& p) { return p.stencil; },
-                                         .variants = variants};
+const MethodEntry multisymplectic_method{
+    .name = "multisymplectic",
+    .formula = "discrete Euler-Lagrange field equations of lattice.stencil (5.2)",
+    .build = build,
+    .parameters = {{.key = sites_key,
+                    .fallback = std::string(),
+                    .help = "the sites of a stencil of your own, time first: "
+                            "(0,0) (1,0) (1,1); in place of lattice.stencil",
+                    .otherwise = "none"},
+                   {.key = point_key,
+                    .fallback = std::string(),
+                    .help = "a weight, and the jet there as a weight for each site: "
+                            "1; phi: 1/3 1/3 1/3; phi_t: -1 1 0; phi_x: 0 -1 1; "
+                            "a line for each point",
+                    .otherwise = "none"}},
+    .reads_stencil = true,
+    .label = [](const Problem& p) { return p.stencil; },
+    .variants = variants};
 
 }  // namespace delf

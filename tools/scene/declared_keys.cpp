@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
 
+#include "jets/expressions/expression.hpp"
+#include "jets/expressions/stencil_text.hpp"
+#include "lattice/error.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
@@ -18,8 +20,8 @@ namespace {
 // Keys that no theory, method or state declares are not to be redefined.
 void declare(Settings& settings, const Parameter& p, DeclaredBy kind, const std::string& owner) {
   if (find_key(p.key) && declared_by(p.key).empty())
-    throw BadScene(fmt::format("{}: {} has a meaning already; choose another name in the theory", settings.file().string(),
-                               p.key));
+    throw BadScene(fmt::format("{}: {} has a meaning already; choose another name in the theory",
+                               settings.file().string(), p.key));
   settings.declare({key_of(p), kind, owner});
 }
 
@@ -42,10 +44,11 @@ void read(const Settings& settings, const Parameter& p, ParameterValues& values)
   const Setting* given = settings.find(p.key);
   if (!given) return;
   if (std::holds_alternative<std::string>(p.fallback)) values[p.key] = given->value;
-  double number = 0;
-  const char* const end = given->value.data() + given->value.size();
-  if (std::holds_alternative<double>(p.fallback) && std::from_chars(given->value.data(), end, number).ptr == end)
-    values[p.key] = number;
+  if (!std::holds_alternative<double>(p.fallback)) return;
+  try {
+    values[p.key] = number_of(given->value, p.key);
+  } catch (const BadInput&) {
+  }
 }
 
 std::vector<std::string> declare_theory(Settings& settings, const TheoryEntry& entry) {
@@ -72,7 +75,8 @@ void declare_states(Settings& settings, const std::vector<std::string>& fields) 
       const Setting *given = settings.find(p.key), *other = settings.find(name);
       if (!given) continue;
       // the command line wins, as it does for keys of one name
-      if (other && other->value != entry->name && given->line == 0 && other->line != 0) settings.keep_one_of(name, p.key, {});
+      if (other && other->value != entry->name && given->line == 0 && other->line != 0)
+        settings.keep_one_of(name, p.key, {});
       settings.imply(name, entry->name, p.key);
     }
   }
@@ -82,6 +86,7 @@ void declare_states(Settings& settings, const std::vector<std::string>& fields) 
 
 void declare_keys(Settings& settings) {
   try {
+    if (settings.find("stencil.sites")) settings.imply("lattice.stencil", stencil_as_text, "stencil.sites");
     if (const TheoryEntry* entry = chosen_theory(settings)) declare_states(settings, declare_theory(settings, *entry));
   } catch (const BadInput& bad) {
     throw settings.located(bad);
@@ -89,7 +94,8 @@ void declare_keys(Settings& settings) {
 }
 
 bool may_be_declared(std::string_view key) {
-  return std::ranges::any_of(theory_entries(), [key](const TheoryEntry* e) { return e->further && key.starts_with("theory."); }) ||
+  return std::ranges::any_of(theory_entries(),
+                             [key](const TheoryEntry* e) { return e->further && key.starts_with("theory."); }) ||
          key.starts_with("initial.") || key.starts_with("exact.");
 }
 

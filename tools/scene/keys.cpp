@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "jets/expressions/stencil_text.hpp"
 #include "jets/tables/named_tables.hpp"
 #include "lattice/nearest_name.hpp"
 #include "schemes/declared.hpp"
@@ -20,6 +21,12 @@
 namespace delf {
 
 namespace {
+
+std::vector<std::string> known_stencils() {
+  std::vector<std::string> names = stencil_names_and_aliases();
+  names.emplace_back(stencil_as_text);
+  return names;
+}
 
 using Names = std::vector<std::string>;
 
@@ -86,7 +93,7 @@ std::vector<Key> general_keys() {
           fibres()},
 
       Key{"lattice.stencil", choice, "rectangle-symmetric", "", "stencil and jet; see `delf list stencils`", "", any,
-          stencil_names_and_aliases()},
+          known_stencils()},
       Key{"lattice.space", choice, "circle", "", "the shape of space", "", any, spaces()},
       Key{"lattice.length", real, "", "must be given, but for a point", "L", "length", positive},
       Key{"lattice.sites", integer, "", "must be given, but for a point", "N; on an interval both walls are counted",

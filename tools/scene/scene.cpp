@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 
+#include "jets/expressions/stencil_text.hpp"
 #include "jets/tables/named_tables.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/step_method.hpp"
@@ -47,10 +48,9 @@ Lattice read_lattice(const Settings& settings, const Values& values) {
   if (space == Space::point) return Lattice::point();
   const auto sites = static_cast<int>(values.integer("lattice.sites"));
   const double length = values.real("lattice.length");
-  const Lattice lattice = space == Space::circle
-                              ? Lattice::circle(sites, length)
-                              : Lattice::interval(sites, length, wall(values, "boundary.left"),
-                                                  wall(values, "boundary.right"));
+  const Lattice lattice = space == Space::circle ? Lattice::circle(sites, length)
+                                                 : Lattice::interval(sites, length, wall(values, "boundary.left"),
+                                                                     wall(values, "boundary.right"));
   if (!std::isnormal(lattice.space_step()))
     throw settings.error("lattice.length", "L/N is too small for double precision; use a longer one");
   return lattice;
@@ -214,6 +214,8 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
 std::string why_without_effect(const Scene& scene, std::string_view key) {
   const bool circle = scene.problem.lattice.is_circle(), point = scene.problem.lattice.space() == Space::point;
   if (const auto unread = why_not_read(scene, key); !unread.empty()) return unread;
+  if (key.starts_with("stencil.") && scene.problem.stencil != stencil_as_text)
+    return fmt::format("lattice.stencil = {} is in force", scene.problem.stencil);
   if ((key == "lattice.sites" || key == "lattice.length") && point) return "a point has neither length nor sites";
   if (key == "output.section" && !point) return "sections are of mechanics, lattice.space = point";
   if (key == "boundary.winding" && point) return "a point has no winding";

@@ -11,6 +11,7 @@
 #include "schemes/text_parts.hpp"
 #include "tools/scene/declared_keys.hpp"
 #include "tools/scene/keys.hpp"
+#include "tools/scene/repeated_keys.hpp"
 #include "tools/scene/scene_text.hpp"
 
 namespace delf {
@@ -49,6 +50,16 @@ std::string unknown_key(const std::string& key, std::span<const Key> known) {
 
 BadScene unknown_on_command_line(const std::string& key, std::span<const Key> known) {
   return BadScene(fmt::format("command line: --{}: {}", key, unknown_key(key, known)));
+}
+
+// Lines of a key that may be repeated become one value, in the place of the first.
+void join_repeated(std::vector<Setting>& settings) {
+  for (auto s = settings.begin(); s != settings.end(); ++s) {
+    if (!may_repeat(s->key)) continue;
+    for (auto again = s + 1; again != settings.end();)
+      if (again->key == s->key) s->value += " | " + again->value, again = settings.erase(again);
+      else ++again;
+  }
 }
 
 const Setting* given_twice(const std::vector<Setting>& settings, const Setting*& first) {
@@ -91,7 +102,8 @@ void Settings::imply(std::string_view key, std::string_view value, std::string_v
 }
 
 const Key* Settings::key(std::string_view name) const {
-  const auto own = std::ranges::find(declared_, name, [](const DeclaredKey& d) -> const std::string& { return d.key.name; });
+  const auto own =
+      std::ranges::find(declared_, name, [](const DeclaredKey& d) -> const std::string& { return d.key.name; });
   return own == declared_.end() ? find_key(name) : &own->key;
 }
 
@@ -136,6 +148,7 @@ Settings read_settings(const std::filesystem::path& file, const std::vector<Sett
   }
   if (in_file.empty())
     throw BadScene(fmt::format("{}: the scene is empty; `delf list scenes` names some to copy", file.string()));
+  join_repeated(in_file);
   const Setting* first = nullptr;
   if (const Setting* again = given_twice(in_file, first))
     throw BadScene(fmt::format("{}:{}: {} = {}: line {} gives it already; keep one of them", file.string(), again->line,

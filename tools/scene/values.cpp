@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "jets/expressions/expression.hpp"
 #include "schemes/text_parts.hpp"
 #include "tools/scene/suggestion.hpp"
 
@@ -25,6 +26,8 @@ std::errc read(std::string_view text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end != text.data() + text.size() ? std::errc::invalid_argument : error;
 }
+
+constexpr std::string_view of_theory = "theory.";
 
 std::string below(std::string_view key, const Limits& range, auto low) {
   return fmt::format("must be {} {}; raise {}", range.open ? "above" : "at least", low, key);
@@ -58,12 +61,32 @@ std::string Values::required(std::string_view key) const {
   throw settings_.error(key, fmt::format("must be given ({})", known(key).meaning));
 }
 
+// 2*pi, 10*sqrt(2), m/2: anything with an operator or a bracket behind its first character, and names of numbers
+std::optional<double> Values::formula(std::string_view key, std::string_view text) const {
+  std::vector<std::pair<std::string, double>> parameters;
+  if (!key.starts_with(of_theory))
+    for (const DeclaredKey& own : settings_.declared())
+      if (own.kind == DeclaredBy::theory && own.key.type == KeyType::real)
+        parameters.emplace_back(own.key.name.substr(of_theory.size()), real(own.key.name));
+  const std::string_view name = text.starts_with('-') ? text.substr(1) : text;
+  const bool is_name = name == "pi" || std::ranges::count(parameters, name, &std::pair<std::string, double>::first) > 0;
+  if (!is_name && text.find_first_of("+-*/^(", 1) == std::string_view::npos) return std::nullopt;
+  try {
+    return number_of(text, std::string(key), parameters);
+  } catch (const BadInput& bad) {
+    throw settings_.located(bad);
+  }
+}
+
 double Values::number(const Key& key, std::string_view text) const {
   double value = 0;
-  const std::errc error = read(text, value);
+  std::errc error = read(text, value);
+  if (error == std::errc::invalid_argument)
+    if (const auto result = formula(key.name, text)) value = *result, error = {};
   if (error == std::errc::result_out_of_range)
     throw settings_.error(key.name, "is outside the range of double precision; use a number that is in it");
-  if (error != std::errc()) throw settings_.error(key.name, "is not a number; write one like 0.125 or 1e-6");
+  if (error != std::errc())
+    throw settings_.error(key.name, "is not a number; write one like 0.125 or 1e-6, or a formula like 2*pi");
   if (!std::isfinite(value)) throw settings_.error(key.name, "is not a finite number; give one");
   if (value < key.range.low || (key.range.open && value == key.range.low))
     throw settings_.error(key.name, below(key.name, key.range, key.range.low));
@@ -80,7 +103,10 @@ std::optional<double> Values::maybe_real(std::string_view key) const {
 std::int64_t Values::integer(std::string_view key) const {
   const std::string value = required(key);
   std::int64_t number = 0;
-  const std::errc error = read(value, number);
+  std::errc error = read(value, number);
+  if (error == std::errc::invalid_argument)
+    if (const auto result = formula(key, value); result && *result == std::round(*result) && std::abs(*result) < 9e15)
+      number = static_cast<std::int64_t>(*result), error = {};
   if (error == std::errc::result_out_of_range) throw settings_.error(key, "is too large; use a smaller integer");
   if (error != std::errc()) throw settings_.error(key, "is not an integer; write one like 255");
   const Limits range = known(key).range;

@@ -40,6 +40,8 @@ class Values {
   Key known(std::string_view key) const;
   std::string required(std::string_view key) const;
   double number(const Key&, std::string_view text) const;
+  /// The value of a formula of numbers, pi and the parameters that the scene's theory declares; nothing if it is none.
+  std::optional<double> formula(std::string_view key, std::string_view text) const;
   const Settings& settings_;
 };
 

@@ -41,6 +41,7 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
     REQUIRE_FALSE(commands.empty());
     CHECK(commands.front() == "run " + scene.name);
   }
+<<<<<<< HEAD
   CHECK(names == std::vector<std::string>{"breather",
                                           "collision",
                                           "complex-klein-gordon",

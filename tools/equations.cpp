@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "tools/equations.hpp"
+
+#include <fmt/format.h>
+
+#include "jets/expressions/equations.hpp"
+#include "jets/expressions/stencil_text.hpp"
+#include "lattice/error.hpp"
+#include "schemes/families/jet_family.hpp"
+#include "schemes/methods/method_registry.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
+
+namespace delf {
+namespace {
+
+using expressions::Notation;
+
+/// The table of the stencil that the method solves the equations of; null for methods that do not read lattice.stencil.
+const StencilTable* table_of(const Problem& p, const Simulation& simulation) {
+  if (!find_method(p.method).reads_stencil) return nullptr;
+  const auto* family = dynamic_cast<const JetFamily*>(simulation.evolution().system().families()[0].get());
+  return family ? &family->table() : nullptr;
+}
+
+/// A sum broken between its terms, so that lines are no longer than what a terminal shows.
+std::string broken(const std::string& sum, std::size_t indent) {
+  constexpr std::size_t width = 110;
+  std::string text;
+  std::size_t line = 0, begin = 0;
+  int depth = 0;
+  const auto put = [&](std::size_t end) {
+    if (line > 0 && line + end - begin > width - indent) text.append(1, '\n').append(indent, ' '), line = 0;
+    text.append(sum, begin, end - begin);
+    line += end - begin;
+    begin = end;
+  };
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    if (sum[i] == '(') ++depth;
+    if (sum[i] == ')') --depth;
+    const bool between =
+        sum[i] == ' ' && i + 2 < sum.size() && sum[i + 2] == ' ' && (sum[i + 1] == '+' || sum[i + 1] == '-');
+    if (depth == 0 && between) put(i);
+  }
+  put(sum.size());
+  return text;
+}
+
+}  // namespace
+
+std::string equations_in_words(const Problem& p, const Simulation& simulation) {
+  constexpr std::size_t indent = 13;
+  const auto* density = dynamic_cast<const SymbolicDensity*>(&simulation.theory().density());
+  const StencilTable* table = table_of(p, simulation);
+  std::string text;
+  if (table && p.stencil == stencil_as_text)
+    text += fmt::format("  stencil    {} sites, {} point{}; consistent, of order {} in h and k for linear equations\n",
+                        table->pattern.size(), table->points.size(), table->points.size() == 1 ? "" : "s",
+                        order_of_consistency(*table));
+  if (!density) return text + fmt::format("  equations  {}\n", find_theory(p.theory).formula);
+  const auto add = [&](const char* head, const std::string& formula) {
+    text += fmt::format("  {:<{}}{}\n", head, indent - 2, broken(formula, indent));
+  };
+  add("density", density->text());
+  for (const std::string& equation : field_equations(*density, Notation::plain)) add("equations", equation);
+  if (table)
+    for (const std::string& equation : discrete_field_equations(*density, *table, Notation::plain))
+      add("at (j,i)", equation);
+  return text;
+}
+
+std::string equations_in_latex(const Problem& p, const Simulation& simulation) {
+  const auto* density = dynamic_cast<const SymbolicDensity*>(&simulation.theory().density());
+  if (!density)
+    throw BadInput("theory.name",
+                   fmt::format("theory.name = {}: is compiled, and has no formulas to print; write it as "
+                               "theory.density for --latex",
+                               p.theory));
+  std::string text;
+  const auto add = [&](const std::string& formula) { text += fmt::format("\\[\n  {}\n\\]\n", formula); };
+  add("\\ell = " + density_formula(*density, Notation::latex));
+  for (const std::string& equation : field_equations(*density, Notation::latex)) add(equation);
+  if (const StencilTable* table = table_of(p, simulation))
+    for (const std::string& equation : discrete_field_equations(*density, *table, Notation::latex)) add(equation);
+  return text;
+}
+
+}  // namespace delf

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string_view>
+
+namespace delf {
+
+/// Whether a scene may have several lines of a key, such as the points of a stencil: they are one value, joined by " | ".
+inline bool may_repeat(std::string_view key) { return key == "stencil.point"; }
+
+}  // namespace delf
