@@ -21,7 +21,9 @@ class RelabelledFamily final : public StencilFamily {
     placed_ = family_->is_placed();
   }
 
-  void residual(const StencilBatch& batch, double* r) const override { family_->residual(batch, r); }
+  void residual(const StencilBatch& batch, std::span<const int> equations, double* r) const override {
+    family_->residual(batch, equations, r);
+  }
   void jacobian(const StencilBatch& batch, std::span<const int> equations, std::span<const int> unknowns,
                 double* J) const override {
     family_->jacobian(batch, equations, unknowns, J);
