@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/theories/solar_system.hpp"
 
 #include <array>
 
@@ -9,7 +8,7 @@ namespace delf {
 namespace initial {
 namespace {
 
-constexpr std::size_t coordinates = SolarSystem::components;
+constexpr std::size_t coordinates = 18;  // three of each body
 
 // Positions and velocities relative to the Sun on 5 September 1994, at 0h00, in astronomical units and days: Hairer, Lubich
 // and Wanner, Geometric Numerical Integration, I.2.4, after Ahnerts Kalender für Sternfreunde 1994.
