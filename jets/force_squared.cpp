@@ -68,9 +68,9 @@ ForceSquared::ForceSquared(std::shared_ptr<const BatchDensity> of, double scale)
 
 namespace {
 
-/// to += factor · row
-void add_row(double* to, double factor, const double* row, int count) {
-  for (int at = 0; at < count; at += lanes) (Pack::load(to + at) + factor * Pack::load(row + at)).store(to + at);
+/// to = from + factor · row
+void set_row(double* to, const double* from, double factor, const double* row, int count) {
+  for (int at = 0; at < count; at += lanes) (Pack::load(from + at) + factor * Pack::load(row + at)).store(to + at);
 }
 
 }  // namespace
@@ -81,9 +81,7 @@ void ForceSquared::gradient_at_rest(const JetBatch& phi, const double* const* gi
   double* const* const slope = g + 2 * d;
   derivatives_->slope_and_curvature(phi, slope, c.data());
   for (int a = 0; a < d; ++a) {
-    std::copy_n(slope[a], count, force[a]);
-    for (int b = 0; b < d; ++b)
-      if (stiffness(a, b) != 0) add_row(force[a], stiffness(a, b), given[b], count);
+    for (int b = 0; b < d; ++b) set_row(force[a], b == 0 ? slope[a] : force[a], stiffness(a, b), given[b], count);
   }
   const double twice = 2 * scale_;
   for (int a = 0; a < d; ++a) {
@@ -92,9 +90,9 @@ void ForceSquared::gradient_at_rest(const JetBatch& phi, const double* const* gi
     for (int b = 1; b < d; ++b)
       for (int at = 0; at < count; at += lanes)
         (Pack::load(g[a] + at) + twice * (Pack::load(c[a * d + b] + at) * Pack::load(force[b] + at))).store(g[a] + at);
-    std::fill_n(g[d + a], count, 0.0);
-    for (int b = 0; b < d; ++b)
-      if (stiffness(b, a) != 0) add_row(g[d + a], twice * stiffness(b, a), force[b], count);
+    for (int at = 0; at < count; at += lanes)
+      (twice * stiffness(0, a) * Pack::load(force[0] + at)).store(g[d + a] + at);
+    for (int b = 1; b < d; ++b) set_row(g[d + a], g[d + a], twice * stiffness(b, a), force[b], count);
   }
 }
 

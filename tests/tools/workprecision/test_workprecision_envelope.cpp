@@ -66,6 +66,21 @@ TEST_CASE("the lower envelope has the runs that no other beats, from cheap to ac
   CHECK_FALSE(is_envelope(many, spoiled));
 }
 
+TEST_CASE("schemes that are told of the solution, and processed peers, have columns of their own") {
+  WorkPrecisionOutcome outcome;
+  outcome.runs = {run("a", 1e-3, 4), run("suited", 1e-3, 2), run("p", 1e-3, 12, true), run("processed", 1e-3, 8, true)};
+  outcome.runs[1].tuned = true, outcome.runs[3].processed = true;
+  compare(outcome, {1e-2});
+  const WorkPrecisionCost& cost = outcome.costs[0];
+  CHECK(cost.engine == std::size_t{0});  // not the cheaper one that is told
+  CHECK(cost.peer == std::size_t{2});
+  CHECK(cost.tuned == std::size_t{1});
+  CHECK(cost.processed_peer == std::size_t{3});
+  CHECK(cost.ratio == 3);
+  CHECK(cost.tuned_ratio == 6);
+  CHECK(cost.processed_ratio == 2);
+}
+
 TEST_CASE("an accuracy costs what the cheapest run costs that reaches it, and nothing is interpolated") {
   WorkPrecisionOutcome outcome;
   outcome.runs = {run("a", 1e-2, 1), run("a", 1e-4, 4), run("b", 1e-3, 3), run("p", 1e-3, 30, true),
