@@ -37,7 +37,12 @@ Names names_of(const Infos& infos) {
   return names;
 }
 
-Names theory_names() { return names_of(theories()); }
+// by their entries: to make every theory for its name would cost each start of the program
+Names theory_names() {
+  Names names;
+  for (const TheoryEntry* entry : theory_entries()) names.push_back(entry->name);
+  return names;
+}
 Names method_names() { return names_of(methods()); }
 Names state_names() {
   Names names;
