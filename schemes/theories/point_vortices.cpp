@@ -8,7 +8,7 @@ namespace delf {
 
 extern const TheoryEntry point_vortices_theory;
 const TheoryEntry point_vortices_theory{"point-vortices",
-                                        "three vortices in the plane: Γ_i x_i,t = ∂H/∂y_i, Γ_i y_i,t = −∂H/∂x_i",
+                                        "three vortices in the plane: Γ_i x_i,t = −∂H/∂y_i, Γ_i y_i,t = ∂H/∂x_i",
                                         {},
                                         [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
                                           return std::make_unique<TheoryOf<ThreeVortices>>(ThreeVortices{});
