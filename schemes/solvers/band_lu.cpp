@@ -102,7 +102,6 @@ void BandLU::solve(double* x) const {
     for (; j >= 3 + lanes; j -= lanes) old += unaligned(u + j - lanes + 1) * unaligned(x + k + j - lanes + 1);
     double s = x[k] - sum(old);
     for (; j > 3; --j) s -= u[j] * x[k + j];
-    // Beyond the last number stand zeros.
     if (count > 2) s -= u[3] * x3;
     if (count > 1) s -= u[2] * x2;
     if (count > 0) s -= u[1] * x1;
