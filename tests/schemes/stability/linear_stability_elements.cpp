@@ -120,8 +120,8 @@ TEST_CASE("elements in time on every space: Lobatto is stable while dt omega_max
     double edge;  // k ω_max, at θ = π
   };
   // lumped 2; consistent √12, of 4 over the mass ⅓; pairs of order 4: ω² = (4/3)·4 − (1/3)·0
-  for (const Space& space : {Space{"lumped", 0, 2}, Space{"linear", 0, std::sqrt(12.)},
-                             Space{"pairs", 4, std::sqrt(16. / 3)}})
+  for (const Space& space :
+       {Space{"lumped", 0, 2}, Space{"linear", 0, std::sqrt(12.)}, Space{"pairs", 4, std::sqrt(16. / 3)}})
     for (const auto& [S, z] : {std::pair{2, 2.}, {3, std::sqrt(8.)}, {4, 3.113}}) {
       const double found = first_limit_on(space.name, space.order, S, 1.05 * z / space.edge);
       CAPTURE(space.name, S, found);
