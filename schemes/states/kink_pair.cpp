@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "schemes/states/kink_profile.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/pulse.hpp"
 #include "schemes/states/scaled_hyperbolic.hpp"
@@ -13,8 +15,8 @@ namespace delf {
 namespace initial {
 namespace {
 
-/// Two pulses of sine-Gordon that come together with speeds ±v around a centre at rest: with
-/// a = γm(vt − d/2), b = γm(x − x₀), tan(φ/4) = F/G.
+/// Two pulses, of sine-Gordon first, that come together with speeds ±v around a centre at rest: with
+/// a = γm(vt − d/2), b = γm(x − x₀), tan(φ/4) = F/G. Of other theories m is the rate of the kink's tail.
 struct Pair {
   double position, speed, separation, mass;
 
@@ -49,6 +51,39 @@ class KinkAntikink final : public Pulse {
   Pair pair;
 };
 
+/// A kink f on the left and its mirror image on the right, come together with speeds ±v. Where the theory has no solution
+/// of two kinks, this solves the field equation up to the tail of one at the other:
+///
+///     φ = f(γ(s + d/2 − vt)) + f(−γ(s − d/2 + vt)) − f(+∞),   s = x − x₀
+///
+class Superposed final : public Pulse {
+ public:
+  Superposed(const StateBuild& build, const PulseFrame& f, const Pair& p, std::unique_ptr<KinkProfile> profile)
+      : Pulse(build, f), pair(p), profile_(std::move(profile)) {}
+
+ protected:
+  // φ_t = −γv (f′(left) + f′(right)),   φ_x = γ (f′(left) − f′(right))
+  FieldPoint pulse(double t, double s) const override {
+    const double gamma = pair.gamma(), half = pair.separation / 2 - pair.speed * t;
+    const double left = gamma * (s + half), right = -gamma * (s - half);
+    const double f_left = profile_->slope(left), f_right = profile_->slope(right);
+    return {profile_->f(left) + profile_->f(right) - profile_->upper(), -gamma * pair.speed * (f_left + f_right),
+            gamma * (f_left - f_right)};
+  }
+  // f(−∞) = 2 f(0) − f(∞): kinks are odd about their centres
+  double vacuum() const override { return 2 * profile_->f(0) - profile_->upper(); }
+  std::string formula() const override {
+    return "kink-antikink (the kink on the left): phi = f(gamma (s + d/2 - v t)) + f(-gamma (s - d/2 + v t)) - f(inf), "
+           "f(s) = " +
+           profile_->formula() + ", x0 = " + text(pair.position) + ", v = " + text(pair.speed) +
+           ", d = " + text(pair.separation);
+  }
+
+ private:
+  Pair pair;
+  std::unique_ptr<KinkProfile> profile_;
+};
+
 class KinkKink final : public Pulse {
  public:
   KinkKink(const StateBuild& build, const PulseFrame& f, const Pair& p) : Pulse(build, f), pair(p) {}
@@ -77,7 +112,7 @@ Pair read(const StateBuild& build) {
     throw BadInput(
         "initial.separation",
         "initial.separation = " + text(d) + ": two kinks do not fit that way; choose 0 <= separation < lattice.length");
-  return {centre(build), v, d, pulse_mass(build)};
+  return {centre(build), v, d, kink_profile(build)->tail_rate()};
 }
 
 // Away from the collision the pulses are at x₀ ± (|vt − d/2| + |ln v|/(γm)).
@@ -93,6 +128,14 @@ template <class Pulses>
 std::unique_ptr<State> kink_pair(const StateBuild& build, int winding) {
   const Pair pair = read(build);
   return std::make_unique<Pulses>(build, PulseFrame{pair.position, 0, winding, lasts_until(build, pair)}, pair);
+}
+
+// Of integrable theories the exact solution.
+std::unique_ptr<State> kink_antikink(const StateBuild& build) {
+  auto profile = kink_profile(build);
+  if (profile->integrable()) return kink_pair<KinkAntikink>(build, 0);
+  const Pair pair = read(build);
+  return std::make_unique<Superposed>(build, PulseFrame{pair.position, 0, 0, 0}, pair, std::move(profile));
 }
 
 // 1/(γm)
@@ -113,12 +156,13 @@ std::vector<Parameter> pair_parameters() {
 extern const StateEntry kink_antikink_state;
 const StateEntry kink_antikink_state{
     "kink-antikink",
-    "4 atan(sinh(gamma m (v t - d/2))/(v cosh(gamma m (x - x0))))",
+    "4 atan(sinh(gamma m (v t - d/2))/(v cosh(gamma m (x - x0)))); phi4, double-sine-gordon: "
+    "f(gamma (s + d/2 - v t)) + f(-gamma (s - d/2 + v t)) - f(inf), f their kink",
     initial::pair_parameters(),
     {"sine-gordon"},
-    {"sine-gordon-impurity"},
+    {"sine-gordon-impurity", "phi4", "double-sine-gordon"},
     Place::line,
-    [](const StateBuild& build) { return initial::kink_pair<initial::KinkAntikink>(build, 0); },
+    initial::kink_antikink,
     false,
     {},
     initial::pair_width};

@@ -2,6 +2,7 @@
 #include "schemes/states/kink_profile.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "lattice/error.hpp"
 #include "schemes/states/parameters.hpp"
@@ -16,6 +17,8 @@ class SineGordon final : public KinkProfile {
   // f = 4 atan e^{ms},   f′ = 2m sin(f/2) = 2m/cosh(ms)                         Tyranowski–Desbrun (163)
   double f(double s) const override { return 4 * std::atan(std::exp(m * s)); }
   double slope(double s) const override { return 2 * m / std::cosh(m * s); }
+  double upper() const override { return 2 * std::numbers::pi; }
+  bool integrable() const override { return true; }
   double tail_factor() const override { return 4; }
   double tail_rate() const override { return m; }
   std::string formula() const override { return "4 atan exp(m s), m = " + text(m); }
@@ -38,6 +41,7 @@ class DoubleSineGordon final : public KinkProfile {
     const double M = std::abs(mu * s), w = (m / mu) * scaled_sinh(mu * s, M);
     return 2 * m * scaled_cosh(mu * s, M) * std::exp(-M) / (std::exp(-2 * M) + w * w);
   }
+  double upper() const override { return 2 * std::numbers::pi; }
   double tail_factor() const override { return 4 * mu / m; }
   double tail_rate() const override { return mu; }
   std::string formula() const override {
@@ -57,6 +61,7 @@ class PhiFour final : public KinkProfile {
     const double c = std::cosh(a * s);
     return a / c / c;
   }
+  double upper() const override { return 1; }
   double tail_factor() const override { return 2; }
   double tail_rate() const override { return 2 * a; }
   std::string formula() const override { return "tanh(sqrt(lambda/2) s), lambda = " + text(l); }

@@ -16,6 +16,10 @@ class KinkProfile {
   /// The distance to the vacuum is C·e^{−rate·|s|} far away.
   virtual double tail_factor() const = 0;
   virtual double tail_rate() const = 0;
+  /// f(+∞)
+  virtual double upper() const = 0;
+  /// Two of them are a solution in closed form, and pass through each other.
+  virtual bool integrable() const { return false; }
   /// f(s), as a report writes it, with its parameters.
   virtual std::string formula() const = 0;
 };

@@ -29,8 +29,8 @@ void Pulse::at(double t, double x, std::span<FieldPoint> out) const {
 std::string Pulse::description() const {
   std::string line = formula();
   if (circle_) {
-    // how far the tail is from the vacuum 2πℤ where the circle closes
-    const double tail = std::abs(std::remainder(pulse(0, length_ / 2).phi, 2 * std::numbers::pi));
+    // how far the tail is from the vacuum, modulo 2π, where the circle closes
+    const double tail = std::abs(std::remainder(pulse(0, length_ / 2).phi - vacuum(), 2 * std::numbers::pi));
     if (tail > 1e-8) line += "; off by " + text(tail) + " at the seam";
   }
   if (!exact()) line += "; not an exact solution of " + theory_ + " here";

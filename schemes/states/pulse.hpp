@@ -32,6 +32,8 @@ class Pulse : public State {
  protected:
   /// The pulse at time t, at the distance s from its moving centre; φ_t is taken at fixed x = x₀ + vt + s.
   virtual FieldPoint pulse(double t, double s) const = 0;
+  /// What it tends to far away, modulo 2π.
+  virtual double vacuum() const { return 0; }
   /// The formula and its parameters, for description().
   virtual std::string formula() const = 0;
 
