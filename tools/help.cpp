@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/commands.hpp"
+#include "tools/measure/measurement.hpp"
 #include "tools/scene/keys.hpp"
 
 namespace delf {
@@ -86,11 +87,37 @@ Examples: `delf run phi6-kink`, `delf run liouville`, `delf run born-infeld`, `d
 `delf run coupled-pendula`.
 )page";
 
+constexpr const char* measures_head =
+    R"page(Numbers of a run are keys of a scene, of any name: expressions of measurements. They are in its summary.json, and
+`delf sweep` draws and bisects them:
+
+  [measure]
+  outgoing = speed(-1)
+  kinks = kinks
+  loss = 1 - energy_left(L)/16
+
+)page";
+constexpr const char* measures_foot = R"page(
+[level]: may be left out. All are of the first field, and see the recorded rows (output.every), no others; a run without
+an answer has null. Their numbers, and what is made of them, are sums, products, powers and functions as in `delf help
+lagrangians`, of theory.NAME as NAME, L, pi, and t, the time of the last row.
+)page";
+
+// From the table of measurements.
+std::string measures() {
+  std::string text = measures_head;
+  for (const MeasurementEntry& m : measurements())
+    text += fmt::format("  {:<24} {}\n", *m.arguments ? fmt::format("{}({})", m.name, m.arguments) : m.name, m.help);
+  return text + measures_foot;
+}
+
 /// What help explains besides commands.
 struct Topic {
-  const char *name, *summary, *text;
+  const char *name, *summary;
+  std::string (*text)();
 };
-constexpr Topic topics[] = {{"lagrangians", "a theory of your own, as text", lagrangians}};
+constexpr Topic topics[] = {{"lagrangians", "a theory of your own, as text", [] { return std::string(lagrangians); }},
+                            {"measures", "numbers of a run, as text", measures}};
 
 }  // namespace
 
@@ -108,7 +135,7 @@ ExitCode help(const std::string& name) {
   }
   for (const Topic& topic : topics)
     if (name == topic.name) {
-      fmt::print("{}", topic.text);
+      fmt::print("{}", topic.text());
       return ExitCode::done;
     }
   const Command& command = find_command(name);

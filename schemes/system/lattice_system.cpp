@@ -181,16 +181,9 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
         }
         touch.family->jacobian_row(touch.index, cell, y, J);
         for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[static_cast<std::size_t>(m)]);
-        touch.family->jacobian_row(touch.index, wide, y, J);
+        if (widened != 1) touch.family->jacobian_row(touch.index, wide, y, J);
         for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[static_cast<std::size_t>(m)]);
       }
-<<<<<<< ours
-=======
-      touch.family->jacobian_row(touch.index, cell, y, J);
-      for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[static_cast<std::size_t>(m)]);
-      if (widened != 1) touch.family->jacobian_row(touch.index, wide, y, J);
-      for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[static_cast<std::size_t>(m)]);
->>>>>>> theirs
     }
     std::vector<Coefficient> result;
     for (const auto& [where, sample] : samples) {

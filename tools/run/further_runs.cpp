@@ -13,27 +13,12 @@
 #include "schemes/verify/stress_balance.hpp"
 #include "schemes/verify/time_reversal.hpp"
 #include "tools/engine.hpp"
+#include "tools/run/refined_scene.hpp"
 #include "tools/scene/initial_rows.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/scene/section_source.hpp"
 
 namespace delf {
-
-namespace {
-
-// The scene at half of its steps in time and space.
-Scene refined(const Scene& scene) {
-  Scene fine = scene;
-  const Lattice& lattice = scene.problem.lattice;
-  if (lattice.is_circle()) fine.problem.lattice = Lattice::circle(2 * lattice.sites(), lattice.length());
-  else if (lattice.space() == Space::interval)
-    fine.problem.lattice =
-        Lattice::interval(2 * lattice.sites() - 1, lattice.length(), lattice.left(), lattice.right());
-  fine.problem.time_step = scene.problem.time_step / 2;
-  return fine;
-}
-
-}  // namespace
 
 void measure_orders(const Scene& scene, int winding, std::vector<Measured> balances, std::int64_t rows,
                     Verdict& verdict) {

@@ -3,10 +3,13 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "schemes/stepping/step_method.hpp"
+#include "tools/measure/measures.hpp"
+#include "tools/run/error_estimate.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
@@ -44,6 +47,8 @@ struct Outcome {
   double constraint_max = unknown;  ///< the largest |G|, if the scheme has constraints
   std::vector<Conserved> conserved;
   double error_linf = unknown, error_l2 = unknown;
+  std::vector<NamedNumber> measures;            ///< measure.NAME
+  std::optional<ErrorEstimate> error_estimate;  ///< output.estimate
   std::vector<std::string> warnings;  ///< why the result may be wrong although the status is done
 
   double ns_per_site_step(int sites) const {

@@ -13,8 +13,9 @@
 
 namespace delf {
 
-Progress::Progress(std::int64_t steps)
-    : steps_(std::max<std::int64_t>(1, steps)),
+Progress::Progress(std::int64_t steps, const char* unit)
+    : unit_(unit),
+      steps_(std::max<std::int64_t>(1, steps)),
       begin_(Clock::now()),
       last_look_(begin_),
       last_shown_(begin_),
@@ -53,14 +54,14 @@ void Progress::draw_bar(std::int64_t step, double left) const {
   const int full = static_cast<int>(width * step / steps_);
   std::string bar;
   for (int i = 0; i < width; ++i) bar += i < full ? "█" : "░";
-  fmt::print(stderr, "\r{} {:3d} %  step {} of {}  {} left\033[K", bar, 100 * step / steps_, step, steps_,
+  fmt::print(stderr, "\r{} {:3d} %  {} {} of {}  {} left\033[K", bar, 100 * step / steps_, unit_, step, steps_,
              duration_in_words(left));
   std::fflush(stderr);
 }
 
 void Progress::print_line(std::int64_t step, double elapsed, double left) {
   step_printed_ = step;
-  fmt::print(stderr, "{} %: step {} of {} after {}, {} left\n", 100 * step / steps_, step, steps_,
+  fmt::print(stderr, "{} %: {} {} of {} after {}, {} left\n", 100 * step / steps_, unit_, step, steps_,
              duration_in_words(elapsed), duration_in_words(left));
 }
 

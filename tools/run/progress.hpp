@@ -9,7 +9,8 @@ namespace delf {
 /// nothing for runs of a second or two.
 class Progress {
  public:
-  explicit Progress(std::int64_t steps);
+  /// `unit` is the word for a step.
+  explicit Progress(std::int64_t steps, const char* unit = "step");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -25,6 +26,7 @@ class Progress {
   void draw_bar(std::int64_t step, double left) const;
   void print_line(std::int64_t step, double elapsed, double left);
 
+  const char* unit_;
   std::int64_t steps_, next_look_ = 1, stride_ = 1, step_printed_ = 0;
   Clock::time_point begin_, last_look_, last_shown_;
   bool terminal_, shown_ = false;

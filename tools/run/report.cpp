@@ -55,6 +55,9 @@ std::string report(const Scene& scene, const Outcome& o) {
   if (std::isfinite(o.error_linf))
     line("error",
          fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));
+  for (const NamedNumber& m : o.measures) line("measure", fmt::format("{} = {:.10g}", m.name, m.value));
+  if (o.error_estimate)
+    for (const std::string& estimated : in_words(*o.error_estimate)) line("estimate", estimated);
   for (const std::string& warning : o.warnings) line("warning", warning);
   line("status", o.status);
   return text;

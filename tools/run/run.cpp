@@ -12,11 +12,13 @@
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
+#include "tools/run/error_estimate.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/recorder.hpp"
 #include "tools/run/stepping.hpp"
 #include "tools/scene/initial_rows.hpp"
+#include "tools/scene/values.hpp"
 #include "tools/scene/text_file.hpp"
 
 namespace delf {
@@ -109,6 +111,8 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
     }
   };
   attempt([&] { stepping.run(recorder); });
+  if (Values(scene.settings).toggle("output.estimate"))
+    attempt([&] { outcome.error_estimate = estimate_error(scene, outcome, stepping.last_row()); });
   outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
   attempt([&] { recorder.close(); });
   std::string missing;

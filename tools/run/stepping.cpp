@@ -58,7 +58,8 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
       simulation_(simulation),
       outcome_(outcome),
       names_(names),
-      warnings_(scene, initial, simulation) {
+      warnings_(scene, initial, simulation),
+      measures_(scene, initial.winding(), simulation) {
   const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
   for (const Role role : all_roles) row_[role].resize(sites * names.of[role].size());
   if (!scene.section.empty() && scene.problem.lattice.space() == Space::point) {
@@ -210,12 +211,27 @@ void Stepping::record(std::int64_t row) {
     if (!(record.residual <= outcome_.residual_max)) outcome_.residual_max = record.residual;
   }
   recorded_ = row;
-  if (started_) warnings_.see(record.time, row_[Role::field], of_method);
+  if (started_) {
+    warnings_.see(record.time, row_[Role::field], of_method);
+    measure(record.time, static_cast<int>(newest_ - row));
+  }
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
   outcome_.charge_final = record.charge;
   recorder_->append(record, row_, datasets_);
   ++outcome_.records;
+}
+
+// The row before it, or after row 0, is held by schemes that start from two rows.
+void Stepping::measure(double time, int back) {
+  if (measures_.empty()) return;
+  std::vector<double> other;
+  const int neighbour = back + 1 < simulation_.starting_rows() ? back + 1 : back - 1;
+  if (neighbour >= 0 && neighbour < simulation_.starting_rows()) {
+    other.resize(row_[Role::field].size());
+    simulation_.copy_row(neighbour, other);
+  }
+  measures_.see({time, row_[Role::field], other});
 }
 
 // The constraint, the monitors of the method, and the conserved sums.
@@ -245,6 +261,7 @@ void Stepping::close_outcome() {
   if (outcome_.steps_taken > 0) outcome_.iterations_mean = iterations_ / static_cast<double>(outcome_.steps_taken);
   outcome_.energy_error_max = recorder_->largest_energy_error();
   measure_error();
+  outcome_.measures = measures_.results();
   if (started_) outcome_.warnings = warnings_.of(outcome_, recorder_->energy_errors(), row_[Role::field]);
 }
 

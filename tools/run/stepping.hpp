@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include "tools/measure/measures.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/recorder.hpp"
@@ -24,12 +25,15 @@ class Stepping {
   void run(Recorder&);
   /// The points of output.section; null without it.
   const Section* section() const { return section_ ? &*section_ : nullptr; }
+  /// The fields of the last row.
+  const std::vector<double>& last_row() const { return row_[Role::field]; }
 
  private:
   void record_and_step();
   void step_until(std::int64_t row, Progress&);
   void count_step();
   void record(std::int64_t row);
+  void measure(double time, int back);
   void fail(const NumericalFailure&);
   bool to_be_recorded(std::int64_t row) const;
   std::int64_t next_record() const;
@@ -45,6 +49,7 @@ class Stepping {
   Recorder* recorder_ = nullptr;
   const RowNames& names_;
   Warnings warnings_;
+  Measures measures_;
   RecordedRow row_;
   RecordedDatasets datasets_;
   std::optional<Section> section_;

@@ -50,6 +50,21 @@ std::string summary_json(const Scene& scene, const Outcome& o) {
     conserved.push_back({{"name", c.name}, {"initial", c.initial}, {"final", c.final}, {"error_max", c.error_max}});
   json["error_linf"] = o.error_linf;
   json["error_l2"] = o.error_l2;
+  auto& measures = json["measures"] = nlohmann::ordered_json::object();
+  for (const NamedNumber& m : o.measures) measures[m.name] = m.value;
+  if (o.error_estimate) {
+    const ErrorEstimate& e = *o.error_estimate;
+    auto& estimate = json["error_estimate"];
+    estimate["failure"] = e.failure.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(e.failure);
+    const auto put = [](auto& into, const Richardson& r) {
+      into["error"] = r.error;
+      into["order"] = r.order;
+      into["converging"] = r.converging;
+    };
+    put(estimate, e.row);
+    auto& of_measures = estimate["measures"] = nlohmann::ordered_json::object();
+    for (const auto& [name, r] : e.measures) put(of_measures[name], r);
+  }
   json["warnings"] = scene.warnings;
   for (const std::string& warning : o.warnings) json["warnings"].push_back(warning);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

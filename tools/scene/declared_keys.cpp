@@ -17,6 +17,9 @@
 namespace delf {
 namespace {
 
+// A section of names that a scene is free to choose.
+bool is_measure(std::string_view key) { return key.starts_with("measure.") && key != "measure."; }
+
 // Keys that no theory, method or state declares are not to be redefined.
 void declare(Settings& settings, const Parameter& p, DeclaredBy kind, const std::string& owner) {
   if (find_key(p.key) && declared_by(p.key).empty())
@@ -82,9 +85,21 @@ void declare_states(Settings& settings, const std::vector<std::string>& fields) 
   }
 }
 
+// measure.NAME: one line each, of any name
+void declare_measures(Settings& settings) {
+  std::vector<std::string> names;
+  for (const Setting& s : settings.all())
+    if (is_measure(s.key) && std::ranges::find(names, s.key) == names.end()) names.push_back(s.key);
+  for (const std::string& name : names)
+    settings.declare({Key{name, KeyType::text, "", "none", "an expression of measurements; see `delf help measures`"},
+                      DeclaredBy::scene,
+                      {}});
+}
+
 }  // namespace
 
 void declare_keys(Settings& settings) {
+  declare_measures(settings);
   try {
     if (settings.find("stencil.sites")) settings.imply("lattice.stencil", stencil_as_text, "stencil.sites");
     if (const TheoryEntry* entry = chosen_theory(settings)) declare_states(settings, declare_theory(settings, *entry));
@@ -96,7 +111,7 @@ void declare_keys(Settings& settings) {
 bool may_be_declared(std::string_view key) {
   return std::ranges::any_of(theory_entries(),
                              [key](const TheoryEntry* e) { return e->further && key.starts_with("theory."); }) ||
-         key.starts_with("initial.") || key.starts_with("exact.");
+         is_measure(key) || key.starts_with("initial.") || key.starts_with("exact.");
 }
 
 }  // namespace delf

@@ -53,6 +53,7 @@ Names fibres() { return {"R", "S1"}; }
 Names spaces() { return {"circle", "interval", "point"}; }
 Names walls() { return {"fixed", "natural"}; }
 Names faults() { return verify_faults(); }
+Names sweep_keeps() { return {"folders", "table"}; }
 Names stability_fault_names() { return stability_faults(); }
 Names starts() {
   Names names;
@@ -84,6 +85,7 @@ constexpr Limits one_or_more{1, largest_int};
 constexpr Limits two_or_more{2, largest_int};
 constexpr Limits up_to_eight{0, 8};
 constexpr Limits threads{1, 1024};
+constexpr Limits convergence_levels{2, 12};
 constexpr auto own = "the state's own";
 constexpr auto real = KeyType::real;
 constexpr auto integer = KeyType::integer;
@@ -137,6 +139,10 @@ std::vector<Key> general_keys() {
           "record rows 0, every, 2 every, ... and the last; 0: the last", "", count},
       Key{"output.figures", toggle, "on", "", "draw figures (by gnuplot)"},
       Key{"output.fields", toggle, "on", "", "write the recorded rows to fields.h5"},
+      Key{"output.estimate", toggle, "off", "",
+          "estimate the errors of the last row and of the measures by two more runs, at half and at a quarter of h and "
+          "k; "
+          "they cost twenty times the run"},
       Key{"output.times", KeyType::times, "", "six, evenly spread", "times of the waveforms figure: 0, 10, 20", "time",
           not_negative},
 
@@ -160,6 +166,27 @@ std::vector<Key> general_keys() {
       Key{"verify.fault", choice, "none", "",
           "plants a fault that must be found: variation, sign (of one derivative of L) or field (at one site)", "", any,
           faults()},
+
+      Key{"sweep.jobs", integer, "", "one a core", "runs side by side", "", threads},
+      Key{"sweep.keep", choice, "folders", "",
+          "of each run: its folder, as of `delf run`, in runs/; or only its row of the table", "", any, sweep_keeps()},
+      Key{"sweep.zip", toggle, "off", "",
+          "take the values of several keys together, the first with the first, ..., not all pairs"},
+      Key{"sweep.settings", KeyType::text, "", "none",
+          "a CSV of runs: a line of keys, then a line of their values for each run"},
+      Key{"sweep.resume", toggle, "on", "", "do not repeat the runs that DIR/sweep.rows has of these settings"},
+      Key{"sweep.number", KeyType::text, "", "the first measure, or the error",
+          "what is drawn, and bisected: a measure, or a number of summary.json"},
+      Key{"sweep.bisect", KeyType::text, "", "none",
+          "KEY=a:b finds where, between these values of the key, sweep.number passes sweep.level"},
+      Key{"sweep.level", real, "", "halfway between the numbers at a and b", "the level", "", any},
+      Key{"sweep.accuracy", real, "1e-3", "", "of the key: how long the last interval may be", "", positive},
+
+      Key{"convergence.levels", integer, "4", "", "lines of the table, each with half of the steps of the one before",
+          "", convergence_levels},
+      Key{"convergence.order", real, "", "none",
+          "the order that the last two lines must show: exit code 1 if they do not", "", positive},
+      Key{"convergence.agreement", real, "0.2", "", "by how much the order may be off", "", positive},
 
       Key{"stability.schemes", KeyType::text, "", "eight, one of each sort", "schemes, separated by commas, or all"},
       Key{"stability.mass_steps", KeyType::text, "", "0.5, 1, 2.3", "values of mh at which limits are found"},
@@ -237,6 +264,7 @@ const Key* find_key(std::string_view name) {
 }
 
 std::string_view chosen_by(DeclaredBy kind) {
+  if (kind == DeclaredBy::scene) return {};
   return kind == DeclaredBy::theory ? "theory.name" : kind == DeclaredBy::method ? "scheme.method" : "initial.state";
 }
 

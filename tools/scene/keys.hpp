@@ -39,8 +39,9 @@ std::string nearest_key(std::string_view unknown, std::span<const Key> known);
 /// Puts the key behind the last one of its section, or in place of the one of its name.
 void insert_key(std::vector<Key>& table, Key);
 
-enum class DeclaredBy { theory, method, state };
-/// The key whose value is the name: theory.name, scheme.method, initial.state.
+/// scene: by a scene for itself, as measure.NAME.
+enum class DeclaredBy { theory, method, state, scene };
+/// The key whose value is the name: theory.name, scheme.method, initial.state; there is none for a scene.
 std::string_view chosen_by(DeclaredBy);
 
 /// A theory, a method or a state with the keys that it declares.

@@ -13,7 +13,7 @@ namespace {
 std::string resolved(const Scene& scene, const Key& key, StartRule start) {
   if (!why_without_effect(scene, key.name).empty()) return {};
   // keys that a run does not read
-  for (const char* section : {"verify.", "workprecision.", "stability."})
+  for (const char* section : {"verify.", "workprecision.", "stability.", "sweep.", "convergence."})
     if (key.name.starts_with(section) && !scene.settings.find(key.name)) return {};
   if (key.name == "lattice.courant" || key.name == "run.until") return {};
   if (key.name == "lattice.stencil") return scene.problem.stencil;  // of an alias, the name that it stands for

@@ -157,7 +157,7 @@ std::string why_not_read(const Scene& scene, std::string_view key) {
   std::optional<DeclaredBy> kind;
   for (const DeclaredKey& own : scene.settings.declared()) {
     if (own.key.name != key) continue;
-    if (chosen(scene, own.kind) == own.owner) return {};
+    if (own.kind == DeclaredBy::scene || chosen(scene, own.kind) == own.owner) return {};
     kind = own.kind;
   }
   for (const Declaration& declaration : declarations()) {

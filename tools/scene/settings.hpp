@@ -30,6 +30,8 @@ class Settings {
 
   const std::filesystem::path& file() const noexcept { return file_; }
   const Setting* find(std::string_view key) const;
+  /// All that are given, the command line first; the first of a key is in force.
+  const std::vector<Setting>& all() const { return all_; }
   /// Of two keys that say the same thing, exactly one may be given in a place; the one on the command line wins, and
   /// the other is forgotten.
   void keep_one_of(std::string_view key, std::string_view other, std::string_view remedy);

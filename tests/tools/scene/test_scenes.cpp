@@ -41,7 +41,6 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
     REQUIRE_FALSE(commands.empty());
     CHECK(commands.front() == "run " + scene.name);
   }
-<<<<<<< HEAD
   CHECK(names == std::vector<std::string>{"born-infeld",
                                           "breather",
                                           "collision",
@@ -53,6 +52,7 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
                                           "guiding-centre",
                                           "henon-heiles",
                                           "henon-heiles-text",
+                                          "impurity",
                                           "interval",
                                           "kepler",
                                           "kink",
@@ -60,7 +60,9 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
                                           "liouville",
                                           "lotka-volterra",
                                           "nonlinear-string",
+                                          "peierls-nabarro",
                                           "pendulum",
+                                          "phi4-collision",
                                           "phi4-kink",
                                           "phi6-kink",
                                           "r-adaptive",
@@ -70,6 +72,7 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
                                           "spacetime-element",
                                           "spherical-pendulum",
                                           "toda-chain",
+                                          "wall-reflection",
                                           "wave-map",
                                           "wave-map-text",
                                           "wave-packet",

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+#include "tools/measure/kinks.hpp"
+#include "tools/measure/spectrum.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+MeasuredField field_on(const Lattice& lattice, bool angle, double turn = 0) {
+  return {lattice, 0.1, turn, angle, 1, nullptr};
+}
+
+nlohmann::json measures_of(const Folder& folder, const std::string& scene, const std::string& more = "") {
+  const Ran ran = delf_program(folder, "run '" + scene + "' --out out " + more);
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  return nlohmann::json::parse(read(folder / "out/summary.json"))["measures"];
+}
+
+std::string kink_scene(const std::string& measures) {
+  return "[theory]\nname = sine-gordon\n[lattice]\nspace = interval\nlength = 40\nsites = 401\ncourant = 0.5\n"
+         "[initial]\nstate = kink\nposition = 15\nspeed = 0.5\n[run]\nuntil = 10\n[output]\nfigures = off\nfields = "
+         "off\n"
+         "[measure]\n" +
+         measures;
+}
+
+}  // namespace
+
+TEST_CASE("kinks are the places where a row passes pi modulo 2 pi, with the sign of its slope") {
+  const Lattice lattice = Lattice::interval(5, 4);
+  const std::vector<double> row{0, 2 * pi, 4 * pi, 2 * pi, 2 * pi};
+  const auto angles = kinks_of(field_on(lattice, true), row, pi);
+  REQUIRE(angles.size() == 3);
+  CHECK(angles[0].x == Approx(0.5));
+  CHECK(angles[1].x == Approx(1.5));
+  CHECK(angles[2].x == Approx(2.5));
+  CHECK(angles[0].sign + angles[1].sign + angles[2].sign == 1);
+  // a value on the line passes level pi once only
+  const auto numbers = kinks_of(field_on(lattice, false), row, pi);
+  REQUIRE(numbers.size() == 1);
+  CHECK(numbers[0].x == Approx(0.5));
+  // two in one cell, from right to left where the field falls
+  const auto steep = kinks_of(field_on(lattice, true), std::vector<double>{4 * pi, 0, 0, 0, 0}, pi);
+  REQUIRE(steep.size() == 2);
+  CHECK(steep[0].x == Approx(0.25));
+  CHECK(steep[1].x == Approx(0.75));
+  CHECK(steep[0].sign == -1);
+}
+
+TEST_CASE("a field without bound has no kinks") {
+  const Lattice lattice = Lattice::interval(4, 3);
+  CHECK(kinks_of(field_on(lattice, true), std::vector<double>{0, 1e100, -1e100, 0}, pi).empty());
+  CHECK(kinks_of(field_on(lattice, true), std::vector<double>{0, std::nan(""), 1e300 * 1e300, 0}, pi).empty());
+}
+
+TEST_CASE("a kink across the seam of a circle is found") {
+  const Lattice lattice = Lattice::circle(4, 4);
+  const std::vector<double> row{0.1, 0.2, 0.3, 0.4};
+  CHECK(kinks_of(field_on(lattice, true), row, pi).empty());
+  const auto kinks = kinks_of(field_on(lattice, true, 2 * pi), row, pi);
+  REQUIRE(kinks.size() == 1);
+  CHECK(kinks[0].x == Approx(3 + (pi - 0.4) / (2 * pi + 0.1 - 0.4)));
+}
+
+TEST_CASE("the peak of a spectrum is found between its lines") {
+  std::vector<double> wave;
+  for (int j = 0; j < 256; ++j) wave.push_back(3 + std::sin(2 * pi * 12.3 * j / 256));
+  CHECK(spectrum_peak(wave, false) == Approx(12.3).epsilon(2e-3));
+  CHECK(spectrum_peak(wave, true) == 12);
+  CHECK(std::isnan(spectrum_peak(std::vector<double>(64, 1.0), false)));
+  CHECK(std::isnan(spectrum_peak(std::vector<double>(4, 1.0), false)));
+}
+
+TEST_CASE("a kink is measured: number, place, speed, energy on its left, values") {
+  const Folder folder;
+  const std::string scene = folder.write(
+      "kink.ini",
+      kink_scene("n = kinks\ncharge = kink_charge\nx = position(1)\nfrom_right = position(-1)\nv = speed(1)\n"
+                 "all = energy_left(L)\nhalf = energy_left(15 + 0.5*9.975)\nat = value(20)\n"
+                 "none = position(2)\nsum = 2*speed(1) + pi*0\nend = t\npassed = crossings(18, pi)\n"
+                 "high = maximum(18)\n"));
+  const auto m = measures_of(folder, scene);
+  CHECK(m["n"] == 1);
+  CHECK(m["charge"] == 1);
+  CHECK(m["x"].get<double>() == Approx(20).margin(0.01));
+  CHECK(m["from_right"] == m["x"]);
+  CHECK(m["v"].get<double>() == Approx(0.5).margin(0.001));
+  // 8γ, and by symmetry half of it left of the kink
+  const double energy = 8 / std::sqrt(0.75);
+  CHECK(m["all"].get<double>() == Approx(energy).epsilon(0.01));
+  CHECK(m["half"].get<double>() == Approx(energy / 2).epsilon(0.01));
+  CHECK(m["at"].get<double>() == Approx(pi).margin(0.02));
+  CHECK(m["none"].is_null());
+  CHECK(m["sum"].get<double>() == Approx(2 * m["v"].get<double>()));
+  CHECK(m["end"].get<double>() == Approx(10));
+  CHECK(m["passed"] == 1);
+  CHECK(m["high"].get<double>() == Approx(4 * std::atan(std::exp(3 / std::sqrt(0.75)))).margin(0.01));
+  const auto summary = nlohmann::json::parse(read(folder / "out/summary.json"));
+  CHECK(m["all"].get<double>() == Approx(summary["energy_final"].get<double>()).epsilon(1e-9));
+}
+
+TEST_CASE("a breather and a wave are measured: frequency, times of extremes, wavenumber") {
+  const Folder folder;
+  const std::string breather =
+      folder.write("breather.ini",
+                   "[theory]\nname = sine-gordon\n[lattice]\nlength = 40\nsites = 201\ncourant = 0.5\n[initial]\n"
+                   "state = breather\nfrequency = 0.6\n[run]\nuntil = 100\n[output]\nfigures = off\nfields = off\n"
+                   "every = 2\n[measure]\nomega = frequency(20)\nlow = minimum(20)\nwhen = maximum_time(20)\n");
+  auto m = measures_of(folder, breather);
+  CHECK(m["omega"].get<double>() == Approx(0.6).epsilon(0.01));
+  CHECK(m["low"].get<double>() == Approx(-4 * std::atan(std::sqrt(1 - 0.36) / 0.6)).epsilon(0.01));
+  const std::string wave = folder.write(
+      "wave.ini",
+      "[theory]\nname = klein-gordon\n[lattice]\nlength = 40\nsites = 201\ncourant = 0.5\n[initial]\n"
+      "state = plane-wave\nwavenumber = 3\n[run]\nuntil = 10\n[output]\nfigures = off\n[measure]\nk = wavenumber\n");
+  m = measures_of(folder, wave);
+  CHECK(m["k"].get<double>() == Approx(2 * pi * 3 / 40));
+}
+
+TEST_CASE("a measure on the command line wins, and scene.ini repeats measures") {
+  const Folder folder;
+  const std::string scene = folder.write("kink.ini", kink_scene("n = kinks\n"));
+  CHECK(measures_of(folder, scene, "--measure.n=3 --measure.more=2*kinks") ==
+        nlohmann::json{{"n", 3.0}, {"more", 2.0}});
+  CHECK(contains(read(folder / "out/scene.ini"), "[measure]\nmore = 2*kinks\nn = 3\n") !=
+        contains(read(folder / "out/scene.ini"), "[measure]\nn = 3\nmore = 2*kinks\n"));
+}
+
+TEST_CASE("a measure that cannot be read is refused in one line") {
+  const Folder folder;
+  for (const auto& [measure, says] :
+       std::vector<std::pair<std::string, std::string>>{{"speed", "write speed(n [, level])"},
+                                                        {"value(1, 2)", "write value(x)"},
+                                                        {"value(1", "the bracket is not closed"},
+                                                        {"2*x", "x is no number here"},
+                                                        {"speeed(1)", "speeed"},
+                                                        {"value(y)", "y"},
+                                                        {"", "no value is given"}}) {
+    const std::string scene = folder.write("kink.ini", kink_scene("m = " + measure + "\n"));
+    const Ran ran = delf_program(folder, "run '" + scene + "' --out out");
+    INFO(measure << "\n" << ran.err);
+    CHECK(ran.code == 2);
+    CHECK(contains(ran.err, "kink.ini:18: measure.m"));
+    CHECK(contains(ran.err, says));
+    CHECK_FALSE(std::filesystem::exists(folder / "out"));
+  }
+  CHECK(contains(delf_program(folder, "help measures").out, "energy_left(x)"));
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "tools/measure/measurement.hpp"
+
+namespace delf {
+
+// at_a_place.cpp: φ at one x, over time
+extern const MeasurementEntry value_measurement, minimum_measurement, maximum_measurement, minimum_time_measurement,
+    maximum_time_measurement, crossings_measurement, frequency_measurement;
+// kinks.cpp
+extern const MeasurementEntry kinks_measurement, charge_measurement, position_measurement, speed_measurement;
+// energy_left.cpp
+extern const MeasurementEntry energy_left_measurement;
+// wavenumber.cpp
+extern const MeasurementEntry wavenumber_measurement;
+
+}  // namespace delf

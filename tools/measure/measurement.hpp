@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lattice/lattice.hpp"
+#include "schemes/theories/field_theory.hpp"
+
+namespace delf {
+
+/// What measurements are made on.
+struct MeasuredField {
+  Lattice lattice;
+  double time_step;
+  double turn;  ///< φ(x + L) − φ(x) on a circle
+  bool angle;   ///< values 2π apart are the same
+  int fields;   ///< in a row [i·fields + a]; the first is measured
+  std::shared_ptr<const FieldTheory> theory;
+
+  /// φ at site i, beyond the seam of a circle too.
+  double at(std::span<const double> row, int i) const;
+  /// φ at x, by Lagrange's polynomial through the four sites around it.
+  double at(std::span<const double> row, double x) const;
+};
+
+/// A recorded row, and the row one step before it (the next one, for row 0).
+struct MeasuredRow {
+  double time;
+  std::span<const double> row, other;
+};
+
+/// One number of a run. It sees the recorded rows, in their order, and keeps no more of them than it needs.
+class Measurement {
+ public:
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  virtual ~Measurement() = default;
+  virtual void see(const MeasuredRow&) = 0;
+  /// Not a number where there is no answer.
+  virtual double value() const = 0;
+};
+
+/// A measurement that measure.NAME can name, with its numbers between brackets.
+struct MeasurementEntry {
+  const char *name, *arguments, *help;
+  std::size_t least, most;  ///< how many numbers
+  std::unique_ptr<Measurement> (*make)(const MeasuredField&, const std::vector<double>& numbers);
+};
+
+/// All measurements: a new one is a file and a line there.
+std::span<const MeasurementEntry> measurements();
+
+}  // namespace delf

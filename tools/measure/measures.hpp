@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/measure/measurement.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// A number by the name that the scene gives it.
+struct NamedNumber {
+  std::string name;
+  double value;
+};
+
+/// The keys measure.NAME of a scene, each an expression of measurements: `2*speed(1)`, `kinks - value(L/2)`. Their
+/// arithmetic is that of densities as text, with the theory's parameters, L, and t, the time of the last row.
+class Measures {
+ public:
+  /// Throws BadScene for what cannot be read, or measured in this scene.
+  Measures(const Scene&, int winding, const Simulation&);
+  ~Measures();
+  Measures(const Measures&) = delete;
+  Measures& operator=(const Measures&) = delete;
+
+  bool empty() const { return all_.empty(); }
+  /// A recorded row of the fields, and the row before it (row 1 for row 0) where it is held.
+  void see(const MeasuredRow&);
+  std::vector<NamedNumber> results() const;
+
+ private:
+  struct Expression;
+  std::vector<Expression> all_;
+  double time_ = 0;
+};
+
+/// The names of the measures that settings give, in their order.
+std::vector<std::string> measure_names(const Settings&);
+
+}  // namespace delf

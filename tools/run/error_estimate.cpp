@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/error_estimate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/run/outcome.hpp"
+#include "tools/run/refined_scene.hpp"
+
+namespace delf {
+
+Richardson richardson(double first, double second, double size) {
+  constexpr double rounding = 1e-13;
+  if (!std::isfinite(first) || !std::isfinite(second)) return {};
+  if (std::max(first, second) <= rounding * size) return {std::max(first, second), Richardson{}.order, true};
+  Richardson r;
+  r.order = std::log2(first / second);
+  // Differences that fall by less than √2 say nothing of the error.
+  constexpr double least_order = 0.5;
+  r.converging = r.order >= least_order;
+  if (r.converging) r.error = std::isinf(r.order) ? first : first / (1 - std::exp2(-r.order));
+  return r;
+}
+
+namespace {
+
+// max |coarse − fine| over the sites and fields of the coarsest lattice; `factors` are the distances of its sites in both.
+double distance(const std::vector<double>& coarse, std::size_t factor, const std::vector<double>& fine,
+                std::size_t fine_factor, std::size_t sites, std::size_t fields) {
+  double largest = 0;
+  for (std::size_t i = 0; i < sites; ++i)
+    for (std::size_t a = 0; a < fields; ++a) {
+      const double d = std::abs(coarse[i * factor * fields + a] - fine[i * fine_factor * fields + a]);
+      if (!(d <= largest)) largest = d;
+    }
+  return largest;
+}
+
+double largest_of(const std::vector<double>& row) {
+  double largest = 0;
+  for (const double y : row) largest = std::max(largest, std::abs(y));
+  return largest;
+}
+
+std::string in_words(const std::string& what, const Richardson& r) {
+  if (!r.converging)
+    return std::isfinite(r.order) ? fmt::format("{}: not converging (order {:.2g} from three runs)", what, r.order)
+                                  : fmt::format("{}: not known", what);
+  return fmt::format("{}: error {:.3g}{}", what, r.error,
+                     std::isfinite(r.order) ? fmt::format(", order {:.3g}", r.order) : "");
+}
+
+}  // namespace
+
+std::vector<std::string> in_words(const ErrorEstimate& e) {
+  if (!e.failure.empty()) return {"none: " + e.failure};
+  std::vector<std::string> lines{in_words("last row", e.row)};
+  for (const auto& [name, r] : e.measures) lines.push_back(in_words(name, r));
+  return lines;
+}
+
+ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const std::vector<double>& last_row) {
+  ErrorEstimate estimate;
+  try {
+    if (outcome.status != "done") throw BadInput("", "the run did not end well");
+    const QuietEnd half = run_quietly(refined(scene, 2)), quarter = run_quietly(refined(scene, 4));
+    if (!half.finished || !quarter.finished) throw BadInput("", "interrupted");
+    const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
+    const std::size_t fields = last_row.size() / sites;
+    const bool point = scene.problem.lattice.space() == Space::point;
+    const std::size_t two = point ? 1 : 2, four = point ? 1 : 4;
+    estimate.row = richardson(distance(last_row, 1, half.row, two, sites, fields),
+                              distance(half.row, two, quarter.row, four, sites, fields), largest_of(last_row));
+    for (std::size_t m = 0; m < outcome.measures.size(); ++m) {
+      const double a = outcome.measures[m].value, b = half.measures[m].value, c = quarter.measures[m].value;
+      estimate.measures.emplace_back(outcome.measures[m].name,
+                                     richardson(std::abs(a - b), std::abs(b - c), std::abs(a)));
+    }
+  } catch (const Error& error) {
+    estimate.failure = error.what();
+  }
+  return estimate;
+}
+
+}  // namespace delf

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/refined_scene.hpp"
+
+#include <chrono>
+
+#include "tools/engine.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/seconds_since.hpp"
+#include "tools/scene/initial_rows.hpp"
+
+namespace delf {
+
+Scene refined(const Scene& scene, int factor) {
+  Scene fine = scene;
+  const Lattice& lattice = scene.problem.lattice;
+  if (lattice.is_circle()) fine.problem.lattice = Lattice::circle(factor * lattice.sites(), lattice.length());
+  else if (lattice.space() == Space::interval)
+    fine.problem.lattice =
+        Lattice::interval(factor * (lattice.sites() - 1) + 1, lattice.length(), lattice.left(), lattice.right());
+  fine.problem.time_step = scene.problem.time_step / factor;
+  fine.steps = factor * scene.steps;
+  fine.every = factor * scene.every;
+  return fine;
+}
+
+QuietEnd run_quietly(const Scene& scene) {
+  if (scene.from_file()) throw BadInput("initial.file", "its rows come from a file");
+  const InitialRows initial(scene);
+  Simulation simulation = build(scene, initial.winding());
+  Measures measures(scene, initial.winding(), simulation);
+  initial.start(simulation);
+  QuietEnd end;
+  end.row.resize(static_cast<std::size_t>(scene.problem.lattice.sites() * simulation.count(Role::field)));
+  std::vector<double> other(end.row.size());
+  const bool two = simulation.starting_rows() > 1;
+  const auto see = [&](std::int64_t row) {
+    if (row > scene.steps) return;
+    const int back = static_cast<int>(simulation.newest() - row);
+    simulation.copy_row(back, end.row);
+    if (two) simulation.copy_row(back == 0 ? 1 : 0, other);
+    measures.see({static_cast<double>(row) * scene.problem.time_step, end.row,
+                  two ? std::span<const double>(other) : std::span<const double>()});
+  };
+  const auto recorded = [&](std::int64_t row) {
+    return row == scene.steps || (scene.every > 0 && row % scene.every == 0);
+  };
+  for (std::int64_t row = 0; row <= simulation.newest(); ++row)
+    if (recorded(row)) see(row);
+  const auto begin = std::chrono::steady_clock::now();
+  while (simulation.newest() < scene.steps && !Interrupt::asked()) {
+    const std::int64_t row = simulation.newest() + 1;
+    simulation.step(recorded(row));
+    if (recorded(row)) see(row);
+  }
+  end.seconds = seconds_since(begin);
+  end.finished = simulation.newest() >= scene.steps;
+  end.measures = measures.results();
+  return end;
+}
+
+}  // namespace delf

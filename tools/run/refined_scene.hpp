@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <vector>
+
+#include "tools/measure/measures.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// The scene at 1/factor of its steps in time and space, recorded at the same times; the end of the run is the same.
+Scene refined(const Scene&, int factor = 2);
+
+/// The end of a run that writes nothing.
+struct QuietEnd {
+  std::vector<double> row;  ///< of the fields, [i·d + a]
+  std::vector<NamedNumber> measures;
+  double seconds = 0;     ///< of the steps alone
+  bool finished = false;  ///< not if interrupted
+};
+/// Steps a scene to its end. Throws BadInput and NumericalFailure.
+QuietEnd run_quietly(const Scene&);
+
+}  // namespace delf
