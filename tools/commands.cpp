@@ -9,6 +9,7 @@
 
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/energy.hpp"
+#include "tools/convergence/convergence.hpp"
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/plan.hpp"
@@ -17,6 +18,7 @@
 #include "tools/scene/shipped_scenes.hpp"
 #include "tools/scene/suggestion.hpp"
 #include "tools/stability/stability.hpp"
+#include "tools/sweep/sweep.hpp"
 #include "tools/verify/verify.hpp"
 #include "tools/workprecision/workprecision.hpp"
 
@@ -35,10 +37,13 @@ std::string only_word(const Arguments& arguments, const char* otherwise) {
   return arguments.words.size() < 2 ? otherwise : arguments.words[1];
 }
 
-Scene scene_of(const Arguments& arguments) {
+std::filesystem::path file_of(const Arguments& arguments) {
   check_command_line(arguments.keys);
-  const std::string word = only_word(arguments, nullptr);
-  Scene scene = read_scene(find_scene(word), arguments.keys);
+  return find_scene(only_word(arguments, nullptr));
+}
+
+Scene scene_of(const Arguments& arguments) {
+  Scene scene = read_scene(file_of(arguments), arguments.keys);
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "{}\n", warning);
   return scene;
 }
@@ -64,6 +69,15 @@ ExitCode carry_out_plan(const Arguments& arguments) {
 ExitCode carry_out_verify(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   return verify(scene, arguments.out.value_or("results/" + scene.name), arguments.fields, arguments.nearby);
+}
+
+ExitCode carry_out_sweep(const Arguments& arguments) {
+  return sweep(file_of(arguments), arguments.keys, arguments.out);
+}
+
+ExitCode carry_out_convergence(const Arguments& arguments) {
+  const Scene scene = scene_of(arguments);
+  return convergence(scene, arguments.out.value_or("results/" + scene.name));
 }
 
 ExitCode carry_out_workprecision(const Arguments& arguments) {
@@ -132,6 +146,30 @@ const std::vector<Command>& table() {
        "                     first variations; further pairs of other sizes are extrapolated to size zero\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_verify, "verify", true},
+      {"sweep", "delf sweep SCENE [--out DIR] --KEY=a,b,c [--KEY=from:to:step ...]",
+       "a scene for many values of its keys, side by side",
+       "Runs a scene for every value of the keys that are given several: a,b,c or from:to:step, both ends included.\n"
+       "Several keys give all their pairs. Each run is a process of its own; one that fails is a row with its status.\n"
+       "Into DIR (results/NAME-sweep, if not given) go sweep.csv and sweep.json, a row for each run with its numbers;\n"
+       "sweep.rows, from which the same command goes on after Ctrl-C or worse; runs/, the folder of each run; and a\n"
+       "figure of one number over one or two keys. Runs draw figures of their own only if output.figures=on is given\n"
+       "here. Exit code 3 if all runs failed.\n\n"
+       "  delf sweep collision --scheme.method=multisymplectic,vu-quoc-li --lattice.courant=0.125:0.5:0.125\n"
+       "  delf sweep phi4-collision --sweep.bisect=initial.speed=0.255:0.265 --sweep.level=1.25\n\n"
+       "Numbers are those of summary.json, and the measures of the scene: `delf help measures`.\n\n"
+       "The keys of its own section; all others are those of `delf help run`:",
+       true, carry_out_sweep, "sweep"},
+      {"convergence", "delf convergence SCENE [--out DIR] [--KEY=VALUE ...]",
+       "errors and their order, at steps halved again and again",
+       "Runs a scene at its own steps, and at half, a quarter, ... of both h and k, and prints N, k, h, the error, the "
+       "order\n"
+       "and the time of each, with the scene's measures. Errors are those of the last row against the exact solution, "
+       "or\n"
+       "without one differences from the next line. Into DIR (results/NAME of the scene, if not given) go\n"
+       "convergence.json and convergence.csv. With convergence.order the order of the last two lines is checked: exit\n"
+       "code 1 if it is another one.\n\n"
+       "The keys of its own section; all others are those of `delf help run`:",
+       true, carry_out_convergence, "convergence"},
       {"workprecision", "delf workprecision SCENE [--out DIR] [--KEY=VALUE ...]",
        "error against run time, for many schemes and resolutions",
        "Runs a scene with every scheme that can, and with other programs (peers) where they have its equation, over a\n"

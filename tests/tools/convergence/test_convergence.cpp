@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+
+using namespace delf::testing;
+using Json = nlohmann::json;
+
+namespace {
+
+Json convergence_of(const Folder& folder, const std::string& arguments, int code) {
+  const Ran ran = delf_program(folder, "convergence " + arguments + " --out out");
+  INFO(ran.err << ran.out);
+  REQUIRE(ran.code == code);
+  return Json::parse(read(folder / "out/convergence.json"));
+}
+
+const std::string small = "breather --run.until=4 --convergence.levels=4 ";
+
+}  // namespace
+
+TEST_CASE("the table of a scene has its errors and their order, and another order is refused") {
+  const Folder folder;
+  const Json table = convergence_of(folder, small + "--lattice.sites=51 --convergence.order=2", 0);
+  CHECK(table["error"] == "exact");
+  REQUIRE(table["levels"].size() == 4);
+  CHECK(table["levels"][0]["sites"] == 51);
+  CHECK(table["levels"][3]["sites"] == 408);
+  CHECK(table["order"].get<double>() == Approx(2).margin(0.1));
+  CHECK(table["levels"][3]["error_linf"].get<double>() < table["levels"][2]["error_linf"].get<double>() / 3.5);
+  CHECK(lines(read(folder / "out/convergence.csv")).size() == 5);
+  CHECK(convergence_of(folder, small + "--lattice.sites=51 --convergence.order=3", 1)["passed"] == false);
+  CHECK(convergence_of(folder, small + "--lattice.sites=51 --convergence.order=1", 1)["passed"] == false);
+}
+
+TEST_CASE("a composition of order four shows four") {
+  const Folder folder;
+  convergence_of(folder,
+                 small +
+                     "--lattice.sites=80 --scheme.method=composition --scheme.order=4 --lattice.space_order=4 "
+                     "--convergence.order=4",
+                 0);
+}
+
+TEST_CASE("without an exact solution the differences between lines have the order") {
+  const Folder folder;
+  const Json table =
+      convergence_of(folder,
+                     "phi4-collision --run.until=4 --lattice.sites=400 --initial.separation=6 --convergence.levels=4 "
+                     "--convergence.order=2",
+                     0);
+  CHECK(table["error"] == "difference");
+  CHECK(table["levels"][3]["error_linf"].is_null());
+  CHECK(table["levels"][2]["error_linf"].is_number());
+  CHECK(table["levels"][0]["measures"].contains("bounces"));
+}
+
+TEST_CASE("a convergence that cannot be measured is refused in one line") {
+  const Folder folder;
+  const Ran ran = delf_program(folder, "convergence breather --convergence.levels=1 --out out");
+  CHECK(ran.code == 2);
+  CHECK(contains(ran.err, "convergence.levels"));
+  CHECK(lines(ran.err).size() == 1);
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "tools/convergence/convergence.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "tools/convergence/convergence_table.hpp"
+#include "tools/engine.hpp"
+#include "tools/run/in_words.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/outcome.hpp"
+#include "tools/scene/text_file.hpp"
+#include "tools/scene/values.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Request {
+  int levels;
+  std::optional<double> order;
+  double agreement;
+};
+
+std::string number(const char* format, double value) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+}
+
+std::string report(const Scene& scene, const ConvergenceTable& table) {
+  std::string text =
+      fmt::format("{}: {} at steps halved in time and space; errors are {}\n", scene.name, scheme_label(scene.problem),
+                  table.exact ? "those of the last row, against the exact solution"
+                              : "differences from the last row of the next line");
+  text += fmt::format("  {:>7} {:>10} {:>10} {:>10} {:>10} {:>7} {:>9}", "N", "k", "h", "max error", "L2 error",
+                      "order", "time");
+  if (!table.levels.empty())
+    for (const NamedNumber& m : table.levels[0].measures) text += fmt::format(" {:>14}", m.name);
+  text += "\n";
+  for (std::size_t i = 0; i < table.levels.size(); ++i) {
+    const ConvergenceLevel& l = table.levels[i];
+    // the order that has led to this line
+    text += fmt::format("  {:>7} {:>10.4g} {:>10.4g} {:>10} {:>10} {:>7} {:>9}", l.sites, l.space_step, l.time_step,
+                        number("{:.3e}", l.linf), number("{:.3e}", l.l2),
+                        i == 0 ? "-" : number("{:.3f}", table.levels[i - 1].order), duration_in_words(l.seconds));
+    for (const NamedNumber& m : l.measures) text += fmt::format(" {:>14.8g}", m.value);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string json_of(const Scene& scene, const Request& request, const ConvergenceTable& table, bool passed) {
+  using Json = nlohmann::ordered_json;  // what is not a number becomes null
+  Json json;
+  json["version"] = DELF_VERSION;
+  json["scene"] = scene.name;
+  json["scheme"] = scheme_label(scene.problem);
+  json["status"] = table.interrupted ? "interrupted" : "done";
+  json["error"] = table.exact ? "exact" : "difference";
+  json["order"] = table.order();
+  json["order_expected"] = request.order ? Json(*request.order) : Json();
+  json["passed"] = passed;
+  json["ended"] = table.ended.empty() ? Json() : Json(table.ended);
+  auto& levels = json["levels"] = Json::array();
+  for (const ConvergenceLevel& l : table.levels) {
+    Json measures = Json::object();
+    for (const NamedNumber& m : l.measures) measures[m.name] = m.value;
+    levels.push_back({{"sites", l.sites},
+                      {"space_step", l.space_step},
+                      {"time_step", l.time_step},
+                      {"error_linf", l.linf},
+                      {"error_l2", l.l2},
+                      {"order", l.order},
+                      {"seconds", l.seconds},
+                      {"measures", measures}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string csv_of(const ConvergenceTable& table) {
+  std::string text = "sites,space_step,time_step,error_linf,error_l2,order,seconds";
+  if (!table.levels.empty())
+    for (const NamedNumber& m : table.levels[0].measures) text += "," + m.name;
+  text += "\n";
+  for (const ConvergenceLevel& l : table.levels) {
+    text += fmt::format("{},{},{},{},{},{},{}", l.sites, l.space_step, l.time_step, l.linf, l.l2, l.order, l.seconds);
+    for (const NamedNumber& m : l.measures) text += fmt::format(",{}", m.value);
+    text += "\n";
+  }
+  return text;
+}
+
+ExitCode converge_in(const fs::path& folder, const Scene& scene) {
+  const Interrupt interrupt;
+  const Values values(scene.settings);
+  const Request request{static_cast<int>(values.integer("convergence.levels")), values.maybe_real("convergence.order"),
+                        values.real("convergence.agreement")};
+  const ConvergenceTable table = converge(scene, request.levels);
+  const double order = table.order();
+  const bool passed = !request.order || std::abs(order - *request.order) <= request.agreement;
+  make_results_folder(folder);
+  write_text_file(folder / "convergence.json", json_of(scene, request, table, passed));
+  write_text_file(folder / "convergence.csv", csv_of(table));
+  fmt::print("{}", report(scene, table));
+  if (!table.ended.empty()) fmt::print("  ended      {}\n", table.ended);
+  if (!std::isfinite(order)) fmt::print("  order      not known: fewer than two errors above rounding\n");
+  if (request.order)
+    fmt::print("  order      {}, {} expected: {}\n", number("{:.3f}", order), *request.order,
+               passed ? "passed" : "FAILED");
+  fmt::print("{}: convergence.json convergence.csv\n", folder.string());
+  if (table.interrupted) return ExitCode::interrupted;
+  return passed ? ExitCode::done : ExitCode::check_failed;
+}
+
+}  // namespace
+
+ExitCode convergence(const Scene& scene, const fs::path& folder) {
+  return with_memory_for(scene, [&] { return converge_in(folder, scene); });
+}
+
+}  // namespace delf

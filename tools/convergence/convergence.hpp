@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+
+#include "tools/failure.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// `delf convergence`: a scene at steps halved again and again, its errors and their order.
+ExitCode convergence(const Scene&, const std::filesystem::path& folder);
+
+}  // namespace delf

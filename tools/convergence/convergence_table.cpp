@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "tools/convergence/convergence_table.hpp"
+
+#include <cmath>
+
+#include "lattice/error.hpp"
+#include "tools/run/field_error.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/refined_scene.hpp"
+#include "tools/run/solution_error.hpp"
+
+namespace delf {
+
+namespace {
+
+// Every `factor`-th site of a finer row.
+std::vector<double> at_sites_of(const Lattice& coarse, const std::vector<double>& fine, std::size_t fields) {
+  const std::size_t factor = coarse.space() == Space::point ? 1 : 2;
+  std::vector<double> row;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(coarse.sites()); ++i)
+    for (std::size_t a = 0; a < fields; ++a) row.push_back(fine[i * factor * fields + a]);
+  return row;
+}
+
+}  // namespace
+
+double ConvergenceTable::order() const {
+  for (auto level = levels.rbegin(); level != levels.rend(); ++level)
+    if (std::isfinite(level->order)) return level->order;
+  return ConvergenceLevel::unknown;
+}
+
+ConvergenceTable converge(const Scene& scene, int levels) {
+  ConvergenceTable table;
+  const double until = static_cast<double>(scene.steps) * scene.problem.time_step;
+  table.exact = has_exact(scene, until);
+  std::vector<double> before;  // the last row of the level before
+  for (int level = 0; level < levels && !table.interrupted; ++level) {
+    const Scene fine = refined(scene, 1 << level);
+    const Lattice& lattice = fine.problem.lattice;
+    QuietEnd end;
+    try {
+      end = run_quietly(fine);
+    } catch (const Error& error) {
+      if (level == 0) throw;
+      table.ended = error.what();
+      break;
+    }
+    table.interrupted = !end.finished;
+    if (table.interrupted) break;
+    ConvergenceLevel now;
+    now.sites = lattice.sites(), now.space_step = lattice.space_step(), now.time_step = fine.problem.time_step;
+    now.seconds = end.seconds, now.measures = end.measures;
+    if (table.exact) {
+      const FieldError error =
+          field_error(end.row, ComparedSolution::exact(fine, until).at(lattice, until), lattice.space_step());
+      now.linf = error.linf, now.l2 = error.l2;
+    } else if (level > 0) {
+      ConvergenceLevel& coarse = table.levels.back();
+      const Lattice there = refined(scene, 1 << (level - 1)).problem.lattice;
+      const std::size_t fields = before.size() / static_cast<std::size_t>(there.sites());
+      const FieldError error = field_error(before, at_sites_of(there, end.row, fields), there.space_step());
+      coarse.linf = error.linf, coarse.l2 = error.l2;
+    }
+    table.levels.push_back(std::move(now));
+    before = std::move(end.row);
+  }
+  for (std::size_t i = 0; i + 1 < table.levels.size(); ++i) {
+    constexpr double rounding = 1e-12;  // below it there is no order
+    const double a = table.levels[i].linf, b = table.levels[i + 1].linf;
+    if (b > rounding && std::isfinite(a)) table.levels[i].order = std::log2(a / b);
+  }
+  return table;
+}
+
+}  // namespace delf

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tools/measure/measures.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// A line of the table.
+struct ConvergenceLevel {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  int sites = 1;
+  double space_step = 0, time_step = 0, seconds = 0;
+  double linf = unknown, l2 = unknown;  ///< errors, or differences from the next level
+  double order = unknown;               ///< log₂ of the maximum norm's ratio to the next level's
+  std::vector<NamedNumber> measures;
+};
+
+struct ConvergenceTable {
+  bool exact = false;  ///< errors against the exact solution; else differences between one level and the next
+  std::vector<ConvergenceLevel> levels;
+  std::string ended;  ///< why there are fewer than asked for; empty if there are as many
+  bool interrupted = false;
+
+  /// The order between the last two levels whose errors are known, and above rounding.
+  double order() const;
+};
+
+/// Levels 0, 1, …: the scene at 1, ½, ¼, … of its steps in time and space. A level that fails is the end of the table.
+ConvergenceTable converge(const Scene&, int levels);
+
+}  // namespace delf

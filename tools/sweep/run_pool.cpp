@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sweep/run_pool.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include "tools/failure.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/progress.hpp"
+#include "tools/run/run.hpp"
+#include "tools/scene/text_file.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr auto log_name = "run.log";
+
+// Everything that the process prints goes to run.log.
+[[noreturn]] void be_a_run(const SweptRun& run, const fs::path& folder) {
+  setpgid(0, 0);  // Ctrl-C is the sweep's
+#ifdef __linux__
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // and no run outlives it
+#endif
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  const int nothing = open("/dev/null", O_RDONLY);
+  const int log = open((folder / log_name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (nothing < 0 || log < 0 || dup2(nothing, STDIN_FILENO) < 0 || dup2(log, STDOUT_FILENO) < 0 ||
+      dup2(log, STDERR_FILENO) < 0)
+    _exit(static_cast<int>(ExitCode::system_failed));
+  ExitCode code = ExitCode::done;
+  try {
+    code = delf::run(run.scene, folder);
+  } catch (const std::exception& error) {
+    std::fflush(stdout);
+    fmt::print(stderr, "{}\n", error_line(error));
+    code = exit_code(error);
+  }
+  std::fflush(nullptr);
+  _exit(static_cast<int>(code));
+}
+
+std::string last_line(const fs::path& file) {
+  std::ifstream in(file);
+  std::string last;
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) last = line;
+  return last;
+}
+
+int ended(int pid) {
+  int status = 0;
+  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+}  // namespace
+
+RunPool::RunPool(const SweepRequest& request, const fs::path& folder)
+    : request_(request), folder_(folder), journal_(folder / "sweep.rows", request.resume) {}
+
+// runs/KEY=VALUE,KEY=VALUE: the same for the same settings; of rows only, a folder for as long as the run lasts.
+fs::path RunPool::folder_of(const SweptRun& run, std::size_t number) const {
+  if (request_.table) return fs::path("runs") / fmt::format("{}", number);
+  std::string name;
+  for (std::size_t i = 0; i < request_.keys.size(); ++i)
+    name += (i == 0 ? "" : ",") + request_.keys[i] + "=" + run.values[i];
+  constexpr std::size_t longest = 150;
+  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("._+-=,", c); };
+  if (name.size() > longest || !std::ranges::all_of(name, plain)) {
+    for (char& c : name)
+      if (!plain(c)) c = '_';
+    name = name.substr(0, longest) + "-" + fingerprint_of(run.scene);
+  }
+  return fs::path("runs") / name;
+}
+
+const SweepRow* RunPool::known(const std::string& fingerprint) const {
+  const SweepRow* row = journal_.find(fingerprint);
+  if (!row || request_.table) return row;
+  std::error_code none;  // a folder that somebody has removed is made again
+  return !row->folder.empty() && fs::exists(folder_ / row->folder, none) ? row : nullptr;
+}
+
+RunPool::Process RunPool::start(const SweptRun& run, std::size_t number) {
+  const fs::path folder = folder_of(run, number);
+  std::error_code none;
+  fs::remove_all(folder_ / folder, none);
+  make_results_folder(folder_ / folder);
+  int ends[2];
+  if (pipe(ends) != 0) throw SystemFailure(fmt::format("no pipe to a run: {}; lower sweep.jobs", std::strerror(errno)));
+  fcntl(ends[0], F_SETFD, FD_CLOEXEC);
+  fcntl(ends[1], F_SETFD, FD_CLOEXEC);
+  std::fflush(nullptr);  // or the process would write it again
+  const pid_t pid = fork();
+  if (pid < 0) {
+    close(ends[0]), close(ends[1]);
+    throw SystemFailure(fmt::format("no process for a run: {}; lower sweep.jobs", std::strerror(errno)));
+  }
+  if (pid == 0) {
+    close(ends[0]);
+    be_a_run(run, folder_ / folder);
+  }
+  close(ends[1]);
+  return {pid, ends[0], number, folder};
+}
+
+SweepRow RunPool::finished(const Process& process, const SweptRun&, const std::string& fingerprint) {
+  const int status = ended(process.pid);
+  close(process.end);
+  SweepRow row{fingerprint, "crashed", "", request_.table ? "" : process.folder.string(), {}};
+  std::ifstream in(folder_ / process.folder / "summary.json");
+  row.summary = nlohmann::ordered_json::parse(in, nullptr, false);
+  if (!row.summary.is_object()) row.summary = nullptr;
+  if (WIFSIGNALED(status)) {
+    row.failure = fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  } else if (row.summary.is_object()) {
+    row.status = row.summary.value("status", "");
+    if (row.summary["failure"].is_string()) row.failure = row.summary["failure"];
+  } else {
+    const auto code = static_cast<ExitCode>(WEXITSTATUS(status));
+    row.status = code == ExitCode::bad_input         ? "bad-input"
+                 : code == ExitCode::numerics_failed ? "failed"
+                                                     : "system-failure";
+    row.failure = last_line(folder_ / process.folder / log_name);
+  }
+  if (request_.table) fs::remove_all(folder_ / process.folder);
+  // What the machine did to a run may not happen again.
+  if (row.status != "crashed" && row.status != "system-failure" && row.status != "interrupted") journal_.append(row);
+  return row;
+}
+
+std::vector<SweepRow> RunPool::rows_of(const std::vector<SweptRun>& runs) {
+  std::vector<SweepRow> rows(runs.size());
+  std::vector<std::string> fingerprints;
+  std::vector<std::size_t> waiting;  // the next one last
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    fingerprints.push_back(fingerprint_of(runs[i].scene));
+    if (const SweepRow* row = known(fingerprints[i])) rows[i] = *row, ++reused_;
+    else waiting.insert(waiting.begin(), i);
+  }
+  const auto all = static_cast<std::int64_t>(waiting.size());
+  Progress progress(all, "run");
+  std::vector<Process> running;
+  try {
+    while ((!waiting.empty() || !running.empty()) && !Interrupt::asked()) {
+      while (!waiting.empty() && static_cast<int>(running.size()) < request_.jobs) {
+        running.push_back(start(runs[waiting.back()], waiting.back()));
+        waiting.pop_back();
+      }
+      std::vector<pollfd> ends;
+      for (const Process& process : running) ends.push_back({process.end, POLLIN, 0});
+      constexpr int milliseconds = 200;  // for a signal that came just before
+      if (poll(ends.data(), ends.size(), milliseconds) < 0) continue;
+      for (std::size_t i = running.size(); i-- > 0;) {
+        if (ends[i].revents == 0) continue;
+        const Process process = running[i];
+        running.erase(running.begin() + static_cast<std::ptrdiff_t>(i));
+        rows[process.run] = finished(process, runs[process.run], fingerprints[process.run]);
+        progress.at(all - static_cast<std::int64_t>(waiting.size() + running.size()));
+      }
+    }
+  } catch (...) {
+    for (const Process& process : running) kill(process.pid, SIGKILL), ended(process.pid);
+    throw;
+  }
+  for (const Process& process : running) {
+    kill(process.pid, SIGKILL);
+    ended(process.pid);
+    close(process.end);
+    std::error_code none;
+    fs::remove_all(folder_ / process.folder, none);
+  }
+  if (std::error_code none; request_.table) fs::remove(folder_ / "runs", none);  // if it is empty
+  return rows;
+}
+
+}  // namespace delf

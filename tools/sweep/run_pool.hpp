@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "tools/sweep/sweep_request.hpp"
+#include "tools/sweep/sweep_row.hpp"
+
+namespace delf {
+
+/// Runs of a sweep, side by side: each in a process of its own, so that none can harm another.
+class RunPool {
+ public:
+  /// Results go to `folder`.
+  RunPool(const SweepRequest&, const std::filesystem::path& folder);
+
+  /// The rows of these runs, in their order. Runs that the journal knows are not repeated. After Ctrl-C those that have
+  /// not finished have no status, and nothing of them is left.
+  std::vector<SweepRow> rows_of(const std::vector<SweptRun>&);
+
+  std::size_t reused() const { return reused_; }
+
+ private:
+  struct Process {
+    int pid, end;  ///< end: of a pipe that is closed when the process ends
+    std::size_t run;
+    std::filesystem::path folder;
+  };
+  Process start(const SweptRun&, std::size_t run);
+  SweepRow finished(const Process&, const SweptRun&, const std::string& fingerprint);
+  const SweepRow* known(const std::string& fingerprint) const;
+  std::filesystem::path folder_of(const SweptRun&, std::size_t run) const;
+
+  const SweepRequest& request_;
+  std::filesystem::path folder_;
+  SweepJournal journal_;
+  std::size_t reused_ = 0;
+};
+
+}  // namespace delf

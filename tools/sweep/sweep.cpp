@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sweep/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "tools/measure/measures.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/seconds_since.hpp"
+#include "tools/scene/suggestion.hpp"
+#include "tools/scene/text_file.hpp"
+#include "tools/sweep/sweep_outcome.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Found when there is a row to look at: a run's numbers are those of its summary.json.
+void check_number(const SweepRequest& request, const SweepOutcome& outcome) {
+  if (request.number.empty()) return;
+  std::vector<std::string> known;
+  for (const SweepRow& row : outcome.rows)
+    if (known.empty()) known = row.numbers();
+  if (!known.empty() && std::ranges::find(known, request.number) == known.end())
+    throw BadScene(fmt::format("command line: --sweep.number = {}: is no number of summary.json and no measure{}",
+                               request.number, suggestion(request.number, known)));
+}
+
+void take_runs(const std::vector<SweptRun>& runs, RunPool& pool, SweepOutcome& outcome) {
+  outcome.asked = runs.size();
+  const std::vector<SweepRow> rows = pool.rows_of(runs);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].status.empty()) continue;
+    outcome.rows.push_back(rows[i]);
+    outcome.values.push_back(runs[i].values);
+  }
+}
+
+// The runs of a bisection, in the order of the key.
+void bisect(const SweepRequest& request, RunPool& pool, SweepOutcome& outcome) {
+  const SweptRun first = request.run({fmt::format("{}", request.bisection->low)});
+  const auto measures = measure_names(first.scene.settings);
+  outcome.number = !request.number.empty() ? request.number : measures.empty() ? "" : measures.front();
+  if (outcome.number.empty())
+    throw first.scene.settings.error("sweep.bisect",
+                                     "of which number? Name it by sweep.number, or give a measure.NAME");
+  outcome.threshold = find_threshold(request, outcome.number, pool);
+  std::vector<std::size_t> order(outcome.threshold->rows.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return std::stod(outcome.threshold->values[i][0]); });
+  for (const std::size_t i : order) {
+    outcome.rows.push_back(outcome.threshold->rows[i]);
+    outcome.values.push_back(outcome.threshold->values[i]);
+  }
+  outcome.asked = order.size();
+}
+
+void write(const SweepRequest& request, const SweepOutcome& outcome, const fs::path& folder) {
+  write_text_file(folder / "sweep.csv", sweep_csv(request, outcome));
+  write_text_file(folder / "sweep.json", sweep_json(request, outcome));
+  std::error_code none;
+  for (const char* ending : {".png", ".svg"}) fs::remove(folder / "figures" / (std::string("sweep") + ending), none);
+  std::string missing;
+  try {
+    missing = draw_sweep(request, outcome, folder);
+  } catch (const std::exception& error) {  // a failed figure does not fail the command
+    missing = error.what();
+  }
+  fmt::print("{}", sweep_report(request, outcome));
+  const bool drawn = fs::exists(folder / "figures" / "sweep.svg", none);
+  fmt::print("{}: sweep.csv sweep.json{}{}\n", folder.string(), request.table ? "" : " runs", drawn ? " figures" : "");
+  if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
+}
+
+}  // namespace
+
+ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_line,
+               const std::optional<std::string>& out) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Interrupt interrupt;
+  const SweepRequest request = read_sweep_request(scene, on_command_line);
+  const fs::path folder = out.value_or("results/" + scene.stem().string() + "-sweep");
+  std::vector<SweptRun> runs;  // all are read, and what is wrong with one is found, before files are made
+  for (const auto& values : request.values) runs.push_back(request.run(values));
+  make_results_folder(folder);
+
+  SweepOutcome outcome;
+  outcome.scene = scene.stem().string();
+  RunPool pool(request, folder);
+  if (request.bisection) bisect(request, pool, outcome);
+  else take_runs(runs, pool, outcome);
+  check_number(request, outcome);
+  if (outcome.number.empty()) outcome.number = request.number.empty() ? usual_number(outcome.rows) : request.number;
+  if (Interrupt::asked()) outcome.status = "interrupted";
+  outcome.reused = pool.reused();
+  outcome.seconds = seconds_since(begin);
+  write(request, outcome, folder);
+  if (outcome.status == "interrupted") return ExitCode::interrupted;
+  return outcome.done() == 0 ? ExitCode::numerics_failed : ExitCode::done;
+}
+
+}  // namespace delf

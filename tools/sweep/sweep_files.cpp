@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/run/in_words.hpp"
+#include "tools/sweep/sweep_outcome.hpp"
+
+namespace delf {
+
+namespace {
+
+// As a table of comma-separated values has it: text with a comma, a quote or a line break stands in quotes.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+// The numbers of all rows, in the order in which they first come.
+std::vector<std::string> all_numbers(const std::vector<SweepRow>& rows) {
+  std::vector<std::string> all;
+  for (const SweepRow& row : rows)
+    for (const std::string& name : row.numbers())
+      if (std::ranges::find(all, name) == all.end()) all.push_back(name);
+  return all;
+}
+
+nlohmann::ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+}  // namespace
+
+std::size_t SweepOutcome::done() const {
+  return static_cast<std::size_t>(std::ranges::count(rows, "done", &SweepRow::status));
+}
+
+std::string usual_number(const std::vector<SweepRow>& rows) {
+  const auto there = [&](const std::string& name) {
+    return std::ranges::any_of(rows, [&](const SweepRow& row) { return std::isfinite(row.number(name)); });
+  };
+  for (const SweepRow& row : rows)
+    if (const auto measures = row.summary.is_object() ? row.summary.find("measures") : row.summary.end();
+        row.summary.is_object() && measures != row.summary.end() && !measures->empty())
+      return measures->begin().key();
+  for (const char* name : {"error_linf", "energy_error_max", "energy_final"})
+    if (there(name)) return name;
+  return {};
+}
+
+std::string sweep_csv(const SweepRequest& request, const SweepOutcome& outcome) {
+  const std::vector<std::string> numbers = all_numbers(outcome.rows);
+  std::string text;
+  for (const std::string& key : request.keys) text += cell(key) + ",";
+  text += "status";
+  for (const std::string& name : numbers) text += "," + cell(name);
+  text += ",failure\n";
+  for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
+    for (const std::string& value : outcome.values[i]) text += cell(value) + ",";
+    text += outcome.rows[i].status;
+    for (const std::string& name : numbers) text += fmt::format(",{}", outcome.rows[i].number(name));
+    text += "," + cell(outcome.rows[i].failure) + "\n";
+  }
+  return text;
+}
+
+std::string sweep_json(const SweepRequest& request, const SweepOutcome& outcome) {
+  using Json = nlohmann::ordered_json;
+  Json json;
+  json["version"] = DELF_VERSION;
+  json["scene"] = outcome.scene;
+  json["status"] = outcome.status;
+  json["keys"] = request.keys;
+  json["number"] = outcome.number.empty() ? Json() : Json(outcome.number);
+  json["jobs"] = request.jobs;
+  json["seconds"] = outcome.seconds;
+  json["runs_asked"] = outcome.asked;
+  json["runs_done"] = outcome.done();
+  json["runs_reused"] = outcome.reused;
+  if (const auto& t = outcome.threshold; t && t->found)
+    json["threshold"] = {{"key", request.keys[0]},
+                         {"value", 0.5 * (t->low + t->high)},
+                         {"low", t->low},
+                         {"high", t->high},
+                         {"number", outcome.number},
+                         {"level", number_or_null(t->level)},
+                         {"at_low", number_or_null(t->at_low)},
+                         {"at_high", number_or_null(t->at_high)}};
+  auto& runs = json["runs"] = Json::array();
+  for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
+    const SweepRow& row = outcome.rows[i];
+    Json settings = Json::object();
+    for (std::size_t a = 0; a < request.keys.size(); ++a) settings[request.keys[a]] = outcome.values[i][a];
+    runs.push_back({{"settings", settings},
+                    {"status", row.status},
+                    {"failure", row.failure.empty() ? Json() : Json(row.failure)},
+                    {"folder", row.folder.empty() ? Json() : Json(row.folder)},
+                    {"summary", row.summary}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string sweep_report(const SweepRequest& request, const SweepOutcome& outcome) {
+  constexpr std::size_t most_lines = 40;
+  std::string text = fmt::format("{}: {} of {} runs, {} of them ended well{}; {} at {} side by side\n", outcome.scene,
+                                 outcome.rows.size(), outcome.asked, outcome.done(),
+                                 outcome.reused > 0 ? fmt::format(", {} known from before", outcome.reused) : "",
+                                 duration_in_words(outcome.seconds), request.jobs);
+  if (outcome.rows.size() <= most_lines) {
+    text += "  ";
+    for (const std::string& key : request.keys) text += fmt::format("{:<22} ", key);
+    text += fmt::format("{:<16} {}\n", outcome.number, "status");
+    for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
+      text += "  ";
+      for (const std::string& value : outcome.values[i]) text += fmt::format("{:<22} ", value);
+      const SweepRow& row = outcome.rows[i];
+      text += fmt::format("{:<16.8g} {}{}\n", row.number(outcome.number), row.status,
+                          row.failure.empty() ? "" : ": " + row.failure);
+    }
+  } else {
+    std::size_t left = 10;  // enough to see what goes wrong
+    for (std::size_t i = 0; i < outcome.rows.size() && left > 0; ++i) {
+      const SweepRow& row = outcome.rows[i];
+      if (row.status == "done") continue;
+      text += fmt::format("  {} = {}: {}: {}\n", request.keys[0], outcome.values[i][0], row.status, row.failure);
+      --left;
+    }
+  }
+  if (const auto& t = outcome.threshold; t && t->found)
+    text += fmt::format(
+        "  threshold  {} = {:.10g}, half of {:.2g} either way: {} is {:.6g} at {:.10g}, {:.6g} at {:.10g}\n",
+        request.keys[0], 0.5 * (t->low + t->high), t->high - t->low, outcome.number, t->at_low, t->low, t->at_high,
+        t->high);
+  if (outcome.status != "done") text += "  status     " + outcome.status + "; the same command goes on from here\n";
+  return text;
+}
+
+}  // namespace delf
