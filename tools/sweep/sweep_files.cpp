@@ -28,6 +28,19 @@ std::vector<std::string> all_numbers(const std::vector<SweepRow>& rows) {
   return all;
 }
 
+// A run that ended well may be wrong all the same, and says so in its summary.json.
+std::string warnings_in_words(const std::vector<SweepRow>& rows) {
+  std::size_t runs = 0;
+  std::string first;
+  for (const SweepRow& row : rows) {
+    if (!row.summary.is_object()) continue;
+    const auto warnings = row.summary.find("warnings");
+    if (warnings == row.summary.end() || warnings->empty()) continue;
+    if (runs++ == 0) first = warnings->front();
+  }
+  return runs == 0 ? "" : fmt::format("  warnings   of {} runs, in sweep.json; the first: {}\n", runs, first);
+}
+
 nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
@@ -134,6 +147,7 @@ std::string sweep_report(const SweepRequest& request, const SweepOutcome& outcom
         "  threshold  {} = {:.10g}, half of {:.2g} either way: {} is {:.6g} at {:.10g}, {:.6g} at {:.10g}\n",
         request.keys[0], 0.5 * (t->low + t->high), t->high - t->low, outcome.number, t->at_low, t->low, t->at_high,
         t->high);
+  text += warnings_in_words(outcome.rows);
   if (outcome.status != "done") text += "  status     " + outcome.status + "; the same command goes on from here\n";
   return text;
 }

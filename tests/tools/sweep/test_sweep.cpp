@@ -141,6 +141,15 @@ TEST_CASE("a run that fails is a row with its status, and a sweep fails if all i
   CHECK(contains(runs[1]["failure"], "lattice.stencil"));
 }
 
+TEST_CASE("runs that warn are counted, and the first warning is told") {
+  const Folder folder;
+  const std::string scene = folder.write("kink.ini", scene_with_kink());
+  const std::string command = "sweep '" + scene + "' --sweep.keep=table --out out --lattice.sites=";
+  CHECK(contains(delf_program(folder, command + "11,101").out,
+                 "warnings   of 1 runs, in sweep.json; the first: a pulse"));
+  CHECK_FALSE(contains(delf_program(folder, command + "101,121").out, "warnings"));
+}
+
 TEST_CASE("Ctrl-C leaves whole rows, and the same command goes on from there") {
   const Folder folder;
   const std::string scene = folder.write("kink.ini", scene_with_kink());
