@@ -126,6 +126,8 @@ struct Measures::Expression {
 };
 
 Measures::Measures(const Scene& scene, int winding, const Simulation& simulation) {
+  const std::vector<std::string> names = measure_names(scene.settings);
+  if (names.empty()) return;
   const Problem& p = scene.problem;
   const auto& components = simulation.components();
   const MeasuredField field{p.lattice,
@@ -134,7 +136,7 @@ Measures::Measures(const Scene& scene, int winding, const Simulation& simulation
                             p.circle_valued || find_theory(p.theory).angle,
                             simulation.count(Role::field),
                             make_theory(find_theory(p.theory), p.parameters)};
-  for (const std::string& name : measure_names(scene.settings)) {
+  for (const std::string& name : names) {
     Expression expression{name, std::string(section) + name, {}, constants_of(scene), {}};
     try {
       if (std::ranges::any_of(components, &Component::position))
