@@ -20,9 +20,9 @@
 #include "schemes/system/conserved.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/system/slab_extent.hpp"
-#include "schemes/system/without_value.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "schemes/without_value.hpp"
 
 namespace delf {
 namespace {

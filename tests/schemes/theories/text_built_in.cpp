@@ -20,6 +20,7 @@ struct Pair {
   std::string name, density;
   std::string fields = "phi", parameters = "", constraint = "", symmetry = "";
   int components = 1;
+  double size = 1;  ///< of the motion that it starts with
 };
 
 const std::vector<Pair> on_a_circle{
@@ -39,10 +40,10 @@ const std::vector<Pair> on_a_point{
     {"pendulum", "0.5*phi_t^2 + cosm1(phi)"},
     {"harmonic-oscillator", "0.5*phi_t^2 - 0.5*phi^2"},
     {"kepler", "0.5*(u_t^2 + v_t^2) + 1/sqrt(u^2 + v^2)", "u, v", "", "", "-v, u", 2},
-    {"henon-heiles", "0.5*(u_t^2 + v_t^2) - 0.5*(u^2 + v^2) - u^2*v + v^3/3", "u, v", "", "", "", 2},
+    {"henon-heiles", "0.5*(u_t^2 + v_t^2) - 0.5*(u^2 + v^2) - u^2*v + v^3/3", "u, v", "", "", "", 2, 0.3},
     {"double-pendulum", "u_t^2 + 0.5*v_t^2 + u_t*v_t*cos(u - v) + 2*cosm1(u) + cosm1(v)", "u, v", "", "", "", 2}};
 
-Problem problem(const Pair& pair, const std::string& stencil, bool as_text, bool point, double factor = 1) {
+Problem problem(const Pair& pair, const std::string& stencil, bool as_text, bool point, bool planted = false) {
   Problem p;
   p.stencil = stencil;
   p.lattice = point ? Lattice::point() : Lattice::circle(24, 6);
@@ -53,11 +54,11 @@ Problem problem(const Pair& pair, const std::string& stencil, bool as_text, bool
     if (!text.empty()) p.parameters[key] = text;
   };
   set("theory.density",
-      factor == 1 ? pair.density : pair.density + " + 0.01*cos(" + pair.fields.substr(0, pair.fields.find(',')) + ")");
+      !planted ? pair.density : pair.density + " + 0.01*cos(" + pair.fields.substr(0, pair.fields.find(',')) + ")");
   set("theory.fields", pair.fields);
   set("theory.parameters", pair.parameters);
   set("theory.constraint", pair.constraint);
-  set("theory.symmetry", pair.symmetry);
+  if (!planted) set("theory.symmetry", pair.symmetry);
   return p;
 }
 
@@ -72,6 +73,7 @@ std::vector<std::vector<double>> start(const Problem& p, const Pair& pair) {
       double length = 0;
       for (int a = 0; a < d; ++a) {
         y[a] = (a == 0 ? 0.9 : 0.1) + 0.3 * std::sin(angle + a) + 0.2 * t * std::cos(angle + 2 * a) + (a == 1 ? t : 0);
+        y[a] *= pair.size;
         length += y[a] * y[a];
       }
       if (!pair.constraint.empty())
@@ -113,15 +115,17 @@ void compare(const Pair& pair, const std::string& stencil, bool point, int steps
   CHECK(distance(text.row, built_in.row) < 1e-12);
   CHECK(distance(text.conserved, built_in.conserved) < 1e-12);
   CHECK(text.energy == Approx(built_in.energy).epsilon(1e-12).margin(1e-12));
-  CHECK(distance(result(problem(pair, stencil, true, point, 2), pair, std::min(steps, 50)).row,
+  CHECK(distance(result(problem(pair, stencil, true, point, true), pair, std::min(steps, 50)).row,
                  result(problem(pair, stencil, false, point), pair, std::min(steps, 50)).row) > 1e-7);  // it can fail
 }
 
 bool fits(const NamedTable& table, bool point) { return table.is_for_point() == point; }
 
-/// Staggered waves off the sphere grow there, from rounding, and with them any difference.
-bool grows(const Pair& pair, const std::string& stencil) {
-  return !pair.constraint.empty() && (stencil == "rectangle-symmetric" || stencil == "nine-tuple");
+/// As long as rounding is below what is compared. Staggered waves off the sphere grow from it, and the phase of a planet is
+/// off by its square.
+int steps_of(const Pair& pair, const std::string& stencil) {
+  if (!pair.constraint.empty() && (stencil == "rectangle-symmetric" || stencil == "nine-tuple")) return 30;
+  return pair.density.find("1/sqrt") != std::string::npos ? 300 : 1000;
 }
 
 }  // namespace
@@ -132,12 +136,12 @@ TEST_CASE("built-in theories written as text have the same plan, rows, energy an
   for (const Pair& pair : on_a_point) compare(pair, "midpoint", true, 60);
 }
 
-TEST_CASE("every built-in theory as text steps like the compiled one on every stencil, for 1000 steps", "[slow]") {
+TEST_CASE("every built-in theory as text steps like the compiled one on every stencil", "[slow]") {
   for (const NamedTable& table : named_tables()) {
     for (const Pair& pair : on_a_circle)
-      if (fits(table, false)) compare(pair, table.name, false, grows(pair, table.name) ? 30 : 1000);
+      if (fits(table, false)) compare(pair, table.name, false, steps_of(pair, table.name));
     for (const Pair& pair : on_a_point)
-      if (fits(table, true)) compare(pair, table.name, true, 1000);
+      if (fits(table, true)) compare(pair, table.name, true, steps_of(pair, table.name));
   }
 }
 

@@ -71,7 +71,7 @@ TEST_CASE("a formula that is no number is refused with line, character and caret
   refused("--lattice.length='20*(1 + m'",
           "command line: lattice.length: line 1, character 10: expected an operator or )", "           ^");
   refused("--lattice.length=phi*2", "command line: lattice.length: line 1, character 1: unknown name phi", "  ^");
-  refused("--lattice.length=1/0", "command line: lattice.length: line 1, character 3: division by zero", "    ^");
+  refused("--lattice.length=1/0", "command line: lattice.length: line 1, character 4: division by zero", "     ^");
   refused("--theory.m=2*m", "command line: theory.m: line 1, character 3: unknown name m", "    ^");  // of itself
   check_refused(delf_program(folder, "plan own.ini --lattice.length=2-3"), {"--lattice.length = 2-3: must be above 0"});
   check_refused(delf_program(folder, "plan own.ini --lattice.sites=63/2"),
@@ -128,8 +128,9 @@ TEST_CASE("a stencil of the scene's own steps like the built-in one, under every
   summary(folder, "two/scene.ini", "again");
   CHECK(last_row(folder, "two") == last_row(folder, "again"));
 
-  check_refused(delf_program(folder, "plan own.ini --stencil.point='1; phi: 1 0 0; phi_t: -1 1 0; phi_x: 0 1 -1'"),
-                {"command line: stencil.point: is not consistent: of the field x, phi_x finds -1, not 1"});
+  check_refused(
+      delf_program(folder, "plan own.ini --stencil.point='1; phi: 1 0 0; phi_t: -1 1 0; phi_x: 0 1 -1'" + start),
+      {"command line: stencil.point: is not consistent: of the field x, phi_x finds -1, not 1"});
   check_refused(delf_program(folder, "plan collision --lattice.stencil=text"), {"stencil.sites: must be given"});
 }
 

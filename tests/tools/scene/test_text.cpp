@@ -105,9 +105,11 @@ TEST_CASE("bad texts in a scene are refused with line, character and caret") {
   check_refused(run("density = 0.5*phi_x^2"), {"bad.ini:2: theory.density: does not determine the field phi: phi_t"});
   check_refused(run("density = 0.5*u_t^2\nfields = u, v"), {"does not determine the field v"});
   check_refused(run("density = 0.5*phi_t^2\nparameters = m"), {"bad.ini:3: theory.parameters", "is not NAME = NUMBER"});
-  check_refused(run("density = 0.5*phi_t^2\nparameters = x = 1"), {"bad.ini:3: theory.parameters", "has a meaning already"});
+  check_refused(run("density = 0.5*phi_t^2\nparameters = x = 1"),
+                {"bad.ini:3: theory.parameters", "has a meaning already"});
   check_refused(run("density = 0.5*phi_t^2\nparameters = name = 1"), {"theory.name has a meaning already"});
-  check_refused(run("density = 0.5*phi_t^2\nparameters = mu = 1\nmo = 2"), {"bad.ini:4: theory.mo: unknown key; did you mean theory.mu?"});
+  check_refused(run("density = 0.5*phi_t^2\nparameters = mu = 1\nmo = 2"),
+                {"bad.ini:4: theory.mo: unknown key; did you mean theory.mu?"});
   check_refused(run("density = 0.5*phi_t^2\nparameters = mu = 1", "state = noise", "--theory.mu=abc"),
                 {"command line: --theory.mu = abc: is not a number"});
   check_refused(run("density = 0.5*phi_t^2\nname = phi4"), {"theory.density is given too; keep one of them"});

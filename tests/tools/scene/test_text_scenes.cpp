@@ -47,8 +47,8 @@ TEST_CASE("Liouville, Born-Infeld and the wave map as text converge to their sol
   const Folder folder;
   for (const char* scene : {"liouville --run.until=2", "born-infeld --run.until=1", "wave-map-text --run.until=0.5"}) {
     const std::string command(scene);
-    const double coarse = error(folder, command + " --lattice.sites=32"),
-                 fine = error(folder, command + " --lattice.sites=64");
+    const double coarse = error(folder, command + " --lattice.sites=64"),
+                 fine = error(folder, command + " --lattice.sites=128");
     INFO(scene << ": " << coarse << ", " << fine);
     CHECK(coarse / fine > 3.4);
     CHECK(coarse / fine < 4.6);

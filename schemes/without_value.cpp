@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/system/without_value.hpp"
+#include "schemes/without_value.hpp"
 
 #include <fmt/format.h>
 
