@@ -21,7 +21,6 @@
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/seconds_since.hpp"
-#include "tools/scene/generator_text.hpp"
 
 namespace delf {
 

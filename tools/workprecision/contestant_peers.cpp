@@ -171,7 +171,7 @@ std::vector<Contestant> body_contestants(const Scene& scene) {
   std::vector<Contestant> all;
   if (scene.from_file()) return all;
   for (const peers::BodyPeerInfo& info : peers::body_peers(scene.problem.theory))
-    all.push_back({info.name, true, 1, 0, [&scene, info](const Resolution& r) {
+    all.push_back({.name = info.name, .peer = true, .start = [&scene, info](const Resolution& r) {
                      return std::unique_ptr<Racer>(new BodyRacer(scene, info, r));
                    }});
   return all;
