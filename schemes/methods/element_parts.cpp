@@ -13,8 +13,8 @@
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/trace_stencil.hpp"
 #include "schemes/stepping/energy.hpp"
+#include "schemes/stepping/semi_discrete.hpp"
 #include "schemes/system/momenta.hpp"
-#include "schemes/system/semi_discrete.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {

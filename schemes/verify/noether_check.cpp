@@ -37,24 +37,36 @@ NoetherCheck::NoetherCheck(const LatticeSystem& system, std::vector<LinearSymmet
   }
 }
 
+namespace {
+
+/// Random values on a stencil, and the residual there. Where a density is not defined (a logarithm of φ, a root of
+/// 1 − φ_t² + φ_x²), it may be around 1, or where derivatives are small.
+void draw(const StencilFamily& family, const Cell& cell, std::mt19937_64& random, std::vector<double>& y,
+          std::vector<double>& r) {
+  std::uniform_real_distribution<double> uniform(-2, 2);
+  std::vector<double> unit(y.size());
+  for (double& value : unit) value = uniform(random);
+  const double small = 0.1 * std::min(cell.time_step, cell.space_step);
+  for (const auto& [centre, size] : {std::pair{0.0, 1.0}, {1.0, 0.1}, {0.0, small}, {1.0, small}}) {
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = centre + size * unit[i];
+    family.residual(cell, y, r);
+    if (std::ranges::all_of(r, [](double x) { return std::isfinite(x); })) return;
+  }
+}
+
+}  // namespace
+
 Check NoetherCheck::invariance(const LinearSymmetry& symmetry, std::mt19937_64& random) const {
   constexpr int jets = 20;
   Check check{.name = "symmetry of L, " + symmetry.name, .region = {}, .value = 0};
-  std::uniform_real_distribution<double> uniform(-2, 2);
   std::vector<double> y, r, xi;
   for (const auto& family : system_.families())
     for (int n = 0; n < jets; ++n) {
       y.resize(static_cast<std::size_t>(family->size()));
       r.resize(y.size());
-      for (double& value : y) value = uniform(random);
       const int site = static_cast<int>(random() % static_cast<std::uint64_t>(system_.lattice().sites()));
       const Cell cell{system_.time_step(), system_.lattice().space_step(), 0, system_.lattice().position(site)};
-      family->residual(cell, y, r);
-      // Where a density is not defined around 0 (a logarithm), it may be around 1.
-      if (!std::ranges::all_of(r, [](double x) { return std::isfinite(x); })) {
-        for (double& value : y) value = 1 + 0.1 * value;
-        family->residual(cell, y, r);
-      }
+      draw(*family, cell, random, y, r);
       generator(system_, *family, symmetry, y, xi);
       Balance balance;
       for (std::size_t i = 0; i < r.size(); ++i) balance.add(r[i] * xi[i]);
@@ -65,17 +77,15 @@ Check NoetherCheck::invariance(const LinearSymmetry& symmetry, std::mt19937_64& 
 
 std::optional<Check> NoetherCheck::divergence(const LinearSymmetry& symmetry, std::mt19937_64& random) const {
   constexpr int jets = 5;
-  std::uniform_real_distribution<double> uniform(-2, 2);
   // ∂δL/∂y summed over the stencils that meet at a site: by component, and on brick walls by the parity of the site
   std::map<std::pair<int, int>, Balance> at_site;
   for (const auto& family : system_.families()) {
     const auto n = static_cast<std::size_t>(family->size());
     std::vector<double> y(n), r(n), J(n * n), xi(n), moved(n), first, size(n);
     for (int sample = 0; sample < jets; ++sample) {
-      for (double& value : y) value = uniform(random);
       const int site = static_cast<int>(random() % static_cast<std::uint64_t>(system_.lattice().sites()));
       const Cell cell{system_.time_step(), system_.lattice().space_step(), 0, system_.lattice().position(site)};
-      family->residual(cell, y, r);
+      draw(*family, cell, random, y, r);
       family->jacobian(cell, y, J);
       generator(system_, *family, symmetry, y, xi);
       // ∂δL/∂yᵐ = Σ_i ∂rⁱ/∂yᵐ ξⁱ + rⁱ ∂ξⁱ/∂yᵐ

@@ -136,10 +136,11 @@ Problem Mechanics::gauss(int points) const {
   return problem;
 }
 TwoRows Mechanics::rows(const std::string& state) const {
-  const int d = theory == "kepler" ? 2 : 1;
+  const int d = static_cast<int>(fields.size());
   StateRequest request{.name = state, .theory = theory, .components = d};
-  if (d == 2) request.fields = {"q1", "q2"}, request.values["initial.eccentricity"] = 0.6;
-  else request.fields = {"q"}, request.values["initial.amplitude"] = 2.0;
+  request.fields = fields;
+  if (d == 2) request.values["initial.eccentricity"] = 0.6;
+  else request.values["initial.amplitude"] = 2.0;
   return rows_of(request, Lattice::point(), time_step, d, d);
 }
 

@@ -54,6 +54,7 @@ struct SpacetimeBreather {
 struct Mechanics {
   std::string theory, stencil;
   double time_step, tolerance;
+  std::vector<std::string> fields = {"q"};
 
   Problem problem() const;
   Problem gauss(int points) const;  ///< `scheme.method = cgvi`: Gauss's method of so many stages

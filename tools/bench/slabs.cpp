@@ -84,7 +84,7 @@ void mechanics(const Compared& compare, double tolerance) {
                       [=](auto& loop) { loop.start(rows[0][0], rows[1][0]); }));
   }
   {
-    const Mechanics m{"kepler", "trapezoidal", 0.01, tolerance};
+    const Mechanics m{"kepler", "trapezoidal", 0.01, tolerance, {"q1", "q2"}};
     const auto rows = m.rows("kepler-orbit");
     compare("Kepler, Störmer–Verlet", side_of(std::make_shared<Simulation>(m.problem()), rows),
             loop_side(KeplerVerletByHand{m.time_step}, [=](auto& loop) {

@@ -63,7 +63,7 @@ TEST_CASE("loops of mechanics by hand and the engine step the same equations") {
     CHECK(std::abs(wrong.q - q) > 1e-3);
   }
   SECTION("Störmer and Verlet's method on Kepler's problem") {
-    const Mechanics m{"kepler", "trapezoidal", 0.01, 1e-14};
+    const Mechanics m{"kepler", "trapezoidal", 0.01, 1e-14, {"q1", "q2"}};
     const auto rows = m.rows("kepler-orbit");
     Simulation engine(m.problem());
     KeplerVerletByHand loop{m.time_step}, wrong{1.01 * m.time_step};

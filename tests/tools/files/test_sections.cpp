@@ -168,7 +168,7 @@ TEST_CASE("incompatible keys are refused in one line") {
   refused("kepler --lattice.stencil=rectangle", "lattice.stencil = rectangle");
   refused("wave-map --initial.state=noise", "initial.state = noise");
   refused("kepler --initial.eccentricity=1", "initial.eccentricity = 1");
-  refused("breather --initial.start=legendre", "needs scheme.method = cgvi or spacetime or processed or composition");
+  refused("breather --initial.start=legendre", "needs scheme.method = radau-iia or cgvi or spacetime or processed or composition");
   refused("breather --scheme.method=r-adaptive", "");
   refused("breather --scheme.method=r-adaptive --lattice.space=interval",
           "has 1 field, and the scheme has 2 fields (phi, X)");

@@ -24,7 +24,7 @@ std::string shortened(const std::string& command) {
   std::string out;
   for (std::string word; words >> word;)
     if (!word.starts_with("--run.until=") && !word.starts_with("--run.steps=")) out += word + " ";
-  return out + "--run.steps=12 --output.figures=off --out out";
+  return out + "--run.steps=12 --output.figures=off" + (command.starts_with("plan ") ? "" : " --out out");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/system/semi_discrete.hpp"
+#include "schemes/stepping/semi_discrete.hpp"
 
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
