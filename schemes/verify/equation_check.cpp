@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "schemes/system/assembly.hpp"
 #include "schemes/verify/drawn_region.hpp"
@@ -43,22 +44,25 @@ EquationCheck::Sort EquationCheck::sort_of(int site, int component) const {
 }
 
 /// Σ_a |∂E/∂y_a y_a|
-double EquationCheck::size_of(const Window& window, std::int64_t row, int site, int component) const {
+std::vector<double> EquationCheck::sizes_at(const Window& window, std::int64_t row, int site,
+                                            const std::vector<int>& components) const {
   const int reach = system_->height();
-  const Assembly assembly(*system_, {.equations = {{{0, site}, component}}, .parity = static_cast<int>(row & 1),
-                                     .past = reach, .future = reach, .turn = window.turn});
-  double size = 0;
+  Assembly::Parts parts{
+      .equations = {}, .parity = static_cast<int>(row & 1), .past = reach, .future = reach, .turn = window.turn};
+  for (const int c : components) parts.equations.push_back({{0, site}, c});
+  const Assembly assembly(*system_, parts);
+  std::vector<double> sizes(components.size(), 0.0);
   assembly.each_jacobian(SectionRing(window, row - reach, row + reach), row, [&](const Assembly::Local& at) {
     for (int i = 0; i < at.family.size(); ++i) {
       const Site read = at.anchor.site + at.family.site(i);
-      const int home = system_->lattice().home(read.space);
-      if (read.time != 0 || home != site || at.family.values()[static_cast<std::size_t>(i)].component != component)
-        continue;
+      const auto c = std::ranges::find(components, at.family.values()[static_cast<std::size_t>(i)].component);
+      if (read.time != 0 || system_->lattice().home(read.space) != site || c == components.end()) continue;
       for (std::size_t m = 0; m < at.y.size(); ++m)
-        size += std::abs(at.derivatives[static_cast<std::size_t>(i) * at.y.size() + m] * at.y[m]);
+        sizes[static_cast<std::size_t>(c - components.begin())] +=
+            std::abs(at.derivatives[static_cast<std::size_t>(i) * at.y.size() + m] * at.y[m]);
     }
   });
-  return size;
+  return sizes;
 }
 
 /// The largest field or node at each site, of the rows that the equations read.
@@ -88,11 +92,15 @@ void EquationCheck::at(const Window& window, std::int64_t row) {
   const auto C = static_cast<std::size_t>(system_->components());
   find_sizes(window, row);
   std::array<double, 3> scale{};
-  for (int c = 0; c < system_->components(); ++c) {
-    const int largest = largest_site(c);
-    if (largest < 0) continue;
-    double& of = scale[is_constraint(c) ? constraint : bulk];
-    of = std::max(of, size_of(window, row, largest, c));
+  std::map<int, std::vector<int>> largest;  // components by site: a stencil is differentiated once for all of them
+  for (int c = 0; c < system_->components(); ++c)
+    if (const int site = largest_site(c); site >= 0) largest[site].push_back(c);
+  for (const auto& [site, components] : largest) {
+    const std::vector<double> sizes = sizes_at(window, row, site, components);
+    for (std::size_t n = 0; n < sizes.size(); ++n) {
+      double& of = scale[is_constraint(components[n]) ? constraint : bulk];
+      of = std::max(of, sizes[n]);
+    }
   }
   scale[natural_end] = scale[bulk];  // ends are measured by the scale of the bulk
   newest_.assign(values_.size(), std::numeric_limits<double>::quiet_NaN());

@@ -39,7 +39,7 @@ class EquationCheck {
   };
   bool is_constraint(int component) const;
   Sort sort_of(int site, int component) const;
-  double size_of(const Window&, std::int64_t row, int site, int component) const;
+  std::vector<double> sizes_at(const Window&, std::int64_t row, int site, const std::vector<int>& components) const;
   void find_sizes(const Window&, std::int64_t row);
   int largest_site(int component) const;
 

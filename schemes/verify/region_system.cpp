@@ -6,6 +6,7 @@
 #include <Eigen/SparseQR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -247,6 +248,19 @@ Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry, b
     if (up_to_divergence) balance.add(-change);
   });
   return balance;
+}
+
+double RegionSystem::rounding(const Values& y, const LinearSymmetry& symmetry) const {
+  double products = 0;
+  std::vector<double> xi;
+  each_jacobian(y, true, [&](const Assembly::Local& at, Reads read, std::span<const double> J) {
+    generator(system_, at.family, symmetry, at.y, xi);
+    const std::size_t n = read.size();
+    for (std::size_t i = 0; i < n; ++i)
+      if (at_boundary(read[i]))
+        for (std::size_t m = 0; m < n; ++m) products += std::abs(J[i * n + m] * at.y[m] * xi[i]);
+  });
+  return std::numeric_limits<double>::epsilon() * products;
 }
 
 }  // namespace delf

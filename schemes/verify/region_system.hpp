@@ -87,6 +87,9 @@ class RegionSystem {
   ///
   /// and, for a symmetry up to a divergence, less what L changes by on all Δ ⊂ U: Σ_{Δ ⊂ U} Σ_l ∂L/∂yˡ ξ(yˡ).
   Balance noether(const Values& y, const LinearSymmetry&, bool up_to_divergence = false) const;
+  /// What that sum may be because y has so many bits: ε Σ |∂rⁱ/∂yᵐ yᵐ ξⁱ| at the boundary. A momentum (q₁ − q₀)/h has the
+  /// rounding of q divided by h.
+  double rounding(const Values& y, const LinearSymmetry&) const;
 
  private:
   enum Kind : char { outside, inside, boundary };  ///< outside: in U, but neither in int U nor in ∂U
