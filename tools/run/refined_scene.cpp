@@ -36,8 +36,8 @@ QuietEnd run_quietly(const Scene& scene) {
   const auto see = [&](std::int64_t row) {
     if (row > scene.steps) return;
     const int back = static_cast<int>(simulation.newest() - row);
-    simulation.copy_row(back, end.row);
-    if (two) simulation.copy_row(back == 0 ? 1 : 0, other);
+    simulation.observe(back, end.row);  // as run records it: the rows of a kernel with the processor undone
+    if (two) simulation.observe(back == 0 ? 1 : 0, other);
     measures.see({static_cast<double>(row) * scene.problem.time_step, end.row,
                   two ? std::span<const double>(other) : std::span<const double>()});
   };

@@ -229,7 +229,7 @@ void Stepping::measure(double time, int back) {
   const int neighbour = back + 1 < simulation_.starting_rows() ? back + 1 : back - 1;
   if (neighbour >= 0 && neighbour < simulation_.starting_rows()) {
     other.resize(row_[Role::field].size());
-    simulation_.copy_row(neighbour, other);
+    simulation_.observe(neighbour, other);  // as the row itself
   }
   measures_.see({time, row_[Role::field], other});
 }

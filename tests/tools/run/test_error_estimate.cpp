@@ -44,20 +44,24 @@ TEST_CASE("the estimate is within a factor of two of the true error, for schemes
     std::string scene;
     double order;
   };
-  const std::vector<Case> cases{{"kink --run.until=5 --lattice.sites=101", 2},
-                                {"breather --run.until=5 --lattice.sites=101", 2},
-                                {"breather --run.until=5 --lattice.sites=101 --lattice.stencil=triangle", 2},
-                                {"breather --run.until=5 --lattice.sites=102 --lattice.stencil=hexagon", 2},
-                                {"phi4-kink --run.until=5 --lattice.sites=101", 2},
-                                {"phi6-kink --run.until=5 --lattice.sites=101", 2},
-                                {"wave-packet --run.until=5", 2},
-                                {"breather --run.until=5 --lattice.sites=100 --scheme.method=composition "
-                                 "--scheme.order=4 --lattice.space_order=4",
-                                 4},
-                                {"breather --run.until=5 --lattice.sites=140 --scheme.method=composition "
-                                 "--scheme.order=6 --lattice.space_order=6",
-                                 6},
-                                {"kink-train --run.until=5 --lattice.sites=101", 2}};
+  const std::vector<Case> cases{
+      {"kink --run.until=5 --lattice.sites=101", 2},
+      {"breather --run.until=5 --lattice.sites=101", 2},
+      {"breather --run.until=5 --lattice.sites=101 --lattice.stencil=triangle", 2},
+      {"breather --run.until=5 --lattice.sites=102 --lattice.stencil=hexagon", 2},
+      {"phi4-kink --run.until=5 --lattice.sites=101", 2},
+      {"phi6-kink --run.until=5 --lattice.sites=101", 2},
+      {"wave-packet --run.until=5", 2},
+      {"breather --run.until=5 --lattice.sites=100 --scheme.method=composition "
+       "--scheme.order=4 --lattice.space_order=4",
+       4},
+      {"breather --run.until=5 --lattice.length=80 --lattice.sites=480 --lattice.courant=0.35 "
+       "--scheme.method=processed --scheme.kernel=ti4 --lattice.space_order=10",
+       4},
+      {"breather --run.until=5 --lattice.sites=140 --scheme.method=composition "
+       "--scheme.order=6 --lattice.space_order=6",
+       6},
+      {"kink-train --run.until=5 --lattice.sites=101", 2}};
   for (const Case& c : cases) {
     const Json s = summary_of(folder, c.scene, "--output.estimate=on");
     INFO(c.scene << "\n" << s["error_estimate"].dump() << "\n" << s["error_linf"].dump());

@@ -33,6 +33,11 @@ TEST_CASE("recorded rows of kernels have the processor undone") {
   CHECK(summary_of(b6 + "--lattice.pairs=suited ")["error_linf"].get<double>() < 0.9 * maximal);
 }
 
+TEST_CASE("the energy left of the end, measured on rows of kernels, is the energy") {
+  const auto s = summary_of(ti4 + "'--measure.all=energy_left(L)' ");
+  CHECK(s["measures"]["all"].get<double>() == Approx(s["energy_final"].get<double>()).epsilon(1e-3));
+}
+
 TEST_CASE("the kernel's own rows are verified, and recorded ones refused") {
   const Folder folder;
   const Ran ran = delf_program(folder, "verify " + ti4 + "--run.steps=20 --verify.moments=1 --out out");
