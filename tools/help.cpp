@@ -79,6 +79,19 @@ each site for h = k = 1. Points are lines of their own:
   sites = (0,0) (1,0) (1,1)
   point = 1; phi: 1/3 1/3 1/3; phi_t: -1 1 0; phi_x: 0 -1 1
 
+An action without jets is a function of the values at those sites, y1, y2, ..., of h and k, in place of the points; the
+density then says what is measured. This is leapfrog, one cell's share of each edge and corner:
+
+  [theory]
+  lagrangian = h*k*(0.25*((y2 - y1)^2 + (y4 - y3)^2)/h^2 - 0.25*((y3 - y1)^2 + (y4 - y2)^2)/k^2
+               + 0.25*(cos(y1) + cos(y2) + cos(y3) + cos(y4)) - 1)
+
+  [stencil]
+  sites = (0,0) (1,0) (0,1) (1,1)
+
+Friction and driving have no Lagrangian of these coordinates, and phi_t*phi is a divergence, which adds nothing. With the
+factor exp(g*t) on all of the density friction -g phi_t follows; a drive f(t) is a term f(t)*phi.
+
 The states noise and file work for every theory. From C++:
 
   auto scheme = delf::Scheme{delf::hexagon, delf::expression("0.5*phi_t^2 - 0.5*phi_x^2 - 0.25*(phi^2 - 1)^2")};

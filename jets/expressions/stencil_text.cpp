@@ -141,6 +141,8 @@ StencilTable stencil_of(const std::string& sites_text, const std::string& points
   return table;
 }
 
+std::vector<Site> stencil_sites(const std::string& sites, const std::string& key) { return sites_of(sites, key); }
+
 int order_of_consistency(const StencilTable& table) {
   constexpr int highest = 10, terms = highest + 3;
   using Series = std::array<std::complex<double>, terms>;  // in ε, of τ = ε cos θ, ξ = ε sin θ

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <string>
+#include <vector>
 
 #include "jets/tables/stencil_table.hpp"
 
@@ -19,6 +20,9 @@ inline constexpr const char* stencil_as_text = "text";
 /// not sum to 1, a φ_t that does not find the slope of t.
 StencilTable stencil_of(const std::string& sites, const std::string& points, const std::string& sites_key,
                         const std::string& points_key);
+
+/// Its sites alone: for a Lagrangian on their values, which has no jet.
+std::vector<Site> stencil_sites(const std::string& sites, const std::string& key);
 
 /// The order in h and k at which the equations of a table are those of the theory, where these are linear: of the lowest
 /// power of (τ, ξ) in which conj(m_a) m_b and conj(σ_a) σ_b differ, σ = (1, iτ, iξ) and m what the table makes of

@@ -56,15 +56,18 @@ void add_constraints(SchemeParts& parts, const FieldTheory& theory, const TimeEl
   }
 }
 
-/// p = ∂ℓ/∂q_t must have velocities: the densities of dgvi have none.
+/// p = ∂ℓ/∂q_t must determine every velocity: the densities of dgvi have none.
 void require_mass(const FieldTheory& theory) {
   const int d = theory.components();
-  for (int a = d; a < 2 * d; ++a)
-    for (int b = d; b < 2 * d; ++b)
-      if (!theory.density().is_zero(a, b)) return;
-  throw BadInput("scheme.method",
-                 "scheme.method = cgvi: the density is linear in the velocities, so that momenta do not determine them; "
-                 "use scheme.method = dgvi");
+  for (int a = d; a < 2 * d; ++a) {
+    bool has_mass = false;
+    for (int b = d; b < 2 * d; ++b) has_mass = has_mass || !theory.density().is_zero(a, b);
+    if (!has_mass)
+      throw BadInput("scheme.method",
+                     fmt::format("scheme.method = cgvi: the density is linear in the velocity of {}, so that its momentum "
+                                 "does not determine it; use scheme.method = dgvi if it is so in all",
+                                 theory.fields()[static_cast<std::size_t>(a - d)].name));
+  }
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {

@@ -15,6 +15,7 @@
 #include "lattice/error.hpp"
 #include "schemes/families/trace_stencil.hpp"
 #include "schemes/methods/element_keys.hpp"
+#include "schemes/methods/element_parts.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/energy.hpp"
@@ -137,9 +138,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   const int d = theory.components();
   const Nodes nodes(keys.functions);
   const StencilTable element = time_element(keys.basis, keys.rule(), Continuity::multipliers);
-  SchemeParts parts{{theory.on_table(element)}, fields(d), theory.symmetries()};
-  for (const auto& more : {inner_components(element, d), traces("-", d), traces("+", d),
-                           momentum_components("lambda", d), momentum_components("mu", d)})
+  SchemeParts parts = element_parts(theory, element);
+  for (const auto& more :
+       {traces("-", d), traces("+", d), momentum_components("lambda", d), momentum_components("mu", d)})
     std::ranges::copy(more, std::back_inserter(parts.components));
 
   using enum TraceStencil::End;
@@ -179,12 +180,6 @@ std::string label(const Problem& p) {
                      keys.quadrature, keys.points, keys.nu == 0 ? "" : fmt::format(", nu = {}", keys.nu));
 }
 
-std::vector<std::string> fluxes() {
-  std::vector<std::string> names;
-  for (const NamedFlux& flux : named_fluxes()) names.push_back(flux.name);
-  return names;
-}
-
 }  // namespace
 
 extern const MethodEntry dgvi_method;
@@ -196,7 +191,7 @@ const MethodEntry dgvi_method{
                    functions_parameter(3, 1),
                    quadrature_parameter(),
                    points_parameter("functions", 3),
-                   {.key = "scheme.flux", .fallback = "gauss2", .help = "the action of a jump", .choices = fluxes()},
+                   {.key = "scheme.flux", .fallback = "gauss2", .help = "the action of a jump", .choices = names_of(named_fluxes())},
                    {.key = "scheme.nu",
                     .fallback = 0.0,
                     .help = "a fault for `delf verify` to find: a gauge -nu d(theta.q)/dt on the jumps alone"}},

@@ -10,17 +10,6 @@
 #include "schemes/simulation.hpp"
 
 namespace delf {
-namespace {
-
-template <class Named>
-std::vector<std::string> names_of(const std::vector<Named>& list) {
-  std::vector<std::string> names;
-  for (const Named& named : list) names.push_back(named.name);
-  return names;
-}
-
-}  // namespace
-
 ElementKeys::ElementKeys(const Problem& p, int more)
     : basis_name(p.parameters.get<std::string>("scheme.basis")),
       quadrature(p.parameters.get<std::string>("scheme.quadrature")),
@@ -67,15 +56,6 @@ Parameter points_parameter(const std::string& otherwise, int fallback) {
           .help = "R: points of the quadrature, on every span of a b-spline",
           .range = {.low = 1, .high = 40},
           .otherwise = otherwise};
-}
-
-std::vector<Component> inner_components(const StencilTable& element, int d) {
-  std::vector<Component> list;
-  for (std::size_t node = 1; node < element.nodes.size(); ++node)
-    for (const Component& field : fields(d))
-      list.push_back({fmt::format("{} at {:.4g}", field.name, element.nodes[node].time), Role::inner,
-                      element.nodes[node], false, field.field});
-  return list;
 }
 
 std::vector<Component> momentum_components(const char* name, int d) {

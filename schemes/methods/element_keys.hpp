@@ -28,13 +28,19 @@ struct ElementKeys {
   ElementKeys() = default;
 };
 
+/// The choices of a key.
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& list) {
+  std::vector<std::string> names;
+  for (const Named& named : list) names.push_back(named.name);
+  return names;
+}
+
 Parameter basis_parameter(const std::string& fallback);
 Parameter functions_parameter(int fallback, int fewest);
 Parameter quadrature_parameter();
 Parameter points_parameter(const std::string& otherwise, int fallback);
 
-/// The coefficients inside an element, nodes 1, 2, … of its table: component = node · d + a.
-std::vector<Component> inner_components(const StencilTable& element, int d);
 /// Multipliers that are momenta of the d fields.
 std::vector<Component> momentum_components(const char* name, int d);
 

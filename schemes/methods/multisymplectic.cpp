@@ -2,11 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <variant>
 
+#include "jets/expressions/stencil_expression.hpp"
 #include "jets/expressions/stencil_text.hpp"
 #include "jets/tables/named_tables.hpp"
 #include "lattice/error.hpp"
 #include "schemes/families/jet_family.hpp"
+#include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/wall_families.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
@@ -37,7 +41,26 @@ void check_walls(const Problem& p, const StencilFamily& family) {
                     p.stencil));
 }
 
-constexpr auto sites_key = "stencil.sites", point_key = "stencil.point";
+constexpr auto sites_key = "stencil.sites", point_key = "stencil.point", lagrangian_key = "theory.lagrangian";
+
+/// L(y1, …, yn; h, k) on the sites of a stencil as text, as it is; numbers of the theory by their names. Its density says
+/// what is measured.
+std::shared_ptr<const StencilFamily> on_values(const FieldTheory& theory, const Problem& p,
+                                               const std::string& lagrangian, const std::string& sites) {
+  if (p.parameters.has(point_key))
+    throw BadInput(lagrangian_key, fmt::format("{}: is an action by itself, and {} makes another; leave one out",
+                                               lagrangian_key, point_key));
+  if (theory.components() > 1)
+    throw BadInput(lagrangian_key, fmt::format("{}: is for one field, and the theory has {}; use {}", lagrangian_key,
+                                               theory.components(), point_key));
+  constexpr std::string_view prefix = "theory.";
+  std::vector<std::pair<std::string, double>> numbers;
+  for (const auto& [key, value] : p.parameters)
+    if (const double* number = std::get_if<double>(&value); number && key.starts_with(prefix))
+      numbers.emplace_back(key.substr(prefix.size()), *number);
+  return std::make_shared<LagrangianFamily<StencilExpression>>(StencilExpression::lagrangian(
+      lagrangian, StencilPattern(stencil_sites(sites, sites_key)), numbers, lagrangian_key));
+}
 
 /// The action on the stencil that the scene gives as text, with the terms of natural walls.
 std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheory& theory, const Problem& p) {
@@ -48,7 +71,10 @@ std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheo
           key, fmt::format("{}: must be given for lattice.stencil = {}; see `delf help lagrangians`", key, p.stencil));
     return *text;
   };
-  const std::string sites = text_of(sites_key), points = text_of(point_key);
+  const std::string sites = text_of(sites_key);
+  if (const auto lagrangian = p.parameters.maybe<std::string>(lagrangian_key))
+    return {on_values(theory, p, *lagrangian, sites)};
+  const std::string points = text_of(point_key);
   const auto family =
       std::static_pointer_cast<const JetFamily>(theory.on_table(stencil_of(sites, points, sites_key, point_key)));
   std::vector<std::shared_ptr<const StencilFamily>> families{family};
@@ -94,6 +120,11 @@ const MethodEntry multisymplectic_method{
                     .fallback = std::string(),
                     .help = "the sites of a stencil of your own, time first: "
                             "(0,0) (1,0) (1,1); in place of lattice.stencil",
+                    .otherwise = "none"},
+                   {.key = lagrangian_key,
+                    .fallback = std::string(),
+                    .help = "a Lagrangian on the values y1, y2, ... of stencil.sites, with h and k, in place of "
+                            "stencil.point: h*k*(0.5*((y2 - y1)/h)^2 - ...)",
                     .otherwise = "none"},
                    {.key = point_key,
                     .fallback = std::string(),

@@ -5,6 +5,7 @@
 
 #include "jets/tables/space_table.hpp"
 #include "lattice/error.hpp"
+#include "schemes/methods/pair_parts.hpp"
 #include "schemes/simulation.hpp"
 
 namespace delf {
@@ -23,20 +24,12 @@ void require_of(const Problem& p, const char* key, const char* of) {
         key, fmt::format("{}: belongs to scheme.space = {}, and here it is {}; leave it out", key, of, space_of(p)));
 }
 
-StencilTable pairs_on(const Lattice& lattice, int order) {
-  if (!lattice.is_circle())
+StencilTable pairs_on(const Problem& p, int order) {
+  if (!p.lattice.is_circle())
     throw BadInput("scheme.space",
                    "scheme.space = pairs: wide stencils have no walls in this version; use scheme.space = spectral, or "
                    "lattice.space = circle");
-  if (order % 2 != 0)
-    throw BadInput("lattice.space_order",
-                   fmt::format("lattice.space_order = {}: pairs are of an even order up to 20; choose one", order));
-  if (lattice.sites() < order + 1)
-    throw BadInput("lattice.sites",
-                   fmt::format("lattice.sites = {}: a stencil of space order {} is {} sites wide; give "
-                               "more",
-                               lattice.sites(), order, order + 1));
-  return pair_space(pair_weights(order / 2));
+  return pair_space(pair_weights(pairs_of_order(p, "lattice.space_order", order)));
 }
 
 }  // namespace
@@ -73,7 +66,7 @@ StencilTable space_table(const Problem& p) {
   require_of(p, "lattice.space_order", "pairs");
   require_of(p, "scheme.degree_space", "spectral");
   const std::string space = space_of(p);
-  if (space == "pairs") return pairs_on(p.lattice, order_of(p));
+  if (space == "pairs") return pairs_on(p, order_of(p));
   if (space == "spectral") return spectral_space(degree_of(p));
   return space == "linear" ? linear_space() : spectral_space(1);
 }

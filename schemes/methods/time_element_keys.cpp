@@ -14,12 +14,6 @@ namespace {
 constexpr const char* stood_for[] = {"scheme.basis", "scheme.functions", "scheme.degree", "scheme.quadrature",
                                      "scheme.points"};
 
-std::vector<std::string> names_of(const std::vector<TimeTableau>& list) {
-  std::vector<std::string> names;
-  for (const TimeTableau& tableau : list) names.push_back(tableau.name);
-  return names;
-}
-
 }  // namespace
 
 TimeElementKeys::TimeElementKeys(const ParameterValues& values)

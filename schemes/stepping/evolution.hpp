@@ -5,6 +5,7 @@
 
 #include "lattice/plan/solve_plan.hpp"
 #include "schemes/stepping/stepper.hpp"
+#include "schemes/system/jet_slots.hpp"
 #include "schemes/system/lattice_system.hpp"
 #include "schemes/system/time_derivative.hpp"
 
@@ -34,6 +35,7 @@ class Evolution {
           plan(planned(system)),
           stepper(system, plan, options) {}
     static SolvePlan planned(const LatticeSystem& system) {
+      require_jet_slots(system);
       require_time_derivative(system);
       return make_plan(system.lattice(), system.pattern());
     }

@@ -41,8 +41,8 @@ std::string key_of(const std::string& parameter) { return "theory." + parameter;
 std::vector<Parameter> further(const ParameterValues& values) {
   std::vector<Parameter> parameters;
   for (const auto& [name, number] : names_of(values).parameters) {
-    for (const char* taken :
-         {density_key, fields_key, parameters_key, constraint_key, symmetry_key, "theory.name", "theory.fibre"})
+    for (const char* taken : {density_key, fields_key, parameters_key, constraint_key, symmetry_key, "theory.name",
+                              "theory.fibre", "theory.lagrangian"})
       if (key_of(name) == taken)
         throw BadInput(parameters_key, std::string(parameters_key) + ": the key " + taken +
                                            " has a meaning already; choose another name than " + name);

@@ -134,6 +134,42 @@ TEST_CASE("a stencil of the scene's own steps like the built-in one, under every
   check_refused(delf_program(folder, "plan collision --lattice.stencil=text"), {"stencil.sites: must be given"});
 }
 
+TEST_CASE("a Lagrangian on values, without jets, steps like the stencil whose action it is, and is verified") {
+  const Folder folder;
+  // leapfrog: one cell's share of each edge and corner
+  folder.write("own.ini",
+               "[theory]\nname = sine-gordon\nmass = 1.5\nlagrangian = h*k*(0.25*((y2 - y1)^2 + (y4 - y3)^2)/h^2 - "
+               "0.25*((y3 - y1)^2 + (y4 - y2)^2)/k^2 + 0.25*mass^2*(cos(y1) + cos(y2) + cos(y3) + cos(y4) - 4))\n"
+               "[initial]\nstate = kink\n[stencil]\nsites = (0,0) (1,0) (0,1) (1,1)\n" +
+                   circle);
+  summary(folder, "own.ini", "own");
+  summary(folder, "own.ini --lattice.stencil=triangle-vertex", "leapfrog");
+  const auto own = last_row(folder, "own"), leapfrog = last_row(folder, "leapfrog");
+  REQUIRE(own.size() == leapfrog.size());
+  double distance = 0;
+  for (std::size_t i = 0; i < own.size(); ++i) distance = std::max(distance, std::abs(own[i] - leapfrog[i]));
+  CHECK(distance < 1e-11);
+  CHECK(delf_program(folder, "verify own.ini").code == 0);
+  CHECK(delf_program(folder, "verify own.ini --verify.fault=sign").code == 1);
+  CHECK(delf_program(folder, "plan own.ini").code == 0);
+
+  check_refused(delf_program(folder, "plan own.ini --theory.lagrangian='h*k*(y2 - y5)'"),
+                {"theory.lagrangian: y5 is not known"});
+  check_refused(delf_program(folder, "plan own.ini --stencil.point='1; phi: 1 0 0 0'"),
+                {"theory.lagrangian: is an action by itself"});
+}
+
+TEST_CASE("a derivative that no stencil of the scheme has in its jets is refused, not left out") {
+  const Folder folder;
+  const std::string initial = "[initial]\nstate = noise\n";
+  folder.write("beam.ini", "[theory]\ndensity = 0.5*phi_t^2 - 0.5*phi_xx^2\n" + initial + circle);
+  for (const char* method : {"multisymplectic", "cgvi", "spacetime", "composition"})
+    check_refused(delf_program(folder, std::string("plan beam.ini --scheme.method=") + method), {"the density has phi_xx"});
+  folder.write("body.ini", "[theory]\ndensity = 0.5*phi_t^2 - 0.5*phi^2*phi_x\n" + initial +
+                               "[lattice]\nspace = point\ntime_step = 0.1\nstencil = midpoint\n" + rest);
+  check_refused(delf_program(folder, "plan body.ini"), {"the density has phi_x,"});
+}
+
 TEST_CASE("a symmetry of a text is verified, up to a divergence too, and refused if it is none") {
   const Folder folder;
   const auto write = [&](const std::string& density, const std::string& symmetry) {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/system/jet_slots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "lattice/error.hpp"
+#include "schemes/families/jet_family.hpp"
+
+namespace delf {
+
+void require_jet_slots(const LatticeSystem& system) {
+  constexpr std::array names{"phi", "phi_t", "phi_x", "phi_tt", "phi_tx", "phi_xx"};
+  // terms of walls are of the same density, and see fewer slots
+  std::map<const BatchDensity*, std::array<bool, jet_slots>> seen;
+  for (const auto& family : system.families())
+    if (const auto* jets = dynamic_cast<const JetFamily*>(family.get()))
+      for (const TablePoint& point : jets->table().points)
+        for (std::size_t s = 0; s < point.slots.size(); ++s)
+          seen[&jets->density()][s] = seen[&jets->density()][s] || !point.slots[s].empty();
+  for (const auto& [density, slots] : seen)
+    for (int v = 0; v < density->variables(); ++v) {
+      const auto s = static_cast<std::size_t>(v / density->components());
+      if (density->depends_on(v) && !slots[s])
+        throw BadInput("theory.name",
+                       fmt::format("the density has {}, and the stencils of this scheme have no jet with it: the term "
+                                   "would be left out; remove it, or use a stencil that has it (`delf help "
+                                   "lagrangians`)",
+                                   names[s]));
+    }
+}
+
+}  // namespace delf
