@@ -13,7 +13,7 @@ namespace {
 /// φ at one place, over time.
 class AtAPlace : public Measurement {
  public:
-  AtAPlace(const MeasuredField& field, double x) : field_(field), x_(x) {}
+  AtAPlace(const MeasuredField& field, double x) : field_(field), x_(field.place(x)) {}
   void see(const MeasuredRow& row) override {
     times_.push_back(row.time);
     values_.push_back(field_.at(row.row, x_));

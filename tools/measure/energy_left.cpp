@@ -11,7 +11,8 @@ namespace {
 /// The energy of the cells left of x, of the one that x cuts in proportion.
 class EnergyLeft final : public Measurement {
  public:
-  EnergyLeft(const MeasuredField& field, const std::vector<double>& numbers) : field_(field), x_(numbers[0]) {}
+  EnergyLeft(const MeasuredField& field, const std::vector<double>& numbers)
+      : field_(field), x_(field.place(numbers[0])) {}
 
   void see(const MeasuredRow& row) override {
     time_ = row.time;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tools/measure/kinks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "lattice/error.hpp"
 #include "tools/measure/entries.hpp"
 
 namespace delf {
@@ -57,18 +60,29 @@ class Count final : public Measurement {
   double level_, count_ = unknown;
 };
 
+// n = ±1, ±2, …
+int number_of_kink(double n) {
+  constexpr double most = 1e6;
+  if (n == 0 || n != std::floor(n) || !(std::abs(n) <= most))
+    throw BadInput("",
+                   fmt::format("there is no kink {:.6g}; kinks are 1, 2, ... from the left and -1, -2, ... from the "
+                               "right",
+                               n));
+  return static_cast<int>(n);
+}
+
 /// Of kink n, counted from 1 at the left end, or from −1 at the right end.
 class OneKink : public Measurement {
  public:
   OneKink(const MeasuredField& field, const std::vector<double>& numbers)
-      : field_(field), number_(static_cast<int>(numbers[0])), level_(level_of(field, numbers, 1)) {}
+      : field_(field), number_(number_of_kink(numbers[0])), level_(level_of(field, numbers, 1)) {}
   void see(const MeasuredRow& row) override {
     const std::vector<KinkAt> kinks = kinks_of(field_, row.row, level_);
     // another number of kinks: this one may have become another
     if (kinks.size() != kinks_) times_.clear(), places_.clear();
     kinks_ = kinks.size();
     const int count = static_cast<int>(kinks.size()), index = number_ > 0 ? number_ - 1 : count + number_;
-    if (number_ == 0 || index < 0 || index >= count) return;
+    if (index < 0 || index >= count) return;
     double x = kinks[static_cast<std::size_t>(index)].x;
     if (field_.lattice.is_circle() && !places_.empty())  // round the circle without a jump
       x = places_.back() + std::remainder(x - places_.back(), field_.lattice.length());

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "tools/measure/measurement.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/error.hpp"
 #include "tools/measure/entries.hpp"
 
 namespace delf {
@@ -27,6 +30,17 @@ double MeasuredField::at(std::span<const double> row, double x) const {
     sum += weight * at(row, first + m);
   }
   return sum;
+}
+
+double MeasuredField::place(double x) const {
+  const double L = lattice.length(), rounding = 1e-12 * L;
+  if (lattice.space() == Space::interval && !(x >= -rounding && x <= L + rounding))
+    throw BadInput("", fmt::format("x = {:.6g} is not in space; give a place from 0 to {:.6g}", x, L));
+  // Round a circle any number of times, but an index of a site must be an int.
+  constexpr double most_turns = 100;
+  if (lattice.is_circle() && !(std::abs(x) <= most_turns * L))
+    throw BadInput("", fmt::format("x = {:.6g} is far from the circle; give a place from 0 to {:.6g}", x, L));
+  return x;
 }
 
 std::span<const MeasurementEntry> measurements() {

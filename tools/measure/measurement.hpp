@@ -24,6 +24,8 @@ struct MeasuredField {
   double at(std::span<const double> row, int i) const;
   /// φ at x, by Lagrange's polynomial through the four sites around it.
   double at(std::span<const double> row, double x) const;
+  /// x, if it is a place of this space: within the walls of an interval, anywhere on a circle. Throws BadInput.
+  double place(double x) const;
 };
 
 /// A recorded row, and the row one step before it (the next one, for row 0).
@@ -46,6 +48,7 @@ class Measurement {
 struct MeasurementEntry {
   const char *name, *arguments, *help;
   std::size_t least, most;  ///< how many numbers
+  /// Throws BadInput, with no key, for numbers that it cannot take.
   std::unique_ptr<Measurement> (*make)(const MeasuredField&, const std::vector<double>& numbers);
 };
 

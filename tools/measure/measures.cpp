@@ -10,14 +10,14 @@
 #include "jets/expressions/expression.hpp"
 #include "schemes/text_parts.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "tools/scene/suggestion.hpp"
+#include "tools/measure/measure_names.hpp"
 
 namespace delf {
 
 namespace {
 
 using Constants = std::vector<std::pair<std::string, double>>;
-constexpr std::string_view section = "measure.";
+constexpr std::string_view reserved = "__";  ///< begins the names of quantities, which no scene can write
 
 bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool in_name(char c) { return begins_name(c) || std::isdigit(static_cast<unsigned char>(c)); }
@@ -31,15 +31,42 @@ std::string usage(const MeasurementEntry& entry) {
   return *entry.arguments ? fmt::format("{}({})", entry.name, entry.arguments) : entry.name;
 }
 
-// theory.NAME as NAME, and the length of space
+// The length of space, and theory.NAME as NAME; of two with one name the first counts.
 Constants constants_of(const Scene& scene) {
   Constants constants;
+  if (scene.problem.lattice.space() != Space::point) constants.emplace_back("L", scene.problem.lattice.length());
   constexpr std::string_view of_theory = "theory.";
   for (const auto& [key, value] : scene.problem.parameters)
     if (const double* number = std::get_if<double>(&value); number && key.starts_with(of_theory))
       constants.emplace_back(key.substr(of_theory.size()), *number);
-  if (scene.problem.lattice.space() != Space::point) constants.emplace_back("L", scene.problem.lattice.length());
   return constants;
+}
+
+// The text with its words, but not the letters of numbers as 1e5, handed to `word`, and all else to `other`. `word` is
+// given where the word begins and ends, and says where to go on.
+void walk(std::string_view text, auto&& word, auto&& other) {
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = i + 1;
+    const bool number = std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.';
+    if (number || begins_name(text[i]))
+      while (end < text.size() && (in_name(text[end]) || (number && text[end] == '.'))) ++end;
+    if (begins_name(text[i])) i = word(i, end);
+    else other(text.substr(i, end - i)), i = end;
+  }
+}
+
+// Refuses words that could be taken for something else.
+void check_words(std::string_view text, const Constants& constants, const std::string& key) {
+  const auto check = [&](std::size_t begin, std::size_t end) {
+    const std::string_view word = text.substr(begin, end - begin);
+    if (word.starts_with(reserved))
+      throw BadInput(
+          key, fmt::format("{}: names that begin with {} are kept for measurements; use another", word, reserved));
+    if (word == "L" && std::ranges::count(constants, "L", &Constants::value_type::first) > 1)
+      throw BadInput(key, "L is both the length of space and theory.L; give the parameter another name");
+    return end;
+  };
+  walk(text, check, [](std::string_view) {});
 }
 
 // The end of the bracket that opens at `open`, or npos.
@@ -78,24 +105,15 @@ struct Measures::Expression {
 
   // Measurements become quantities, which the arithmetic names.
   void read(std::string_view text, const MeasuredField& field) {
-    for (std::size_t i = 0; i < text.size();) {
-      if (std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.') {  // 1e5 has no name in it
-        do arithmetic += text[i++];
-        while (i < text.size() && (in_name(text[i]) || text[i] == '.'));
-        continue;
-      }
-      if (!begins_name(text[i])) {
-        arithmetic += text[i++];
-        continue;
-      }
-      std::size_t end = i;
-      while (end < text.size() && in_name(text[end])) ++end;
-      const std::string_view word = text.substr(i, end - i);
-      i = end;
-      if (const MeasurementEntry* entry = find_measurement(word)) i = read_measurement(*entry, text, end, field);
-      else if (word == "x") throw BadInput(key, "x is no number here; give a place, as value(10)");
-      else arithmetic += word;
-    }
+    check_words(text, constants, key);
+    const auto word = [&](std::size_t begin, std::size_t end) {
+      const std::string_view found = text.substr(begin, end - begin);
+      if (const MeasurementEntry* entry = find_measurement(found)) return read_measurement(*entry, text, end, field);
+      if (found == "x") throw BadInput(key, "x is no number here; give a place, as value(10)");
+      arithmetic += found;
+      return end;
+    };
+    walk(text, word, [&](std::string_view other) { arithmetic += other; });
     evaluate(0, [](const Measurement&) { return 1.0; });  // for its errors
   }
 
@@ -113,14 +131,19 @@ struct Measures::Expression {
     }
     if (numbers.size() < entry.least || numbers.size() > entry.most)
       throw BadInput(key, fmt::format("{}: {} numbers are given; write {}", entry.name, numbers.size(), usage(entry)));
-    quantities.push_back({fmt::format("q{}", quantities.size() + 1), entry.make(field, numbers)});
+    try {
+      quantities.push_back({fmt::format("{}{}", reserved, quantities.size() + 1), entry.make(field, numbers)});
+    } catch (const BadInput& bad) {
+      throw BadInput(key, fmt::format("{}: {}", entry.name, bad.what()));
+    }
     arithmetic += quantities.back().name;
     return at;
   }
 
   double evaluate(double time, auto&& value_of) const {
-    Constants all = constants;
+    Constants all;  // quantities first: no parameter hides one
     for (const Quantity& q : quantities) all.emplace_back(q.name, value_of(*q.measurement));
+    all.insert(all.end(), constants.begin(), constants.end());
     return Formula(arithmetic, all, key)(time, 0);
   }
 };
@@ -128,6 +151,7 @@ struct Measures::Expression {
 Measures::Measures(const Scene& scene, int winding, const Simulation& simulation) {
   const std::vector<std::string> names = measure_names(scene.settings);
   if (names.empty()) return;
+  check_measure_names(scene);
   const Problem& p = scene.problem;
   const auto& components = simulation.components();
   const MeasuredField field{p.lattice,
@@ -137,7 +161,7 @@ Measures::Measures(const Scene& scene, int winding, const Simulation& simulation
                             simulation.count(Role::field),
                             make_theory(find_theory(p.theory), p.parameters)};
   for (const std::string& name : names) {
-    Expression expression{name, std::string(section) + name, {}, constants_of(scene), {}};
+    Expression expression{name, key_of_measure(name), {}, constants_of(scene), {}};
     try {
       if (std::ranges::any_of(components, &Component::position))
         throw BadInput(expression.key, "the sites of this scheme move; measurements need sites that stay; remove it");
@@ -162,13 +186,6 @@ std::vector<NamedNumber> Measures::results() const {
   for (const Expression& e : all_)
     all.push_back({e.name, e.evaluate(time_, [](const Measurement& m) { return m.value(); })});
   return all;
-}
-
-std::vector<std::string> measure_names(const Settings& settings) {
-  std::vector<std::string> names;
-  for (const DeclaredKey& own : settings.declared())
-    if (own.key.name.starts_with(section)) names.push_back(own.key.name.substr(section.size()));
-  return names;
 }
 
 }  // namespace delf

@@ -37,7 +37,4 @@ class Measures {
   double time_ = 0;
 };
 
-/// The names of the measures that settings give, in their order.
-std::vector<std::string> measure_names(const Settings&);
-
 }  // namespace delf

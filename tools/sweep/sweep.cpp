@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "tools/measure/measures.hpp"
+#include "tools/measure/measure_names.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/seconds_since.hpp"
 #include "tools/scene/suggestion.hpp"
@@ -86,7 +86,10 @@ ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_lin
   const SweepRequest request = read_sweep_request(scene, on_command_line);
   const fs::path folder = out.value_or("results/" + scene.stem().string() + "-sweep");
   std::vector<SweptRun> runs;  // all are read, and what is wrong with one is found, before files are made
-  for (const auto& values : request.values) runs.push_back(request.run(values));
+  for (const auto& values : request.values) {
+    runs.push_back(request.run(values));
+    check_measure_names(runs.back().scene);
+  }
   make_results_folder(folder);
 
   SweepOutcome outcome;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "lattice/error.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/measure/kinks.hpp"
@@ -72,6 +73,18 @@ TEST_CASE("a kink across the seam of a circle is found") {
   CHECK(kinks[0].x == Approx(3 + (pi - 0.4) / (2 * pi + 0.1 - 0.4)));
 }
 
+TEST_CASE("places are those of the space, round a circle too") {
+  const MeasuredField ring = field_on(Lattice::circle(4, 4), true), bar = field_on(Lattice::interval(5, 4), true);
+  CHECK(ring.place(-5) == -5);
+  CHECK(bar.place(4) == 4);
+  for (const double x : {1e300, -1e300, std::nan("")}) {
+    CHECK_THROWS_AS(ring.place(x), BadInput);
+    CHECK_THROWS_AS(bar.place(x), BadInput);
+  }
+  CHECK_THROWS_AS(bar.place(4.001), BadInput);
+  CHECK_THROWS_AS(bar.place(-0.001), BadInput);
+}
+
 TEST_CASE("the peak of a spectrum is found between its lines") {
   std::vector<double> wave;
   for (int j = 0; j < 256; ++j) wave.push_back(3 + std::sin(2 * pi * 12.3 * j / 256));
@@ -136,6 +149,54 @@ TEST_CASE("a measure on the command line wins, and scene.ini repeats measures") 
         contains(read(folder / "out/scene.ini"), "[measure]\nn = 3\nmore = 2*kinks\n"));
 }
 
+TEST_CASE("parameters of a theory hide neither quantities nor the length of space") {
+  const Folder folder;
+  const auto text_scene = [&](const std::string& parameters, const std::string& measures) {
+    return folder.write(
+        "text.ini", "[theory]\nname = text\ndensity = 0.5*phi_t^2 - 0.5*phi_x^2\nparameters = " + parameters +
+                        "\n[lattice]\nlength = 40\nsites = 41\ncourant = 0.5\n[initial]\nstate = formula\n"
+                        "phi = sin(2*pi*x/40)\n[run]\nsteps = 2\n[output]\nfigures = off\nfields = off\n[measure]\n" +
+                        measures);
+  };
+  const auto m = measures_of(folder, text_scene("q1 = 5, __1 = 7", "at = value(10)\nown = q1\nsum = q1 + value(10)\n"));
+  CHECK(m["at"].get<double>() == Approx(1).margin(0.05));
+  CHECK(m["own"] == 5);
+  CHECK(m["sum"].get<double>() == Approx(6).margin(0.05));
+  CHECK(measures_of(folder, text_scene("L = 5", "n = kinks\n"))["n"] == 2);
+  for (const char* measure : {"L", "value(L/2)"}) {
+    const Ran ran =
+        delf_program(folder, "run '" + text_scene("L = 5", std::string("m = ") + measure + "\n") + "' --out no");
+    INFO(ran.err);
+    CHECK(ran.code == 2);
+    CHECK(contains(ran.err, "L is both the length of space and theory.L"));
+  }
+}
+
+TEST_CASE("a measure whose name has a meaning, or is none, is refused in one line") {
+  const Folder folder;
+  for (const auto& [name, says] : std::vector<std::pair<std::string, std::string>>{
+           {"status", "\"status\" is a name of summary.json"},
+           {"error_estimate", "\"error_estimate\" is a name of summary.json"},
+           {"pi", "has a meaning already"},
+           {"sin", "has a meaning already"},
+           {"a b", "is no name"},
+           {"a,b", "is no name"},
+           {"1x", "is no name"}}) {
+    const std::string scene = folder.write("kink.ini", kink_scene(name + " = kinks\n"));
+    for (const std::string command : {"run", "sweep --lattice.sites=101,201"}) {
+      const auto space = command.find(' ');
+      const Ran ran = delf_program(folder, command.substr(0, space) + " '" + scene + "' --out out" +
+                                               (space == std::string::npos ? "" : command.substr(space)));
+      INFO(name << "\n" << ran.err);
+      CHECK(ran.code == 2);
+      CHECK(lines(ran.err).size() == 1);
+      CHECK(contains(ran.err, "kink.ini:18: measure." + name));
+      CHECK(contains(ran.err, says));
+      CHECK_FALSE(std::filesystem::exists(folder / "out"));
+    }
+  }
+}
+
 TEST_CASE("a measure that cannot be read is refused in one line") {
   const Folder folder;
   for (const auto& [measure, says] :
@@ -144,6 +205,14 @@ TEST_CASE("a measure that cannot be read is refused in one line") {
                                                         {"value(1", "the bracket is not closed"},
                                                         {"2*x", "x is no number here"},
                                                         {"speeed(1)", "speeed"},
+                                                        {"value(-1)", "value: x = -1 is not in space"},
+                                                        {"maximum(L + 1)", "give a place from 0 to 40"},
+                                                        {"value(1e300)", "is not in space"},
+                                                        {"energy_left(41)", "is not in space"},
+                                                        {"position(1.5)", "there is no kink 1.5"},
+                                                        {"speed(0)", "there is no kink 0"},
+                                                        {"position(1e300)", "there is no kink"},
+                                                        {"__1 + kinks", "names that begin with __"},
                                                         {"value(y)", "y"},
                                                         {"", "no value is given"}}) {
     const std::string scene = folder.write("kink.ini", kink_scene("m = " + measure + "\n"));
