@@ -60,7 +60,7 @@ std::string json_of(const Scene& scene, const Request& request, const Convergenc
   json["version"] = DELF_VERSION;
   json["scene"] = scene.name;
   json["scheme"] = scheme_label(scene.problem);
-  json["status"] = table.interrupted ? "interrupted" : "done";
+  json["status"] = table.status;
   json["error"] = table.exact ? "exact" : "difference";
   json["order"] = table.order();
   json["order_expected"] = request.order ? Json(*request.order) : Json();
@@ -102,7 +102,8 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene) {
                         values.real("convergence.agreement")};
   const ConvergenceTable table = converge(scene, request.levels);
   const double order = table.order();
-  const bool passed = !request.order || std::abs(order - *request.order) <= request.agreement;
+  const bool failed = table.status != "done" && table.status != "interrupted";
+  const bool passed = !failed && (!request.order || std::abs(order - *request.order) <= request.agreement);
   make_results_folder(folder);
   write_text_file(folder / "convergence.json", json_of(scene, request, table, passed));
   write_text_file(folder / "convergence.csv", csv_of(table));
@@ -113,7 +114,8 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene) {
     fmt::print("  order      {}, {} expected: {}\n", number("{:.3f}", order), *request.order,
                passed ? "passed" : "FAILED");
   fmt::print("{}: convergence.json convergence.csv\n", folder.string());
-  if (table.interrupted) return ExitCode::interrupted;
+  if (table.status == "interrupted") return ExitCode::interrupted;
+  if (failed) throw NumericalFailure(table.ended);
   return passed ? ExitCode::done : ExitCode::check_failed;
 }
 

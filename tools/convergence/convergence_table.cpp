@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "tools/convergence/convergence_table.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "lattice/error.hpp"
+#include "tools/failure.hpp"
 #include "tools/run/field_error.hpp"
-#include "tools/run/interrupt.hpp"
 #include "tools/run/refined_scene.hpp"
 #include "tools/run/solution_error.hpp"
 
@@ -35,22 +38,30 @@ ConvergenceTable converge(const Scene& scene, int levels) {
   const double until = static_cast<double>(scene.steps) * scene.problem.time_step;
   table.exact = has_exact(scene, until);
   std::vector<double> before;  // the last row of the level before
-  for (int level = 0; level < levels && !table.interrupted; ++level) {
+  for (int level = 0; level < levels; ++level) {
     const Scene fine = refined(scene, 1 << level);
     const Lattice& lattice = fine.problem.lattice;
     QuietEnd end;
     try {
       end = run_quietly(fine);
-    } catch (const Error& error) {
+    } catch (const NumericalFailure& error) {
+      if (level == 0) throw;
+      table.status = status_of(error);
+      table.ended = fmt::format("N = {}: {}", lattice.sites(), error.what());
+      break;
+    } catch (const BadInput& error) {  // such as more sites than are taken
       if (level == 0) throw;
       table.ended = error.what();
       break;
     }
-    table.interrupted = !end.finished;
-    if (table.interrupted) break;
+    if (!end.finished) {
+      table.status = "interrupted";
+      break;
+    }
     ConvergenceLevel now;
     now.sites = lattice.sites(), now.space_step = lattice.space_step(), now.time_step = fine.problem.time_step;
     now.seconds = end.seconds, now.measures = end.measures;
+    for (const double phi : end.row) now.size = std::max(now.size, std::abs(phi));
     if (table.exact) {
       const FieldError error =
           field_error(end.row, ComparedSolution::exact(fine, until).at(lattice, until), lattice.space_step());
@@ -66,7 +77,7 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     before = std::move(end.row);
   }
   for (std::size_t i = 0; i + 1 < table.levels.size(); ++i) {
-    constexpr double rounding = 1e-12;  // below it there is no order
+    const double rounding = 1e-12 * table.levels[i + 1].size;  // no order comes of it
     const double a = table.levels[i].linf, b = table.levels[i + 1].linf;
     if (b > rounding && std::isfinite(a)) table.levels[i].order = std::log2(a / b);
   }

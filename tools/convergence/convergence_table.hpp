@@ -14,6 +14,7 @@ struct ConvergenceLevel {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   int sites = 1;
   double space_step = 0, time_step = 0, seconds = 0;
+  double size = 0;                      ///< the largest |φ| of the last row
   double linf = unknown, l2 = unknown;  ///< errors, or differences from the next level
   double order = unknown;               ///< log₂ of the maximum norm's ratio to the next level's
   std::vector<NamedNumber> measures;
@@ -22,14 +23,15 @@ struct ConvergenceLevel {
 struct ConvergenceTable {
   bool exact = false;  ///< errors against the exact solution; else differences between one level and the next
   std::vector<ConvergenceLevel> levels;
-  std::string ended;  ///< why there are fewer than asked for; empty if there are as many
-  bool interrupted = false;
+  std::string ended;            ///< why there are fewer than asked for; empty if there are as many
+  std::string status = "done";  ///< or interrupted, or of the level that failed: not-finite, no-convergence, …
 
   /// The order between the last two levels whose errors are known, and above rounding.
   double order() const;
 };
 
-/// Levels 0, 1, …: the scene at 1, ½, ¼, … of its steps in time and space. A level that fails is the end of the table.
+/// Levels 0, 1, …: the scene at 1, ½, ¼, … of its steps in time and space. A level that fails, or that
+/// cannot be run, is the end of the table; the first throws.
 ConvergenceTable converge(const Scene&, int levels);
 
 }  // namespace delf

@@ -66,6 +66,36 @@ TEST_CASE("without an exact solution the differences between lines have the orde
   CHECK(table["levels"][0]["measures"].contains("bounces"));
 }
 
+TEST_CASE("a finer level whose numerics fail is the end of the table, with exit code 3") {
+  const Folder folder;
+  // an explicit step beyond its limit: it takes some 200 steps to grow out of double precision
+  const Ran ran = delf_program(folder,
+                               "convergence breather --lattice.stencil=triangle-vertex --lattice.courant=1.5 "
+                               "--lattice.sites=51 --convergence.levels=3 --out out");
+  INFO(ran.err << ran.out);
+  CHECK(ran.code == 3);
+  CHECK(lines(ran.err).size() == 1);
+  CHECK(contains(ran.err, "N = 204"));
+  const Json table = Json::parse(read(folder / "out/convergence.json"));
+  CHECK(table["status"] == "not-finite");
+  CHECK(table["passed"] == false);
+  CHECK(table["levels"].size() == 2);
+}
+
+TEST_CASE("no order comes of rounding, whatever the size of the field") {
+  const Folder folder;
+  const std::string wave =
+      "wave-packet --theory.name=wave --initial.state=plane-wave --initial.wavenumber=2 --lattice.length=40 "
+      "--lattice.sites=100 --lattice.stencil=triangle-vertex --run.until=4 --convergence.levels=3 ";
+  for (const char* size : {"1e-9", "1e6"}) {
+    const std::string command = wave + "--initial.amplitude=" + size;
+    INFO(command);
+    CHECK(convergence_of(folder, command, 0)["order"].get<double>() == Approx(2).margin(0.1));
+    // exact but for rounding, which here is 1e-24 and 1e-9
+    CHECK(convergence_of(folder, command + " --lattice.courant=1", 0)["order"].is_null());
+  }
+}
+
 TEST_CASE("a convergence that cannot be measured is refused in one line") {
   const Folder folder;
   const Ran ran = delf_program(folder, "convergence breather --convergence.levels=1 --out out");
