@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 
 #include "tools/failure.hpp"
 #include "tools/run/interrupt.hpp"
@@ -57,12 +58,13 @@ constexpr auto log_name = "run.log";
   _exit(static_cast<int>(code));
 }
 
-std::string last_line(const fs::path& file) {
-  std::ifstream in(file);
-  std::string last;
+// The first line of the error that a run ended with: its last one that is not indented, as a quoted text below it is.
+std::string error_in(const fs::path& log) {
+  std::ifstream in(log);
+  std::string error;
   for (std::string line; std::getline(in, line);)
-    if (!line.empty()) last = line;
-  return last;
+    if (!line.empty() && !line.starts_with("  ")) error = line;
+  return error;
 }
 
 int ended(int pid) {
@@ -140,7 +142,7 @@ SweepRow RunPool::finished(const Process& process, const SweptRun&, const std::s
     row.status = code == ExitCode::bad_input         ? "bad-input"
                  : code == ExitCode::numerics_failed ? "failed"
                                                      : "system-failure";
-    row.failure = last_line(folder_ / process.folder / log_name);
+    row.failure = error_in(folder_ / process.folder / log_name);
   }
   if (request_.table) fs::remove_all(folder_ / process.folder);
   // What the machine did to a run may not happen again.
@@ -148,20 +150,30 @@ SweepRow RunPool::finished(const Process& process, const SweptRun&, const std::s
   return row;
 }
 
+void RunPool::look_for_number(const SweepRow& row) {
+  if (request_.number.empty() || !known_numbers_.empty()) return;
+  known_numbers_ = row.numbers();
+}
+
+bool RunPool::number_is_unknown() const {
+  return !known_numbers_.empty() && std::ranges::find(known_numbers_, request_.number) == known_numbers_.end();
+}
+
 std::vector<SweepRow> RunPool::rows_of(const std::vector<SweptRun>& runs) {
   std::vector<SweepRow> rows(runs.size());
   std::vector<std::string> fingerprints;
-  std::vector<std::size_t> waiting;  // the next one last
+  std::vector<std::size_t> waiting;           // the next one last
+  std::map<std::string, std::size_t> places;  // of the first run of each fingerprint: the same run is not run twice
   for (std::size_t i = 0; i < runs.size(); ++i) {
     fingerprints.push_back(fingerprint_of(runs[i].scene));
-    if (const SweepRow* row = known(fingerprints[i])) rows[i] = *row, ++reused_;
-    else waiting.insert(waiting.begin(), i);
+    if (const SweepRow* row = known(fingerprints[i])) rows[i] = *row, ++reused_, look_for_number(rows[i]);
+    else if (places.emplace(fingerprints[i], i).second) waiting.insert(waiting.begin(), i);
   }
   const auto all = static_cast<std::int64_t>(waiting.size());
   Progress progress(all, "run");
   std::vector<Process> running;
   try {
-    while ((!waiting.empty() || !running.empty()) && !Interrupt::asked()) {
+    while ((!waiting.empty() || !running.empty()) && !Interrupt::asked() && !number_is_unknown()) {
       while (!waiting.empty() && static_cast<int>(running.size()) < request_.jobs) {
         running.push_back(start(runs[waiting.back()], waiting.back()));
         waiting.pop_back();
@@ -175,6 +187,7 @@ std::vector<SweepRow> RunPool::rows_of(const std::vector<SweptRun>& runs) {
         const Process process = running[i];
         running.erase(running.begin() + static_cast<std::ptrdiff_t>(i));
         rows[process.run] = finished(process, runs[process.run], fingerprints[process.run]);
+        look_for_number(rows[process.run]);
         progress.at(all - static_cast<std::int64_t>(waiting.size() + running.size()));
       }
     }
@@ -182,6 +195,9 @@ std::vector<SweepRow> RunPool::rows_of(const std::vector<SweptRun>& runs) {
     for (const Process& process : running) kill(process.pid, SIGKILL), ended(process.pid);
     throw;
   }
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (const auto first = places.find(fingerprints[i]); first != places.end() && first->second != i)
+      rows[i] = rows[first->second];
   for (const Process& process : running) {
     kill(process.pid, SIGKILL);
     ended(process.pid);

@@ -15,11 +15,15 @@ class RunPool {
   /// Results go to `folder`.
   RunPool(const SweepRequest&, const std::filesystem::path& folder);
 
-  /// The rows of these runs, in their order. Runs that the journal knows are not repeated. After Ctrl-C those that have
-  /// not finished have no status, and nothing of them is left.
+  /// The rows of these runs, in their order. Runs that the journal knows are not repeated, and of equal ones one is
+  /// run. After Ctrl-C, and once number_is_unknown(), those that have not finished have no status, and nothing of them
+  /// is left.
   std::vector<SweepRow> rows_of(const std::vector<SweptRun>&);
 
   std::size_t reused() const { return reused_; }
+  /// sweep.number is none of the numbers of the first run that had any.
+  bool number_is_unknown() const;
+  const std::vector<std::string>& known_numbers() const { return known_numbers_; }
 
  private:
   struct Process {
@@ -29,6 +33,7 @@ class RunPool {
   };
   Process start(const SweptRun&, std::size_t run);
   SweepRow finished(const Process&, const SweptRun&, const std::string& fingerprint);
+  void look_for_number(const SweepRow&);
   const SweepRow* known(const std::string& fingerprint) const;
   std::filesystem::path folder_of(const SweptRun&, std::size_t run) const;
 
@@ -36,6 +41,7 @@ class RunPool {
   std::filesystem::path folder_;
   SweepJournal journal_;
   std::size_t reused_ = 0;
+  std::vector<std::string> known_numbers_;
 };
 
 }  // namespace delf

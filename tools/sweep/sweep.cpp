@@ -20,17 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Found when there is a row to look at: a run's numbers are those of its summary.json.
-void check_number(const SweepRequest& request, const SweepOutcome& outcome) {
-  if (request.number.empty()) return;
-  std::vector<std::string> known;
-  for (const SweepRow& row : outcome.rows)
-    if (known.empty()) known = row.numbers();
-  if (!known.empty() && std::ranges::find(known, request.number) == known.end())
-    throw BadScene(fmt::format("command line: --sweep.number = {}: is no number of summary.json and no measure{}",
-                               request.number, suggestion(request.number, known)));
-}
-
 void take_runs(const std::vector<SweptRun>& runs, RunPool& pool, SweepOutcome& outcome) {
   outcome.asked = runs.size();
   const std::vector<SweepRow> rows = pool.rows_of(runs);
@@ -60,9 +49,12 @@ void bisect(const SweepRequest& request, RunPool& pool, SweepOutcome& outcome) {
   outcome.asked = order.size();
 }
 
-void write(const SweepRequest& request, const SweepOutcome& outcome, const fs::path& folder) {
+void write_tables(const SweepRequest& request, const SweepOutcome& outcome, const fs::path& folder) {
   write_text_file(folder / "sweep.csv", sweep_csv(request, outcome));
   write_text_file(folder / "sweep.json", sweep_json(request, outcome));
+}
+
+void draw_and_report(const SweepRequest& request, const SweepOutcome& outcome, const fs::path& folder) {
   std::error_code none;
   for (const char* ending : {".png", ".svg"}) fs::remove(folder / "figures" / (std::string("sweep") + ending), none);
   std::string missing;
@@ -97,12 +89,17 @@ ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_lin
   RunPool pool(request, folder);
   if (request.bisection) bisect(request, pool, outcome);
   else take_runs(runs, pool, outcome);
-  check_number(request, outcome);
   if (outcome.number.empty()) outcome.number = request.number.empty() ? usual_number(outcome.rows) : request.number;
   if (Interrupt::asked()) outcome.status = "interrupted";
   outcome.reused = pool.reused();
   outcome.seconds = seconds_since(begin);
-  write(request, outcome, folder);
+  if (pool.number_is_unknown()) outcome.status = "bad-input";
+  write_tables(request, outcome, folder);
+  // It takes a row to know: the numbers of a run are those of its summary.json.
+  if (pool.number_is_unknown())
+    throw BadScene(fmt::format("command line: --sweep.number = {}: is no number of summary.json and no measure{}",
+                               request.number, suggestion(request.number, pool.known_numbers())));
+  draw_and_report(request, outcome, folder);
   if (outcome.status == "interrupted") return ExitCode::interrupted;
   return outcome.done() == 0 ? ExitCode::numerics_failed : ExitCode::done;
 }

@@ -14,7 +14,7 @@ namespace delf {
 /// What a sweep found: everything in its files, its report and its figure.
 struct SweepOutcome {
   std::string scene;
-  std::string status = "done";                   ///< or interrupted
+  std::string status = "done";                   ///< or interrupted, or bad-input if no run can have sweep.number
   std::vector<std::vector<std::string>> values;  ///< of the keys, for each row
   std::vector<SweepRow> rows;                    ///< whole ones only
   std::size_t asked = 0, reused = 0;

@@ -20,7 +20,7 @@ struct Point {
 Threshold find_threshold(const SweepRequest& request, const std::string& number, RunPool& pool) {
   Threshold result;
   const SweepRequest::Bisection& b = *request.bisection;
-  // The runs at these values of the key; fewer after Ctrl-C.
+  // The runs at these values of the key; fewer after Ctrl-C, and none that count without the number.
   const auto points = [&](const std::vector<double>& places) {
     std::vector<SweptRun> runs;
     for (const double place : places) runs.push_back(request.run({fmt::format("{}", place)}));
@@ -31,11 +31,12 @@ Threshold find_threshold(const SweepRequest& request, const std::string& number,
       result.rows.push_back(rows[i]);
       result.values.push_back(runs[i].values);
       all.push_back({places[i], rows[i].number(number)});
-      if (!std::isfinite(all.back().number))
+      if (!std::isfinite(all.back().number) && !pool.number_is_unknown())
         throw NumericalFailure(
             fmt::format("the run at {} = {} ({}) has no number {}; choose other ends, or another number",
                         request.keys[0], places[i], rows[i].status, number));
     }
+    if (pool.number_is_unknown()) all.clear();
     return all;
   };
   std::vector<Point> ends = points({b.low, b.high});
@@ -62,7 +63,7 @@ Threshold find_threshold(const SweepRequest& request, const std::string& number,
   }
   result.low = ends[0].at, result.high = ends[1].at;
   result.at_low = ends[0].number, result.at_high = ends[1].number;
-  result.found = !Interrupt::asked();
+  result.found = !Interrupt::asked() && !pool.number_is_unknown();
   return result;
 }
 

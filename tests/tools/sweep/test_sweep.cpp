@@ -211,8 +211,49 @@ TEST_CASE("a sweep that cannot be met is refused in one line before any run") {
     CHECK(contains(ran.err, says));
     CHECK_FALSE(std::filesystem::exists(folder / "out/runs"));
   }
-  const Ran unknown =
-      delf_program(folder, "sweep '" + scene + "' --initial.speed=0.1,0.2 --sweep.number=plce --out out");
-  CHECK(unknown.code == 2);
-  CHECK(contains(unknown.err, "did you mean place"));
+}
+
+TEST_CASE("a number that no run has ends a sweep, or a bisection, after its first rows, which are kept") {
+  const Folder folder;
+  const std::string scene = folder.write("kink.ini", scene_with_kink());
+  for (const std::string keys : {"--initial.speed=0.1:0.5:0.1", "--sweep.bisect=initial.speed=0:0.8"}) {
+    const Ran ran = delf_program(
+        folder, "sweep '" + scene + "' --sweep.resume=off --sweep.jobs=1 --sweep.number=plce --out out " + keys);
+    INFO(ran.err);
+    CHECK(ran.code == 2);
+    CHECK(lines(ran.err).size() == 1);
+    CHECK(contains(ran.err, "did you mean place"));
+    CHECK(sweep_of(folder)["status"] == "bad-input");
+    CHECK(sweep_of(folder)["runs"].size() == 1);
+    CHECK(lines(read(folder / "out/sweep.csv")).size() == 2);
+  }
+}
+
+TEST_CASE("equal settings are run once, and each has the row") {
+  const Folder folder;
+  const std::string scene = folder.write("kink.ini", scene_with_kink());
+  const Ran ran =
+      delf_program(folder, "sweep '" + scene + "' --initial.speed=0.3,0.3,0.2,0.3 --sweep.jobs=2 --out out");
+  INFO(ran.err << ran.out);
+  REQUIRE(ran.code == 0);
+  const Json sweep = sweep_of(folder);
+  REQUIRE(sweep["runs"].size() == 4);
+  CHECK(sweep["runs_reused"] == 0);
+  for (const std::size_t i : {0u, 1u, 3u}) {
+    CHECK(sweep["runs"][i]["settings"]["initial.speed"] == "0.3");
+    CHECK(sweep["runs"][i]["summary"]["measures"]["place"].get<double>() == Approx(16.5).margin(0.02));
+  }
+  CHECK(sweep["runs"][1]["summary"] == sweep["runs"][0]["summary"]);
+  CHECK(sweep["runs"][2]["summary"]["measures"]["place"].get<double>() == Approx(16).margin(0.02));
+  CHECK(lines(read(folder / "out/sweep.rows")).size() == 2);
+}
+
+TEST_CASE("a run that is refused with a caret has the line above it as its failure") {
+  const Folder folder;
+  const std::string scene = folder.write("kink.ini", scene_with_kink() + "wrong = speeed(1)\n");
+  delf_program(folder, "sweep '" + scene + "' --initial.speed=0.1,0.2 --sweep.keep=table --out out");
+  const Json run = sweep_of(folder)["runs"][0];
+  CHECK(run["status"] == "bad-input");
+  CHECK(contains(run["failure"].get<std::string>(), "measure.wrong"));
+  CHECK(contains(run["failure"].get<std::string>(), "speeed"));
 }
