@@ -63,10 +63,18 @@ std::vector<std::string> in_words(const ErrorEstimate& e) {
 
 ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const std::vector<double>& last_row) {
   ErrorEstimate estimate;
+  const auto interrupted = [&] {
+    estimate.interrupted = true;
+    estimate.failure = "interrupted";
+    return estimate;
+  };
+  if (outcome.status == "interrupted") return interrupted();
   try {
     if (outcome.status != "done") throw BadInput("", "the run did not end well");
-    const QuietEnd half = run_quietly(refined(scene, 2)), quarter = run_quietly(refined(scene, 4));
-    if (!half.finished || !quarter.finished) throw BadInput("", "interrupted");
+    const QuietEnd half = run_quietly(refined(scene, 2));
+    if (!half.finished) return interrupted();
+    const QuietEnd quarter = run_quietly(refined(scene, 4));
+    if (!quarter.finished) return interrupted();
     const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
     const std::size_t fields = last_row.size() / sites;
     const bool point = scene.problem.lattice.space() == Space::point;

@@ -20,8 +20,9 @@ Richardson richardson(double first, double second, double size);
 
 /// How wrong a run is, found from runs of the same scene at half and at a quarter of its steps.
 struct ErrorEstimate {
-  std::string failure;  ///< why there is none
-  Richardson row;       ///< the last row, in the maximum norm
+  std::string failure;       ///< why there is none
+  bool interrupted = false;  ///< by Ctrl-C
+  Richardson row;            ///< the last row, in the maximum norm
   std::vector<std::pair<std::string, Richardson>> measures;
 };
 

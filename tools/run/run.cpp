@@ -18,8 +18,8 @@
 #include "tools/run/recorder.hpp"
 #include "tools/run/stepping.hpp"
 #include "tools/scene/initial_rows.hpp"
-#include "tools/scene/values.hpp"
 #include "tools/scene/text_file.hpp"
+#include "tools/scene/values.hpp"
 
 namespace delf {
 
@@ -72,8 +72,8 @@ void say_what_is_there(const fs::path& folder) {
 // A run would end in growing rounding errors.
 void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
   if (const auto ghost = ghost_under_constraint(system))
-    throw scene.settings.error("lattice.stencil",
-                               fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
+    throw scene.settings.error(
+        "lattice.stencil", fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
 }
 
 ExitCode run_in(const fs::path& folder, const Scene& scene) {
@@ -112,7 +112,10 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
   };
   attempt([&] { stepping.run(recorder); });
   if (Values(scene.settings).toggle("output.estimate"))
-    attempt([&] { outcome.error_estimate = estimate_error(scene, outcome, stepping.last_row()); });
+    attempt([&] {
+      outcome.error_estimate = estimate_error(scene, outcome, stepping.last_row());
+      if (outcome.error_estimate->interrupted) outcome.status = "interrupted";  // what was asked for is not all there
+    });
   outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
   attempt([&] { recorder.close(); });
   std::string missing;

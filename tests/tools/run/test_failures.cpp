@@ -55,8 +55,9 @@ TEST_CASE("an implicit step that cannot be solved ends with exit code 3") {
 
 TEST_CASE("a wave map on a stencil with a staggered ghost is refused with exit code 2, and its plan names the ghost") {
   const Folder folder;
-  const std::string symmetric = " wave-map --lattice.stencil=rectangle-symmetric --lattice.sites=16 --run.steps=4 "
-                                "--output.figures=off";
+  const std::string symmetric =
+      " wave-map --lattice.stencil=rectangle-symmetric --lattice.sites=16 --run.steps=4 "
+      "--output.figures=off";
   const Ran ran = delf_program(folder, "run" + symmetric + " --out out");
   INFO(ran.err);
   CHECK(ran.code == 2);
@@ -120,6 +121,22 @@ TEST_CASE("an interrupted run writes all so far, and ends with exit code 130") {
   const FieldsReader fields(folder / "cut/fields.h5");
   CHECK(*fields.time(fields.frames() - 1) == json["time"]);
   CHECK(lines(read(folder / "cut/series.csv")).size() == static_cast<std::size_t>(fields.frames()) + 1);
+}
+
+TEST_CASE("an interrupted estimate ends with exit code 130, and the run is there") {
+  const Folder folder;
+  // The run takes a third of a second, its estimate some twenty times as long; a slower one is interrupted itself.
+  const Ran ran =
+      shell(folder, "'" DELF_PROGRAM
+                    "' run kink --run.until=6000 --output.estimate=on --output.figures=off --output.fields=off "
+                    "--out cut & p=$!; sleep 0.8; kill -INT $p; wait $p");
+  INFO(ran.err << ran.out);
+  CHECK(ran.code == 130);
+  CHECK(contains(ran.out, "none: interrupted"));
+  const auto json = nlohmann::json::parse(read(folder / "cut/summary.json"));
+  CHECK(json["status"] == "interrupted");
+  CHECK(json["error_estimate"]["failure"] == "interrupted");
+  CHECK(json["steps"] > 0);
 }
 
 TEST_CASE("a full disk ends with exit code 4 and one line, and what fitted stays readable") {
