@@ -40,6 +40,20 @@ bool is_shared(const Simulation& simulation) {
   return stepper.layout() && !stepper.iterates() && stepper.matrix_free() && system.lattice().is_circle();
 }
 
+constexpr auto momentum_dataset = "momentum";
+
+// Momenta that no method records are half of an equation: at row 0 of the stencils above it, which must hold no more than
+// the starting rows.
+void require_momenta_of_all_rows(const Simulation& simulation, const RowNames& names) {
+  if (std::ranges::find(names.datasets, momentum_dataset, &Simulation::DatasetInfo::name) != names.datasets.end())
+    return;
+  if (simulation.starting_rows() < 2 || simulation.evolution().system().height() > 1)
+    throw BadInput(
+        "output.section",
+        "this method has no momenta at row 0; leave it out, or use a method that starts from two rows, such as "
+        "scheme.method = multisymplectic");
+}
+
 }  // namespace
 
 std::string threads_in_words(const Simulation& simulation, int asked) {
@@ -65,6 +79,7 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
   if (!scene.section.empty() && scene.problem.lattice.space() == Space::point) {
     try {
       require_lagrangian(simulation.evolution().system());
+      require_momenta_of_all_rows(simulation, names);
       section_.emplace(scene.section, simulation.count(Role::field), scene.problem.time_step);
     } catch (const BadInput& bad) {
       throw scene.settings.located(bad);
@@ -103,7 +118,7 @@ std::vector<double> Stepping::phase_point(int back) const {
   std::vector<double> point(d), p;
   simulation_.copy_row(back, point);
   for (std::size_t which = 0; which < names_.datasets.size() && p.empty(); ++which)
-    if (names_.datasets[which].name == "momentum") p = simulation_.dataset(which, back);
+    if (names_.datasets[which].name == momentum_dataset) p = simulation_.dataset(which, back);
   if (p.empty()) p = simulation_.momenta(back);  // of all components, fields first
   point.insert(point.end(), p.begin(), p.begin() + static_cast<std::ptrdiff_t>(d));
   return point;

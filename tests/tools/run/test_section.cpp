@@ -127,3 +127,10 @@ TEST_CASE("a run writes its section, whatever rows it records, and for any Lagra
                    x[2] * x[2] * x[2] / 3 - (0.5 * (0.0625 + 0.015625) + 0.0625 * 0.125 - 0.001953125 / 3)) < 1e-8);
   check_refused(delf_program(folder, "run henon-heiles --output.section=q3=0"), {"output.section", "q1 = 0, p1 > 0"});
 }
+
+TEST_CASE("a section of a method without momenta at row 0 is refused in one line") {
+  const Folder folder;
+  check_refused(delf_program(folder, "run lotka-volterra --output.section='q1 = 1, p1 > 0' --out out"),
+                {"output.section", "no momenta at row 0"});
+  CHECK_FALSE(std::filesystem::exists(folder / "out"));
+}
