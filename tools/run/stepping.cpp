@@ -50,8 +50,8 @@ void require_momenta_of_all_rows(const Simulation& simulation, const RowNames& n
   if (simulation.starting_rows() < 2 || simulation.evolution().system().height() > 1)
     throw BadInput(
         "output.section",
-        "this method has no momenta at row 0; leave it out, or use a method that starts from two rows, such as "
-        "scheme.method = multisymplectic");
+        "this method has no momenta at row 0, which a section needs; leave it out, or use a method that starts "
+        "from two rows or records /momentum");
 }
 
 }  // namespace
