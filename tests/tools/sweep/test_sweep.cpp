@@ -31,6 +31,7 @@ TEST_CASE("values of a sweep are a list, or a range with both its ends") {
   CHECK(values("initial.speed", "0.1,0.2, 0.5") == Texts{"0.1", "0.2", "0.5"});
   CHECK(values("initial.speed", "0.1:0.4:0.1") == Texts{"0.1", "0.2", "0.3", "0.4"});
   CHECK(values("initial.speed", "1:0:-0.5") == Texts{"1", "0.5", "0"});
+  CHECK(values("initial.speed", "0.1:0.5:0.15") == Texts{"0.1", "0.25", "0.4"});  // the last that the steps reach
   CHECK(values("lattice.stencil", "triangle,hexagon") == Texts{"triangle", "hexagon"});
   CHECK(values("initial.speed", "0.3") == Texts{"0.3"});
   // text and times have commas and colons of their own
