@@ -148,7 +148,7 @@ const std::vector<Command>& table() {
        true, carry_out_verify, "verify", true},
       {"sweep", "delf sweep SCENE [--out DIR] --KEY=a,b,c [--KEY=from:to:step ...]",
        "a scene for many values of its keys, side by side",
-       "Runs a scene for every value of the keys that are given several: a,b,c or from:to:step, both ends included.\n"
+       "Runs a scene for every value of the keys that are given several: a,b,c or from:to:step, which ends at `to` or before it.\n"
        "Several keys give all their pairs. Each run is a process of its own; one that fails is a row with its status.\n"
        "Into DIR (results/NAME-sweep, if not given) go sweep.csv and sweep.json, a row for each run with its numbers;\n"
        "sweep.rows, from which the same command goes on after Ctrl-C or worse; runs/, the folder of each run; and a\n"
