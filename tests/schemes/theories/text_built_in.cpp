@@ -132,8 +132,8 @@ int steps_of(const Pair& pair, const std::string& stencil) {
 
 TEST_CASE("built-in theories written as text have the same plan, rows, energy and momenta") {
   for (const Pair& pair : on_a_circle)
-    compare(pair, pair.constraint.empty() ? "rectangle-symmetric" : "rectangle", false, 60);
-  for (const Pair& pair : on_a_point) compare(pair, "midpoint", true, 60);
+    compare(pair, pair.constraint.empty() ? "rectangle-symmetric" : "rectangle", false, 10);
+  for (const Pair& pair : on_a_point) compare(pair, "midpoint", true, 10);
 }
 
 TEST_CASE("every built-in theory as text steps like the compiled one on every stencil", "[slow]") {
