@@ -21,12 +21,14 @@ void BatchDensity::find_constants() {
   const auto kept = [&](std::size_t a, std::size_t b) {
     return is_constant(static_cast<int>(a), static_cast<int>(b)) ? H[a * m + b][0] : 0.0;
   };
-  constant_hessian_.assign(m * m, 0.0);
-  constant_gradient_.assign(m, 0.0);
   for (const bool at_zero : {true, false}) {
     for (std::size_t a = 0; a < m && !at_zero; ++a) jet[a] = Pack(1 + 0.25 * static_cast<double>(a));
+    // While no constants are known, every entry of the Hessian is evaluated.
+    constant_hessian_.clear();
     hessian(batch, entries.data());
     gradient(batch, gradient_rows.data());
+    constant_hessian_.assign(m * m, 0.0);
+    constant_gradient_.assign(m, 0.0);
     bool finite = true;
     for (std::size_t a = 0; a < m; ++a)
       for (std::size_t b = 0; b < m; ++b) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <utility>
@@ -40,8 +41,15 @@ class BatchOf final : public BatchDensity, public ValueDerivatives {
       if (l) r.value.store(l + at);
     });
   }
-  /// Row by row: the derivative in one variable of all derivatives.
+  /// Row by row: the derivative in one variable of all derivatives. Where ℓ is nonlinear in φ alone, only ∂²ℓ/∂φ∂φ varies.
   void hessian(const JetBatch& batch, double* const* H) const override {
+    if (nonlinearity() != Nonlinearity::all && !is_placed() && !constant_hessian().empty()) {
+      for (int v = 0; v < m * m; ++v) std::fill_n(H[v], batch.count, constant_hessian()[static_cast<std::size_t>(v)]);
+      std::array<double*, static_cast<std::size_t>(d* d)> c;
+      for (int a = 0; a < d; ++a)
+        for (int b = 0; b < d; ++b) c[static_cast<std::size_t>(a * d + b)] = H[a * m + b];
+      return curvature(batch, c.data());
+    }
     using Inner = Dual<Pack, 1>;
     using Number = Dual<Inner, m>;
     for (int row = 0; row < m; ++row)
@@ -72,40 +80,18 @@ class BatchOf final : public BatchDensity, public ValueDerivatives {
     }
   }
   void curvature(const JetBatch& batch, double* const* c) const override {
-    using Inner = Dual<Pack, 1>;
-    using Number = Dual<Inner, d>;
-    for (int row = 0; row < d; ++row)
-      for_each_pack(batch, [&](int at) {
-        JetFor<Number, D> jet = still<Number>();
-        for (int a = 0; a < d; ++a) {
-          Inner value(Pack::load(batch.slots[a] + at));
-          value.d[0] = Pack(a == row ? 1.0 : 0.0);
-          jet_slot(jet, 0, a) = Number::variable(value, a);
-        }
-        place<Number>(jet, batch, at);
-        const Number r = density_(jet);
-        for (int a = 0; a < d; ++a) r.derivative(a).derivative(0).store(c[row * d + a] + at);
-      });
+    differentiate_twice(density_, batch, [&](int row, int at, const auto& r) {
+      for (int a = 0; a < d; ++a) r.derivative(a).derivative(0).store(c[row * d + a] + at);
+    });
   }
   [[gnu::__flatten__]] void slope_and_curvature(const JetBatch& given, double* const* g,
                                                 double* const* c) const override {
-    using Inner = Dual<Pack, 1>;
-    using Number = Dual<Inner, d>;
     const D density = density_;
     const JetBatch batch = given;
-    for (int row = 0; row < d; ++row)
-      for_each_pack(batch, [&](int at) {
-        JetFor<Number, D> jet = still<Number>();
-        for (int a = 0; a < d; ++a) {
-          Inner value(Pack::load(batch.slots[a] + at));
-          value.d[0] = Pack(a == row ? 1.0 : 0.0);
-          jet_slot(jet, 0, a) = Number::variable(value, a);
-        }
-        place<Number>(jet, batch, at);
-        const Number r = density(jet);
-        r.derivative(row).value.store(g[row] + at);
-        for (int a = 0; a < d; ++a) r.derivative(a).derivative(0).store(c[row * d + a] + at);
-      });
+    differentiate_twice(density, batch, [&](int row, int at, const auto& r) {
+      r.derivative(row).value.store(g[row] + at);
+      for (int a = 0; a < d; ++a) r.derivative(a).derivative(0).store(c[row * d + a] + at);
+    });
   }
   /// The outermost derivative is the one along v.
   void curvature_along(const JetBatch& batch, const double* const* v, double* const* c) const override {
@@ -170,6 +156,22 @@ class BatchOf final : public BatchDensity, public ValueDerivatives {
   }
   static void for_each_pack(const JetBatch& batch, const auto& body) {
     for (int at = 0; at < batch.count; at += lanes) body(at);
+  }
+  /// `take(row, at, r)`: r has the derivatives of ℓ by all φᵃ at (φ, 0, …), and of these the derivatives by φ of `row`.
+  static void differentiate_twice(const D& density, const JetBatch& batch, const auto& take) {
+    using Inner = Dual<Pack, 1>;
+    using Number = Dual<Inner, d>;
+    for (int row = 0; row < d; ++row)
+      for_each_pack(batch, [&](int at) {
+        JetFor<Number, D> jet = still<Number>();
+        for (int a = 0; a < d; ++a) {
+          Inner value(Pack::load(batch.slots[a] + at));
+          value.d[0] = Pack(a == row ? 1.0 : 0.0);
+          jet_slot(jet, 0, a) = Number::variable(value, a);
+        }
+        place<Number>(jet, batch, at);
+        take(row, at, density(jet));
+      });
   }
   template <class Number>
   static JetFor<Number, D> still() {

@@ -14,6 +14,14 @@ void complete(ParameterValues&, const std::vector<Parameter>& declared);
 /// The declared parameter of that key, or null.
 const Parameter* find_parameter(const std::vector<Parameter>& declared, std::string_view key);
 
+/// The names in a list, as the choices of a key.
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& list) {
+  std::vector<std::string> names;
+  for (const Named& named : list) names.push_back(named.name);
+  return names;
+}
+
 /// A value as a scene writes it.
 std::string to_text(const ParameterValue&);
 

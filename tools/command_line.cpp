@@ -7,7 +7,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 #include "tools/commands.hpp"
 #include "tools/help.hpp"
 #include "tools/scene/keys.hpp"

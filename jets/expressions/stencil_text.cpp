@@ -10,24 +10,19 @@
 
 #include "jets/expressions/expression.hpp"
 #include "lattice/error.hpp"
+#include "lattice/text_parts.hpp"
 
 namespace delf {
 namespace {
 
 std::string quoted(std::string_view text) { return std::string(1, '"').append(text.substr(0, 60)).append(1, '"'); }
 
-constexpr std::array<const char*, jet_slots> slot_names{"phi", "phi_t", "phi_x", "phi_tt", "phi_tx", "phi_xx"};
-
 [[noreturn]] void refuse(const std::string& key, const std::string& why) { throw BadInput(key, key + ": " + why); }
 
-std::string trim(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream in(text);
-  for (std::string part; std::getline(in, part, separator);) parts.push_back(trim(part));
+  for (std::string part; std::getline(in, part, separator);) parts.push_back(trimmed(part));
   return parts;
 }
 
@@ -72,7 +67,7 @@ TablePoint point_of(const std::string& text, const std::vector<Site>& sites, con
   point.weight = number_of(parts[0], key);
   for (std::size_t n = 1; n < parts.size(); ++n) {
     const auto colon = parts[n].find(':');
-    const std::string name = trim(parts[n].substr(0, colon));
+    const std::string name = trimmed(parts[n].substr(0, colon));
     const auto slot = std::ranges::find(slot_names, name);
     if (colon == std::string::npos || slot == slot_names.end())
       refuse(key,

@@ -12,6 +12,7 @@ namespace delf {
 /// The numbers in a jet, for each component of the field. Second derivatives are there for densities that ask for them.
 enum class JetSlot { phi, phi_t, phi_x, phi_tt, phi_tx, phi_xx };
 inline constexpr int jet_slots = 6;
+inline constexpr std::array<const char*, jet_slots> slot_names{"phi", "phi_t", "phi_x", "phi_tt", "phi_tx", "phi_xx"};
 
 /// Weights of a slot are divided by h^time k^space.
 struct SlotPowers {

@@ -137,15 +137,6 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
   Jets jets(*this, batch);
   const int m = jets.variables;
   const ScratchRows H(m * m, std::min(batch.count, Jets::most));
-  // A density that is nonlinear in φ alone: ∂²ℓ/∂φ∂φ varies, and no other entry.
-  const bool in_values = density_->nonlinearity() != Nonlinearity::all && !density_->is_placed();
-  std::vector<double*> curvature;
-  if (in_values) {
-    for (int v = 0; v < m * m; ++v)
-      std::fill_n(H[v], std::min(batch.count, Jets::most), density_->constant_hessian()[at(v)]);
-    for (int a = 0; a < d_; ++a)
-      for (int b = 0; b < d_; ++b) curvature.push_back(H[a * m + b]);
-  }
   const auto columns = static_cast<std::ptrdiff_t>(unknowns.size());
   fill_zero(J, static_cast<int>(equations.size() * unknowns.size()) * batch.count);
   for (int first = 0; first < batch.count; first += Jets::most) {
@@ -153,8 +144,7 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
     for (std::size_t q = 0; q < points_.size(); ++q) {
       if (!adds_to(points_[q], equations)) continue;
       const TablePoint& p = table_.points[q];
-      if (in_values) density_->curvature(jets.at_point(p, first, count), curvature.data());
-      else density_->hessian(jets.at_point(p, first, count), H.data());
+      density_->hessian(jets.at_point(p, first, count), H.data());
       // J += |Δ| w_q M_qᵀ ∂²ℓ/∂j∂j M_q
       for (std::size_t e = 0; e < equations.size(); ++e)
         for (std::size_t u = 0; u < unknowns.size(); ++u) {

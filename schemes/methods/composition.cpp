@@ -9,6 +9,7 @@
 #include "jets/tables/pair_element.hpp"
 #include "jets/tables/splitting.hpp"
 #include "lattice/error.hpp"
+#include "schemes/declared.hpp"
 #include "schemes/methods/pair_parts.hpp"
 
 namespace delf {
@@ -52,12 +53,6 @@ std::vector<NamedScheme> variants(const Problem& base) {
   return schemes;
 }
 
-std::vector<std::string> splitting_names() {
-  std::vector<std::string> names;
-  for (const NamedSplitting& named : named_splittings()) names.push_back(named.name);
-  return names;
-}
-
 }  // namespace
 
 extern const MethodEntry composition_method;
@@ -65,10 +60,7 @@ const MethodEntry composition_method{
     .name = "composition",
     .formula = "sub-steps of scheme.order over pairs of sites of lattice.space_order: explicit, any even order",
     .build = build,
-    .parameters = {{.key = "lattice.space_order",
-                    .fallback = 4,
-                    .help = "order in space: 2, 4, ..., 20",
-                    .range = {.low = 2, .high = 2 * widest_pair}},
+    .parameters = {space_order_parameter(),
                    {.key = "scheme.order",
                     .fallback = usual_order,
                     .help = "order in time: 2, 4, 6, 8",
@@ -77,7 +69,7 @@ const MethodEntry composition_method{
                    {.key = "scheme.splitting",
                     .fallback = "blanes-moan-4",
                     .help = "the sub-steps, by name; the number is their order",
-                    .choices = splitting_names(),
+                    .choices = names_of(named_splittings()),
                     .otherwise = "leapfrog, blanes-moan-4, blanes-moan-6 or kahan-li-8, by scheme.order"}},
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,

@@ -13,6 +13,7 @@
 #include "jets/tables/flux_table.hpp"
 #include "jets/tables/time_element.hpp"
 #include "lattice/error.hpp"
+#include "schemes/declared.hpp"
 #include "schemes/families/trace_stencil.hpp"
 #include "schemes/methods/element_keys.hpp"
 #include "schemes/methods/element_parts.hpp"
@@ -27,7 +28,7 @@ namespace {
 
 struct Keys : ElementKeys {
   explicit Keys(const Problem& p)
-      : ElementKeys(p, 0),
+      : ElementKeys(p.parameters),
         flux(*std::ranges::find(named_fluxes(), p.parameters.get<std::string>("scheme.flux"), &NamedFlux::name)),
         nu(p.parameters.get<double>("scheme.nu")) {}
 
@@ -191,7 +192,10 @@ const MethodEntry dgvi_method{
                    functions_parameter(3, 1),
                    quadrature_parameter(),
                    points_parameter("functions", 3),
-                   {.key = "scheme.flux", .fallback = "gauss2", .help = "the action of a jump", .choices = names_of(named_fluxes())},
+                   {.key = "scheme.flux",
+                    .fallback = "gauss2",
+                    .help = "the action of a jump",
+                    .choices = names_of(named_fluxes())},
                    {.key = "scheme.nu",
                     .fallback = 0.0,
                     .help = "a fault for `delf verify` to find: a gauge -nu d(theta.q)/dt on the jumps alone"}},

@@ -7,20 +7,29 @@
 #include <cstddef>
 
 #include "lattice/error.hpp"
-#include "schemes/simulation.hpp"
+#include "schemes/declared.hpp"
 
 namespace delf {
-ElementKeys::ElementKeys(const Problem& p, int more)
-    : basis_name(p.parameters.get<std::string>("scheme.basis")),
-      quadrature(p.parameters.get<std::string>("scheme.quadrature")),
-      functions(p.parameters.get<int>("scheme.functions")),
-      points(p.parameters.maybe<int>("scheme.points").value_or(functions + more)) {
-  const auto named = std::ranges::find(named_line_bases(), basis_name, &NamedLineBasis::name);
-  if (functions < named->fewest)
+
+ElementKeys::ElementKeys(const ParameterValues& values) {
+  read(values);
+  points = values.maybe<int>("scheme.points").value_or(functions);
+  basis = named_basis().make(functions);
+}
+
+void ElementKeys::read(const ParameterValues& values) {
+  basis_name = values.maybe<std::string>("scheme.basis").value_or(basis_name);
+  functions = values.maybe<int>("scheme.functions").value_or(functions);
+  quadrature = values.maybe<std::string>("scheme.quadrature").value_or(quadrature);
+}
+
+const NamedLineBasis& ElementKeys::named_basis() const {
+  const NamedLineBasis& named = *std::ranges::find(named_line_bases(), basis_name, &NamedLineBasis::name);
+  if (functions < named.fewest)
     throw BadInput("scheme.functions", fmt::format("scheme.functions = {}: the basis {} has {} functions at least; "
                                                    "raise scheme.functions, or use lagrange-gauss",
-                                                   functions, basis_name, named->fewest));
-  basis = named->make(functions);
+                                                   functions, basis_name, named.fewest));
+  return named;
 }
 
 LineRule ElementKeys::rule() const {

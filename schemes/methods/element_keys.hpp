@@ -11,12 +11,10 @@
 
 namespace delf {
 
-struct Problem;
-
 /// The keys that elements in time share: S functions of a basis, and a quadrature rule of R points.
 struct ElementKeys {
-  /// R is S + `more` if scheme.points is not given. Throws BadInput for a basis that has not so few functions.
-  ElementKeys(const Problem&, int more);
+  /// R is S if scheme.points is not given. Throws BadInput for a basis that has not so few functions.
+  explicit ElementKeys(const ParameterValues&);
   /// Throws BadInput for a rule that has not so few points.
   LineRule rule() const;
 
@@ -26,15 +24,11 @@ struct ElementKeys {
 
  protected:
   ElementKeys() = default;
+  /// Those that are given, but for the points.
+  void read(const ParameterValues&);
+  /// Throws that BadInput.
+  const NamedLineBasis& named_basis() const;
 };
-
-/// The choices of a key.
-template <class Named>
-std::vector<std::string> names_of(const std::vector<Named>& list) {
-  std::vector<std::string> names;
-  for (const Named& named : list) names.push_back(named.name);
-  return names;
-}
 
 Parameter basis_parameter(const std::string& fallback);
 Parameter functions_parameter(int fallback, int fewest);

@@ -9,6 +9,13 @@
 
 namespace delf {
 
+Parameter space_order_parameter() {
+  return {.key = "lattice.space_order",
+          .fallback = 4,
+          .help = "order in space: 2, 4, ..., 20",
+          .range = {.low = 2, .high = 2 * widest_pair}};
+}
+
 int pairs_of_order(const Problem& p, const char* key, int order) {
   if (order % 2 != 0 || order < 2 || order > 2 * widest_pair)
     throw BadInput(

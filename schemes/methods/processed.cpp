@@ -97,9 +97,7 @@ std::vector<NamedScheme> variants(const Problem& base) {
         problem.parameters["scheme.kernel"] = std::string(kernel);
         problem.parameters["lattice.space_order"] = space;
         problem.parameters["lattice.pairs"] = std::string(pairs);
-        schemes.push_back(
-            {fmt::format("processed ({},{}){}", kernel, space, pairs == std::string("suited") ? " suited" : ""),
-             std::move(problem)});
+        schemes.push_back({name_of(problem), problem});
         schemes.back().tuned = pairs == std::string("suited");
       }
   return schemes;
@@ -126,10 +124,7 @@ const MethodEntry processed_method{
                     .fallback = std::string("maximal"),
                     .help = "weights of pairs: of maximal order, or suited to lattice.analyticity",
                     .choices = {"maximal", "suited"}},
-                   {.key = "lattice.space_order",
-                    .fallback = 4,
-                    .help = "order in space: 2, 4, ..., 20",
-                    .range = {.low = 2, .high = 2 * widest_pair}},
+                   space_order_parameter(),
                    {.key = "scheme.kernel",
                     .fallback = std::string("b6"),
                     .help = "ti4: one kick a step, with a force gradient; b6: six kicks",

@@ -7,6 +7,7 @@
 
 #include "jets/tables/time_tableau.hpp"
 #include "lattice/error.hpp"
+#include "schemes/declared.hpp"
 
 namespace delf {
 namespace {
@@ -27,11 +28,9 @@ TimeElementKeys::TimeElementKeys(const ParameterValues& values)
     basis_name = t.basis, functions = t.functions, quadrature = t.quadrature, points = t.points;
     degree = functions - 1;
   } else {
-    basis_name = values.maybe<std::string>("scheme.basis").value_or(basis_name);
-    functions = values.maybe<int>("scheme.functions").value_or(functions);
-    quadrature = values.maybe<std::string>("scheme.quadrature").value_or(quadrature);
+    read(values);
   }
-  const NamedLineBasis& named = *std::ranges::find(named_line_bases(), basis_name, &NamedLineBasis::name);
+  const NamedLineBasis& named = named_basis();
   if (tableau.empty()) {
     degree = values.maybe<int>("scheme.degree").value_or(named.of_degree ? std::min(3, functions - 1) : functions - 1);
     if (degree != functions - 1 && !named.of_degree)

@@ -6,7 +6,7 @@
 #include "lattice/error.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/state_registry.hpp"
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 
 namespace delf {
 namespace initial {

@@ -13,7 +13,6 @@
 namespace delf {
 
 void require_jet_slots(const LatticeSystem& system) {
-  constexpr std::array names{"phi", "phi_t", "phi_x", "phi_tt", "phi_tx", "phi_xx"};
   // terms of walls are of the same density, and see fewer slots
   std::map<const BatchDensity*, std::array<bool, jet_slots>> seen;
   for (const auto& family : system.families())
@@ -30,7 +29,7 @@ void require_jet_slots(const LatticeSystem& system) {
                        fmt::format("the density has {}, and the stencils of this scheme have no jet with it: the term "
                                    "would be left out; remove it, or use a stencil that has it (`delf help "
                                    "lagrangians`)",
-                                   names[s]));
+                                   slot_names[s]));
     }
 }
 

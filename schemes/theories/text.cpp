@@ -9,7 +9,7 @@
 #include "jets/expressions/stencil_expression.hpp"
 #include "lattice/error.hpp"
 #include "schemes/families/lagrangian_family.hpp"
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 

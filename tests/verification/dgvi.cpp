@@ -18,8 +18,10 @@
 #include "schemes/verify/form_check.hpp"
 #include "schemes/verify/tangent.hpp"
 #include "tests/catch.hpp"
+#include "tests/row_distance.hpp"
 
 using namespace delf;
+using delf::testing::distance;
 
 namespace {
 
@@ -78,12 +80,6 @@ class Body {
   Simulation simulation_;
   std::size_t d_;
 };
-
-double distance(const Numbers& a, const Numbers& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
-}
 
 /// The error at t = 1 of predators and prey that start at (1, 1), against Fehlberg's method of order 8.
 double error(const Elements& e, int n) {

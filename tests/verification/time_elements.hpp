@@ -9,6 +9,7 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
+#include "tests/row_distance.hpp"
 
 namespace delf::testing {
 
@@ -87,12 +88,6 @@ class Body {
   Simulation simulation_;
   std::size_t fields_;
 };
-
-inline double distance(const Numbers& a, const Numbers& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
-}
 
 /// The error at t = 2 of a pendulum let go at 2, in n steps.
 inline double swing_error(const Elements& e, int n) {

@@ -14,19 +14,6 @@
 
 namespace delf {
 
-namespace {
-
-// Every `factor`-th site of a finer row.
-std::vector<double> at_sites_of(const Lattice& coarse, const std::vector<double>& fine, std::size_t fields) {
-  const std::size_t factor = coarse.space() == Space::point ? 1 : 2;
-  std::vector<double> row;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(coarse.sites()); ++i)
-    for (std::size_t a = 0; a < fields; ++a) row.push_back(fine[i * factor * fields + a]);
-  return row;
-}
-
-}  // namespace
-
 double ConvergenceTable::order() const {
   for (auto level = levels.rbegin(); level != levels.rend(); ++level)
     if (std::isfinite(level->order)) return level->order;
@@ -68,9 +55,8 @@ ConvergenceTable converge(const Scene& scene, int levels) {
       now.linf = error.linf, now.l2 = error.l2;
     } else if (level > 0) {
       ConvergenceLevel& coarse = table.levels.back();
-      const Lattice there = refined(scene, 1 << (level - 1)).problem.lattice;
-      const std::size_t fields = before.size() / static_cast<std::size_t>(there.sites());
-      const FieldError error = field_error(before, at_sites_of(there, end.row, fields), there.space_step());
+      const Scene there = refined(scene, 1 << (level - 1));
+      const FieldError error = field_error(before, at_sites_of(there, end.row), there.problem.lattice.space_step());
       coarse.linf = error.linf, coarse.l2 = error.l2;
     }
     table.levels.push_back(std::move(now));

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "jets/expressions/expression.hpp"
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/measure/measure_names.hpp"
 

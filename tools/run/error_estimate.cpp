@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/run/field_error.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/refined_scene.hpp"
 
@@ -25,18 +26,6 @@ Richardson richardson(double first, double second, double size) {
 }
 
 namespace {
-
-// max |coarse − fine| over the sites and fields of the coarsest lattice; `factors` are the distances of its sites in both.
-double distance(const std::vector<double>& coarse, std::size_t factor, const std::vector<double>& fine,
-                std::size_t fine_factor, std::size_t sites, std::size_t fields) {
-  double largest = 0;
-  for (std::size_t i = 0; i < sites; ++i)
-    for (std::size_t a = 0; a < fields; ++a) {
-      const double d = std::abs(coarse[i * factor * fields + a] - fine[i * fine_factor * fields + a]);
-      if (!(d <= largest)) largest = d;
-    }
-  return largest;
-}
 
 double largest_of(const std::vector<double>& row) {
   double largest = 0;
@@ -75,12 +64,11 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const s
     if (!half.finished) return interrupted();
     const QuietEnd quarter = run_quietly(refined(scene, 4));
     if (!quarter.finished) return interrupted();
-    const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
-    const std::size_t fields = last_row.size() / sites;
-    const bool point = scene.problem.lattice.space() == Space::point;
-    const std::size_t two = point ? 1 : 2, four = point ? 1 : 4;
-    estimate.row = richardson(distance(last_row, 1, half.row, two, sites, fields),
-                              distance(half.row, two, quarter.row, four, sites, fields), largest_of(last_row));
+    const std::vector<double> of_half = at_sites_of(scene, half.row, 2),
+                              of_quarter = at_sites_of(scene, quarter.row, 4);
+    const double k = scene.problem.lattice.space_step();
+    estimate.row = richardson(field_error(last_row, of_half, k).linf, field_error(of_half, of_quarter, k).linf,
+                              largest_of(last_row));
     for (std::size_t m = 0; m < outcome.measures.size(); ++m) {
       const double a = outcome.measures[m].value, b = half.measures[m].value, c = quarter.measures[m].value;
       estimate.measures.emplace_back(outcome.measures[m].name,

@@ -23,6 +23,18 @@ Scene refined(const Scene& scene, int factor) {
   return fine;
 }
 
+std::vector<double> at_sites_of(const Scene& scene, const std::vector<double>& refined_row, int factor) {
+  const Lattice& lattice = scene.problem.lattice;
+  if (lattice.space() == Space::point) return refined_row;
+  // the finer lattice has factor · N sites round a circle, and factor · (N − 1) + 1 between walls
+  const auto sites = static_cast<std::size_t>(lattice.sites()), step = static_cast<std::size_t>(factor);
+  const std::size_t fields = refined_row.size() / (lattice.is_circle() ? step * sites : step * (sites - 1) + 1);
+  std::vector<double> row;
+  for (std::size_t i = 0; i < sites; ++i)
+    for (std::size_t a = 0; a < fields; ++a) row.push_back(refined_row[i * step * fields + a]);
+  return row;
+}
+
 QuietEnd run_quietly(const Scene& scene) {
   if (scene.from_file()) throw BadInput("initial.file", "its rows come from a file");
   const InitialRows initial(scene);

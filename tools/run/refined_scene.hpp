@@ -10,6 +10,9 @@ namespace delf {
 /// The scene at 1/factor of its steps in time and space, recorded at the same times; the end of the run is the same.
 Scene refined(const Scene&, int factor = 2);
 
+/// A row of that scene, [i·d + a], at the sites of the given one.
+std::vector<double> at_sites_of(const Scene&, const std::vector<double>& refined_row, int factor = 2);
+
 /// The end of a run that writes nothing.
 struct QuietEnd {
   std::vector<double> row;  ///< of the fields, [i·d + a]

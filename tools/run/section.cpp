@@ -13,7 +13,7 @@
 
 #include "jets/tables/line_basis.hpp"
 #include "lattice/error.hpp"
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 
 namespace delf {
 

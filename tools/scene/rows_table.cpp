@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "lattice/error.hpp"
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 #include "tools/files/fields_reader.hpp"
 
 namespace delf {

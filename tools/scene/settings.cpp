@@ -8,7 +8,7 @@
 #include <optional>
 #include <sstream>
 
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 #include "tools/scene/declared_keys.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/repeated_keys.hpp"

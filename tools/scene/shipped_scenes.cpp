@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 #include "tools/failure.hpp"
 #include "tools/scene/suggestion.hpp"
 

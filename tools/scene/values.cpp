@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "jets/expressions/expression.hpp"
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 #include "tools/scene/suggestion.hpp"
 
 namespace delf {

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "tools/figures/gnuplot.hpp"
 #include "tools/scene/text_file.hpp"
 #include "tools/sweep/sweep_outcome.hpp"
+#include "tools/sweep/swept_number.hpp"
 
 namespace delf {
 
@@ -24,13 +24,6 @@ struct Point {
   std::string words;       ///< of the others
   double number;
 };
-
-std::optional<double> number_in(const std::string& text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
 
 // A logarithmic axis for positive numbers over two powers of ten.
 bool wide(const std::vector<double>& values) {
@@ -109,7 +102,7 @@ std::string draw_sweep(const SweepRequest& request, const SweepOutcome& outcome,
   if (outcome.rows.size() < 2 || outcome.number.empty()) return {};
   std::vector<std::size_t> numeric, worded;
   for (std::size_t a = 0; a < request.keys.size(); ++a) {
-    const bool all = std::ranges::all_of(outcome.values, [&](const auto& v) { return number_in(v[a]).has_value(); });
+    const bool all = std::ranges::all_of(outcome.values, [&](const auto& v) { return swept_number(v[a]).has_value(); });
     (all ? numeric : worded).push_back(a);
   }
   if (numeric.empty()) return {};
@@ -118,7 +111,7 @@ std::string draw_sweep(const SweepRequest& request, const SweepOutcome& outcome,
   std::vector<Point> points;
   for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
     Point p{{}, {}, outcome.rows[i].number(outcome.number)};
-    for (std::size_t a = 0; a < axes; ++a) p.at.push_back(*number_in(outcome.values[i][numeric[a]]));
+    for (std::size_t a = 0; a < axes; ++a) p.at.push_back(*swept_number(outcome.values[i][numeric[a]]));
     for (const std::size_t a : worded)
       p.words += (p.words.empty() ? "" : ", ") + request.keys[a].substr(request.keys[a].find('.') + 1) + " = " +
                  outcome.values[i][a];

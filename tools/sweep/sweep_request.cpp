@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <thread>
 
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/values.hpp"
+#include "tools/sweep/swept_number.hpp"
 
 namespace delf {
 
@@ -21,13 +21,6 @@ namespace {
 
 BadScene wrong(const Setting& s, const std::string& why) {
   return BadScene(fmt::format("command line: --{} = {}: {}", s.key, s.value, why));
-}
-
-std::optional<double> number_in(const std::string& text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
-  return number;
 }
 
 // from, from + step, …, to; twelve digits hide the rounding of the sums
@@ -97,7 +90,7 @@ void read_bisection(const Scene& scene, const Values& values, SweepRequest& requ
   const std::vector<std::string> ends =
       equals == std::string::npos ? std::vector<std::string>() : parts_of(text.substr(equals + 1), ':');
   std::optional<double> low, high;
-  if (ends.size() == 2) low = number_in(ends[0]), high = number_in(ends[1]);
+  if (ends.size() == 2) low = swept_number(ends[0]), high = swept_number(ends[1]);
   if (!low || !high || !(*low < *high))
     throw scene.settings.error("sweep.bisect", "write KEY=a:b with a < b, such as initial.speed=0.2:0.3");
   if (!request.keys.empty())
@@ -117,7 +110,7 @@ std::vector<std::string> swept_values(const Setting& s) {
   if (!may_be_swept(s)) return {s.value};
   const std::vector<std::string> ends = parts_of(s.value, ':');
   if (ends.size() == 3) {
-    const auto from = number_in(ends[0]), to = number_in(ends[1]), step = number_in(ends[2]);
+    const auto from = swept_number(ends[0]), to = swept_number(ends[1]), step = swept_number(ends[2]);
     if (!from || !to || !step || *step == 0) throw wrong(s, "is no range; write from:to:step, such as 0.1:0.5:0.05");
     return range(s, *from, *to, *step);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/text_parts.hpp"
+#include "lattice/text_parts.hpp"
 
 namespace delf {
 
