@@ -89,8 +89,9 @@ density then says what is measured. This is leapfrog, one cell's share of each e
   [stencil]
   sites = (0,0) (1,0) (0,1) (1,1)
 
-Friction and driving have no Lagrangian of these coordinates, and phi_t*phi is a divergence, which adds nothing. With the
-factor exp(g*t) on all of the density friction -g phi_t follows; a drive f(t) is a term f(t)*phi.
+theory.equation = phi_tt - phi_xx + sin(phi) = 0 is tested: by Helmholtz's conditions whether any density has it, and whether
+theory.density does. Friction has none: phi_tt + g*phi_t + sin(phi) = f*cos(t) is refused. With the factor exp(g*t) on all of
+the density friction -g phi_t follows; a drive f(t) is a term f(t)*phi; phi_t*phi is a divergence, which adds nothing.
 
 The states noise and file work for every theory. From C++:
 

@@ -223,9 +223,7 @@ std::string SymbolicDensity::without_value(std::span<const double> jet, double t
       if (!wanted[static_cast<std::size_t>(i)]) continue;
       const Evaluation part(graph, i);
       if (std::isfinite(part.operator()<double>(value_of))) continue;
-      Sums sums(graph, none);
-      std::string reason =
-          printed(sums, sums.of({i}), jet_naming(jets, names(), Notation::plain), Notation::plain) + " has no value";
+      std::string reason = formula_of(graph, i, jets, names()) + " has no value";
       const char* next = ", where ";
       for (int v = 0; v < jets.parameter(static_cast<int>(names().parameters.size())); ++v)
         if (part.reads(v))
@@ -235,6 +233,11 @@ std::string SymbolicDensity::without_value(std::span<const double> jet, double t
   } catch (const TooLarge&) {
   }
   return {};
+}
+
+std::string formula_of(const Graph& graph, int node, const JetVariables& jets, const ExpressionNames& names) {
+  Sums sums(graph, none);
+  return printed(sums, sums.of({node}), jet_naming(jets, names, Notation::plain), Notation::plain);
 }
 
 std::string density_formula(const SymbolicDensity& density, Notation notation) {

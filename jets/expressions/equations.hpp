@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "jets/expressions/euler_lagrange.hpp"
 #include "jets/expressions/expression.hpp"
 #include "jets/expressions/print.hpp"
 #include "jets/tables/stencil_table.hpp"
@@ -18,6 +19,9 @@ std::vector<std::string> field_equations(const SymbolicDensity&, expressions::No
 ///
 /// Brick walls have one for even and one for odd j + i.
 std::vector<std::string> discrete_field_equations(const SymbolicDensity&, const StencilTable&, expressions::Notation);
+
+/// A node of a graph of jets in plain notation. Throws TooLarge.
+std::string formula_of(const expressions::Graph&, int node, const expressions::JetVariables&, const ExpressionNames&);
 
 /// The density itself, with its sums and products in order; in plain notation as it was given.
 std::string density_formula(const SymbolicDensity&, expressions::Notation);

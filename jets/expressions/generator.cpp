@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 
 #include "jets/expressions/euler_lagrange.hpp"
 #include "jets/expressions/evaluate.hpp"
 #include "jets/expressions/parse.hpp"
+#include "jets/expressions/random_jets.hpp"
 #include "lattice/error.hpp"
 
 namespace delf {
@@ -36,32 +36,6 @@ std::string listed(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   return list;
-}
-
-constexpr double rounding = 1e-11;
-
-/// The largest |Σ terms|/Σ|terms| at random jets at which all terms are numbers; nothing if there are none.
-std::optional<double> largest_sum(const Graph& graph, const std::vector<int>& terms, const JetVariables& variables,
-                                  const ExpressionNames& names) {
-  std::vector<Evaluation> evaluations;
-  for (const int term : terms) evaluations.emplace_back(graph, term);
-  std::mt19937_64 random(1);
-  std::optional<double> worst;
-  constexpr int jets = 40;
-  for (int n = 0; n < jets; ++n) {
-    // from −1 to 1, and between 0 and 2, where logarithms and roots have values
-    std::uniform_real_distribution<double> uniform(n % 2 ? -1 : 0, n % 2 ? 1 : 2);
-    std::vector<double> jet(static_cast<std::size_t>(variables.parameter(0)));
-    for (double& value : jet) value = uniform(random);
-    for (const auto& parameter : names.parameters) jet.push_back(parameter.second);
-    double sum = 0, absolute = 0;
-    for (const Evaluation& evaluation : evaluations) {
-      const double term = evaluation.operator()<double>([&](int v) { return jet[static_cast<std::size_t>(v)]; });
-      sum += term, absolute += std::abs(term);
-    }
-    if (std::isfinite(absolute)) worst = std::max(worst.value_or(0), absolute == 0 ? 0 : std::abs(sum) / absolute);
-  }
-  return worst;
 }
 
 /// The terms of δ: Σ ∂root/∂v δv over the fields and their derivatives.
@@ -127,19 +101,20 @@ bool require_symmetry(const LinearSymmetry& symmetry, std::string_view density, 
     const std::vector<int> terms = change(graph, l, symmetry, variables);
     const auto changed = largest_sum(graph, terms, variables, names);
     if (!changed) refuse("the density has no value at any jet that was tried");
-    exact = changed.value_or(1) <= rounding;
+    exact = changed.value_or(1) <= zero_at_random_jets;
     if (!exact) {
       int sum = graph.constant(0);
       for (const int term : terms) sum = graph.add(sum, term);
       for (int a = 0; a < variables.d; ++a)
-        if (largest_sum(graph, euler_lagrange(graph, sum, a, variables), variables, names).value_or(1) > rounding)
+        if (largest_sum(graph, euler_lagrange(graph, sum, a, variables), variables, names).value_or(1) >
+            zero_at_random_jets)
           refuse("the density changes along it, by up to " +
                  std::to_string(static_cast<int>(std::ceil(100 * *changed))) +
                  " % of its terms, and not by a divergence; correct it, or leave it out");
     }
     if (!constraint.empty()) {
       const int G = parse(graph, constraint, variables.names, key);
-      if (largest_sum(graph, change(graph, G, symmetry, variables), variables, names).value_or(1) > rounding)
+      if (largest_sum(graph, change(graph, G, symmetry, variables), variables, names).value_or(1) > zero_at_random_jets)
         refuse("it leads off the constraint; correct it, or leave it out");
     }
   } catch (const TooLarge& large) {

@@ -175,6 +175,22 @@ double jump(const RowsInTime& rows) {
   return most;
 }
 
+/// Each flux, with functions and Gauss's rule of as many points.
+std::vector<NamedScheme> variants(const Problem& base) {
+  if (base.lattice.space() != Space::point) return {{base.method, base}};
+  std::vector<NamedScheme> schemes;
+  for (int S = 1; S <= 4; ++S)
+    for (const NamedFlux& flux : named_fluxes()) {
+      if (S != 3 && flux.name != "gauss2" && flux.name != "one-sided") continue;
+      schemes.push_back({fmt::format("{} S={} {}", base.method, S, flux.name), base});
+      ParameterValues& parameters = schemes.back().problem.parameters;
+      parameters["scheme.basis"] = "lagrange-gauss", parameters["scheme.functions"] = S;
+      parameters["scheme.quadrature"] = "gauss", parameters["scheme.points"] = S;
+      parameters["scheme.flux"] = flux.name;
+    }
+  return schemes;
+}
+
 std::string label(const Problem& p) {
   const Keys keys(p);
   return fmt::format("dgvi, {} flux, {} {} functions, {} {} points{}", keys.flux.name, keys.basis_name, keys.functions,
@@ -206,6 +222,7 @@ const MethodEntry dgvi_method{
     .monitors = {{.name = "jump",
                   .value = jump,
                   .when_it_grows = "a mode of the doubled phase space takes over, and the energy does not show it; run "
-                                   "less far, or use scheme.flux = one-sided in a gauge that allows it"}}};
+                                   "less far, or use scheme.flux = one-sided in a gauge that allows it"}},
+    .variants = variants};
 
 }  // namespace delf

@@ -39,6 +39,23 @@ struct Sum {
 };
 using Place = std::tuple<int, int, int, int>;  // equation, unknown, time, space
 
+/// About a constant state the multipliers are zero, and it must keep the constraints: both hold without a word where they
+/// are linear in the fields. Elsewhere another state gives another J.
+void require_linear_constraints(const StencilFamily& family, const LatticeSystem& system, std::vector<double> y,
+                                const std::vector<double>& J) {
+  const auto multiplier = std::ranges::find_if(
+      family.values(), [&](const auto& value) { return system.component(value.component).role == Role::multiplier; });
+  if (multiplier == family.values().end()) return;
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] += 0.3 + 0.1 * static_cast<double>(i);
+  std::vector<double> other(J.size());
+  family.jacobian({system.time_step(), system.lattice().space_step(), 0, 0}, y, other);
+  if (other == J) return;
+  throw BadInput("scheme.method",
+                 "scheme.method: the constraint of the multiplier " + system.component((*multiplier).component).name +
+                     " is not linear in the fields, and has no linear stability about a constant state; use a scheme "
+                     "without it");
+}
+
 double power_of_two(double x) { return std::ldexp(1.0, std::ilogb(x)); }
 
 }  // namespace
@@ -58,14 +75,7 @@ Symbol::Symbol(const LatticeSystem& system, double constant)
       brick_(system.placement() == Placement::brick_wall),
       time_step_(system.time_step()),
       space_step_(system.lattice().space_step()) {
-  for (const Component& component : system.all_components()) {
-    if (component.role == Role::multiplier)
-      throw BadInput("scheme.method",
-                     "scheme.method: linear stability about a constant state is not written for "
-                     "schemes with multipliers (" +
-                         component.name + "); use one without a constraint");
-    positions_.push_back(component.at);
-  }
+  for (const Component& component : system.all_components()) positions_.push_back(component.at);
   const int parities = brick_ ? 2 : 1;
   size_ = parities * components_;
 
@@ -83,6 +93,7 @@ Symbol::Symbol(const LatticeSystem& system, double constant)
       throw BadInput("theory.name",
                      "theory.name: the density has no finite second derivatives at the constant state; "
                      "choose another constant");
+    require_linear_constraints(*family, system, y, J);
     for (int parity = 0; parity < parities; ++parity)
       for (int e = 0; e < family->size(); ++e) {
         const Site at = family->site(e), anchor{-at.time, parity - at.space};  // so that `at` is the site (0, parity)

@@ -20,7 +20,8 @@ class Symbol {
  public:
   using Complex = std::complex<double>;
 
-  /// All components have the value `constant`. Throws BadInput: a multiplier (scheme.method), a density that depends on
+  /// All components have the value `constant`. Throws BadInput: a multiplier of a constraint
+  /// that is not linear in the fields (scheme.method), a density that depends on
   /// t or x, or that has no finite second derivatives there (theory.name), equations that determine no unknown.
   explicit Symbol(const LatticeSystem&, double constant = 0);
 

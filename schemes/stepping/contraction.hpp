@@ -16,8 +16,16 @@ class Contraction {
   Contraction(const LatticeSystem& system, const SolvePlan& plan)
       : system_(&system), plan_(&plan), bound_(fixed_point_bound(system, plan, amplitude_)) {}
 
-  /// From here on a step may have several roots.
-  bool is_stiff() const { return bound_ && bound_->nonlinear > 0.9 * bound_->dominance; }
+  /// Whether a step from fields of this size may have several roots.
+  bool is_stiff(double largest) {
+    // The bound of a polynomial potential grows with the field: that of larger fields than there are calls a plain step
+    // stiff. One for half as much again as there is, if it is far from stiff, says what is.
+    if (!is_stiff() || amplitude_ != at_first || 1.5 * largest >= at_first) return is_stiff();
+    amplitude_ = 1.5 * largest;
+    if (const auto here = fixed_point_bound(*system_, *plan_, amplitude_))
+      if (here->nonlinear < 0.2 * here->dominance) bound_ = here;
+    return is_stiff();
+  }
 
   /// Whether next_change() must be asked anew for fields of this size.
   bool is_outgrown(double largest) const { return largest > amplitude_ && largest < 1e100; }
@@ -38,9 +46,13 @@ class Contraction {
   }
 
  private:
+  static constexpr double at_first = std::numbers::pi;
+
+  bool is_stiff() const { return bound_ && bound_->nonlinear > 0.9 * bound_->dominance; }
+
   const LatticeSystem* system_;
   const SolvePlan* plan_;
-  double amplitude_ = std::numbers::pi;
+  double amplitude_ = at_first;
   std::optional<FixedPointBound> bound_;
 };
 

@@ -6,10 +6,11 @@
 
 #include "jets/expressions/expression.hpp"
 #include "jets/expressions/generator.hpp"
+#include "jets/expressions/helmholtz.hpp"
 #include "jets/expressions/stencil_expression.hpp"
 #include "lattice/error.hpp"
-#include "schemes/families/lagrangian_family.hpp"
 #include "lattice/text_parts.hpp"
+#include "schemes/families/lagrangian_family.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
@@ -17,7 +18,7 @@ namespace delf {
 namespace {
 
 constexpr auto density_key = "theory.density", fields_key = "theory.fields", parameters_key = "theory.parameters",
-               constraint_key = "theory.constraint", symmetry_key = "theory.symmetry";
+               constraint_key = "theory.constraint", symmetry_key = "theory.symmetry", equation_key = "theory.equation";
 
 /// Fields, and parameters with the numbers that theory.parameters gives them.
 ExpressionNames names_of(const ParameterValues& values) {
@@ -41,8 +42,8 @@ std::string key_of(const std::string& parameter) { return "theory." + parameter;
 std::vector<Parameter> further(const ParameterValues& values) {
   std::vector<Parameter> parameters;
   for (const auto& [name, number] : names_of(values).parameters) {
-    for (const char* taken : {density_key, fields_key, parameters_key, constraint_key, symmetry_key, "theory.name",
-                              "theory.fibre", "theory.lagrangian"})
+    for (const char* taken : {density_key, fields_key, parameters_key, constraint_key, symmetry_key, equation_key,
+                              "theory.name", "theory.fibre", "theory.lagrangian"})
       if (key_of(name) == taken)
         throw BadInput(parameters_key, std::string(parameters_key) + ": the key " + taken +
                                            " has a meaning already; choose another name than " + name);
@@ -70,11 +71,17 @@ BesidesDensity besides(const ParameterValues& values, const ExpressionNames& nam
 }
 
 std::unique_ptr<FieldTheory> make(const ParameterValues& values) {
-  const auto text = values.maybe<std::string>(density_key);
-  if (!text)
-    throw BadInput(density_key, std::string(density_key) + ": must be given; write one like 0.5*phi_t^2 - 0.5*phi_x^2");
+  const auto text = values.maybe<std::string>(density_key), equation = values.maybe<std::string>(equation_key);
   ExpressionNames names = names_of(values);
   for (auto& [name, number] : names.parameters) number = values.maybe<double>(key_of(name)).value_or(number);
+  if (equation) require_lagrangian(*equation, names, equation_key);
+  if (!text && equation)
+    throw BadInput(equation_key, std::string(equation_key) +
+                                     ": a Lagrangian density has this equation, but is not found from it; give it as " +
+                                     density_key + ", and it is tested");
+  if (!text)
+    throw BadInput(density_key, std::string(density_key) + ": must be given; write one like 0.5*phi_t^2 - 0.5*phi_x^2");
+  if (equation) require_field_equations(*equation, *text, names, equation_key);
   std::vector<Component> components = fields(static_cast<int>(names.fields.size()));
   for (std::size_t a = 0; a < components.size(); ++a) components[a].name = names.fields[a];
   const auto constraint = values.maybe<std::string>(constraint_key);
@@ -110,9 +117,15 @@ const TheoryEntry text_theory{
           .fallback = std::string(),
           .help = "changes of the fields that leave theory.density as it is, for Noether's theorem: -v, u; several "
                   "are separated by semicolons",
+          .otherwise = "none"},
+         {.key = equation_key,
+          .fallback = std::string(),
+          .help =
+              "the field equations that theory.density is to have: phi_tt - phi_xx + sin(phi) = 0, several separated "
+              "by semicolons; refused if they are others, or if no density has them",
           .otherwise = "none"}},
     .make = make,
-    .chosen_by = density_key,
+    .chosen_by = {density_key, equation_key},
     .further = further};
 
 }  // namespace delf

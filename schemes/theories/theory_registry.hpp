@@ -24,8 +24,8 @@ struct TheoryEntry {
   /// All components have this value in the state about which the linear limits of a run are found; none: they are not.
   std::optional<double> vacuum = {};
 
-  /// A key of its own that chooses it where a scene does not give theory.name.
-  std::string chosen_by = {};
+  /// Keys of its own that choose it where a scene does not give theory.name.
+  std::vector<std::string> chosen_by = {};
   /// Parameters that the values of those above declare; null: none.
   std::vector<Parameter> (*further)(const ParameterValues&) = nullptr;
 };

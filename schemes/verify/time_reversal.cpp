@@ -9,9 +9,10 @@
 #include <string>
 
 #include "lattice/error.hpp"
+#include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/lattice_system.hpp"
-#include "schemes/simulation.hpp"
+#include "schemes/verify/element_reversal.hpp"
 
 namespace delf {
 namespace {
@@ -62,16 +63,7 @@ bool must_return(const LatticeSystem& system) {
   return reversible(system, seed) || !is_variational(system);
 }
 
-// ---- rows of fields
-
-/// A row of all components, with a zero for what is not a field: a start does not read it.
-Row all_components(const Simulation& simulation, const Row& fields) {
-  const auto& components = simulation.components();
-  Row all;
-  for (std::size_t at = 0; at < fields.size();)
-    for (const Component& component : components) all.push_back(component.role == Role::field ? fields[at++] : 0.0);
-  return all;
-}
+// ---- rows
 
 double largest(const Row& row) {
   double most = 0;
@@ -96,23 +88,114 @@ double largest_difference(const Rows& a, const Rows& b) {
 /// its value, a constraint, a wall whose equation has no inertia. No way back could find them again.
 constexpr std::int64_t first_row = 2;
 
-/// Two rows of fields.
+/// The whole state of a scheme: two rows of fields, or, of elements in time, a row and its momenta.
 struct Ends {
-  Row earlier, later;
+  Row first, second;
 };
 struct TurningPoint {
   std::int64_t steps;
-  Ends rows;
+  Ends state;
 };
 
-Ends last_two(const Simulation& simulation) {
-  const auto size = static_cast<std::size_t>(simulation.evolution().system().lattice().sites()) *
-                    static_cast<std::size_t>(simulation.count(Role::field));
-  Ends ends{Row(size), Row(size)};
-  simulation.copy_row(1, ends.earlier);
-  simulation.copy_row(0, ends.later);
-  return ends;
-}
+/// How the state is read, turned round, and begun from.
+class Motion {
+ public:
+  Motion(const LatticeSystem& system, bool by_momenta)
+      : by_momenta_(by_momenta), constrained_(std::ranges::any_of(system.all_components(), [](const Component& c) {
+          return c.role == Role::multiplier && !c.momentum;
+        })) {}
+
+  Ends read(const Simulation& simulation) const {
+    if (by_momenta_) {
+      const LatticeSystem& system = simulation.evolution().system();
+      Ends ends{simulation.evolution().stepper().row(0), simulation.momenta()};
+      for (std::size_t n = 0; n < ends.first.size(); ++n) {
+        if (!is_of_row(system, n)) ends.first[n] = ends.second[n] = 0;
+        if (is_held(system, n)) ends.second[n] = 0;  // the wall's own
+      }
+      return ends;
+    }
+    const auto size = static_cast<std::size_t>(simulation.evolution().system().lattice().sites()) *
+                      static_cast<std::size_t>(simulation.count(Role::field));
+    Ends ends{Row(size), Row(size)};
+    simulation.copy_row(1, ends.first);
+    simulation.copy_row(0, ends.second);
+    return ends;
+  }
+  /// (y_n, y_{n+1}) ↦ (y_{n+1}, y_n), (q, p) ↦ (q, −p)
+  Ends mirrored(Ends ends) const {
+    if (!by_momenta_) std::swap(ends.first, ends.second);
+    else
+      for (double& p : ends.second) p = -p;
+    return ends;
+  }
+  /// Under a constraint, of the rows alone: momenta across its surface are the multiplier's.
+  double distance(const Ends& a, const Ends& b) const {
+    if (by_momenta_ && constrained_) return largest_difference({a.first}, {b.first});
+    return largest_difference({a.first, a.second}, {b.first, b.second});
+  }
+  /// From two rows; elements from the first, moved by their difference: any motion will do.
+  void begin(Simulation& simulation, const Rows& rows) const {
+    if (!by_momenta_) return simulation.start(rows);
+    Row velocity(rows[0].size());
+    const double h = simulation.evolution().system().time_step();
+    for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = (rows[1][n] - rows[0][n]) / h;
+    simulation.start_legendre(rows[0], velocity);
+  }
+  /// And so many steps on.
+  void go(Simulation& simulation, const Ends& from, std::int64_t steps) const {
+    std::int64_t made = 0;
+    if (by_momenta_) {
+      simulation.start_momenta(in_all_nodes(simulation.evolution().system(), from.first), from.second);
+      made = simulation.newest();
+    } else {
+      simulation.start({all_components(simulation, from.first), all_components(simulation, from.second)});
+    }
+    for (; made < steps; ++made) simulation.step();
+  }
+
+ private:
+  static std::pair<int, int> place(const LatticeSystem& system, std::size_t n) {
+    const auto C = static_cast<std::size_t>(system.components());
+    return {static_cast<int>(n / C), static_cast<int>(n % C)};
+  }
+  static bool is_held(const LatticeSystem& system, std::size_t n) {
+    const auto [site, component] = place(system, n);
+    return system.is_held(site, component);
+  }
+  /// A value at the row itself: no multiplier, no node between rows, and none beyond the last wall.
+  static bool is_of_row(const LatticeSystem& system, std::size_t n) {
+    const auto [site, component] = place(system, n);
+    const Component& c = system.component(component);
+    return c.at.time == 0 && (c.role == Role::field || c.role == Role::inner) &&
+           !system.touching({0, site}, component).empty();
+  }
+  /// With the row's value in the nodes above it too: between rows a wall holds what it holds there.
+  static Row in_all_nodes(const LatticeSystem& system, Row row) {
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      const auto [site, component] = place(system, n);
+      const Component& c = system.component(component);
+      if (c.at.time == 0 || c.role != Role::inner) continue;
+      for (int other = 0; other < system.components(); ++other) {
+        const Component& below = system.component(other);
+        const bool same = below.field == c.field && below.at.time == 0 && below.at.space == c.at.space;
+        if (same && (below.role == Role::field || below.role == Role::inner))
+          row[n] = row[n - static_cast<std::size_t>(component) + static_cast<std::size_t>(other)];
+      }
+    }
+    return row;
+  }
+  /// A row of all components, with a zero for what is not a field: a start does not read it.
+  static Row all_components(const Simulation& simulation, const Row& fields) {
+    const auto& components = simulation.components();
+    Row all;
+    for (std::size_t at = 0; at < fields.size();)
+      for (const Component& component : components) all.push_back(component.role == Role::field ? fields[at++] : 0.0);
+    return all;
+  }
+
+  bool by_momenta_, constrained_;
+};
 
 /// 1, 2, 4, … and the last; bricks find their places again after an even number of steps.
 std::vector<std::int64_t> turning_steps(std::int64_t last, bool bricks) {
@@ -125,15 +208,15 @@ std::vector<std::int64_t> turning_steps(std::int64_t last, bool bricks) {
 std::string in_words(std::int64_t steps) { return steps == 1 ? "1 step" : fmt::format("{} steps", steps); }
 
 /// The start, after 0 steps, and those turning points that the way forward reaches; `failure` says why it ends early.
-std::vector<TurningPoint> forward(Simulation& simulation, const Rows& start_rows,
+std::vector<TurningPoint> forward(const Motion& motion, Simulation& simulation, const Rows& start_rows,
                                   const std::vector<std::int64_t>& planned, std::string& failure) {
   std::vector<TurningPoint> points;
   const auto reach_after = [&](std::int64_t m) {
     while (simulation.newest() < first_row + m + 1) simulation.step();
-    points.push_back({m, last_two(simulation)});
+    points.push_back({m, motion.read(simulation)});
   };
   try {
-    simulation.start(start_rows);
+    motion.begin(simulation, start_rows);
     reach_after(0);
     for (const std::int64_t m : planned) reach_after(m);
   } catch (const NumericalFailure& stop) {
@@ -143,16 +226,15 @@ std::vector<TurningPoint> forward(Simulation& simulation, const Rows& start_rows
 }
 
 /// The distance from the start after the way back; not a number if a step failed, and `failure` says how.
-double way_back(Simulation& simulation, const TurningPoint& turn, const Ends& start, std::string& failure) {
+double way_back(const Motion& motion, Simulation& simulation, const TurningPoint& turn, const Ends& start,
+                std::string& failure) {
   try {
-    simulation.start({all_components(simulation, turn.rows.later), all_components(simulation, turn.rows.earlier)});
-    for (std::int64_t n = 0; n < turn.steps; ++n) simulation.step();
+    motion.go(simulation, motion.mirrored(turn.state), turn.steps);
   } catch (const NumericalFailure& stop) {
     failure = fmt::format("the way back after {} ends: {}", in_words(turn.steps), stop.what());
     return std::numeric_limits<double>::quiet_NaN();
   }
-  const Ends end = last_two(simulation);
-  return largest_difference({start.earlier, start.later}, {end.later, end.earlier});
+  return motion.distance(start, motion.mirrored(motion.read(simulation)));
 }
 
 /// The slope of the straight line through (log m, log distance) with the least squares. Distances below the last digit
@@ -178,8 +260,7 @@ Check check_of(const Reversal& reversal, double scale, std::size_t size, double 
   check.samples = static_cast<std::int64_t>(reversal.steps.size());
   const std::int64_t m = reversal.steps.empty() ? 0 : reversal.steps.front();
   check.value = reversal.distance.empty() ? std::numeric_limits<double>::quiet_NaN() : reversal.distance.front();
-  check.region =
-      fmt::format("rows {} and {}, after {} forward and as many back", first_row, first_row + 1, in_words(m));
+  check.region = fmt::format("from row {}, after {} forward and as many back", first_row, in_words(m));
   check.failure =
       fmt::format("the way back misses the start by {:.2g} of the field after {}: the scheme is not its own inverse",
                   check.value, in_words(m));
@@ -209,20 +290,28 @@ std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simula
   const auto simulation = make();
   const LatticeSystem& system = simulation->evolution().system();
   const std::vector<std::int64_t> planned = turning_steps(steps, system.placement() == Placement::brick_wall);
-  // rows of fields are enough to start from
-  const bool rows_suffice = std::ranges::all_of(
-      simulation->components(), [](const Component& c) { return c.role == Role::field || c.role == Role::multiplier; });
-  if (start_rows.size() != 2 || simulation->starting_rows() != 2 || !rows_suffice || planned.empty())
+  const auto has = [&](Role role) { return simulation->count(role) > 0; };
+  // two rows of fields are enough to start from; of elements in time a row and its momenta are
+  const bool elements = has(Role::inner) && !has(Role::trace) && is_variational(system) && system.height() == 1;
+  const bool rows_suffice = !has(Role::inner) && !has(Role::trace) && !has(Role::slaved);
+  if (start_rows.size() != 2 || (!elements && simulation->starting_rows() != 2) || planned.empty() ||
+      !(rows_suffice || elements))
     return std::nullopt;
 
+  const Motion motion(system, elements);
   Reversal reversal;
-  reversal.promised = must_return(system);
+  reversal.promised = elements ? reversible_elements(system) : must_return(system);
   std::string failure;
-  const std::vector<TurningPoint> points = forward(*simulation, start_rows, planned, failure);
-  const Ends start = points.empty() ? Ends{} : points[0].rows;
-  const double size = std::max(largest(start.earlier), largest(start.later)), scale = size > 0 ? size : 1;
+  const std::vector<TurningPoint> points = forward(motion, *simulation, start_rows, planned, failure);
+  const Ends start = points.empty() ? Ends{} : points[0].state;
+  const double size = std::max(largest(start.first), largest(start.second)), scale = size > 0 ? size : 1;
   for (std::size_t n = 1; n < points.size(); ++n) {
-    const double distance = way_back(*make(), points[n], start, failure);
+    double distance = 0;
+    try {
+      distance = way_back(motion, *make(), points[n], start, failure);
+    } catch (const BadInput&) {  // a start from momenta is not to be had
+      return std::nullopt;
+    }
     // A way of one step that fails is a failure; of longer ones it says that rounding has grown too far.
     if (std::isnan(distance) && n > 1) break;
     reversal.steps.push_back(points[n].steps);
@@ -231,7 +320,7 @@ std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simula
   }
   reversal.end = failure;
   reversal.growth = slope(reversal.steps, reversal.distance);
-  if (reversal.promised) reversal.check = check_of(reversal, scale, start.earlier.size(), tolerance, failure);
+  if (reversal.promised) reversal.check = check_of(reversal, scale, start.first.size(), tolerance, failure);
   return reversal;
 }
 

@@ -20,7 +20,8 @@ class Simulation;
 /// multipliers are not asked, only their part in those of the fields.
 bool reversible(const LatticeSystem&, std::uint64_t seed);
 
-/// Forward, the last two rows exchanged, and back: to rows 2 and 3, the first that the scheme itself has made.
+/// Forward, the last two rows exchanged, and back: to rows 2 and 3, the first that the scheme itself has made. Elements in
+/// time go from (q, p) to (q, -p) and back; under a constraint their rows alone are compared.
 struct Reversal {
   /// Whether the way back must end at the start: the equations are reversible, or have no Lagrangian to excuse them. A
   /// variational scheme need not be reversible; the distances of one that is not are measured, and `check` is empty.
@@ -35,7 +36,7 @@ struct Reversal {
 
 /// `make` gives fresh simulations that have not started; `start_rows` are rows 0 and 1 of all components, of which a
 /// start reads the fields; the way forward takes steps + 2 steps. Nothing where
-/// two rows of fields are not the whole state: schemes of more rows, elements with nodes inside. A step that fails, on
+/// neither these are the whole state: schemes of more rows, traces. A step that fails, on
 /// either way, is a check that fails.
 std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simulation>()>& make,
                                       const std::vector<std::vector<double>>& start_rows, std::int64_t steps,

@@ -25,6 +25,14 @@ struct UserDensity {
   }
 };
 
+/// ℓ = ½φ_t² − ½φ_x² − ½φ²(1 − φ²/64)²: φ⁶, as wide as the collision is high.
+struct PhiSix {
+  auto operator()(const auto& j) const {
+    const auto w = 1.0 - j.phi * j.phi / 64.0;
+    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) - 0.5 * (j.phi * j.phi) * (w * w);
+  }
+};
+
 template <class Map, class D>
 Side user_side(Map map, const D& density, const Collision& collision) {
   const auto evolution = std::make_shared<Evolution>(
@@ -57,7 +65,8 @@ void time_density(const Request& request) {
   const auto compare_text = [&](const char* name, const char* text, const auto& density, const char* scheme, auto map) {
     for (const int sites : request.sites_or({255, 4095})) {
       const Collision collision{scheme, suited_sites(scheme, sites), tolerance};
-      const Pairing times = pair(user_side(map, expression(text), collision), user_side(map, density, collision), request.repeats);
+      const Pairing times =
+          pair(user_side(map, expression(text), collision), user_side(map, density, collision), request.repeats);
       of_texts.row({name, scheme, fmt::to_string(collision.sites), number(times.a / collision.sites),
                     number(times.b / collision.sites), in_words(times.ratio)});
     }
@@ -67,7 +76,9 @@ void time_density(const Request& request) {
     compare_text(name, text, density, "rectangle-symmetric", rectangle_symmetric);
   };
   on_schemes("sine-gordon", "0.5*phi_t^2 - 0.5*phi_x^2 + cos(phi) - 1", SineGordon{});
-  on_schemes("double-sine-gordon", "0.5*phi_t^2 - 0.5*phi_x^2 + cos(phi) - 1 + 0.15*(cos(2*phi) - 1)", DoubleSineGordon{1, 0.3});
+  on_schemes("double-sine-gordon", "0.5*phi_t^2 - 0.5*phi_x^2 + cos(phi) - 1 + 0.15*(cos(2*phi) - 1)",
+             DoubleSineGordon{1, 0.3});
+  on_schemes("phi6", "0.5*phi_t^2 - 0.5*phi_x^2 - 0.5*phi^2*(1 - phi^2/64)^2", PhiSix{});
 }
 
 }  // namespace delf::bench

@@ -30,12 +30,13 @@ void declare(Settings& settings, const Parameter& p, DeclaredBy kind, const std:
 
 const TheoryEntry* chosen_theory(Settings& settings) {
   const std::string name(chosen_by(DeclaredBy::theory));
-  for (const TheoryEntry* entry : theory_entries()) {
-    if (entry->chosen_by.empty() || !settings.find(entry->chosen_by)) continue;
-    if (const Setting* given = settings.find(name); given && given->value != entry->name)
-      settings.keep_one_of(name, entry->chosen_by, {});
-    if (settings.find(entry->chosen_by)) settings.imply(name, entry->name, entry->chosen_by);
-  }
+  for (const TheoryEntry* entry : theory_entries())
+    for (const std::string& key : entry->chosen_by) {
+      if (!settings.find(key)) continue;
+      if (const Setting* given = settings.find(name); given && given->value != entry->name)
+        settings.keep_one_of(name, key, {});
+      if (settings.find(key)) settings.imply(name, entry->name, key);
+    }
   const Setting* given = settings.find(name);
   const auto at = std::ranges::find(theory_entries(), given ? given->value : find_key(name)->fallback,
                                     [](const TheoryEntry* entry) { return entry->name; });

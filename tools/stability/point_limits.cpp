@@ -10,7 +10,9 @@
 
 #include "lattice/error.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/stability/symbol.hpp"
 #include "schemes/state.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "tools/run/seconds_since.hpp"
 
 namespace delf {
@@ -20,48 +22,82 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 using Pair = std::array<double, 2>;
 
-/// The scheme on a theory of one coordinate, with m = 1.
-Problem with_theory(Problem p, const char* theory, double h) {
-  p.theory = theory, p.circle_valued = false, p.time_step = h;
+/// The scheme on q_tt = −V′(q), as a theory of the library, or in phase space for schemes that take nothing else.
+struct Model {
+  const char *theory, *density;
+};
+constexpr Model oscillator{"harmonic-oscillator", "p*q_t - 0.5*p^2 - 0.5*q^2"},
+    swinging{"pendulum", "p*q_t - 0.5*p^2 + cos(q)"};
+
+Problem of_second_order(Problem p, const Model& model, double h) {
+  p.theory = model.theory, p.circle_valued = false, p.time_step = h;
   p.parameters["theory.mass"] = 1.0;
   return p;
 }
+Problem in_phase_space(Problem p, const Model& model, double h) {
+  p = of_second_order(std::move(p), model, h);
+  p.theory = "text";
+  p.parameters["theory.density"] = model.density, p.parameters["theory.fields"] = "q, p";
+  return p;
+}
+bool takes_phase_space_alone(const Problem& scheme) {
+  try {
+    Simulation(of_second_order(scheme, oscillator, 0.1));
+    return false;
+  } catch (const BadInput&) {
+    return true;
+  }
+}
 
-/// What a method of elements starts from is (q, p); other schemes start from two rows.
+/// A scheme of mechanics, as a problem for each h.
+struct Mechanics {
+  explicit Mechanics(const Problem& given) : scheme(given), phase_space(takes_phase_space_alone(given)) {}
+  Problem with(const Model& model, double h) const {
+    return phase_space ? in_phase_space(scheme, model, h) : of_second_order(scheme, model, h);
+  }
+
+  const Problem& scheme;
+  bool phase_space;
+};
+
+/// What a method of elements starts from is (q, p); other schemes start from two rows, or in phase space from one.
 bool by_momenta(const Problem& p) { return find_method(p.method).start == StartRule::legendre; }
 
 /// Starts at (q, p), or with the rows y₀ and y₁.
-void start(Simulation& s, const Problem& p, const Pair& state) {
+void start(Simulation& s, const Problem& p, bool phase_space, const Pair& state) {
   std::vector<double> row, other;
   for (const Component& c : s.components()) {
-    const bool field = c.role == Role::field;
-    row.push_back(c.role == Role::multiplier ? 0 : state[0]);
+    const bool field = c.role == Role::field, multiplier = c.role == Role::multiplier;
+    row.push_back(multiplier ? 0 : state[phase_space ? static_cast<std::size_t>(c.field) : 0]);
     other.push_back(field ? state[1] : 0);
   }
-  if (by_momenta(p)) s.start_momenta(row, other);
+  if (phase_space) s.start({row});
+  else if (by_momenta(p)) s.start_momenta(row, other);
   else s.start({row, other});
 }
 
 double newest(const Simulation& s) {
-  std::vector<double> q(1);
-  s.copy_row(0, q);
-  return q[0];
+  std::vector<double> values(static_cast<std::size_t>(s.count(Role::field)));
+  s.copy_row(0, values);
+  return values[0];
 }
 
 /// The state a step later, which is linear in the state.
 Pair stepped(const Problem& p, const Pair& state) {
   Simulation s(p);
-  start(s, p, state);
+  start(s, p, false, state);
   if (by_momenta(p)) return {newest(s), s.momenta().front()};
   s.step();
   return {state[1], newest(s)};
 }
 
 /// |tr M|/(1 + det M) of a step M: the roots of μ² − (tr M) μ + det M leave the unit circle where it is above 1, if
-/// det M = 1, as it is of what has a Lagrangian.
-double half_trace(const Problem& scheme, double z) {
-  const Problem p = with_theory(scheme, "harmonic-oscillator", z);
+/// det M = 1, as it is of what has a Lagrangian. Of a step of more than two numbers, such as both traces of q and p, the
+/// largest |μ|.
+double growth(const Mechanics& scheme, double z) {
+  const Problem p = scheme.with(oscillator, z);
   try {
+    if (scheme.phase_space) return Symbol(Simulation(p).evolution().system()).amplification(0);
     const Pair a = stepped(p, {1, 0}), b = stepped(p, {0, 1});
     return std::abs(a[0] + b[1]) / (1 + a[0] * b[1] - a[1] * b[0]);
   } catch (const NumericalFailure&) {  // a step has no solution
@@ -72,17 +108,18 @@ constexpr double round_off = 1e-11;
 
 /// Where it is looked at: evenly, and at the highest point wherever it comes near 1 between two of these. There roots meet
 /// on the circle, and leave it for a narrow interval or not at all.
-std::vector<Pair> samples_of(const Problem& scheme, double most) {
+std::vector<Pair> samples_of(const Mechanics& scheme, double most) {
   constexpr int count = 320;
   std::vector<Pair> all;
   for (int n = 0; n < count; ++n) {
     const double z = most * (n + 0.5) / count;
-    all.push_back({z, half_trace(scheme, z)});
+    all.push_back({z, growth(scheme, z)});
   }
   std::vector<Pair> between;
   for (std::size_t n = 1; n + 1 < all.size(); ++n) {
     if (all[n][1] > 1 || all[n][1] < 0.9 || all[n][1] < all[n - 1][1] || all[n][1] < all[n + 1][1]) continue;
-    const auto below = [&](double z) { return -half_trace(scheme, z); };
+    if (all[n][1] == all[n + 1][1]) continue;  // on the unit circle
+    const auto below = [&](double z) { return -growth(scheme, z); };
     const auto [z, highest] = boost::math::tools::brent_find_minima(below, all[n - 1][0], all[n + 1][0], 40);
     between.push_back({z, -highest});
   }
@@ -91,12 +128,12 @@ std::vector<Pair> samples_of(const Problem& scheme, double most) {
   return all;
 }
 
-std::vector<std::pair<double, double>> stable_intervals(const Problem& scheme, double most) {
+std::vector<std::pair<double, double>> stable_intervals(const Mechanics& scheme, double most) {
   const auto stable = [](double half) { return half <= 1 + round_off; };
   const auto edge = [&](double in, double out) {
     for (int i = 0; i < 40; ++i) {
       const double middle = 0.5 * (in + out);
-      (stable(half_trace(scheme, middle)) ? in : out) = middle;
+      (stable(growth(scheme, middle)) ? in : out) = middle;
     }
     return in;
   };
@@ -113,11 +150,11 @@ std::vector<std::pair<double, double>> stable_intervals(const Problem& scheme, d
 }
 
 /// Whether an oscillator stays where it can be.
-bool stays(const Problem& scheme, double z, int steps) {
-  const Problem p = with_theory(scheme, "harmonic-oscillator", z);
+bool stays(const Mechanics& scheme, double z, int steps) {
+  const Problem p = scheme.with(oscillator, z);
   try {
     Simulation s(p);
-    start(s, p, {1, 0.3});
+    start(s, p, scheme.phase_space, {1, 0.3});
     for (int n = 0; n < steps; ++n) {
       s.step();
       if (!(std::abs(newest(s)) < 1e4)) return false;
@@ -130,11 +167,12 @@ bool stays(const Problem& scheme, double z, int steps) {
 
 /// Finds the limit by running, near the one of theory, if it is there. Where stability returns soon, runs are looked at in
 /// the middle of the interval between, and are as long as its growth asks for, within reason.
-void observe_limit(const Problem& scheme, double again, const PointRequest& request, PointFinding& f) {
+void observe_limit(const Mechanics& scheme, double again, const PointRequest& request, PointFinding& f) {
   constexpr double folds = 20, longest = 100;
   double in = f.theory * (1 - request.agreement);
   double out = std::min(f.theory * (1 + request.agreement), 0.5 * (f.theory + again));
-  const double steps = folds / std::acosh(std::max(1.0, half_trace(scheme, out)));
+  const double rate = std::max(1.0, growth(scheme, out));
+  const double steps = folds / (scheme.phase_space ? std::log(rate) : std::acosh(rate));
   f.too_narrow = steps > longest * request.steps && again < f.theory * (1 + request.agreement);
   if (f.too_narrow) return;
   const int taken = static_cast<int>(std::clamp(steps, 1.0 * request.steps, longest * request.steps));
@@ -151,27 +189,24 @@ struct Swing {
   Simulation simulation;
   std::unique_ptr<State> state;
 
-  Swing(const Problem& scheme, double h) : simulation(with_theory(scheme, "pendulum", h)) {
+  Swing(const Mechanics& scheme, double h) : simulation(scheme.with(swinging, h)) {
     StateRequest request;
     request.name = "pendulum-swing", request.theory = "pendulum";
     state = make_state(request, Lattice::point());
-    std::vector<std::vector<double>> rows;
-    const auto row = [&](double t, bool rate) {
-      std::vector<double> one(1), all;
-      if (rate) state->velocities(t, Lattice::point(), one);
-      else state->values(t, Lattice::point(), one);
-      for (const Component& c : simulation.components()) all.push_back(c.role == Role::multiplier ? 0 : one[0]);
-      return all;
-    };
-    if (by_momenta(scheme)) simulation.start_legendre(row(0, false), row(0, true));
-    else simulation.start({row(0, false), row(h, false)});
+    std::vector<double> q(1), v(1), later(1);
+    state->values(0, Lattice::point(), q);
+    state->velocities(0, Lattice::point(), v);
+    state->values(h, Lattice::point(), later);
+    // p = q_t
+    start(simulation, scheme.scheme, scheme.phase_space,
+          {q[0], scheme.phase_space || by_momenta(scheme.scheme) ? v[0] : later[0]});
   }
 };
 
 constexpr double swing_time = 10;
 
 /// The largest error on the way, in n steps: at one time errors may cancel.
-double swing_error(const Problem& scheme, int n) {
+double swing_error(const Mechanics& scheme, int n) {
   Swing swing(scheme, swing_time / n);
   std::vector<double> exact(1);
   double most = 0;
@@ -184,7 +219,7 @@ double swing_error(const Problem& scheme, int n) {
 }
 
 /// The slope of log error over log h, by least squares over the finest four numbers of steps that rounding does not reach.
-double order_of(const Problem& scheme) {
+double order_of(const Mechanics& scheme) {
   constexpr double far_from_rounding = 3e-13;  // for each step
   constexpr double refinement = 1.4;
   constexpr std::size_t points = 4;
@@ -202,7 +237,7 @@ double order_of(const Problem& scheme) {
   return (count * uv - u * v) / (count * uu - u * u);
 }
 
-void find_cost(const Problem& scheme, PointFinding& f) {
+void find_cost(const Mechanics& scheme, PointFinding& f) {
   constexpr int steps = 2000, rounds = 3;
   double best = infinity, iterations = 0;
   for (int round = 0; round < rounds; ++round) {
@@ -217,25 +252,26 @@ void find_cost(const Problem& scheme, PointFinding& f) {
 
 }  // namespace
 
-PointFinding find_point_limit(const NamedScheme& scheme, const PointRequest& request) {
-  PointFinding f{.scheme = scheme.name, .left_out = {}, .stable = {}};
+PointFinding find_point_limit(const NamedScheme& named, const PointRequest& request) {
+  PointFinding f{.scheme = named.name, .left_out = {}, .stable = {}};
   try {
-    f.stable = stable_intervals(scheme.problem, request.most);
+    const Mechanics scheme(named.problem);
+    f.stable = stable_intervals(scheme, request.most);
     f.theory = f.stable.empty() || f.stable[0].first > 0         ? 0
                : f.stable[0].second >= request.most * (1 - 1e-9) ? infinity
                                                                  : f.stable[0].second;
     f.theory *= request.theory_factor;
     if (std::isinf(f.theory)) {
       bool all = true;
-      for (int n = 1; n <= 8; ++n) all = all && stays(scheme.problem, request.most * (n - 0.37) / 8, request.steps);
+      for (int n = 1; n <= 8; ++n) all = all && stays(scheme, request.most * (n - 0.37) / 8, request.steps);
       f.observed = all ? infinity : PointFinding::unknown;
       f.agrees = all;
     } else if (f.theory > 0) {
       const double again = f.stable.size() > 1 ? f.stable[1].first * request.theory_factor : infinity;
-      observe_limit(scheme.problem, again, request, f);
+      observe_limit(scheme, again, request, f);
     }
-    f.order = order_of(scheme.problem);
-    find_cost(scheme.problem, f);
+    f.order = order_of(scheme);
+    find_cost(scheme, f);
   } catch (const BadInput& bad) {
     f.left_out = bad.what();
   }

@@ -56,9 +56,9 @@ struct RowStepper::Impl {
   std::optional<Contraction> contraction;
   std::optional<RowTeam> team;
   std::vector<double> gains, changes;  ///< of each source row: what a change of 1 changes y by, at most; largest |δ|
-  double gain = 0;            ///< the same for source terms whose weights in an equation sum to 1
-  RowBuffer work;             ///< right sides, which solutions take the place of
-  int strip = 0, lag = 0;     ///< packs; and how many the update stays behind right sides
+  double gain = 0;                     ///< the same for source terms whose weights in an equation sum to 1
+  RowBuffer work;                      ///< right sides, which solutions take the place of
+  int strip = 0, lag = 0;              ///< packs; and how many the update stays behind right sides
   bool has_local = false, forms_directly = false, solves_whole = true, sweeps_along = false, goes_in_place = false;
 
   std::int64_t n = -1;        ///< newest row
@@ -221,7 +221,8 @@ struct RowStepper::Impl {
         for (int c = 0; c < source.outputs; ++c) {
           const std::size_t s = first + static_cast<std::size_t>(c);
           const SourceRow& one = equations.sources()[s];
-          Compare sink{out[static_cast<std::size_t>(c)], rows[one.ring.row(0)], keeps(kind) ? rows[one.change] : nullptr};
+          Compare sink{out[static_cast<std::size_t>(c)], rows[one.ring.row(0)],
+                       keeps(kind) ? rows[one.change] : nullptr};
           const RowSum& taken = equations.prediction(one, taking(kind).predicted_from);
           if (one.stride == 1) taken.pass<lanes>(rows.data(), layout.at(own), layout.at(end), sink);
           else taken.pass<2 * lanes>(rows.data(), layout.at(own), layout.at(end), sink);
@@ -308,8 +309,7 @@ struct RowStepper::Impl {
         for (int a = 0; a < d; ++a) {
           Sweeps& sweep = *sweeps[static_cast<std::size_t>(a)];
           double* const to_solve = w[static_cast<std::size_t>(a)];
-          if (forms_on_the_way)
-            sweep.forward(*equations.right_side(a, taking(kind)), rows.data(), to_solve, end);
+          if (forms_on_the_way) sweep.forward(*equations.right_side(a, taking(kind)), rows.data(), to_solve, end);
           else sweep.forward(to_solve, end);
         }
         // All components advance alike.
@@ -379,7 +379,8 @@ struct RowStepper::Impl {
     for (int p = 0; p < parts; ++p) memory.emplace_back(static_cast<std::size_t>(work.stride()), work.rows());
     team->run(parts, [&](int p) {
       const auto at = static_cast<std::size_t>(p);
-      pass(rows[at], kind, false, memory[at], layout.first_of_part(p, parts), layout.first_of_part(p + 1, parts), of_part[at]);
+      pass(rows[at], kind, false, memory[at], layout.first_of_part(p, parts), layout.first_of_part(p + 1, parts),
+           of_part[at]);
     });
     for (const Pack part : of_part) found = larger_size(found, part);
     close(table);
@@ -412,8 +413,8 @@ struct RowStepper::Impl {
   }
   void choose_order() {
     find_span();
-    predictor.choose(table, n, source_rows_there, gains, contraction_now(),
-                     share_of_tolerance() * allowed(largest), system.time_step());
+    predictor.choose(table, n, source_rows_there, gains, contraction_now(), share_of_tolerance() * allowed(largest),
+                     system.time_step());
   }
   void find_span() {
     span = 0;
@@ -447,6 +448,12 @@ struct RowStepper::Impl {
     if (contracts_by < 0 || contraction->is_outgrown(largest))
       contracts_by = contraction->next_change(largest, 1, gain);
     return contracts_by;
+  }
+
+  bool is_stiff() {
+    if (!equations.iterates()) return false;
+    if (contraction->is_outgrown(largest)) contracts_by = -1;
+    return contraction->is_stiff(largest);
   }
 
   /// How y answers to a change of 1 in a source term: exact on a circle, where one impulse shows it. In the middle of
@@ -498,7 +505,8 @@ struct RowStepper::Impl {
     double value = max_or_nan(found);
     if (overflowed(value)) return set_largest(value);
     if (!iterates) return set_largest(value);
-    const double by = contraction_now(), enough = share_of_tolerance() * allowed(std::max({value, largest, largest_before}));
+    const double by = contraction_now(),
+                 enough = share_of_tolerance() * allowed(std::max({value, largest, largest_before}));
     double effect = effect_of_changes();
     for (iterations = 1; !(effect <= enough);) {
       if (!(effect < 1e100)) return give_up(Continued::slow);
@@ -566,7 +574,7 @@ struct RowStepper::Impl {
   void step_beside() {
     leave_place();
     known = std::min(known, history);  // the oldest is written over
-    const bool stiff = equations.iterates() && contraction->is_stiff();
+    const bool stiff = is_stiff();
     if (stiff) begin_step(), iterations = 0, continued = Continued::stiff;
     if (stiff || !solve_step()) follow_root();
     if (overflowed(largest)) {
@@ -631,7 +639,7 @@ struct RowStepper::Impl {
   /// A step whose row nobody asks for is in place, as long as there is a row to go back to.
   void step(bool looked_at) {
     const bool may_be_in_place = !looked_at && goes_in_place && (!spare.empty() || (known >= 2 && n > started)) &&
-                                 !(equations.iterates() && (source_rows_there == 0 || contraction->is_stiff()));
+                                 !(equations.iterates() && source_rows_there == 0) && !is_stiff();
     if (!may_be_in_place) step_beside();
     else if (!step_in_place()) step_again(n + 1);
   }
@@ -654,7 +662,8 @@ struct RowStepper::Impl {
     }
   }
   std::vector<double> row(int back) const {
-    std::vector<double> values(static_cast<std::size_t>(layout.sites() * d)), one(static_cast<std::size_t>(layout.sites()));
+    std::vector<double> values(static_cast<std::size_t>(layout.sites() * d)),
+        one(static_cast<std::size_t>(layout.sites()));
     for (int a = 0; a < d; ++a) {
       layout.gather(table[equations.y().row(back, a)], one);
       for (std::size_t i = 0; i < one.size(); ++i)
@@ -697,8 +706,7 @@ struct RowStepper::Impl {
     for (std::size_t s = 0; s < equations.sources().size(); ++s) {
       const SourceRow& source = equations.sources()[s];
       if (source.is_local) continue;
-      for (int back = 1; source.component == 0 && back <= source.newest - source.oldest; ++back)
-        evaluate_rows(s, back);
+      for (int back = 1; source.component == 0 && back <= source.newest - source.oldest; ++back) evaluate_rows(s, back);
       if (source.reads_unknown) past_sources = std::min(past_sources, source.newest - source.oldest);
     }
     count_sources();
@@ -755,7 +763,9 @@ void RowStepper::start_centred(const std::vector<double>& row0, const std::vecto
     throw BadInput("initial.start", "initial.start = centred makes one more row, and this stencil needs " +
                                         std::to_string(s.history) + " starting rows; choose initial.start = exact");
   const Window first{&s.system.lattice(), s.d, s.options.turn, 0, {row0}};
-  const bool stiff = s.contraction && s.contraction->is_stiff();
+  double size = 0;
+  for (const double value : row0) size = std::max(size, std::abs(value));
+  const bool stiff = s.contraction && s.contraction->is_stiff(size);
   const NewtonResult result =
       solve_centred_start(s.system, s.plan, first, velocity, stiff, s.options.tolerance, s.options.max_iterations);
   start({row0, result.row});
@@ -801,15 +811,16 @@ StepReport RowStepper::report(bool residual) const {
   const std::size_t work = s.equations.work_bytes() + s.work.bytes() + s.layout.bytes();
   const bool comes = residual && s.equations.work_bytes() < s.equations.residual_bytes();
   const std::size_t to_come = comes ? s.equations.residual_bytes() : 0;
-  return {.starting_rows = s.history,
-          .iterates = s.equations.iterates(),
-          .matrix_free = matrix == 0,
-          .solver = s.equations.solver(0).name(),
-          .layout = &s.layout,
-          .bytes = rows + sources + matrix + work,
-          .bytes_to_come = to_come,
-          .memory = fmt::format("rows of the field and increments {} B, source terms {} B, matrix {} B, work space {} B",
-                                rows, sources, matrix, work + to_come)};
+  return {
+      .starting_rows = s.history,
+      .iterates = s.equations.iterates(),
+      .matrix_free = matrix == 0,
+      .solver = s.equations.solver(0).name(),
+      .layout = &s.layout,
+      .bytes = rows + sources + matrix + work,
+      .bytes_to_come = to_come,
+      .memory = fmt::format("rows of the field and increments {} B, source terms {} B, matrix {} B, work space {} B",
+                            rows, sources, matrix, work + to_come)};
 }
 
 }  // namespace delf

@@ -416,7 +416,7 @@ TEST_CASE("a step says whether it was followed by continuation, and why") {
     StepOptions options;
     options.max_iterations = max_iterations;
     Evolution evolution = evolution_of(p, "rectangle", Lattice::circle(21, 21 * k), h, options);
-    worst_of(evolution);
+    worst_of(evolution, 1, 1);
     return evolution.stepper().continued();
   };
   CHECK(why(1.2, 50) == Continued::no);

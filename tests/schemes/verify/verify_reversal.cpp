@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "schemes/stepping/evolution.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "schemes/verify/time_reversal.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/r_adaptive_rows.hpp"
@@ -206,12 +206,55 @@ TEST_CASE("moving meshes with their multipliers come back to their start") {
   CHECK(reversal->check.passed());
 }
 
-TEST_CASE("elements of more nodes than a row holds are not asked") {
-  Problem element = sine_gordon("", "spacetime");
-  element.time_step = element.lattice.space_step();
-  const Simulation simulation(element);
-  CHECK_FALSE(time_reversal([&] { return std::make_unique<Simulation>(element); },
-                            Rows(2, std::vector<double>(simulation.components().size() * 100)), 8, tolerance));
+namespace {
+
+Problem pendulum_by(const std::string& quadrature, int points) {
+  Problem p;
+  p.theory = "pendulum", p.method = "cgvi", p.lattice = Lattice::point(), p.time_step = 0.1;
+  p.parameters["scheme.functions"] = 3, p.parameters["scheme.points"] = points;
+  p.parameters["scheme.quadrature"] = quadrature;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("elements in time come back to the row and the momenta that they came from") {
+  for (const char* continuity : {"shared", "multipliers"})
+    for (const char* quadrature : {"gauss", "lobatto"}) {
+      Problem p = pendulum_by(quadrature, 3);
+      p.parameters["scheme.continuity"] = continuity;
+      const auto reversal = there_and_back(p, "pendulum-swing", 64);
+      CAPTURE(quadrature, continuity);
+      REQUIRE(reversal);
+      CAPTURE(reversal->check.value, reversal->distance);
+      CHECK(reversal->promised);
+      CHECK(reversal->check.passed());
+      CHECK(reversal->distance.back() < 1e-11);
+    }
+  Problem field = sine_gordon("", "cgvi");
+  field.parameters["scheme.tableau"] = "gauss2";
+  const auto reversal = there_and_back(field, "breather", 8);
+  REQUIRE(reversal);
+  CHECK(reversal->promised);
+  CHECK(reversal->check.passed());
+}
+
+TEST_CASE("an element whose rule has one end is not reversible, and another step on the way back is found") {
+  const auto one_sided = there_and_back(pendulum_by("radau", 2), "pendulum-swing", 8);
+  REQUIRE(one_sided);
+  CHECK_FALSE(one_sided->promised);
+  CHECK(one_sided->distance.front() > 1e-9);
+  const auto longer =
+      another_way_back(pendulum_by("gauss", 3), "pendulum-swing", [](Problem& p) { p.time_step *= 1.001; });
+  CHECK(longer.promised);
+  CHECK_FALSE(longer.check.passed());
+}
+
+TEST_CASE("traces are not asked: a row and its momenta are not their state") {
+  Problem p;
+  p.theory = "lotka-volterra", p.method = "dgvi", p.lattice = Lattice::point(), p.time_step = 0.1;
+  const auto make = [&] { return std::make_unique<Simulation>(p); };
+  CHECK_FALSE(time_reversal(make, Rows(2, std::vector<double>(make()->components().size(), 1.0)), 8, tolerance));
 }
 
 TEST_CASE("a vacuum stays where it is, forward and back") {

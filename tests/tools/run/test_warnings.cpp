@@ -45,7 +45,7 @@ TEST_CASE("a run that ends well and may be wrong says why, in the report and in 
       {"kink --initial.speed=0.1 --lattice.sites=21 --run.until=160 --lattice.stencil=triangle-vertex",
        "pinned by the lattice"},
       {"guiding-centre --initial.q=2.5,0,0,0.19 --lattice.time_step=2 --run.until=1500", "jump grows from"},
-      {"small.ini --scheme.max_iterations=2 --run.steps=10", "raise scheme.max_iterations, which is 2"},
+      {"small.ini --scheme.max_iterations=2 --run.steps=3", "raise scheme.max_iterations, which is 2"},
   }));
   INFO(arguments);
   const Done done(arguments);
@@ -69,11 +69,11 @@ TEST_CASE("shipped scenes as they are, and near misses, warn of nothing") {
 }
 
 TEST_CASE("steps followed by continuation are counted, with the reason") {
-  const Done done("small.ini --scheme.max_iterations=2 --run.steps=10");
+  const Done done("small.ini --scheme.max_iterations=2 --run.steps=3");
   REQUIRE(done.summary["continued"].size() == 1);
-  CHECK(done.summary["continued"][0]["steps"] == 9);
+  CHECK(done.summary["continued"][0]["steps"] == 2);
   CHECK(done.summary["continued"][0]["reason"] == "scheme.max_iterations was reached");
-  CHECK(contains(done.report, "  continued  9 of 9 steps"));
+  CHECK(contains(done.report, "  continued  2 of 2 steps"));
 }
 
 TEST_CASE("a tolerance below what rounding allows is reported, and scene.ini has the one in force") {

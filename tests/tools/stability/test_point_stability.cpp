@@ -49,6 +49,21 @@ TEST_CASE("limits of elements of time in ωh are those of theory, by theory and 
   CHECK(std::isinf(found("gauss2").theory));
 }
 
+TEST_CASE("discontinuous elements are measured in phase space, with both of their traces") {
+  // S = 1 … 4 are stable below ωh = 1, 4, 2.3, 4.8
+  const double limits[] = {1, 4, 2.3, 4.8};
+  for (int S = 1; S <= 3; ++S) {
+    Problem p;
+    p.method = "dgvi", p.lattice = Lattice::point();
+    p.parameters["scheme.functions"] = S, p.parameters["scheme.points"] = S;
+    const PointFinding f = find_point_limit({"dgvi", p}, {.schemes = {}, .most = 6, .steps = 500});
+    CAPTURE(S, f.theory, f.observed, f.order, f.left_out);
+    CHECK(std::abs(f.theory - limits[S - 1]) < 0.05 * limits[S - 1]);
+    CHECK(f.agrees);
+    CHECK(std::abs(f.order - (S % 2 == 1 ? 2 * S : 2 * S - 2)) < 0.3);
+  }
+}
+
 TEST_CASE("the table of mechanics is written, a planted limit is found, and unknown schemes are refused") {
   const Folder folder;
   const std::string run =
