@@ -13,5 +13,7 @@ extern const MeasurementEntry kinks_measurement, charge_measurement, position_me
 extern const MeasurementEntry energy_left_measurement;
 // wavenumber.cpp
 extern const MeasurementEntry wavenumber_measurement;
+// mode.cpp
+extern const MeasurementEntry mode_measurement, mode_rate_measurement;
 
 }  // namespace delf

@@ -48,7 +48,7 @@ std::span<const MeasurementEntry> measurements() {
                                          minimum_time_measurement, maximum_time_measurement, crossings_measurement,
                                          frequency_measurement,    kinks_measurement,        charge_measurement,
                                          position_measurement,     speed_measurement,        energy_left_measurement,
-                                         wavenumber_measurement};
+                                         wavenumber_measurement,   mode_measurement,         mode_rate_measurement};
   return all;
 }
 

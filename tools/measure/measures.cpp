@@ -114,7 +114,19 @@ struct Measures::Expression {
       return end;
     };
     walk(text, word, [&](std::string_view other) { arithmetic += other; });
-    evaluate(0, [](const Measurement&) { return 1.0; });  // for its errors
+    check_text();
+  }
+
+  // For its errors. A number that a run may have, such as log(value(1) - value(2)) or 1/(kinks - 1), may be none at the
+  // first of the trial values.
+  void check_text() const {
+    for (const double step : {0.0, 0.1, -0.1}) try {
+        double trial = 1;
+        evaluate(0, [&](const Measurement&) { return trial += step; });
+        return;
+      } catch (const BadInput&) {
+        if (step < 0) throw;
+      }
   }
 
   std::size_t read_measurement(const MeasurementEntry& entry, std::string_view text, std::size_t at,
@@ -145,6 +157,15 @@ struct Measures::Expression {
     for (const Quantity& q : quantities) all.emplace_back(q.name, value_of(*q.measurement));
     all.insert(all.end(), constants.begin(), constants.end());
     return Formula(arithmetic, all, key)(time, 0);
+  }
+
+  // The text has been read: what is refused now has no value, such as 1/kinks without kinks.
+  double result(double time) const {
+    try {
+      return evaluate(time, [](const Measurement& m) { return m.value(); });
+    } catch (const BadInput&) {
+      return Measurement::unknown;
+    }
   }
 };
 
@@ -183,8 +204,7 @@ void Measures::see(const MeasuredRow& row) {
 
 std::vector<NamedNumber> Measures::results() const {
   std::vector<NamedNumber> all;
-  for (const Expression& e : all_)
-    all.push_back({e.name, e.evaluate(time_, [](const Measurement& m) { return m.value(); })});
+  for (const Expression& e : all_) all.push_back({e.name, e.result(time_)});
   return all;
 }
 

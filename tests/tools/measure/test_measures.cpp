@@ -140,6 +140,41 @@ TEST_CASE("a breather and a wave are measured: frequency, times of extremes, wav
   CHECK(m["k"].get<double>() == Approx(2 * pi * 3 / 40));
 }
 
+TEST_CASE("modes of a row are measured, between walls and around a circle") {
+  const Folder folder;
+  const auto scene = [&](const std::string& space, const std::string& phi) {
+    return folder.write("modes.ini",
+                        "[theory]\nname = wave\n[lattice]\nstencil = triangle-vertex\n" + space +
+                            "\nlength = 8\ncourant = 0.5\n[initial]\nphi = " + phi +
+                            "\nphi_t = 0\n[run]\nsteps = 1\n[output]\nfigures = off\nfields = off\n[measure]\n"
+                            "one = mode(1)\ntwo = mode(2)\nthree = mode(3)\nrate = mode_rate(3)\n");
+  };
+  // leapfrog's first row is that of rest, less ½h²ω² of it; ω² = (4/k²) sin²(qk/2)
+  const double h = 0.25, squared = 16 * std::pow(std::sin(3 * pi / 32), 2);
+  auto m = measures_of(folder, scene("space = interval\nsites = 17", "0.5*sin(pi*x/8) - 2*sin(3*pi*x/8)"));
+  CHECK(m["one"].get<double>() == Approx(0.5).epsilon(0.01));
+  CHECK(std::abs(m["two"].get<double>()) < 1e-14);
+  CHECK(m["three"].get<double>() == Approx(-2 * (1 - 0.5 * h * h * squared)).epsilon(1e-12));
+  CHECK(m["rate"].get<double>() == Approx(h * squared).epsilon(1e-12));
+  m = measures_of(folder, scene("space = interval\nsites = 17\n[boundary]\nleft = natural\nright = natural\n[lattice]",
+                                "0.5*cos(pi*x/8)"));
+  CHECK(m["one"].get<double>() == Approx(0.5).epsilon(0.01));
+  CHECK(std::abs(m["three"].get<double>()) < 1e-14);
+  m = measures_of(folder, scene("sites = 16", "7 + 0.5*sin(2*pi*x/8 + 1)"));
+  CHECK(m["one"].get<double>() == Approx(0.5).epsilon(0.03));
+  CHECK(std::abs(m["two"].get<double>()) < 1e-14);
+}
+
+TEST_CASE("a measure without a value in the end is null, and does not lose the run") {
+  const Folder folder;
+  const std::string scene = folder.write(
+      "kink.ini", kink_scene("none = 2*position(2)\nzero = 1/(kinks - 1)\nnegative = log(value(1) - value(39))\n"
+                             "some = log(value(39) - value(1))\n"));
+  const auto m = measures_of(folder, scene);
+  for (const char* name : {"none", "zero", "negative"}) CHECK(m[name].is_null());
+  CHECK(m["some"].get<double>() == Approx(std::log(2 * pi)).epsilon(1e-4));
+}
+
 TEST_CASE("a measure on the command line wins, and scene.ini repeats measures") {
   const Folder folder;
   const std::string scene = folder.write("kink.ini", kink_scene("n = kinks\n"));
@@ -212,6 +247,10 @@ TEST_CASE("a measure that cannot be read is refused in one line") {
                                                         {"position(1.5)", "there is no kink 1.5"},
                                                         {"speed(0)", "there is no kink 0"},
                                                         {"position(1e300)", "there is no kink"},
+                                                        {"mode(0)", "modes are 1, 2, ..."},
+                                                        {"mode(1.5)", "modes are 1, 2, ..."},
+                                                        {"mode_rate(400)", "modes are 1, 2, ..."},
+                                                        {"log(0*kinks)", "not a finite number"},
                                                         {"__1 + kinks", "names that begin with __"},
                                                         {"value(y)", "y"},
                                                         {"", "no value is given"}}) {
