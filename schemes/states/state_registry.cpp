@@ -10,16 +10,17 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/declared.hpp"
 #include "lattice/nearest_name.hpp"
+#include "schemes/declared.hpp"
 #include "schemes/states/parameters.hpp"
 
 namespace delf {
 
 extern const StateEntry mps_collision_state, kink_state, antikink_state, kink_antikink_state, kink_kink_state,
-    breather_state, kink_train_state, plane_wave_state, wave_packet_state, kepler_orbit_state, pendulum_swing_state,
-    coupled_kinks_state, coupled_breathers_state, charged_wave_state, charged_packet_state, great_circle_state,
-    spherical_swing_state, solar_system_state, point_state, noise_state, formula_state, rows_of_file_state;
+    kink_gas_state, breather_state, kink_train_state, plane_wave_state, wave_packet_state, kepler_orbit_state,
+    pendulum_swing_state, coupled_kinks_state, coupled_breathers_state, charged_wave_state, charged_packet_state,
+    great_circle_state, spherical_swing_state, solar_system_state, point_state, noise_state, formula_state,
+    rows_of_file_state;
 
 namespace {
 
@@ -31,6 +32,7 @@ std::vector<const StateEntry*>& registry() {
       &antikink_state,
       &kink_antikink_state,
       &kink_kink_state,
+      &kink_gas_state,
       &breather_state,
       &kink_train_state,
       &plane_wave_state,
@@ -53,9 +55,7 @@ std::vector<const StateEntry*>& registry() {
   return entries;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  return fmt::format("{}", fmt::join(names, ", "));
-}
+std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
 
 bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "lattice/error.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "tests/catch.hpp"
 
@@ -66,5 +67,40 @@ TEST_CASE("a kink and an antikink of phi4 and double sine-Gordon solve the equat
     CHECK(at(*far, 0, 29).phi_t == Approx((at(*far, 1e-5, 29).phi - at(*far, -1e-5, 29).phi) / 2e-5).epsilon(1e-6));
     CHECK(at(*far, 0, 29).phi_x ==
           Approx((at(*far, 0, 29 + 1e-5).phi - at(*far, 0, 29 - 1e-5).phi) / 2e-5).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a gas of kinks and antikinks solves the equation up to tails, from vacuum to vacuum, and moves as they do") {
+  for (const std::string theory : {"phi4", "double-sine-gordon"}) {
+    INFO(theory);
+    StateRequest r = pair_of(theory, 0);
+    r.name = "kink-gas";
+    r.values["initial.kinks"] = 4.0;
+    r.values["initial.speed"] = 0.6;
+    const Lattice lattice = Lattice::circle(800, 160);
+    const auto gas = make_state(r, lattice);
+    CHECK(misses(theory, *gas) < 1e-6);
+    CHECK(gas->winding() == 0);
+    CHECK(at(*gas, 0, 0).phi == Approx(at(*gas, 0, 160).phi).margin(1e-9));
+    // each passes the middle between the vacua once
+    const double middle = theory == "phi4" ? 0 : 4 * std::atan(1);
+    int crossings = 0;
+    for (double x = 0.05; x < 160; x += 0.1)
+      crossings += (at(*gas, 0, x).phi < middle) != (at(*gas, 0, x + 0.1).phi < middle);
+    CHECK(crossings == 4);
+    // φ_t and φ_x against differences
+    constexpr double d = 1e-5;
+    for (double x = 1; x < 160; x += 1.7) {
+      const FieldPoint p = at(*gas, 0, x);
+      CHECK(p.phi_t == Approx((at(*gas, d, x).phi - at(*gas, -d, x).phi) / (2 * d)).margin(1e-8));
+      CHECK(p.phi_x == Approx((at(*gas, 0, x + d).phi - at(*gas, 0, x - d).phi) / (2 * d)).margin(1e-8));
+    }
+    // another seed, another gas
+    r.seed = 2;
+    CHECK(at(*make_state(r, lattice), 0, 20).phi_x != at(*gas, 0, 20).phi_x);
+    for (const double wrong : {3.0, 0.0, 2.5, 100.0}) {
+      r.values["initial.kinks"] = wrong;
+      CHECK_THROWS_AS(make_state(r, lattice), BadInput);
+    }
   }
 }
