@@ -164,6 +164,15 @@ std::vector<Parameter> keys() {
   return list;
 }
 
+/// Of polynomials of degree S − 1 the order is 2(S − 1), if the rule of R points has it: 2R of Gauss's, 2R − 2 of Lobatto's.
+std::optional<int> order(const Problem& p) {
+  const TimeElementKeys keys(p.parameters);
+  if (keys.basis_name == "b-spline" || (keys.quadrature != "gauss" && keys.quadrature != "lobatto"))
+    return std::nullopt;
+  const int of_rule = 2 * keys.points - (keys.quadrature == "lobatto" ? 2 : 0);
+  return order_in_space(p, std::min(2 * (keys.functions - 1), of_rule));
+}
+
 }  // namespace
 
 extern const MethodEntry cgvi_method;
@@ -180,6 +189,7 @@ const MethodEntry cgvi_method{
                   .meaning = "p = dL/dq of the step below the row: the momenta of q",
                   .components = momentum_names,
                   .values = momentum}},
-    .variants = variants};
+    .variants = variants,
+    .order = order};
 
 }  // namespace delf

@@ -5,9 +5,9 @@
 #include "schemes/families/damped_leapfrog.hpp"
 #include "schemes/families/guo.hpp"
 #include "schemes/families/vu_quoc_li.hpp"
-#include "schemes/theories/field_theory.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/theories/field_theory.hpp"
 
 namespace delf {
 namespace {
@@ -30,14 +30,24 @@ SchemeParts build(const FieldTheory& theory, const Problem& p, DirectResidual st
   return {{std::move(family)}, theory.fields()};
 }
 
+std::optional<int> second(const Problem&) { return 2; }
+
 }  // namespace
 
 extern const MethodEntry vu_quoc_li_method, guo_method, damped_method;
-const MethodEntry vu_quoc_li_method{"vu-quoc-li", "comparator (5.14): conserves an energy, is not multisymplectic",
-                                    [](const FieldTheory& theory, const Problem& p) { return build(theory, p, vu_quoc_li()); }};
-const MethodEntry guo_method{"guo", "comparator (5.15): conserves an energy, is not multisymplectic",
-                             [](const FieldTheory& theory, const Problem& p) { return build(theory, p, guo()); }};
-const MethodEntry damped_method{"damped", "comparator: leapfrog with friction 0.1, loses energy; for checks to fail on",
-                                [](const FieldTheory& theory, const Problem& p) { return build(theory, p, damped_leapfrog()); }};
+const MethodEntry vu_quoc_li_method{
+    .name = "vu-quoc-li",
+    .formula = "comparator (5.14): conserves an energy, is not multisymplectic",
+    .build = [](const FieldTheory& theory, const Problem& p) { return build(theory, p, vu_quoc_li()); },
+    .order = second};
+const MethodEntry guo_method{
+    .name = "guo",
+    .formula = "comparator (5.15): conserves an energy, is not multisymplectic",
+    .build = [](const FieldTheory& theory, const Problem& p) { return build(theory, p, guo()); },
+    .order = second};
+const MethodEntry damped_method{
+    .name = "damped",
+    .formula = "comparator: leapfrog with friction 0.1, loses energy; for checks to fail on",
+    .build = [](const FieldTheory& theory, const Problem& p) { return build(theory, p, damped_leapfrog()); }};
 
 }  // namespace delf

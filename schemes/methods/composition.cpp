@@ -53,6 +53,14 @@ std::vector<NamedScheme> variants(const Problem& base) {
   return schemes;
 }
 
+/// Of space and time, the less.
+std::optional<int> order(const Problem& p) {
+  const auto name = p.parameters.maybe<std::string>("scheme.splitting");
+  const int time = name ? std::ranges::find(named_splittings(), *name, &NamedSplitting::name)->order
+                        : p.parameters.maybe<int>("scheme.order").value_or(usual_order);
+  return std::min(time, p.parameters.get<int>("lattice.space_order"));
+}
+
 }  // namespace
 
 extern const MethodEntry composition_method;
@@ -73,6 +81,7 @@ const MethodEntry composition_method{
                     .otherwise = "leapfrog, blanes-moan-4, blanes-moan-6 or kahan-li-8, by scheme.order"}},
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,
-    .variants = variants};
+    .variants = variants,
+    .order = order};
 
 }  // namespace delf

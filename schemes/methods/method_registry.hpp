@@ -88,6 +88,10 @@ struct MethodEntry {
 
   /// The schemes that its keys tell apart; null: one, of the method's name. `base.method` is the method's.
   std::vector<NamedScheme> (*variants)(const Problem& base) = nullptr;
+
+  /// The order of the error at a fixed h/k, for smooth solutions, from the values of all parameters; null, or nothing: not
+  /// known. `delf convergence` holds runs to it.
+  std::optional<int> (*order)(const Problem&) = nullptr;
 };
 
 /// All methods, the built-in ones first: a new method adds one line there.

@@ -109,6 +109,12 @@ std::vector<NamedScheme> variants(const Problem& base) {
   return schemes;
 }
 
+/// All stencils with a name are of order two, but for symplectic Euler, which is so for some densities only.
+std::optional<int> order(const Problem& p) {
+  if (p.stencil == stencil_as_text || p.stencil == "vertex") return std::nullopt;
+  return 2;
+}
+
 }  // namespace
 
 extern const MethodEntry multisymplectic_method;
@@ -134,6 +140,7 @@ const MethodEntry multisymplectic_method{
                     .otherwise = "none"}},
     .reads_stencil = true,
     .label = [](const Problem& p) { return p.stencil; },
-    .variants = variants};
+    .variants = variants,
+    .order = order};
 
 }  // namespace delf

@@ -103,6 +103,13 @@ std::vector<NamedScheme> variants(const Problem& base) {
   return schemes;
 }
 
+/// Of kernel and pairs, the less; pairs suited to a solution have an order at a finer k only.
+std::optional<int> order(const Problem& p) {
+  if (p.parameters.get<std::string>("lattice.pairs") == "suited") return std::nullopt;
+  const int time = p.parameters.get<std::string>("scheme.kernel") == "ti4" ? 4 : 6;
+  return std::min(time, p.parameters.get<int>("lattice.space_order"));
+}
+
 }  // namespace
 
 extern const MethodEntry processed_method;
@@ -132,6 +139,7 @@ const MethodEntry processed_method{
     .label = name_of,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
-    .variants = variants};
+    .variants = variants,
+    .order = order};
 
 }  // namespace delf

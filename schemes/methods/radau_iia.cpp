@@ -31,6 +31,8 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
 
 std::string label(const Problem& p) { return fmt::format("Radau IIA, {} stages{}", stages(p), space_label(p)); }
 
+std::optional<int> order(const Problem& p) { return order_in_space(p, 2 * stages(p) - 1); }
+
 }  // namespace
 
 extern const MethodEntry radau_iia_method;
@@ -48,6 +50,7 @@ const MethodEntry radau_iia_method{
     .label = label,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
-    .energy = element_energy};
+    .energy = element_energy,
+    .order = order};
 
 }  // namespace delf

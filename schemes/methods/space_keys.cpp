@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "jets/tables/space_table.hpp"
 #include "lattice/error.hpp"
 #include "schemes/methods/pair_parts.hpp"
@@ -77,6 +79,13 @@ std::string space_label(const Problem& p) {
   if (space == "pairs") return fmt::format(", pairs of order {}", order_of(p));
   if (space == "spectral") return fmt::format(", spectral of degree {}", degree_of(p));
   return ", " + space;
+}
+
+std::optional<int> order_in_space(const Problem& p, int in_time) {
+  if (p.lattice.space() == Space::point) return in_time;
+  const std::string space = space_of(p);
+  if (space == "spectral") return std::nullopt;
+  return std::min(in_time, space == "pairs" ? order_of(p) : 2);
 }
 
 }  // namespace delf

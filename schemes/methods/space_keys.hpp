@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <optional>
 #include <string>
 
 #include "jets/tables/stencil_table.hpp"
@@ -18,5 +19,7 @@ Parameter space_key(), space_order_key(), degree_space_key();
 StencilTable space_table(const Problem&);
 /// For labels: ", lumped", ", linear", ", pairs of order 4", ", spectral of degree 2"; nothing on a point.
 std::string space_label(const Problem&);
+/// The order of a method that has this one in time, in that space; nothing where it is not known (spectral elements).
+std::optional<int> order_in_space(const Problem&, int in_time);
 
 }  // namespace delf

@@ -184,7 +184,7 @@ std::vector<Key> general_keys() {
 
       Key{"convergence.levels", integer, "4", "", "lines of the table, each with half of the steps of the one before",
           "", convergence_levels},
-      Key{"convergence.order", real, "", "none",
+      Key{"convergence.order", real, "", "at least that of the scheme, where it is known",
           "the order that the last two lines must show: exit code 1 if they do not", "", positive},
       Key{"convergence.agreement", real, "0.2", "", "by how much the order may be off", "", positive},
 

@@ -43,6 +43,33 @@ TEST_CASE("a composition of order four shows four") {
                  0);
 }
 
+TEST_CASE("a scheme is held to its own order, where its method declares one") {
+  const Folder folder;
+  const std::string point = "pendulum --run.until=4 --lattice.time_step=0.2 --convergence.levels=3 ";
+  for (const auto& [arguments, order] : std::vector<std::pair<std::string, int>>{
+           {small + "--lattice.sites=51", 2},
+           {small + "--lattice.sites=51 --scheme.method=guo", 2},
+           {point + "--scheme.method=cgvi", 4},
+           {point + "--scheme.method=cgvi --scheme.tableau=lobatto3", 4},
+           {point + "--scheme.method=radau-iia", 5},
+           {small + "--lattice.sites=80 --scheme.method=composition --lattice.space_order=2", 2}}) {
+    const Json table = convergence_of(folder, arguments, 0);
+    INFO(arguments);
+    CHECK(table["order_of_scheme"] == order);
+    CHECK(table["order"].get<double>() == Approx(order).margin(0.2));
+  }
+  // symplectic Euler has none for all densities
+  CHECK(convergence_of(folder, point + "--lattice.stencil=vertex", 0)["order_of_scheme"].is_null());
+  // a solution with a corner has no second order, and an order that is asked for takes the place of the scheme's
+  const std::string corner = folder.write(
+      "corner.ini",
+      "[theory]\nname = wave\n[lattice]\nstencil = triangle-vertex\nlength = 8\nsites = 64\ncourant = 0.5\n[initial]\n"
+      "phi = sqrt(sin(pi*x/8)^2 + 1e-12)\nphi_t = 0\n[run]\nuntil = 3\n");
+  CHECK(convergence_of(folder, "'" + corner + "'", 1)["passed"] == false);
+  CHECK(convergence_of(folder, "'" + corner + "' --convergence.order=0.736 --convergence.agreement=0.1", 0)["passed"] ==
+        true);
+}
+
 TEST_CASE("a processed kernel of order four shows four: its rows have the processor undone") {
   const Folder folder;
   // The kernel's own rows are of order one. The circle is long enough for the breather's tails.
