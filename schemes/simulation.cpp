@@ -293,6 +293,7 @@ void Simulation::step(bool looked_at) {
 void Simulation::steps(int count) {
   impl_->with_reasons([&] { impl_->stepper.steps(count); });
 }
+void Simulation::visit(SavedState& state) { impl_->stepper.visit(state); }
 std::int64_t Simulation::newest() const { return impl_->stepper.newest(); }
 
 void Simulation::start_legendre(std::span<const double> fields, std::span<const double> rates) {

@@ -15,6 +15,7 @@
 namespace delf {
 
 class Evolution;
+class SavedState;
 class FieldTheory;
 
 /// What a scene states, in the engine's words.
@@ -90,6 +91,10 @@ class Simulation {
   void step(bool looked_at = true);
   /// The same as so many step(false), for less where rows outgrow the cache.
   void steps(int count);
+
+  /// Saves or restores all that the next steps depend on: they have the same bits then. What is restored was made for
+  /// the same problem, and needs no start.
+  void visit(SavedState&);
 
   /// Index of the newest row.
   std::int64_t newest() const;

@@ -13,6 +13,7 @@
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/plan.hpp"
+#include "tools/run/resume.hpp"
 #include "tools/run/run.hpp"
 #include "tools/scene/scene.hpp"
 #include "tools/scene/shipped_scenes.hpp"
@@ -59,6 +60,14 @@ void refuse(const Arguments& arguments, bool keys) {
 ExitCode carry_out_run(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   return run(scene, arguments.out.value_or("results/" + scene.name));
+}
+
+ExitCode carry_out_resume(const Arguments& arguments) {
+  if (arguments.words.size() < 2)
+    throw BadScene("command line: resume what? Name the folder of a run, such as `delf resume results/collision`");
+  if (arguments.out) throw BadScene("command line: --out: a run is resumed in its own folder; leave it out");
+  check_command_line(arguments.keys);
+  return resume(only_word(arguments, nullptr), arguments.keys);
 }
 
 ExitCode carry_out_plan(const Arguments& arguments) {
@@ -120,6 +129,17 @@ const std::vector<Command>& table() {
            "\n\n"
            "Keys, with what holds if they are not given (a key on the command line wins over the file):",
        true, carry_out_run},
+      {"resume", "delf resume DIR [--run.until=T] [--KEY=VALUE ...]", "go on with a run that was ended early",
+       "Goes on with the run of the folder DIR from its last checkpoint, and leaves what the run would have given without "
+       "a\n"
+       "break: the rows, series.csv and summary.json are the same to the bit, but for timings. Checkpoints are written "
+       "every\n"
+       "output.checkpoint seconds, at the end, and on SIGINT (Ctrl-C), SIGTERM and SIGHUP. A finished run goes on if "
+       "run.until\n"
+       "(from time 0) or run.steps is raised. The keys are those that the run began with; besides these two, "
+       "run.threads and\n"
+       "output.checkpoint may change. It takes the same version of delf, on a processor with the same instructions.",
+       false, carry_out_resume},
       {"plan",
        "delf plan SCENE [--latex] [--KEY=VALUE ...]",
        "what a run would solve, how, and at what cost",

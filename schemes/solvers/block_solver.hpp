@@ -26,6 +26,9 @@ class BlockSolver {
   /// x = A⁻¹ b. Allocates nothing but where a large block is sparse.
   void solve(const std::vector<double>& b, std::vector<double>& x) const;
 
+  /// Those that were factored last; none before.
+  const std::vector<double>& values() const { return values_; }
+
   int blocks() const { return static_cast<int>(blocks_.size()); }
   int largest_block() const { return largest_; }
   /// Allocated; the sparse factors are counted once there are any.

@@ -13,6 +13,7 @@
 #include "jets/simd/scratch_rows.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/pair_strips.hpp"
+#include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 
@@ -395,6 +396,15 @@ double CompositionStepper::residual() const {
         }
   }
   return size != 0 ? worst / size : 0;
+}
+
+void CompositionStepper::visit(SavedState& state) {
+  const auto visit_rows = [&](std::string_view name, RowBuffer& rows) {
+    for (int r = 0; r < rows.rows(); ++r) state.numbers(name, rows.row(r), static_cast<std::size_t>(d_) * size_);
+  };
+  visit_rows("y", newest_), visit_rows("velocity", velocity_), visit_rows("differences", differences_);
+  visit_rows("slabs", slabs_), visit_rows("saved", saved_);
+  state("which differences", at_), state("newest row", n_), state("row saved", saved_row_), state("slabs held", known_);
 }
 
 StepReport CompositionStepper::report(bool residual) const {

@@ -39,6 +39,7 @@ class CompositionStepper final : public StepMethod {
   double residual() const override;
 
   StepReport report(bool residual) const override;
+  void visit(SavedState&) override;
 
  private:
   /// One sub-step from the row of a node.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "schemes/stepping/newton.hpp"
+#include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 
@@ -44,6 +45,8 @@ class Contraction {
         bound_->dominance > 0 ? 1 / (bound_->dominance * weight) : std::numeric_limits<double>::infinity();
     return 4 * bound_->nonlinear * (gain > 0 ? std::min(gain, crude) : crude);
   }
+
+  void visit(SavedState& state) { state("contraction amplitude", amplitude_), state("contraction bound", bound_); }
 
  private:
   static constexpr double at_first = std::numbers::pi;

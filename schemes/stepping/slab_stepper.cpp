@@ -14,6 +14,7 @@
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/newton.hpp"
+#include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/slab_extent.hpp"
 
 namespace delf {
@@ -453,6 +454,28 @@ double SlabStepper::residual() const {
     size = std::max(size, absolute_[static_cast<std::size_t>(n)]);
   }
   return size > 0 ? worst / size : 0;
+}
+
+/// A Jacobian whose factors are kept is saved as its values, and factored again.
+void SlabStepper::visit(SavedState& state) {
+  state.numbers("section", ring_->row(0), ring_->bytes() / sizeof(double));  // from the beginning of the ring
+  state("newest slab", J_), state("slabs known", known_), state("by momenta", by_momenta_);
+  state("iterations", iterations_), state("largest", largest_);
+  state("steps to wait", wait_), state("steps left to wait", waiting_);
+  for (Parity& p : parities_) {
+    Matrix factored = p.factored;
+    state("factored", factored);
+    std::vector<double> values;
+    if (factored == Matrix::jacobian) values = p.solver.values();
+    state("Jacobian", values);
+    state("iterations of the last slab", p.last_iterations);
+    state("iterations with a new Jacobian", p.fresh_iterations);
+    state("curvature", p.curvature), state("iterations unseen", p.unseen);
+    if (!state.restores()) continue;
+    if (factored == Matrix::jacobian) p.has_values = true, p.solver.factor(values), p.factored = factored;
+    else if (factored == Matrix::none) p.factored = factored;
+    else if (p.factored != Matrix::constant) factor_constant(p);
+  }
 }
 
 std::size_t SlabStepper::equation_bytes() const {

@@ -33,6 +33,7 @@ class SlabStepper final : public StepMethod {
   double residual() const override;
 
   StepReport report(bool residual) const override;
+  void visit(SavedState&) override;
 
  private:
   /// Unknowns whose pasts are as long: those in one row of which as many slabs are known.

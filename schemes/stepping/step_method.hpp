@@ -14,6 +14,8 @@
 
 namespace delf {
 
+class SavedState;
+
 struct StepOptions {
   double tolerance = 1e-14;  ///< of the last change, relative to the largest |y| of the last three rows
   int seed_order = 8;        ///< rows that the seed of an implicit step is extrapolated from
@@ -86,6 +88,8 @@ class StepMethod {
   virtual double residual() const = 0;
   virtual void newest_pair(const double** /*rows*/) const {}
   virtual StepReport report(bool residual) const = 0;
+  /// All that the next steps depend on, to the bit.
+  virtual void visit(SavedState&) = 0;
 };
 
 }  // namespace delf

@@ -4,9 +4,10 @@
 #include <algorithm>
 
 #include "schemes/stepping/composition_stepper.hpp"
-#include "schemes/system/equation_terms.hpp"
 #include "schemes/stepping/rows/row_stepper.hpp"
+#include "schemes/stepping/saved_state.hpp"
 #include "schemes/stepping/slab_stepper.hpp"
+#include "schemes/system/equation_terms.hpp"
 
 namespace delf {
 namespace {
@@ -56,6 +57,12 @@ void Stepper::start_centred(const std::vector<double>& row0, const std::vector<d
 void Stepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
   require_row(row0.size()), require_row(momenta.size());
   method_->start_legendre(row0, momenta);
+  started_ = true;
+}
+
+void Stepper::visit(SavedState& state) {
+  if (!state.restores()) require_start();
+  method_->visit(state);
   started_ = true;
 }
 

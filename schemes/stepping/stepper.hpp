@@ -42,6 +42,10 @@ class Stepper {
     for (; count > 0; --count) step(false);
   }
 
+  /// Saves or restores all that the next steps depend on: they have the same bits then. A stepper that is restored was
+  /// made for the same equations, and needs no start.
+  void visit(SavedState&);
+
   std::int64_t newest() const { return method_->state().newest; }
   /// Of each component, so many rows before the newest row of fields is its newest that is known.
   std::vector<int> behind() const {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "schemes/stepping/saved_state.hpp"
+
 namespace delf {
 
 namespace {
@@ -38,6 +40,12 @@ void Film::keep(double time) {
   const auto n = times_.size();
   const double first = n > 1 ? times_[1] - times_[0] : 0;
   if (n < 3 || times_[n - 1] - times_[n - 2] > 0.999 * first) even_frames_ = static_cast<int>(n);
+}
+
+void Film::visit(SavedState& state) {
+  state("film stride", stride_), state("rows seen", seen_), state("newest is kept", newest_kept_);
+  state("even frames", even_frames_), state("newest time", newest_time_), state("newest", newest_);
+  state("times", times_), state("frames", values_);
 }
 
 void Film::finish() {

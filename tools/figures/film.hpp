@@ -8,6 +8,8 @@
 
 namespace delf {
 
+class SavedState;
+
 /// The recorded rows, thinned to what a figure can show: at most about 600 frames of at most 600 sites, or 6000 of one
 /// site, always with the first row and the last one. Independent of fields.h5.
 class Film {
@@ -17,6 +19,8 @@ class Film {
   void append(double time, std::span<const double> row);
   /// Keeps the newest row, due or not.
   void finish();
+
+  void visit(SavedState&);
 
   int frames() const noexcept { return static_cast<int>(times_.size()); }
   double time(int frame) const { return times_[static_cast<std::size_t>(frame)]; }

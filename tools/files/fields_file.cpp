@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 
@@ -72,7 +73,7 @@ bool append_block(hid_t dataset, hsize_t old, const std::vector<hsize_t>& block,
 }  // namespace
 
 FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double> space, std::int64_t expected_frames,
-                       const std::string& scene, int winding, const RowNames& names)
+                       const std::string& scene, int winding, const RowNames& names, hsize_t kept)
     : path_(path), sites_(space.size()), names_(names) {
   constexpr std::size_t block = 1 << 17;  // doubles: 1 MiB
   std::size_t columns = 0;
@@ -81,7 +82,8 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   frames_per_block_ = std::clamp<std::size_t>(block / (sites_ * columns), 1, 1024);
   frames_per_block_ = std::min(frames_per_block_, static_cast<std::size_t>(std::max<std::int64_t>(1, expected_frames)));
   quiet_hdf5();
-  file_ = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
+  const std::filesystem::path made = kept > 0 ? std::filesystem::path(path.string() + ".part") : path;
+  file_ = {H5Fcreate(made.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
   require(static_cast<bool>(file_), "cannot be created");
 
   const hsize_t sites = sites_;
@@ -116,10 +118,55 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   }
   require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
   times_.reserve(frames_per_block_);
+  if (kept == 0) return;
+  copy_frames(path, kept);
+  std::error_code error;
+  std::filesystem::rename(made, path, error);
+  require(!error, "cannot be replaced");
+}
+
+void FieldsFile::copy_frames(const std::filesystem::path& from, hsize_t frames) {
+  const Hdf5Handle old(H5Fopen(from.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const auto read = [&](const char* name, hsize_t first, const std::vector<hsize_t>& block, double* to) {
+    const Hdf5Handle dataset(H5Dopen2(old, name, H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle source(H5Dget_space(dataset), H5Sclose);
+    const int rank = static_cast<int>(block.size());
+    if (H5Sget_simple_extent_ndims(source) != rank) return false;
+    const Hdf5Handle target(H5Screate_simple(rank, block.data(), nullptr), H5Sclose);
+    std::vector<hsize_t> offset(block.size());
+    offset[0] = first;
+    return H5Sselect_hyperslab(source, H5S_SELECT_SET, offset.data(), nullptr, block.data(), nullptr) >= 0 &&
+           H5Dread(dataset, H5T_NATIVE_DOUBLE, target, source, H5P_DEFAULT, to) >= 0;
+  };
+  bool there = static_cast<bool>(old);
+  for (hsize_t first = 0; there && first < frames; first += frames_per_block_) {
+    const hsize_t count = std::min<hsize_t>(frames_per_block_, frames - first);
+    times_.resize(count);
+    there = read("time", first, {count}, times_.data());
+    for (Rows* rows : all_rows()) {
+      if (!rows->dataset || !there) continue;
+      const std::vector<hsize_t> block = block_of(count, rows->shape);
+      hsize_t values = 1;
+      for (const hsize_t n : block) values *= n;
+      rows->waiting.resize(values);
+      there = read(rows->name.c_str(), first, block, rows->waiting.data());
+    }
+    if (there) write_block();
+  }
+  require(there, "the rows that the checkpoint counts on cannot be read; begin the run anew");
+}
+
+std::uint64_t FieldsFile::flush(bool sync) {
+  write_block();
+  void* descriptor = nullptr;
+  if (sync)
+    require(H5Fget_vfd_handle(file_, H5P_DEFAULT, &descriptor) >= 0 && fsync(*static_cast<int*>(descriptor)) == 0,
+            "cannot be written");
+  return frames_written_;
 }
 
 FieldsFile::Rows FieldsFile::rows(const char* name, std::vector<hsize_t> shape) const {
-  Rows made{growing(file_, name, block_of(frames_per_block_, shape)), std::move(shape), {}};
+  Rows made{growing(file_, name, block_of(frames_per_block_, shape)), std::move(shape), {}, name};
   hsize_t values = frames_per_block_;
   for (const hsize_t n : made.shape) values *= n;
   made.waiting.reserve(values);
@@ -147,7 +194,8 @@ void FieldsFile::append(double time, const RecordedRow& row, const RecordedDatas
     for (std::size_t i = mesh->index; i < row[mesh->role].size(); i += names_.of[mesh->role].size())
       mesh_.waiting.push_back(row[mesh->role][i]);
   for (std::size_t d = 0; d < datasets_.size(); ++d) add(datasets_[d], datasets[d]);
-  if (times_.size() == frames_per_block_) write_block();
+  // blocks end where chunks do
+  if ((frames_written_ + times_.size()) % frames_per_block_ == 0) write_block();
 }
 
 void FieldsFile::write_block() {

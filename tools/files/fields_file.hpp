@@ -25,14 +25,17 @@ namespace delf {
 ///
 ///     /       attributes scene (the resolved scene), version, winding
 ///
+/// With `kept`, a file of that name is gone on with behind its first frames: they are copied, and the copy takes its place.
 /// Rows are written in blocks, and each block is flushed: what has been written stays readable. Throws SystemFailure.
 class FieldsFile {
  public:
   FieldsFile(const std::filesystem::path&, std::span<const double> space, std::int64_t expected_frames,
-             const std::string& scene, int winding, const RowNames& = {});
+             const std::string& scene, int winding, const RowNames& = {}, hsize_t kept = 0);
   ~FieldsFile();
 
   void append(double time, const RecordedRow&, const RecordedDatasets& = {});
+  /// Writes the buffered rows; with `sync` they reach the disk. The number of frames that are there.
+  std::uint64_t flush(bool sync);
   /// Writes the buffered rows. Until then they may be missing on the disk.
   void close();
 
@@ -41,9 +44,11 @@ class FieldsFile {
     Hdf5Handle dataset;
     std::vector<hsize_t> shape;  ///< sites, or sites × components
     std::vector<double> waiting;
+    std::string name = {};
   };
   Rows rows(const char* name, std::vector<hsize_t> shape) const;
   void write_block();
+  void copy_frames(const std::filesystem::path& from, hsize_t frames);
   void require(bool went_well, const char* what);
 
   std::filesystem::path path_;

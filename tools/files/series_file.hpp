@@ -14,7 +14,11 @@ namespace delf {
 class SeriesFile {
  public:
   SeriesFile(const std::filesystem::path&, const std::vector<std::string>& further);
+  /// Goes on behind the first bytes of a file.
+  SeriesFile(const std::filesystem::path& path, std::uint64_t kept) : file_(path, kept) {}
   void append(const Record&);
+  /// Bytes that have reached the system, and with `sync` the disk.
+  std::uint64_t flush(bool sync) { return file_.flush(sync), file_.size(); }
   void close() { file_.close(); }
 
  private:

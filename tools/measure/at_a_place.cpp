@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "schemes/stepping/saved_state.hpp"
 #include "tools/measure/entries.hpp"
 #include "tools/measure/spectrum.hpp"
 
@@ -18,6 +19,8 @@ class AtAPlace : public Measurement {
     times_.push_back(row.time);
     values_.push_back(field_.at(row.row, x_));
   }
+
+  void visit(SavedState& state) override { state("times at a place", times_), state("values at a place", values_); }
 
  protected:
   std::vector<double> times_, values_;

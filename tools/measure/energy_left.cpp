@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/stress_energy.hpp"
 #include "tools/measure/entries.hpp"
 
@@ -18,6 +19,10 @@ class EnergyLeft final : public Measurement {
     time_ = row.time;
     above_.assign(row.row.begin(), row.row.end());
     below_.assign(row.other.begin(), row.other.end());
+  }
+
+  void visit(SavedState& state) override {
+    state("time", time_), state("row above", above_), state("row below", below_);
   }
 
   // H = Σ k (φ_t ∂ℓ/∂φ_t − ℓ), on the jets of the symmetric rectangle; of a cut cell, what lies left of x

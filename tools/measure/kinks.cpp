@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "lattice/error.hpp"
+#include "schemes/stepping/saved_state.hpp"
 #include "tools/measure/entries.hpp"
 
 namespace delf {
@@ -54,6 +55,7 @@ class Count final : public Measurement {
     for (const KinkAt& kink : kinks_of(field_, row.row, level_)) count_ += with_sign ? kink.sign : 1;
   }
   double value() const override { return count_; }
+  void visit(SavedState& state) override { state("kinks", count_); }
 
  private:
   MeasuredField field_;
@@ -88,6 +90,10 @@ class OneKink : public Measurement {
       x = places_.back() + std::remainder(x - places_.back(), field_.lattice.length());
     times_.push_back(row.time);
     places_.push_back(x);
+  }
+
+  void visit(SavedState& state) override {
+    state("number of kinks", kinks_), state("times of a kink", times_), state("places of a kink", places_);
   }
 
  protected:

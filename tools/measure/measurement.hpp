@@ -11,6 +11,8 @@
 
 namespace delf {
 
+class SavedState;
+
 /// What measurements are made on.
 struct MeasuredField {
   Lattice lattice;
@@ -42,6 +44,8 @@ class Measurement {
   virtual void see(const MeasuredRow&) = 0;
   /// Not a number where there is no answer.
   virtual double value() const = 0;
+  /// What it keeps of the rows that it has seen.
+  virtual void visit(SavedState&) = 0;
 };
 
 /// A measurement that measure.NAME can name, with its numbers between brackets.

@@ -9,6 +9,7 @@
 
 #include "jets/expressions/expression.hpp"
 #include "lattice/text_parts.hpp"
+#include "schemes/stepping/saved_state.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/measure/measure_names.hpp"
 
@@ -200,6 +201,12 @@ void Measures::see(const MeasuredRow& row) {
   time_ = row.time;
   for (Expression& expression : all_)
     for (auto& q : expression.quantities) q.measurement->see(row);
+}
+
+void Measures::visit(SavedState& state) {
+  state("time of measures", time_);
+  for (Expression& expression : all_)
+    for (auto& q : expression.quantities) q.measurement->visit(state);
 }
 
 std::vector<NamedNumber> Measures::results() const {

@@ -30,6 +30,7 @@ class Measures {
   /// A recorded row of the fields, and the row before it (row 1 for row 0) where it is held.
   void see(const MeasuredRow&);
   std::vector<NamedNumber> results() const;
+  void visit(SavedState&);
 
  private:
   struct Expression;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <numbers>
 
+#include "schemes/stepping/saved_state.hpp"
 #include "tools/measure/entries.hpp"
 #include "tools/measure/spectrum.hpp"
 
@@ -21,6 +22,7 @@ class Wavenumber final : public Measurement {
     value_ = 2 * std::numbers::pi * spectrum_peak(values, lattice.is_circle()) / lattice.length();
   }
   double value() const override { return value_; }
+  void visit(SavedState& state) override { state("wavenumber", value_); }
 
  private:
   MeasuredField field_;

@@ -4,7 +4,7 @@
 
 namespace delf {
 
-/// While it lives, SIGINT and SIGTERM only raise a flag, so that a run can write what it has; the second one ends the
+/// While it lives, SIGINT, SIGTERM and SIGHUP only raise a flag, so that a run can write what it has; the second one ends the
 /// program at once.
 class Interrupt {
  public:
@@ -18,7 +18,7 @@ class Interrupt {
  private:
   static void ask(int signal);
   static volatile std::sig_atomic_t asked_;
-  struct sigaction interrupt_, terminate_;
+  struct sigaction interrupt_, terminate_, hang_up_;
 };
 
 }  // namespace delf

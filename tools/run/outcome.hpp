@@ -14,6 +14,8 @@
 
 namespace delf {
 
+class SavedState;
+
 /// A sum that a symmetry conserves, over the recorded rows.
 struct Conserved {
   std::string name;
@@ -50,6 +52,9 @@ struct Outcome {
   std::vector<NamedNumber> measures;            ///< measure.NAME
   std::optional<ErrorEstimate> error_estimate;  ///< output.estimate
   std::vector<std::string> warnings;  ///< why the result may be wrong although the status is done
+
+  /// What grows with the run.
+  void visit(SavedState&);
 
   double ns_per_site_step(int sites) const {
     return steps_taken == 0 ? unknown : 1e9 * seconds / (static_cast<double>(steps_taken) * sites);

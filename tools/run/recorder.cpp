@@ -3,17 +3,21 @@
 
 #include <cmath>
 
+#include "schemes/stepping/saved_state.hpp"
+
 namespace delf {
 
 Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, const std::string& resolved_scene,
-                   int winding, const RowNames& names)
-    : names_(names), series_(folder / "series.csv", names.further) {
+                   int winding, const RowNames& names, const std::optional<Written>& kept)
+    : names_(names),
+      series_(kept ? SeriesFile(folder / "series.csv", kept->series)
+                   : SeriesFile(folder / "series.csv", names.further)) {
   const Lattice& lattice = scene.problem.lattice;
   const std::int64_t expected = scene.every == 0 ? 1 : scene.steps / scene.every + 2;
   if (scene.fields) {
     std::vector<double> space;
     for (int i = 0; i < lattice.sites(); ++i) space.push_back(lattice.position(i));
-    fields_.emplace(folder / "fields.h5", space, expected, resolved_scene, winding, names);
+    fields_.emplace(folder / "fields.h5", space, expected, resolved_scene, winding, names, kept ? kept->frames : 0);
   }
   if (scene.figures) film_.emplace(lattice, expected, names.drawn().size());
 }
@@ -38,6 +42,19 @@ std::vector<double> Recorder::drawn(const RecordedRow& row) const {
     all.push_back(row[mesh->role][i * step + mesh->index]);
   }
   return all;
+}
+
+Recorder::Written Recorder::flush(bool sync) {
+  Written written;
+  if (fields_) written.frames = fields_->flush(sync);
+  written.series = series_.flush(sync);
+  return written;
+}
+
+void Recorder::visit(SavedState& state) {
+  energy_errors_.visit(state);
+  state("largest energy error", largest_energy_error_);
+  if (film_) film_->visit(state);
 }
 
 void Recorder::close() {

@@ -6,23 +6,32 @@
 #include <span>
 #include <string>
 
-#include "tools/files/fields_file.hpp"
 #include "tools/figures/film.hpp"
+#include "tools/files/fields_file.hpp"
+#include "tools/files/series_file.hpp"
 #include "tools/run/record.hpp"
+#include "tools/run/trace.hpp"
 #include "tools/scene/row_names.hpp"
 #include "tools/scene/scene.hpp"
-#include "tools/files/series_file.hpp"
-#include "tools/run/trace.hpp"
 
 namespace delf {
 
 /// Where the recorded rows of a run go: series.csv; fields.h5 and the film for figures, if the scene wants them.
 class Recorder {
  public:
+  /// What of the files has reached the disk.
+  struct Written {
+    std::uint64_t series = 0, frames = 0;  ///< bytes of series.csv, frames of fields.h5
+  };
+  /// With `kept`, the files of an earlier run are gone on with from there.
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
-           const RowNames&);
+           const RowNames&, const std::optional<Written>& kept = {});
 
   void append(const Record&, const RecordedRow&, const RecordedDatasets&);
+  /// Writes all buffered rows, and with `sync` waits until they are on the disk.
+  Written flush(bool sync);
+  /// What is kept for figures and the summary.
+  void visit(SavedState&);
   /// Writes all buffered rows. A failure does not prevent the other files; the first one is then thrown.
   void close();
 

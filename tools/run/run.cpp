@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <fstream>
 #include <utility>
 
 #include "schemes/stability/constraint_ghost.hpp"
@@ -12,6 +13,8 @@
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
+#include "tools/files/folder_lock.hpp"
+#include "tools/run/checkpoints.hpp"
 #include "tools/run/error_estimate.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
@@ -27,19 +30,34 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Makes the folder, and removes files of an earlier run with the names that this one may write.
+// Removes what a run writes at its end.
+void remove_results(const fs::path& folder) {
+  std::vector<fs::path> earlier{folder / "summary.json", folder / "section.csv"};
+  for (const std::string& name : figure_names())
+    for (const char* ending : {".png", ".svg"}) earlier.push_back(folder / "figures" / (name + ending));
+  std::error_code none;
+  for (const fs::path& file : earlier) fs::remove(file, none);
+}
+
+// Throws BadScene if the scene.ini of the folder is not one of delf's.
+void refuse_foreign_scene(const fs::path& folder) {
+  std::ifstream in(folder / "scene.ini");
+  std::string first;
+  if (in && std::getline(in, first) && !first.starts_with(resolved_scene_begins))
+    throw BadScene(fmt::format("{}: a scene that delf did not write would be written over; choose another --out",
+                               (folder / "scene.ini").string()));
+}
+
+// Removes files of an earlier run with the names that this one may write.
 void prepare(const fs::path& folder, const Scene& scene) {
   std::error_code error;
   for (const char* name : {"fields.h5", "series.csv"})
     if (scene.from_file() && fs::equivalent(scene.initial_file, folder / name, error))
       throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
-  make_results_folder(folder);
-  std::vector<fs::path> earlier;
-  for (const char* name : {"summary.json", "series.csv", "section.csv", "fields.h5", "scene.ini"})
-    earlier.push_back(folder / name);
-  for (const std::string& name : figure_names())
-    for (const char* ending : {".png", ".svg"}) earlier.push_back(folder / "figures" / (name + ending));
-  for (const fs::path& file : earlier) fs::remove(file, error);
+  refuse_foreign_scene(folder);
+  remove_results(folder);
+  for (const char* name : {"checkpoint", "checkpoint.previous", "series.csv", "fields.h5"})
+    fs::remove(folder / name, error);
 }
 
 std::string energy_in_words(const Problem& problem) {
@@ -76,7 +94,7 @@ void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
         "lattice.stencil", fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
 }
 
-ExitCode run_in(const fs::path& folder, const Scene& scene) {
+ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resumed) {
   const Interrupt interrupt;
   const InitialRows initial(scene);
   Outcome outcome;
@@ -90,12 +108,24 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
 
   const RowNames names(simulation);
   Stepping stepping(scene, initial, simulation, names, outcome);
-  stepping.start();
+  std::optional<Recorder::Written> kept;
+  if (resumed.state) {
+    (*resumed.state)("written", kept.emplace());
+    stepping.visit(*resumed.state);
+  } else {
+    stepping.start();
+  }
 
-  prepare(folder, scene);
+  make_results_folder(folder);
+  const FolderLock lock(folder);
+  if (resumed.state) remove_results(folder);
+  else prepare(folder, scene);
   const std::string resolved = resolved_text(scene, outcome.start, outcome.state);
   write_text_file(folder / "scene.ini", resolved);
-  Recorder recorder(scene, folder, resolved, outcome.winding, names);
+  Recorder recorder(scene, folder, resolved, outcome.winding, names, kept);
+  if (resumed.state) recorder.visit(*resumed.state);
+  Checkpoints checkpoints(folder, {DELF_VERSION, instruction_set(), resolved, scene.name, scene.warnings},
+                          scene.checkpoint);
 
   std::exception_ptr failure;
   const auto attempt = [&](auto&& part) {
@@ -110,7 +140,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
       }
     }
   };
-  attempt([&] { stepping.run(recorder); });
+  attempt([&] { stepping.run(recorder, checkpoints); });
   if (Values(scene.settings).toggle("output.estimate"))
     attempt([&] {
       outcome.error_estimate = estimate_error(scene, outcome, stepping.last_row());
@@ -139,8 +169,8 @@ ExitCode run_in(const fs::path& folder, const Scene& scene) {
 
 }  // namespace
 
-ExitCode run(const Scene& scene, const fs::path& folder) {
-  return with_memory_for(scene, [&] { return run_in(folder, scene); });
+ExitCode run(const Scene& scene, const fs::path& folder, Resumed resumed) {
+  return with_memory_for(scene, [&] { return run_in(folder, scene, resumed); });
 }
 
 }  // namespace delf

@@ -14,6 +14,7 @@
 #include "jets/tables/line_basis.hpp"
 #include "lattice/error.hpp"
 #include "lattice/text_parts.hpp"
+#include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 
@@ -78,6 +79,11 @@ void Section::see(std::vector<double> point) {
   // up to the one in the middle: later ones wait for the rows after them
   if (rows_.size() == rows_around)
     while (crossed_ < rows_around / 2) cross(crossed_++);
+}
+
+void Section::visit(SavedState& state) {
+  state("rows around", rows_), state("newest row", newest_), state("intervals crossed", crossed_);
+  state("points", points_), state("lines", lines_);
 }
 
 void Section::finish() {

@@ -8,6 +8,8 @@
 
 namespace delf {
 
+class SavedState;
+
 /// A Poincaré section as output.section has it: "q1 = 0, p1 > 0", a coordinate or momentum that has a value, and what else
 /// holds there.
 struct SectionRequest {
@@ -31,6 +33,7 @@ class Section {
 
   /// (q, p) of the next row, from row 0 on.
   void see(std::vector<double> point);
+  void visit(SavedState&);
   /// What lies between the last rows.
   void finish();
 

@@ -9,6 +9,7 @@
 
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
+#include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/momenta.hpp"
 #include "tools/run/field_error.hpp"
 #include "tools/run/interrupt.hpp"
@@ -124,8 +125,32 @@ std::vector<double> Stepping::phase_point(int back) const {
   return point;
 }
 
-void Stepping::run(Recorder& recorder) {
+void Stepping::visit(SavedState& state) {
+  started_ = true;  // there are no checkpoints before
+  state("newest", newest_), state("recorded", recorded_);
+  state("iterations", iterations_), state("iterations of the last step", last_iterations_);
+  simulation_.visit(state);
+  outcome_.visit(state);
+  warnings_.visit(state);
+  measures_.visit(state);
+  if (section_) section_->visit(state);
+}
+
+/// A checkpoint of the newest row, before this is recorded as the last one: a run that is resumed may go on from it.
+void Stepping::save() {
+  saved_ = newest_;
+  if (!checkpoints_->wanted()) return;
+  Recorder::Written written = recorder_->flush(true);
+  checkpoints_->write(newest_, [&](SavedState& state) {
+    state("written", written);
+    visit(state);
+    recorder_->visit(state);
+  });
+}
+
+void Stepping::run(Recorder& recorder, Checkpoints& checkpoints) {
   recorder_ = &recorder;
+  checkpoints_ = &checkpoints;
   try {
     record_and_step();
   } catch (const SystemFailure&) {
@@ -137,15 +162,20 @@ void Stepping::run(Recorder& recorder) {
 }
 
 void Stepping::record_and_step() {
-  for (std::int64_t row = 0; started_ && row <= std::min(newest_, scene_.steps); ++row)
+  for (std::int64_t row = recorded_ + 1; started_ && row <= std::min(newest_, scene_.steps); ++row)
     if (to_be_recorded(row)) record(row);
+  if (started_ && newest_ >= scene_.steps) save();
   try {
     Progress progress(scene_.steps);
     while (started_ && newest_ < scene_.steps && !Interrupt::asked()) {
       step_until(next_record(), progress);
+      if (newest_ == scene_.steps) save();
       if (to_be_recorded(newest_)) record(newest_);
     }
-    if (started_ && newest_ < scene_.steps) outcome_.status = "interrupted";
+    if (started_ && newest_ < scene_.steps) {
+      outcome_.status = "interrupted";
+      if (saved_ < newest_ - 1) save();
+    }
   } catch (const NumericalFailure& error) {
     fail(error);
   }
@@ -169,6 +199,8 @@ void Stepping::step_until(std::int64_t row, Progress& progress) {
   const FlushDenormals for_all_steps;  // each would set and restore it
   bool looked_at = true;               // as the row that an interruption leaves must be: it is recorded
   while (newest_ < row && !(looked_at && Interrupt::asked())) {
+    if (Interrupt::asked() || checkpoints_->due(newest_)) save();
+    if (rows_due_.at(newest_)) recorder_->flush(false), rows_due_.restart();
     const std::int64_t unseen = Interrupt::asked() ? 0 : row - 1 - newest_;
     looked_at = unseen == 0 || section_;
     simulation_.step(looked_at);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include "tools/measure/measures.hpp"
+#include "tools/run/checkpoints.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/recorder.hpp"
@@ -21,8 +22,10 @@ class Stepping {
 
   /// Gives the simulation its first rows. Throws BadScene; a numerical failure is reported by run().
   void start();
-  /// Until the end, or an interruption. Throws NumericalFailure, with the step, after recording the last good row.
-  void run(Recorder&);
+  /// Saves or restores all that the rest of the run depends on; what is restored needs no start.
+  void visit(SavedState&);
+  /// Until the end, or an interruption, with checkpoints on the way and at the end. Throws NumericalFailure, with the step, after recording the last good row.
+  void run(Recorder&, Checkpoints&);
   /// The points of output.section; null without it.
   const Section* section() const { return section_ ? &*section_ : nullptr; }
   /// The fields of the last row.
@@ -32,6 +35,7 @@ class Stepping {
   void record_and_step();
   void step_until(std::int64_t row, Progress&);
   void count_step();
+  void save();
   void record(std::int64_t row);
   void measure(double time, int back);
   void fail(const NumericalFailure&);
@@ -47,6 +51,9 @@ class Stepping {
   Simulation& simulation_;
   Outcome& outcome_;
   Recorder* recorder_ = nullptr;
+  Checkpoints* checkpoints_ = nullptr;
+  Due rows_due_{10};         ///< recorded rows reach the disk after so many seconds
+  std::int64_t saved_ = -1;  ///< row of the last checkpoint
   const RowNames& names_;
   Warnings warnings_;
   Measures measures_;

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "schemes/stepping/saved_state.hpp"
+
 namespace delf {
 
 /// A quantity over time, of any length in bounded memory: its least and largest values in at most 2000 intervals, so
@@ -14,6 +16,11 @@ class Trace {
   };
   void append(double time, double value);
   const std::vector<Interval>& intervals() const noexcept { return intervals_; }
+
+  void visit(SavedState& state) {
+    state("intervals", intervals_), state("values of an interval", values_per_interval_);
+    state("values of the last interval", values_in_last_);
+  }
 
  private:
   std::vector<Interval> intervals_;

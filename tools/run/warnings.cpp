@@ -14,6 +14,7 @@
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/stepping/saved_state.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/run/exact_energy.hpp"
@@ -135,6 +136,13 @@ void Warnings::see(double time, std::span<const double> fields, std::span<const 
   if (late_time_ || time < late_) return;
   late_time_ = time;
   late_centre_ = centre(fields);
+}
+
+void Warnings::visit(SavedState& state) {
+  state("time of the late row", late_time_), state("centre of the late row", late_centre_);
+  state("growth of monitors", growth_);
+  // a run that goes further than it was to has its last stretch later
+  if (state.restores() && late_time_ && *late_time_ < late_) late_time_.reset(), late_centre_.reset();
 }
 
 std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energy_errors,

@@ -21,6 +21,7 @@ class Warnings {
 
   /// A recorded row of the fields, with the monitors of the method.
   void see(double time, std::span<const double> fields, std::span<const double> monitors);
+  void visit(SavedState&);
   /// One line each, with a remedy, after the last row.
   std::vector<std::string> of(const Outcome&, const Trace& energy_errors, std::span<const double> last_row) const;
 

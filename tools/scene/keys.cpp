@@ -146,6 +146,8 @@ std::vector<Key> general_keys() {
       Key{"output.times", KeyType::times, "", "six, evenly spread", "times of the waveforms figure: 0, 10, 20", "time",
           not_negative},
 
+      Key{"output.checkpoint", real, "60", "", "save all that `delf resume` needs so often; 0: never", "seconds",
+          not_negative},
       Key{"output.section", KeyType::text, "", "none",
           "a Poincare section: q1 = 0, p1 > 0; its points are in section.csv"},
 

@@ -33,9 +33,9 @@ std::string resolved(const Scene& scene, const Key& key, StartRule start) {
 std::string resolved_text(const Scene& scene, StartRule in_force, const std::string& state_in_words) {
   const Problem& p = scene.problem;
   std::string text = fmt::format(
-      "# All that was in force, as delf {} understood it: `delf run scene.ini` gives the same rows to the bit.\n"
+      "{}{} understood it: `delf run scene.ini` gives the same rows to the bit.\n"
       "#\n# {}\n# space step {}, Courant number {:.6g}, time of the last row {:.10g}\n",
-      DELF_VERSION, state_in_words, p.lattice.space_step(), p.time_step / p.lattice.space_step(),
+      resolved_scene_begins, DELF_VERSION, state_in_words, p.lattice.space_step(), p.time_step / p.lattice.space_step(),
       static_cast<double>(scene.steps) * p.time_step);
   std::string section;
   for (const Key& key : scene.settings.all_keys()) {

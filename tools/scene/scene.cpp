@@ -196,6 +196,7 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   scene.every = values.maybe_integer("output.every").value_or(std::max(1LL, every_default));
   scene.figures = values.toggle("output.figures");
   scene.fields = values.toggle("output.fields");
+  scene.checkpoint = values.real("output.checkpoint");
   scene.times = values.times("output.times");
   scene.section = values.text("output.section").value_or("");
   const auto warn = [&](const Setting& s, const std::string& why) {

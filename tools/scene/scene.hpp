@@ -29,6 +29,7 @@ struct Scene {
   std::int64_t steps = 0;          ///< after row 0
   std::int64_t every = 1;          ///< 0: the last row only
   bool figures = true, fields = true;
+  double checkpoint = 60;     ///< seconds from one to the next; 0: none
   std::string section;        ///< output.section as it is; empty: none
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread
 
@@ -41,6 +42,8 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<Setting>& 
 /// Why a key has no effect in this scene, or an empty string if it has one.
 std::string why_without_effect(const Scene&, std::string_view key);
 
+/// The first words of that text.
+inline constexpr std::string_view resolved_scene_begins = "# All that was in force, as delf ";
 /// The scene with all that is in force written out, to be run again to the same bits.
 std::string resolved_text(const Scene&, StartRule in_force, const std::string& state_in_words);
 

@@ -2,6 +2,7 @@
 #include "tools/scene/text_file.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -15,7 +16,19 @@ TextFile::TextFile(const std::filesystem::path& path)
   if (!file_) fail();
 }
 
+TextFile::TextFile(const std::filesystem::path& path, std::uint64_t kept)
+    : path_(path), size_(kept), file_(std::fopen(path.c_str(), "r+b"), std::fclose) {
+  if (!file_ || ftruncate(fileno(file_.get()), static_cast<off_t>(kept)) != 0 ||
+      std::fseek(file_.get(), 0, SEEK_END) != 0)
+    fail();
+}
+
+void TextFile::flush(bool sync) {
+  if (std::fflush(file_.get()) != 0 || (sync && fsync(fileno(file_.get())) != 0)) fail();
+}
+
 void TextFile::write(std::string_view text) {
+  size_ += text.size();
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) fail();
 }
 
@@ -29,9 +42,18 @@ void TextFile::fail() const {
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text) {
-  TextFile file(path);
-  file.write(text);
-  file.close();
+  const std::filesystem::path part = path.string() + ".part";
+  std::error_code error;
+  try {
+    TextFile file(part);
+    file.write(text);
+    file.close();
+  } catch (...) {
+    std::filesystem::remove(part, error);
+    throw;
+  }
+  std::filesystem::rename(part, path, error);
+  if (error) throw SystemFailure(fmt::format("{}: {}; choose another --out", path.string(), error.message()));
 }
 
 void make_results_folder(const std::filesystem::path& folder) {

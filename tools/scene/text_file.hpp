@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,20 +12,27 @@ namespace delf {
 class TextFile {
  public:
   explicit TextFile(const std::filesystem::path&);
+  /// Goes on with a file behind its first bytes; what follows them is cut off.
+  TextFile(const std::filesystem::path&, std::uint64_t kept);
   void write(std::string_view);
+  /// What has been written so far reaches the system, and with `sync` the disk.
+  void flush(bool sync = false);
+  /// Bytes from its beginning.
+  std::uint64_t size() const { return size_; }
   /// Writes what still waits; without it nothing is promised.
   void close();
 
  private:
   [[noreturn]] void fail() const;
   std::filesystem::path path_;
+  std::uint64_t size_ = 0;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 
 /// A folder for results, made if it is not there. Throws SystemFailure.
 void make_results_folder(const std::filesystem::path&);
 
-/// The whole file at once.
+/// The whole file at once, or not at all: it is written beside the one of that name, and takes its place.
 void write_text_file(const std::filesystem::path&, std::string_view);
 
 }  // namespace delf

@@ -5,6 +5,7 @@
 
 #include "schemes/solvers/row_layout.hpp"
 #include "schemes/stepping/rows/row_equations.hpp"
+#include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 
@@ -22,6 +23,7 @@ class Predictor {
 
   int order() const { return order_; }
   void restart() { order_ = 1, next_choice_ = 0; }
+  void visit(SavedState& state) { state("predictor order", order_), state("predictor choice", next_choice_); }
   bool is_due(std::int64_t n) const { return n >= next_choice_; }
   /// When source terms of so many rows are there, number 1 of each ring the newest. `gain`: what a change of 1 in a
   /// source row changes y by; an iteration makes the last change less by `contraction`; changes up to `allowed` are

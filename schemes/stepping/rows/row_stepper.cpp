@@ -604,11 +604,7 @@ struct RowStepper::Impl {
   /// A step that takes the place of the newest row.
   bool step_in_place() {
     if (spare.empty()) {
-      for (const auto& ring : {equations.y(), equations.v()})
-        for (int a = 0; a < d; ++a) {
-          spare.push_back(table[ring.row(0, a)]);
-          table[ring.row(0, a)] = table[ring.row(1, a)];
-        }
+      go_in_place();
       kept_row = n - 1;
     }
     if (!solve_step() || overflowed(largest)) return false;
@@ -616,6 +612,13 @@ struct RowStepper::Impl {
     ++n;
     known = 1;
     return true;
+  }
+  void go_in_place() {
+    for (const auto& ring : {equations.y(), equations.v()})
+      for (int a = 0; a < d; ++a) {
+        spare.push_back(table[ring.row(0, a)]);
+        table[ring.row(0, a)] = table[ring.row(1, a)];
+      }
   }
   void leave_place() {
     if (spare.empty()) return;
@@ -713,6 +716,32 @@ struct RowStepper::Impl {
     predictor.restart();
   }
 
+  /// Rows with their halos, as they stand in their rings.
+  void visit(SavedState& state) {
+    bool in_place = !spare.empty();
+    state("in place", in_place);
+    if (in_place && spare.empty()) go_in_place();
+    if (!in_place) leave_place();
+    const auto visit_row = [&](std::string_view name, int number) {
+      state.numbers(name, table[number], layout.doubles());
+    };
+    for (const auto& [name, ring] : {std::pair{"y", equations.y()}, {"increment", equations.v()}})
+      for (int back = 0; back < ring.held; ++back)
+        for (int a = 0; a < d; ++a) visit_row(name, ring.row(back, a));
+    for (const SourceRow& source : equations.sources()) {
+      for (int back = 0; back < source.ring.held && !source.is_local; ++back)
+        visit_row("source terms", source.ring.row(back));
+      if (source.change >= 0) visit_row("changes of source terms", source.change);
+    }
+    state("newest row", n), state("newest row of the start", started), state("rows known", known);
+    state("rows of source terms", past_sources), state("rows to predict from", source_rows_there);
+    state("iterations", iterations), state("continued", continued);
+    state("largest", largest), state("largest before", largest_before), state("span", span);
+    state("contracts by", contracts_by), state("row kept", kept_row);
+    predictor.visit(state);
+    if (contraction) contraction->visit(state);
+  }
+
   [[noreturn]] void report_not_finite() const {
     const std::vector<double> bad = row(0), before = row(1);
     const auto fine = [](double x) { return !overflowed(std::abs(x)); };
@@ -775,6 +804,7 @@ void RowStepper::step(bool looked_at) {
   const FlushDenormals guard;
   impl_->step(looked_at);
 }
+void RowStepper::visit(SavedState& state) { impl_->visit(state); }
 StepState RowStepper::state() const { return {impl_->n, impl_->iterations, impl_->continued}; }
 std::vector<double> RowStepper::row(int back) const {
   impl_->require(back + 1);

@@ -30,6 +30,7 @@ class RowStepper final : public StepMethod {
   double residual() const override;
   void newest_pair(const double** rows) const override;
   StepReport report(bool residual) const override;
+  void visit(SavedState&) override;
 
  private:
   struct Impl;

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+#include "tests/tools/python.hpp"
+
+using namespace delf::testing;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string script = DELF_SCENES_SOURCE "/../../tests/tools/run/kill_and_resume.py";
+
+Ran resume(const Folder& folder, const std::string& keys = "") { return delf_program(folder, "resume out " + keys); }
+
+// A run of 20 steps in `out`, and what it recorded.
+std::string run_small(const Folder& folder, const std::string& keys = "") {
+  const Ran ran =
+      delf_program(folder, "run kink --run.steps=20 --output.every=3 --output.figures=off --out out " + keys);
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  return read(folder / "out/series.csv");
+}
+
+}  // namespace
+
+TEST_CASE("a run that ends at half of its steps and goes on is the whole run, to the bit") {
+  const Folder folder;
+  // by rows, by sub-steps with a processor, slab by slab with kept matrices, with a mesh that moves
+  const auto scene = GENERATE(as<std::string>(), "collision --arguments=--run.steps=41",
+                              "breather --arguments=--scheme.method=processed --arguments=--run.steps=41",
+                              "r-adaptive --arguments=--run.steps=13");
+  const Ran ran = shell(folder, python(folder) + " " + script + " '" DELF_PROGRAM "' --half --scenes " + scene +
+                                    " --arguments=--output.figures=off --arguments=--output.every=3");
+  INFO(ran.out << ran.err);
+  CHECK(ran.code == 0);
+}
+
+TEST_CASE("a run that is killed at random instants and resumed is the whole run, to the bit") {
+  const Folder folder;
+  const Ran ran = shell(folder, python(folder) + " " + script +
+                                    " '" DELF_PROGRAM "' --kills 2 --scenes kink --arguments=--output.figures=off");
+  INFO(ran.out << ran.err);
+  CHECK(ran.code == 0);
+}
+
+TEST_CASE("what cannot be resumed is refused in one line that says why") {
+  const Folder folder;
+  run_small(folder);
+  const auto refused = [&](const std::string& keys, const std::string& why) {
+    const Ran ran = resume(folder, keys);
+    INFO(ran.err);
+    CHECK(ran.code == 2);
+    CHECK(lines(ran.err).size() == 1);
+    CHECK(contains(ran.err, why));
+  };
+  refused("", "the run is finished, at row 20; to go on, raise run.until or run.steps");
+  refused("--run.steps=7", "the run is finished");
+  refused("--lattice.sites=9", "--lattice.sites = 9: a run is resumed with the keys that it began with");
+  const std::string scene = read(folder / "out/scene.ini");
+  std::string other = scene;
+  other.replace(other.find("state = kink"), 12, "state = antikink");
+  folder.write("out/scene.ini", other);
+  refused("--run.steps=30", "initial.state: the run began with kink");
+  folder.write("out/scene.ini", scene);
+  CHECK(delf_program(folder, "resume .").code == 2);
+  CHECK(delf_program(folder, "resume out --out elsewhere").code == 2);
+
+  std::string damaged = read(folder / "out/checkpoint");
+  damaged[damaged.size() / 2] ^= 1;
+  folder.write("out/checkpoint", damaged);
+  refused("--run.steps=30", "out/checkpoint: is damaged");
+  fs::remove(folder / "out/checkpoint");
+  refused("--run.steps=30", "there is no checkpoint to resume from");
+}
+
+TEST_CASE("a damaged checkpoint is replaced by the one before it, and says so") {
+  const Folder folder;
+  run_small(folder, "--output.checkpoint=1e-9");
+  REQUIRE(fs::exists(folder / "out/checkpoint.previous"));
+  folder.write("out/checkpoint", read(folder / "out/checkpoint").substr(0, 3000));
+  fs::remove(folder / "out/summary.json");
+  const std::string series = read(folder / "out/series.csv");
+  const Ran ran = resume(folder);
+  INFO(ran.err);
+  CHECK(ran.code == 0);
+  CHECK(contains(ran.err, "is damaged"));
+  CHECK(contains(ran.err, "the one before it, of row"));
+  CHECK(read(folder / "out/series.csv") == series);
+}
+
+TEST_CASE("a folder that another run holds, and a scene that delf did not write, are left alone") {
+  const Folder folder;
+  const std::string line = "'" DELF_PROGRAM "' run kink --run.until=1e6 --output.figures=off --out out";
+  const Ran held = shell(folder, line + " & p=$!; while [ ! -s out/fields.h5 ]; do sleep 0.02; done; " + line +
+                                     "; code=$?; kill $p; wait $p; exit $code");
+  INFO(held.err);
+  CHECK(held.code == 4);
+  CHECK(contains(held.err, "another run writes to this folder"));
+
+  const std::string mine = folder.write("scene.ini", small_scene());
+  const Ran over = delf_program(folder, "run scene.ini --out .");
+  INFO(over.err);
+  CHECK(over.code == 2);
+  CHECK(contains(over.err, "a scene that delf did not write"));
+  CHECK(read(mine) == small_scene());
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/outcome.hpp"
+
+#include "schemes/stepping/saved_state.hpp"
+
+namespace delf {
+
+void Outcome::visit(SavedState& saved) {
+  saved("steps taken", steps_taken), saved("records", records), saved("seconds", seconds);
+  saved("most iterations", iterations_max), saved("largest residual", residual_max);
+  for (const Continued why : {Continued::stiff, Continued::slow, Continued::out_of_iterations}) {
+    const auto found = continued.find(why);
+    std::int64_t count = found == continued.end() ? 0 : found->second;
+    saved("steps by continuation", count);
+    if (count > 0) continued[why] = count;
+  }
+  saved("energy of row 0", energy_initial), saved("energy", energy_final);
+  saved("momentum of row 0", momentum_initial), saved("momentum", momentum_final), saved("charge", charge_final);
+  saved("largest constraint", constraint_max);
+  for (Conserved& c : conserved)
+    saved("conserved at row 0", c.initial), saved("conserved", c.final), saved("change of conserved", c.error_max);
+}
+
+}  // namespace delf

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/resume.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "lattice/text_parts.hpp"
+#include "tools/files/checkpoint_file.hpp"
+#include "tools/run/checkpoints.hpp"
+#include "tools/run/run.hpp"
+#include "tools/scene/scene.hpp"
+#include "tools/scene/scene_text.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<std::string> harmless{"run.until", "run.steps", "run.threads", "output.checkpoint"};
+bool is_harmless(const std::string& key) { return std::ranges::find(harmless, key) != harmless.end(); }
+
+// The keys of a scene.ini with their values.
+std::map<std::string, std::string> keys_of(const std::string& text) {
+  std::map<std::string, std::string> keys;
+  std::istringstream in(text);
+  std::string section;
+  for (std::string line; std::getline(in, line);) {
+    line = trimmed(line.substr(0, line.find('#')));
+    const auto equals = line.find('=');
+    if (line.starts_with('[')) section = trimmed(line.substr(1, line.find(']') - 1));
+    else if (equals != std::string::npos)
+      keys[section + "." + trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
+  }
+  return keys;
+}
+
+// Throws BadScene if a key that matters has another value than the run began with.
+void check_unchanged(const fs::path& file, const std::string& began_with) {
+  const auto now = keys_of(read_scene_text(file)), then = keys_of(began_with);
+  const auto refuse = [&](const std::string& key, const std::string& value) {
+    throw BadScene(fmt::format("{}: {}: the run began with {}; put that back, or begin a new run from this file",
+                               file.string(), key, value.empty() ? "none" : value));
+  };
+  for (const auto& [key, value] : then)
+    if (const auto found = now.find(key); !is_harmless(key) && (found == now.end() || found->second != value))
+      refuse(key, value);
+  for (const auto& [key, value] : now)
+    if (!is_harmless(key) && !then.contains(key)) refuse(key, "");
+}
+
+void check_given(const std::vector<Setting>& given) {
+  for (const Setting& s : given)
+    if (!is_harmless(s.key))
+      throw BadScene(
+          fmt::format("command line: --{} = {}: a run is resumed with the keys that it began with; only {} may change",
+                      s.key, s.value, fmt::join(harmless, ", ")));
+}
+
+// The newest checkpoint that is whole.
+Resumed newest_checkpoint(const fs::path& folder) {
+  std::string why;
+  for (const char* ending : {"", ".previous"}) {
+    const fs::path file = folder / (std::string(Checkpoints::file_name) + ending);
+    std::error_code none;
+    if (!fs::exists(file, none)) continue;
+    try {
+      Resumed found{std::make_unique<CheckpointReader>(file), {}};
+      found.head.visit(*found.state);
+      if (!why.empty()) fmt::print(stderr, "{}; the one before it, of row {}, is taken\n", why, found.head.row);
+      return found;
+    } catch (const BadInput& bad) {
+      why = fmt::format("{}: {}", file.string(), bad.what());
+    }
+  }
+  if (!why.empty()) throw BadScene(why + "; begin the run anew");
+  throw BadScene(
+      fmt::format("{}: there is no checkpoint to resume from; name the folder of a run, and see "
+                  "output.checkpoint",
+                  folder.string()));
+}
+
+}  // namespace
+
+ExitCode resume(const fs::path& folder, const std::vector<Setting>& on_command_line) {
+  check_given(on_command_line);
+  Resumed resumed = newest_checkpoint(folder);
+  const CheckpointHead& head = resumed.head;
+  const auto refuse = [&](const std::string& why) { throw BadScene(fmt::format("{}: {}", folder.string(), why)); };
+  if (head.version != DELF_VERSION)
+    refuse(fmt::format("the run was made by delf {}, and this is {}; its bits may differ: begin it anew", head.version,
+                       DELF_VERSION));
+  if (head.instructions != instruction_set())
+    refuse(
+        fmt::format("the run was made with {}, and this machine and build have {}, which round otherwise; resume "
+                    "it there, or begin it anew",
+                    head.instructions, instruction_set()));
+  check_unchanged(folder / "scene.ini", head.scene);
+  Scene scene = read_scene(folder / "scene.ini", on_command_line);
+  scene.name = head.name;
+  scene.warnings = head.warnings;
+  if (std::error_code none; head.row >= scene.steps && fs::exists(folder / "summary.json", none))
+    refuse(fmt::format("the run is finished, at row {}; to go on, raise run.until or run.steps, as --run.steps={}",
+                       head.row, 2 * std::max<std::int64_t>(1, head.row)));
+  if (head.row > scene.steps)
+    refuse(fmt::format("the run is at row {}, beyond run.steps = {}; raise run.until or run.steps", head.row,
+                       scene.steps));
+  return run(scene, folder, std::move(resumed));
+}
+
+}  // namespace delf
