@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "tools/command_line.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <boost/program_options.hpp>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <string>
 
 #include "lattice/text_parts.hpp"
 #include "tools/commands.hpp"
@@ -91,17 +94,26 @@ ExitCode carry_out(const std::vector<std::string>& words) {
   return command.carry_out(arguments);
 }
 
+// The first files that are opened would take the places of standard streams that are closed.
+void open_standard_streams() {
+  for (const int stream : {0, 1, 2})
+    while (fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+      if (open("/dev/null", O_RDWR) < 0) return;
+}
+
 }  // namespace
 
 ExitCode run_program(const std::vector<std::string>& words) {
   ExitCode code = ExitCode::done;
+  open_standard_streams();
+  std::signal(SIGPIPE, SIG_IGN);  // whoever reads no more is reported like a full disk, and ends no run
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is reported like a full disk, and does not kill the program
   try {
     code = carry_out(words);
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw SystemFailure("standard output cannot be written to");
   } catch (const std::exception& error) {
     std::fflush(stdout);
-    fmt::print(stderr, "{}\n", error_line(error));
+    std::fputs((error_line(error) + "\n").c_str(), stderr);
     code = exit_code(error);
   }
   return code;

@@ -45,7 +45,7 @@ std::filesystem::path file_of(const Arguments& arguments) {
 
 Scene scene_of(const Arguments& arguments) {
   Scene scene = read_scene(file_of(arguments), arguments.keys);
-  for (const std::string& warning : scene.warnings) fmt::print(stderr, "{}\n", warning);
+  for (const std::string& warning : scene.warnings) std::fputs((warning + "\n").c_str(), stderr);
   return scene;
 }
 

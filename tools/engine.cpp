@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <new>
 #include <stdexcept>
 
@@ -21,6 +22,49 @@ Simulation build(const Scene& scene, int winding) {
   }
 }
 
+namespace {
+
+// What a run takes for each site, measured on one of the same cells and fewer sites; 0 where there is none.
+double bytes_of_a_site(const Scene& scene) {
+  constexpr int few = 1 << 14;
+  const Lattice& lattice = scene.problem.lattice;
+  Problem p = scene.problem;
+  p.threads = 1;
+  p.lattice = lattice.is_circle() ? Lattice::circle(few, few * lattice.space_step())
+                                  : Lattice::interval(few, (few - 1) * lattice.space_step());
+  try {
+    const Simulation simulation(p);
+    // the rows that a start is made of, twice, and those that are looked at
+    const double rows = 2.0 * simulation.starting_rows() + 2;
+    return static_cast<double>(simulation.bytes_of_run({})) / few +
+           rows * static_cast<double>(simulation.components().size() * sizeof(double));
+  } catch (const BadInput&) {
+    return 0;
+  }
+}
+
+// Bytes that programs may still have, or 0 where the system does not tell.
+double available_memory() {
+  std::ifstream in("/proc/meminfo");
+  std::string name, unit;
+  for (double kilobytes = 0; in >> name >> kilobytes; std::getline(in, unit))
+    if (name == "MemAvailable:") return 1024 * kilobytes;
+  return 0;
+}
+
+// Throws SystemFailure for a lattice that the system would end the program for.
+void foresee_memory(const Scene& scene) {
+  constexpr int many = 1 << 20;
+  const Lattice& lattice = scene.problem.lattice;
+  if (lattice.space() == Space::point || lattice.sites() < many) return;
+  const double free = available_memory(), needed = bytes_of_a_site(scene) * lattice.sites();
+  if (free > 0 && needed > free)
+    throw SystemFailure(fmt::format("out of memory: {} sites need {}, and {} are free; lower lattice.sites",
+                                    lattice.sites(), bytes_in_words(needed), bytes_in_words(free)));
+}
+
+}  // namespace
+
 ExitCode with_memory_for(const Scene& scene, const std::function<ExitCode()>& work) {
   constexpr double least_of_a_site = 64;  // rows, increments, work space: no scheme holds less
   const int sites = scene.problem.lattice.sites();
@@ -34,6 +78,7 @@ ExitCode with_memory_for(const Scene& scene, const std::function<ExitCode()>& wo
   };
   if (there > 0 && least > there) throw failure();
   try {
+    foresee_memory(scene);
     return work();
   } catch (const std::bad_alloc&) {
     throw failure();

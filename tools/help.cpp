@@ -2,6 +2,9 @@
 #include "tools/help.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
 
 #include "tools/commands.hpp"
 #include "tools/measure/measurement.hpp"
@@ -10,6 +13,18 @@
 namespace delf {
 
 namespace {
+
+// "one of R, S1"; "above 0"; "from 0 to 8"; empty for any value
+std::string values_of(const Key& key) {
+  constexpr std::size_t most = 8;  // `delf list` has those that are many
+  constexpr double large = 1e9;    // limits of what can be computed with say nothing here
+  if (!key.choices.empty() && key.choices.size() <= most)
+    return fmt::format("; one of {}", fmt::join(key.choices, ", "));
+  const bool low = std::abs(key.range.low) < large, high = std::abs(key.range.high) < large;
+  const std::string from = fmt::format("{} {}", key.range.open ? "above" : "at least", key.range.low);
+  if (low && high) return fmt::format("; {}, at most {}", from, key.range.high);
+  return low ? "; " + from : high ? fmt::format("; at most {}", key.range.high) : "";
+}
 
 void print_keys(std::string_view only) {
   std::string_view section;
@@ -20,8 +35,8 @@ void print_keys(std::string_view only) {
       fmt::print("\n[{}]\n", section);
     }
     const auto value = key.fallback.empty() ? key.otherwise : key.fallback;
-    fmt::print("  {:<22} {}{} ({})\n", key.name, key.meaning, key.unit.empty() ? "" : fmt::format(" [{}]", key.unit),
-               value);
+    fmt::print("  {:<22} {}{} ({}{})\n", key.name, key.meaning, key.unit.empty() ? "" : fmt::format(" [{}]", key.unit),
+               value, values_of(key));
   }
 }
 

@@ -12,18 +12,21 @@ namespace fs = std::filesystem;
 std::string draw(const std::vector<Drawing>& drawings, const fs::path& folder) {
   const ScratchFolder scratch(folder);
   std::string script;
+  std::vector<std::string> names;
   for (const Drawing& drawing : drawings)
     if (const std::string body = drawing.body(scratch.path()); !body.empty())
-      script += figure_script(drawing.name, body);
+      script += figure_script(drawing.name, body), names.push_back(drawing.name);
   if (script.empty()) return {};
   write_text_file(scratch.path() / "script", script);
   if (const std::string wrong = run_gnuplot(scratch.path(), "script"); !wrong.empty()) return wrong;
   fs::create_directories(folder / "figures");
-  for (const Drawing& drawing : drawings)
+  std::string missing;
+  for (const std::string& name : names)
     for (const char* ending : {".png", ".svg"})
-      if (const std::string file = drawing.name + ending; fs::exists(scratch.path() / file))
+      if (const std::string file = name + ending; fs::exists(scratch.path() / file))
         fs::rename(scratch.path() / file, folder / "figures" / file);
-  return {};
+      else missing = missing.empty() ? "gnuplot ended well, and left no " + file : missing;
+  return missing;
 }
 
 }  // namespace delf

@@ -8,10 +8,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fstream>
+#include <thread>
 
 #include "tools/failure.hpp"
+#include "tools/figures/gnuplot_limit.hpp"
 
 extern char** environ;
 
@@ -31,6 +34,10 @@ ScratchFolder::~ScratchFolder() {
 }
 
 std::string run_gnuplot(const fs::path& folder, const std::string& script) {
+  return run_gnuplot_within(std::chrono::minutes(2), folder, script);
+}
+
+std::string run_gnuplot_within(std::chrono::milliseconds limit, const fs::path& folder, const std::string& script) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
@@ -47,7 +54,16 @@ std::string run_gnuplot(const fs::path& folder, const std::string& script) {
   if (failed) return fmt::format("gnuplot could not be started ({})", std::strerror(failed));
 
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  for (pid_t ended = 0; (ended = waitpid(child, &status, WNOHANG)) != child;) {
+    if (ended < 0 && errno != EINTR) return fmt::format("gnuplot got lost ({})", std::strerror(errno));
+    if (std::chrono::steady_clock::now() > end) {
+      kill(child, SIGKILL);
+      waitpid(child, &status, 0);
+      return fmt::format("gnuplot was ended: it took longer than {:.3g} s",
+                         std::chrono::duration<double>(limit).count());
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
   if (WIFSIGNALED(status)) return fmt::format("gnuplot was ended by signal {}", WTERMSIG(status));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "lattice/error.hpp"
+#include "tools/files/open_to_read.hpp"
 
 namespace delf {
 
@@ -17,6 +18,14 @@ BadInput bad_file(const std::string& what) { return {"initial.file", what}; }
 int rank_of(hid_t dataset) {
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   return H5Sget_simple_extent_ndims(space);
+}
+
+// Nothing if there is none of that name; throws BadInput if there is one that cannot be read.
+Hdf5Handle open_dataset(hid_t file, const char* name) {
+  Hdf5Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  if (!dataset && H5Lexists(file, name, H5P_DEFAULT) != 0)
+    throw bad_file(fmt::format("/{} cannot be read; the file is damaged", name));
+  return dataset;
 }
 
 bool read_slice(hid_t dataset, int rank, const hsize_t* offset, const hsize_t* count, double* out) {
@@ -44,13 +53,13 @@ bool fits(const std::array<hsize_t, 3>& extent) {
 
 FieldsReader::FieldsReader(const std::filesystem::path& path) {
   quiet_hdf5();
-  file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+  file_ = open_to_read(path);
   if (!file_) throw bad_file("is not an HDF5 file that can be read; name the fields.h5 of a run");
-  time_ = {H5Dopen2(file_, "time", H5P_DEFAULT), H5Dclose};
-  momentum_ = {H5Dopen2(file_, "momentum", H5P_DEFAULT), H5Dclose};
+  time_ = open_dataset(file_, "time");
+  momentum_ = open_dataset(file_, "momentum");
   for (const Role role : all_roles) {
     const bool needed = role == Role::field;
-    Hdf5Handle dataset(H5Dopen2(file_, to_string(role), H5P_DEFAULT), H5Dclose);
+    Hdf5Handle dataset = open_dataset(file_, to_string(role));
     if (needed && !dataset) throw bad_file("has no dataset /field; name the fields.h5 of a run");
     const auto extent = extent_of(dataset);
     if (needed && !extent) throw bad_file("/field is not frames x sites x components; name the fields.h5 of a run");
@@ -110,8 +119,13 @@ std::optional<std::vector<double>> FieldsReader::momenta(int frame) const {
 }
 
 std::optional<int> FieldsReader::winding() const {
+  const htri_t there = H5Aexists(file_, "winding");
+  if (there == 0) return std::nullopt;
   const Hdf5Handle attribute(H5Aopen(file_, "winding", H5P_DEFAULT), H5Aclose);
+  if (there < 0 || !attribute) throw bad_file("its attributes cannot be read; the file is damaged");
+  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
   int value = 0;
+  if (H5Sget_simple_extent_npoints(space) != 1) return std::nullopt;  // or more would be written than there is room for
   return attribute && H5Aread(attribute, H5T_NATIVE_INT, &value) >= 0 ? std::optional(value) : std::nullopt;
 }
 

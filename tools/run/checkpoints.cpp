@@ -37,7 +37,7 @@ void Checkpoints::write(std::int64_t row, const std::function<void(SavedState&)>
     state(writer);
     writer.close();
   } catch (const SystemFailure& failure) {
-    if (!reported_) fmt::print(stderr, "delf: no checkpoint: {}\n", failure.what());
+    if (!reported_) std::fputs(fmt::format("delf: no checkpoint: {}\n", failure.what()).c_str(), stderr);
     reported_ = true;
   }
   due_.restart();

@@ -13,6 +13,11 @@
 
 namespace delf {
 
+namespace {
+// A stream that takes no more is no reason to end a run.
+void say(const std::string& text) { std::fputs(text.c_str(), stderr); }
+}  // namespace
+
 Progress::Progress(std::int64_t steps, const char* unit)
     : unit_(unit),
       steps_(std::max<std::int64_t>(1, steps)),
@@ -54,15 +59,15 @@ void Progress::draw_bar(std::int64_t step, double left) const {
   const int full = static_cast<int>(width * step / steps_);
   std::string bar;
   for (int i = 0; i < width; ++i) bar += i < full ? "█" : "░";
-  fmt::print(stderr, "\r{} {:3d} %  {} {} of {}  {} left\033[K", bar, 100 * step / steps_, unit_, step, steps_,
-             duration_in_words(left));
+  say(fmt::format("\r{} {:3d} %  {} {} of {}  {} left\033[K", bar, 100 * step / steps_, unit_, step, steps_,
+                  duration_in_words(left)));
   std::fflush(stderr);
 }
 
 void Progress::print_line(std::int64_t step, double elapsed, double left) {
   step_printed_ = step;
-  fmt::print(stderr, "{} %: {} {} of {} after {}, {} left\n", 100 * step / steps_, unit_, step, steps_,
-             duration_in_words(elapsed), duration_in_words(left));
+  say(fmt::format("{} %: {} {} of {} after {}, {} left\n", 100 * step / steps_, unit_, step, steps_,
+                  duration_in_words(elapsed), duration_in_words(left)));
 }
 
 }  // namespace delf

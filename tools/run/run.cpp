@@ -95,7 +95,6 @@ void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
 }
 
 ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resumed) {
-  const Interrupt interrupt;
   const InitialRows initial(scene);
   Outcome outcome;
   outcome.winding = initial.winding();
@@ -116,10 +115,15 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     stepping.start();
   }
 
+  const Interrupt interrupt;  // before, nothing is lost when a signal ends the program at once
   make_results_folder(folder);
   const FolderLock lock(folder);
   if (resumed.state) remove_results(folder);
   else prepare(folder, scene);
+  // Room for the summary, whatever else fills the disk: write_text_file() takes it.
+  TextFile room(folder / "summary.json.part");
+  room.write(std::string(1 << 14, ' '));
+  room.close();
   const std::string resolved = resolved_text(scene, outcome.start, outcome.state);
   write_text_file(folder / "scene.ini", resolved);
   Recorder recorder(scene, folder, resolved, outcome.winding, names, kept);
@@ -154,15 +158,15 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     section = {points->table(), points->title(), points->drawn_columns()};
     attempt([&] { write_text_file(folder / "section.csv", section.table); });
   }
-  if (outcome.status != "system-failure")
-    missing = drawn(scene, outcome.winding, names, recorder, std::move(section), folder);
   attempt([&] { write_text_file(folder / "summary.json", summary_json(scene, outcome)); });
+  if (outcome.status != "system-failure")  // last: all files are whole
+    missing = drawn(scene, outcome.winding, names, recorder, std::move(section), folder);
 
   if (outcome.status != "system-failure") {
     fmt::print("{}", report(scene, outcome));
     say_what_is_there(folder);
   }
-  if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
+  if (!missing.empty()) std::fputs(fmt::format("delf: no figures: {}\n", missing).c_str(), stderr);
   if (failure) std::rethrow_exception(failure);
   return outcome.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
 }

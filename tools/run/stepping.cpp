@@ -41,6 +41,11 @@ bool is_shared(const Simulation& simulation) {
   return stepper.layout() && !stepper.iterates() && stepper.matrix_free() && system.lattice().is_circle();
 }
 
+// A row that does not solve its equations.
+struct Unsolved : NoConvergence {
+  using NoConvergence::NoConvergence;
+};
+
 constexpr auto momentum_dataset = "momentum";
 
 // Momenta that no method records are half of an equation: at row 0 of the stencils above it, which must hold no more than
@@ -153,6 +158,9 @@ void Stepping::run(Recorder& recorder, Checkpoints& checkpoints) {
   checkpoints_ = &checkpoints;
   try {
     record_and_step();
+  } catch (const Unsolved& unsolved) {
+    outcome_.status = status_of(unsolved);
+    outcome_.failure = fmt::format("{} (row {} is the last good one that was recorded)", unsolved.what(), recorded_);
   } catch (const SystemFailure&) {
     close_outcome();
     throw;
@@ -176,6 +184,8 @@ void Stepping::record_and_step() {
       outcome_.status = "interrupted";
       if (saved_ < newest_ - 1) save();
     }
+  } catch (const Unsolved&) {
+    throw;
   } catch (const NumericalFailure& error) {
     fail(error);
   }
@@ -242,6 +252,8 @@ void Stepping::record(std::int64_t row) {
       datasets_[d].assign(sites * names_.datasets[d].components.size(), Outcome::unknown);
   } else {
     const int back = static_cast<int>(newest_ - row);
+    record.residual = row == newest_ ? simulation_.residual() : 0;  // the starting rows solve no equation
+    judge(record.residual);
     simulation_.observe(back, row_[Role::field]);
     for (const Role role : all_roles)
       if (role != Role::field && !row_[role].empty()) simulation_.copy_row(back, row_[role], role);
@@ -254,7 +266,6 @@ void Stepping::record(std::int64_t row) {
     monitor(monitors, record);
     of_method = monitors.of_method;
     record.iterations = last_iterations_;
-    record.residual = row == newest_ ? simulation_.residual() : 0;  // the starting rows solve no equation
     if (!(record.residual <= outcome_.residual_max)) outcome_.residual_max = record.residual;
   }
   recorded_ = row;
@@ -267,6 +278,31 @@ void Stepping::record(std::int64_t row) {
   outcome_.charge_final = record.charge;
   recorder_->append(record, row_, datasets_);
   ++outcome_.records;
+}
+
+/// A row that does not solve its equations is no result: rounding or an overflow has taken it. It is not recorded.
+void Stepping::judge(double residual) const {
+  constexpr double most = 1e-6;  // of the sum of the absolute terms; a loose tolerance asks for more
+  if (!(residual > std::max(most, 1e3 * scene_.problem.tolerance)) || !varies()) return;
+  throw Unsolved(
+      fmt::format("step {}, t = {:.6g}: the residual of the field equations is {:.2g} of their terms: the "
+                  "field is too large, or too steep, for double precision; reduce lattice.time_step",
+                  newest_, static_cast<double>(newest_) * scene_.problem.time_step, residual));
+}
+
+/// Near a vacuum all terms are rounding, and their sum has no scale.
+bool Stepping::varies() const {
+  constexpr double little = 1e-8;
+  if (simulation_.starting_rows() < 2) return false;
+  std::vector<double> row(row_[Role::field].size()), before(row);
+  simulation_.copy_row(0, row), simulation_.copy_row(1, before);
+  const auto d = static_cast<std::size_t>(simulation_.count(Role::field));
+  double largest = 0, change = 0;
+  for (std::size_t n = 0; n < row.size(); ++n) {
+    largest = std::max(largest, std::abs(row[n]));
+    change = std::max({change, std::abs(row[n] - before[n]), std::abs(row[n] - row[n % d])});
+  }
+  return change > little * largest;
 }
 
 // The row before it, or after row 0, is held by schemes that start from two rows.

@@ -37,6 +37,8 @@ class Stepping {
   void count_step();
   void save();
   void record(std::int64_t row);
+  void judge(double residual) const;
+  bool varies() const;
   void measure(double time, int back);
   void fail(const NumericalFailure&);
   bool to_be_recorded(std::int64_t row) const;

@@ -206,6 +206,10 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   for (const Key& key : settings.all_keys())
     if (const Setting* s = settings.find(key.name))
       if (const std::string why = why_without_effect(scene, key.name); !why.empty()) warn(*s, why);
+  // A scene serves many methods, and may have the stencil of one; what is asked for beside it is meant.
+  if (const Setting* s = settings.find("lattice.stencil");
+      s && s->line == 0 && !find_method(scene.problem.method).reads_stencil)
+    warn(*s, fmt::format("scheme.method = {} has a stencil of its own", scene.problem.method));
   if (values.real("scheme.tolerance") < smallest_tolerance)
     warn(*settings.find("scheme.tolerance"),
          fmt::format("rounding allows no less than {:.2g}, which is in force; raise it", smallest_tolerance));

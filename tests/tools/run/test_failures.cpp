@@ -53,6 +53,22 @@ TEST_CASE("an implicit step that cannot be solved ends with exit code 3") {
   CHECK(lines(read(folder / "hard/series.csv")).size() >= 2);
 }
 
+TEST_CASE("rows that do not solve their equations are not recorded, and end with exit code 3") {
+  const Folder folder;
+  // a frequency at which products of rows lose all their digits, and one at which they do not
+  const auto [mass, code] = GENERATE(table<std::string, int>({{"1e20", 3}, {"1", 0}}));
+  const Ran ran = delf_program(folder,
+                               "run breather --scheme.method=cgvi --initial.state=noise --initial.start=legendre "
+                               "--run.steps=3 --output.figures=off --out lost --theory.mass=" +
+                                   mass);
+  INFO(ran.err);
+  CHECK(ran.code == code);
+  const auto json = nlohmann::json::parse(read(folder / "lost/summary.json"));
+  CHECK(json["residual_max"] < 1e-12);
+  CHECK(json["status"] == (code == 0 ? "done" : "no-convergence"));
+  CHECK(contains(ran.err, "row 1 is the last good one that was recorded") == (code == 3));
+}
+
 TEST_CASE("a wave map on a stencil with a staggered ghost is refused with exit code 2, and its plan names the ghost") {
   const Folder folder;
   const std::string symmetric =

@@ -92,9 +92,10 @@ TEST_CASE("a folder that another run holds, and a scene that delf did not write,
   const Folder folder;
   const std::string line = "'" DELF_PROGRAM "' run kink --run.until=1e6 --output.figures=off --out out";
   const Ran held = shell(folder, line + " & p=$!; while [ ! -s out/fields.h5 ]; do sleep 0.02; done; " + line +
-                                     "; code=$?; kill $p; wait $p; exit $code");
+                                     "; code=$?; kill -HUP $p; wait $p; echo $?; exit $code");
   INFO(held.err);
   CHECK(held.code == 4);
+  CHECK(contains(held.out, "130"));
   CHECK(contains(held.err, "another run writes to this folder"));
 
   const std::string mine = folder.write("scene.ini", small_scene());
