@@ -130,6 +130,7 @@ SweptRun SweepRequest::run(const std::vector<std::string>& of_keys) const {
     if (std::ranges::find(settings, key, &Setting::key) == settings.end()) settings.push_back({key, value, 0});
   };
   otherwise("output.figures", "off");
+  otherwise("output.checkpoint", "0");  // a run that is cut short is run again
   if (table) otherwise("output.fields", "off");
   return {read_scene(file, settings), of_keys};
 }
