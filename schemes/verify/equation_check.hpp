@@ -27,6 +27,7 @@ class EquationCheck {
   /// Of the row looked at last: |E| relative to the row, [i·C + c]; not a number where there is no equation.
   const std::vector<double>& newest() const { return newest_; }
   std::int64_t rows() const { return rows_; }
+  double tolerance() const { return tolerance_; }
 
   std::vector<Check> checks() const;
 

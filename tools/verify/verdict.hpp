@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "schemes/verify/check.hpp"
+#include "schemes/verify/diagnosis/finding.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
@@ -48,6 +49,7 @@ struct ReversalCurve {
 struct Verdict {
   std::vector<Check> checks;
   std::vector<Measured> measured;
+  std::vector<Finding> diagnosis;     ///< what rows of a file are
   std::vector<std::string> left_out;  ///< "noether: no symmetry is declared"
   std::vector<RegionPoint> points;
   WorstRegion worst;

@@ -22,6 +22,8 @@ Json json_of(const Measured& m) {
           {"remark", text_or_null(m.remark)}};
 }
 
+Json json_of(const Finding& f) { return {{"kind", f.kind}, {"words", f.words}}; }
+
 Json json_of(const RegionPoint& p) {
   return {
       {"kind", p.kind}, {"stencils", p.stencils}, {"value", p.value}, {"variations", p.local ? "local" : "evolved"}};
@@ -47,6 +49,7 @@ std::string verdict_json(const Scene& scene, const Verdict& v) {
   json["passed"] = v.passed();
   json["checks"] = json_list(v.checks, of_each);
   json["measured"] = json_list(v.measured, of_each);
+  json["diagnosis"] = json_list(v.diagnosis, of_each);
   json["left_out"] = v.left_out;
   json["regions"] = json_list(v.points, of_each);
   json["reversal"] = {{"steps", v.reversal.steps}, {"distance", v.reversal.distance}};

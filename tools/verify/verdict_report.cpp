@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "tools/files/text_columns.hpp"
 #include "tools/run/in_words.hpp"
 #include "tools/run/outcome.hpp"
-#include "tools/files/text_columns.hpp"
 #include "tools/verify/verdict.hpp"
 
 namespace delf {
@@ -91,6 +91,13 @@ std::string failures(const Verdict& v) {
   return text;
 }
 
+std::string diagnosis(const Verdict& v) {
+  std::string text;
+  for (const Finding& finding : v.diagnosis)
+    for (const std::string& part : wrapped(finding.words, widest_failure - 2)) text += "  " + part + "\n";
+  return text.empty() ? text : "\ndiagnosis\n" + text;
+}
+
 std::string conclusion(const Verdict& v) {
   const auto all = static_cast<std::int64_t>(v.checks.size()), failed = v.failed();
   if (failed > 0) return fmt::format("FAILED: {} of {} checks\n", failed, all);
@@ -104,8 +111,8 @@ std::string conclusion(const Verdict& v) {
 }  // namespace
 
 std::string verdict_report(const Scene& scene, const Verdict& v) {
-  return header(scene, v) + table_of_checks(v) + table_of_measured(v) + left_out(v) + failures(v) + "\n" +
-         conclusion(v);
+  return header(scene, v) + table_of_checks(v) + table_of_measured(v) + left_out(v) + failures(v) + diagnosis(v) +
+         "\n" + conclusion(v);
 }
 
 }  // namespace delf

@@ -13,6 +13,8 @@
 #include "jets/expressions/generator.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/verify/derivatives.hpp"
+#include "schemes/verify/diagnosis/diagnosis.hpp"
+#include "schemes/verify/diagnosis/unwrap.hpp"
 #include "schemes/verify/flux_check.hpp"
 #include "schemes/verify/newton_order.hpp"
 #include "schemes/verify/wrong_sign.hpp"
@@ -102,6 +104,13 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
   fields_ = std::make_unique<RecordedSection>(fields, system_, behind, scene_.problem.time_step, "--fields");
   if (const auto winding = fields_->winding(); winding && system_.lattice().is_circle())
     turn_ = 2 * std::numbers::pi * *winding;
+  if (request_.unwrap) {
+    if (!nearby.empty())
+      throw scene_.settings.error("verify.unwrap", "unwraps the rows of --fields alone; leave --nearby out");
+    std::vector<double> row = fields_->row(0);
+    unwrap_along(row, system_.components());
+    if (system_.lattice().is_circle()) turn_ = turn_of_row(row, system_.components());
+  }
   if (nearby.size() % 2 != 0)
     throw BadScene(
         "command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
@@ -227,6 +236,11 @@ void Verification::pass_over_rows() {
 
 void Verification::take(std::vector<double> row) {
   const std::int64_t j = held_.first_row + static_cast<std::int64_t>(held_.rows.size());
+  if (fields_ && request_.unwrap) {
+    if (j == 0) unwrap_along(row, system_.components());
+    else unwrap_after(unwrapped_, row);
+    unwrapped_ = row;
+  }
   if (request_.fault == "field" && j == rows_ / 2) {
     double most = 0;
     for (const double value : row) most = std::max(most, std::abs(value));
@@ -234,6 +248,7 @@ void Verification::take(std::vector<double> row) {
         static_cast<std::size_t>(system_.components())] += 0.01 * (most > 0 ? most : 1);
   }
   if (first_rows_.size() < 2) first_rows_.push_back(row);
+  if (fields_) look_at_walls(j, row);
   if (balance_ && j < balance_rows_) balance_->add(j, fields_of(system_, row));
   held_.rows.push_back(std::move(row));
   if (static_cast<int>(held_.rows.size()) > held_rows_) {
@@ -244,12 +259,68 @@ void Verification::take(std::vector<double> row) {
     const std::int64_t middle = j - equations_->reach();
     equations_->at(held_, middle);
     bins_->add(middle, equations_->newest(), system_.components());
+    if (fields_) failed_.add(middle, equations_->newest(), system_.components(), equations_->tolerance());
   }
   for (const auto& nearby : nearby_) nearby->take(j);
   if (next_moment_ < moments_.size() && j == moments_[next_moment_] + moment_rows_ - 1) {
     look_at_moment();
     ++next_moment_;
   }
+}
+
+// The first two rows are data, and the wall keeps what the second has.
+void Verification::look_at_walls(std::int64_t j, const std::vector<double>& row) {
+  if (j < 2) return;
+  double largest = 0;
+  for (const double y : row) largest = std::max(largest, std::abs(y));
+  for (int i : {0, system_.lattice().sites() - 1})
+    for (int c = 0; c < system_.components(); ++c) {
+      if (!system_.is_held(i, c)) continue;
+      if (!walls_) walls_ = Check{.name = "fixed walls", .region = {}, .tolerance = request_.tolerance};
+      const auto n = static_cast<std::size_t>(i * system_.components() + c);
+      const double change = std::abs(row[n] - first_rows_[1][n]);
+      ++walls_->samples, ++walls_->count;
+      if (largest == 0 || !worse(change / largest, walls_->value)) continue;
+      walls_->value = change / largest, walls_->normaliser = largest;
+      walls_->region = fmt::format("row {}, site {}", j, i);
+      walls_->failure = fmt::format(
+          "The wall at site {} is fixed in the scene, and in the rows it moves from {:.6g} to {:.6g} (row {}). Use "
+          "boundary.{} = natural if it is free, or lattice.space = circle.",
+          i, first_rows_[1][n], row[n], j, i == 0 ? "left" : "right");
+    }
+}
+
+// Of fields at the vertices alone: what else a scheme has, other programs do not write.
+void Verification::diagnose_rows() {
+  if (!fields_) {
+    if (request_.identify) leave_out("diagnosis: of rows of a file; give --fields");
+    return;
+  }
+  if (!equations_ || verdict_.status != "done" || !(failed_.failed() > 0 || request_.identify)) return;
+  if (!std::ranges::all_of(system_.all_components(), [](const Component& c) { return c.role == Role::field; })) {
+    leave_out("diagnosis: of schemes whose values are fields at the vertices, and this one has others");
+    return;
+  }
+  std::int64_t newest = -1;
+  std::vector<double> before;  // values are followed from a row to the next that is asked for near it
+  const auto row = [&](std::int64_t j) {
+    std::vector<double> values = fields_->row(j);
+    if (request_.unwrap) {
+      constexpr std::int64_t near = 4;
+      if (newest >= 0 && std::abs(j - newest) <= near) unwrap_after(before, values);
+      else unwrap_along(values, system_.components());
+      newest = j, before = values;
+    }
+    return values;
+  };
+  Problem problem = scene_.problem;
+  problem.winding = winding_;
+  const Diagnosis diagnosis = diagnose({problem, system_, turn_, equations_->tolerance(), rows_, row, failed_});
+  verdict_.diagnosis = diagnosis.findings;
+  verdict_.measured.push_back({.name = "equations: |E| beside the largest force",
+                               .region = "of a sample of rows and sites",
+                               .value = diagnosis.share_of_force,
+                               .remark = "what verdicts on equations are relative to their terms"});
 }
 
 void Verification::look_at_moment() {
@@ -287,6 +358,8 @@ void Verification::collect() {
   if (equations_) {
     add(equations_->checks());
     verdict_.map = bins_->map();
+    if (walls_) add({*walls_});
+    diagnose_rows();
     verdict_.stencils += equations_->rows() * system_.lattice().sites();
   }
   if (forms_) {
@@ -310,11 +383,20 @@ void Verification::collect() {
   if (near_ && !moments_.empty() && near_->checks().empty() && near_->left_out().empty())
     leave_out("form formula by differences: where regions were drawn, a nearby solution is the same as --fields");
   for (const auto& nearby : nearby_) add(nearby->checks());
+  // Sums of this scheme over rows that do not solve its equations say nothing new.
+  const auto follow = [&](std::vector<Check> checks) {
+    for (Check& check : checks)
+      if (failed_.failed() > 0 && !check.passed() && !check.name.starts_with("symmetry of L"))
+        check.failure =
+            "Follows from the above: the rows do not solve this scheme's equations, whose form and momenta these "
+            "are. It says nothing of what another scheme conserves.";
+    return checks;
+  };
   if (near_) {
-    add(near_->checks());
+    add(follow(near_->checks()));
     for (const std::string& words : near_->left_out()) leave_out(words);
   } else if (fields_) leave_out("form formula by differences: give two nearby solutions, --nearby A.h5 --nearby B.h5");
-  if (noether_) add(noether_->checks());
+  if (noether_) add(follow(noether_->checks()));
   else if (request_.wants("noether")) {
     leave_out(is_variational(system_)
                   ? "Noether: the theory declares no symmetry of its fields; try one by verify.generator"

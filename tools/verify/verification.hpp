@@ -7,18 +7,19 @@
 #include <string>
 #include <vector>
 
-#include "schemes/stepping/evolution.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/verify/diagnosis/evidence.hpp"
 #include "schemes/verify/equation_check.hpp"
 #include "schemes/verify/form_check.hpp"
 #include "schemes/verify/nearby_check.hpp"
 #include "schemes/verify/noether_check.hpp"
 #include "schemes/verify/stress_balance.hpp"
-#include "tools/scene/initial_rows.hpp"
-#include "tools/run/nearby_rows.hpp"
 #include "tools/files/recorded_section.hpp"
-#include "tools/verify/residual_bins.hpp"
+#include "tools/run/nearby_rows.hpp"
+#include "tools/scene/initial_rows.hpp"
 #include "tools/scene/section_source.hpp"
+#include "tools/verify/residual_bins.hpp"
 #include "tools/verify/verdict.hpp"
 #include "tools/verify/verify_request.hpp"
 
@@ -46,6 +47,8 @@ class Verification {
   void take(std::vector<double> row);
   void look_at_moment();
   void look_at_nearby(const Window&);
+  void look_at_walls(std::int64_t row, const std::vector<double>& values);
+  void diagnose_rows();
   std::vector<LinearSymmetry> symmetries() const;
   Window window(std::int64_t first, std::int64_t last) const;
   void collect();
@@ -72,6 +75,8 @@ class Verification {
   std::optional<NearbyCheck> near_;
   std::optional<StressBalance> balance_;
   std::optional<ResidualBins> bins_;
+  FailedEquations failed_;
+  std::optional<Check> walls_;  ///< of rows of a file: fixed walls keep their values
 
   std::int64_t rows_ = 0;  ///< of the section
   std::int64_t balance_rows_ = 0;
@@ -81,6 +86,7 @@ class Verification {
   std::size_t next_moment_ = 0;
   Window held_;
   std::vector<std::vector<double>> first_rows_;
+  std::vector<double> unwrapped_;  ///< the newest row of a file, if they are unwrapped
   std::exception_ptr failure_;
   Verdict verdict_;
 };

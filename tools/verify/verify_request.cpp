@@ -109,6 +109,8 @@ VerifyRequest read_verify_request(const Scene& scene) {
   request.tolerance = values.real("verify.tolerance");
   request.generator = values.text("verify.generator").value_or("");
   request.force = values.toggle("verify.force");
+  request.identify = values.toggle("verify.identify");
+  request.unwrap = values.toggle("verify.unwrap");
   request.fault = values.choice("verify.fault");
   return request;
 }

@@ -20,7 +20,9 @@ struct VerifyRequest {
   double tolerance = 1e-13;
   std::string generator;  ///< empty: none
   bool force = false;
-  std::string fault;  ///< none, variation, sign, field
+  bool identify = false;  ///< a diagnosis of rows that pass, too
+  bool unwrap = false;    ///< rows of a file are reduced modulo 2π
+  std::string fault;      ///< none, variation, sign, field
 
   bool wants(std::string_view check) const;
 };

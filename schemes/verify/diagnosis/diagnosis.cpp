@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/verify/diagnosis/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "schemes/verify/diagnosis/findings.hpp"
+#include "schemes/verify/diagnosis/rounded_values.hpp"
+
+namespace delf {
+
+namespace {
+
+// Few equations, or none of the sample.
+std::optional<Finding> find_elsewhere(const Evidence& e, const Sample& sample) {
+  const FailedEquations& f = e.failed;
+  const auto own = sample.equations(e.problem, {});
+  const bool few = static_cast<double>(f.failed()) < 0.05 * static_cast<double>(f.tried());
+  if (f.failed() == 0 || !(few || (own && own->hold(e.tolerance)))) return std::nullopt;
+  const auto sites = f.sites();
+  return Finding{
+      "elsewhere",
+      fmt::format("The equations hold but for {} of {}, in {} of {} rows (the first is row {}, the last row {}) and at "
+                  "sites {} to {}: the theory, the steps and the scheme are right, and values there are none of a "
+                  "step.",
+                  f.failed(), f.tried(), f.rows().size(), f.rows_tried(), f.rows().front(), f.rows().back(),
+                  sites.front(), sites.back())};
+}
+
+}  // namespace
+
+Diagnosis diagnose(Evidence evidence) {
+  Diagnosis diagnosis{{}, std::numeric_limits<double>::quiet_NaN()};
+  const Sample sample(evidence);
+  if (can_be_split(evidence.problem))
+    if (const auto split = sample.split(evidence.problem)) {
+      const double force = (split->space + split->force).cwiseAbs().maxCoeff();
+      if (force > 0)
+        diagnosis.share_of_force = (split->time + split->space + split->force).cwiseAbs().maxCoeff() / force;
+    }
+
+  // The common first. What settles the case ends it: a seam is no wrong coefficient.
+  using Local = std::optional<Finding> (*)(const Evidence&);
+  for (const Local find : {find_rounding, find_wrapped, find_doubled_frame, find_dropped_frame, find_edited_value,
+                           find_first_rows, find_seam}) {
+    if (evidence.failed.failed() == 0) break;
+    if (auto finding = find(evidence)) {
+      diagnosis.findings.push_back(std::move(*finding));
+      if (diagnosis.findings.back().settles) return diagnosis;
+    }
+  }
+  if (sample.rests()) {
+    diagnosis.findings.push_back({"rest", "The fields rest: no equation can be told from another by them."});
+    return diagnosis;
+  }
+  if (evidence.failed.failed() > 0) evidence.tolerance = std::max(evidence.tolerance, 3 * error_of_rounding(evidence));
+  using Everywhere = std::optional<Finding> (*)(const Evidence&, const Sample&);
+  for (const Everywhere find : {find_elsewhere, find_scheme, find_time_weights, find_coefficients})
+    if (auto finding = find(evidence, sample)) {
+      diagnosis.findings.push_back(std::move(*finding));
+      if (diagnosis.findings.back().settles) break;
+    }
+  return diagnosis;
+}
+
+}  // namespace delf

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+
+namespace delf {
+
+/// Something that was found out about rows whose equations fail.
+struct Finding {
+  std::string kind;  ///< "coefficients", "seam", …
+  std::string words;
+  /// It explains every failure: nothing more need be looked for.
+  bool settles = true;
+};
+
+}  // namespace delf

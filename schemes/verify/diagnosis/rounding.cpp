@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "schemes/verify/diagnosis/findings.hpp"
+#include "schemes/verify/diagnosis/own_equations.hpp"
+#include "schemes/verify/diagnosis/rounded_values.hpp"
+
+namespace delf {
+
+std::optional<RoundedValues> rounding_of(const std::vector<std::vector<double>>& rows) {
+  constexpr int fewest = 16, most_decimals = 12;
+  const double largest = largest_of(rows);
+  std::int64_t values = 0;
+  bool single = true;
+  int decimals = 0;
+  for (const auto& row : rows)
+    for (const double y : row) {
+      if (y == 0 || std::round(y) == y) continue;  // these are whole in any format
+      ++values;
+      single = single && static_cast<double>(static_cast<float>(y)) == y;
+      // A decimal read from text is the double next to it.
+      const auto is_decimal = [&](int d) {
+        const double scaled = y * std::pow(10.0, d);
+        return std::abs(scaled - std::round(scaled)) <= 4e-16 * std::abs(scaled);
+      };
+      while (decimals <= most_decimals && !is_decimal(decimals)) ++decimals;
+      if (!single && decimals > most_decimals) return std::nullopt;
+    }
+  if (values < fewest) return std::nullopt;
+  if (single) return RoundedValues{"single precision (float32)", std::ldexp(1.0, -25) * largest};
+  return RoundedValues{fmt::format("{} decimals", decimals), 0.5 * std::pow(10.0, -decimals)};
+}
+
+double error_of_rounding(const Evidence& e) {
+  std::vector<std::vector<double>> rows;
+  for (int n = 0; n < 4; ++n) rows.push_back(e.row((e.rows - 1) * n / 3));
+  const auto rounding = rounding_of(rows);
+  const double largest = largest_of(rows);
+  return rounding && largest > 0 ? rounding->unit / largest : 0;
+}
+
+std::optional<Finding> find_rounding(const Evidence& e) {
+  const auto& failing = e.failed.rows();
+  constexpr std::size_t most_rows = 20;
+  std::vector<std::int64_t> chosen{e.failed.worst_row()};
+  for (std::size_t n = 0; n < std::min(most_rows, failing.size()); ++n)
+    chosen.push_back(failing[failing.size() * n / std::min(most_rows, failing.size())]);
+  std::vector<std::vector<double>> all;
+  for (const std::int64_t row : chosen) all.push_back(e.row(row));
+  const auto rounding = rounding_of(all);
+  const double largest = largest_of(all);
+  if (!rounding || largest == 0) return std::nullopt;
+
+  // |ΔE| ≤ Σ|∂E/∂y| · unit, and the coefficients that vary add little
+  constexpr double varying = 1.5;
+  const std::int64_t reach = std::max(1, e.system.height());
+  double worst = 0;  // |E|, in these bounds
+  for (const std::int64_t row : chosen) {
+    std::vector<std::vector<double>> rows;
+    for (std::int64_t j = row - reach; j <= row + reach; ++j) rows.push_back(e.row(j));
+    const double size = largest_of(rows);
+    worst =
+        std::max(worst, worst_equation(e.system, rows, row - reach, row, e.turn) * size / (varying * rounding->unit));
+  }
+  if (worst > 1)
+    return Finding{
+        "rounding",
+        fmt::format("The values have {}, and what fails is {:.2g} times what that explains: more than rounding is "
+                    "wrong.",
+                    rounding->words, worst),
+        false};
+  const double decade = std::pow(10.0, std::floor(std::log10(e.failed.worst())));
+  const double tolerance = std::ceil(1.5 * e.failed.worst() / decade) * decade;
+  const double hk = e.system.time_step() * e.system.lattice().space_step();
+  return Finding{
+      "rounding",
+      fmt::format("The values have {}, and that explains the failure: use verify.tolerance = {:.2g}. It still "
+                  "sees errors of {:.2g} in φ_tt.",
+                  rounding->words, tolerance, tolerance * scale_of_terms(e.system, largest) / hk)};
+}
+
+}  // namespace delf

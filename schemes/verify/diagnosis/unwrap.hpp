@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <vector>
+
+namespace delf {
+
+// Values modulo 2π, each taken within π of the one before it.
+
+/// In time: those of the row before.
+void unwrap_after(const std::vector<double>& before, std::vector<double>& row);
+/// In space: the site before, of each of the components.
+void unwrap_along(std::vector<double>& row, int components);
+/// What an unwrapped row gains around the circle: a multiple of 2π.
+double turn_of_row(const std::vector<double>& row, int components);
+
+}  // namespace delf
