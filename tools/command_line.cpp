@@ -25,6 +25,7 @@ po::parsed_options parsed(const std::vector<std::string>& words) {
   po::options_description known;
   known.add_options()("help", "")("version", "")("latex", "")("out", po::value<std::string>());
   known.add_options()("fields", po::value<std::string>())("nearby", po::value<std::string>());
+  known.add_options()("dataset", po::value<std::string>());
   for (const Key& key : keys()) known.add_options()(std::string(key.name).c_str(), po::value<std::string>());
   using namespace po::command_line_style;
   constexpr int exact_names = allow_long | long_allow_adjacent | long_allow_next;  // no guessing
@@ -37,6 +38,7 @@ po::parsed_options parsed(const std::vector<std::string>& words) {
 
 Arguments taken_apart(const std::vector<std::string>& words) {
   Arguments arguments;
+  std::string dataset;
   for (const auto& option : parsed(words).options) {
     const std::string value = option.value.empty() ? "" : trimmed(option.value.front());
     if (option.string_key == "help" || value == "-h") {
@@ -55,6 +57,9 @@ Arguments taken_apart(const std::vector<std::string>& words) {
     } else if (option.string_key == "nearby") {
       if (value.empty()) throw BadScene("command line: --nearby: give a file of rows, as --nearby FILE");
       arguments.nearby.push_back(value);
+    } else if (option.string_key == "dataset") {
+      if (value.empty()) throw BadScene("command line: --dataset: give the name of a data set, as --dataset u");
+      dataset = value.starts_with('/') ? value : "/" + value;
     } else if (!option.string_key.empty()) {
       arguments.keys.push_back({option.string_key, value, 0});
     } else if (value.size() > 1 && value.front() == '-') {
@@ -62,6 +67,11 @@ Arguments taken_apart(const std::vector<std::string>& words) {
     } else {
       arguments.words.push_back(value);
     }
+  }
+  if (!dataset.empty()) {
+    if (!arguments.fields) throw BadScene("command line: --dataset: of which file? Give it too, as --fields FILE");
+    *arguments.fields += ":" + dataset;
+    for (std::string& file : arguments.nearby) file += ":" + dataset;
   }
   return arguments;
 }

@@ -118,6 +118,16 @@ std::optional<std::vector<double>> FieldsReader::momenta(int frame) const {
   return p;
 }
 
+std::optional<std::vector<double>> FieldsReader::positions() const {
+  const Hdf5Handle dataset(H5Dopen2(file_, "space", H5P_DEFAULT), H5Dclose);
+  const hsize_t none = 0, sites = static_cast<hsize_t>(this->sites());
+  std::vector<double> x(sites);
+  if (!dataset || rank_of(dataset) != 1) return std::nullopt;
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  if (H5Sget_simple_extent_npoints(space) != static_cast<hssize_t>(sites)) return std::nullopt;
+  return read_slice(dataset, 1, &none, &sites, x.data()) ? std::optional(x) : std::nullopt;
+}
+
 std::optional<int> FieldsReader::winding() const {
   const htri_t there = H5Aexists(file_, "winding");
   if (there == 0) return std::nullopt;

@@ -26,6 +26,9 @@ class FieldsReader final : public RowsFile {
   std::optional<std::vector<double>> momenta(int frame) const override;
   std::optional<int> winding() const override;
 
+  /// Of the sites, /space; nothing where it is not one number for each.
+  std::optional<std::vector<double>> positions() const;
+
   struct Shape {
     int frames = 0, sites = 0, components = 0;
   };

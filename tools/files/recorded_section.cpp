@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "tools/files/plain_rows.hpp"
+
 namespace delf {
 
 namespace {
@@ -16,11 +18,19 @@ namespace {
 std::string counted(int n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
 
 // A reader's errors name a key of a scene; here the file comes from the command line.
-FieldsReader opened(const std::filesystem::path& path, const std::string& place) {
-  if (!std::filesystem::exists(path))
+std::unique_ptr<RowsFile> opened(const std::filesystem::path& path, const std::string& place,
+                                 const LatticeSystem& system) {
+  std::string name = path.string();
+  if (!std::filesystem::exists(path)) name = name.substr(0, name.rfind(":/"));
+  if (!std::filesystem::exists(name))
     throw BadScene(place + ": no such file; name the fields.h5 of a run, or a file of the same layout");
   try {
-    return FieldsReader(path);
+    if (auto plain = open_plain_rows(path, system.lattice().sites(), system.fields())) return plain;
+  } catch (const BadInput& bad) {
+    throw BadScene(place + ": " + bad.what());
+  }
+  try {
+    return std::make_unique<FieldsReader>(path);
   } catch (const BadInput& bad) {
     throw BadScene(place + ": " + bad.what() + ", or a file of the same layout");
   }
@@ -30,18 +40,27 @@ FieldsReader opened(const std::filesystem::path& path, const std::string& place)
 
 RecordedSection::RecordedSection(const std::filesystem::path& path, const LatticeSystem& system,
                                  const std::vector<int>& back, double time_step, const char* option)
-    : place_(fmt::format("command line: {} {}", option, path.string())), file_(opened(path, place_)) {
+    : place_(fmt::format("command line: {} {}", option, path.string())),
+      file_(opened(path, place_, system)),
+      fields_(dynamic_cast<const FieldsReader*>(file_.get())) {
   std::array<int, all_roles.size()> count{};
   for (std::size_t c = 0; c < back.size(); ++c) {
     const Role role = system.all_components()[c].role;
     columns_.push_back({role, count[static_cast<std::size_t>(role)]++, back[c]});
   }
-  if (const int here = file_.sites(), there = system.lattice().sites(); here != there)
+  if (const int here = file_->sites(), there = system.lattice().sites(); here != there)
     throw wrong(fmt::format("has {}, and the lattice has {}; use lattice.sites = {}, or another file",
                             counted(here, "site"), there, here));
   for (const Role role : all_roles)
     if (count[static_cast<std::size_t>(role)] > 0) check_shape(system, role);
   check_times(time_step);
+  check_space(system);
+}
+
+FieldsReader::Shape RecordedSection::shape(Role role) const {
+  if (fields_) return fields_->shape(role);
+  return role == Role::field ? FieldsReader::Shape{file_->frames(), file_->sites(), file_->components()}
+                             : FieldsReader::Shape{};
 }
 
 BadScene RecordedSection::wrong(const std::string& what) const { return BadScene(place_ + ": " + what); }
@@ -51,13 +70,13 @@ void RecordedSection::check_shape(const LatticeSystem& system, Role role) const 
   int components = 0;
   for (const Component& c : system.all_components())
     if (c.role == role) names += (components++ == 0 ? "" : ", ") + c.name;
-  const auto& [frames, sites, here] = file_.shape(role);
-  if (frames == rows() && sites == file_.sites() && here == components) return;
+  const auto& [frames, sites, here] = shape(role);
+  if (frames == rows() && sites == file_->sites() && here == components) return;
   if (role == Role::field)
     throw wrong(
         fmt::format("has {}, and the scheme has {} ({}); give as many", counted(here, "field"), components, names));
   const std::string needed =
-      fmt::format("frames x sites x components = {} x {} x {} ({})", rows(), file_.sites(), components, names);
+      fmt::format("frames x sites x components = {} x {} x {} ({})", rows(), file_->sites(), components, names);
   if (here == 0)
     throw wrong(fmt::format("has no dataset /{}, which the scheme needs; write {}", to_string(role), needed));
   throw wrong(fmt::format("/{} is {} x {} x {}; write {}", to_string(role), frames, sites, here, needed));
@@ -69,10 +88,11 @@ void RecordedSection::check_times(double time_step) const {
   for (int frame = 0; frame < rows(); ++frame) {
     std::optional<double> now;
     try {
-      now = file_.time(frame);
+      now = file_->time(frame);
     } catch (const BadInput& bad) {
       throw wrong(fmt::format("{}; {}", bad.what(), layout));
     }
+    if (!now && !fields_) return;  // a plain array: its rows are taken as a time step apart
     if (!now) throw wrong(fmt::format("has no dataset /time; {}", layout));
     const double slack = 1e-9 * time_step + 1e-15 * std::abs(*now);  // times far from 0 are rounded
     if (before && !(std::abs(*now - *before - time_step) <= slack))
@@ -84,11 +104,25 @@ void RecordedSection::check_times(double time_step) const {
   }
 }
 
+// Positions that are all the same say nothing.
+void RecordedSection::check_space(const LatticeSystem& system) const {
+  const auto x = fields_ ? fields_->positions() : std::nullopt;
+  if (!x || x->size() < 2 || x->front() == x->back() || system.lattice().space() == Space::point || system.moves())
+    return;
+  const double there = (x->back() - x->front()) / static_cast<double>(x->size() - 1),
+               here = system.lattice().space_step();
+  if (std::abs(there - here) <= 1e-6 * std::abs(here)) return;
+  throw wrong(
+      fmt::format("has sites {:.10g} apart in /space, and the lattice has {:.10g}; use lattice.length = {:.10g}, or "
+                  "correct /space",
+                  there, here, there * system.lattice().cells()));
+}
+
 void RecordedSection::check_finite(const std::vector<double>& values, Role role, int frame) const {
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
       throw wrong(fmt::format("/{} is not finite in frame {} at site {}; leave out the frames from there on",
-                              to_string(role), frame, i / static_cast<std::size_t>(file_.shape(role).components)));
+                              to_string(role), frame, i / static_cast<std::size_t>(shape(role).components)));
 }
 
 void RecordedSection::read(Role role, int back, std::int64_t j, std::vector<double>& row) const {
@@ -96,12 +130,12 @@ void RecordedSection::read(Role role, int back, std::int64_t j, std::vector<doub
   const int frame = static_cast<int>(j + back);
   std::vector<double> values;
   try {
-    values = file_.values(role, frame);
+    values = fields_ ? fields_->values(role, frame) : file_->row(frame);
   } catch (const BadInput& bad) {
     throw wrong(bad.what());
   }
   check_finite(values, role, frame);
-  const std::size_t in_file = static_cast<std::size_t>(file_.shape(role).components), all = columns_.size();
+  const std::size_t in_file = static_cast<std::size_t>(shape(role).components), all = columns_.size();
   for (std::size_t c = 0; c < all; ++c)
     if (const Column& column = columns_[c]; column.role == role && column.back == back)
       for (std::size_t i = 0; i * all < row.size(); ++i)
@@ -111,7 +145,7 @@ void RecordedSection::read(Role role, int back, std::int64_t j, std::vector<doub
 std::vector<double> RecordedSection::row(std::int64_t j) const {
   if (j < 0 || j >= rows())
     throw wrong(fmt::format("row {} is needed, and the file has {}; record more", j, counted(rows(), "frame")));
-  std::vector<double> row(static_cast<std::size_t>(file_.sites()) * columns_.size());
+  std::vector<double> row(static_cast<std::size_t>(file_->sites()) * columns_.size());
   std::set<std::pair<Role, int>> reads;  // each frame of a dataset is read once
   for (const Column& column : columns_) reads.emplace(column.role, column.back);
   for (const auto& [role, back] : reads) read(role, back, j, row);

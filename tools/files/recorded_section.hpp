@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@
 namespace delf {
 
 /// The rows of a file in the layout of fields.h5, of a run or of any other program, as a section of a system's
-/// components: the first frame is row 0, and the next frames are the next rows.
+/// components: the first frame is row 0, and the next frames are the next rows. Or those of a plain array (plain_rows.hpp).
 ///
 /// Errors of the file are thrown as BadScene: "command line: OPTION FILE: what; remedy".
 class RecordedSection {
@@ -22,9 +23,9 @@ class RecordedSection {
   RecordedSection(const std::filesystem::path&, const LatticeSystem&, const std::vector<int>& back, double time_step,
                   const char* option);
 
-  int rows() const { return file_.frames(); }
+  int rows() const { return file_->frames(); }
   /// What the field gains around the circle, in units of 2π, if the file says so.
-  std::optional<int> winding() const { return file_.winding(); }
+  std::optional<int> winding() const { return file_->winding(); }
   /// All components, each at row j: [i·C + c]. Those that no frame has, because they would have been found with rows
   /// after the last, are zero.
   std::vector<double> row(std::int64_t j) const;
@@ -37,13 +38,16 @@ class RecordedSection {
   };
   BadScene wrong(const std::string& what) const;
   void check_shape(const LatticeSystem&, Role) const;
+  FieldsReader::Shape shape(Role) const;
   void check_times(double time_step) const;
+  void check_space(const LatticeSystem&) const;
   void check_finite(const std::vector<double>& values, Role, int frame) const;
   /// The columns of this role that frame j + back has, into a row.
   void read(Role, int back, std::int64_t j, std::vector<double>& row) const;
 
   std::string place_;
-  FieldsReader file_;
+  std::unique_ptr<RowsFile> file_;
+  const FieldsReader* fields_ = nullptr;  ///< the same, if it is of the layout of fields.h5
   std::vector<Column> columns_;
 };
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/files/rows_file.hpp"
+
+namespace delf {
+
+/// Numbers with a shape, as other programs write them: 1-D, frames × values, or frames × sites × components.
+struct PlainArray {
+  std::vector<std::size_t> shape;
+  std::vector<double> values;  ///< the last index runs first
+  std::vector<double> times;   ///< of the frames, if the file says them
+};
+
+/// The rows of such an array, for a scheme whose rows have sites · components values. A line is a frame, or a column is,
+/// whichever has that many values; one unknown may be 1-D.
+class PlainRows final : public RowsFile {
+ public:
+  /// Throws BadInput, key initial.file, for another shape.
+  PlainRows(PlainArray, int sites, int components);
+
+  int sites() const override { return sites_; }
+  int frames() const override { return frames_; }
+  int components() const override { return components_; }
+  std::optional<double> time(int frame) const override;
+  std::vector<double> row(int frame) const override;
+  std::optional<int> winding() const override { return std::nullopt; }
+
+ private:
+  int frames_ = 0, sites_, components_;
+  bool columns_ = false;  ///< are the frames
+  PlainArray array_;
+};
+
+// All throw BadInput, key initial.file.
+
+/// A table of text, separated by commas, semicolons or blanks. Lines that begin with # or % are passed over, and so is a
+/// line of names. A column named t or time, or one more than the `row_size` values of a row, has the times.
+PlainArray read_table(const std::filesystem::path&, std::size_t row_size);
+/// NumPy's .npy, of float64 or float32.
+PlainArray read_npy(const std::filesystem::path&);
+/// A data set of an HDF5 file, of one to three axes.
+PlainArray read_dataset(const std::filesystem::path&, const std::string& name);
+
+/// By the name: .npy, a table if it ends in .csv, .txt or .dat, or the data set of an HDF5 file that is given as FILE:/NAME.
+/// Nothing for other names.
+std::unique_ptr<RowsFile> open_plain_rows(const std::filesystem::path&, int sites, int components);
+
+}  // namespace delf
