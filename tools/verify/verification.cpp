@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <numbers>
 #include <set>
+#include <span>
 
 #include "jets/expressions/generator.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -240,6 +241,7 @@ void Verification::take(std::vector<double> row) {
     if (j == 0) unwrap_along(row, system_.components());
     else unwrap_after(unwrapped_, row);
     unwrapped_ = row;
+    first_values_.insert(first_values_.end(), row.begin(), row.begin() + system_.components());
   }
   if (request_.fault == "field" && j == rows_ / 2) {
     double most = 0;
@@ -301,15 +303,12 @@ void Verification::diagnose_rows() {
     leave_out("diagnosis: of schemes whose values are fields at the vertices, and this one has others");
     return;
   }
-  std::int64_t newest = -1;
-  std::vector<double> before;  // values are followed from a row to the next that is asked for near it
   const auto row = [&](std::int64_t j) {
     std::vector<double> values = fields_->row(j);
     if (request_.unwrap) {
-      constexpr std::int64_t near = 4;
-      if (newest >= 0 && std::abs(j - newest) <= near) unwrap_after(before, values);
-      else unwrap_along(values, system_.components());
-      newest = j, before = values;
+      const auto C = static_cast<std::size_t>(system_.components());
+      unwrap_along(values, system_.components());
+      unwrap_to(std::span(first_values_).subspan(static_cast<std::size_t>(j) * C, C), values);
     }
     return values;
   };

@@ -86,7 +86,8 @@ class Verification {
   std::size_t next_moment_ = 0;
   Window held_;
   std::vector<std::vector<double>> first_rows_;
-  std::vector<double> unwrapped_;  ///< the newest row of a file, if they are unwrapped
+  std::vector<double> unwrapped_;     ///< the newest row of a file, if they are unwrapped
+  std::vector<double> first_values_;  ///< of every row, at the first site, then
   std::exception_ptr failure_;
   Verdict verdict_;
 };

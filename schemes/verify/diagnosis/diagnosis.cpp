@@ -23,8 +23,8 @@ std::optional<Finding> find_elsewhere(const Evidence& e, const Sample& sample) {
   return Finding{
       "elsewhere",
       fmt::format("The equations hold but for {} of {}, in {} of {} rows (the first is row {}, the last row {}) and at "
-                  "sites {} to {}: the theory, the steps and the scheme are right, and values there are none of a "
-                  "step.",
+                  "sites {} to {}: the theory, the steps and the scheme are right. What happened there is none of the "
+                  "mishaps that were tried: several values were changed, or steps not solved to this tolerance.",
                   f.failed(), f.tried(), f.rows().size(), f.rows_tried(), f.rows().front(), f.rows().back(),
                   sites.front(), sites.back())};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <span>
 #include <vector>
 
 namespace delf {
@@ -10,6 +11,8 @@ namespace delf {
 void unwrap_after(const std::vector<double>& before, std::vector<double>& row);
 /// In space: the site before, of each of the components.
 void unwrap_along(std::vector<double>& row, int components);
+/// Moves a row, all sites alike, by the multiple of 2π that brings each component at the first site next to `first`.
+void unwrap_to(std::span<const double> first, std::vector<double>& row);
 /// What an unwrapped row gains around the circle: a multiple of 2π.
 double turn_of_row(const std::vector<double>& row, int components);
 

@@ -23,6 +23,13 @@ void unwrap_along(std::vector<double>& row, int components) {
   for (std::size_t n = C; n < row.size(); ++n) row[n] -= circle * std::round((row[n] - row[n - C]) / circle);
 }
 
+void unwrap_to(std::span<const double> first, std::vector<double>& row) {
+  const std::size_t C = first.size();
+  std::vector<double> by;
+  for (std::size_t c = 0; c < C; ++c) by.push_back(circle * std::round((first[c] - row[c]) / circle));
+  for (std::size_t n = 0; n < row.size(); ++n) row[n] += by[n % C];
+}
+
 double turn_of_row(const std::vector<double>& row, int components) {
   const std::size_t last = row.size() - static_cast<std::size_t>(components);
   return circle * std::round((row[last] - row[0]) / circle);

@@ -72,7 +72,8 @@ TEST_CASE("values modulo 2π are found, and verified with verify.unwrap") {
     for (double& y : row) y -= 2 * std::numbers::pi * std::floor(y / (2 * std::numbers::pi));
   });
   CHECK(says(verified(folder, "--fields modulo.h5", 1), "Use verify.unwrap = on"));
-  verified(folder, "--fields modulo.h5 --verify.unwrap=on", 0);
+  const Json unwrapped = verified(folder, "--fields modulo.h5 --verify.unwrap=on --verify.identify=on", 0);
+  CHECK(says(unwrapped, "the equations of triangle-vertex."));
   check_refused(delf_program(folder,
                              "verify small.ini --fields run/fields.h5 --nearby modulo.h5 --nearby run/fields.h5 "
                              "--verify.unwrap=on --out refused"),
