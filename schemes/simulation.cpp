@@ -314,6 +314,7 @@ void Simulation::start_legendre(std::span<const double> fields, std::span<const 
       for (int i = 0; i < family->size(); ++i) {
         const int c = family->values()[static_cast<std::size_t>(i)].component;
         if (family->site(i).time != 0 || system.component(c).at.time != 0) continue;
+        if (system.component(c).role == Role::slaved && !system.component(c).position) continue;  // a rate
         const int x = cell + family->site(i).space, home = lattice.home(x);
         places.push_back(static_cast<std::size_t>(home * C + c));
         phi.push_back(row0[places.back()] + (x - home) / N * turn);
@@ -324,7 +325,8 @@ void Simulation::start_legendre(std::span<const double> fields, std::span<const 
       if (!family->momentum({impl_->problem.time_step, lattice.space_step(), 0, lattice.position(cell)}, phi, phi_t, p))
         break;
       any = true;
-      for (std::size_t n = 0; n < places.size(); ++n) momenta[places[n]] += p[n];
+      for (std::size_t n = 0; n < places.size(); ++n)
+        if (system.component(static_cast<int>(places[n]) % C).role != Role::slaved) momenta[places[n]] += p[n];
     }
   }
   if (!any)

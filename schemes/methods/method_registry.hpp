@@ -2,8 +2,10 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@ namespace delf {
 
 class FieldTheory;
 struct EnergyMomentum;
+struct FieldPoint;
 struct NamedScheme;
 struct Problem;
 
@@ -24,8 +27,8 @@ struct SchemeParts {
   std::vector<std::shared_ptr<const StencilFamily>> families;
   std::vector<Component> components;
   std::vector<LinearSymmetry> symmetries =
-      {};  ///< that the families have: the theory's, where it is its density that they carry
-  Processor processor = {};               ///< if rows are those of a kernel
+      {};                    ///< that the families have: the theory's, where it is its density that they carry
+  Processor processor = {};  ///< if rows are those of a kernel
   std::vector<std::string> remarks = {};  ///< lines for `delf plan`
 };
 
@@ -64,6 +67,11 @@ struct Dataset {
   std::vector<double> (*values)(const RowsInTime&, std::int64_t row);
 };
 
+/// Where the sites of a mesh that moves start, and how fast they go.
+struct MovingSites {
+  std::vector<double> X, X_t;
+};
+
 /// A method that a scene can name by scheme.method: one constant of this type stands at the end of each file in
 /// schemes/methods/.
 struct MethodEntry {
@@ -85,6 +93,9 @@ struct MethodEntry {
   EnergyMomentum (*energy)(const RowsInTime&) = nullptr;
   std::vector<Monitor> monitors = {};
   std::vector<Dataset> datasets = {};
+  /// Of sites that move: where they start for a field of row 0, (φ, φ_t, φ_x) at any x; null: where the lattice has them.
+  MovingSites (*place_sites)(const Problem&, int components,
+                             const std::function<void(double x, std::span<FieldPoint>)>&) = nullptr;
 
   /// The schemes that its keys tell apart; null: one, of the method's name. `base.method` is the method's.
   std::vector<NamedScheme> (*variants)(const Problem& base) = nullptr;

@@ -1,41 +1,129 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/families/r_adaptive.hpp"
-
 #include <fmt/format.h>
 
-#include <limits>
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "jets/expressions/parse.hpp"
+#include "jets/tables/line_basis.hpp"
+#include "jets/tables/line_rule.hpp"
+#include "jets/tables/radau_element.hpp"
+#include "jets/tables/space_table.hpp"
+#include "jets/tables/table_product.hpp"
 #include "lattice/error.hpp"
-#include "schemes/families/lagrangian_family.hpp"
+#include "schemes/declared.hpp"
+#include "schemes/methods/element_parts.hpp"
 #include "schemes/methods/method_registry.hpp"
-#include "schemes/stepping/energy.hpp"
+#include "schemes/methods/moving_parts.hpp"
+#include "schemes/methods/time_element_keys.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/stepping/energy.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 namespace {
 
-SchemeParts build(const FieldTheory&, const Problem& p) {
-  if (p.theory != "sine-gordon" || p.parameters.get<double>("theory.mass") != 1)
-    throw BadInput("theory.name", "scheme.method = r-adaptive: written for sine-gordon with mass 1; use that theory");
+/// An element in time that scheme.time names.
+struct NamedTime {
+  std::string name, tableau;  ///< of cgvi; none: Radau IIA
+  bool multipliers;           ///< has both ends of a step among its points, or no others than their mean
+  bool rows_alone;            ///< a slaved mesh is that of the rows
+};
+const std::vector<NamedTime>& times() {
+  static const std::vector<NamedTime> all{{"trapezoid", "stormer-verlet", true, true},
+                                          {"midpoint", "midpoint", true, true},
+                                          {"gauss1", "gauss1", false, false},
+                                          {"gauss2", "gauss2", false, false},
+                                          {"lobatto2", "lobatto2", true, false},
+                                          {"lobatto3", "lobatto3", true, false},
+                                          {"radau3", "", false, false}};
+  return all;
+}
+
+StencilTable element(const NamedTime& time) {
+  if (time.tableau.empty()) return radau_element(3);
+  ParameterValues keys;
+  keys["scheme.tableau"] = time.tableau;
+  return TimeElementKeys(keys).element();
+}
+
+std::string strategy(const Problem& p) { return p.parameters.get<std::string>("scheme.strategy"); }
+const NamedTime& time_of(const Problem& p) {
+  return *std::ranges::find(times(), p.parameters.get<std::string>("scheme.time"), &NamedTime::name);
+}
+
+MeshMonitor monitor_of(const Problem& p, const std::vector<Component>& fields) {
+  using Kind = MeshMonitor::Kind;
+  const std::string text = p.parameters.get<std::string>("mesh.monitor");
+  MeshMonitor monitor{.alpha = p.parameters.get<double>("mesh.alpha"), .beta = p.parameters.get<double>("mesh.beta")};
+  for (const auto& [name, kind] :
+       {std::pair{"arclength", Kind::arclength}, {"saturated", Kind::saturated}, {"uniform", Kind::uniform}})
+    if (text == name) return monitor.kind = kind, monitor;
+  monitor.kind = Kind::formula;
+  expressions::Names names{{}, {{"alpha", monitor.alpha}, {"beta", monitor.beta}}};
+  const int d = static_cast<int>(fields.size());
+  for (int a = 0; a < d; ++a) {
+    const std::string& name = fields[static_cast<std::size_t>(a)].name;
+    names.variables.emplace_back(name, a), names.variables.emplace_back(name + "_X", d + a);
+  }
+  expressions::Graph graph;
+  const int root = expressions::parse(graph, text, names, "mesh.monitor");
+  monitor.rho = std::make_shared<const expressions::Evaluation>(graph, root);
+  return monitor;
+}
+
+SchemeParts build(const FieldTheory& theory, const Problem& p) {
   if (p.lattice.space() != Space::interval || p.lattice.left() != Wall::fixed || p.lattice.right() != Wall::fixed)
     throw BadInput("lattice.space",
                    "scheme.method = r-adaptive: the mesh moves between two fixed walls; use "
                    "lattice.space = interval and fixed walls");
-  return {{std::make_shared<LagrangianFamily<MovingRectangle>>(MovingRectangle{}),
-           std::make_shared<LagrangianFamily<ArclengthConstraint>>(
-               ArclengthConstraint{p.parameters.get<double>("scheme.alpha")})},
-          {{"phi"}, {"X", Role::field, {}, true}, {"lambda", Role::multiplier, {}}}};
+  if (theory.constraint())
+    throw BadInput("theory.name", "scheme.method = r-adaptive: takes no constraint of the theory; use another method");
+  const NamedTime& time = time_of(p);
+  const int points = p.parameters.get<int>("mesh.points");
+  if (strategy(p) == "uniform") {
+    SchemeParts parts =
+        element_parts(theory, product(element(time), element_space(lagrange_basis({0, 1}), gauss_rule(points))));
+    if (time.tableau.empty()) parts.symmetries.clear();
+    return parts;
+  }
+  const bool varied = strategy(p) == "multiplier";
+  if (varied && !time.multipliers)
+    throw BadInput(
+        "scheme.time",
+        fmt::format("scheme.time = {}: multipliers keep the mesh at the ends of a step, which are no points "
+                    "of this rule; use trapezoid, midpoint, lobatto2 or lobatto3, or scheme.strategy = control",
+                    time.name));
+  return moving_parts(theory, {.time = element(time),
+                               .monitor = monitor_of(p, theory.fields()),
+                               .varied = varied,
+                               .rows_alone = time.rows_alone,
+                               .points = points});
 }
 
-// not a number: the sites move, and the symmetric rectangle's jets are none of the mesh
-EnergyMomentum no_energy(const RowsInTime&) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  return {none, none};
+MovingSites place_sites(const Problem& p, int components, const Profile& profile) {
+  const auto theory = find_theory(p.theory).make(p.parameters);
+  return place_moving_sites(monitor_of(p, theory->fields()), p.lattice, components, profile);
+}
+
+EnergyMomentum energy(const RowsInTime& rows) {
+  return rows.system.moves() ? moving_energy(rows) : element_energy(rows);
 }
 
 std::string label(const Problem& p) {
-  return fmt::format("r-adaptive, alpha = {:g}", p.parameters.get<double>("scheme.alpha"));
+  if (strategy(p) == "uniform") return fmt::format("linear elements, uniform mesh, {}", time_of(p).name);
+  const std::string monitor = p.parameters.get<std::string>("mesh.monitor");
+  return fmt::format("r-adaptive, {}, {}, {}{}", strategy(p), time_of(p).name, monitor,
+                     monitor == "uniform" ? "" : fmt::format(", alpha = {:g}", p.parameters.get<double>("mesh.alpha")));
+}
+
+std::vector<std::string> time_names() {
+  std::vector<std::string> names;
+  for (const NamedTime& time : times()) names.push_back(time.name);
+  return names;
 }
 
 }  // namespace
@@ -43,13 +131,36 @@ std::string label(const Problem& p) {
 extern const MethodEntry r_adaptive_method;
 const MethodEntry r_adaptive_method{
     .name = "r-adaptive",
-    .formula = "moving mesh, arclength constraint by multipliers, trapezoidal: Tyranowski-Desbrun (154)-(160)",
+    .formula = "moving mesh of any density, by multipliers or slaved to the field: Tyranowski-Desbrun",
     .build = build,
-    .parameters = {{.key = "scheme.alpha",
+    .parameters = {{.key = "scheme.strategy",
+                    .fallback = "multiplier",
+                    .help = "the mesh is varied, with multipliers; slaved to the field (control); or stands still",
+                    .choices = {"multiplier", "control", "uniform"}},
+                   {.key = "scheme.time",
+                    .fallback = "trapezoid",
+                    .help = "the element in time; gauss1, gauss2 and radau3 are not for multipliers",
+                    .choices = time_names()},
+                   {.key = "mesh.monitor",
+                    .fallback = "arclength",
+                    .help = "what all cells have the same of: arclength, saturated, uniform, or a density as a formula "
+                            "of phi and phi_X"},
+                   {.key = "mesh.alpha",
                     .fallback = 1.0,
-                    .help = "how much the mesh follows the field",
-                    .range = {.low = 0, .open = true}}},
+                    .help = "how much the mesh follows the field; 0: not at all",
+                    .range = {.low = 0}},
+                   {.key = "mesh.beta",
+                    .fallback = 0.1,
+                    .help = "saturated: cells stay above beta/alpha of the arclength in one",
+                    .range = {.low = 0, .open = true}},
+                   {.key = "mesh.points",
+                    .fallback = 10,
+                    .help = "Gauss's points in a cell; 10 are exact to rounding for sine-gordon",
+                    .range = {.low = 2, .high = 20}}},
     .label = label,
-    .energy = no_energy};
+    .starts = {StartRule::legendre, StartRule::exact},
+    .start = StartRule::legendre,
+    .energy = energy,
+    .place_sites = place_sites};
 
 }  // namespace delf

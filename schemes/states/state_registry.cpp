@@ -17,10 +17,10 @@
 namespace delf {
 
 extern const StateEntry mps_collision_state, kink_state, antikink_state, kink_antikink_state, kink_kink_state,
-    kink_gas_state, breather_state, kink_train_state, plane_wave_state, wave_packet_state, kepler_orbit_state,
-    pendulum_swing_state, coupled_kinks_state, coupled_breathers_state, charged_wave_state, charged_packet_state,
-    great_circle_state, spherical_swing_state, solar_system_state, point_state, noise_state, formula_state,
-    rows_of_file_state;
+    kink_gas_state, soliton_bounce_state, two_soliton_bounce_state, breather_state, kink_train_state, plane_wave_state,
+    wave_packet_state, kepler_orbit_state, pendulum_swing_state, coupled_kinks_state, coupled_breathers_state,
+    charged_wave_state, charged_packet_state, great_circle_state, spherical_swing_state, solar_system_state,
+    point_state, noise_state, formula_state, rows_of_file_state;
 
 namespace {
 
@@ -33,6 +33,8 @@ std::vector<const StateEntry*>& registry() {
       &kink_antikink_state,
       &kink_kink_state,
       &kink_gas_state,
+      &soliton_bounce_state,
+      &two_soliton_bounce_state,
       &breather_state,
       &kink_train_state,
       &plane_wave_state,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "jets/simd/scratch_rows.hpp"
@@ -87,7 +88,7 @@ class LowerSide {
   }
 
   EnergyMomentum energy(const Vector& p, const Vector& v) const {
-    EnergyMomentum sum{p.dot(v), 0};
+    EnergyMomentum sum{p.dot(v), 0};  // p·v − L
     each_point(v, [&](const TablePoint& point, const JetBatch& jets, double* const* g, const double* l) {
       for (int cell = 0; cell < cells_; ++cell) {
         sum.energy -= k_ * point.weight * l[cell];
@@ -132,10 +133,44 @@ class LowerSide {
   std::vector<int> unknown_, places_;
 };
 
+/// The equations `tangent` over the unknowns at `places`.
+Sparse bound_rows(const std::vector<int>& places, std::span<const MatrixEntry> tangent, const Vector& unknowns) {
+  std::map<int, int> number;
+  for (std::size_t i = 0; i < places.size(); ++i) number[places[i]] = static_cast<int>(i);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const MatrixEntry& e : tangent)
+    if (const auto row = number.find(e.row), column = number.find(e.column);
+        row != number.end() && column != number.end())
+      entries.emplace_back(row->second, column->second, e.value);
+  Sparse bound(unknowns.size(), unknowns.size());
+  bound.setFromTriplets(entries.begin(), entries.end());
+  return bound;
+}
+/// Rows of `bound` that have entries, in place of those of `mass` and of what is left of it.
+void replace_rows(const Sparse& bound, const Vector& v, Vector& gap, Sparse& mass) {
+  std::vector<bool> replaced(static_cast<std::size_t>(v.size()));
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto each = [](const Sparse& matrix, const auto& take) {
+    for (Eigen::Index column = 0; column < matrix.outerSize(); ++column)
+      for (Sparse::InnerIterator it(matrix, column); it; ++it)
+        take(static_cast<int>(it.row()), static_cast<int>(it.col()), it.value());
+  };
+  each(bound, [&](int row, int column, double value) {
+    replaced[static_cast<std::size_t>(row)] = true, entries.emplace_back(row, column, value);
+  });
+  each(mass, [&](int row, int column, double value) {
+    if (!replaced[static_cast<std::size_t>(row)]) entries.emplace_back(row, column, value);
+  });
+  mass.setFromTriplets(entries.begin(), entries.end());
+  const Vector of_bound = -(bound * v);
+  for (Eigen::Index i = 0; i < v.size(); ++i)
+    if (replaced[static_cast<std::size_t>(i)]) gap[i] = of_bound[i];
+}
+
 }  // namespace
 
 EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem& system, const Window& window,
-                                    std::int64_t row, std::span<const double> p) {
+                                    std::int64_t row, std::span<const double> p, std::span<const MatrixEntry> tangent) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const LowerSide side(family, system, window, row);
   const auto n = static_cast<Eigen::Index>(side.places().size());
@@ -143,11 +178,13 @@ EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem
   for (Eigen::Index i = 0; i < n; ++i) wanted[i] = p[at(side.places()[static_cast<std::size_t>(i)])];
   const bool varies = family.density().nonlinearity() == Nonlinearity::all;
   Sparse mass;
+  const Sparse bound = bound_rows(side.places(), tangent, wanted);
   Eigen::SparseLU<Sparse> lu;
   double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const bool factor = varies || iteration == 0;
-    const Vector gap = wanted - side.momenta(v, factor ? &mass : nullptr);
+    Vector gap = wanted - side.momenta(v, factor ? &mass : nullptr);
+    if (!tangent.empty()) replace_rows(bound, v, gap, mass);
     if (factor) lu.compute(mass);
     if (lu.info() != Eigen::Success) return {none, none};
     const Vector change = lu.solve(gap);
@@ -156,7 +193,7 @@ EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem
     const double size = change.lpNorm<Eigen::Infinity>(), scale = v.lpNorm<Eigen::Infinity>();
     // corrections that no longer shrink are rounding, if they are small
     if (size <= 4 * epsilon * scale || (size > 0.25 * before && size <= 512 * epsilon * scale))
-      return side.energy(wanted, v);
+      return side.energy(tangent.empty() ? wanted : side.momenta(v, nullptr), v);
     before = size;
   }
   return {none, none};

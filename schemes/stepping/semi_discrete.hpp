@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "lattice/matrix_entry.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/system/lattice_system.hpp"
@@ -15,8 +16,9 @@ namespace delf {
 ///     H = p·v − L(y, v)   where   p = ∂L/∂v(y, v),         P = −k Σ w φ_x ∂ℓ/∂φ_t.
 ///
 /// v is found by Newton's method with the mass matrix ∂²L/∂v∂v; it is zero at fixed walls. Not a number where that
-/// finds none.
+/// finds none. Where values are bound, `tangent` has equations Σ ∂G/∂y v = 0 in place of some momenta: entries at
+/// site · C + component, the rows those of the momenta that they stand for.
 EnergyMomentum semi_discrete_energy(const JetFamily&, const LatticeSystem&, const Window&, std::int64_t row,
-                                    std::span<const double> p);
+                                    std::span<const double> p, std::span<const MatrixEntry> tangent = {});
 
 }  // namespace delf

@@ -228,7 +228,8 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
   }
 }
 
-/// An inner node or a trace: the value of its cell's vertex. What is slaved: its last value. A multiplier: zero.
+/// An inner node or a trace: the value of its cell's vertex. What is slaved: its last value, or in the row of the start what
+/// that gave. A multiplier: zero.
 void SlabStepper::predict_without_past(const Unknowns& unknowns, std::int64_t J) {
   double* const row = ring_->row(J + unknowns.time);
   for (const int place : unknowns.places) {
@@ -236,8 +237,9 @@ void SlabStepper::predict_without_past(const Unknowns& unknowns, std::int64_t J)
     const Component& c = system_.component(component);
     if (c.role == Role::inner || c.role == Role::trace)
       row[place] = row[place - component + system_.field_component(c.field)];
-    else if (c.role == Role::slaved) row[place] = ring_->row(J + unknowns.time - 1)[place];
-    else row[place] = 0.0;
+    else if (c.role == Role::slaved) {
+      if (J + unknowns.time > 0) row[place] = ring_->row(J + unknowns.time - 1)[place];
+    } else row[place] = 0.0;
   }
 }
 
@@ -394,7 +396,7 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
   }
   if (const auto i = crossing(ring_->row(J - lag_)))
     throw MeshCrossing(fmt::format(
-        "step {}, t = {:.6g}: sites {} and {} of the mesh pass each other; reduce lattice.time_step or scheme.alpha", J,
+        "step {}, t = {:.6g}: sites {} and {} of the mesh pass each other; reduce lattice.time_step or mesh.alpha", J,
         static_cast<double>(J) * system_.time_step(), *i, *i + 1));
   if (options_.fibre == Fibre::circle) check_increments(J);
   ++known_;

@@ -220,5 +220,5 @@ TEST_CASE("parameters that are not given have their fallbacks, and those of anot
   CHECK(key_of("theory.quartic", -1.0) == "theory.quartic");
   CHECK(key_of("theory.quartic", "much") == "theory.quartic");
   CHECK(key_of("scheme.cells", "hexagon") == "scheme.cells");
-  CHECK(key_of("scheme.alpha", -1.0) == "accepted");  // not a key of theirs
+  CHECK(key_of("mesh.alpha", -1.0) == "accepted");  // not a key of theirs
 }

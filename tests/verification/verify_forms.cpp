@@ -183,8 +183,7 @@ TEST_CASE("verify: elements keep the form formula with their inner nodes, betwee
 
 TEST_CASE("verify: the moving mesh keeps the form formula on field, mesh and multiplier") {
   Problem p;
-  p.method = "r-adaptive", p.lattice = Lattice::interval(17, 20), p.time_step = 0.01,
-  p.parameters["scheme.alpha"] = 2.5;
+  p.method = "r-adaptive", p.lattice = Lattice::interval(17, 20), p.time_step = 0.01, p.parameters["mesh.alpha"] = 2.5;
   const Result result = at_random_sections(p, 11, 4);
   CHECK(result.checks.size() == 8);  // every kind of region, the local identity, the symplectic form
   require_round_off(result);

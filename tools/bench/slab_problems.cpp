@@ -80,7 +80,7 @@ double absolute(double tolerance, const TwoRows& rows) { return tolerance * std:
 Problem MovingMesh::problem() const {
   Problem problem = problem_of("sine-gordon", Lattice::interval(nodes + 2, length), time_step, tolerance);
   problem.method = "r-adaptive";
-  problem.parameters["scheme.alpha"] = alpha;
+  problem.parameters["mesh.alpha"] = alpha;
   return problem;
 }
 TwoRows MovingMesh::rows() const { return {equidistributed(nodes, 0), equidistributed(nodes, time_step)}; }

@@ -60,6 +60,38 @@ void require_momenta_of_all_rows(const Simulation& simulation, const RowNames& n
         "from two rows or records /momentum");
 }
 
+/// Of a row from a solution, at its sites, wherever they are.
+FieldError error_of(const RecordedRow& row, const RowNames& names, const State& exact, double time,
+                    const Lattice& lattice) {
+  const std::vector<double>& fields = row[Role::field];
+  const auto& mesh = names.mesh;
+  if (!mesh) {
+    std::vector<double> solution(fields.size());
+    exact.values(time, lattice, solution);
+    return field_error(fields, solution, lattice.space_step());
+  }
+  const std::size_t d = static_cast<std::size_t>(exact.components()), width = names.of[Role::field].size(),
+                    step = names.of[mesh->role].size();
+  std::vector<FieldPoint> there(d);
+  FieldError error{0, 0};
+  double before = 0;
+  for (std::size_t i = 0; i * width < fields.size(); ++i) {
+    const double X = row[mesh->role][i * step + mesh->index];
+    exact.at(time, X, there);
+    double squares = 0;
+    for (std::size_t a = 0; a < d; ++a) {
+      const double e = std::abs(fields[i * width + a] - there[a].phi);
+      if (e > error.linf || std::isnan(e)) error.linf = e;
+      squares += e * e;
+    }
+    // √(Σ δ e²), half of each cell with either end
+    if (i > 0) error.l2 += 0.5 * (X - row[mesh->role][(i - 1) * step + mesh->index]) * (squares + before);
+    before = squares;
+  }
+  error.l2 = std::sqrt(error.l2);
+  return error;
+}
+
 }  // namespace
 
 std::string threads_in_words(const Simulation& simulation, int asked) {
@@ -348,13 +380,11 @@ void Stepping::close_outcome() {
   if (started_) outcome_.warnings = warnings_.of(outcome_, recorder_->energy_errors(), row_[Role::field]);
 }
 
-// of the last row, which is still in row_
 void Stepping::measure_error() {
   const State* exact = initial_.exact();
   if (!exact || recorded_ < 0 || outcome_.time > exact->exact_until()) return;
-  std::vector<double> solution(row_[Role::field].size());
-  exact->values(outcome_.time, scene_.problem.lattice, solution);
-  const FieldError error = field_error(row_[Role::field], solution, scene_.problem.lattice.space_step());
+  // row_ is the last one still
+  const FieldError error = error_of(row_, names_, *exact, outcome_.time, scene_.problem.lattice);
   outcome_.error_linf = error.linf;
   outcome_.error_l2 = error.l2;
 }

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "schemes/moving_start.hpp"
+#include "schemes/theories/field_theory.hpp"
+
 namespace delf {
 
 InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
@@ -60,7 +63,9 @@ std::string InitialRows::description() const {
 
 void InitialRows::check(const Simulation& simulation) const {
   const int here = state_ ? state_->components() : file_->components(), fields = simulation.count(Role::field);
-  if (here == fields) return;
+  // the positions of sites that move are the method's to find
+  if (here == (state_ && starts_by_sites(simulation, scene_.problem) ? simulation.theory().components() : fields))
+    return;
   std::string names;
   for (const Component& c : simulation.components())
     if (c.role == Role::field) names += (names.empty() ? "" : ", ") + c.name;
@@ -138,6 +143,13 @@ void InitialRows::start(Simulation& simulation) const {
       throw BadInput("initial.state", "a file has no rates, which a kernel starts from; choose another state");
     if (rule() == StartRule::centred)
       return simulation.start_centred(section(simulation, 0), section(simulation, &State::velocities, 0, true));
+    if (state_ && starts_by_sites(simulation, scene_.problem)) {
+      if (rule() != StartRule::legendre)
+        throw BadInput("initial.start",
+                       "initial.start = exact: sites that move start from row 0 and its rates; use legendre");
+      return start_by_sites(simulation, scene_.problem,
+                            [this](double x, std::span<FieldPoint> out) { state_->at(0, x, out); });
+    }
     if (rule() == StartRule::legendre)
       return simulation.start_legendre(section(simulation, &State::values, 0, false),
                                        section(simulation, &State::velocities, 0, false));

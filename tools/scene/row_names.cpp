@@ -7,7 +7,7 @@ namespace delf {
 
 RowNames::RowNames(const Simulation& simulation) : of() {
   for (const Component& c : simulation.components()) {
-    if (c.position) mesh = {c.role, of[c.role].size()};
+    if (c.position && !mesh) mesh = {c.role, of[c.role].size()};
     of[c.role].push_back(c.name);
   }
   datasets = simulation.datasets();

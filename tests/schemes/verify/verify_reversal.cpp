@@ -191,7 +191,7 @@ TEST_CASE("a step back that fails is a check that fails, and says how") {
 TEST_CASE("moving meshes with their multipliers come back to their start") {
   namespace given = r_adaptive_rows;
   Problem p;
-  p.method = "r-adaptive", p.parameters["scheme.alpha"] = given::alpha;
+  p.method = "r-adaptive", p.parameters["mesh.alpha"] = given::alpha;
   p.lattice = Lattice::interval(17, 25), p.time_step = given::time_step;
   CHECK(reversible_equations(p));
   Rows rows(2);

@@ -168,16 +168,17 @@ TEST_CASE("incompatible keys are refused in one line") {
   refused("kepler --lattice.stencil=rectangle", "lattice.stencil = rectangle");
   refused("wave-map --initial.state=noise", "initial.state = noise");
   refused("kepler --initial.eccentricity=1", "initial.eccentricity = 1");
-  refused("breather --initial.start=legendre", "needs scheme.method = radau-iia or cgvi or spacetime or processed or composition");
+  refused("breather --initial.start=legendre",
+          "needs scheme.method = radau-iia or r-adaptive or cgvi or spacetime or processed or composition");
   refused("breather --scheme.method=r-adaptive", "");
-  refused("breather --scheme.method=r-adaptive --lattice.space=interval",
-          "has 1 field, and the scheme has 2 fields (phi, X)");
+  refused("breather --scheme.method=r-adaptive --lattice.space=interval --scheme.time=gauss2",
+          "or scheme.strategy = control");
   refused("r-adaptive --initial.start=legendre", "initial.start = legendre");
   refused("r-adaptive --initial.frame=1", "row 2 is needed, and the file has 2");
   refused("spacetime-element --scheme.degree_time=0", "must be at least 1");
   refused("spacetime-element --scheme.degree_space=13", "must be at most 12");
   refused("spacetime-element --scheme.quadrature=gaus", "did you mean gauss?");
-  refused("r-adaptive --scheme.alpha=0", "must be above 0");
+  refused("r-adaptive --mesh.alpha=-1", "must be at least 0");
   refused("lotka-volterra --initial.v=1,1", "starts from values alone; leave initial.v out");
   refused("lotka-volterra --initial.start=centred", "use values");
   refused("lotka-volterra --scheme.flux=one-sided", "choose such a theory.gauge, or use gauss2");
@@ -194,7 +195,7 @@ TEST_CASE("keys of another method are warned of") {
   };
   warned("breather --scheme.degree_time=3", "only scheme.method = spacetime reads it");
   warned("breather --scheme.quadrature=lobatto", "only scheme.method = spacetime or cgvi or dgvi reads it");
-  warned("breather --scheme.alpha=3", "only scheme.method = r-adaptive reads it");
+  warned("breather --mesh.alpha=3", "only scheme.method = r-adaptive reads it");
   warned("breather --initial.eccentricity=0.3", "the state breather does not read it");
 }
 

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "jets/expressions/evaluate.hpp"
+#include "jets/numbers/dual.hpp"
+#include "jets/stencil_lagrangian.hpp"
+#include "lattice/shapes/six_tuple.hpp"
+
+namespace delf {
+
+/// What a mesh has the same share of in each of its cells. Of a cell with Δφ and δ = ΔX, Tyranowski–Desbrun §2.4:
+///
+///     arclength   F = α² Σ Δφ² + δ²                              (28), its square
+///     saturated   F = δ² (1 + α² Σ Δφ²/(δ² + β² Σ Δφ²))          δ stays above β/α of the arclength's
+///     uniform     F = δ                                          (122)
+///     formula     F = ρ(φ, Δφ/δ) δ at the mean of φ              (24)
+struct MeshMonitor {
+  enum class Kind { arclength, saturated, uniform, formula };
+  Kind kind = Kind::arclength;
+  double alpha = 1, beta = 0;
+  double strength = 1;  ///< 0: uniform; what a start grows
+  /// of the variables φ_0, …, φ_0,X, …
+  std::shared_ptr<const expressions::Evaluation> rho = {};
+
+  /// a, b: the d fields and X at the ends of a cell.
+  template <class T>
+  T operator()(std::span<const T> a, std::span<const T> b) const {
+    const std::size_t d = a.size() - 1;
+    const T size = b[d] - a[d];
+    if (kind == Kind::uniform) return size;
+    if (kind == Kind::formula)
+      return size * ((1 - strength) + strength * (*rho).template operator()<T>([&](int v) -> T {
+               const auto i = static_cast<std::size_t>(v);
+               if (i < d) return 0.5 * (a[i] + b[i]);
+               return (b[i - d] - a[i - d]) / size;
+             }));
+    T rise(0.0);
+    for (std::size_t i = 0; i < d; ++i) rise = rise + (b[i] - a[i]) * (b[i] - a[i]);
+    const double steep = strength * alpha * strength * alpha;
+    if (kind == Kind::arclength) return steep * rise + size * size;
+    const T square = size * size;
+    return square * (1.0 + steep * rise / (square + (beta * beta) * rise));
+  }
+};
+
+/// Neighbouring cells have the same share, G = F(right) − F(left) = 0, with a multiplier λ at their common site: −λG, as in
+/// Tyranowski–Desbrun (150), (155). Component d is X, and d + 1 is λ. G is taken on one row: ∂/∂q^j gives −Dg(q^j)ᵀ λ^j
+/// and ∂/∂λ^{j+1} gives g(q^{j+1}) = 0, so that λ is Δt times the continuous multiplier.
+struct Equidistribution {
+  int d = 1;
+  MeshMonitor monitor = {};
+
+  StencilPattern pattern() const { return StencilPattern({{0, -1}, {0, 0}, {0, 1}}); }
+  /// φ, X at the left; φ, X, λ at the centre; φ, X at the right
+  std::vector<VertexValue> values() const {
+    std::vector<VertexValue> list;
+    for (int l = 0; l < 3; ++l)
+      for (int c = 0; c <= d + (l == 1 ? 1 : 0); ++c) list.push_back({l, c});
+    return list;
+  }
+  template <class T>
+  T operator()(std::span<const T> y, const Cell&) const {
+    const std::size_t n = static_cast<std::size_t>(d) + 1;
+    const auto left = y.subspan(0, n), centre = y.subspan(n, n), right = y.subspan(2 * n + 1, n);
+    return -(y[2 * n] * (monitor(centre, right) - monitor(left, centre)));
+  }
+};
+
+/// Its rate along a motion q̇, −μ Dg(q)·q̇: values q = (φ, X) at the three sites, then q̇, then μ.
+struct EquidistributionRate {
+  int d = 1;
+  MeshMonitor monitor = {};
+
+  StencilPattern pattern() const { return StencilPattern({{0, 0}}); }
+  std::vector<VertexValue> values() const {
+    std::vector<VertexValue> list;
+    for (int c = 0; c <= 6 * (d + 1); ++c) list.push_back({0, c});
+    return list;
+  }
+  template <class T>
+  T operator()(std::span<const T> y, const Cell&) const {
+    using Along = Dual<T, 1>;
+    const std::size_t n = static_cast<std::size_t>(d) + 1;
+    std::vector<Along> q(3 * n);
+    for (std::size_t i = 0; i < 3 * n; ++i) q[i].value = y[i], q[i].d[0] = y[3 * n + i];
+    const std::span<const Along> all(q);
+    const Along G = monitor(all.subspan(n, n), all.subspan(2 * n, n)) - monitor(all.subspan(0, n), all.subspan(n, n));
+    return -(y[6 * n] * G.d[0]);
+  }
+};
+
+}  // namespace delf

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "lattice/error.hpp"
+#include "schemes/methods/moving_parts.hpp"
+
+namespace delf {
+namespace {
+
+using Vector = Eigen::VectorXd;
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// G(a(X), X) = 0 on an interval, where a is the profile of the field.
+class StartOfMesh {
+ public:
+  StartOfMesh(const Lattice& lattice, int d, const Profile& profile)
+      : N_(lattice.sites()), d_(d), profile_(profile), point_(static_cast<std::size_t>(d)) {}
+
+  /// G at the sites between the walls; its derivatives by their X, and what it gains by φ_t at sites that stand still.
+  void evaluate(const MeshMonitor& monitor, const Vector& X, Vector& G, Sparse& by_X, Vector& by_t) {
+    using Number = Dual<double, 4>;  // by X of the left, the own and the right site, and by t
+    std::vector<std::vector<FieldPoint>> field;
+    for (int i = 0; i < N_; ++i) profile_(X[i], point_), field.push_back(point_);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 1; i + 1 < N_; ++i) {
+      std::vector<Number> q;
+      for (int l = 0; l < 3; ++l) {
+        const int at = i - 1 + l;
+        const bool moves = at > 0 && at + 1 < N_;
+        for (const FieldPoint& f : field[static_cast<std::size_t>(at)]) {
+          Number phi(f.phi);
+          if (moves) phi.d[static_cast<std::size_t>(l)] = f.phi_x, phi.d[3] = f.phi_t;
+          q.push_back(phi);
+        }
+        q.push_back(moves ? Number::variable(X[at], l) : Number(X[at]));
+      }
+      const std::size_t n = static_cast<std::size_t>(d_) + 1;
+      const std::span<const Number> all(q);
+      const Number g =
+          monitor(all.subspan(n, n), all.subspan(2 * n, n)) - monitor(all.subspan(0, n), all.subspan(n, n));
+      G[i - 1] = g.value, by_t[i - 1] = g.d[3];
+      for (int l = 0; l < 3; ++l)
+        if (const int at = i - 1 + l; at > 0 && at + 1 < N_)
+          entries.emplace_back(i - 1, at - 1, g.d[static_cast<std::size_t>(l)]);
+    }
+    by_X.setFromTriplets(entries.begin(), entries.end());
+  }
+
+  /// Newton's method from X, which keeps its order; nothing if it does not arrive.
+  std::optional<Vector> solve(const MeshMonitor& monitor, Vector X) {
+    const Eigen::Index n = N_ - 2;
+    Vector G(n), by_t(n);
+    Sparse by_X(n, n);
+    Eigen::SparseLU<Sparse> lu;
+    double before = std::numeric_limits<double>::infinity();
+    for (int iteration = 0; iteration < 30; ++iteration) {
+      evaluate(monitor, X, G, by_X, by_t);
+      lu.compute(by_X);
+      if (lu.info() != Eigen::Success) return std::nullopt;
+      const Vector change = lu.solve(G);
+      if (!change.allFinite()) return std::nullopt;
+      X.segment(1, n) -= change;
+      for (int i = 0; i + 1 < N_; ++i)
+        if (!(X[i] < X[i + 1])) return std::nullopt;
+      // corrections that no longer shrink are rounding, if they are small
+      const double size = change.lpNorm<Eigen::Infinity>(), scale = X.lpNorm<Eigen::Infinity>();
+      if (size <= 1e-16 * scale || (size >= 0.25 * before && size <= 1e-11 * scale)) return X;
+      if (iteration > 8 && size > before) return std::nullopt;
+      before = size;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  int N_, d_;
+  const Profile& profile_;
+  std::vector<FieldPoint> point_;
+};
+
+}  // namespace
+
+MovingSites place_moving_sites(const MeshMonitor& monitor, const Lattice& lattice, int d, const Profile& profile) {
+  const int N = lattice.sites();
+  StartOfMesh placement(lattice, d, profile);
+  Vector X(N);
+  for (int i = 0; i < N; ++i) X[i] = lattice.position(i);
+  MeshMonitor weaker = monitor;
+  constexpr double least = 1. / 4096;
+  double strength = 0, stride = 0.25;
+  while (strength < 1) {
+    const double next = std::min(1.0, strength + stride);
+    weaker.strength = next;
+    if (const auto found = placement.solve(weaker, X)) {
+      X = *found, strength = next, stride *= 2;
+      continue;
+    }
+    stride /= 2;
+    if (stride < least)
+      throw NoConvergence(
+          fmt::format("the mesh of row 0 was not found: from the uniform mesh it can be followed to "
+                      "{:.3g} of the strength of mesh.monitor; reduce mesh.alpha, or raise lattice.sites",
+                      strength));
+  }
+  // 0 = Dg·(ẏ, Ẋ) with ẏ = φ_t + φ_x Ẋ, (167)
+  const Eigen::Index n = N - 2;
+  Vector G(n), by_t(n), rates = Vector::Zero(N);
+  Sparse by_X(n, n);
+  placement.evaluate(monitor, X, G, by_X, by_t);
+  Eigen::SparseLU<Sparse> lu(by_X);
+  if (n > 0) rates.segment(1, n) = lu.solve(-by_t);
+  if (!rates.allFinite())
+    throw NoConvergence(
+        "the rates of the mesh at row 0 were not found: its constraint is singular there; change mesh.alpha");
+  return {{X.begin(), X.end()}, {rates.begin(), rates.end()}};
+}
+
+}  // namespace delf

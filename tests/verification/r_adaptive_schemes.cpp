@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "lattice/error.hpp"
+#include "schemes/methods/moving_parts.hpp"
+#include "schemes/moving_start.hpp"
+#include "tests/catch.hpp"
+#include "tests/verification/r_adaptive_steps.hpp"
+
+using namespace delf;
+
+namespace {
+
+namespace reference = r_adaptive_steps;
+using reference::Row;
+
+/// A kink of velocity 0.9 in the middle of 0 ≤ x ≤ 25, with the values of the walls there.
+void kink(double x, std::span<FieldPoint> out) {
+  static const auto state = [] {
+    StateRequest request{.name = "kink", .theory = "sine-gordon"};
+    request.values["initial.speed"] = 0.9;
+    return make_state(request, Lattice::interval(17, 25));
+  }();
+  state->at(0, x, out);
+  if (x == 0) out[0].phi = 0;
+  if (x == 25) out[0].phi = 2 * std::numbers::pi;
+}
+
+Problem problem(const std::string& strategy, const std::string& time, int nodes, double alpha = 2.5) {
+  Problem p;
+  p.method = "r-adaptive", p.lattice = Lattice::interval(nodes + 2, 25), p.time_step = 0.01;
+  p.parameters["scheme.strategy"] = strategy, p.parameters["scheme.time"] = time, p.parameters["mesh.alpha"] = alpha;
+  return p;
+}
+
+Simulation started(const Problem& p, const StartField& field) {
+  Simulation simulation(p);
+  if (starts_by_sites(simulation, p)) {
+    start_by_sites(simulation, p, field);
+    return simulation;
+  }
+  std::vector<double> row, rates;  // every node of a cell starts at its vertex
+  FieldPoint f;
+  for (int i = 0; i < p.lattice.sites(); ++i) {
+    field(p.lattice.position(i), {&f, 1});
+    row.resize(row.size() + simulation.components().size(), f.phi);
+    rates.resize(row.size(), f.phi_t);
+  }
+  simulation.start_legendre(row, rates);
+  return simulation;
+}
+
+/// The positions of the sites, or φ, of the newest row.
+Row values(const Simulation& simulation, int sites, bool positions) {
+  const bool slaved = simulation.count(Role::slaved) > 0;
+  const Role role = positions && slaved ? Role::slaved : Role::field;
+  const auto count = static_cast<std::size_t>(simulation.count(role));
+  Row all(static_cast<std::size_t>(sites) * count), out;
+  simulation.copy_row(0, all, role);
+  for (std::size_t at = positions && !slaved ? 1 : 0; at < all.size(); at += count) out.push_back(all[at]);
+  return out;
+}
+
+double distance(const Row& a, const Row& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) worst = std::max(worst, std::abs(a.at(i) - b[i]));
+  return worst;
+}
+
+/// Of row 10 from that of the independent program.
+double distance_at_row_10(const reference::Reference& of, double alpha = 2.5) {
+  const int sites = of.nodes + 2;
+  Simulation simulation = started(problem(of.strategy, of.time, of.nodes, alpha), kink);
+  while (simulation.newest() < 10) simulation.step();
+  const double phi = distance(values(simulation, sites, false), of.y);
+  return of.strategy == "uniform" ? phi : std::max(phi, distance(values(simulation, sites, true), of.X));
+}
+
+}  // namespace
+
+TEST_CASE("a moving mesh starts where an independent program has it, to 1e-12, with its rates") {
+  for (const auto& [nodes, X, X_rate] :
+       {std::tuple{15, &reference::X_15, &reference::X_rate_15}, {22, &reference::X_22, &reference::X_rate_22}}) {
+    const MovingSites sites = place_moving_sites({.alpha = 2.5}, Lattice::interval(nodes + 2, 25), 1, kink);
+    CHECK(distance(sites.X, *X) < 1e-12);
+    CHECK(distance(sites.X_t, *X_rate) < 1e-12);
+  }
+  const MovingSites another = place_moving_sites({.alpha = 2.51}, Lattice::interval(17, 25), 1, kink);
+  CHECK(distance(another.X, reference::X_15) > 1e-4);
+}
+
+TEST_CASE("every strategy and element in time gives row 10 of an independent program to 1e-11") {
+  for (const reference::Reference& of : reference::references) {
+    CAPTURE(of.strategy, of.time);
+    CHECK(distance_at_row_10(of) < 1e-11);
+  }
+}
+
+TEST_CASE("the comparison with row 10 can fail: another alpha moves the mesh elsewhere") {
+  CHECK(distance_at_row_10(reference::references[2], 2.51) > 1e-4);
+}
+
+TEST_CASE("a mesh that cannot be followed to its monitor is refused, and so is what multipliers cannot keep") {
+  // a profile with a step: between two sites nothing tells where it is
+  const StartField step = [](double x, std::span<FieldPoint> out) { out[0] = {x > 12.3 ? 6.0 : 0.0, 0, 0}; };
+  CHECK_THROWS_AS(place_moving_sites({.alpha = 50}, Lattice::interval(17, 25), 1, step), NoConvergence);
+  CHECK_THROWS_AS(Simulation(problem("multiplier", "gauss2", 15)), BadInput);
+  Problem circle = problem("control", "gauss1", 15);
+  circle.lattice = Lattice::circle(17, 25);
+  CHECK_THROWS_AS(Simulation(circle), BadInput);
+}
+
+TEST_CASE("other densities and monitors move the mesh too, and keep their constraint") {
+  Problem p = problem("multiplier", "lobatto2", 15);
+  p.theory = "phi4";
+  const StartField phi4 = [](double x, std::span<FieldPoint> out) {
+    const double s = (x - 12.5) / std::numbers::sqrt2;
+    out[0] = {std::tanh(s), 0, 1 / (std::numbers::sqrt2 * std::cosh(s) * std::cosh(s))};
+  };
+  for (const char* monitor : {"arclength", "saturated", "uniform", "sqrt(1 + 4*phi_X^2)"}) {
+    p.parameters["mesh.monitor"] = monitor;
+    Simulation simulation = started(p, phi4);
+    for (int n = 0; n < 5; ++n) simulation.step();
+    CAPTURE(monitor);
+    CHECK(simulation.monitors().constraint < 1e-12);
+    const Row X = values(simulation, 17, true);
+    CHECK(std::ranges::is_sorted(X));
+    CHECK((std::abs(X[4] - 6.25) > 0.1) == (std::string(monitor) != "uniform"));
+  }
+}
