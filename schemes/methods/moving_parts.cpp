@@ -263,7 +263,7 @@ EnergyMomentum moving_energy(const RowsInTime& rows) {
     return 0;
   };
   const int equation = residual_of();
-  std::vector<MatrixEntry> tangent;
+  Bonds bonds{.slaved = system.component(d).role == Role::slaved};
   std::vector<double> y(at(constraint.size())), J(y.size());
   for (int i = 1; i + 1 < system.lattice().sites(); ++i) {
     const auto place = [&](int m) { return i + constraint.site(m).space; };
@@ -271,7 +271,8 @@ EnergyMomentum moving_energy(const RowsInTime& rows) {
     for (int m = 0; m < constraint.size(); ++m) y[at(m)] = rows.rows(rows.newest, place(m), component(m));
     constraint.jacobian_row(equation, {rows.time_step, system.lattice().space_step(), 0, 0}, y, J);
     for (int m = 0; m < constraint.size(); ++m)
-      if (component(m) <= d && J[at(m)] != 0) tangent.push_back({i * C + d, place(m) * C + component(m), J[at(m)]});
+      if (component(m) <= d && J[at(m)] != 0)
+        bonds.entries.push_back({i * C + d, place(m) * C + component(m), J[at(m)]});
   }
   const auto density =
       std::make_shared<const Reparametrised>(rows.theory.shared_density(), Reparametrised::Part::whole);
@@ -279,7 +280,7 @@ EnergyMomentum moving_energy(const RowsInTime& rows) {
   table.lower_side = table.points;
   const JetFamily row(table, density);
   return semi_discrete_energy(row, system, rows.rows, rows.newest,
-                              half_equations(system, rows.rows, rows.newest, Side::below), tangent);
+                              half_equations(system, rows.rows, rows.newest, Side::below), bonds);
 }
 
 }  // namespace delf

@@ -133,67 +133,69 @@ class LowerSide {
   std::vector<int> unknown_, places_;
 };
 
-/// The equations `tangent` over the unknowns at `places`.
-Sparse bound_rows(const std::vector<int>& places, std::span<const MatrixEntry> tangent, const Vector& unknowns) {
-  std::map<int, int> number;
-  for (std::size_t i = 0; i < places.size(); ++i) number[places[i]] = static_cast<int>(i);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const MatrixEntry& e : tangent)
-    if (const auto row = number.find(e.row), column = number.find(e.column);
-        row != number.end() && column != number.end())
-      entries.emplace_back(row->second, column->second, e.value);
-  Sparse bound(unknowns.size(), unknowns.size());
-  bound.setFromTriplets(entries.begin(), entries.end());
-  return bound;
-}
-/// Rows of `bound` that have entries, in place of those of `mass` and of what is left of it.
-void replace_rows(const Sparse& bound, const Vector& v, Vector& gap, Sparse& mass) {
-  std::vector<bool> replaced(static_cast<std::size_t>(v.size()));
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto each = [](const Sparse& matrix, const auto& take) {
-    for (Eigen::Index column = 0; column < matrix.outerSize(); ++column)
-      for (Sparse::InnerIterator it(matrix, column); it; ++it)
-        take(static_cast<int>(it.row()), static_cast<int>(it.col()), it.value());
-  };
-  each(bound, [&](int row, int column, double value) {
-    replaced[static_cast<std::size_t>(row)] = true, entries.emplace_back(row, column, value);
-  });
-  each(mass, [&](int row, int column, double value) {
-    if (!replaced[static_cast<std::size_t>(row)]) entries.emplace_back(row, column, value);
-  });
-  mass.setFromTriplets(entries.begin(), entries.end());
-  const Vector of_bound = -(bound * v);
-  for (Eigen::Index i = 0; i < v.size(); ++i)
-    if (replaced[static_cast<std::size_t>(i)]) gap[i] = of_bound[i];
-}
+/// ∂G/∂y over the unknowns at `places`, and the forces that go with it, one column for each bond.
+struct BoundRows {
+  Sparse J, forces;
+
+  BoundRows(const std::vector<int>& places, const Bonds& bonds) {
+    std::map<int, int> number, bond;
+    for (std::size_t i = 0; i < places.size(); ++i) number[places[i]] = static_cast<int>(i);
+    std::vector<Eigen::Triplet<double>> equations, reactions;
+    for (const MatrixEntry& e : bonds.entries) {
+      const auto own = number.find(e.row), column = number.find(e.column);
+      if (own == number.end() || column == number.end()) continue;
+      const auto [row, fresh] = bond.try_emplace(e.row, static_cast<int>(bond.size()));
+      equations.emplace_back(row->second, column->second, e.value);
+      if (fresh && bonds.slaved) reactions.emplace_back(own->second, row->second, 1);
+    }
+    const auto n = static_cast<Eigen::Index>(places.size()), m = static_cast<Eigen::Index>(bond.size());
+    J.resize(m, n), J.setFromTriplets(equations.begin(), equations.end());
+    forces = J.transpose();
+    if (bonds.slaved) forces.setFromTriplets(reactions.begin(), reactions.end());
+  }
+  /// (mass, forces; J, 0)
+  Sparse beside(const Sparse& mass) const {
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add = [&](const Sparse& part, Eigen::Index row, Eigen::Index column) {
+      for (Eigen::Index c = 0; c < part.outerSize(); ++c)
+        for (Sparse::InnerIterator it(part, c); it; ++it)
+          entries.emplace_back(static_cast<int>(row + it.row()), static_cast<int>(column + it.col()), it.value());
+    };
+    const Eigen::Index n = J.cols();
+    add(mass, 0, 0), add(forces, 0, n), add(J, n, 0);
+    Sparse all(n + J.rows(), n + J.rows());
+    all.setFromTriplets(entries.begin(), entries.end());
+    return all;
+  }
+};
 
 }  // namespace
 
 EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem& system, const Window& window,
-                                    std::int64_t row, std::span<const double> p, std::span<const MatrixEntry> tangent) {
+                                    std::int64_t row, std::span<const double> p, const Bonds& bonds) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const LowerSide side(family, system, window, row);
-  const auto n = static_cast<Eigen::Index>(side.places().size());
-  Vector wanted(n), v = Vector::Zero(n);
+  const BoundRows bound(side.places(), bonds);
+  const auto n = static_cast<Eigen::Index>(side.places().size()), m = bound.J.rows();
+  Vector wanted(n), v = Vector::Zero(n), force = Vector::Zero(m);
   for (Eigen::Index i = 0; i < n; ++i) wanted[i] = p[at(side.places()[static_cast<std::size_t>(i)])];
   const bool varies = family.density().nonlinearity() == Nonlinearity::all;
   Sparse mass;
-  const Sparse bound = bound_rows(side.places(), tangent, wanted);
   Eigen::SparseLU<Sparse> lu;
   double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const bool factor = varies || iteration == 0;
-    Vector gap = wanted - side.momenta(v, factor ? &mass : nullptr);
-    if (!tangent.empty()) replace_rows(bound, v, gap, mass);
-    if (factor) lu.compute(mass);
+    Vector gap(n + m);
+    gap << wanted - side.momenta(v, factor ? &mass : nullptr) - bound.forces * force, -(bound.J * v);
+    if (factor) lu.compute(m == 0 ? mass : bound.beside(mass));
     if (lu.info() != Eigen::Success) return {none, none};
     const Vector change = lu.solve(gap);
     if (!change.allFinite()) return {none, none};
-    v += change;
-    const double size = change.lpNorm<Eigen::Infinity>(), scale = v.lpNorm<Eigen::Infinity>();
+    v += change.head(n), force += change.tail(m);
+    const double size = change.head(n).lpNorm<Eigen::Infinity>(), scale = v.lpNorm<Eigen::Infinity>();
     // corrections that no longer shrink are rounding, if they are small
     if (size <= 4 * epsilon * scale || (size > 0.25 * before && size <= 512 * epsilon * scale))
-      return side.energy(tangent.empty() ? wanted : side.momenta(v, nullptr), v);
+      return side.energy(m == 0 ? wanted : side.momenta(v, nullptr), v);
     before = size;
   }
   return {none, none};

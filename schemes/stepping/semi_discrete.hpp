@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "lattice/matrix_entry.hpp"
 #include "schemes/families/jet_family.hpp"
@@ -10,15 +11,21 @@
 
 namespace delf {
 
+/// Linear equations of velocities: entries at site · C + component, the row that of a value whose equation it is.
+struct Bonds {
+  std::vector<MatrixEntry> entries = {};
+  bool slaved = false;
+};
+
 /// Energy and momentum at one row of an element, from the momenta p there, [i·C + c]. With the quadrature of the
 /// element's lower side, L(y, v) = k Σ w ℓ(φ, φ_t, φ_x), φ_t = Σ φ_b v_b, is a Lagrangian of mechanics, and
 ///
 ///     H = p·v − L(y, v)   where   p = ∂L/∂v(y, v),         P = −k Σ w φ_x ∂ℓ/∂φ_t.
 ///
 /// v is found by Newton's method with the mass matrix ∂²L/∂v∂v; it is zero at fixed walls. Not a number where that
-/// finds none. Where values are bound, `tangent` has equations Σ ∂G/∂y v = 0 in place of some momenta: entries at
-/// site · C + component, the rows those of the momenta that they stand for.
+/// finds none. Where values are bound, Σ ∂G/∂y v = 0 holds too, and momenta are known up to forces: those of the bonds,
+/// −∂Gᵀ/∂y μ, or, for `slaved`, any force on the value that each is the equation of.
 EnergyMomentum semi_discrete_energy(const JetFamily&, const LatticeSystem&, const Window&, std::int64_t row,
-                                    std::span<const double> p, std::span<const MatrixEntry> tangent = {});
+                                    std::span<const double> p, const Bonds& = {});
 
 }  // namespace delf

@@ -103,6 +103,19 @@ TEST_CASE("the comparison with row 10 can fail: another alpha moves the mesh els
   CHECK(distance_at_row_10(reference::references[2], 2.51) > 1e-4);
 }
 
+TEST_CASE("multipliers keep the energy of a moving mesh, and a slaved one does not") {
+  const auto change = [](const std::string& strategy, const std::string& time) {
+    Simulation simulation = started(problem(strategy, time, 22), kink);
+    simulation.step();
+    const double before = simulation.monitors().energy;
+    CHECK(before == Approx(18.0657).margin(1e-3));
+    while (simulation.newest() < 10) simulation.step();
+    return std::abs(simulation.monitors().energy - before);
+  };
+  CHECK(change("multiplier", "lobatto3") < 1e-7);
+  CHECK(change("control", "gauss2") > 1e-4);
+}
+
 TEST_CASE("a mesh that cannot be followed to its monitor is refused, and so is what multipliers cannot keep") {
   // a profile with a step: between two sites nothing tells where it is
   const StartField step = [](double x, std::span<FieldPoint> out) { out[0] = {x > 12.3 ? 6.0 : 0.0, 0, 0}; };
