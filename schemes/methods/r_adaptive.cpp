@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -113,6 +115,26 @@ EnergyMomentum energy(const RowsInTime& rows) {
   return rows.system.moves() ? moving_energy(rows) : element_energy(rows);
 }
 
+/// δ, the narrowest cell of the newest row: it limits the step of what is explicit.
+double narrowest_cell(const RowsInTime& rows) {
+  const LatticeSystem& system = rows.system;
+  if (!system.moves()) return system.lattice().space_step();
+  const auto& all = system.all_components();
+  const int X = static_cast<int>(std::ranges::find(all, true, &Component::position) - all.begin());
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i + 1 < system.lattice().sites(); ++i)
+    least = std::min(least, rows.rows(rows.newest, i + 1, X) - rows.rows(rows.newest, i, X));
+  return least;
+}
+/// The largest |λ| that was found with the newest row; 0 without multipliers.
+double largest_multiplier(const RowsInTime& rows) {
+  double most = 0;
+  for (int c = 0; c < rows.system.components(); ++c)
+    for (int i = 0; rows.system.component(c).role == Role::multiplier && i < rows.system.lattice().sites(); ++i)
+      most = std::max(most, std::abs(rows.rows(rows.newest - 1, i, c)));
+  return most;
+}
+
 std::string label(const Problem& p) {
   if (strategy(p) == "uniform") return fmt::format("linear elements, uniform mesh, {}", time_of(p).name);
   const std::string monitor = p.parameters.get<std::string>("mesh.monitor");
@@ -161,6 +183,8 @@ const MethodEntry r_adaptive_method{
     .starts = {StartRule::legendre, StartRule::exact},
     .start = StartRule::legendre,
     .energy = energy,
+    .monitors = {{.name = "mesh_min_spacing", .value = narrowest_cell},
+                 {.name = "multiplier_max", .value = largest_multiplier}},
     .place_sites = place_sites};
 
 }  // namespace delf

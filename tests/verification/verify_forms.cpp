@@ -181,12 +181,16 @@ TEST_CASE("verify: elements keep the form formula with their inner nodes, betwee
       }
 }
 
-TEST_CASE("verify: the moving mesh keeps the form formula on field, mesh and multiplier") {
+TEST_CASE("verify: the moving mesh keeps the form formula on field, mesh and multipliers, and a slaved one does not") {
   Problem p;
   p.method = "r-adaptive", p.lattice = Lattice::interval(17, 20), p.time_step = 0.01, p.parameters["mesh.alpha"] = 2.5;
   const Result result = at_random_sections(p, 11, 4);
   CHECK(result.checks.size() == 8);  // every kind of region, the local identity, the symplectic form
   require_round_off(result);
+  p.parameters["scheme.time"] = "lobatto2";
+  require_round_off(at_random_sections(p, 11, 1));
+  p.parameters["scheme.time"] = "midpoint", p.parameters["scheme.strategy"] = "control";
+  CHECK(at_random_sections(p, 11, 1).largest() > 1e-6);
 }
 
 TEST_CASE("verify: (5.14) and (5.15) fail on random data at N = 63, and pass where the potential is quadratic") {
