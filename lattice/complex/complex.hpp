@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace delf {
+
+/// A kind of stencil: how many sites it has, and which of its equations contain which of its values.
+struct ComplexShape {
+  int size = 0;
+  std::vector<char> couples = {};  ///< [l·size + m]: the equation of vertex l contains vertex m; empty: all do
+
+  bool is_coupled(int l, int m) const {
+    return couples.empty() || couples[static_cast<std::size_t>(l * size + m)] != 0;
+  }
+};
+
+/// What is asked at a site of a complex.
+enum class SiteRole : char {
+  free,     ///< the value is unknown, and the equation holds
+  given,    ///< the value is data, and there is no equation: a wall
+  initial,  ///< the value is data, and the equation holds: a row to start from
+  final     ///< the value is unknown, and there is no equation: the last row
+};
+
+/// A finite set of stencils over sites with coordinates in spacetime. A stencil is an ordered list of sites; stencils of
+/// several shapes lie side by side, and a regular lattice is one kind of complex. Memory is linear in what is added.
+class Complex {
+ public:
+  using Position = std::array<double, 4>;  ///< t, x, y, z
+
+  int add_site(const Position&, SiteRole = SiteRole::free);
+  int add_shape(ComplexShape);
+  /// Throws BadInput for a site that is not there, or that the stencil names twice.
+  int add_stencil(int shape, std::span<const int> sites);
+  void set_role(int site, SiteRole role) { roles_[static_cast<std::size_t>(site)] = role; }
+
+  int sites() const { return static_cast<int>(positions_.size()); }
+  int stencils() const { return static_cast<int>(shape_of_.size()); }
+  const Position& position(int site) const { return positions_[static_cast<std::size_t>(site)]; }
+  SiteRole role(int site) const { return roles_[static_cast<std::size_t>(site)]; }
+  bool is_unknown(int site) const { return role(site) == SiteRole::free || role(site) == SiteRole::final; }
+  bool has_equation(int site) const { return role(site) == SiteRole::free || role(site) == SiteRole::initial; }
+
+  const ComplexShape& shape(int stencil) const { return shapes_[static_cast<std::size_t>(shape_number(stencil))]; }
+  int shape_number(int stencil) const { return shape_of_[static_cast<std::size_t>(stencil)]; }
+  /// Δ⁰, Δ¹, …
+  std::span<const int> vertices(int stencil) const {
+    const auto s = static_cast<std::size_t>(stencil);
+    return {vertices_.data() + first_[s], static_cast<std::size_t>(first_[s + 1] - first_[s])};
+  }
+  /// "site 17 at (t, x, y, z) = (0.5, 1, 0, 0)"
+  std::string name(int site) const;
+
+ private:
+  std::vector<Position> positions_;
+  std::vector<SiteRole> roles_;
+  std::vector<ComplexShape> shapes_;
+  std::vector<std::int32_t> shape_of_, vertices_;
+  std::vector<std::int64_t> first_{0};
+};
+
+/// Which stencils touch a site: the transposed list, O(1) a question.
+class Touching {
+ public:
+  explicit Touching(const Complex&);
+  std::span<const std::int32_t> operator[](int site) const {
+    const auto s = static_cast<std::size_t>(site);
+    return {stencils_.data() + first_[s], static_cast<std::size_t>(first_[s + 1] - first_[s])};
+  }
+
+ private:
+  std::vector<std::int64_t> first_;
+  std::vector<std::int32_t> stencils_;
+};
+
+}  // namespace delf

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/complex/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace delf {
+namespace {
+
+using Point = Mesh::Point;
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+Point between(const Point& a, const Point& b) { return {b[0] - a[0], b[1] - a[1], b[2] - a[2]}; }
+double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Point cross(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double norm(const Point& a) { return std::sqrt(dot(a, a)); }
+
+/// A side a → b of a cell.
+struct Side {
+  std::int32_t low, high, cell;
+  bool forward;  ///< it runs from low to high
+};
+
+std::vector<Side> sorted_sides(const Mesh& mesh) {
+  std::vector<Side> sides;
+  sides.reserve(mesh.vertices.size());
+  for (int c = 0; c < mesh.cells(); ++c) {
+    const auto corners = mesh.cell(c);
+    for (std::size_t n = 0; n < corners.size(); ++n) {
+      const auto a = corners[n], b = corners[(n + 1) % corners.size()];
+      sides.push_back({std::min(a, b), std::max(a, b), c, a < b});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.cell) < std::tie(b.low, b.high, b.cell);
+  });
+  return sides;
+}
+
+/// Twice the area of the triangle at a corner of a cell, with the sign of its orientation in a plane.
+Point corner_area(const Mesh& mesh, std::span<const std::int32_t> corners, std::size_t n) {
+  const std::size_t m = corners.size();
+  const Point& p = mesh.points[at(corners[n])];
+  return cross(between(p, mesh.points[at(corners[(n + 1) % m])]),
+               between(p, mesh.points[at(corners[(n + m - 1) % m])]));
+}
+
+class FaultFinder {
+ public:
+  explicit FaultFinder(const Mesh& mesh) : mesh_(mesh), flat_(mesh.coordinates() < 3) {}
+
+  std::optional<MeshFault> find() {
+    if (mesh_.cells() == 0) return MeshFault{0, "has no cells; give one at least"};
+    std::vector<int> uses(mesh_.points.size(), 0);
+    for (int c = 0; c < mesh_.cells(); ++c) {
+      if (const auto fault = of_cell(c)) return fault;
+      for (const auto p : mesh_.cell(c)) ++uses[at(p)];
+    }
+    for (std::size_t p = 0; p < uses.size(); ++p) {
+      const int line = line_of(mesh_.point_lines, p);
+      if (uses[p] == 0) return MeshFault{line, number("point", p) + " is in no cell; remove it"};
+      if (mesh_.dimension == 1 && uses[p] > 2)
+        return MeshFault{line, number("point", p) + " is the end of more than two segments; make curves of them"};
+    }
+    return mesh_.dimension == 1 ? std::nullopt : of_sides();
+  }
+
+ private:
+  static std::string number(const char* what, std::size_t n) { return std::string(what) + " " + std::to_string(n); }
+  static int line_of(const std::vector<int>& lines, std::size_t n) { return n < lines.size() ? lines[n] : 0; }
+  MeshFault fault_of(std::int32_t cell, const std::string& what) const {
+    return {line_of(mesh_.cell_lines, at(cell)), number("cell", at(cell)) + " " + what};
+  }
+
+  std::optional<MeshFault> of_cell(int c) const {
+    const auto corners = mesh_.cell(c);
+    const std::size_t m = corners.size();
+    if (m < 2 || m > 4 || (mesh_.dimension == 1) != (m == 2))
+      return fault_of(c, "has " + std::to_string(m) + " corners; cells are segments, or triangles and quadrilaterals");
+    for (const auto p : corners)
+      if (p < 0 || at(p) >= mesh_.points.size())
+        return fault_of(c, "has point " + std::to_string(p) + ", and there are " + std::to_string(mesh_.points.size()) +
+                               ", counted from 0; correct it");
+    for (std::size_t n = 0; n < m; ++n)
+      for (std::size_t k = 0; k < n; ++k)
+        if (corners[k] == corners[n]) return fault_of(c, "is degenerate: a point is there twice; correct it");
+    constexpr double flat = 1e-12;  // of an area, relative to the longest side's square
+    double longest = 0;
+    for (std::size_t n = 0; n < m; ++n)
+      longest = std::max(longest, norm(between(mesh_.points[at(corners[n])], mesh_.points[at(corners[(n + 1) % m])])));
+    if (!(longest > 0) || !std::isfinite(longest))
+      return fault_of(c, "is degenerate: its corners are one point; move or remove it");
+    if (m == 2) return std::nullopt;
+    Point mean{};
+    for (std::size_t n = 0; n < m; ++n)
+      for (std::size_t k = 0; k < 3; ++k) mean[k] += corner_area(mesh_, corners, n)[k];
+    for (std::size_t n = 0; n < m; ++n) {
+      const Point area = corner_area(mesh_, corners, n);
+      if (norm(area) <= flat * longest * longest)
+        return fault_of(c, "is degenerate: three corners lie on a line; move or remove it");
+      if (flat_ && m == 3 && area[2] < 0) return fault_of(c, "is listed clockwise; list its points the other way");
+      if (m == 4 && dot(area, mean) <= 0)
+        return fault_of(c, "is not convex, or crosses itself; reorder its points or cut it");
+    }
+    if (flat_ && mean[2] < 0) return fault_of(c, "is listed clockwise; list its points the other way");
+    return std::nullopt;
+  }
+
+  std::optional<MeshFault> of_sides() const {
+    const std::vector<Side> sides = sorted_sides(mesh_);
+    std::vector<Side> outer;
+    for (std::size_t n = 0; n < sides.size();) {
+      std::size_t end = n + 1;
+      while (end < sides.size() && sides[end].low == sides[n].low && sides[end].high == sides[n].high) ++end;
+      const std::string side =
+          "the side of points " + std::to_string(sides[n].low) + " and " + std::to_string(sides[n].high);
+      if (end - n > 2) return fault_of(sides[n + 2].cell, "is the third at " + side + "; a side has two cells at most");
+      if (end - n == 2 && sides[n].forward == sides[n + 1].forward)
+        return fault_of(sides[n + 1].cell, "and cell " + std::to_string(sides[n].cell) + " run along " + side +
+                                               " the same way: one is flipped; list its points the other way");
+      if (end - n == 1) outer.push_back(sides[n]);
+      n = end;
+    }
+    return hanging(outer);
+  }
+
+  // A point of the boundary inside a side of the boundary: searched in the order of x.
+  std::optional<MeshFault> hanging(const std::vector<Side>& outer) const {
+    std::vector<std::int32_t> points;
+    for (const Side& s : outer) points.push_back(s.low), points.push_back(s.high);
+    const auto x = [&](std::int32_t p) { return mesh_.points[at(p)][0]; };
+    std::sort(points.begin(), points.end(), [&](auto a, auto b) { return std::pair(x(a), a) < std::pair(x(b), b); });
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    for (const Side& s : outer) {
+      const Point &a = mesh_.points[at(s.low)], &b = mesh_.points[at(s.high)];
+      const Point along = between(a, b);
+      const double length2 = dot(along, along), slack = 1e-9 * std::sqrt(length2);
+      const double low = std::min(a[0], b[0]) - slack, high = std::max(a[0], b[0]) + slack;
+      auto p = std::lower_bound(points.begin(), points.end(), low, [&](auto q, double value) { return x(q) < value; });
+      for (; p != points.end() && x(*p) <= high; ++p) {
+        if (*p == s.low || *p == s.high) continue;
+        const Point to = between(a, mesh_.points[at(*p)]);
+        const double share = dot(to, along) / length2;
+        if (share > 0 && share < 1 && norm(cross(to, along)) <= slack * std::sqrt(length2))
+          return MeshFault{line_of(mesh_.cell_lines, at(s.cell)), number("point", at(*p)) +
+                                                                      " hangs in the middle of a side of cell " +
+                                                                      std::to_string(s.cell) + "; cut that cell there"};
+      }
+    }
+    return std::nullopt;
+  }
+
+  const Mesh& mesh_;
+  bool flat_;
+};
+
+}  // namespace
+
+int Mesh::coordinates() const {
+  int most = 1;
+  for (const Point& p : points) most = p[2] != 0 ? 3 : p[1] != 0 ? std::max(most, 2) : most;
+  return std::max(most, dimension);
+}
+
+double measure(const Mesh& mesh, int cell) {
+  const auto corners = mesh.cell(cell);
+  const auto point = [&](std::size_t n) -> const Point& { return mesh.points[at(corners[n])]; };
+  if (corners.size() == 2) return norm(between(point(0), point(1)));
+  Point twice{};
+  for (std::size_t n = 1; n + 1 < corners.size(); ++n)
+    for (std::size_t k = 0; k < 3; ++k)
+      twice[k] += cross(between(point(0), point(n)), between(point(0), point(n + 1)))[k];
+  return twice[0] == 0 && twice[1] == 0 ? 0.5 * twice[2] : 0.5 * norm(twice);
+}
+
+double shortest_edge(const Mesh& mesh) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Side& s : sorted_sides(mesh))
+    shortest = std::min(shortest, norm(between(mesh.points[at(s.low)], mesh.points[at(s.high)])));
+  return shortest;
+}
+
+std::vector<std::int32_t> boundary_points(const Mesh& mesh) {
+  std::vector<char> outer(mesh.points.size(), 0);
+  if (mesh.dimension == 1) {
+    for (const auto p : mesh.vertices) ++outer[at(p)];
+    for (char& n : outer) n = n == 1;
+  } else {
+    const std::vector<Side> sides = sorted_sides(mesh);
+    for (std::size_t n = 0; n < sides.size(); ++n) {
+      const auto same = [&](std::size_t m) {
+        return m < sides.size() && sides[m].low == sides[n].low && sides[m].high == sides[n].high;
+      };
+      if (!same(n + 1) && !(n > 0 && same(n - 1))) outer[at(sides[n].low)] = outer[at(sides[n].high)] = 1;
+    }
+  }
+  std::vector<std::int32_t> points;
+  for (std::size_t p = 0; p < outer.size(); ++p)
+    if (outer[p]) points.push_back(static_cast<std::int32_t>(p));
+  return points;
+}
+
+std::optional<MeshFault> find_fault(const Mesh& mesh) { return FaultFinder(mesh).find(); }
+
+}  // namespace delf

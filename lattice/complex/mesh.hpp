@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace delf {
+
+/// A space made of cells: segments of a line or a curve, triangles and quadrilaterals of a plane or a surface. Cells of a
+/// plane are listed counterclockwise; those of a surface all alike, so that neighbours run along their edge in opposite
+/// directions.
+struct Mesh {
+  using Point = std::array<double, 3>;
+
+  int dimension = 2;  ///< of the cells: 1, or 2
+  std::vector<Point> points;
+  std::vector<std::int32_t> first{0}, vertices;
+  std::vector<int> point_lines = {}, cell_lines = {};  ///< of the file that they were read from; empty if generated
+
+  int cells() const { return static_cast<int>(first.size()) - 1; }
+  std::span<const std::int32_t> cell(int c) const {
+    const auto i = static_cast<std::size_t>(c);
+    return {vertices.data() + first[i], static_cast<std::size_t>(first[i + 1] - first[i])};
+  }
+  void add_cell(std::span<const std::int32_t> corners) {
+    vertices.insert(vertices.end(), corners.begin(), corners.end());
+    first.push_back(static_cast<std::int32_t>(vertices.size()));
+  }
+  /// How many of x, y, z the points need: 1, 2 or 3.
+  int coordinates() const;
+};
+
+/// Length or area of a cell; a triangle or quadrilateral of a plane that is listed clockwise has a negative one.
+double measure(const Mesh&, int cell);
+/// Length of the shortest side of all cells.
+double shortest_edge(const Mesh&);
+/// Points on the boundary, each once, in order: ends of curves, and points of sides that only one cell has.
+std::vector<std::int32_t> boundary_points(const Mesh&);
+
+/// What is wrong with a mesh, and on which line of its file (0: none).
+struct MeshFault {
+  int line = 0;
+  std::string what;
+};
+/// The first fault: a cell that is degenerate, listed the wrong way round or not convex, a side of more than two cells, a
+/// point that hangs in the middle of a side or that no cell has.
+std::optional<MeshFault> find_fault(const Mesh&);
+
+/// N points on 0 … length, each cell `ratio` times as long as the one before.
+Mesh graded_interval(double length, int points, double ratio);
+/// [0, width] × [0, height] in nx × ny rectangles, each cut in two triangles along alternating diagonals unless
+/// `quadrilaterals`.
+Mesh rectangle_mesh(double width, double height, int nx, int ny, bool quadrilaterals);
+/// The unit sphere: an icosahedron, each triangle cut in four `level` times: 10·4^level + 2 points.
+Mesh icosahedral_sphere(int level);
+
+}  // namespace delf

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/complex/mesh.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "tests/catch.hpp"
+
+namespace {
+
+using namespace delf;
+
+double total(const Mesh& mesh) {
+  double sum = 0;
+  for (int c = 0; c < mesh.cells(); ++c) sum += measure(mesh, c);
+  return sum;
+}
+
+TEST_CASE("generated meshes are sound, and fill their space") {
+  for (const bool quadrilaterals : {false, true}) {
+    const Mesh plane = rectangle_mesh(3, 2, 6, 5, quadrilaterals);
+    CHECK_FALSE(find_fault(plane));
+    CHECK(total(plane) == Approx(6));
+    CHECK(boundary_points(plane).size() == 22);
+  }
+  const Mesh line = graded_interval(10, 11, 1.2);
+  CHECK_FALSE(find_fault(line));
+  CHECK(total(line) == Approx(10));
+  CHECK(boundary_points(line) == std::vector<std::int32_t>{0, 10});
+  CHECK(shortest_edge(line) == Approx(10 * 0.2 / (std::pow(1.2, 10) - 1)));
+  const Mesh sphere = icosahedral_sphere(3);
+  CHECK_FALSE(find_fault(sphere));
+  CHECK(sphere.points.size() == 642);
+  CHECK(boundary_points(sphere).empty());
+  CHECK(total(sphere) == Approx(4 * std::numbers::pi).epsilon(0.02));
+}
+
+TEST_CASE("a mesh with a fault is refused, with the line of the cell or point") {
+  Mesh mesh = rectangle_mesh(2, 2, 2, 2, true);
+  mesh.point_lines = {10, 11, 12, 13, 14, 15, 16, 17, 18};
+  mesh.cell_lines = {20, 21, 22, 23};
+  const auto fault = [&] {
+    const auto found = find_fault(mesh);
+    return found ? std::to_string(found->line) + ": " + found->what : "none";
+  };
+  REQUIRE(fault() == "none");
+  SECTION("clockwise") {
+    std::swap(mesh.vertices[5], mesh.vertices[7]);
+    CHECK(fault() == "21: cell 1 is listed clockwise; list its points the other way");
+  }
+  SECTION("flipped, on a surface") {
+    mesh = icosahedral_sphere(1);
+    std::swap(mesh.vertices[5 * 3], mesh.vertices[5 * 3 + 1]);
+    CHECK_THAT(fault(), Catch::Contains("one is flipped"));
+  }
+  SECTION("crossing itself") {
+    std::swap(mesh.vertices[0], mesh.vertices[1]);
+    CHECK_THAT(fault(), Catch::StartsWith("20: cell 0 is not convex"));
+  }
+  SECTION("degenerate") {
+    mesh.points[4] = mesh.points[3];
+    CHECK_THAT(fault(), Catch::StartsWith("20: cell 0 is degenerate"));
+  }
+  SECTION("no such point") {
+    mesh.vertices[9] = 9;
+    CHECK_THAT(fault(), Catch::StartsWith("22: cell 2 has point 9, and there are 9"));
+  }
+  SECTION("in no cell") {
+    mesh.points.push_back({5, 5, 0});
+    mesh.point_lines.push_back(19);
+    CHECK(fault() == "19: point 9 is in no cell; remove it");
+  }
+  SECTION("hanging: two small cells beside a large one") {
+    mesh = {.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0.5, 0}, {2, 0, 0}, {2, 1, 0}}, .vertices = {}};
+    mesh.add_cell(std::array{0, 1, 2, 3});
+    mesh.add_cell(std::array{1, 5, 4});
+    mesh.add_cell(std::array{4, 5, 6});
+    mesh.add_cell(std::array{4, 6, 2});
+    CHECK_THAT(fault(), Catch::Contains("point 4 hangs in the middle of a side of cell 0"));
+  }
+  SECTION("three cells at a side") {
+    mesh.add_cell(std::array{1, 4, 3});
+    CHECK_THAT(fault(), Catch::Contains("a side has two cells at most") || Catch::Contains("clockwise"));
+  }
+}
+
+}  // namespace
