@@ -10,7 +10,7 @@ families="$lattice $jets schemes/families"
 system="$families schemes/system"
 stepping="$system schemes/solvers schemes/stepping"
 schemes="$stepping jets/expressions schemes schemes/theories schemes/methods schemes/states schemes/verify
-  schemes/stability"
+  schemes/stability schemes/complex"
 
 declare -A may_include=(
   [lattice]=''
@@ -31,6 +31,7 @@ declare -A may_include=(
   [schemes/states]="$families jets/expressions schemes"
   [schemes/methods]="$stepping jets/expressions schemes schemes/theories schemes/states schemes/stability"  # plans name limits
   [schemes/stability]="$system"
+  [schemes/complex]="$system schemes/verify"  # balances
   [schemes/verify]="$stepping schemes schemes/theories"  # time reversal steps a simulation, balances ask a theory
   [schemes]="$schemes"
   [tools]="$schemes"

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/complex/complex_system.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "jets/simd/scratch_rows.hpp"
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+int ComplexSystem::add_family(PlacedFamily family) {
+  complex_.add_shape(family.shape());
+  families_.push_back(std::move(family));
+  return static_cast<int>(families_.size()) - 1;
+}
+
+int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step) {
+  tables_.push_back(table);
+  measures_.push_back(measure);
+  time_steps_.push_back(time_step);
+  return complex_.add_stencil(family, sites);
+}
+
+std::size_t ComplexSystem::bytes() const {
+  std::size_t sum = at(complex_.sites()) * 33;
+  for (int s = 0; s < complex_.stencils(); ++s) sum += 32 + 4 * complex_.vertices(s).size();
+  return sum;
+}
+
+std::vector<std::int32_t> ComplexSystem::all_stencils() const {
+  std::vector<std::int32_t> all(at(complex_.stencils()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+template <class Evaluate>
+void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power, const Evaluate& evaluate,
+                         const Visit& visit) const {
+  constexpr int most = PlacedFamily::most;
+  std::array<std::int32_t, most> tables;
+  std::array<double, most> measures, steps;
+  for (std::size_t first = 0; first < stencils.size();) {
+    const int shape = complex_.shape_number(stencils[first]);
+    const PlacedFamily& of = family(shape);
+    std::size_t end = first;
+    while (end < stencils.size() && end - first < most && complex_.shape_number(stencils[end]) == shape) ++end;
+    const Stencils batch = stencils.subspan(first, end - first);
+    const ScratchRows values(of.size(), most);
+    const ScratchRows numbers(power == 0 ? 1 : power == 1 ? of.size() : of.size() * of.size(), most);
+    for (std::size_t s = 0; s < batch.size(); ++s) {
+      const auto stencil = at(batch[s]);
+      tables[s] = tables_[stencil], measures[s] = measures_[stencil], steps[s] = time_steps_[stencil];
+      for (int i = 0; i < of.size(); ++i) values[i][s] = y[node(batch[s], i)];
+    }
+    evaluate(of, PlacedBatch{static_cast<int>(batch.size()), tables.data(), measures.data(), steps.data(), values[0]},
+             numbers[0]);
+    visit(batch, numbers[0]);
+    first = end;
+  }
+}
+
+void ComplexSystem::each_lagrangian(Stencils s, std::span<const double> y, const Visit& visit) const {
+  each(
+      s, y, 0, [](const auto& family, const auto& batch, double* out) { family.lagrangian(batch, out); }, visit);
+}
+void ComplexSystem::each_energy(Stencils s, std::span<const double> y, const Visit& visit) const {
+  each(
+      s, y, 0, [](const auto& family, const auto& batch, double* out) { family.energy(batch, out); }, visit);
+}
+void ComplexSystem::each_residual(Stencils s, std::span<const double> y, const Visit& visit) const {
+  each(
+      s, y, 1, [](const auto& family, const auto& batch, double* out) { family.residual(batch, out); }, visit);
+}
+void ComplexSystem::each_jacobian(Stencils s, std::span<const double> y, const Visit& visit) const {
+  each(
+      s, y, 2, [](const auto& family, const auto& batch, double* out) { family.jacobian(batch, out); }, visit);
+}
+
+std::vector<Balance> ComplexSystem::residual(std::span<const double> y) const {
+  std::vector<Balance> E(nodes());
+  each_residual(all_stencils(), y, [&](Stencils batch, const double* r) {
+    const int size = family_of(batch[0]).size();
+    for (std::size_t s = 0; s < batch.size(); ++s)
+      for (int i = 0; i < size; ++i) E[node(batch[s], i)].add(r[at(i) * PlacedFamily::most + s]);
+  });
+  return E;
+}
+
+}  // namespace delf

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "lattice/complex/complex.hpp"
+#include "schemes/complex/placed_family.hpp"
+#include "schemes/verify/check.hpp"
+
+namespace delf {
+
+/// The field equations of a complex of stencils,
+///
+///     E(site) = Σ_{l: Δˡ = site} rˡ(y_Δ),    y[site·d + a],                     Marsden–Patrick–Shkoller (5.2)
+///
+/// with their Jacobian, and the action. Stencils are evaluated in batches of a family.
+class ComplexSystem {
+ public:
+  explicit ComplexSystem(int components) : components_(components) {}
+
+  int add_site(const Complex::Position& position, SiteRole role = SiteRole::free) {
+    return complex_.add_site(position, role);
+  }
+  void set_role(int site, SiteRole role) { complex_.set_role(site, role); }
+  void set_time(int site, double t) { complex_.set_time(site, t); }
+  int add_family(PlacedFamily);
+  int add_table(int family, std::span<const TablePoint> points) {
+    return families_[static_cast<std::size_t>(family)].add_table(points);
+  }
+  int add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step = 1);
+  /// Other measures and time steps, for rows with steps of their own.
+  void set_measure(int stencil, double measure, double time_step) {
+    measures_[static_cast<std::size_t>(stencil)] = measure;
+    time_steps_[static_cast<std::size_t>(stencil)] = time_step;
+  }
+
+  const Complex& complex() const { return complex_; }
+  int components() const { return components_; }
+  std::size_t nodes() const {
+    return static_cast<std::size_t>(complex_.sites()) * static_cast<std::size_t>(components_);
+  }
+  const PlacedFamily& family(int number) const { return families_[static_cast<std::size_t>(number)]; }
+  const PlacedFamily& family_of(int stencil) const { return family(complex_.shape_number(stencil)); }
+  std::size_t bytes() const;
+
+  /// All stencils, or those of a list, in batches: visit(stencils of the batch, its numbers[i·most + s]).
+  using Stencils = std::span<const std::int32_t>;
+  using Visit = std::function<void(Stencils, const double*)>;
+  void each_lagrangian(Stencils, std::span<const double> y, const Visit&) const;
+  void each_energy(Stencils, std::span<const double> y, const Visit&) const;
+  void each_residual(Stencils, std::span<const double> y, const Visit&) const;
+  void each_jacobian(Stencils, std::span<const double> y, const Visit&) const;
+  std::vector<std::int32_t> all_stencils() const;
+
+  /// The node that value i of a stencil is.
+  std::size_t node(int stencil, int i) const {
+    return static_cast<std::size_t>(complex_.vertices(stencil)[static_cast<std::size_t>(i / components_)]) *
+               static_cast<std::size_t>(components_) +
+           static_cast<std::size_t>(i % components_);
+  }
+  /// E at every node, whether or not it holds there.
+  std::vector<Balance> residual(std::span<const double> y) const;
+
+ private:
+  template <class Evaluate>
+  void each(Stencils, std::span<const double> y, int power, const Evaluate&, const Visit&) const;
+
+  int components_;
+  Complex complex_;
+  std::vector<PlacedFamily> families_;  ///< its number is the number of its shape
+  std::vector<std::int32_t> tables_;    ///< of each stencil
+  std::vector<double> measures_, time_steps_;
+};
+
+}  // namespace delf

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/complex/placed_family.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "jets/simd/scratch_rows.hpp"
+#include "lattice/error.hpp"
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+double* strip(double* rows, int i) { return rows + static_cast<std::ptrdiff_t>(i) * PlacedFamily::most; }
+const double* strip(const double* rows, int i) { return rows + static_cast<std::ptrdiff_t>(i) * PlacedFamily::most; }
+
+}  // namespace
+
+/// The jets of a batch at one point after the other, and what weighs them.
+struct PlacedFamily::Strip {
+  Strip(const PlacedFamily& family_, const PlacedBatch& batch_)
+      : family(family_),
+        batch(batch_),
+        padded((batch.count + lanes - 1) / lanes * lanes),
+        jets(family.density_->variables(), padded) {}
+
+  /// j_q = M_q y; lanes beyond the batch repeat its last stencil.
+  JetBatch at_point(const Point& point) {
+    for (int v = 0; v < family.density_->variables(); ++v) std::fill_n(jets[v], padded, 0.0);
+    for (const Entry& e : point.entries)
+      for (int a = 0; a < family.d_; ++a) {
+        const double* const y = strip(batch.y, e.vertex * family.d_ + a);
+        double* const jet = jets[e.slot * family.d_ + a];
+        for (int s = 0; s < batch.count; ++s) jet[s] += weight(e, s) * y[s];
+      }
+    for (int v = 0; v < family.density_->variables(); ++v)
+      std::fill(jets[v] + batch.count, jets[v] + padded, jets[v][batch.count - 1]);
+    return {padded, jets.data(), 0, nullptr};
+  }
+  double number(int n, int s) const { return family.numbers_[at(batch.tables[s]) * at(family.stride_) + at(n)]; }
+  double weight(const Entry& e, int s) const {
+    const double w = number(e.number, s);
+    return slot_powers[at(e.slot)].time == 1 ? w / batch.time_steps[s] : w;
+  }
+  double measure(const Point& point, int s) const { return batch.measures[s] * number(point.number, s); }
+
+  const PlacedFamily& family;
+  const PlacedBatch& batch;
+  const int padded;
+  ScratchRows jets;
+};
+
+PlacedFamily::PlacedFamily(std::shared_ptr<const BatchDensity> density, int vertices, std::vector<TablePoint> form)
+    : density_(std::move(density)), vertices_(vertices), d_(density_->components()) {
+  if (density_->is_placed())
+    throw BadInput("theory.name",
+                   "theory.name: a density of t and x needs a regular lattice; choose lattice.space = circle");
+  shape_ = {vertices, std::vector<char>(at(vertices * vertices), 0)};
+  for (const TablePoint& p : form) {
+    Point point{stride_++, {}};
+    for (int slot = 0; slot < density_->slots(); ++slot)
+      for (const TablePoint::Entry& e : p.slots[at(slot)]) point.entries.push_back({slot, e.vertex, stride_++});
+    for (const Entry& u : point.entries)
+      for (const Entry& v : point.entries)
+        for (int a = 0; a < d_; ++a)
+          for (int b = 0; b < d_; ++b) {
+            const int i = u.slot * d_ + a, m = v.slot * d_ + b;
+            if (density_->is_zero(i, m)) continue;
+            shape_.couples[at(u.vertex * vertices + v.vertex)] = 1;
+            linear_ = linear_ && density_->is_constant(i, m);
+          }
+    points_.push_back(std::move(point));
+  }
+}
+
+int PlacedFamily::add_table(std::span<const TablePoint> points) {
+  bool same = points.size() == points_.size();
+  for (std::size_t q = 0; same && q < points.size(); ++q) {
+    numbers_.push_back(points[q].weight);
+    std::size_t n = 0;
+    for (int slot = 0; slot < density_->slots(); ++slot)
+      for (const TablePoint::Entry& e : points[q].slots[at(slot)]) {
+        same = same && n < points_[q].entries.size() && points_[q].entries[n].slot == slot &&
+               points_[q].entries[n].vertex == e.vertex;
+        ++n;
+        numbers_.push_back(e.weight);
+      }
+    same = same && n == points_[q].entries.size();
+  }
+  if (!same)
+    throw BadInput("lattice.mesh", "a table of another form than the first of its family; make it one more family");
+  return static_cast<int>(numbers_.size()) / stride_ - 1;
+}
+
+void PlacedFamily::lagrangian(const PlacedBatch& batch, double* L) const {
+  Strip jets(*this, batch);
+  const ScratchRows l(1, most);
+  std::fill_n(L, batch.count, 0.0);
+  for (const Point& p : points_) {
+    density_->value(jets.at_point(p), l[0]);
+    for (int s = 0; s < batch.count; ++s) L[s] += jets.measure(p, s) * l[0][s];
+  }
+}
+
+void PlacedFamily::energy(const PlacedBatch& batch, double* E) const {
+  Strip jets(*this, batch);
+  const ScratchRows g(density_->variables(), most), l(1, most);
+  std::fill_n(E, batch.count, 0.0);
+  for (const Point& p : points_) {
+    const JetBatch at_p = jets.at_point(p);
+    density_->gradient(at_p, g.data(), l[0]);
+    for (int s = 0; s < batch.count; ++s) {
+      double sum = -l[0][s];
+      for (int a = d_; a < 2 * d_; ++a) sum += at_p.slots[a][s] * g[a][s];
+      E[s] += jets.measure(p, s) * sum;
+    }
+  }
+}
+
+void PlacedFamily::residual(const PlacedBatch& batch, double* r) const {
+  Strip jets(*this, batch);
+  const ScratchRows g(density_->variables(), most);
+  for (int i = 0; i < size(); ++i) std::fill_n(strip(r, i), batch.count, 0.0);
+  for (const Point& p : points_) {
+    density_->gradient(jets.at_point(p), g.data());
+    // r += |Δ| w_q M_qᵀ ∂ℓ/∂j
+    for (const Entry& e : p.entries)
+      for (int a = 0; a < d_; ++a) {
+        double* const to = strip(r, e.vertex * d_ + a);
+        const double* const slope = g[e.slot * d_ + a];
+        for (int s = 0; s < batch.count; ++s) to[s] += jets.measure(p, s) * jets.weight(e, s) * slope[s];
+      }
+  }
+}
+
+void PlacedFamily::jacobian(const PlacedBatch& batch, double* J) const {
+  Strip jets(*this, batch);
+  const int variables = density_->variables();
+  const ScratchRows H(variables * variables, most);
+  for (int i = 0; i < size() * size(); ++i) std::fill_n(strip(J, i), batch.count, 0.0);
+  for (const Point& p : points_) {
+    density_->hessian(jets.at_point(p), H.data());
+    // J += |Δ| w_q M_qᵀ ∂²ℓ/∂j∂j M_q
+    for (const Entry& u : p.entries)
+      for (const Entry& v : p.entries)
+        for (int a = 0; a < d_; ++a)
+          for (int b = 0; b < d_; ++b) {
+            const int i = u.slot * d_ + a, m = v.slot * d_ + b;
+            if (density_->is_zero(i, m)) continue;
+            double* const to = strip(J, (u.vertex * d_ + a) * size() + v.vertex * d_ + b);
+            const double* const second = H[i * variables + m];
+            for (int s = 0; s < batch.count; ++s)
+              to[s] += jets.measure(p, s) * jets.weight(u, s) * jets.weight(v, s) * second[s];
+          }
+  }
+}
+
+}  // namespace delf

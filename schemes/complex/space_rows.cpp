@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/complex/space_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "lattice/error.hpp"
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, bool fixed_boundary)
+    : mesh(std::move(mesh_)),
+      density(std::move(density_)),
+      tables(density),
+      masses(lumped_masses(mesh)),
+      fixed(mesh.points.size(), 0) {
+  if (fixed_boundary)
+    for (const auto p : boundary_points(mesh)) fixed[static_cast<std::size_t>(p)] = 1;
+}
+
+SpaceRows::SpaceRows(const CellSpace& space) : space_(space), system_(space.density->components()) { add_row(1); }
+
+SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
+    : space_(space), system_(space.density->components()) {
+  for (std::size_t j = 0; j < times.size(); ++j) {
+    add_row(1);
+    if (j == 0) continue;
+    if (j == 1) motion_ = system_.add_family(space.tables.motion());
+    first_of_motion_.push_back(system_.complex().stencils());
+    const int n = space.sites(), above = static_cast<int>(j) * n;
+    for (int i = 0; i < n; ++i) system_.add_stencil(motion_, std::array{above - n + i, above + i}, 0, 1);
+  }
+  set_times(times);
+  const int n = space.sites(), last = rows_ - 1;
+  for (int j = 0; j < rows_; ++j)
+    for (int i = 0; i < n; ++i)
+      if (!space.fixed[at(i)])
+        system_.set_role(j * n + i, j == 0      ? SiteRole::given
+                                    : j == last ? SiteRole::final
+                                    : j == 1    ? SiteRole::initial
+                                                : SiteRole::free);
+}
+
+void SpaceRows::add_row(double measure) {
+  const int n = space_.sites(), first = rows_ * n;
+  for (int i = 0; i < n; ++i) {
+    const Mesh::Point& p = space_.mesh.points[at(i)];
+    system_.add_site({0, p[0], p[1], p[2]}, space_.fixed[at(i)] ? SiteRole::given : SiteRole::free);
+  }
+  if (rows_++ == 0) {
+    site_ = system_.add_family(space_.tables.site());
+    std::map<int, int> families;
+    for (int c = 0; c < space_.mesh.cells(); ++c) {
+      const auto corners = static_cast<int>(space_.mesh.cell(c).size());
+      if (!families.contains(corners)) families[corners] = system_.add_family(space_.tables.gradient(corners));
+      gradient_.push_back(families[corners]);
+      gradient_tables_.push_back(system_.add_table(families[corners], space_.tables.gradient_table(space_.mesh, c)));
+    }
+  }
+  first_of_row_.push_back(system_.complex().stencils());
+  for (int i = 0; i < n; ++i) system_.add_stencil(site_, std::array{first + i}, 0, measure * space_.masses[at(i)]);
+  for (int c = 0; c < space_.mesh.cells(); ++c) {
+    std::array<int, 4> sites{};
+    const auto corners = space_.mesh.cell(c);
+    for (std::size_t l = 0; l < corners.size(); ++l) sites[l] = first + corners[l];
+    system_.add_stencil(gradient_[at(c)], {sites.data(), corners.size()}, gradient_tables_[at(c)], measure);
+  }
+}
+
+void SpaceRows::set_row_measure(int row, double measure) {
+  int stencil = first_of_row_[at(row)];
+  for (const double A : space_.masses) system_.set_measure(stencil++, measure * A, 1);
+  for (int c = 0; c < space_.mesh.cells(); ++c) system_.set_measure(stencil++, measure, 1);
+}
+
+void SpaceRows::set_motion(int row, double measure, double time_step) {
+  int stencil = first_of_motion_[at(row)];
+  for (const double A : space_.masses) system_.set_measure(stencil++, measure * A, time_step);
+}
+
+void SpaceRows::set_times(std::span<const double> times) {
+  for (int j = 0; j < rows_; ++j) {
+    const double below = j == 0 ? 0 : times[at(j)] - times[at(j - 1)];
+    const double above = j == rows_ - 1 ? 0 : times[at(j) + 1] - times[at(j)];
+    set_row_measure(j, 0.5 * (below + above));
+    if (j + 1 < rows_) set_motion(j, above, above);
+  }
+  for (int j = 0; j < rows_; ++j)
+    for (int i = 0; i < space_.sites(); ++i) system_.set_time(j * space_.sites() + i, times[at(j)]);
+}
+
+namespace {
+
+constexpr std::array<double, 3> three_rows(double h) { return {0, h, 2 * h}; }
+
+}  // namespace
+
+SpaceEvolution::SpaceEvolution(const CellSpace& space, double time_step, ComplexSolver::Options options)
+    : space_(space),
+      h_(time_step),
+      before_(time_step),
+      rows_(space, three_rows(time_step)),
+      energy_rows_(space, std::array{0.0, time_step}),
+      solver_(std::make_unique<ComplexSolver>(rows_.system(), options)),
+      steps_{time_step, time_step, time_step},
+      y_(rows_.system().nodes(), 0.0) {}
+
+std::span<const double> SpaceEvolution::row(int back) const {
+  const std::size_t n = y_.size() / 3;
+  return {y_.data() + static_cast<std::size_t>(2 - back) * n, n};
+}
+
+std::size_t SpaceEvolution::bytes() const {
+  return rows_.system().bytes() + energy_rows_.system().bytes() + 8 * y_.size();
+}
+
+void SpaceEvolution::take(double below, double above, double row_measure) {
+  const std::array now{below, above, row_measure};
+  if (now != steps_) {
+    rows_.set_motion(0, below, below);
+    rows_.set_motion(1, above, above);
+    rows_.set_row_measure(1, row_measure);
+    solver_->refresh();
+    steps_ = now;
+  }
+  const std::size_t n = y_.size() / 3;
+  std::copy(y_.begin() + static_cast<std::ptrdiff_t>(n), y_.end(), y_.begin());
+  report_ = solver_->solve(y_);
+  if (!std::isfinite(y_[2 * n])) throw NotFinite("the field is not finite; use a shorter time step");
+}
+
+void SpaceEvolution::start(std::span<const double> values, std::span<const double> rates) {
+  const std::size_t n = y_.size() / 3;
+  for (std::size_t i = 0; i < n; ++i) {
+    y_[n + i] = values[i] - h_ * rates[i];  // so that the motion below row 0 is the rate; the rows move down in take()
+    y_[2 * n + i] = values[i];
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (space_.fixed[i / at(space_.density->components())]) y_[n + i] = values[i];
+  take(h_, h_, 0.5 * h_);
+  newest_ = 1, time_ = h_, before_ = h_;
+}
+
+void SpaceEvolution::step(std::optional<double> time_step) {
+  const double h = time_step.value_or(h_);
+  take(before_, h, 0.5 * (before_ + h));
+  before_ = h;
+  time_ += h;
+  ++newest_;
+}
+
+double SpaceEvolution::energy() const {
+  energy_rows_.set_motion(0, 1, before_);
+  for (const int row : {0, 1}) energy_rows_.set_row_measure(row, 0.5);
+  const ComplexSystem& system = energy_rows_.system();
+  const auto sum = [&](std::span<const double> y, bool without_sites) {
+    double total = 0;
+    system.each_energy(system.all_stencils(), y, [&](ComplexSystem::Stencils batch, const double* E) {
+      if (without_sites && system.family_of(batch[0]).vertices() == 1) return;
+      for (std::size_t s = 0; s < batch.size(); ++s) total += E[s];
+    });
+    return total;
+  };
+  // ℓ(0, 0, 0) is in motion and gradients too, where it is no energy.
+  const std::vector<double> zero(system.nodes(), 0.0);
+  return sum({y_.data() + y_.size() / 3, system.nodes()}, false) - sum(zero, true);
+}
+
+double SpaceEvolution::residual() const {
+  const auto E = rows_.system().residual(y_);
+  const int d = space_.density->components(), n = space_.sites();
+  double largest = 0;
+  for (int i = n; i < 2 * n; ++i)
+    for (int a = 0; a < d && rows_.system().complex().has_equation(i); ++a)
+      largest = std::max(largest, E[at(i * d + a)].relative());
+  return largest;
+}
+
+std::optional<double> SpaceEvolution::largest_step() const {
+  // y″ = −K y/M: the largest eigenvalue of M⁻¹K by the power method on the linearised equations at 0.
+  const ComplexSystem& system = rows_.system();
+  const auto d = at(space_.density->components());
+  const std::size_t n = y_.size() / 3;
+  struct Entry {
+    std::size_t i, m;
+    double value;
+  };
+  std::vector<Entry> stiffness;
+  std::vector<double> mass(n, 0.0);
+  const std::vector<double> zero(system.nodes(), 0.0);
+  system.each_jacobian(system.all_stencils(), zero, [&](ComplexSystem::Stencils batch, const double* J) {
+    const auto size = at(system.family_of(batch[0]).size());
+    for (std::size_t s = 0; s < batch.size(); ++s)
+      for (std::size_t i = 0; i < size; ++i)
+        for (std::size_t m = 0; m < size; ++m) {
+          const std::size_t row = system.node(batch[s], static_cast<int>(i)),
+                            column = system.node(batch[s], static_cast<int>(m));
+          if (row < n || row >= 2 * n || column < n || column >= 2 * n || space_.fixed[(row - n) / d]) continue;
+          const double value = J[(i * size + m) * static_cast<std::size_t>(PlacedFamily::most) + s];
+          if (system.family_of(batch[s]).vertices() == 2 &&
+              system.complex().vertices(batch[s])[0] + space_.sites() == system.complex().vertices(batch[s])[1])
+            mass[row - n] += 0.5 * value * steps_[1];  // two motions meet at a site, each M/h
+          else stiffness.push_back({row - n, column - n, -value / steps_[2]});
+        }
+  });
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  std::vector<double> v(n), w(n);
+  for (double& x : v) x = normal(random);
+  double eigenvalue = 0;
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    std::fill(w.begin(), w.end(), 0.0);
+    for (const Entry& e : stiffness) w[e.i] += e.value * v[e.m];
+    double norm = 0, product = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      w[i] = mass[i] == 0 ? 0 : w[i] / mass[i];
+      product += w[i] * v[i], norm += v[i] * v[i];
+    }
+    eigenvalue = product / norm;
+    double size = 0;
+    for (const double x : w) size += x * x;
+    if (!(size > 0)) return std::nullopt;
+    for (std::size_t i = 0; i < n; ++i) v[i] = w[i] / std::sqrt(size);
+  }
+  return eigenvalue > 0 ? std::optional(2 / std::sqrt(eigenvalue)) : std::nullopt;
+}
+
+}  // namespace delf
