@@ -177,10 +177,18 @@ double measure(const Mesh& mesh, int cell) {
   return twice[0] == 0 && twice[1] == 0 ? 0.5 * twice[2] : 0.5 * norm(twice);
 }
 
+double shortest_edge(const Mesh& mesh, int cell) {
+  const auto corners = mesh.cell(cell);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < corners.size(); ++n)
+    shortest = std::min(shortest,
+                        norm(between(mesh.points[at(corners[n])], mesh.points[at(corners[(n + 1) % corners.size()])])));
+  return shortest;
+}
+
 double shortest_edge(const Mesh& mesh) {
   double shortest = std::numeric_limits<double>::infinity();
-  for (const Side& s : sorted_sides(mesh))
-    shortest = std::min(shortest, norm(between(mesh.points[at(s.low)], mesh.points[at(s.high)])));
+  for (int c = 0; c < mesh.cells(); ++c) shortest = std::min(shortest, shortest_edge(mesh, c));
   return shortest;
 }
 

@@ -37,6 +37,8 @@ struct Mesh {
 double measure(const Mesh&, int cell);
 /// Length of the shortest side of all cells.
 double shortest_edge(const Mesh&);
+/// Of one of them.
+double shortest_edge(const Mesh&, int cell);
 /// Points on the boundary, each once, in order: ends of curves, and points of sides that only one cell has.
 std::vector<std::int32_t> boundary_points(const Mesh&);
 

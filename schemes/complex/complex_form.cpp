@@ -75,7 +75,7 @@ std::vector<int> draw_centres(const Complex& complex, const Touching& touching, 
   return centres;
 }
 
-ComplexForm::ComplexForm(const ComplexSystem& system, ComplexRegion region, std::span<const double> y)
+ComplexForm::ComplexForm(const ComplexSystem& system, ComplexRegion region, std::span<const double> y, bool wrong_sign)
     : system_(system), region_(std::move(region)) {
   const int d = system.components();
   const Complex& complex = system.complex();
@@ -95,7 +95,8 @@ ComplexForm::ComplexForm(const ComplexSystem& system, ComplexRegion region, std:
       Local local{{}, std::vector<double>(size * size)};
       for (const int site : complex.vertices(batch[s]))
         for (int a = 0; a < d; ++a) local.nodes.push_back(place(site) * at(d) + at(a));
-      for (std::size_t k = 0; k < size * size; ++k) local.J[k] = J[k * most + s];
+      for (std::size_t k = 0; k < size * size; ++k)
+        local.J[k] = wrong_sign && size > 1 && k < size ? -J[k * most + s] : J[k * most + s];
       locals_.push_back(std::move(local));
     }
   });
@@ -110,6 +111,9 @@ std::vector<ComplexForm::Values> ComplexForm::first_variations(int count, std::m
         if (equation_[local.nodes[i]] >= 0)
           transposed(static_cast<Eigen::Index>(local.nodes[m]), equation_[local.nodes[i]]) +=
               local.J[i * local.nodes.size() + m];
+  // Equations of one size, whatever their time steps are: rank is judged by size.
+  for (Eigen::Index n = 0; n < transposed.cols(); ++n)
+    if (const double norm = transposed.col(n).norm(); norm > 0) transposed.col(n) /= norm;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(transposed);
   std::normal_distribution<double> normal;
   std::vector<Values> variations;

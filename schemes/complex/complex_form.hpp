@@ -42,7 +42,8 @@ class ComplexForm {
  public:
   using Values = std::vector<double>;  ///< at the nodes of U: place of the site in sites() · d + a
 
-  ComplexForm(const ComplexSystem&, ComplexRegion, std::span<const double> y);
+  /// `wrong_sign` plants a fault: one derivative of L with the other sign, on every stencil of several values.
+  ComplexForm(const ComplexSystem&, ComplexRegion, std::span<const double> y, bool wrong_sign = false);
 
   const ComplexRegion& region() const { return region_; }
   /// Random vectors projected onto the null space of the linearised equations. At walls, which are in ∂U,

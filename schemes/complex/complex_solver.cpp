@@ -95,6 +95,7 @@ class ComplexSolver::Level {
   }
 
   Report solve(std::span<double> y, const Options& options) {
+    if (direct_ && single_) return solve_one_by_one(y);
     constexpr double rounding = 1e-10;  // of a correction: below it |E| is rounding too
     Report report;
     Vector E = residual(y), change;
@@ -133,6 +134,25 @@ class ComplexSolver::Level {
     std::vector<std::int32_t> stencils;
     std::vector<int> rows, columns;
   };
+
+  /// y_u −= E_u/A_uu, row after row: no equation of the level contains the unknown of another.
+  Report solve_one_by_one(std::span<double> y) {
+    sources_ = at_zero_;
+    each(nonlinear_, y, 1, [&](std::size_t i, double r) { sources_[nonlinear_.rows[i]] += r; });
+    const int* const first = matrix_.outerIndexPtr();
+    const int* const column = matrix_.innerIndexPtr();
+    const double* const value = matrix_.valuePtr();
+    double finite = 0;
+    for (std::size_t n = 0; n < unknowns_.size(); ++n) {
+      double E = sources_[static_cast<Eigen::Index>(n)];
+      for (int k = first[n]; k < first[n + 1]; ++k) E += value[k] * y[static_cast<std::size_t>(column[k])];
+      const double change = E / diagonal_[static_cast<Eigen::Index>(n)];
+      y[unknowns_[n]] -= change;
+      finite += change * 0;
+    }
+    if (!(finite == 0)) throw NotFinite("a value is not finite; use a shorter step, or another start");
+    return {1, 0, 1};
+  }
 
   static void require(bool regular) {
     if (!regular)
@@ -176,10 +196,6 @@ class ComplexSolver::Level {
   }
 
   void step(std::span<const double> y, const Vector& E, Vector& change) {
-    if (direct_ && single_) {
-      change = E.cwiseQuotient(diagonal_);
-      return;
-    }
     if (!direct_) {
       std::vector<Triplet> entries;
       each(nonlinear_, y, 2, [&](std::size_t i, std::size_t m, std::size_t, double value) {
@@ -214,7 +230,7 @@ class ComplexSolver::Level {
   bool single_, direct_ = true, analysed_ = false;
   std::vector<std::size_t> unknowns_;  ///< nodes
   Part linear_, nonlinear_;
-  Vector at_zero_, diagonal_;
+  Vector at_zero_, diagonal_, sources_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> matrix_;
   Matrix constant_;
   Eigen::SparseLU<Matrix> solver_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "jets/simd/scratch_rows.hpp"
@@ -90,6 +91,16 @@ std::vector<Balance> ComplexSystem::residual(std::span<const double> y) const {
       for (int i = 0; i < size; ++i) E[node(batch[s], i)].add(r[at(i) * PlacedFamily::most + s]);
   });
   return E;
+}
+
+double largest_residual(const ComplexSystem& system, std::span<const double> y) {
+  const std::vector<Balance> E = system.residual(y);
+  const auto d = at(system.components());
+  double sum = 0, absolute = 0;
+  for (std::size_t n = 0; n < E.size(); ++n)
+    if (system.complex().has_equation(static_cast<int>(n / d)))
+      sum = std::max(sum, std::abs(E[n].sum)), absolute = std::max(absolute, E[n].absolute);
+  return absolute == 0 ? 0 : sum / absolute;
 }
 
 }  // namespace delf

@@ -73,4 +73,7 @@ class ComplexSystem {
   std::vector<double> measures_, time_steps_;
 };
 
+/// The largest |E| where an equation holds, relative to the largest sum of absolute terms: a vacuum has no scale of its own.
+double largest_residual(const ComplexSystem&, std::span<const double> y);
+
 }  // namespace delf

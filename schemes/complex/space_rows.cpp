@@ -174,14 +174,11 @@ double SpaceEvolution::energy() const {
   return sum({y_.data() + y_.size() / 3, system.nodes()}, false) - sum(zero, true);
 }
 
-double SpaceEvolution::residual() const {
-  const auto E = rows_.system().residual(y_);
-  const int d = space_.density->components(), n = space_.sites();
-  double largest = 0;
-  for (int i = n; i < 2 * n; ++i)
-    for (int a = 0; a < d && rows_.system().complex().has_equation(i); ++a)
-      largest = std::max(largest, E[at(i * d + a)].relative());
-  return largest;
+double SpaceEvolution::residual() const { return largest_residual(rows_.system(), y_); }
+
+void SpaceEvolution::turn_back() {
+  const auto n = static_cast<std::ptrdiff_t>(y_.size() / 3);
+  std::swap_ranges(y_.begin() + n, y_.begin() + 2 * n, y_.begin() + 2 * n);
 }
 
 std::optional<double> SpaceEvolution::largest_step() const {

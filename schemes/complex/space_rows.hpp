@@ -69,6 +69,9 @@ class SpaceEvolution {
   /// One step, of another length if it is given.
   void step(std::optional<double> time_step = std::nullopt);
 
+  /// Exchanges the last two rows: further steps, of the same lengths, go back.
+  void turn_back();
+
   std::int64_t newest() const { return newest_; }
   double time() const { return time_; }
   double time_step() const { return h_; }
@@ -81,7 +84,7 @@ class SpaceEvolution {
 
   /// Σ_i A_i [φ_t ∂T/∂φ_t − T] − ½[V(row) + V(row before)], at the half step between the last two rows.
   double energy() const;
-  /// Of the equations behind the newest row: the largest |E| relative to its terms.
+  /// Of the equations behind the newest row: see largest_residual().
   double residual() const;
   /// The longest step that a linear wave can take, 2/ω of the fastest mode about φ = 0; none if nothing oscillates.
   std::optional<double> largest_step() const;

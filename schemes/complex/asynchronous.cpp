@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/complex/asynchronous.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lattice/error.hpp"
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr auto most = static_cast<std::size_t>(PlacedFamily::most);
+
+}  // namespace
+
+AsynchronousEvolution::AsynchronousEvolution(const CellSpace& space, std::vector<double> steps)
+    : space_(space), d_(space.density->components()), steps_(std::move(steps)), done_(steps_.size(), 0) {
+  Eigen::MatrixXd mass(d_, d_);
+  const int variables = space.density->variables();
+  for (int a = 0; a < d_; ++a)
+    for (int b = 0; b < d_; ++b) {
+      if (!space.density->is_constant(d_ + a, d_ + b))
+        throw BadInput("theory.name",
+                       "theory.name: asynchronous steps need T(phi_t) quadratic; choose lattice.time = rows");
+      mass(a, b) = space.density->constant_hessian()[at((d_ + a) * variables + d_ + b)];
+    }
+  const Eigen::MatrixXd inverse = mass.inverse();
+  inverse_mass_.assign(inverse.data(), inverse.data() + inverse.size());
+  for (int c = 0; c < space.mesh.cells(); ++c) {
+    const auto corners = static_cast<int>(space.mesh.cell(c).size());
+    const auto family = families_.try_emplace(corners, space.tables.cell(corners)).first;
+    tables_.push_back(family->second.add_table(space.tables.cell_table(space.mesh, c)));
+  }
+}
+
+void AsynchronousEvolution::start(std::span<const double> values, std::span<const double> rates) {
+  y_.assign(values.begin(), values.end());
+  momenta_.assign(y_.size(), 0.0);
+  times_.assign(at(space_.sites()), 0.0);
+  std::fill(done_.begin(), done_.end(), 0);
+  queue_ = {};
+  const int variables = space_.density->variables();
+  for (int i = 0; i < space_.sites(); ++i)  // p = A ∂²T φ_t
+    for (int a = 0; a < d_ && !space_.fixed[at(i)]; ++a)
+      for (int b = 0; b < d_; ++b)
+        momenta_[at(i * d_ + a)] += space_.masses[at(i)] *
+                                    space_.density->constant_hessian()[at((d_ + a) * variables + d_ + b)] *
+                                    rates[at(i * d_ + b)];
+  for (int c = 0; c < space_.mesh.cells(); ++c) {
+    kick(c, y_, 0.5, momenta_);
+    queue_.emplace(steps_[at(c)], c);
+  }
+  time_ = 0, updates_ = 0;
+  simultaneous_ = 1e-6 * *std::ranges::min_element(steps_);
+}
+
+void AsynchronousEvolution::kick(int cell, std::span<const double> y, double factor,
+                                 std::vector<double>& momenta) const {
+  const auto corners = space_.mesh.cell(cell);
+  const PlacedFamily& family = families_.at(static_cast<int>(corners.size()));
+  alignas(64) std::array<double, 16 * most> values, r;
+  const auto size = at(family.size());
+  if (size > 16) throw BadInput("theory.name", "theory.name: asynchronous steps are for up to four fields");
+  for (std::size_t n = 0; n < size; ++n)
+    values[n * most] = y[static_cast<std::size_t>(corners[n / at(d_)]) * at(d_) + n % at(d_)];
+  const double measure = factor * steps_[at(cell)], step = 1;
+  family.residual({1, &tables_[at(cell)], &measure, &step, values.data()}, r.data());
+  for (std::size_t n = 0; n < size; ++n) {
+    const auto site = static_cast<std::size_t>(corners[n / at(d_)]);
+    if (!space_.fixed[site]) momenta[site * at(d_) + n % at(d_)] += r[n * most];
+  }
+}
+
+void AsynchronousEvolution::drift(int site, double t) {
+  const double passed = t - times_[at(site)];
+  if (passed <= simultaneous_) return;
+  for (int a = 0; a < d_; ++a)
+    for (int b = 0; b < d_; ++b)
+      y_[at(site * d_ + a)] +=
+          passed * inverse_mass_[at(a + b * d_)] / space_.masses[at(site)] * momenta_[at(site * d_ + b)];
+  times_[at(site)] = t;
+  if (keeps_) events_[at(site)].push_back({t, {y_.begin() + site * d_, y_.begin() + (site + 1) * d_}});
+}
+
+void AsynchronousEvolution::update_next() {
+  const auto [t, cell] = queue_.top();
+  queue_.pop();
+  for (const auto site : space_.mesh.cell(cell)) drift(site, t);
+  kick(cell, y_, 1, momenta_);
+  if (keeps_) cells_.push_back({cell, t});
+  // n h, not a sum: two cells of one step stay together
+  queue_.emplace(static_cast<double>(++done_[at(cell)] + 1) * steps_[at(cell)], cell);
+  time_ = t;
+  ++updates_;
+}
+
+void AsynchronousEvolution::update(std::int64_t count) {
+  for (; count > 0; --count) update_next();
+}
+
+void AsynchronousEvolution::advance(double t) {
+  while (next_time() <= t) update_next();
+  if (!std::isfinite(y_.front() + y_.back() + momenta_.front()))
+    throw NotFinite("the field is not finite; use a smaller lattice.courant");
+}
+
+std::vector<double> AsynchronousEvolution::values(double t) const {
+  std::vector<double> now = y_;
+  for (int i = 0; i < space_.sites(); ++i)
+    for (int a = 0; a < d_; ++a)
+      for (int b = 0; b < d_; ++b)
+        now[at(i * d_ + a)] +=
+            (t - times_[at(i)]) * inverse_mass_[at(a + b * d_)] / space_.masses[at(i)] * momenta_[at(i * d_ + b)];
+  return now;
+}
+
+double AsynchronousEvolution::energy(double t) const {
+  // Impulses act at n h_K, in the middle of the step they stand for: at t a cell has given ½h_K + (t_K − t) too much.
+  const std::vector<double> now = values(t);
+  std::vector<double> momenta = momenta_;
+  double potential = 0;
+  for (int c = 0; c < space_.mesh.cells(); ++c) {
+    const double last = static_cast<double>(done_[at(c)]) * steps_[at(c)];
+    kick(c, now, (t - last) / steps_[at(c)] - 0.5, momenta);
+    const auto corners = space_.mesh.cell(c);
+    const PlacedFamily& family = families_.at(static_cast<int>(corners.size()));
+    alignas(64) std::array<double, 16 * most> y;
+    for (std::size_t n = 0; n < at(family.size()); ++n)
+      y[n * most] = now[static_cast<std::size_t>(corners[n / at(d_)]) * at(d_) + n % at(d_)];
+    const double one = 1;
+    double L = 0;
+    family.lagrangian({1, &tables_[at(c)], &one, &one, y.data()}, &L);
+    potential -= L;
+  }
+  double kinetic = 0;  // ½ p M⁻¹ p/A
+  for (int i = 0; i < space_.sites(); ++i)
+    for (int a = 0; a < d_; ++a)
+      for (int b = 0; b < d_; ++b)
+        kinetic += 0.5 * momenta[at(i * d_ + a)] * inverse_mass_[at(a + b * d_)] * momenta[at(i * d_ + b)] /
+                   space_.masses[at(i)];
+  return kinetic + potential;
+}
+
+std::size_t AsynchronousEvolution::bytes() const {
+  return 8 * (2 * y_.size() + times_.size()) + steps_.size() * (8 + 8 + 4 + 16) + at(space_.mesh.cells()) * 12 * 8;
+}
+
+void AsynchronousEvolution::open_window() {
+  keeps_ = true;
+  cells_.clear();
+  events_.assign(at(space_.sites()), {});
+  for (int i = 0; i < space_.sites(); ++i)
+    events_[at(i)].push_back({times_[at(i)], {y_.begin() + i * d_, y_.begin() + (i + 1) * d_}});
+}
+
+AsynchronousEvolution::Window AsynchronousEvolution::window() const {
+  Window made{ComplexSystem(d_), {}};
+  ComplexSystem& system = made.system;
+  const int motion = system.add_family(space_.tables.motion());
+  std::map<int, int> families;
+  for (const auto& [corners, family] : families_) families[corners] = system.add_family(family);
+  std::vector<int> first(events_.size());
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    const Mesh::Point& p = space_.mesh.points[i];
+    const std::size_t count = events_[i].size();
+    for (std::size_t m = 0; m < count; ++m) {
+      const SiteRole role = space_.fixed[i] || m == 0 ? SiteRole::given
+                            : m + 1 == count          ? m == 1 ? SiteRole::given : SiteRole::final
+                            : m == 1                  ? SiteRole::initial
+                                                      : SiteRole::free;
+      const int site = system.add_site({events_[i][m].time, p[0], p[1], p[2]}, role);
+      if (m == 0) first[i] = site;
+      made.values.insert(made.values.end(), events_[i][m].values.begin(), events_[i][m].values.end());
+      const double passed = m == 0 ? 0 : events_[i][m].time - events_[i][m - 1].time;
+      if (m > 0) system.add_stencil(motion, std::array{site - 1, site}, 0, space_.masses[i] * passed, passed);
+    }
+  }
+  for (const Kept& kept : cells_) {
+    const auto corners = space_.mesh.cell(kept.cell);
+    std::array<int, 4> sites{};
+    for (std::size_t l = 0; l < corners.size(); ++l) {
+      const auto& events = events_[static_cast<std::size_t>(corners[l])];
+      const auto later = std::ranges::upper_bound(events, kept.time, {}, &SiteEvent::time);
+      sites[l] = first[static_cast<std::size_t>(corners[l])] + static_cast<int>(later - events.begin()) - 1;
+    }
+    system.add_stencil(families[static_cast<int>(corners.size())], {sites.data(), corners.size()},
+                       tables_[at(kept.cell)], steps_[at(kept.cell)]);
+  }
+  return made;
+}
+
+}  // namespace delf
