@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/energy.hpp"
+#include "tools/complex/complex_commands.hpp"
 #include "tools/convergence/convergence.hpp"
 #include "tools/help.hpp"
 #include "tools/list.hpp"
@@ -57,7 +59,15 @@ void refuse(const Arguments& arguments, bool keys) {
     throw BadScene(fmt::format("command line: --out: `{}` writes no files; leave it out", arguments.words[0]));
 }
 
+// A scene on a mesh; nothing if its space is a lattice.
+std::optional<ComplexScene> mesh_scene_of(const Arguments& arguments) {
+  Settings settings = read_settings(file_of(arguments), arguments.keys);
+  if (!is_on_mesh(settings)) return std::nullopt;
+  return read_complex_scene(std::move(settings));
+}
+
 ExitCode carry_out_run(const Arguments& arguments) {
+  if (const auto mesh = mesh_scene_of(arguments)) return run(*mesh, arguments.out.value_or("results/" + mesh->scene.name));
   const Scene scene = scene_of(arguments);
   return run(scene, arguments.out.value_or("results/" + scene.name));
 }
@@ -72,10 +82,13 @@ ExitCode carry_out_resume(const Arguments& arguments) {
 
 ExitCode carry_out_plan(const Arguments& arguments) {
   refuse(arguments, false);
+  if (const auto mesh = mesh_scene_of(arguments)) return plan(*mesh);
   return plan(scene_of(arguments), arguments.latex);
 }
 
 ExitCode carry_out_verify(const Arguments& arguments) {
+  if (const auto mesh = mesh_scene_of(arguments))
+    return verify(*mesh, arguments.out.value_or("results/" + mesh->scene.name), arguments.fields);
   const Scene scene = scene_of(arguments);
   return verify(scene, arguments.out.value_or("results/" + scene.name), arguments.fields, arguments.nearby);
 }

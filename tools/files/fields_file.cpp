@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 
 #include "tools/failure.hpp"
 #include "tools/files/open_to_read.hpp"
@@ -75,8 +76,9 @@ bool append_block(hid_t dataset, hsize_t old, const std::vector<hsize_t>& block,
 }  // namespace
 
 FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double> space, std::int64_t expected_frames,
-                       const std::string& scene, int winding, const RowNames& names, hsize_t kept)
-    : path_(path), sites_(space.size()), names_(names) {
+                       const std::string& scene, int winding, const RowNames& names, const MeshOfFile& mesh,
+                       hsize_t kept)
+    : path_(path), sites_(space.size() / static_cast<std::size_t>(mesh.coordinates)), names_(names) {
   constexpr std::size_t block = 1 << 17;  // doubles: 1 MiB
   std::size_t columns = 0;
   for (const Role role : all_roles) columns = std::max(columns, names.of[role].size());
@@ -93,7 +95,9 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   require(static_cast<bool>(file_), "cannot be created");
 
   const hsize_t sites = sites_;
-  const Hdf5Handle extent(H5Screate_simple(1, &sites, nullptr), H5Sclose), properties = timeless();
+  const std::array<hsize_t, 2> extents{sites, static_cast<hsize_t>(mesh.coordinates)};
+  const Hdf5Handle extent(H5Screate_simple(mesh.cells.empty() ? 1 : 2, extents.data(), nullptr), H5Sclose),
+      properties = timeless();
   const Hdf5Handle positions(H5Dcreate2(file_, "space", H5T_IEEE_F64LE, extent, H5P_DEFAULT, properties, H5P_DEFAULT),
                              H5Dclose);
   time_ = growing(file_, "time", {frames_per_block_});
@@ -101,6 +105,16 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
     if (!names.of[role].empty()) rows_[role] = rows(to_string(role), {sites, names.of[role].size()});
   const Rows& field = rows_[Role::field];
   if (names.mesh) mesh_ = rows("mesh", {sites});
+  if (mesh.node_times) node_times_ = rows("node_time", {sites});
+  if (!mesh.cells.empty()) {
+    const auto corners = static_cast<hsize_t>(mesh.corners);
+    const std::array<hsize_t, 2> shape{mesh.cells.size() / corners, corners};
+    const Hdf5Handle of_cells(H5Screate_simple(2, shape.data(), nullptr), H5Sclose);
+    const Hdf5Handle cells(H5Dcreate2(file_, "cells", H5T_STD_I32LE, of_cells, H5P_DEFAULT, properties, H5P_DEFAULT),
+                           H5Dclose);
+    require(cells && H5Dwrite(cells, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, mesh.cells.data()) >= 0,
+            "cannot be written");
+  }
   require(positions && time_ && field.dataset &&
               H5Dwrite(positions, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, space.data()) >= 0 &&
               write_text(positions, "units", "dimensionless") && write_text(time_, "units", "dimensionless") &&
@@ -189,11 +203,13 @@ std::vector<FieldsFile::Rows*> FieldsFile::all_rows() {
   std::vector<Rows*> all;
   for (const Role role : all_roles) all.push_back(&rows_[role]);
   all.push_back(&mesh_);
+  all.push_back(&node_times_);
   for (Rows& rows : datasets_) all.push_back(&rows);
   return all;
 }
 
-void FieldsFile::append(double time, const RecordedRow& row, const RecordedDatasets& datasets) {
+void FieldsFile::append(double time, const RecordedRow& row, const RecordedDatasets& datasets,
+                        std::span<const double> node_times) {
   times_.push_back(time);
   const auto add = [](Rows& to, std::span<const double> values) {
     to.waiting.insert(to.waiting.end(), values.begin(), values.end());
@@ -203,6 +219,7 @@ void FieldsFile::append(double time, const RecordedRow& row, const RecordedDatas
   if (const auto& mesh = names_.mesh)
     for (std::size_t i = mesh->index; i < row[mesh->role].size(); i += names_.of[mesh->role].size())
       mesh_.waiting.push_back(row[mesh->role][i]);
+  if (node_times_.dataset) add(node_times_, node_times);
   for (std::size_t d = 0; d < datasets_.size(); ++d) add(datasets_[d], datasets[d]);
   // blocks end where chunks do
   if ((frames_written_ + times_.size()) % frames_per_block_ == 0) write_block();

@@ -13,6 +13,14 @@
 
 namespace delf {
 
+/// A mesh as fields.h5 has it: /space of several coordinates, and /cells, the points of each, −1 where it has fewer.
+struct MeshOfFile {
+  int coordinates = 1;
+  std::span<const std::int32_t> cells = {};
+  int corners = 0;          ///< columns of /cells
+  bool node_times = false;  ///< /node_time, frames × sites: sites have times of their own
+};
+
 /// The recorded rows as fields.h5:
 ///
 ///     /time   frames                       attribute units
@@ -30,10 +38,10 @@ namespace delf {
 class FieldsFile {
  public:
   FieldsFile(const std::filesystem::path&, std::span<const double> space, std::int64_t expected_frames,
-             const std::string& scene, int winding, const RowNames& = {}, hsize_t kept = 0);
+             const std::string& scene, int winding, const RowNames& = {}, const MeshOfFile& = {}, hsize_t kept = 0);
   ~FieldsFile();
 
-  void append(double time, const RecordedRow&, const RecordedDatasets& = {});
+  void append(double time, const RecordedRow&, const RecordedDatasets& = {}, std::span<const double> node_times = {});
   /// Writes the buffered rows; with `sync` they reach the disk. The number of frames that are there.
   std::uint64_t flush(bool sync);
   /// Writes the buffered rows. Until then they may be missing on the disk.
@@ -59,7 +67,7 @@ class FieldsFile {
   Hdf5Handle file_, time_;  ///< closed in the other order
   std::vector<Rows*> all_rows();
   ByRole<Rows> rows_;
-  Rows mesh_;
+  Rows mesh_, node_times_;
   std::vector<Rows> datasets_;  ///< of the method
 };
 

@@ -17,7 +17,8 @@ Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, cons
   if (scene.fields) {
     std::vector<double> space;
     for (int i = 0; i < lattice.sites(); ++i) space.push_back(lattice.position(i));
-    fields_.emplace(folder / "fields.h5", space, expected, resolved_scene, winding, names, kept ? kept->frames : 0);
+    fields_.emplace(folder / "fields.h5", space, expected, resolved_scene, winding, names, MeshOfFile{},
+                    kept ? kept->frames : 0);
   }
   if (scene.figures) film_.emplace(lattice, expected, names.drawn().size());
 }

@@ -50,7 +50,8 @@ Names state_names() {
   return names;
 }
 Names fibres() { return {"R", "S1"}; }
-Names spaces() { return {"circle", "interval", "point"}; }
+Names spaces() { return {"circle", "interval", "point", "complex"}; }
+Names mesh_times() { return {"rows", "none", "cells"}; }
 Names walls() { return {"fixed", "natural"}; }
 Names faults() { return verify_faults(); }
 Names sweep_keeps() { return {"folders", "table"}; }
@@ -108,6 +109,16 @@ std::vector<Key> general_keys() {
       Key{"lattice.courant", real, "", "this or lattice.time_step", "h/k", "", positive},
       Key{"lattice.time_step", real, "", "this or lattice.courant", "h", "time", positive},
 
+      Key{"lattice.mesh", KeyType::text, "", "must be given with space = complex",
+          "a mesh file (text, Gmsh MSH 2.2 or 4.1), or icosahedron:LEVEL, graded:LENGTH,POINTS,RATIO, "
+          "rectangle:WIDTH,HEIGHT,NX,NY, quadrilaterals:WIDTH,HEIGHT,NX,NY"},
+      Key{"lattice.time", choice, "rows", "",
+          "on a mesh: all sites row by row, none (data all round: an elliptic problem), or each of its cells by its own "
+          "step",
+          "", any, mesh_times()},
+      Key{"lattice.time_steps", KeyType::text, "", "none",
+          "on a mesh: steps of the rows, over and over, 0.1, 0.05, or a file of them; in place of lattice.time_step"},
+
       Key{"scheme.method", choice, "multisymplectic", "", "the scheme; see `delf list schemes`", "", any,
           method_names()},
       Key{"scheme.tolerance", real, "1e-14", "",
@@ -125,6 +136,7 @@ std::vector<Key> general_keys() {
 
       Key{"boundary.left", choice, "fixed", "", "the left wall of an interval", "", any, walls()},
       Key{"boundary.right", choice, "fixed", "", "the right wall of an interval", "", any, walls()},
+      Key{"boundary.mesh", choice, "fixed", "", "the boundary of a mesh", "", any, walls()},
       Key{"boundary.winding", integer, "", own, "what the field gains around a circle, in units of 2 pi", "", whole},
 
       Key{"run.until", real, "", "this or run.steps", "time of the last row, rounded to whole steps", "time",

@@ -44,6 +44,8 @@ Space read_space(const Values& values) {
 }
 
 Lattice read_lattice(const Settings& settings, const Values& values) {
+  if (values.choice("lattice.space") == "complex")
+    throw settings.error("lattice.space", "works with run, plan and verify; use one of these, or another space");
   const Space space = read_space(values);
   if (space == Space::point) return Lattice::point();
   const auto sites = static_cast<int>(values.integer("lattice.sites"));
@@ -223,6 +225,8 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
     return fmt::format("lattice.stencil = {} is in force", scene.problem.stencil);
   if ((key == "lattice.sites" || key == "lattice.length") && point) return "a point has neither length nor sites";
   if (key == "output.section" && !point) return "sections are of mechanics, lattice.space = point";
+  if (key == "lattice.mesh" || key == "lattice.time" || key == "lattice.time_steps" || key == "boundary.mesh")
+    return "only lattice.space = complex has a mesh";
   if (key == "boundary.winding" && point) return "a point has no winding";
   if (key == "boundary.winding" && !circle) return "an interval has no winding";
   if ((key == "boundary.left" || key == "boundary.right") && point) return "a point has no walls";

@@ -41,7 +41,8 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
     REQUIRE_FALSE(commands.empty());
     CHECK(commands.front() == "run " + scene.name);
   }
-  CHECK(names == std::vector<std::string>{"born-infeld",
+  CHECK(names == std::vector<std::string>{"asynchronous",
+                                          "born-infeld",
                                           "breather",
                                           "collision",
                                           "complex-klein-gordon",
@@ -77,7 +78,9 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
                                           "soliton-bounce",
                                           "soliton-gas",
                                           "spacetime-element",
+                                          "sphere",
                                           "spherical-pendulum",
+                                          "static-kink",
                                           "toda-chain",
                                           "two-soliton-bounce",
                                           "wall-reflection",

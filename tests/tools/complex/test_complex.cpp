@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <tuple>
+
+#include "lattice/error.hpp"
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+#include "tools/complex/mesh_text.hpp"
+
+using namespace delf;
+using namespace delf::testing;
+
+namespace {
+
+nlohmann::json summary(const Folder& folder) { return nlohmann::json::parse(read(folder / "out/summary.json")); }
+
+std::string fault_of(const std::string& text) {
+  try {
+    parse_mesh(text);
+  } catch (const MeshError& error) {
+    return std::to_string(error.line) + ": " + error.what();
+  }
+  return "none";
+}
+
+const std::string square = "point 0 0\npoint 1 0\npoint 1 1\npoint 0 1\n";
+const std::string msh2 =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"all\"\n$EndPhysicalNames\n"
+    "$Nodes\n4\n1 0 0 0\n2 1 0 0\n5 1 1 0\n9 0 1 0\n$EndNodes\n"
+    "$Elements\n3\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 5\n3 2 2 1 1 1 5 9\n$EndElements\n";
+const std::string msh4 =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n2 4 1 9\n1 1 0 2\n1\n2\n0 0 0\n1 0 0\n2 1 0 2\n5\n9\n1 1 0\n0 1 "
+    "0\n$EndNodes\n"
+    "$Elements\n2 3 1 3\n1 1 1 1\n1 1 2\n2 1 2 2\n2 1 2 5\n3 1 5 9\n$EndElements\n";
+
+}  // namespace
+
+TEST_CASE("meshes are read from text and from Gmsh's two formats") {
+  for (const std::string& text : {square + "cell 0 1 2 # half\n\ncell 0 2 3\n", msh2, msh4}) {
+    const Mesh mesh = parse_mesh(text);
+    CHECK(mesh.points.size() == 4);
+    REQUIRE(mesh.cells() == 2);
+    CHECK(mesh.dimension == 2);
+    CHECK(mesh.cell(1)[2] == 3);
+    CHECK(measure(mesh, 0) + measure(mesh, 1) == Approx(1));
+  }
+}
+
+TEST_CASE("a mesh that cannot be read says on which line") {
+  CHECK(fault_of("") == "1: the mesh is empty; write lines like point 0 0 and cell 0 1 2");
+  CHECK(fault_of(square + "cell 0 2 1\n") == "5: cell 0 is listed clockwise; list its points the other way");
+  CHECK_THAT(fault_of(square + "cell 0 1 x\n"), Catch::StartsWith("5: \"x\" is not the number of a point"));
+  CHECK_THAT(fault_of(square + "cells 0 1 2\n"), Catch::StartsWith("5: \"cells\" is neither point nor cell"));
+  CHECK_THAT(fault_of("point 0 1e999\n"), Catch::StartsWith("1: "));
+  CHECK_THAT(fault_of(square + "cell 0 1 2\n"), Catch::StartsWith("4: point 3 is in no cell"));
+  // every line of a file of Gmsh, cut off behind it, and with a word that is none
+  for (const std::string& text : {msh2, msh4})
+    for (std::size_t end = text.find('\n'); end + 1 < text.size(); end = text.find('\n', end + 1)) {
+      CHECK(fault_of(text.substr(0, end)) != "none");
+      CHECK_NOTHROW(fault_of(text.substr(0, end + 1) + "? " + text.substr(end + 1)));
+    }
+  std::string binary = msh2;
+  binary.replace(binary.find("2.2 0"), 5, "2.2 1");
+  CHECK(fault_of(binary) == "2: a binary file; save it as ASCII (Mesh.Binary = 0)");
+}
+
+TEST_CASE("a wave on a mesh runs, is planned and verified through the program") {
+  const Folder folder;
+  const std::string scene = "sphere --lattice.mesh=icosahedron:2 --run.steps=40";
+  const Ran ran = delf_program(folder, "run " + scene + " --out out");
+  CAPTURE(ran.out, ran.err);
+  REQUIRE(ran.code == 0);
+  const auto json = summary(folder);
+  CHECK(json["status"] == "done");
+  CHECK(json["sites"] == 162);
+  CHECK(json["solve_kind"] == "explicit");
+  CHECK(json["energy_error_max"] < 0.05);
+  CHECK(json["residual_max"] < 1e-13);
+  CHECK(contains(read(folder / "out/fields.xdmf"), "TopologyType=\"Triangle\" NumberOfElements=\"320\""));
+  // again to the same bits, from the scene that is left
+  CHECK(delf_program(folder, "run out/scene.ini --out again").code == 0);
+  CHECK(read(folder / "again/series.csv") == read(folder / "out/series.csv"));
+  CHECK(contains(delf_program(folder, "plan " + scene).out, "explicit, one sparse product a row"));
+  CHECK(delf_program(folder, "verify " + scene + " --out v").code == 0);
+  for (const char* fault : {"field", "variation", "sign"})
+    CHECK(delf_program(folder, "verify " + scene + " --out v --verify.fault=" + fault).code == 1);
+}
+
+TEST_CASE("a static kink has the energies of Peierls and Nabarro, between sites and on one") {
+  const Folder folder;
+  REQUIRE(delf_program(folder, "run static-kink --out out").code == 0);
+  CHECK(summary(folder)["energy_final"].get<double>() == Approx(7.866565).margin(1e-6));
+  REQUIRE(
+      delf_program(folder, "run static-kink --initial.phi='4*atan(exp(x-20))' --lattice.mesh=graded:40,41,1 --out out")
+          .code == 0);
+  CHECK(summary(folder)["energy_final"].get<double>() == Approx(7.891929).margin(1e-6));
+}
+
+TEST_CASE("elliptic problems on a mesh converge with order 2, sine-Gordon and harmonic maps to the sphere") {
+  const Folder folder;
+  const std::string head = "[lattice]\nspace = complex\ntime = none\nmesh = rectangle:2,1,16,8\n";
+  // φ = 4 atan(exp((3x + 4y)/5 − 1)) solves Laplace φ = sin φ; it is data on the boundary, and Newton's method begins at 0.
+  // z ↦ z² is conformal, so a harmonic map into the sphere in stereographic coordinates
+  const std::string kink = folder.write(
+      "kink.ini", "[theory]\nname = sine-gordon\n" + head + "[exact]\nphi = 4*atan(exp(0.6*x + 0.8*y - 1))\n");
+  const std::string map = folder.write(
+      "map.ini", "[theory]\nfields = u, v\ndensity = 0.5*u_t^2 + 0.5*v_t^2 - 2*(u_x^2 + v_x^2)/(1 + u^2 + v^2)^2\n" +
+                     head + "[exact]\nu = x^2 - y^2\nv = 2*x*y\n");
+  // the image of the small rectangle lies within a hemisphere, where such maps are unique
+  for (const auto& [scene, coarse, fine] : {std::tuple(kink, "rectangle:2,1,16,8", "rectangle:2,1,32,16"),
+                                            std::tuple(map, "rectangle:0.8,0.4,16,8", "rectangle:0.8,0.4,32,16")}) {
+    const auto error = [&, file = scene](const char* mesh) {
+      const Ran ran = delf_program(folder, "run " + file + " --out out --lattice.mesh=" + mesh);
+      CAPTURE(file, ran.err);
+      REQUIRE(ran.code == 0);
+      CHECK(summary(folder)["iterations_max"] < 12);
+      return summary(folder)["error_l2"].get<double>();
+    };
+    CHECK(std::log2(error(coarse) / error(fine)) == Approx(2).margin(0.2));
+    CHECK(delf_program(folder, "verify " + scene + " --out v --lattice.mesh=" + coarse).code == 0);
+  }
+}
+
+TEST_CASE("a scene on a mesh with an error is refused in one line") {
+  const Folder folder;
+  const auto refused = [&](const std::string& arguments, const std::string& part) {
+    const Ran ran = delf_program(folder, arguments);
+    CAPTURE(arguments, ran.err);
+    CHECK(ran.code == 2);
+    CHECK(lines(ran.err).size() == 1);
+    CHECK(contains(ran.err, part));
+  };
+  folder.write("bad.mesh", square + "cell 0 1 2\ncell 0 3 2\n");
+  refused("run sphere --lattice.mesh=bad.mesh", "bad.mesh:6: cell 1 is listed clockwise");
+  refused("run sphere --lattice.mesh=icosahedron:99", "99 must be a whole number from 0 to 9");
+  refused("run sphere --lattice.sites=10", "not applicable to lattice.space = complex");
+  refused("run sphere '--theory.density=0.5*phi_t^2 - phi_x^4'", "is not quadratic in phi_x");
+  refused("convergence sphere", "works with run, plan and verify");
+  refused("run sphere --lattice.time_steps=0.1,-1", "steps must be above 0");
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/complex/complex_scene.hpp"
+#include "tools/failure.hpp"
+
+namespace delf {
+
+/// `delf run`, `delf plan` and `delf verify` of a scene on a mesh.
+ExitCode run(const ComplexScene&, const std::filesystem::path& folder);
+ExitCode plan(const ComplexScene&);
+ExitCode verify(const ComplexScene&, const std::filesystem::path& folder, const std::optional<std::string>& fields);
+
+/// h_K of asynchronous cells: lattice.courant times the shortest edge of each.
+std::vector<double> cell_steps(const ComplexScene&);
+
+}  // namespace delf

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <nlohmann/json.hpp>
+
+#include "schemes/complex/asynchronous.hpp"
+#include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_files.hpp"
+#include "tools/complex/static_field.hpp"
+#include "tools/files/series_file.hpp"
+#include "tools/run/in_words.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/outcome.hpp"
+#include "tools/run/progress.hpp"
+#include "tools/run/seconds_since.hpp"
+#include "tools/scene/text_file.hpp"
+
+namespace delf {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// summary.json, with the names of any other run; what a mesh does not have is null.
+std::string summary(const ComplexScene& c, const Outcome& o, std::int64_t updates) {
+  const Scene& scene = c.scene;
+  const Mesh& mesh = c.space->mesh;
+  double area = 0;
+  for (const double A : c.space->masses) area += A;
+  nlohmann::ordered_json json;
+  const auto null = nlohmann::ordered_json();
+  const bool still = c.time == MeshTime::none;
+  json["version"] = DELF_VERSION;
+  json["scene"] = scene.name;
+  json["status"] = o.status;
+  json["failure"] = o.failure.empty() ? null : nlohmann::ordered_json(o.failure);
+  json["theory"] = scene.problem.theory;
+  json["fibre"] = "R";
+  json["stencil"] = c.mesh_in_words();
+  json["method"] = c.time == MeshTime::cells ? "asynchronous" : still ? "elliptic" : scene.problem.method;
+  json["space"] = "complex";
+  json["length"] = area;
+  json["sites"] = c.space->sites();
+  json["cells"] = mesh.cells();
+  json["space_step"] = shortest_edge(mesh);
+  json["time_step"] = still ? null : nlohmann::ordered_json(scene.problem.time_step);
+  json["state"] = o.state;
+  json["seed"] = scene.initial.seed;
+  json["steps"] = o.steps;
+  json["time"] = o.time;
+  json["records"] = o.records;
+  json["seconds"] = o.seconds;
+  json["ns_per_site_step"] = o.ns_per_site_step(c.space->sites());
+  if (c.time == MeshTime::cells) {
+    json["updates"] = updates;
+    json["ns_per_update"] = 1e9 * o.seconds / static_cast<double>(updates);
+  }
+  json["solve"] = o.solve;
+  json["solve_kind"] = o.solve_kind;
+  json["bytes"] = o.bytes;
+  json["iterations_mean"] = o.iterations_mean;
+  json["iterations_max"] = o.iterations_max;
+  json["residual_max"] = o.residual_max;
+  json["energy_initial"] = o.energy_initial;
+  json["energy_final"] = o.energy_final;
+  json["energy_error_max"] = o.energy_error_max;
+  json["error_linf"] = o.error_linf;
+  json["error_l2"] = o.error_l2;
+  json["warnings"] = scene.warnings;
+  for (const std::string& warning : o.warnings) json["warnings"].push_back(warning);
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string report(const ComplexScene& c, const Outcome& o, std::int64_t updates) {
+  std::string text = fmt::format("{}: {} on {} points, {}\n", c.scene.name, c.scene.problem.theory, c.space->sites(),
+                                 c.mesh_in_words());
+  const auto line = [&](const char* name, const std::string& what) {
+    text += fmt::format("  {:<10} {}\n", name, what);
+  };
+  line("state", o.state);
+  line("solve", o.solve);
+  if (c.time != MeshTime::none) line("steps", fmt::format("{} to t = {:.6g}", o.steps, o.time));
+  if (o.steps_taken > 0)
+    line("speed", fmt::format("{} for the steps, {}", duration_in_words(o.seconds),
+                              cost_in_words(o.ns_per_site_step(c.space->sites()))));
+  if (updates > 0)
+    line("speed", fmt::format("{} for {} updates of cells, {:.4g} ns an update", duration_in_words(o.seconds), updates,
+                              1e9 * o.seconds / static_cast<double>(updates)));
+  if (o.iterations_max > 1)
+    line("iterations", fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max));
+  line("residual", fmt::format("{:.2g} at most, relative to the terms of the equations", o.residual_max));
+  line("energy", fmt::format("{:.10g}{}", o.energy_final,
+                             std::isfinite(o.energy_error_max)
+                                 ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
+                                 : ""));
+  if (std::isfinite(o.error_linf))
+    line("error",
+         fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));
+  for (const std::string& warning : o.warnings) line("warning", warning);
+  line("status", o.status);
+  return text;
+}
+
+/// The largest error, and √(Σ A_i e_i²).
+void measure_error(const ComplexScene& c, std::span<const double> values, double t, Outcome& o) {
+  if (!c.has_solution()) return;
+  const std::vector<double> exact = c.solution(t);
+  const std::size_t d = c.fields.size();
+  o.error_linf = 0;
+  double sum = 0;
+  for (std::size_t n = 0; n < exact.size(); ++n) {
+    const double error = std::abs(values[n] - exact[n]);
+    o.error_linf = std::max(o.error_linf, error);
+    sum += c.space->masses[n / d] * error * error;
+  }
+  o.error_l2 = std::sqrt(sum);
+}
+
+/// What a run writes, row by row.
+class MeshRecorder {
+ public:
+  MeshRecorder(const ComplexScene& c, const fs::path& folder, std::int64_t frames, Outcome& outcome)
+      : outcome_(outcome), series_(folder / "series.csv", {}) {
+    if (c.scene.fields) files_.emplace(c, folder, frames, c.time == MeshTime::cells);
+  }
+  void record(std::int64_t row, double time, std::span<const double> values, double energy, int iterations,
+              double residual, std::span<const double> node_times = {}) {
+    Outcome& o = outcome_;
+    if (o.records++ == 0) o.energy_initial = energy;
+    o.energy_final = energy;
+    const double error =
+        o.energy_initial == 0 ? Outcome::unknown : std::abs(energy - o.energy_initial) / std::abs(o.energy_initial);
+    if (!(error <= o.energy_error_max)) o.energy_error_max = error;
+    o.residual_max = std::max(o.residual_max, residual);
+    series_.append({row, time, energy, error, Outcome::unknown, Outcome::unknown, iterations, residual, {}});
+    if (files_) files_->append(time, values, node_times);
+  }
+  void close() {
+    series_.close();
+    if (files_) files_->close();
+  }
+
+ private:
+  Outcome& outcome_;
+  SeriesFile series_;
+  std::optional<MeshFiles> files_;
+};
+
+void run_static(const ComplexScene& c, MeshRecorder& recorder, Outcome& o) {
+  StaticField field(c);
+  o.solve = field.solver().plan().describe();
+  o.solve_kind = field.solver().plan().largest == 1 ? "explicit" : "sparse";
+  o.bytes = field.system().bytes();
+  const auto begin = Clock::now();
+  const ComplexSolver::Report solved = field.solve();
+  o.seconds = seconds_since(begin);
+  o.iterations_mean = o.iterations_max = solved.iterations;
+  recorder.record(0, 0, field.values(), field.energy(), solved.iterations, field.residual());
+  measure_error(c, field.values(), 0, o);
+}
+
+void run_rows(const ComplexScene& c, MeshRecorder& recorder, Outcome& o) {
+  SpaceEvolution evolution(*c.space, c.time_step(0), {c.scene.problem.tolerance, c.scene.problem.max_iterations});
+  o.solve = evolution.plan().describe() + (evolution.is_direct() ? " (explicit)" : "");
+  o.solve_kind = evolution.is_direct() ? "explicit" : "sparse";
+  o.bytes = evolution.bytes();
+  if (const auto most = evolution.largest_step(); most && *most < c.scene.problem.time_step)
+    o.warnings.push_back(fmt::format("waves on this mesh grow at h = {:.4g} by linear theory; take h below {:.4g}",
+                                     c.scene.problem.time_step, *most));
+  const std::vector<double> start = c.values();
+  evolution.start(start, c.rates());
+  Progress progress(c.scene.steps);
+  const auto is_recorded = [&](std::int64_t row) {
+    return row == c.scene.steps || (c.scene.every > 0 && row % c.scene.every == 0);
+  };
+  const auto record = [&] {
+    recorder.record(evolution.newest(), evolution.time(), evolution.row(), evolution.energy(),
+                    evolution.report().iterations, evolution.residual());
+  };
+  if (c.scene.every > 0 || c.scene.steps == 0) recorder.record(0, 0, start, evolution.energy(), 0, 0);
+  if (c.scene.steps > 0 && is_recorded(1)) record();
+  double iterations = 0;
+  while (evolution.newest() < c.scene.steps && !Interrupt::asked()) {
+    const std::int64_t next = c.scene.every > 0
+                                  ? std::min(c.scene.steps, (evolution.newest() / c.scene.every + 1) * c.scene.every)
+                                  : c.scene.steps;
+    const std::int64_t last = std::min(next, evolution.newest() + 256);
+    const auto begin = Clock::now();
+    while (evolution.newest() < last) {
+      c.time_steps.empty() ? evolution.step() : evolution.step(c.time_step(evolution.newest()));
+      iterations += evolution.report().iterations;
+      o.iterations_max = std::max(o.iterations_max, evolution.report().iterations);
+      ++o.steps_taken;
+    }
+    o.seconds += seconds_since(begin);
+    progress.at(evolution.newest());
+    if (is_recorded(evolution.newest())) record();
+  }
+  if (evolution.newest() < c.scene.steps) o.status = "interrupted";
+  if (evolution.is_direct()) o.iterations_max = 0;
+  else if (o.steps_taken > 0) o.iterations_mean = iterations / static_cast<double>(o.steps_taken);
+  o.steps = std::min(evolution.newest(), c.scene.steps);
+  o.time = c.scene.steps == 0 ? 0 : evolution.time();
+  measure_error(c, c.scene.steps == 0 ? std::span<const double>(start) : evolution.row(), o.time, o);
+}
+
+void run_cells(const ComplexScene& c, MeshRecorder& recorder, Outcome& o, std::int64_t& updates) {
+  AsynchronousEvolution evolution(*c.space, cell_steps(c));
+  o.solve = "each cell by its own step, in the order of a priority queue (explicit)";
+  o.solve_kind = "explicit";
+  o.bytes = evolution.bytes();
+  evolution.start(c.values(), c.rates());
+  const double h = c.scene.problem.time_step;
+  const std::int64_t every = c.scene.every > 0 ? c.scene.every : std::max<std::int64_t>(1, c.scene.steps);
+  const auto record = [&] {
+    recorder.record(o.steps, o.time, evolution.values(o.time), evolution.energy(o.time), 0, 0, evolution.node_times());
+  };
+  if (c.scene.every > 0 || c.scene.steps == 0) record();
+  Progress progress(c.scene.steps);
+  while (o.steps < c.scene.steps && !Interrupt::asked()) {
+    const auto begin = Clock::now();
+    o.steps = std::min(c.scene.steps, (o.steps / every + 1) * every);
+    o.time = static_cast<double>(o.steps) * h;
+    evolution.advance(o.time);
+    o.seconds += seconds_since(begin);
+    updates = evolution.updates();
+    progress.at(o.steps);
+    record();
+  }
+  if (o.steps < c.scene.steps) o.status = "interrupted";
+  measure_error(c, evolution.values(o.time), o.time, o);
+}
+
+}  // namespace
+
+std::vector<double> cell_steps(const ComplexScene& c) {
+  std::vector<double> steps;
+  for (int cell = 0; cell < c.space->mesh.cells(); ++cell)
+    steps.push_back(c.courant * shortest_edge(c.space->mesh, cell));
+  return steps;
+}
+
+ExitCode run(const ComplexScene& c, const fs::path& folder) {
+  const Interrupt interrupt;
+  make_results_folder(folder);
+  std::error_code none;
+  for (const char* name : {"summary.json", "series.csv", "fields.h5", "fields.xdmf", "scene.ini"})
+    fs::remove(folder / name, none);
+  write_text_file(folder / "scene.ini", resolved_text(c));
+  Outcome o;
+  o.state = c.state_in_words();
+  MeshRecorder recorder(c, folder, c.scene.every > 0 ? c.scene.steps / c.scene.every + 2 : 1, o);
+  std::exception_ptr failure;
+  std::int64_t updates = 0;
+  try {
+    if (c.time == MeshTime::none) run_static(c, recorder, o);
+    else if (c.time == MeshTime::cells) run_cells(c, recorder, o, updates);
+    else run_rows(c, recorder, o);
+  } catch (const NumericalFailure& error) {
+    o.status = status_of(error), o.failure = error.what();
+    failure = std::current_exception();
+  } catch (const BadInput& bad) {
+    throw c.scene.settings.located(bad);
+  }
+  recorder.close();
+  write_text_file(folder / "summary.json", summary(c, o, updates));
+  fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}\n", report(c, o, updates), "files", folder.string(),
+             c.scene.fields ? c.space->mesh.coordinates() > 1 ? " fields.h5 fields.xdmf" : " fields.h5" : "");
+  if (failure) std::rethrow_exception(failure);
+  return o.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
+}
+
+ExitCode plan(const ComplexScene& c) {
+  const CellSpace& space = *c.space;
+  double area = 0;
+  for (const double A : space.masses) area += A;
+  fmt::print("{}: {}, {} points, {}\n", c.scene.name, c.scene.problem.theory, space.sites(), c.mesh_in_words());
+  fmt::print("  state      {}\n", c.state_in_words());
+  fmt::print("  mesh       {} {:.6g}, shortest edge {:.6g}, {} boundary points{}\n",
+             space.mesh.dimension == 1 ? "length" : "area", area, shortest_edge(space.mesh),
+             boundary_points(space.mesh).size(),
+             boundary_points(space.mesh).empty()      ? ""
+             : std::ranges::count(space.fixed, 1) > 0 ? ", fixed"
+                                                      : ", natural");
+  try {
+    if (c.time == MeshTime::none) {
+      const StaticField field(c);
+      fmt::print(
+          "  stencils   {} of sites and cells\n  solve      {}: sparse Newton steps with a line search\n  memory     "
+          "{}\n",
+          field.system().complex().stencils(), field.solver().plan().describe(),
+          bytes_in_words(static_cast<double>(field.system().bytes())));
+    } else if (c.time == MeshTime::cells) {
+      const std::vector<double> steps = cell_steps(c);
+      const auto [least, largest] = std::ranges::minmax(steps);
+      double updates = 0;
+      for (const double h : steps) updates += static_cast<double>(c.scene.steps) * c.scene.problem.time_step / h;
+      fmt::print(
+          "  steps      each cell by its own, {:.6g} to {:.6g}: {:.6g} updates, and {:.6g} with the least for all\n",
+          least, largest, updates, static_cast<double>(c.scene.steps) * static_cast<double>(steps.size()));
+      fmt::print("  solve      explicit, in the order of a priority queue\n");
+    } else {
+      const SpaceEvolution evolution(space, c.time_step(0));
+      fmt::print("  steps      {} of {}\n", c.scene.steps,
+                 c.time_steps.empty() ? fmt::format("h = {:.6g}", c.scene.problem.time_step)
+                                      : fmt::format("{} lengths in turn", c.time_steps.size()));
+      fmt::print("  stencils   a row has {} of motion, {} of sites, {} of cells\n", space.sites(), space.sites(),
+                 space.mesh.cells());
+      fmt::print("  solve      {}{}\n", evolution.plan().describe(),
+                 evolution.is_direct() ? ": explicit, one sparse product a row" : ": Newton steps");
+      if (const auto most = evolution.largest_step())
+        fmt::print("  stable     h below {:.6g}, by linear theory about 0\n", *most);
+      fmt::print("  memory     {}\n", bytes_in_words(static_cast<double>(evolution.bytes())));
+    }
+  } catch (const BadInput& bad) {
+    throw c.scene.settings.located(bad);
+  }
+  fmt::print(
+      "  left out   symbol, strips, lattice norms: not applicable to a mesh; errors are sums over sites with their "
+      "masses\n");
+  return ExitCode::done;
+}
+
+}  // namespace delf

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "tools/complex/complex_scene.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "jets/expressions/expression.hpp"
+#include "lattice/text_parts.hpp"
+#include "schemes/states/state_registry.hpp"
+#include "schemes/theories/theory_registry.hpp"
+#include "tools/complex/mesh_text.hpp"
+#include "tools/scene/values.hpp"
+
+namespace delf {
+namespace {
+
+constexpr double usual_records = 100;
+
+/// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
+const std::set<std::string, std::less<>> read_keys{
+    "theory.name",       "lattice.space",      "lattice.mesh",      "lattice.time",     "lattice.courant",
+    "lattice.time_step", "lattice.time_steps", "boundary.mesh",     "scheme.tolerance", "scheme.max_iterations",
+    "initial.state",     "run.until",          "run.steps",         "run.seed",         "output.every",
+    "output.fields",     "output.figures",     "verify.variations", "verify.moments",   "verify.tolerance",
+    "verify.fault",      "scheme.method"};
+
+void refuse_unread(const Settings& settings, const TheoryEntry& theory, const ParameterValues& parameters) {
+  std::set<std::string, std::less<>> known = read_keys;
+  for (const Parameter& p : parameters_of(theory, parameters)) known.insert(p.key);
+  for (const Setting& s : settings.all())
+    if (!known.contains(s.key) && !s.key.starts_with("exact.") && !s.key.starts_with("initial."))
+      throw settings.error(s.key, "needs a regular lattice (not applicable to lattice.space = complex); remove it");
+}
+
+ParameterValues read_parameters(const Values& values, const TheoryEntry& theory) {
+  ParameterValues parameters;
+  for (const Parameter& p : theory.parameters)
+    if (values.given(p.key) || p.otherwise.empty()) parameters[p.key] = values.parameter(p);
+  if (theory.further)
+    for (const Parameter& p : theory.further(parameters)) parameters[p.key] = values.parameter(p);
+  return parameters;
+}
+
+std::vector<double> read_time_steps(const Settings& settings, const Values& values) {
+  const auto text = values.text("lattice.time_steps");
+  if (!text) return {};
+  std::string list = *text;
+  std::error_code none;
+  for (const auto& path : {settings.file().parent_path() / *text, std::filesystem::path(*text)})
+    if (std::filesystem::is_regular_file(path, none)) {
+      std::ifstream in(path);
+      list.clear();
+      for (std::string line; std::getline(in, line);) {
+        const std::string content = trimmed(line.substr(0, line.find('#')));
+        if (!content.empty()) list += (list.empty() ? "" : ",") + content;
+      }
+      break;
+    }
+  std::vector<double> steps;
+  for (const std::string& part : parts_of(list)) {
+    try {
+      steps.push_back(number_of(part, "lattice.time_steps"));
+    } catch (const BadInput&) {
+      throw settings.error(
+          "lattice.time_steps",
+          fmt::format("\"{}\" is no number; give steps like 0.1, 0.05, or a file of them", part.substr(0, 40)));
+    }
+    if (!std::isnormal(steps.back()) || steps.back() < 0)
+      throw settings.error("lattice.time_steps", "steps must be above 0");
+  }
+  return steps;
+}
+
+/// Of a formula: the theory's parameters by their names.
+std::vector<std::pair<std::string, double>> numbers_of(const ParameterValues& parameters) {
+  std::vector<std::pair<std::string, double>> numbers;
+  for (const auto& [key, value] : parameters)
+    if (const double* number = std::get_if<double>(&value); number && key.starts_with("theory."))
+      numbers.emplace_back(key.substr(7), *number);
+  return numbers;
+}
+
+void read_fields(ComplexScene& c, const Values& values, const ParameterValues& parameters) {
+  const auto numbers = numbers_of(parameters);
+  const auto formula = [&](const std::string& key) -> std::optional<PlaceFormula> {
+    const auto text = values.given(key) ? values.text(key) : std::nullopt;
+    return text ? std::optional(PlaceFormula(*text, numbers, key)) : std::nullopt;
+  };
+  const Settings& settings = c.scene.settings;
+  for (const Component& field : c.theory->fields()) {
+    const std::string& name = field.name;
+    c.fields.push_back({name, formula("initial." + name), formula("initial." + name + "_t"), formula("exact." + name)});
+    if (!c.fields.back().value && !c.fields.back().exact)
+      throw settings.error("initial." + name, "must be given on a mesh, as a formula of x, y and z; or exact." + name +
+                                                  " as one of t too");
+    if (c.fields.front().exact.has_value() != c.fields.back().exact.has_value())
+      throw settings.error("exact." + name, "must be given for all fields or for none; complete it");
+  }
+  if (values.given("initial.state") && !find_state(values.choice("initial.state")).further)
+    throw settings.error("initial.state", "is of one coordinate; on a mesh give formulas, initial.phi or exact.phi");
+}
+
+}  // namespace
+
+bool is_on_mesh(const Settings& settings) {
+  const Setting* const space = settings.find("lattice.space");
+  return space && space->value == "complex";
+}
+
+ComplexScene read_complex_scene(Settings given) {
+  ComplexScene c((Scene(std::move(given))));
+  Scene& scene = c.scene;
+  Settings& settings = scene.settings;
+  scene.name = settings.file().stem().string();
+  const Values values(settings);
+  for (const Key& key : settings.all_keys()) values.check(key);
+  try {
+    Problem& p = scene.problem;
+    p.theory = values.choice("theory.name");
+    const TheoryEntry& entry = find_theory(p.theory);
+    const ParameterValues parameters = read_parameters(values, entry);
+    refuse_unread(settings, entry, parameters);
+    c.theory = make_theory(entry, parameters);
+    if (c.theory->constraint())
+      throw BadInput("theory.name", "theory.name = " + p.theory +
+                                        ": constraints need a regular lattice; choose lattice.space = circle");
+    p.method = values.choice("scheme.method");
+    if (p.method != find_key("scheme.method")->fallback)
+      throw settings.error("scheme.method", "needs a regular lattice; leave it out on a mesh");
+    if (!values.given("lattice.mesh"))
+      throw settings.error("lattice.mesh", "must be given with lattice.space = complex: a file, or icosahedron:4");
+    Mesh mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file);
+    c.space = std::make_unique<CellSpace>(std::move(mesh), c.theory->shared_density(),
+                                          values.choice("boundary.mesh") == "fixed");
+    const std::string time = values.choice("lattice.time");
+    c.time = time == "none" ? MeshTime::none : time == "cells" ? MeshTime::cells : MeshTime::rows;
+    p.tolerance = values.real("scheme.tolerance");
+    p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
+    const double edge = shortest_edge(c.space->mesh);
+    p.lattice = Lattice::circle(std::max(2, c.space->sites()), edge * std::max(2, c.space->sites()));
+    p.stencil = c.mesh_in_words();
+    read_fields(c, values, parameters);
+    scene.fields = values.toggle("output.fields");
+    scene.figures = false;
+    scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
+    if (c.time == MeshTime::none) return c;
+
+    c.time_steps = read_time_steps(settings, values);
+    if (!c.time_steps.empty()) {
+      if (values.given("lattice.courant") || values.given("lattice.time_step"))
+        throw settings.error("lattice.time_steps",
+                             "lattice.courant or lattice.time_step is given too; keep one of them");
+      if (c.time == MeshTime::cells)
+        throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
+      p.time_step = c.time_steps.front();
+    } else {
+      settings.keep_one_of("lattice.courant", "lattice.time_step", "give one of them, such as lattice.courant = 0.4");
+      c.courant = values.given("lattice.courant") ? values.real("lattice.courant") : 0;
+      if (c.time == MeshTime::cells && c.courant == 0)
+        throw settings.error("lattice.time_step", "cells have steps of their own; give lattice.courant");
+      p.time_step = c.courant > 0 ? c.courant * edge : values.real("lattice.time_step");
+    }
+    settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 10");
+    if (values.given("run.steps")) {
+      scene.steps = values.integer("run.steps");
+    } else {
+      const double until = values.real("run.until");
+      if (until / p.time_step > 1e12) throw settings.error("run.until", "is too many steps; use less");
+      if (c.time_steps.empty()) scene.steps = std::llround(until / p.time_step);
+      else
+        for (double t = 0; t < until * (1 - 1e-12); t += c.time_step(scene.steps)) ++scene.steps;
+    }
+    scene.every = values.maybe_integer("output.every")
+                      .value_or(std::max(1LL, std::llround(static_cast<double>(scene.steps) / usual_records)));
+  } catch (const BadInput& bad) {
+    throw settings.located(bad);
+  }
+  return c;
+}
+
+std::vector<double> ComplexScene::values() const {
+  std::vector<double> all;
+  for (const Mesh::Point& p : space->mesh.points)
+    for (const Field& f : fields) all.push_back(f.exact ? (*f.exact)(0, p) : (*f.value)(0, p));
+  return all;
+}
+std::vector<double> ComplexScene::rates() const {
+  std::vector<double> all;
+  for (const Mesh::Point& p : space->mesh.points)
+    for (const Field& f : fields) all.push_back(f.exact ? f.exact->by_t(0, p) : f.rate ? (*f.rate)(0, p) : 0.0);
+  return all;
+}
+std::vector<double> ComplexScene::solution(double t) const {
+  std::vector<double> all;
+  for (const Mesh::Point& p : space->mesh.points)
+    for (const Field& f : fields) all.push_back((*f.exact)(t, p));
+  return all;
+}
+
+std::string ComplexScene::mesh_in_words() const {
+  const Mesh& mesh = space->mesh;
+  std::array<int, 5> count{};
+  for (int c = 0; c < mesh.cells(); ++c) ++count[mesh.cell(c).size()];
+  constexpr std::array<const char*, 5> names{"", "", "segments", "triangles", "quadrilaterals"};
+  std::string text;
+  for (std::size_t n = 2; n < count.size(); ++n)
+    if (count[n] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : " and ", count[n], names[n]);
+  return text;
+}
+
+std::string ComplexScene::state_in_words() const {
+  std::string text;
+  const auto add = [&](const std::string& key) {
+    if (const Setting* s = scene.settings.find(key))
+      text += fmt::format("{}{} = {}", text.empty() ? "" : "; ", key, s->value);
+  };
+  for (const Field& f : fields) add("exact." + f.name), add("initial." + f.name), add("initial." + f.name + "_t");
+  return text;
+}
+
+std::string resolved_text(const ComplexScene& c) {
+  std::string text = fmt::format(
+      "# All that was in force, as delf {} understood it: `delf run scene.ini` gives the same rows to the bit.\n",
+      DELF_VERSION);
+  std::string section;
+  for (const Key& key : c.scene.settings.all_keys()) {
+    const Setting* const given = c.scene.settings.find(key.name);
+    if (!given) continue;
+    std::string value = given->value;
+    if (key.name == "lattice.mesh" && !c.mesh_file.empty()) value = c.mesh_file.string();
+    if (key.name == "lattice.time_steps") value = fmt::format("{}", fmt::join(c.time_steps, ", "));
+    if (section != section_of(key.name)) {
+      section = std::string(section_of(key.name));
+      text += fmt::format("\n[{}]\n", section);
+    }
+    text += fmt::format("{} = {}\n", key.name.substr(section.size() + 1), value);
+  }
+  return text;
+}
+
+}  // namespace delf

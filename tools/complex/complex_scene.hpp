@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "schemes/complex/space_rows.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "tools/complex/place_formula.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// How time goes on over a mesh.
+enum class MeshTime {
+  rows,  ///< all sites at once
+  none,  ///< there is none: data all round, an elliptic problem
+  cells  ///< each cell by its own step: asynchronous
+};
+
+/// A scene on a mesh, read and resolved.
+struct ComplexScene {
+  explicit ComplexScene(Scene given) : scene(std::move(given)) {}
+
+  /// Name, settings, steps, records. Its lattice stands for the mesh in reports: as many sites, and k the shortest edge.
+  Scene scene;
+  std::shared_ptr<const FieldTheory> theory;
+  std::unique_ptr<const CellSpace> space;
+  std::filesystem::path mesh_file;  ///< empty: generated
+  MeshTime time = MeshTime::rows;
+  std::vector<double> time_steps;  ///< of rows, over and over; empty: all scene.problem.time_step
+  double courant = 0;              ///< of cells: h_K over the shortest edge of the cell
+
+  struct Field {
+    std::string name;
+    std::optional<PlaceFormula> value, rate, exact;
+  };
+  std::vector<Field> fields;
+
+  double time_step(std::int64_t step) const {
+    return time_steps.empty() ? scene.problem.time_step
+                              : time_steps[static_cast<std::size_t>(step) % time_steps.size()];
+  }
+  bool has_solution() const { return fields.front().exact.has_value(); }
+  /// φ and φ_t at t = 0, and the solution, if there is one, at any time; [i·d + a].
+  std::vector<double> values() const;
+  std::vector<double> rates() const;
+  std::vector<double> solution(double t) const;
+  /// "36.5 cells of ..." for reports
+  std::string mesh_in_words() const;
+  std::string state_in_words() const;
+};
+
+/// Whether a scene's space is a mesh. Throws BadScene for what is no scene.
+bool is_on_mesh(const Settings&);
+ComplexScene read_complex_scene(Settings);
+/// The scene with what is in force: it runs again to the same bits.
+std::string resolved_text(const ComplexScene&);
+
+}  // namespace delf

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "schemes/complex/asynchronous.hpp"
+#include "schemes/complex/complex_form.hpp"
+#include "tools/complex/complex_commands.hpp"
+#include "tools/complex/static_field.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/seconds_since.hpp"
+#include "tools/scene/text_file.hpp"
+#include "tools/scene/values.hpp"
+#include "tools/verify/verdict.hpp"
+
+namespace delf {
+namespace {
+
+/// The checks of rows, or of a static field: windows of consecutive rows are complexes of their own.
+class MeshVerification {
+ public:
+  MeshVerification(const ComplexScene& scene, const Values& values)
+      : scene_(scene),
+        variations_(static_cast<int>(values.integer("verify.variations"))),
+        moments_(static_cast<int>(values.integer("verify.moments"))),
+        fault_(values.choice("verify.fault")),
+        random_(scene.scene.initial.seed) {
+    const double tolerance = values.real("verify.tolerance");
+    equations_ = {
+        .name = "field equations", .region = {}, .tolerance = std::max(tolerance, 10 * scene.scene.problem.tolerance)};
+    local_ = {.name = "local identity of the forms", .region = {}, .tolerance = tolerance};
+    for (const int centres : sizes)
+      forms_.push_back(
+          {.name = fmt::format("form formula, {}",
+                               centres == 1 ? "around a site" : fmt::format("{} connected sites", centres)),
+           .region = {},
+           .tolerance = tolerance});
+    reversal_ = {
+        .name = "time reversal", .region = {}, .tolerance = std::max(tolerance, 100 * scene.scene.problem.tolerance)};
+    order_ = {.name = "order of the updates, planned", .region = {}, .tolerance = 0};
+    verdict_.seed = scene.scene.initial.seed;
+    verdict_.subject = "rows computed here";
+  }
+
+  Verdict run() {
+    const auto begin = std::chrono::steady_clock::now();
+    if (scene_.time == MeshTime::none) look_at_field();
+    else if (scene_.time == MeshTime::cells) look_at_cells();
+    else look_at_rows();
+    verdict_.seconds = seconds_since(begin);
+    verdict_.checks = {equations_};
+    for (const Check& check : forms_) verdict_.checks.push_back(check);
+    verdict_.checks.push_back(local_);
+    if (order_.samples > 0) verdict_.checks.push_back(order_);
+    if (reversal_.samples > 0) verdict_.checks.push_back(reversal_);
+    for (const char* name : {"rectangles, staircases and slabs of a lattice", "balances of energy and momentum",
+                             "time reversal without rows"})
+      if (std::string_view(name).find("reversal") == std::string_view::npos || reversal_.samples == 0)
+        verdict_.left_out.push_back(fmt::format("{}: not applicable to a mesh", name));
+    return std::move(verdict_);
+  }
+
+ private:
+  static constexpr std::array<int, 5> sizes{1, 3, 9, 27, 60};
+  static constexpr int window = 5;
+
+  void look_at(const ComplexSystem& system, std::vector<double> y, const std::string& where) {
+    const Complex& complex = system.complex();
+    const Touching touching(complex);
+    if (fault_ == "field") {
+      const std::vector<int> one = draw_centres(complex, touching, 1, random_);
+      y[static_cast<std::size_t>(one.front() * system.components())] += 1e-3;
+    }
+    look_at_equations(system, y, where);
+    verdict_.stencils += complex.stencils();
+    for (std::size_t n = 0; n < sizes.size(); ++n) {
+      const ComplexForm form(
+          system, ComplexRegion::around(complex, touching, draw_centres(complex, touching, sizes[n], random_)), y,
+          fault_ == "sign");
+      auto V = form.first_variations(2 * variations_, random_);
+      if (fault_ == "variation")
+        if (const auto node = form.coupling_node()) V[0][*node] += 1e-2;
+      const std::string region = fmt::format("{} sites, {} stencils, {}", form.region().sites().size(),
+                                             form.region().stencils().size(), where);
+      for (std::size_t v = 0; v + 1 < V.size(); v += 2) {
+        if (forms_[n].take(form.form_formula(V[v], V[v + 1]), region) && !forms_[n].passed())
+          forms_[n].failure = form.linearised(V[v]) > 1e-9 ? "V does not solve the linearised equations"
+                                                           : "the stencils' equations are no derivatives of one action";
+        if (local_.take(form.local_identity(V[v], V[v + 1]), region) && !local_.passed())
+          local_.failure = "∂²L/∂y∂y of a stencil is not symmetric";
+      }
+      verdict_.points.push_back({fmt::format("{} sites", sizes[n]),
+                                 static_cast<std::int64_t>(form.region().stencils().size()), forms_[n].value, true});
+    }
+  }
+
+  // Relative to the largest terms of the window: a vacuum has no scale of its own.
+  void look_at_equations(const ComplexSystem& system, std::span<const double> y, const std::string& where) {
+    std::vector<Balance> E = system.residual(y);
+    const auto d = static_cast<std::size_t>(system.components());
+    if (scene_.time == MeshTime::cells) {
+      // The times of a site may lie close together: the terms are those of y itself, Σ |∂E/∂y y|, not of its quotients.
+      for (Balance& balance : E) balance.absolute = 0;
+      system.each_jacobian(system.all_stencils(), y, [&](ComplexSystem::Stencils batch, const double* J) {
+        const int size = system.family_of(batch[0]).size();
+        for (std::size_t s = 0; s < batch.size(); ++s)
+          for (int i = 0; i < size; ++i)
+            for (int m = 0; m < size; ++m)
+              E[system.node(batch[s], i)].absolute += std::abs(
+                  J[static_cast<std::size_t>((i * size + m) * PlacedFamily::most) + s] * y[system.node(batch[s], m)]);
+      });
+    }
+    double scale = 0;
+    for (std::size_t n = 0; n < E.size(); ++n)
+      if (system.complex().has_equation(static_cast<int>(n / d))) scale = std::max(scale, E[n].absolute);
+    for (std::size_t n = 0; n < E.size(); ++n) {
+      const auto site = static_cast<int>(n / d);
+      if (!system.complex().has_equation(site)) continue;
+      const double own = scene_.time == MeshTime::cells ? E[n].absolute : scale;
+      if (equations_.take({E[n].sum, own, E[n].count}, where))
+        equations_.region = fmt::format("{}, {}", system.complex().name(site), where), worst_site_ = equations_.region;
+    }
+    if (!equations_.passed()) equations_.failure = "the values around " + worst_site_ + " are not those of a solution";
+  }
+
+  void look_at_field() {
+    StaticField field(scene_);
+    field.solve();
+    look_at(field.system(), field.values(), "all of space");
+  }
+
+  // Windows of some updates a site, with the order that the planner finds for them.
+  void look_at_cells() {
+    AsynchronousEvolution evolution(*scene_.space, cell_steps(scene_));
+    evolution.start(scene_.values(), scene_.rates());
+    const double until = static_cast<double>(scene_.scene.steps) * scene_.scene.problem.time_step;
+    for (int moment = 0; moment < moments_ && !Interrupt::asked(); ++moment) {
+      evolution.advance(until * moment / moments_);
+      evolution.open_window();
+      evolution.update(6 * scene_.space->mesh.cells());
+      const auto made = evolution.window();
+      look_at(made.system, made.values,
+              fmt::format("updates {} to {}", evolution.updates() - 6 * scene_.space->mesh.cells() + 1,
+                          evolution.updates()));
+      // Each time of a site is determined by its time before, and by nothing that comes later.
+      const Complex& complex = made.system.complex();
+      const ComplexPlan plan = make_plan(complex, Touching(complex));
+      Balance wrong{0, static_cast<double>(plan.unknowns.size()), static_cast<std::int64_t>(plan.unknowns.size())};
+      for (std::size_t n = 0; n < plan.unknowns.size(); ++n) wrong.sum += plan.unknowns[n] != plan.equations[n] + 1;
+      wrong.sum += plan.largest > 1;
+      order_.take(wrong, fmt::format("{} sites in space and time, {} levels", complex.sites(), plan.levels));
+      if (!order_.passed()) order_.failure = "the plan solves for other values, or for several at once";
+    }
+    if (Interrupt::asked()) verdict_.status = "interrupted";
+  }
+
+  void look_at_rows() {
+    SpaceEvolution evolution(*scene_.space, scene_.time_step(0),
+                             {scene_.scene.problem.tolerance, scene_.scene.problem.max_iterations});
+    const std::vector<double> start = scene_.values();
+    evolution.start(start, scene_.rates());
+    const std::int64_t steps = std::max<std::int64_t>(scene_.scene.steps, window);
+    std::vector<double> rows, times;
+    const auto keep = [&](std::span<const double> row, double t) {
+      if (times.size() == window)
+        rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(row.size())), times.erase(times.begin());
+      rows.insert(rows.end(), row.begin(), row.end());
+      times.push_back(t);
+    };
+    keep(start, 0), keep(evolution.row(), evolution.time());
+    int moment = 0;
+    while (evolution.newest() < steps && !Interrupt::asked()) {
+      step(evolution, evolution.newest());
+      const std::int64_t next =
+          std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_);  // the last row of the next window
+      if (evolution.newest() > next - window) keep(evolution.row(), evolution.time());
+      if (evolution.newest() < next) continue;
+      const SpaceRows window_rows(*scene_.space, times);
+      look_at(window_rows.system(), rows,
+              fmt::format("rows {} to {}", evolution.newest() - window + 1, evolution.newest()));
+      while (moment < moments_ &&
+             std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_) <= evolution.newest())
+        ++moment;
+    }
+    if (Interrupt::asked()) verdict_.status = "interrupted";
+    else reverse(evolution, start);
+  }
+
+  void step(SpaceEvolution& evolution, std::int64_t number) const {
+    scene_.time_steps.empty() ? evolution.step() : evolution.step(scene_.time_step(number));
+  }
+
+  // Rows n, n − 1 in exchange, and back to rows 1, 0. The time step between them has been the last one.
+  void reverse(SpaceEvolution& evolution, const std::vector<double>& start) {
+    const std::int64_t there = evolution.newest(), back = std::min<std::int64_t>(there - 1, 200);
+    std::vector<double> goal(start);
+    if (back < there - 1) {  // a long way: over the last steps alone
+      SpaceEvolution again(*scene_.space, scene_.time_step(0),
+                           {scene_.scene.problem.tolerance, scene_.scene.problem.max_iterations});
+      again.start(start, scene_.rates());
+      while (again.newest() < there - 1 - back) step(again, again.newest());
+      goal.assign(again.row().begin(), again.row().end());
+    }
+    evolution.turn_back();
+    for (std::int64_t n = 0; n < back; ++n) step(evolution, there - 2 - n);
+    double distance = 0, size = 0;
+    for (std::size_t n = 0; n < goal.size(); ++n)
+      distance = std::max(distance, std::abs(goal[n] - evolution.row()[n])), size = std::max(size, std::abs(goal[n]));
+    Balance balance{distance, std::max(size, 1e-300), static_cast<std::int64_t>(goal.size())};
+    reversal_.take(balance, fmt::format("{} steps back", back));
+    if (!reversal_.passed()) reversal_.failure = "the steps back do not retrace the steps forth";
+  }
+
+  const ComplexScene& scene_;
+  int variations_, moments_;
+  std::string fault_, worst_site_;
+  std::mt19937_64 random_;
+  Check equations_, local_, reversal_, order_;
+  std::vector<Check> forms_;
+  Verdict verdict_;
+};
+
+}  // namespace
+
+ExitCode verify(const ComplexScene& c, const std::filesystem::path& folder, const std::optional<std::string>& fields) {
+  if (fields)
+    throw BadScene("command line: --fields: rows of another program are verified on lattices only; leave it out");
+  const Interrupt interrupt;
+  const Values values(c.scene.settings);
+  Verdict verdict;
+  try {
+    verdict = MeshVerification(c, values).run();
+  } catch (const BadInput& bad) {
+    throw c.scene.settings.located(bad);
+  }
+  make_results_folder(folder);
+  write_text_file(folder / "verify.json", verdict_json(c.scene, verdict));
+  fmt::print("{}{}: verify.json\n", verdict_report(c.scene, verdict), folder.string());
+  if (verdict.status == "interrupted") return ExitCode::interrupted;
+  return verdict.passed() ? ExitCode::done : ExitCode::check_failed;
+}
+
+}  // namespace delf

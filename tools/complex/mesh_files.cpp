@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "tools/complex/mesh_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ranges>
+
+#include "tools/scene/text_file.hpp"
+
+namespace delf {
+namespace {
+
+RowNames names_of(const ComplexScene& scene) {
+  RowNames names;
+  names.of[Role::field].clear();
+  for (const auto& field : scene.fields) names.of[Role::field].push_back(field.name);
+  return names;
+}
+
+}  // namespace
+
+MeshFiles::MeshFiles(const ComplexScene& scene, const std::filesystem::path& folder, std::int64_t frames,
+                     bool node_times)
+    : scene_(scene), folder_(folder), corners_(0) {
+  const Mesh& mesh = scene.space->mesh;
+  const auto coordinates = static_cast<std::size_t>(mesh.coordinates());
+  for (int c = 0; c < mesh.cells(); ++c) corners_ = std::max(corners_, static_cast<int>(mesh.cell(c).size()));
+  std::vector<double> points;
+  for (const Mesh::Point& p : mesh.points)
+    points.insert(points.end(), p.begin(), p.begin() + static_cast<std::ptrdiff_t>(coordinates));
+  std::vector<std::int32_t> cells;
+  for (int c = 0; c < mesh.cells(); ++c) {
+    const auto corners = mesh.cell(c);
+    cells.insert(cells.end(), corners.begin(), corners.end());
+    cells.resize(static_cast<std::size_t>(c + 1) * static_cast<std::size_t>(corners_), -1);
+  }
+  file_ = std::make_unique<FieldsFile>(folder / "fields.h5", points, frames, resolved_text(scene), 0, names_of(scene),
+                                       MeshOfFile{mesh.coordinates(), cells, corners_, node_times});
+}
+
+void MeshFiles::append(double time, std::span<const double> values, std::span<const double> node_times) {
+  RecordedRow row;
+  row[Role::field].assign(values.begin(), values.end());
+  file_->append(time, row, {}, node_times);
+  times_.push_back(time);
+}
+
+void MeshFiles::close() {
+  file_->close();
+  if (scene_.space->mesh.coordinates() > 1) write_text_file(folder_ / "fields.xdmf", xdmf());
+}
+
+std::string MeshFiles::xdmf() const {
+  const Mesh& mesh = scene_.space->mesh;
+  const int n = scene_.space->sites(), cells = mesh.cells(), d = static_cast<int>(scene_.fields.size());
+  // Cells of one kind are read from the file; of two kinds they are listed here, each behind XDMF's number of its kind.
+  const bool uniform = std::ranges::all_of(std::views::iota(0, cells),
+                                           [&](int c) { return static_cast<int>(mesh.cell(c).size()) == corners_; });
+  std::string topology;
+  if (uniform) {
+    topology = fmt::format(
+        "<Topology TopologyType=\"{}\" NumberOfElements=\"{}\"{}><DataItem Dimensions=\"{} {}\" NumberType=\"Int\" "
+        "Format=\"HDF\">fields.h5:/cells</DataItem></Topology>",
+        corners_ == 2   ? "Polyline"
+        : corners_ == 3 ? "Triangle"
+                        : "Quadrilateral",
+        cells, corners_ == 2 ? " NodesPerElement=\"2\"" : "", cells, corners_);
+  } else {
+    std::string list;
+    for (int c = 0; c < cells; ++c) {
+      list += mesh.cell(c).size() == 3 ? "4" : "5";
+      for (const auto p : mesh.cell(c)) list += fmt::format(" {}", p);
+      list += "\n";
+    }
+    topology = fmt::format(
+        "<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\"><DataItem Dimensions=\"{}\" NumberType=\"Int\" "
+        "Format=\"XML\">\n{}</DataItem></Topology>",
+        cells, mesh.vertices.size() + static_cast<std::size_t>(cells), list);
+  }
+  const int coordinates = mesh.coordinates();
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"rows\" GridType=\"Collection\" "
+      "CollectionType=\"Temporal\">\n";
+  for (std::size_t f = 0; f < times_.size(); ++f) {
+    text += fmt::format(
+        "<Grid Name=\"row\"><Time Value=\"{}\"/>\n{}\n<Geometry GeometryType=\"{}\"><DataItem Dimensions=\"{} {}\" "
+        "Precision=\"8\" Format=\"HDF\">fields.h5:/space</DataItem></Geometry>\n",
+        times_[f], topology, coordinates == 2 ? "XY" : "XYZ", n, coordinates);
+    for (int a = 0; a < d; ++a)
+      text += fmt::format(
+          "<Attribute Name=\"{}\" Center=\"Node\"><DataItem ItemType=\"HyperSlab\" Dimensions=\"{}\">"
+          "<DataItem Dimensions=\"3 3\" Format=\"XML\">{} 0 {} 1 1 1 1 {} 1</DataItem>"
+          "<DataItem Dimensions=\"{} {} {}\" Precision=\"8\" "
+          "Format=\"HDF\">fields.h5:/field</DataItem></DataItem></Attribute>\n",
+          scene_.fields[static_cast<std::size_t>(a)].name, n, f, a, n, times_.size(), n, d);
+    text += "</Grid>\n";
+  }
+  return text + "</Grid></Domain></Xdmf>\n";
+}
+
+}  // namespace delf

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "tools/complex/complex_scene.hpp"
+#include "tools/files/fields_file.hpp"
+
+namespace delf {
+
+/// fields.h5 of a scene on a mesh, and fields.xdmf beside it, which ParaView opens. XDMF needs two coordinates at least.
+class MeshFiles {
+ public:
+  MeshFiles(const ComplexScene&, const std::filesystem::path& folder, std::int64_t frames, bool node_times = false);
+  void append(double time, std::span<const double> values, std::span<const double> node_times = {});
+  void close();
+
+ private:
+  std::string xdmf() const;
+
+  const ComplexScene& scene_;
+  std::filesystem::path folder_;
+  int corners_;
+  std::vector<double> times_;
+  std::unique_ptr<FieldsFile> file_;
+};
+
+}  // namespace delf

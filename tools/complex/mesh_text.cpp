@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "tools/complex/mesh_text.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <unordered_map>
+
+namespace delf {
+namespace {
+
+/// Lines, and the words of each.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+
+  int number() const { return number_; }
+  /// The next line that has words; false at the end.
+  bool next() {
+    while (!rest_.empty()) {
+      const auto end = std::min(rest_.find('\n'), rest_.size());
+      line_ = rest_.substr(0, end);
+      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      ++number_;
+      line_ = line_.substr(0, line_.find('#'));
+      if (skip(); !line_.empty()) return true;
+    }
+    return false;
+  }
+  std::string_view word() {
+    const auto end = std::min(line_.find_first_of(blanks), line_.size());
+    const std::string_view first = line_.substr(0, end);
+    line_.remove_prefix(end);
+    skip();
+    return first;
+  }
+  bool has_words() const { return !line_.empty(); }
+  [[noreturn]] void refuse(const std::string& what) const { throw MeshError(number_, what); }
+
+  template <class Number>
+  Number read(const char* what) {
+    const std::string_view text = word();
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || text.empty())
+      refuse(fmt::format("\"{}\" is not {}; correct it", text.substr(0, 40), what));
+    if constexpr (std::is_floating_point_v<Number>)
+      if (!std::isfinite(value)) refuse(fmt::format("\"{}\" is not finite; correct it", text.substr(0, 40)));
+    return value;
+  }
+  void need_next(const char* what) {
+    if (!next()) refuse(fmt::format("the file ends before {}; it is cut short", what));
+  }
+  void need_section(std::string_view name) {
+    need_next(std::string(name).c_str());
+    if (word() != name) refuse(fmt::format("{} is missing here; correct the count above it", name));
+  }
+
+ private:
+  static constexpr auto blanks = " \t\r\v\f";
+  void skip() { line_.remove_prefix(std::min(line_.find_first_not_of(blanks), line_.size())); }
+
+  std::string_view rest_, line_;
+  int number_ = 0;
+};
+
+constexpr std::string_view point_word = "point", cell_word = "cell";
+
+Mesh plain_mesh(Lines& lines) {
+  Mesh mesh{.points = {}, .vertices = {}};
+  std::vector<std::vector<std::int32_t>> cells;
+  do {
+    const std::string_view kind = lines.word();
+    if (kind == point_word) {
+      Mesh::Point p{};
+      for (std::size_t k = 0; k < 3 && (k == 0 || lines.has_words()); ++k) p[k] = lines.read<double>("a coordinate");
+      mesh.points.push_back(p);
+      mesh.point_lines.push_back(lines.number());
+    } else if (kind == cell_word) {
+      std::array<std::int32_t, 4> corners{};
+      std::size_t count = 0;
+      while (count < 4 && lines.has_words()) corners[count++] = lines.read<std::int32_t>("the number of a point");
+      if (count < 2) lines.refuse("a cell needs two points at least; add them");
+      mesh.add_cell({corners.data(), count});
+      mesh.cell_lines.push_back(lines.number());
+    } else {
+      lines.refuse(
+          fmt::format("\"{}\" is neither point nor cell; correct it, or begin the line with #", kind.substr(0, 40)));
+    }
+    if (lines.has_words()) lines.refuse("a point has three coordinates at most, a cell four points; remove the rest");
+  } while (lines.next());
+  mesh.dimension = mesh.cells() > 0 && mesh.cell(0).size() == 2 ? 1 : 2;
+  return mesh;
+}
+
+/// Gmsh's types of elements that are cells, or lie at their boundary: how many points, and of which dimension.
+struct Element {
+  std::size_t points;
+  int dimension;
+};
+const Element* element_of(int type) {
+  static const std::unordered_map<int, Element> known{{15, {1, 0}}, {1, {2, 1}}, {2, {3, 2}}, {3, {4, 2}}};
+  const auto found = known.find(type);
+  return found == known.end() ? nullptr : &found->second;
+}
+
+class Gmsh {
+ public:
+  explicit Gmsh(Lines& lines) : lines_(lines) {}
+
+  Mesh read() {
+    lines_.need_next("the version");
+    const std::string version(lines_.word());
+    if (version != "2.2" && version != "4.1")
+      lines_.refuse(fmt::format("version {} of MSH; save as 2.2 or 4.1", version.substr(0, 20)));
+    if (lines_.word() != "0") lines_.refuse("a binary file; save it as ASCII (Mesh.Binary = 0)");
+    bool has_points = false, has_cells = false;
+    lines_.need_section("$EndMeshFormat");
+    while (lines_.next()) {
+      const std::string section(lines_.word());
+      if (section == "$Nodes") {
+        if (has_points) lines_.refuse("$Nodes is there twice; remove one");
+        version == "2.2" ? points_2() : points_4();
+        lines_.need_section("$EndNodes");
+        has_points = true;
+      } else if (section == "$Elements") {
+        if (!has_points || has_cells) lines_.refuse("$Elements must be there once, behind $Nodes");
+        version == "2.2" ? elements_2() : elements_4();
+        lines_.need_section("$EndElements");
+        has_cells = true;
+      } else if (section.starts_with('$') && !section.starts_with("$End")) {
+        const std::string end = "$End" + section.substr(1);
+        do lines_.need_next(end.c_str());
+        while (lines_.word() != end);
+      } else {
+        lines_.refuse(fmt::format("\"{}\" is no section; correct it", section.substr(0, 40)));
+      }
+    }
+    if (!has_cells) lines_.refuse("$Nodes or $Elements is missing; save the mesh again");
+    keep_highest();
+    return std::move(mesh_);
+  }
+
+ private:
+  std::int64_t count(const char* what) {
+    const auto n = lines_.read<std::int64_t>(what);
+    if (n < 0 || n > 100'000'000) lines_.refuse(fmt::format("{} {} is not a count; correct it", n, what));
+    return n;
+  }
+  void add_point(std::int64_t tag) {
+    if (!number_.try_emplace(tag, static_cast<std::int32_t>(mesh_.points.size())).second)
+      lines_.refuse(fmt::format("point {} is there twice; remove one", tag));
+    Mesh::Point p{};
+    for (double& x : p) x = lines_.read<double>("a coordinate");
+    mesh_.points.push_back(p);
+    mesh_.point_lines.push_back(lines_.number());
+  }
+  void points_2() {
+    lines_.need_next("the number of nodes");
+    for (std::int64_t n = count("nodes"); n > 0; --n) {
+      lines_.need_next("the last node");
+      add_point(lines_.read<std::int64_t>("the number of a node"));
+    }
+  }
+  void points_4() {
+    lines_.need_next("the number of nodes");
+    for (std::int64_t blocks = count("blocks of nodes"); blocks > 0; --blocks) {
+      lines_.need_next("the last block of nodes");
+      lines_.word(), lines_.word();
+      if (lines_.word() != "0") lines_.refuse("parametric nodes; save without them (Mesh.SaveParametric = 0)");
+      std::vector<std::int64_t> tags;
+      for (std::int64_t n = count("nodes"); n > 0; --n) {
+        lines_.need_next("the last node");
+        tags.push_back(lines_.read<std::int64_t>("the number of a node"));
+      }
+      for (const std::int64_t tag : tags) {
+        lines_.need_next("the last node");
+        add_point(tag);
+      }
+    }
+  }
+  void add_element(int type) {
+    const Element* const element = element_of(type);
+    if (!element)
+      lines_.refuse(fmt::format(
+          "an element of type {}; cells are lines, triangles and quadrilaterals of order 1 (1, 2, 3)", type));
+    std::array<std::int32_t, 4> corners{};
+    for (std::size_t l = 0; l < element->points; ++l) {
+      const auto tag = lines_.read<std::int64_t>("the number of a node");
+      const auto found = number_.find(tag);
+      if (found == number_.end()) lines_.refuse(fmt::format("there is no node {}; correct it", tag));
+      corners[l] = found->second;
+    }
+    mesh_.add_cell({corners.data(), element->points});
+    mesh_.cell_lines.push_back(lines_.number());
+    dimensions_.push_back(element->dimension);
+  }
+  void elements_2() {
+    lines_.need_next("the number of elements");
+    for (std::int64_t n = count("elements"); n > 0; --n) {
+      lines_.need_next("the last element");
+      lines_.word();
+      const int type = lines_.read<int>("the type of an element");
+      for (std::int64_t tags = count("tags"); tags > 0 && lines_.has_words(); --tags) lines_.word();
+      add_element(type);
+    }
+  }
+  void elements_4() {
+    lines_.need_next("the number of elements");
+    for (std::int64_t blocks = count("blocks of elements"); blocks > 0; --blocks) {
+      lines_.need_next("the last block of elements");
+      lines_.word(), lines_.word();
+      const int type = lines_.read<int>("the type of an element");
+      for (std::int64_t n = count("elements"); n > 0; --n) {
+        lines_.need_next("the last element");
+        lines_.word();
+        add_element(type);
+      }
+    }
+  }
+  void keep_highest() {
+    Mesh kept{.dimension = 0, .points = {}, .vertices = {}};
+    for (const int d : dimensions_) kept.dimension = std::max(kept.dimension, d);
+    for (int c = 0; c < mesh_.cells(); ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      if (dimensions_[i] != kept.dimension || kept.dimension == 0) continue;
+      kept.add_cell(mesh_.cell(c));
+      kept.cell_lines.push_back(mesh_.cell_lines[i]);
+    }
+    kept.points = std::move(mesh_.points), kept.point_lines = std::move(mesh_.point_lines);
+    mesh_ = std::move(kept);
+  }
+
+  Lines& lines_;
+  Mesh mesh_{.points = {}, .vertices = {}};
+  std::vector<int> dimensions_;
+  std::unordered_map<std::int64_t, std::int32_t> number_;
+};
+
+}  // namespace
+
+Mesh parse_mesh(std::string_view text) {
+  Lines lines(text);
+  if (!lines.next()) throw MeshError(1, "the mesh is empty; write lines like point 0 0 and cell 0 1 2");
+  Mesh mesh = text.starts_with("$MeshFormat") ? Gmsh(lines).read() : plain_mesh(lines);
+  if (const auto fault = find_fault(mesh)) throw MeshError(fault->line, fault->what);
+  return mesh;
+}
+
+}  // namespace delf

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "lattice/complex/mesh.hpp"
+
+namespace delf {
+
+/// What is wrong with the text of a mesh, and on which line.
+struct MeshError : std::runtime_error {
+  MeshError(int line_, const std::string& what) : std::runtime_error(what), line(line_) {}
+  int line;
+};
+
+/// A mesh from text: Gmsh's MSH 2.2 or 4.1 (ASCII) if the first line is $MeshFormat, else lines
+///
+///     point X [Y [Z]]
+///     cell I J [K [L]]        points by number from 0; # begins a comment
+///
+/// Of Gmsh's elements those of the highest dimension are the cells; points, lines and the like around them are boundaries,
+/// and passed over. Throws MeshError for what cannot be read and for every fault of find_fault().
+Mesh parse_mesh(std::string_view text);
+
+/// What lattice.mesh names: a generator icosahedron:LEVEL, graded:LENGTH,POINTS,RATIO, rectangle:WIDTH,HEIGHT,NX,NY or
+/// quadrilaterals:WIDTH,HEIGHT,NX,NY, else a file, beside `folder` or here. `file` receives its path, empty for a
+/// generator. Throws BadInput "lattice.mesh".
+Mesh named_mesh(const std::string& name, const std::filesystem::path& folder, std::filesystem::path& file);
+
+}  // namespace delf

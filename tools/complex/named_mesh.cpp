@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "jets/expressions/expression.hpp"
+#include "lattice/error.hpp"
+#include "lattice/text_parts.hpp"
+#include "tools/complex/mesh_text.hpp"
+
+namespace delf {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr auto key = "lattice.mesh";
+
+[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+  throw BadInput(key, fmt::format("{} = {}: {}", key, name, why));
+}
+
+/// The numbers behind NAME:, as many as there must be.
+std::vector<double> numbers(const std::string& name, const std::string& form) {
+  const std::vector<std::string> parts = parts_of(std::string_view(name).substr(name.find(':') + 1));
+  if (parts.size() != parts_of(form).size()) refuse(name, "write it as " + form);
+  std::vector<double> values;
+  for (const std::string& part : parts) values.push_back(number_of(part, key));
+  return values;
+}
+
+int whole(const std::string& name, double value, int least, int most) {
+  if (value != std::round(value) || value < least || value > most)
+    refuse(name, fmt::format("{:g} must be a whole number from {} to {}", value, least, most));
+  return static_cast<int>(value);
+}
+double positive(const std::string& name, double value) {
+  if (!(value > 0) || !std::isfinite(value)) refuse(name, fmt::format("{:g} must be above 0", value));
+  return value;
+}
+
+Mesh read_file(const std::string& name, const fs::path& folder, fs::path& file) {
+  std::error_code none;
+  for (const fs::path& path : {folder / name, fs::path(name)})
+    if (file.empty() && fs::is_regular_file(path, none)) file = fs::absolute(path).lexically_normal();
+  if (file.empty())
+    refuse(name,
+           "is neither a file, beside the scene or here, nor icosahedron:, graded:, rectangle: or quadrilaterals:; "
+           "check the path");
+  std::ifstream in(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  try {
+    return parse_mesh(text);
+  } catch (const MeshError& error) {
+    throw BadInput(key, fmt::format("{} = {}: {}{}: {}", key, name, file.filename().string(),
+                                    error.line > 0 ? fmt::format(":{}", error.line) : "", error.what()));
+  }
+}
+
+}  // namespace
+
+Mesh named_mesh(const std::string& name, const fs::path& folder, fs::path& file) {
+  constexpr int most = 3000;
+  file.clear();
+  Mesh mesh;
+  if (name.starts_with("icosahedron:"))
+    return icosahedral_sphere(whole(name, numbers(name, "icosahedron:LEVEL")[0], 0, 9));
+  if (name.starts_with("graded:")) {
+    const auto n = numbers(name, "graded:LENGTH,POINTS,RATIO");
+    mesh = graded_interval(positive(name, n[0]), whole(name, n[1], 3, 10'000'000), positive(name, n[2]));
+  } else if (name.starts_with("rectangle:") || name.starts_with("quadrilaterals:")) {
+    const bool quadrilaterals = name.starts_with("q");
+    const auto n = numbers(name, fmt::format("{}:WIDTH,HEIGHT,NX,NY", quadrilaterals ? "quadrilaterals" : "rectangle"));
+    mesh = rectangle_mesh(positive(name, n[0]), positive(name, n[1]), whole(name, n[2], 1, most),
+                          whole(name, n[3], 1, most), quadrilaterals);
+  } else {
+    return read_file(name, folder, file);
+  }
+  if (const auto fault = find_fault(mesh)) refuse(name, fault->what);
+  return mesh;
+}
+
+}  // namespace delf
