@@ -68,7 +68,7 @@ TEST_CASE("a mesh that cannot be read says on which line") {
 
 TEST_CASE("a wave on a mesh runs, is planned and verified through the program") {
   const Folder folder;
-  const std::string scene = "sphere --lattice.mesh=icosahedron:2 --run.steps=40";
+  const std::string scene = "sphere --lattice.mesh=icosahedron:2 --run.steps=40 --initial.phi=z";
   const Ran ran = delf_program(folder, "run " + scene + " --out out");
   CAPTURE(ran.out, ran.err);
   REQUIRE(ran.code == 0);
