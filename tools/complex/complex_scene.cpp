@@ -150,11 +150,11 @@ ComplexScene read_complex_scene(Settings given) {
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
     if (c.time == MeshTime::none) return c;
 
+    for (const char* other : {"lattice.courant", "lattice.time_step"})
+      if (values.given("lattice.time_steps") && values.given(other))
+        settings.keep_one_of("lattice.time_steps", other, {});
     c.time_steps = read_time_steps(settings, values);
     if (!c.time_steps.empty()) {
-      if (values.given("lattice.courant") || values.given("lattice.time_step"))
-        throw settings.error("lattice.time_steps",
-                             "lattice.courant or lattice.time_step is given too; keep one of them");
       if (c.time == MeshTime::cells)
         throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
       p.time_step = c.time_steps.front();
