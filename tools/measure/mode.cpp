@@ -25,6 +25,7 @@ class Mode : public Measurement {
       throw BadInput("", "modes are 1, 2, ... as far as the sites resolve; choose one of them");
   }
   void see(const MeasuredRow& row) override { now_ = amplitude(row.row), before_ = amplitude(row.other); }
+  void visit(SavedState& state) override { state("amplitude", now_), state("amplitude before", before_); }
 
  protected:
   double amplitude(std::span<const double> row) const {
