@@ -4,6 +4,7 @@
 
 #include "lattice/error.hpp"
 #include "schemes/states/modes.hpp"
+#include "schemes/stepping/saved_state.hpp"
 #include "tools/measure/entries.hpp"
 
 namespace delf {
