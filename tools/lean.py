@@ -71,7 +71,7 @@ work space 6732 B, monitors 2176 B
     ...
     lean.Refused: the plan says nothing of memory
     """
-    memory = re.search(r"^memory +(\d+) bytes: (.*)$", plan, re.MULTILINE)
+    memory = re.search(r"^ *memory +(\d+) bytes: (.*)$", plan, re.MULTILINE)
     if not memory:
         raise Refused("the plan says nothing of memory")
     parts = {name: int(size) for name, size in re.findall(r"([^,]+?) (\d+) B(?:, |$)", memory[2])}

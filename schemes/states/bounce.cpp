@@ -41,9 +41,6 @@ class Bounce final : public State {
         room_(build.lattice.length() / (two ? 2 : 1)),
         mass_(pulse_mass(build)),
         v_(subluminal(build, build.entry.name)) {
-    if (build.lattice.is_circle())
-      throw BadInput("initial.state", "initial.state = " + build.entry.name +
-                                          ": solitons bounce off walls; use lattice.space = interval");
     if (!(v_ > 0))
       throw BadInput("initial.speed",
                      "initial.speed = " + text(v_) + ": a soliton that bounces moves; choose 0 < speed < 1");
@@ -110,7 +107,7 @@ const StateEntry soliton_bounce_state{"soliton-bounce",
                                       {initial::speed_parameter(0.9)},
                                       {"sine-gordon"},
                                       {},
-                                      Place::line,
+                                      Place::interval,
                                       [](const StateBuild& build) { return initial::bounce(build, false); },
                                       false,
                                       {},
@@ -122,7 +119,7 @@ const StateEntry two_soliton_bounce_state{"two-soliton-bounce",
                                           {initial::speed_parameter(0.9), initial::distance_parameter()},
                                           {"sine-gordon"},
                                           {},
-                                          Place::line,
+                                          Place::interval,
                                           [](const StateBuild& build) { return initial::bounce(build, true); },
                                           false,
                                           {},

@@ -72,6 +72,8 @@ void check_place(const StateEntry& entry, const Lattice& lattice, const std::str
   const bool at_a_point = lattice.space() == Space::point;
   if (entry.place == Place::circle && !lattice.is_circle())
     throw BadInput("initial.state", what + "goes around a circle; use lattice.space=circle");
+  if (entry.place == Place::interval && lattice.space() != Space::interval)
+    throw BadInput("initial.state", what + "bounces off walls; use lattice.space=interval");
   if (entry.place == Place::line && at_a_point)
     throw BadInput("initial.state", what + "has an extent in space; use lattice.space=circle or interval");
   if (entry.place == Place::point && !at_a_point)

@@ -9,7 +9,7 @@
 namespace delf {
 
 /// Where a state can live: on a circle; on a circle or between walls; at a point; or it does not matter.
-enum class Place { circle, line, point, anywhere };
+enum class Place { circle, interval, line, point, anywhere };
 
 struct StateEntry;
 

@@ -177,8 +177,8 @@ TEST_CASE("what they declare is listed, explained, checked and warned of like th
   const Ran listed = own_program(folder, {"list"});
   for (const char* name : {"own-quartic", "theory.quartic", "own-cells", "own-bump"}) CHECK(contains(listed.out, name));
   const Ran help = own_program(folder, {"help", "run"});
-  CHECK(contains(help.out, "theory.quartic         g (0.5)"));
-  CHECK(contains(help.out, "scheme.cells           method = own-cells: the cells (rectangle)"));
+  CHECK(contains(help.out, "theory.quartic         g (0.5; at least 0)"));
+  CHECK(contains(help.out, "scheme.cells           method = own-cells: the cells (rectangle; one of rectangle, triangle)"));
   CHECK(contains(help.out, "initial.height         state = own-bump: A (0.25)"));
 
   const auto refused = [&](const std::string& key, const std::string& why) {

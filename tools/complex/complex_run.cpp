@@ -11,6 +11,7 @@
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_files.hpp"
 #include "tools/complex/static_field.hpp"
+#include "tools/files/folder_lock.hpp"
 #include "tools/files/series_file.hpp"
 #include "tools/run/in_words.hpp"
 #include "tools/run/interrupt.hpp"
@@ -124,7 +125,7 @@ void measure_error(const ComplexScene& c, std::span<const double> values, double
 class MeshRecorder {
  public:
   MeshRecorder(const ComplexScene& c, const fs::path& folder, std::int64_t frames, Outcome& outcome)
-      : outcome_(outcome), series_(folder / "series.csv", {}) {
+      : outcome_(outcome), series_(folder / "series.csv", std::vector<std::string>{}) {
     if (c.scene.fields) files_.emplace(c, folder, frames, c.time == MeshTime::cells);
   }
   void record(std::int64_t row, double time, std::span<const double> values, double energy, int iterations,
@@ -247,6 +248,7 @@ std::vector<double> cell_steps(const ComplexScene& c) {
 ExitCode run(const ComplexScene& c, const fs::path& folder) {
   const Interrupt interrupt;
   make_results_folder(folder);
+  const FolderLock lock(folder);
   std::error_code none;
   for (const char* name : {"summary.json", "series.csv", "fields.h5", "fields.xdmf", "scene.ini"})
     fs::remove(folder / name, none);
@@ -286,14 +288,17 @@ ExitCode plan(const ComplexScene& c) {
              boundary_points(space.mesh).empty()      ? ""
              : std::ranges::count(space.fixed, 1) > 0 ? ", fixed"
                                                       : ", natural");
+  const std::size_t values = 8 * static_cast<std::size_t>(space.sites()) * c.fields.size();
+  const auto say_memory = [](std::size_t bytes, std::size_t rows) {
+    fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes, rows,
+               bytes - rows);
+  };
   try {
     if (c.time == MeshTime::none) {
       const StaticField field(c);
-      fmt::print(
-          "  stencils   {} of sites and cells\n  solve      {}: sparse Newton steps with a line search\n  memory     "
-          "{}\n",
-          field.system().complex().stencils(), field.solver().plan().describe(),
-          bytes_in_words(static_cast<double>(field.system().bytes())));
+      fmt::print("  stencils   {} of sites and cells\n  solve      {}: sparse Newton steps with a line search\n",
+                 field.system().complex().stencils(), field.solver().plan().describe());
+      say_memory(field.system().bytes(), values);
     } else if (c.time == MeshTime::cells) {
       const std::vector<double> steps = cell_steps(c);
       const auto [least, largest] = std::ranges::minmax(steps);
@@ -303,6 +308,7 @@ ExitCode plan(const ComplexScene& c) {
           "  steps      each cell by its own, {:.6g} to {:.6g}: {:.6g} updates, and {:.6g} with the least for all\n",
           least, largest, updates, static_cast<double>(c.scene.steps) * static_cast<double>(steps.size()));
       fmt::print("  solve      explicit, in the order of a priority queue\n");
+      say_memory(AsynchronousEvolution(space, steps).bytes(), 2 * values);
     } else {
       const SpaceEvolution evolution(space, c.time_step(0));
       fmt::print("  steps      {} of {}\n", c.scene.steps,
@@ -314,7 +320,7 @@ ExitCode plan(const ComplexScene& c) {
                  evolution.is_direct() ? ": explicit, one sparse product a row" : ": Newton steps");
       if (const auto most = evolution.largest_step())
         fmt::print("  stable     h below {:.6g}, by linear theory about 0\n", *most);
-      fmt::print("  memory     {}\n", bytes_in_words(static_cast<double>(evolution.bytes())));
+      say_memory(evolution.bytes(), 3 * values);
     }
   } catch (const BadInput& bad) {
     throw c.scene.settings.located(bad);

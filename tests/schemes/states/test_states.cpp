@@ -157,11 +157,12 @@ std::vector<Case> exact_cases() {
     cases.push_back({"wave packet of " + theory, with(request("wave-packet", theory), waves(5)), ring});
     cases.push_back({"wave packet to the left of " + theory, with(request("wave-packet", theory), waves(-5)), ring});
   }
-  cases.push_back({"a formula", with(request("formula", "wave"),
-                                     [](StateRequest& r) {
-                                       r.values = {};
-                                       r.values["exact.phi"] = std::string("0.4*sin(2*pi*(x - t)/L) + 0.1*cos(4*pi*(x + t)/L)");
-                                     }),
+  cases.push_back({"a formula",
+                   with(request("formula", "wave"),
+                        [](StateRequest& r) {
+                          r.values = {};
+                          r.values["exact.phi"] = std::string("0.4*sin(2*pi*(x - t)/L) + 0.1*cos(4*pi*(x + t)/L)");
+                        }),
                    ring});
   return cases;
 }
@@ -353,6 +354,9 @@ std::vector<Case> inexact_cases() {
   auto two = request("noise", "coupled-sine-gordon");
   two.components = 2;
   return {{"collision", request("mps-collision"), Lattice::circle(255, 40)},
+          {"a gas of kinks", request("kink-gas"), Lattice::interval(400, 160)},
+          {"a soliton between walls", request("soliton-bounce"), Lattice::interval(401, 25)},
+          {"two solitons between walls", request("two-soliton-bounce"), Lattice::interval(401, 25)},
           {"noise", request("noise"), ring},
           {"noise between walls", request("noise"), interval},
           {"noise between other walls", request("noise"), mixed},
@@ -589,8 +593,7 @@ TEST_CASE("states of several components and of a point refuse what they cannot b
     CAPTURE(info.name);
     CHECK(key_of(request(info.name, any ? "pendulum" : theory), point) == (at_a_point ? "none" : "initial.state"));
     for (const char* several : {"kepler", "coupled-sine-gordon", "complex-klein-gordon", "wave-map"}) {
-      const bool refused =
-          any ? std::ranges::find(info.but, several) != info.but.end() : several != theory;
+      const bool refused = any ? std::ranges::find(info.but, several) != info.but.end() : several != theory;
       if (refused) CHECK(key_of(request(info.name, several), at_a_point ? point : circle) == "initial.state");
     }
   }
@@ -932,7 +935,8 @@ TEST_CASE("errors read as one line with a remedy", "[states]") {
 }
 
 TEST_CASE("the list of states has every state that can be made", "[states]") {
-  const Lattice circle = Lattice::circle(64, 10);
+  const Lattice circle = Lattice::circle(64, 10), interval = Lattice::interval(64, 25);
+  const Lattice wide = Lattice::circle(640, 200);  // kinks a distance apart
   int made = 0;
   for (const StateEntry* entry : state_entries()) {
     const StateEntry& info = *entry;
@@ -941,11 +945,13 @@ TEST_CASE("the list of states has every state that can be made", "[states]") {
     CHECK_FALSE(words.empty());
     if (!info.build) continue;
     const auto theory = info.any_theory ? "wave" : words.substr(0, words.find_first_of(",;"));
-    const bool point = info.place == Place::point;
-    CHECK_FALSE(make_state(request(info.name, theory), point ? Lattice::point() : circle)->description().empty());
+    const Lattice &lattice = info.name == "kink-gas" ? wide : info.place == Place::point      ? Lattice::point()
+                             : info.place == Place::interval ? interval
+                                                             : circle;
+    CHECK_FALSE(make_state(request(info.name, theory), lattice)->description().empty());
     ++made;
   }
-  CHECK(made == 21);
+  CHECK(made == 24);
 }
 
 TEST_CASE("the nearest name is the one a typing error away", "[states]") {

@@ -59,7 +59,7 @@ TEST_CASE("fields, nodes inside cells and multipliers are recorded with their na
       {"complex-klein-gordon", "phi1,phi2", ",charge_u1", 320, 2, 0, 0},
       {"wave-map", "phi1,phi2,phi3", ",constraint,rotation_x,rotation_y,rotation_z", 128, 3, 0, 1},
       {"spacetime-element", "phi", "", 80, 1, 3, 0},
-      {"r-adaptive", "phi,X", ",constraint", 17, 2, 0, 1},
+      {"r-adaptive", "phi,X", ",constraint,mesh_min_spacing,multiplier_max", 17, 2, 0, 1},
       {"breather", "", "", 512, 1, 0, 0},
   }));
   const Folder folder;
@@ -241,7 +241,7 @@ TEST_CASE("figures of a point are a trajectory, and of two coordinates an orbit"
   };
   const Case c = GENERATE(values<Case>({{"pendulum", {"trajectory", "energy"}, {"orbit", "spacetime", "waveforms"}},
                                         {"kepler", {"trajectory", "orbit", "energy"}, {"spacetime", "waveforms"}},
-                                        {"r-adaptive", {"spacetime", "waveforms"}, {"energy", "orbit", "trajectory"}},
+                                        {"r-adaptive", {"spacetime", "waveforms", "energy"}, {"orbit", "trajectory"}},
                                         {"wave-map", {"spacetime", "waveforms", "energy"}, {"orbit", "trajectory"}}}));
   const Folder folder;
   const Ran ran = delf_program(folder, std::string("run ") + c.scene + " --run.steps=40 --output.every=1 --out out");

@@ -32,7 +32,7 @@ TEST_CASE("errors in a scene name file, line, key, value, reason and remedy") {
       {"[scheme]\ntolerance = 1", "scheme.tolerance = 1", "at most 0.01; lower"},
       {"[initial]\nspeed = 1", "initial.speed = 1", "slower than light"},
       {"[initial]\nstart = legendre", "initial.start = legendre",
-       "needs scheme.method = radau-iia or cgvi or spacetime or processed or composition"},
+       "needs scheme.method = radau-iia or r-adaptive or cgvi or spacetime or processed or composition"},
       {"[scheme]\nquadrature = simpson", "scheme.quadrature = simpson", "not known"},
       {"[output]\nfields = maybe", "output.fields = maybe", "on or off"},
       {"[output]\ntimes = 1, x", "output.times = 1, x", "not a number"},
@@ -123,7 +123,7 @@ TEST_CASE("a file that is no scene is refused in one line") {
   check_refused(delf_program(folder, "run colision"),
                 {"colision: no such file or shipped scene; did you mean collision?"});
   check_refused(delf_program(folder, "run collision.ini"), {"did you mean collision?"});
-  check_refused(delf_program(folder, "run qwertyuiop"), {"known: born-infeld, breather, collision"});
+  check_refused(delf_program(folder, "run qwertyuiop"), {"known: asynchronous, born-infeld, breather, collision"});
   check_refused(delf_program(folder, "run ''"), {"no such file"});
 }
 
