@@ -236,13 +236,15 @@ std::vector<double> RegionSystem::boundary_terms(const Values& y, const Pair& pa
 Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry, bool up_to_divergence) const {
   Balance balance;
   std::vector<double> xi;
+  // A fixed wall has no equation: what flows into it is not zero where the symmetry moves it, and counts as at ∂U.
+  const auto flows = [&](int node) { return at_boundary(node) || held_[static_cast<std::size_t>(node)]; };
   assembly_->each_residual(row(y), origin_, [&](const Assembly::Local& at) {
-    if (!up_to_divergence && std::ranges::none_of(at.places, [&](int node) { return at_boundary(node); })) return;
+    if (!up_to_divergence && std::ranges::none_of(at.places, flows)) return;
     generator(system_, at.family, symmetry, at.y, xi);
     double change = 0;
     for (std::size_t i = 0; i < at.places.size(); ++i) {
       const double J = momentum_map(static_cast<int>(i), 1, at.derivatives, xi);
-      if (at_boundary(at.places[i])) balance.add(J);
+      if (flows(at.places[i])) balance.add(J);
       change += J;
     }
     if (up_to_divergence) balance.add(-change);

@@ -6,11 +6,11 @@ set -euo pipefail
 rooms=(lattice jets schemes tools tests)
 lattice='lattice lattice/shapes lattice/plan lattice/complex'
 jets='jets jets/numbers jets/simd jets/tables'
-families="$lattice $jets schemes/families"
+families="$lattice $jets jets/expressions schemes/families"
 system="$families schemes/system"
 stepping="$system schemes/solvers schemes/stepping"
 schemes="$stepping jets/expressions schemes schemes/theories schemes/methods schemes/states schemes/verify
-  schemes/stability schemes/complex"
+  schemes/stability schemes/complex schemes/diagnosis"
 
 declare -A may_include=(
   [lattice]=''
@@ -22,7 +22,7 @@ declare -A may_include=(
   [jets/simd]='lattice jets'
   [jets/tables]="lattice lattice/shapes jets jets/numbers"
   [jets/expressions]="lattice $jets"
-  [schemes/families]="$lattice $jets"
+  [schemes/families]="$lattice $jets jets/expressions"  # monitors are text too
   [schemes/system]="$families"
   [schemes/solvers]="$lattice jets/simd"
   [schemes/stepping]="$system schemes/solvers schemes/stepping/rows schemes/stability"  # failures name ghosts
@@ -33,6 +33,7 @@ declare -A may_include=(
   [schemes/stability]="$system"
   [schemes/complex]="$system schemes/verify"  # balances
   [schemes/verify]="$stepping schemes schemes/theories"  # time reversal steps a simulation, balances ask a theory
+  [schemes/diagnosis]="$stepping schemes schemes/theories schemes/methods schemes/verify"  # tries every method on rows
   [schemes]="$schemes"
   [tools]="$schemes"
   [tests]="$schemes schemes/stepping/rows tools"

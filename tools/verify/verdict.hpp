@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "schemes/verify/check.hpp"
-#include "schemes/verify/diagnosis/finding.hpp"
+#include "schemes/diagnosis/finding.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {

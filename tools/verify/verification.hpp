@@ -9,7 +9,7 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/verify/diagnosis/evidence.hpp"
+#include "schemes/diagnosis/evidence.hpp"
 #include "schemes/verify/equation_check.hpp"
 #include "schemes/verify/form_check.hpp"
 #include "schemes/verify/nearby_check.hpp"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lattice/plan/solve_plan.hpp"
-#include "schemes/verify/diagnosis/diagnosis.hpp"
-#include "schemes/verify/diagnosis/fields_system.hpp"
+#include "schemes/diagnosis/diagnosis.hpp"
+#include "schemes/diagnosis/fields_system.hpp"
 #include "schemes/verify/equation_check.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "schemes/verify/diagnosis/findings.hpp"
-#include "schemes/verify/diagnosis/own_equations.hpp"
-#include "schemes/verify/diagnosis/rounded_values.hpp"
+#include "schemes/diagnosis/findings.hpp"
+#include "schemes/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/rounded_values.hpp"
 
 namespace delf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/verify/diagnosis/sample.hpp"
+#include "schemes/diagnosis/sample.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "schemes/verify/diagnosis/fields_system.hpp"
-#include "schemes/verify/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/fields_system.hpp"
+#include "schemes/diagnosis/own_equations.hpp"
 
 namespace delf {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "schemes/verify/diagnosis/findings.hpp"
-#include "schemes/verify/diagnosis/least_squares.hpp"
+#include "schemes/diagnosis/findings.hpp"
+#include "schemes/diagnosis/least_squares.hpp"
 
 namespace delf {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/system/lattice_system.hpp"
-#include "schemes/verify/diagnosis/finding.hpp"
+#include "schemes/diagnosis/finding.hpp"
 
 namespace delf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/verify/diagnosis/evidence.hpp"
+#include "schemes/diagnosis/evidence.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "schemes/methods/method_registry.hpp"
-#include "schemes/verify/diagnosis/findings.hpp"
+#include "schemes/diagnosis/findings.hpp"
 
 namespace delf {
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <optional>
 
-#include "schemes/verify/diagnosis/evidence.hpp"
-#include "schemes/verify/diagnosis/sample.hpp"
+#include "schemes/diagnosis/evidence.hpp"
+#include "schemes/diagnosis/sample.hpp"
 
 namespace delf {
 

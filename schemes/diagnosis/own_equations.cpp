@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/verify/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/own_equations.hpp"
 
 #include <algorithm>
 #include <cmath>

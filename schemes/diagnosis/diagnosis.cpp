@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/verify/diagnosis/diagnosis.hpp"
+#include "schemes/diagnosis/diagnosis.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "schemes/verify/diagnosis/findings.hpp"
-#include "schemes/verify/diagnosis/rounded_values.hpp"
+#include "schemes/diagnosis/findings.hpp"
+#include "schemes/diagnosis/rounded_values.hpp"
 
 namespace delf {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "schemes/verify/diagnosis/fields_system.hpp"
-#include "schemes/verify/diagnosis/findings.hpp"
-#include "schemes/verify/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/fields_system.hpp"
+#include "schemes/diagnosis/findings.hpp"
+#include "schemes/diagnosis/own_equations.hpp"
 
 namespace delf {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "schemes/verify/diagnosis/evidence.hpp"
+#include "schemes/diagnosis/evidence.hpp"
 
 namespace delf {
 

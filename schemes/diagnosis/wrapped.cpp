@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "schemes/theories/theory_registry.hpp"
-#include "schemes/verify/diagnosis/findings.hpp"
-#include "schemes/verify/diagnosis/own_equations.hpp"
-#include "schemes/verify/diagnosis/unwrap.hpp"
+#include "schemes/diagnosis/findings.hpp"
+#include "schemes/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/unwrap.hpp"
 
 namespace delf {
 

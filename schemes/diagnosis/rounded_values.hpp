@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "schemes/verify/diagnosis/evidence.hpp"
+#include "schemes/diagnosis/evidence.hpp"
 
 namespace delf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/verify/diagnosis/fields_system.hpp"
+#include "schemes/diagnosis/fields_system.hpp"
 
 #include <algorithm>
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "schemes/verify/diagnosis/findings.hpp"
-#include "schemes/verify/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/findings.hpp"
+#include "schemes/diagnosis/own_equations.hpp"
 
 namespace delf {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "schemes/verify/diagnosis/findings.hpp"
-#include "schemes/verify/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/findings.hpp"
+#include "schemes/diagnosis/own_equations.hpp"
 
 namespace delf {
 

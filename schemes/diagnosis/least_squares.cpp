@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/verify/diagnosis/least_squares.hpp"
+#include "schemes/diagnosis/least_squares.hpp"
 
 #include <algorithm>
 #include <cmath>

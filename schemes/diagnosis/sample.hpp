@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "schemes/simulation.hpp"
-#include "schemes/verify/diagnosis/evidence.hpp"
+#include "schemes/diagnosis/evidence.hpp"
 
 namespace delf {
 
