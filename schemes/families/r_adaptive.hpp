@@ -11,16 +11,22 @@
 
 namespace delf {
 
-/// Sine-Gordon on a mesh that is a field itself, Tyranowski–Desbrun (154)–(158): component 0 is φ, 1 is X, both
+/// Sine-Gordon of mass m on a mesh that is a field itself, Tyranowski–Desbrun (154)–(158): component 0 is φ, 1 is X, both
 /// piecewise linear in x; the integrals over x are exact. With δ = X_{i+1} − X_i and γ = (y_{i+1} − y_i)/δ on a row,
 ///
-///   L̃(□) = Δt/2 Σ_{rows j, j+1} ( δ/6 (w_i² + w_i w_{i+1} + w_{i+1}²) − ½γ²δ − δ (1 − C) ),        (157), (44), (170)
+///   L̃(□) = Δt/2 Σ_{rows j, j+1} ( δ/6 (w_i² + w_i w_{i+1} + w_{i+1}²) − ½γ²δ − m²δ (1 − C) ),      (157), (44), (170)
 ///   w = (y^{j+1} − y^j)/Δt − γ (X^{j+1} − X^j)/Δt
 ///   C = (sin y_{i+1} − sin y_i)/(y_{i+1} − y_i) = cos((y_i + y_{i+1})/2) sinc((y_i − y_{i+1})/2)
 struct MovingRectangle {
+  double mass = 1;
+
   StencilPattern pattern() const { return StencilPattern(shapes::rectangle); }
-  std::vector<VertexValue> values() const {
-    return {{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {3, 0}, {3, 1}};
+  std::vector<VertexValue> values() const { return {{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {3, 0}, {3, 1}}; }
+
+  /// ∫ ½w² dx over a cell
+  template <class T>
+  static T kinetic(const T& size, const T& w_a, const T& w_b) {
+    return (1. / 6) * (size * (w_a * w_a + w_a * w_b + w_b * w_b));
   }
 
   /// y = (φ, X) at (j, i), (j+1, i), (j+1, i+1), (j, i+1)
@@ -29,12 +35,13 @@ struct MovingRectangle {
     const double per_h = 1 / cell.time_step;
     const T left_t = per_h * (y[2] - y[0]), left_mesh_t = per_h * (y[3] - y[1]);
     const T right_t = per_h * (y[4] - y[6]), right_mesh_t = per_h * (y[5] - y[7]);
+    const double m2 = mass * mass;
     const auto row = [&](const T& a, const T& mesh_a, const T& b, const T& mesh_b) -> T {
       using std::cos;
       const T size = mesh_b - mesh_a, slope = (b - a) / size;
       const T w_a = left_t - slope * left_mesh_t, w_b = right_t - slope * right_mesh_t;
       const T mean_cos = cos(0.5 * (a + b)) * sinc(0.5 * (a - b));
-      return size * ((1. / 6) * (w_a * w_a + w_a * w_b + w_b * w_b) - 0.5 * slope * slope - (1.0 - mean_cos));
+      return kinetic(size, w_a, w_b) - size * (0.5 * slope * slope + m2 * (1.0 - mean_cos));
     };
     return (0.5 * cell.time_step) * (row(y[0], y[1], y[6], y[7]) + row(y[2], y[3], y[4], y[5]));
   }

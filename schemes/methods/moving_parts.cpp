@@ -130,9 +130,25 @@ class Layout {
   std::vector<Stage> stages_;
 };
 
+/// A family on the fields and X as they are; where X is slaved it is read, and not varied.
+std::shared_ptr<const StencilFamily> read_as_it_is(std::shared_ptr<const StencilFamily> family, int d, bool varied) {
+  if (varied) return family;
+  MappedFamily::Map map;
+  for (int i = 0; i < family->size(); ++i) {
+    const int c = family->values()[at(i)].component;
+    map.reads.push_back({{family->site(i), c, 1}});
+    map.tests.push_back(c == d ? MappedFamily::Sum{} : map.reads.back());
+  }
+  return std::make_shared<const MappedFamily>(std::move(family), map);
+}
+
 /// Σ over the points of time of the density there.
 void add_action(SchemeParts& parts, const FieldTheory& theory, const MovingScheme& scheme, const Layout& layout) {
   const int d = theory.components(), D = d + 1;
+  if (scheme.action) {
+    parts.families.push_back(read_as_it_is(scheme.action, d, scheme.varied));
+    return;
+  }
   const bool variational = scheme.varied && scheme.time.tests.empty();
   for (const DensityPart& part : density_parts(theory, scheme.points))
     for (std::size_t i = 0; i < scheme.time.points.size(); ++i) {
@@ -239,7 +255,8 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
   if (scheme.varied) add_slack(parts, d, scheme, layout);
   parts.components = layout.components;
   parts.remarks.push_back(
-      Reparametrised::has_parts(theory.density())
+      scheme.action ? "space: linear functions of the moving cells; the action is their exact integral, in closed form"
+      : Reparametrised::has_parts(theory.density())
           ? fmt::format("space: linear functions of the moving cells; the quadratic part of the density is integrated "
                         "exactly, its potential by Gauss's rule of {} points{}",
                         scheme.points, scheme.points >= 10 ? ": exact to rounding for a sine over a cell" : "")

@@ -22,6 +22,8 @@ struct MovingScheme {
   /// with its rate, as if it were a function X(y): Tyranowski–Desbrun (36).
   bool rows_alone = false;
   int points = 10;  ///< of Gauss's rule in a cell
+  /// The whole action of this element in closed form, without points; null: none.
+  std::shared_ptr<const StencilFamily> action = {};
 };
 
 /// Families and components: φ, X, the nodes inside a step; then multipliers, or the slaved positions and rates at the

@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -33,9 +36,10 @@ struct NamedTime {
   std::string name, tableau;  ///< of cgvi; none: Radau IIA
   bool multipliers;           ///< has both ends of a step among its points, or no others than their mean
   bool rows_alone;            ///< a slaved mesh is that of the rows
+  bool rectangle = false;     ///< is what TheoryEntry::moving_rectangle has
 };
 const std::vector<NamedTime>& times() {
-  static const std::vector<NamedTime> all{{"trapezoid", "stormer-verlet", true, true},
+  static const std::vector<NamedTime> all{{"trapezoid", "stormer-verlet", true, true, true},
                                           {"midpoint", "midpoint", true, true},
                                           {"gauss1", "gauss1", false, false},
                                           {"gauss2", "gauss2", false, false},
@@ -44,6 +48,9 @@ const std::vector<NamedTime>& times() {
                                           {"radau3", "", false, false}};
   return all;
 }
+
+/// Points of Gauss's rule that are exact to rounding for a sine over a cell.
+constexpr int most_exact = 10;
 
 StencilTable element(const NamedTime& time) {
   if (time.tableau.empty()) return radau_element(3);
@@ -77,6 +84,18 @@ MeshMonitor monitor_of(const Problem& p, const std::vector<Component>& fields) {
   return monitor;
 }
 
+/// Gauss's points in a cell that mesh.points asks for; none: the exact integral, where there is one.
+std::optional<int> points_of(const Problem& p) {
+  const std::string text = p.parameters.get<std::string>("mesh.points");
+  if (text == "exact") return std::nullopt;
+  int points = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), points);
+  if (error != std::errc{} || end != text.data() + text.size() || points < 2 || points > 20)
+    throw BadInput("mesh.points",
+                   fmt::format("mesh.points = {}: give exact, or a number of Gauss's points from 2 to 20", text));
+  return points;
+}
+
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   if (p.lattice.space() != Space::interval || p.lattice.left() != Wall::fixed || p.lattice.right() != Wall::fixed)
     throw BadInput("lattice.space",
@@ -85,7 +104,8 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   if (theory.constraint())
     throw BadInput("theory.name", "scheme.method = r-adaptive: takes no constraint of the theory; use another method");
   const NamedTime& time = time_of(p);
-  const int points = p.parameters.get<int>("mesh.points");
+  const std::optional<int> asked = points_of(p);
+  const int points = asked.value_or(most_exact);
   if (strategy(p) == "uniform") {
     SchemeParts parts =
         element_parts(theory, product(element(time), element_space(lagrange_basis({0, 1}), gauss_rule(points))));
@@ -99,11 +119,14 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
         fmt::format("scheme.time = {}: multipliers keep the mesh at the ends of a step, which are no points "
                     "of this rule; use trapezoid, midpoint, lobatto2 or lobatto3, or scheme.strategy = control",
                     time.name));
-  return moving_parts(theory, {.time = element(time),
-                               .monitor = monitor_of(p, theory.fields()),
-                               .varied = varied,
-                               .rows_alone = time.rows_alone,
-                               .points = points});
+  MovingScheme scheme{.time = element(time),
+                      .monitor = monitor_of(p, theory.fields()),
+                      .varied = varied,
+                      .rows_alone = time.rows_alone,
+                      .points = points};
+  if (const auto rectangle = find_theory(p.theory).moving_rectangle; rectangle && time.rectangle && !asked)
+    scheme.action = rectangle(p.parameters);
+  return moving_parts(theory, scheme);
 }
 
 MovingSites place_sites(const Problem& p, int components, const Profile& profile) {
@@ -176,9 +199,9 @@ const MethodEntry r_adaptive_method{
                     .help = "saturated: cells stay above beta/alpha of the arclength in one",
                     .range = {.low = 0, .open = true}},
                    {.key = "mesh.points",
-                    .fallback = 10,
-                    .help = "Gauss's points in a cell; 10 are exact to rounding for sine-gordon",
-                    .range = {.low = 2, .high = 20}}},
+                    .fallback = "exact",
+                    .help = "Gauss's points in a cell, 2 to 20; exact: no points where theory and element have the "
+                            "integral in closed form, and 10 elsewhere, exact to rounding for sine-gordon"}},
     .label = label,
     .starts = {StartRule::legendre, StartRule::exact},
     .start = StartRule::legendre,

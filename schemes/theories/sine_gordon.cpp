@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/theories/sine_gordon.hpp"
 
+#include "schemes/families/moving_rectangle.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
@@ -14,6 +15,12 @@ const TheoryEntry sine_gordon_theory{
     [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<SineGordon>>(SineGordon{p.get<double>("theory.mass")});
     },
-    true, 0.0};
+    true,
+    0.0,
+    {},
+    nullptr,
+    [](const ParameterValues& p) -> std::shared_ptr<const StencilFamily> {
+      return std::make_shared<MovingRectangleFamily>(MovingRectangle{p.get<double>("theory.mass")});
+    }};
 
 }  // namespace delf

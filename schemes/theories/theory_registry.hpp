@@ -11,6 +11,7 @@
 namespace delf {
 
 class FieldTheory;
+class StencilFamily;
 
 /// A theory that a scene can name by theory.name: one constant of this type stands at the end of each file in
 /// schemes/theories/.
@@ -28,6 +29,9 @@ struct TheoryEntry {
   std::vector<std::string> chosen_by = {};
   /// Parameters that the values of those above declare; null: none.
   std::vector<Parameter> (*further)(const ParameterValues&) = nullptr;
+  /// Its action on rectangles whose sites move, in closed form: fields, then X, piecewise linear in space, and the
+  /// trapezoidal rule in time. Null: by quadrature.
+  std::shared_ptr<const StencilFamily> (*moving_rectangle)(const ParameterValues&) = nullptr;
 };
 
 /// m and λ, which several theories have.

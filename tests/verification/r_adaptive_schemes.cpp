@@ -103,6 +103,28 @@ TEST_CASE("the comparison with row 10 can fail: another alpha moves the mesh els
   CHECK(distance_at_row_10(reference::references[2], 2.51) > 1e-4);
 }
 
+TEST_CASE("the exact integral of a moving rectangle is that of many points, and not that of two") {
+  for (const char* strategy : {"multiplier", "control"}) {
+    const auto row_5 = [&](const char* points, double mass) {
+      Problem p = problem(strategy, "trapezoid", 15);
+      p.parameters["mesh.points"] = points, p.parameters["theory.mass"] = mass;
+      Simulation simulation = started(p, kink);
+      while (simulation.newest() < 5) simulation.step();
+      return values(simulation, 17, false);
+    };
+    CAPTURE(strategy);
+    const Row exact = row_5("exact", 1.5);
+    CHECK(distance(exact, row_5("20", 1.5)) < 1e-11);
+    CHECK(distance(exact, row_5("2", 1.5)) > 1e-9);
+    CHECK(distance(exact, row_5("exact", 1)) > 1e-4);
+  }
+  Problem p = problem("multiplier", "trapezoid", 15);
+  for (const char* points : {"1", "21", "8.5", "many"}) {
+    p.parameters["mesh.points"] = points;
+    CHECK_THROWS_AS(Simulation(p), BadInput);
+  }
+}
+
 TEST_CASE("multipliers keep the energy of a moving mesh, and a slaved one does not") {
   const auto change = [](const std::string& strategy, const std::string& time) {
     Simulation simulation = started(problem(strategy, time, 22), kink);
