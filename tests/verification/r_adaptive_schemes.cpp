@@ -99,6 +99,38 @@ TEST_CASE("every strategy and element in time gives row 10 of an independent pro
   }
 }
 
+TEST_CASE("moving meshes have the order in time of their element, from below and from above") {
+  const auto at_time = [](const std::string& strategy, const std::string& time, int steps) {
+    Problem p = problem(strategy, time, 15);
+    p.time_step = 0.16 / steps;
+    Simulation simulation = started(p, kink);
+    while (simulation.newest() < steps) simulation.step();
+    Row all = values(simulation, 17, false);
+    const Row X = values(simulation, 17, true);
+    all.insert(all.end(), X.begin(), X.end());
+    return all;
+  };
+  for (const auto& [strategy, time, order] :
+       std::vector<std::tuple<std::string, std::string, double>>{{"multiplier", "trapezoid", 2},
+                                                                 {"multiplier", "midpoint", 2},
+                                                                 {"multiplier", "lobatto2", 2},
+                                                                 {"multiplier", "lobatto3", 4},
+                                                                 {"control", "trapezoid", 2},
+                                                                 {"control", "midpoint", 2},
+                                                                 {"control", "gauss1", 2},
+                                                                 {"control", "gauss2", 4},
+                                                                 {"control", "lobatto2", 2},
+                                                                 {"control", "lobatto3", 4},
+                                                                 {"control", "radau3", 5}}) {
+    const Row coarse = at_time(strategy, time, 4), middle = at_time(strategy, time, 8),
+              fine = at_time(strategy, time, 16);
+    const double seen = std::log2(distance(coarse, middle) / distance(middle, fine));
+    CAPTURE(strategy, time, seen);
+    CHECK(seen > order - 0.3);
+    CHECK(seen < order + 0.3);
+  }
+}
+
 TEST_CASE("the comparison with row 10 can fail: another alpha moves the mesh elsewhere") {
   CHECK(distance_at_row_10(reference::references[2], 2.51) > 1e-4);
 }
