@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "schemes/diagnosis/findings.hpp"
 #include "schemes/diagnosis/rounded_values.hpp"
@@ -32,14 +31,8 @@ std::optional<Finding> find_elsewhere(const Evidence& e, const Sample& sample) {
 }  // namespace
 
 Diagnosis diagnose(Evidence evidence) {
-  Diagnosis diagnosis{{}, std::numeric_limits<double>::quiet_NaN()};
+  Diagnosis diagnosis;
   const Sample sample(evidence);
-  if (can_be_split(evidence.problem))
-    if (const auto split = sample.split(evidence.problem)) {
-      const double force = (split->space + split->force).cwiseAbs().maxCoeff();
-      if (force > 0)
-        diagnosis.share_of_force = (split->time + split->space + split->force).cwiseAbs().maxCoeff() / force;
-    }
 
   // The common first. What settles the case ends it: a seam is no wrong coefficient.
   using Local = std::optional<Finding> (*)(const Evidence&);

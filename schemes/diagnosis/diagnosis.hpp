@@ -9,8 +9,6 @@ namespace delf {
 /// What rows are that do not solve the equations of a scene; or, of rows that do, whose they are.
 struct Diagnosis {
   std::vector<Finding> findings;
-  /// The largest |E| of the sample beside the largest force there; not a number if nothing moves.
-  double share_of_force = 0;
 };
 /// The system of the evidence must have fields at the vertices and nothing else.
 Diagnosis diagnose(Evidence);

@@ -54,6 +54,8 @@ struct Monitor {
   double (*value)(const RowsInTime&);
   /// A run warns by these words, what it means and a remedy, if the value grows far beyond what it is early; null: never.
   const char* when_it_grows = nullptr;
+  /// Of the recorded rows, summary.json has the least value; false: the largest.
+  bool least = false;
 };
 
 /// What fields.h5 has of every recorded row beside the components, frames × sites × values: declared, as data, by a

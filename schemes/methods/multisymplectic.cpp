@@ -41,7 +41,22 @@ void check_walls(const Problem& p, const StencilFamily& family) {
                     p.stencil));
 }
 
-constexpr auto sites_key = "stencil.sites", point_key = "stencil.point", lagrangian_key = "theory.lagrangian";
+constexpr auto sites_key = "stencil.sites", point_key = "stencil.point", lagrangian_key = "theory.lagrangian",
+               first_row_key = "lattice.first_row";
+
+/// Where row 0 is an odd row of a brick wall, a brick lies one site further on. Its vertices move to the left of the anchor,
+/// so that the first column still has one:
+///
+///     {0, 1, 2} where i + j is even   →   {−1, 0, 1} where i + j is even,  that is {0, 1, 2} where i + j is odd
+///
+std::shared_ptr<const StencilFamily> from_odd_row(const FieldTheory& theory, const StencilFamily& even) {
+  const auto* family = dynamic_cast<const JetFamily*>(&even);
+  if (!family || even.pattern().placement != Placement::brick_wall) return nullptr;
+  StencilTable table = family->table();
+  for (Site& vertex : table.pattern.vertices) --vertex.space;
+  for (TablePoint& point : table.points) --point.space;
+  return theory.on_table(std::move(table));
+}
 
 /// L(y1, …, yn; h, k) on the sites of a stencil as text, as it is; numbers of the theory by their names. Its density says
 /// what is measured.
@@ -88,6 +103,12 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   SchemeParts parts{own ? on_own_stencil(theory, p) : std::vector{theory.variational(p.stencil)}, theory.fields(),
                     theory.symmetries()};
   if (!parts.families[0]) throw unknown_name("lattice.stencil", p.stencil, stencil_names_and_aliases());
+  if (p.parameters.maybe<int>(first_row_key) == 1)
+    if (parts.families[0] = from_odd_row(theory, *parts.families[0]); !parts.families[0])
+      throw BadInput(first_row_key,
+                     fmt::format("lattice.first_row = 1: rows of {} are all alike; leave it out, or use a "
+                                 "brick wall such as hexagon",
+                                 p.stencil));
   check_walls(p, *parts.families[0]);
   if (!own)
     for (auto& term : theory.at_walls(p.stencil, p.lattice)) parts.families.push_back(std::move(term));
@@ -137,7 +158,12 @@ const MethodEntry multisymplectic_method{
                     .help = "a weight, and the jet there as a weight for each site: "
                             "1; phi: 1/3 1/3 1/3; phi_t: -1 1 0; phi_x: 0 -1 1; "
                             "a line for each point",
-                    .otherwise = "none"}},
+                    .otherwise = "none"},
+                   {.key = first_row_key,
+                    .fallback = 0,
+                    .help = "of a brick wall (hexagon): 1 if the first row, or frame, is an odd row of it",
+                    .range = {0, 1},
+                    .otherwise = "that of the file's /time and scene, or 0"}},
     .reads_stencil = true,
     .label = [](const Problem& p) { return p.stencil; },
     .variants = variants,

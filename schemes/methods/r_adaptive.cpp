@@ -206,7 +206,7 @@ const MethodEntry r_adaptive_method{
     .starts = {StartRule::legendre, StartRule::exact},
     .start = StartRule::legendre,
     .energy = energy,
-    .monitors = {{.name = "mesh_min_spacing", .value = narrowest_cell},
+    .monitors = {{.name = "mesh_min_spacing", .value = narrowest_cell, .least = true},
                  {.name = "multiplier_max", .value = largest_multiplier}},
     .place_sites = place_sites};
 

@@ -26,6 +26,8 @@ class EquationCheck {
 
   /// Of the row looked at last: |E| relative to the row, [i·C + c]; not a number where there is no equation.
   const std::vector<double>& newest() const { return newest_; }
+  /// E itself, [i·C + c], whether it is an equation there or not.
+  const std::vector<LatticeSystem::Value>& sums() const { return values_; }
   std::int64_t rows() const { return rows_; }
   double tolerance() const { return tolerance_; }
 

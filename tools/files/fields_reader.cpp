@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -126,6 +127,19 @@ std::optional<std::vector<double>> FieldsReader::positions() const {
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   if (H5Sget_simple_extent_npoints(space) != static_cast<hssize_t>(sites)) return std::nullopt;
   return read_slice(dataset, 1, &none, &sites, x.data()) ? std::optional(x) : std::nullopt;
+}
+
+std::string FieldsReader::scene() const {
+  if (H5Aexists(file_, "scene") <= 0) return {};
+  const Hdf5Handle attribute(H5Aopen(file_, "scene", H5P_DEFAULT), H5Aclose);
+  if (!attribute) throw bad_file("its attributes cannot be read; the file is damaged");
+  const Hdf5Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Sget_simple_extent_npoints(space) != 1)
+    return {};
+  std::string text(H5Tget_size(type), '\0');
+  if (H5Aread(attribute, type, text.data()) < 0) throw bad_file("its attributes cannot be read; the file is damaged");
+  text.resize(std::min(text.size(), text.find('\0')));
+  return text;
 }
 
 std::optional<int> FieldsReader::winding() const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "schemes/system/lattice_system.hpp"
@@ -26,6 +27,8 @@ class FieldsReader final : public RowsFile {
   std::optional<std::vector<double>> momenta(int frame) const override;
   std::optional<int> winding() const override;
 
+  /// The resolved scene that the file has as an attribute; empty if it has none.
+  std::string scene() const;
   /// Of the sites, /space; nothing where it is not one number for each.
   std::optional<std::vector<double>> positions() const;
 

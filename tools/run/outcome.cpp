@@ -16,7 +16,7 @@ void Outcome::visit(SavedState& saved) {
   }
   saved("energy of row 0", energy_initial), saved("energy", energy_final);
   saved("momentum of row 0", momentum_initial), saved("momentum", momentum_final), saved("charge", charge_final);
-  saved("largest constraint", constraint_max);
+  saved("largest constraint", constraint_max), saved("extremes of monitors", of_method);
   for (Conserved& c : conserved)
     saved("conserved at row 0", c.initial), saved("conserved", c.final), saved("change of conserved", c.error_max);
 }

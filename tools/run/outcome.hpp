@@ -29,6 +29,7 @@ struct Outcome {
 
   std::string status = "done";  ///< done, interrupted, no-convergence, not-finite, mesh-crossing or system-failure
   std::string failure;          ///< in words, if it failed
+  double break_time = unknown;  ///< of the step that the numerics failed in
   std::string state, solve, solve_kind;
   std::string threads;  ///< in words, if the scene asks for more than one
   StartRule start = StartRule::exact;
@@ -42,16 +43,17 @@ struct Outcome {
   double seconds = 0;  ///< of the steps alone
   double iterations_mean = 0, residual_max = 0;
   int iterations_max = 0;
-  bool iterates = false;  ///< a step is not one solve
+  bool iterates = false;                        ///< a step is not one solve
   std::map<Continued, std::int64_t> continued;  ///< steps that were solved by continuation, by the reason
   double energy_initial = unknown, energy_final = unknown, energy_error_max = unknown;
   double momentum_initial = unknown, momentum_final = unknown, charge_final = unknown;
   double constraint_max = unknown;  ///< the largest |G|, if the scheme has constraints
+  std::vector<double> of_method;    ///< the largest of each monitor of the method, or the least
   std::vector<Conserved> conserved;
   double error_linf = unknown, error_l2 = unknown;
   std::vector<NamedNumber> measures;            ///< measure.NAME
   std::optional<ErrorEstimate> error_estimate;  ///< output.estimate
-  std::vector<std::string> warnings;  ///< why the result may be wrong although the status is done
+  std::vector<std::string> warnings;            ///< why the result may be wrong although the status is done
 
   /// What grows with the run.
   void visit(SavedState&);

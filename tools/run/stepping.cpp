@@ -192,6 +192,7 @@ void Stepping::run(Recorder& recorder, Checkpoints& checkpoints) {
     record_and_step();
   } catch (const Unsolved& unsolved) {
     outcome_.status = status_of(unsolved);
+    outcome_.break_time = static_cast<double>(newest_) * scene_.problem.time_step;
     outcome_.failure = fmt::format("{} (row {} is the last good one that was recorded)", unsolved.what(), recorded_);
   } catch (const SystemFailure&) {
     close_outcome();
@@ -228,6 +229,7 @@ void Stepping::record_and_step() {
 void Stepping::fail(const NumericalFailure& error) {
   if (started_) newest_ = simulation_.newest();
   outcome_.status = status_of(error);
+  outcome_.break_time = static_cast<double>(newest_ + 1) * scene_.problem.time_step;
   const std::string what = error.what();
   const std::string where = what.starts_with("step ")
                                 ? ""
@@ -356,6 +358,13 @@ void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
     if (!(monitors.constraint <= outcome_.constraint_max)) outcome_.constraint_max = monitors.constraint;
   }
   record.further.insert(record.further.end(), monitors.of_method.begin(), monitors.of_method.end());
+  std::vector<double>& extremes = outcome_.of_method;
+  const std::vector<Monitor>& declared = find_method(scene_.problem.method).monitors;
+  extremes.resize(monitors.of_method.size(), Outcome::unknown);
+  for (std::size_t m = 0; m < extremes.size(); ++m) {
+    const double value = monitors.of_method[m];
+    if (std::isnan(extremes[m]) || (declared[m].least ? value < extremes[m] : value > extremes[m])) extremes[m] = value;
+  }
   for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
     Conserved& c = outcome_.conserved[j];
     c.final = monitors.conserved[j];

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "tools/run/outcome.hpp"
@@ -12,6 +14,9 @@ std::string summary_json(const Scene& scene, const Outcome& o) {
   json["scene"] = scene.name;
   json["status"] = o.status;
   json["failure"] = o.failure.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(o.failure);
+  const bool broken = !std::isnan(o.break_time);
+  json["break_time"] = o.break_time;
+  json["break_reason"] = broken ? nlohmann::ordered_json(o.status) : nlohmann::ordered_json();
   json["theory"] = p.theory;
   json["fibre"] = p.circle_valued ? "S1" : "R";
   json["stencil"] = p.stencil;
@@ -45,6 +50,9 @@ std::string summary_json(const Scene& scene, const Outcome& o) {
   json["momentum_final"] = o.momentum_final;
   json["charge_final"] = o.charge_final;
   json["constraint_max"] = o.constraint_max;
+  const std::vector<Monitor>& monitors = find_method(p.method).monitors;
+  for (std::size_t m = 0; m < monitors.size(); ++m)
+    json[monitors[m].name] = m < o.of_method.size() ? o.of_method[m] : Outcome::unknown;
   auto& conserved = json["conserved"] = nlohmann::ordered_json::array();
   for (const Conserved& c : o.conserved)
     conserved.push_back({{"name", c.name}, {"initial", c.initial}, {"final", c.final}, {"error_max", c.error_max}});

@@ -20,6 +20,8 @@ std::string resolved(const Scene& scene, const Key& key, StartRule start) {
   if (key.name == "lattice.time_step") return fmt::format("{}", scene.problem.time_step);
   if (key.name == "run.steps") return fmt::format("{}", scene.steps);
   if (key.name == "output.every") return fmt::format("{}", scene.every);
+  if (key.name == "lattice.first_row")  // of the rows that were read
+    if (const auto row = scene.problem.parameters.maybe<int>(key.name)) return *row == 0 ? "" : fmt::format("{}", *row);
   // its text, unless another one is in force
   if (key.name == "scheme.tolerance" && Values(scene.settings).real(key.name) < scene.problem.tolerance)
     return fmt::format("{}", scene.problem.tolerance);

@@ -16,6 +16,7 @@
 #include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "tools/scene/brick_rows.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/values.hpp"
 
@@ -192,6 +193,7 @@ Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_li
   }
   if (!find_state(scene.initial.name).build) scene.initial_file = find_initial_file(settings, values);
   scene.initial_frame = static_cast<int>(values.integer("initial.frame"));
+  if (scene.from_file()) take_first_row(scene, scene.initial_file, scene.initial_frame);
   scene.start = read_start(settings, values, scene.problem);
   scene.steps = read_steps(settings, values, scene.problem.time_step);
   const auto every_default = std::llround(static_cast<double>(scene.steps) / usual_records);

@@ -12,10 +12,10 @@
 #include <span>
 
 #include "jets/expressions/generator.hpp"
-#include "schemes/theories/field_theory.hpp"
-#include "schemes/verify/derivatives.hpp"
 #include "schemes/diagnosis/diagnosis.hpp"
 #include "schemes/diagnosis/unwrap.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/verify/derivatives.hpp"
 #include "schemes/verify/flux_check.hpp"
 #include "schemes/verify/newton_order.hpp"
 #include "schemes/verify/wrong_sign.hpp"
@@ -87,6 +87,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   drawer_.emplace(system_, Tangent::solved_rows(system_, plan_, moment_rows_));
   const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
   if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows());
+  if (equations_ && fields) share_.emplace(system_);
   if (request.wants("forms") && (!fields || request.chosen))
     forms_.emplace(system_, plan_, moment_rows_,
                    FormCheck::Options{request.regions, request.variations, request.tolerance, turn_,
@@ -261,7 +262,10 @@ void Verification::take(std::vector<double> row) {
     const std::int64_t middle = j - equations_->reach();
     equations_->at(held_, middle);
     bins_->add(middle, equations_->newest(), system_.components());
-    if (fields_) failed_.add(middle, equations_->newest(), system_.components(), equations_->tolerance());
+    if (fields_) {
+      failed_.add(middle, equations_->newest(), system_.components(), equations_->tolerance());
+      share_->at(held_, middle, equations_->sums(), equations_->newest(), equations_->tolerance());
+    }
   }
   for (const auto& nearby : nearby_) nearby->take(j);
   if (next_moment_ < moments_.size() && j == moments_[next_moment_] + moment_rows_ - 1) {
@@ -314,12 +318,7 @@ void Verification::diagnose_rows() {
   };
   Problem problem = scene_.problem;
   problem.winding = winding_;
-  const Diagnosis diagnosis = diagnose({problem, system_, turn_, equations_->tolerance(), rows_, row, failed_});
-  verdict_.diagnosis = diagnosis.findings;
-  verdict_.measured.push_back({.name = "equations: |E| beside the largest force",
-                               .region = "of a sample of rows and sites",
-                               .value = diagnosis.share_of_force,
-                               .remark = "what verdicts on equations are relative to their terms"});
+  verdict_.diagnosis = diagnose({problem, system_, turn_, equations_->tolerance(), rows_, row, failed_}).findings;
 }
 
 void Verification::look_at_moment() {
@@ -358,6 +357,7 @@ void Verification::collect() {
     add(equations_->checks());
     verdict_.map = bins_->map();
     if (walls_) add({*walls_});
+    if (share_) verdict_.measured = share_->measured();
     diagnose_rows();
     verdict_.stencils += equations_->rows() * system_.lattice().sites();
   }

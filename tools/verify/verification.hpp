@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "schemes/diagnosis/evidence.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/diagnosis/evidence.hpp"
 #include "schemes/verify/equation_check.hpp"
+#include "schemes/verify/force_share.hpp"
 #include "schemes/verify/form_check.hpp"
 #include "schemes/verify/nearby_check.hpp"
 #include "schemes/verify/noether_check.hpp"
@@ -76,7 +77,8 @@ class Verification {
   std::optional<StressBalance> balance_;
   std::optional<ResidualBins> bins_;
   FailedEquations failed_;
-  std::optional<Check> walls_;  ///< of rows of a file: fixed walls keep their values
+  std::optional<ForceShare> share_;  ///< of rows of a file
+  std::optional<Check> walls_;       ///< of rows of a file: fixed walls keep their values
 
   std::int64_t rows_ = 0;  ///< of the section
   std::int64_t balance_rows_ = 0;

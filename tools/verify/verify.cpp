@@ -8,6 +8,7 @@
 #include "tools/engine.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
+#include "tools/scene/brick_rows.hpp"
 #include "tools/scene/text_file.hpp"
 #include "tools/verify/verdict_figures.hpp"
 #include "tools/verify/verification.hpp"
@@ -51,8 +52,10 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
 
 }  // namespace
 
-ExitCode verify(const Scene& scene, const fs::path& folder, const std::optional<std::string>& fields,
+ExitCode verify(const Scene& given, const fs::path& folder, const std::optional<std::string>& fields,
                 const std::vector<std::string>& nearby) {
+  Scene scene = given;
+  if (fields) take_first_row(scene, *fields, 0);
   return with_memory_for(scene, [&] { return verify_in(folder, scene, fields, nearby); });
 }
 

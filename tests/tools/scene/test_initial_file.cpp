@@ -33,6 +33,43 @@ TEST_CASE("a run goes on from the rows of another") {
   CHECK(read(folder / "part/series.csv") == read(folder / "elsewhere/again/series.csv"));
 }
 
+TEST_CASE("a brick wall goes on from an odd frame, and rows that begin there are verified") {
+  const Folder folder;
+  folder.write("small.ini", small_scene("every = 1\n"));
+  const std::string hexagon = "small.ini --lattice.stencil=hexagon ";
+  REQUIRE(delf_program(folder, "run " + hexagon + "--run.steps=60 --out whole").code == 0);
+  const FieldsReader whole(folder / "whole/fields.h5");
+  const auto distance = [&](const std::string& out, int first) {
+    const FieldsReader rest(folder / out / "fields.h5");
+    const auto a = whole.row(first + 20), b = rest.row(20);
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+    return largest;
+  };
+  const auto goes_on = [&](const std::string& from, int frame, const std::string& more) {
+    const Ran ran =
+        delf_program(folder, "run " + hexagon + "--run.steps=30 --initial.state=file --initial.file=" + from +
+                                 "/fields.h5 --initial.frame=" + std::to_string(frame) + " " + more);
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+  };
+  const auto verified = [&](const std::string& arguments) {
+    return delf_program(folder, "verify " + hexagon + "--verify.checks=equations --out verified " + arguments).code;
+  };
+  goes_on("whole", 13, "--out odd");
+  CHECK(distance("odd", 13) < 1e-11);
+  CHECK(contains(read(folder / "odd/scene.ini"), "first_row = 1"));
+  CHECK(verified("--fields odd/fields.h5") == 0);
+  goes_on("odd", 3, "--out even");  // row 16 of the first run
+  CHECK(distance("even", 16) < 1e-11);
+  CHECK_FALSE(contains(read(folder / "even/scene.ini"), "first_row = 1"));
+  CHECK(verified("--fields even/fields.h5") == 0);
+  // bricks laid the other way are another scheme
+  goes_on("whole", 13, "--lattice.first_row=0 --out wrong");
+  CHECK(distance("wrong", 13) > 1e-9);
+  CHECK(verified("--fields odd/fields.h5 --lattice.first_row=0") == 1);
+}
+
 TEST_CASE("a file of rows is first looked up beside the scene") {
   const Folder folder;
   folder.write("small.ini", small_scene("every = 1\n"));

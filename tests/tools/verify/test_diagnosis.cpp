@@ -64,6 +64,31 @@ TEST_CASE("verify says what rows are that fail, and whose they are if asked") {
   CHECK(says(verified(folder, fields + "--lattice.stencil=hexagon", 1), "lattice.stencil = triangle-vertex"));
 }
 
+TEST_CASE("every report on rows says how large a residual is beside the force, and beside that of its site") {
+  const Folder folder;
+  folder.write("small.ini", scene());
+  REQUIRE(delf_program(folder, "run small.ini --out run").code == 0);
+  constexpr const char* whole = "equations: |E| beside the largest force";
+  constexpr const char* of_site = "equations: |E| of a site beside its force";
+  const auto value = [](const Json& json, const std::string& name) {
+    for (const Json& measured : json["measured"])
+      if (measured["name"] == name) return measured["value"].get<double>();
+    return -1.0;
+  };
+  const Json right = verified(folder, "--fields run/fields.h5", 0);
+  CHECK(value(right, whole) >= 0);
+  CHECK(value(right, whole) < 1e-11);
+  CHECK(value(right, of_site) == -1);  // no site is accused of its rounding
+  // In the tail a value is wrong by 1e-7: nothing beside the front, and more than all there is at its site.
+  copy(folder / "run/fields.h5", folder / "tail.h5", [](int j, std::vector<double>& row) {
+    if (j == 15) row[0] += 1e-7;
+  });
+  const Json tail = verified(folder, "--fields tail.h5", 1);
+  CHECK(value(tail, whole) > 1e-8);
+  CHECK(value(tail, whole) < 1e-4);
+  CHECK(value(tail, of_site) > 10 * value(tail, whole));
+}
+
 TEST_CASE("values modulo 2π are found, and verified with verify.unwrap") {
   const Folder folder;
   folder.write("small.ini", scene());
