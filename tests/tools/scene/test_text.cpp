@@ -36,7 +36,7 @@ TEST_CASE("every command works on a theory that is given as text") {
   folder.write("own.ini", scene("density = 0.5*phi_t^2 - 0.5*phi_x^2 - 0.025*m*phi^4\nparameters = m = 2"));
   folder.write("two.ini", scene(two_fields));
   for (const char* arguments :
-       {"run own.ini", "plan own.ini", "verify own.ini", "run two.ini", "verify two.ini",
+       {"run own.ini", "plan own.ini", "verify own.ini", "run two.ini", "verify two.ini --run.steps=10",
         "run own.ini --lattice.stencil=triangle-vertex", "run own.ini --scheme.method=composition",
         "verify own.ini --scheme.method=spacetime --run.steps=10", "run two.ini --lattice.space=interval"}) {
     const Ran ran = delf_program(folder, arguments);
