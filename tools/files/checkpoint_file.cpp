@@ -35,6 +35,7 @@ CheckpointWriter::~CheckpointWriter() {
 }
 
 void CheckpointWriter::transfer(void* bytes, std::size_t count) {
+  if (count == 0) return;  // an empty vector has no address
   sum_.process_bytes(bytes, count);
   if (std::fwrite(bytes, 1, count, file_.get()) != count) fail();
 }
