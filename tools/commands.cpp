@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <optional>
+#include <utility>
 
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/energy.hpp"
@@ -45,11 +45,14 @@ std::filesystem::path file_of(const Arguments& arguments) {
   return find_scene(only_word(arguments, nullptr));
 }
 
-Scene scene_of(const Arguments& arguments) {
-  Scene scene = read_scene(file_of(arguments), arguments.keys);
+Settings settings_of(const Arguments& arguments) { return read_settings(file_of(arguments), arguments.keys); }
+
+Scene scene_of(Settings settings) {
+  Scene scene = read_scene(std::move(settings));
   for (const std::string& warning : scene.warnings) std::fputs((warning + "\n").c_str(), stderr);
   return scene;
 }
+Scene scene_of(const Arguments& arguments) { return scene_of(settings_of(arguments)); }
 
 void refuse(const Arguments& arguments, bool keys) {
   if (keys && !arguments.keys.empty())
@@ -59,16 +62,13 @@ void refuse(const Arguments& arguments, bool keys) {
     throw BadScene(fmt::format("command line: --out: `{}` writes no files; leave it out", arguments.words[0]));
 }
 
-// A scene on a mesh; nothing if its space is a lattice.
-std::optional<ComplexScene> mesh_scene_of(const Arguments& arguments) {
-  Settings settings = read_settings(file_of(arguments), arguments.keys);
-  if (!is_on_mesh(settings)) return std::nullopt;
-  return read_complex_scene(std::move(settings));
-}
-
 ExitCode carry_out_run(const Arguments& arguments) {
-  if (const auto mesh = mesh_scene_of(arguments)) return run(*mesh, arguments.out.value_or("results/" + mesh->scene.name));
-  const Scene scene = scene_of(arguments);
+  Settings settings = settings_of(arguments);
+  if (is_on_mesh(settings)) {
+    const ComplexScene mesh = read_complex_scene(std::move(settings));
+    return run(mesh, arguments.out.value_or("results/" + mesh.scene.name));
+  }
+  const Scene scene = scene_of(std::move(settings));
   return run(scene, arguments.out.value_or("results/" + scene.name));
 }
 
@@ -82,14 +82,18 @@ ExitCode carry_out_resume(const Arguments& arguments) {
 
 ExitCode carry_out_plan(const Arguments& arguments) {
   refuse(arguments, false);
-  if (const auto mesh = mesh_scene_of(arguments)) return plan(*mesh);
-  return plan(scene_of(arguments), arguments.latex);
+  Settings settings = settings_of(arguments);
+  if (is_on_mesh(settings)) return plan(read_complex_scene(std::move(settings)));
+  return plan(scene_of(std::move(settings)), arguments.latex);
 }
 
 ExitCode carry_out_verify(const Arguments& arguments) {
-  if (const auto mesh = mesh_scene_of(arguments))
-    return verify(*mesh, arguments.out.value_or("results/" + mesh->scene.name), arguments.fields);
-  const Scene scene = scene_of(arguments);
+  Settings settings = settings_of(arguments);
+  if (is_on_mesh(settings)) {
+    const ComplexScene mesh = read_complex_scene(std::move(settings));
+    return verify(mesh, arguments.out.value_or("results/" + mesh.scene.name), arguments.fields);
+  }
+  const Scene scene = scene_of(std::move(settings));
   return verify(scene, arguments.out.value_or("results/" + scene.name), arguments.fields, arguments.nearby);
 }
 

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <set>
 #include <vector>
 
-#include "jets/simd/pack.hpp"
+#include "jets/simd/scratch_rows.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/system/lattice_system.hpp"
 
@@ -16,31 +15,27 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
-/// ℓ(φ, −φ_t, φ_x, φ_tt, −φ_tx, φ_xx) = ℓ at random jets.
+/// ℓ(φ, −φ_t, φ_x, φ_tt, −φ_tx, φ_xx) = ℓ at random jets: half of them from −1 to 1, half of them where logarithms and roots
+/// have values.
 bool is_even_in_rates(const BatchDensity& density) {
-  const int d = density.components(), slots = density.variables() / d;
+  constexpr int jets = 2 * lanes;
+  const int m = density.variables();
+  ScratchRows jet(m + 1, jets), l(2, jets);
   std::mt19937_64 random(20261126);
-  constexpr int jets = 8;
-  for (int n = 0; n < jets; ++n) {
-    std::uniform_real_distribution<double> uniform(n % 2 ? -1 : 0.1, n % 2 ? 1 : 2);
-    std::vector<Pack> jet, mirrored;
-    for (int v = 0; v < density.variables(); ++v) {
-      const auto slot = static_cast<JetSlot>(v / d);
-      jet.emplace_back(uniform(random));
-      mirrored.push_back(slot == JetSlot::phi_t || slot == JetSlot::phi_tx ? -jet.back() : jet.back());
-    }
-    const auto value = [&](const std::vector<Pack>& at) {
-      std::vector<const double*> rows;
-      for (const Pack& pack : at) rows.push_back(reinterpret_cast<const double*>(&pack));
-      const Pack x(0.0);
-      Pack l;
-      density.value({lanes, rows.data(), 0, reinterpret_cast<const double*>(&x)}, reinterpret_cast<double*>(&l));
-      return l[0];
-    };
-    const double one = value(jet), other = value(mirrored);
-    if (std::isfinite(one) && !(std::abs(one - other) <= rounding * (1 + std::abs(one)))) return false;
-  }
-  return slots > 0;
+  for (int v = 0; v < m; ++v)
+    for (int n = 0; n < jets; ++n)
+      jet[v][n] = std::uniform_real_distribution<double>(n % 2 ? -1 : 0.1, n % 2 ? 1 : 2)(random);
+  std::fill_n(jet[m], jets, 0.0);
+  const JetBatch batch{jets, jet.data(), 0, jet[m]};
+  density.value(batch, l[0]);
+  for (int v = 0; v < m; ++v)
+    if (const auto slot = static_cast<JetSlot>(v / density.components());
+        slot == JetSlot::phi_t || slot == JetSlot::phi_tx)
+      for (int n = 0; n < jets; ++n) jet[v][n] = -jet[v][n];
+  density.value(batch, l[1]);
+  for (int n = 0; n < jets; ++n)
+    if (std::isfinite(l[0][n]) && !(std::abs(l[0][n] - l[1][n]) <= rounding * (1 + std::abs(l[0][n])))) return false;
+  return true;
 }
 
 /// Points at τ and at 1 − τ, at the same place, have the same weight.

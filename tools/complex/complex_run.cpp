@@ -13,6 +13,7 @@
 #include "tools/complex/static_field.hpp"
 #include "tools/files/folder_lock.hpp"
 #include "tools/files/series_file.hpp"
+#include "tools/run/earlier_run.hpp"
 #include "tools/run/in_words.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
@@ -249,9 +250,7 @@ ExitCode run(const ComplexScene& c, const fs::path& folder) {
   const Interrupt interrupt;
   make_results_folder(folder);
   const FolderLock lock(folder);
-  std::error_code none;
-  for (const char* name : {"summary.json", "series.csv", "fields.h5", "fields.xdmf", "scene.ini"})
-    fs::remove(folder / name, none);
+  remove_earlier_run(folder);
   write_text_file(folder / "scene.ini", resolved_text(c));
   Outcome o;
   o.state = c.state_in_words();

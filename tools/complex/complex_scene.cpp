@@ -224,23 +224,16 @@ std::string ComplexScene::state_in_words() const {
 }
 
 std::string resolved_text(const ComplexScene& c) {
-  std::string text = fmt::format(
-      "# All that was in force, as delf {} understood it: `delf run scene.ini` gives the same rows to the bit.\n",
-      DELF_VERSION);
-  std::string section;
-  for (const Key& key : c.scene.settings.all_keys()) {
-    const Setting* const given = c.scene.settings.find(key.name);
-    if (!given) continue;
-    std::string value = given->value;
-    if (key.name == "lattice.mesh" && !c.mesh_file.empty()) value = c.mesh_file.string();
-    if (key.name == "lattice.time_steps") value = fmt::format("{}", fmt::join(c.time_steps, ", "));
-    if (section != section_of(key.name)) {
-      section = std::string(section_of(key.name));
-      text += fmt::format("\n[{}]\n", section);
-    }
-    text += fmt::format("{} = {}\n", key.name.substr(section.size() + 1), value);
-  }
-  return text;
+  const Settings& settings = c.scene.settings;
+  return fmt::format("{}{} understood it: `delf run scene.ini` gives the same rows to the bit.\n", resolved_scene_begins,
+                     DELF_VERSION) +
+         sections_of(settings, [&](const Key& key) -> std::string {
+           const Setting* const given = settings.find(key.name);
+           if (!given) return {};
+           if (key.name == "lattice.mesh" && !c.mesh_file.empty()) return c.mesh_file.string();
+           if (key.name == "lattice.time_steps") return fmt::format("{}", fmt::join(c.time_steps, ", "));
+           return given->value;
+         });
 }
 
 }  // namespace delf

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 #include <utility>
 
 #include "schemes/stability/constraint_ghost.hpp"
@@ -15,6 +14,7 @@
 #include "tools/figures/figures.hpp"
 #include "tools/files/folder_lock.hpp"
 #include "tools/run/checkpoints.hpp"
+#include "tools/run/earlier_run.hpp"
 #include "tools/run/error_estimate.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
@@ -30,34 +30,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Removes what a run writes at its end.
-void remove_results(const fs::path& folder) {
-  std::vector<fs::path> earlier{folder / "summary.json", folder / "section.csv"};
-  for (const std::string& name : figure_names())
-    for (const char* ending : {".png", ".svg"}) earlier.push_back(folder / "figures" / (name + ending));
-  std::error_code none;
-  for (const fs::path& file : earlier) fs::remove(file, none);
-}
-
-// Throws BadScene if the scene.ini of the folder is not one of delf's.
-void refuse_foreign_scene(const fs::path& folder) {
-  std::ifstream in(folder / "scene.ini");
-  std::string first;
-  if (in && std::getline(in, first) && !first.starts_with(resolved_scene_begins))
-    throw BadScene(fmt::format("{}: a scene that delf did not write would be written over; choose another --out",
-                               (folder / "scene.ini").string()));
-}
-
-// Removes files of an earlier run with the names that this one may write.
-void prepare(const fs::path& folder, const Scene& scene) {
+// Rows that a run starts from are not to be written over.
+void refuse_own_rows(const fs::path& folder, const Scene& scene) {
   std::error_code error;
   for (const char* name : {"fields.h5", "series.csv"})
     if (scene.from_file() && fs::equivalent(scene.initial_file, folder / name, error))
       throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
-  refuse_foreign_scene(folder);
-  remove_results(folder);
-  for (const char* name : {"checkpoint", "checkpoint.previous", "series.csv", "fields.h5"})
-    fs::remove(folder / name, error);
 }
 
 std::string energy_in_words(const Problem& problem) {
@@ -118,8 +96,12 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   const Interrupt interrupt;  // before, nothing is lost when a signal ends the program at once
   make_results_folder(folder);
   const FolderLock lock(folder);
-  if (resumed.state) remove_results(folder);
-  else prepare(folder, scene);
+  if (resumed.state) {
+    remove_final_results(folder);
+  } else {
+    refuse_own_rows(folder, scene);
+    remove_earlier_run(folder);
+  }
   // Room for the summary, whatever else fills the disk: write_text_file() takes it.
   TextFile room(folder / "summary.json.part");
   room.write(std::string(1 << 14, ' '));

@@ -39,9 +39,13 @@ std::string resolved_text(const Scene& scene, StartRule in_force, const std::str
       "#\n# {}\n# space step {}, Courant number {:.6g}, time of the last row {:.10g}\n",
       resolved_scene_begins, DELF_VERSION, state_in_words, p.lattice.space_step(), p.time_step / p.lattice.space_step(),
       static_cast<double>(scene.steps) * p.time_step);
-  std::string section;
-  for (const Key& key : scene.settings.all_keys()) {
-    const std::string value = resolved(scene, key, in_force);
+  return text + sections_of(scene.settings, [&](const Key& key) { return resolved(scene, key, in_force); });
+}
+
+std::string sections_of(const Settings& settings, const std::function<std::string(const Key&)>& value_of) {
+  std::string text, section;
+  for (const Key& key : settings.all_keys()) {
+    const std::string value = value_of(key);
     if (value.empty()) continue;
     if (section != section_of(key.name)) {
       section = std::string(section_of(key.name));

@@ -178,9 +178,13 @@ std::string why_not_read(const Scene& scene, std::string_view key) {
 }  // namespace
 
 Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_line) {
-  Scene scene(read_settings(file, on_command_line));
-  scene.name = file.stem().string();
+  return read_scene(read_settings(file, on_command_line));
+}
+
+Scene read_scene(Settings given) {
+  Scene scene(std::move(given));
   Settings& settings = scene.settings;
+  scene.name = settings.file().stem().string();
   const Values values(settings);
   for (const Key& key : settings.all_keys()) values.check(key);  // in the order of the table, whatever reads them below
   settings.keep_one_of("lattice.courant", "lattice.time_step", "give one of them, such as lattice.courant = 0.5");

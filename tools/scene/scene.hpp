@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct Scene {
 
 /// Reads, checks and resolves the scene `file`; throws BadScene.
 Scene read_scene(const std::filesystem::path& file, const std::vector<Setting>& on_command_line);
+/// The same of settings that are read.
+Scene read_scene(Settings);
 
 /// Why a key has no effect in this scene, or an empty string if it has one.
 std::string why_without_effect(const Scene&, std::string_view key);
@@ -46,5 +49,7 @@ std::string why_without_effect(const Scene&, std::string_view key);
 inline constexpr std::string_view resolved_scene_begins = "# All that was in force, as delf ";
 /// The scene with all that is in force written out, to be run again to the same bits.
 std::string resolved_text(const Scene&, StartRule in_force, const std::string& state_in_words);
+/// Keys with their values as the sections of a scene; a key whose value is empty is left out.
+std::string sections_of(const Settings&, const std::function<std::string(const Key&)>& value);
 
 }  // namespace delf

@@ -103,5 +103,6 @@ TEST_CASE("a folder that another run holds, and a scene that delf did not write,
   INFO(over.err);
   CHECK(over.code == 2);
   CHECK(contains(over.err, "a scene that delf did not write"));
+  CHECK(delf_program(folder, "run static-kink --out .").code == 2);  // on a mesh too
   CHECK(read(mine) == small_scene());
 }

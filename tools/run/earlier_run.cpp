@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run/earlier_run.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "tools/failure.hpp"
+#include "tools/figures/figures.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void refuse_foreign_scene(const fs::path& folder) {
+  std::ifstream in(folder / "scene.ini");
+  std::string first;
+  if (in && std::getline(in, first) && !first.starts_with(resolved_scene_begins))
+    throw BadScene(fmt::format("{}: a scene that delf did not write would be written over; choose another --out",
+                               (folder / "scene.ini").string()));
+}
+
+}  // namespace
+
+void remove_final_results(const fs::path& folder) {
+  std::vector<fs::path> earlier{folder / "summary.json", folder / "section.csv"};
+  for (const std::string& name : figure_names())
+    for (const char* ending : {".png", ".svg"}) earlier.push_back(folder / "figures" / (name + ending));
+  std::error_code none;
+  for (const fs::path& file : earlier) fs::remove(file, none);
+}
+
+void remove_earlier_run(const fs::path& folder) {
+  refuse_foreign_scene(folder);
+  remove_final_results(folder);
+  std::error_code none;
+  for (const char* name : {"checkpoint", "checkpoint.previous", "series.csv", "fields.h5", "fields.xdmf"})
+    fs::remove(folder / name, none);
+}
+
+}  // namespace delf
