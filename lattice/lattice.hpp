@@ -5,10 +5,11 @@ namespace delf {
 
 enum class Space { circle, interval, point };
 
-/// The condition at a wall of an interval: `fixed` keeps the initial value (no equation there, V = 0);
+/// The condition at a wall of an interval: `fixed` keeps the initial value (no equation there, V = 0); `clamped` keeps
+/// that of the neighbouring site too, and so φ and φ_x, which is for densities of second order;
 /// `natural` varies it too, so that the equation is what the stencils inside the lattice and the action's terms at the
 /// wall give.
-enum class Wall { fixed, natural };
+enum class Wall { fixed, clamped, natural };
 
 /// A regular lattice: ℤ in time, and in space N sites on a circle (x_i = iL/N), on an interval that holds both walls
 /// (x_i = iL/(N−1)), or one point, for mechanics. Time is ℤ: row 0 is data, not a wall.
@@ -43,13 +44,14 @@ class Lattice {
   int wrapped(int i) const noexcept { return ((i % sites_) + sites_) % sites_; }
   /// On an interval the index itself, which may be beyond a wall.
   int home(int i) const noexcept { return is_circle() ? wrapped(i) : i; }
-  /// A wall that is kept at its value: it has no equation.
+  /// A site that a wall keeps at its value: it has no equation.
   bool is_fixed(int i) const noexcept {
-    return !is_circle() && ((i == 0 && left_ == Wall::fixed) || (i == sites_ - 1 && right_ == Wall::fixed));
+    return !is_circle() && (i < sites_kept_by(left_) || i >= sites_ - sites_kept_by(right_));
   }
 
  private:
   Lattice(Space, int sites, double length, Wall, Wall);
+  static int sites_kept_by(Wall wall) noexcept { return wall == Wall::natural ? 0 : wall == Wall::fixed ? 1 : 2; }
   Space space_;
   int sites_;
   double length_, origin_ = 0;

@@ -90,13 +90,25 @@ struct Simulation::Impl {
       if (system.height() <= 1) conserved_names.push_back(s.name);
   }
 
+  std::vector<double> of_role(Role role, int back) const {
+    const std::vector<double> row = stepper.row(back);
+    std::vector<double> values;
+    for (std::size_t at = 0; at < row.size(); ++at)
+      if (system.component(static_cast<int>(at) % system.components()).role == role) values.push_back(row[at]);
+    return values;
+  }
   RowsInTime newest_rows() const { return {*theory, system, stepper.window(2), stepper.newest(), problem.time_step}; }
   EnergyMomentum energy_momentum() const {
     if (method.energy) return method.energy(newest_rows());
     const double h = problem.time_step;
+    const double t = (static_cast<double>(stepper.newest()) - (stepper.is_processed() ? 0.5 : 1)) * h;
+    if (theory->density().slots() > 3) {
+      CellJets jets(theory->density(), problem.lattice, h, 2 * std::numbers::pi * winding);
+      return delf::energy_momentum(theory->density(), problem.lattice, jets, of_role(Role::field, 1),
+                                   of_role(Role::field, 0), t + 0.5 * h);
+    }
     return delf::energy_momentum(theory->density(),
-                                 {&layout(), monitored.data(), positions.rows() ? positions.row(0) : nullptr,
-                                  (static_cast<double>(stepper.newest()) - (stepper.is_processed() ? 0.5 : 1)) * h, h,
+                                 {&layout(), monitored.data(), positions.rows() ? positions.row(0) : nullptr, t, h,
                                   problem.lattice.space_step()},
                                  cell_weights.row(0));
   }
@@ -128,7 +140,9 @@ struct Simulation::Impl {
     for (int c = 0; c < system.components(); ++c)
       for (int i = 0; i < problem.lattice.sites(); ++i) {
         if (system.component(c).role != Role::multiplier || !evolution.plan().solved(i, c)) continue;
-        const std::int64_t row = slab - evolution.plan().shift(i, c, static_cast<int>(slab & 1));
+        // a slab may know a trace of the row above it; that row is whole with the next
+        const std::int64_t row =
+            std::min(stepper.newest(), slab - evolution.plan().shift(i, c, static_cast<int>(slab & 1)));
         const auto [at, fresh] = of_row.try_emplace(row);
         if (fresh)
           system.equations(stepper.window(std::max(3, static_cast<int>(stepper.newest() - row) + 2)), row, at->second);
@@ -341,11 +355,7 @@ void Simulation::start_momenta(std::span<const double> row0, std::span<const dou
 }
 
 void Simulation::copy_row(int back, std::span<double> out, Role role) const {
-  const Impl& s = *impl_;
-  const std::vector<double> row = s.stepper.row(back);
-  std::size_t next = 0;
-  for (std::size_t at = 0; at < row.size(); ++at)
-    if (s.system.component(static_cast<int>(at) % s.system.components()).role == role) out[next++] = row[at];
+  std::ranges::copy(impl_->of_role(role, back), out.begin());
 }
 
 void Simulation::observe(int back, std::span<double> out) const {

@@ -7,12 +7,15 @@
 #include <chrono>
 #include <cmath>
 
+#include "schemes/stability/linear_stability.hpp"
+#include "schemes/stability/parasites.hpp"
 #include "tools/engine.hpp"
 #include "tools/equations.hpp"
 #include "tools/run/in_words.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/seconds_since.hpp"
 #include "tools/run/stepping.hpp"
+#include "tools/run/vacuum_symbol.hpp"
 #include "tools/scene/initial_rows.hpp"
 
 namespace delf {
@@ -82,6 +85,23 @@ std::string cost(const Scene& scene, const InitialRows& initial, Simulation& sim
   }
 }
 
+// What linear theory says of the scheme, with these steps, about a constant field.
+std::string waves_in_words(const Scene& scene, const Simulation& simulation) {
+  const auto symbol = symbol_of(scene, simulation);
+  if (!symbol) return {};
+  const StabilityVerdict verdict = linear_stability(*symbol, symbol->size() > 1 ? 33 : 101);
+  std::string words = verdict.stable ? "none grows exponentially"
+                      : std::isfinite(verdict.amplification)
+                          ? fmt::format("those near qk = {:.3g} grow by {:.4g} in each step", verdict.worst_theta,
+                                        verdict.amplification)
+                          : fmt::format("without walls no step determines those of qk = {:.3g}", verdict.worst_theta);
+  for (const Ghost& ghost : verdict.ghosts) words += "\n             " + ghost.words;
+  for (const Parasite& parasite : parasites(*symbol))
+    words += fmt::format("\n             {} is a wave of the scheme ({} root{}), and none of the theory", parasite.wave,
+                         parasite.roots, parasite.roots > 1 ? "s" : "");
+  return fmt::format("waves        about the field {:.6g}: {}\n", *stable_vacuum(scene, simulation), words);
+}
+
 }  // namespace
 
 ExitCode plan(const Scene& scene, bool latex) {
@@ -109,6 +129,7 @@ ExitCode plan(const Scene& scene, bool latex) {
                simulation.plan_report());
     if (const std::string threads = threads_in_words(simulation, scene.problem.threads); !threads.empty())
       fmt::print("threads      {}\n", threads);
+    fmt::print("{}", waves_in_words(scene, simulation));
     fmt::print("cost         {}\n", cost(scene, initial, simulation));
     return ExitCode::done;
   });

@@ -12,10 +12,13 @@ namespace delf {
 ///
 ///     φ = Σ_l phi[l] y_l        φ_t = Σ_l phi_t[l] y_l / h        φ_x = Σ_l phi_x[l] y_l / k
 ///
+/// and likewise φ_tt, φ_tx and φ_xx, where a stencil has room for second derivatives.
 template <int n>
 struct QuadraturePoint {
+  using Weights = std::array<double, static_cast<std::size_t>(n)>;
   double weight;
-  std::array<double, static_cast<std::size_t>(n)> phi, phi_t, phi_x;
+  Weights phi, phi_t, phi_x;
+  Weights phi_tt = {}, phi_tx = {}, phi_xx = {};
 };
 
 /// A linear jet map: a stencil shape, and (φ, φ_t, φ_x) at Q quadrature points. It is all that tells one lattice

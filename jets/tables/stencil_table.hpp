@@ -81,6 +81,9 @@ StencilTable stencil_table(const JetTable<n, Q>& map) {
     point.set(JetSlot::phi, list(q.phi));
     point.set(JetSlot::phi_t, list(q.phi_t));
     point.set(JetSlot::phi_x, list(q.phi_x));
+    point.set(JetSlot::phi_tt, list(q.phi_tt));
+    point.set(JetSlot::phi_tx, list(q.phi_tx));
+    point.set(JetSlot::phi_xx, list(q.phi_xx));
     table.points.push_back(std::move(point));
   }
   return table;

@@ -6,16 +6,27 @@
 
 namespace delf {
 
-/// First-order jets on the six-tuple ◫ (vertices 0 1 2 below, 5 4 3 above): φ and φ_t on the middle edge, φ_x on the
-/// left and on the right half.
+/// Jets on the six-tuple ◫ (vertices 0 1 2 below, 5 4 3 above): φ and φ_t on the middle edge, φ_x and φ_tx on the left
+/// and on the right half, φ_xx the mean of both rows.
 inline constexpr struct SixTuple {
   static constexpr JetTable<6, 2> table{shapes::six_tuple,
                                         1,
-                                        {{{.5, {0, .5, 0, 0, .5, 0}, {0, -1, 0, 0, 1, 0}, {-.5, .5, 0, 0, .5, -.5}},
-                                          {.5, {0, .5, 0, 0, .5, 0}, {0, -1, 0, 0, 1, 0}, {0, -.5, .5, .5, -.5, 0}}}}};
+                                        {{{.weight = .5,
+                                           .phi = {0, .5, 0, 0, .5, 0},
+                                           .phi_t = {0, -1, 0, 0, 1, 0},
+                                           .phi_x = {-.5, .5, 0, 0, .5, -.5},
+                                           .phi_tx = {1, -1, 0, 0, 1, -1},
+                                           .phi_xx = {.5, -1, .5, .5, -1, .5}},
+                                          {.weight = .5,
+                                           .phi = {0, .5, 0, 0, .5, 0},
+                                           .phi_t = {0, -1, 0, 0, 1, 0},
+                                           .phi_x = {0, -.5, .5, .5, -.5, 0},
+                                           .phi_tx = {0, 1, -1, 1, -1, 0},
+                                           .phi_xx = {.5, -1, .5, .5, -1, .5}}}}};
 } six_tuple;
 
-/// First-order jets on the nine-tuple ⊞: the symmetric rectangle's jet in each of its four cells.
+/// Jets on the nine-tuple ⊞: the symmetric rectangle's jet in each of its four cells, with φ_tx of the cell, φ_xx the
+/// mean of its two rows and φ_tt that of its two columns.
 inline constexpr struct NineTuple {
   static constexpr JetTable<9, 4> table = [] {
     JetTable<9, 4> result{shapes::nine_tuple, 1, {}};
@@ -26,10 +37,15 @@ inline constexpr struct NineTuple {
         point.weight = .25;
         for (std::size_t l = 0; l < 9; ++l) {
           const Site v = shapes::nine_tuple.vertex(static_cast<int>(l)) - Site{dt, dx};
-          if (v.time < 0 || v.time > 1 || v.space < 0 || v.space > 1) continue;
+          const bool in_rows = v.time == 0 || v.time == 1, in_columns = v.space == 0 || v.space == 1;
+          const Site centre = shapes::nine_tuple.vertex(static_cast<int>(l));
+          if (in_rows) point.phi_xx[l] = centre.space == 0 ? -1 : .5;
+          if (in_columns) point.phi_tt[l] = centre.time == 0 ? -1 : .5;
+          if (!in_rows || !in_columns) continue;
           point.phi[l] = .25;
           point.phi_t[l] = v.time == 1 ? .5 : -.5;
           point.phi_x[l] = v.space == 1 ? .5 : -.5;
+          point.phi_tx[l] = v.time == v.space ? 1 : -1;
         }
       }
     return result;

@@ -43,6 +43,12 @@ class TraceStencil {
     fields_ = fields, in_cell_ = in_cell;
   }
 
+  /// The same where every value has a node of its own, and component = node · d + a, as in the tables of fluxes.
+  TraceStencil with_own_nodes() && {
+    fields_ = d_, own_nodes_ = true;
+    return std::move(*this);
+  }
+
   StencilPattern pattern() const { return StencilPattern(read().vertices); }
   std::vector<VertexValue> values() const { return read().values; }
   template <class T>
@@ -68,7 +74,7 @@ class TraceStencil {
     if (row == 1) reads.vertices.push_back({1, 0});
     if (in_cell_) reads.vertices.push_back({0, 1});
     const auto add = [&](int time, int place, int component) {
-      const Site site{time, 0, fields_ > 0 ? place / fields_ : 0};
+      const Site site{time, 0, fields_ > 0 ? (own_nodes_ ? component : place) / fields_ : 0};
       const auto at = std::ranges::find(reads.vertices, site) - reads.vertices.begin();
       if (at == std::ssize(reads.vertices)) reads.vertices.push_back(site);
       reads.values.push_back({static_cast<int>(at), component});
@@ -85,7 +91,7 @@ class TraceStencil {
   std::vector<std::pair<int, double>> coefficients_;
   std::vector<std::pair<int, int>> tied_;  ///< fields, with the components of their multipliers
   int fields_ = 0;                         ///< at a node; 0: all values are read at the vertex
-  bool in_cell_ = false;
+  bool in_cell_ = false, own_nodes_ = false;
 };
 
 }  // namespace delf

@@ -11,16 +11,19 @@
 #include <vector>
 
 #include "jets/tables/flux_table.hpp"
+#include "jets/tables/table_product.hpp"
 #include "jets/tables/time_element.hpp"
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
+#include "schemes/families/jet_family.hpp"
 #include "schemes/families/trace_stencil.hpp"
 #include "schemes/methods/element_keys.hpp"
 #include "schemes/methods/element_parts.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/methods/space_keys.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/energy.hpp"
-#include "schemes/system/legendre.hpp"
+#include "schemes/system/stress_energy.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
@@ -100,8 +103,8 @@ void observe(SchemeParts& parts, const FieldTheory& theory, const Keys& keys, co
   std::vector<double> weights(static_cast<std::size_t>(nodes.plus), 0.0);
   double &of_minus = weights[static_cast<std::size_t>(nodes.minus - 1)],
          &of_plus = weights[static_cast<std::size_t>(nodes.plus - 1)];
-  const auto tie = [&](const TraceStencil& stencil) {
-    parts.families.push_back(std::make_shared<LagrangianFamily<TraceStencil>>(stencil));
+  const auto tie = [&](TraceStencil stencil) {
+    parts.families.push_back(std::make_shared<LagrangianFamily<TraceStencil>>(std::move(stencil).with_own_nodes()));
   };
   if (keys.flux.observed == NamedFlux::Observed::vertex) return;
   std::vector<Component> kappa = momentum_components("kappa", d);
@@ -120,16 +123,30 @@ void observe(SchemeParts& parts, const FieldTheory& theory, const Keys& keys, co
   std::ranges::move(kappa, std::back_inserter(parts.components));
 }
 
+/// Where nodes are sites, and no walls cut their masses in half.
+void require_own_mass(const Problem& p) {
+  const std::string space = p.parameters.maybe<std::string>("scheme.space").value_or("lumped");
+  if (space == "linear" || space == "spectral")
+    throw BadInput("scheme.space",
+                   fmt::format("scheme.space = {}: the jumps of dgvi are those of sites, whose mass is their own; use "
+                               "lumped or pairs",
+                               space));
+  if (p.lattice.space() == Space::interval)
+    for (const auto& [wall, key] :
+         {std::pair{p.lattice.left(), "boundary.left"}, {p.lattice.right(), "boundary.right"}})
+      if (wall == Wall::natural)
+        throw BadInput(key, fmt::format("{} = natural: the jumps of dgvi have no action at walls; use fixed", key));
+}
+
 /// The action of the sources' discontinuous Galerkin integrators, with the ends of the cells as traces of their own:
 ///
 ///     Σ_n h Σ_i b_i ℓ(Q_i, V_i) + λ_n·(r⁺x_n − q_n⁺) + μ_{n+1}·(r⁻x_n − q⁻_{n+1}) + J(q_n⁻, q_n⁺)
 ///
-/// Then λ = ∂₊J and μ = ∂₋J.
+/// Then λ = ∂₊J and μ = ∂₋J. Fields have this at every site, and φ_x in ℓ by the table of space, whose points are
+/// sites: the mass of a jump is its site's own.
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
-  if (p.lattice.space() != Space::point)
-    throw BadInput("scheme.method",
-                   "scheme.method = dgvi: an integrator of mechanics; use lattice.space = point, or scheme.method = "
-                   "multisymplectic");
+  const StencilTable space = space_table(p);
+  if (p.lattice.space() != Space::point) require_own_mass(p);
   if (theory.constraint())
     throw BadInput("scheme.method",
                    "scheme.method = dgvi: the theory has a constraint, and this scheme has none; use "
@@ -138,7 +155,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   const Keys keys(p);
   const int d = theory.components();
   const Nodes nodes(keys.functions);
-  const StencilTable element = time_element(keys.basis, keys.rule(), Continuity::multipliers);
+  const StencilTable element = product(time_element(keys.basis, keys.rule(), Continuity::multipliers), space);
   SchemeParts parts = element_parts(theory, element);
   for (const auto& more :
        {traces("-", d), traces("+", d), momentum_components("lambda", d), momentum_components("mu", d)})
@@ -147,7 +164,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   using enum TraceStencil::End;
   for (const TraceStencil& end : {TraceStencil(lower, d, keys.basis.values(0), nodes.lambda * d, nodes.plus * d),
                                   TraceStencil(upper, d, keys.basis.values(1), nodes.mu * d, nodes.minus * d)})
-    parts.families.push_back(std::make_shared<LagrangianFamily<TraceStencil>>(end));
+    parts.families.push_back(std::make_shared<LagrangianFamily<TraceStencil>>(TraceStencil(end).with_own_nodes()));
   std::vector<FluxPoint> jump = keys.flux.points;
   std::ranges::copy(gauge_of_jumps(keys.nu), std::back_inserter(jump));
   parts.families.push_back(theory.on_table(flux_table(jump, {nodes.minus, 0, nodes.plus})));
@@ -155,13 +172,34 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   return parts;
 }
 
-/// H at the newest row's q.
+/// H = −ℓ(q, 0, q_x) of the newest row's q, by the rule of the table of space, and the momentum −Σ q_x·θ(q).
 EnergyMomentum energy(const RowsInTime& rows) {
-  const int d = rows.theory.components();
-  std::vector<double> q;
-  for (int a = 0; a < d; ++a) q.push_back(rows.rows(rows.newest, 0, a));
-  const std::vector<double> still(q.size(), 0.0);
-  return {energy_of(rows.theory.density(), q, still, static_cast<double>(rows.newest) * rows.time_step), 0};
+  const auto& element = dynamic_cast<const JetFamily&>(*rows.system.families().front());
+  const BatchDensity& density = element.density();
+  const Lattice& lattice = rows.system.lattice();
+  const auto d = static_cast<std::size_t>(density.components());
+  const double k = lattice.space_step(), t = static_cast<double>(rows.newest) * rows.time_step;
+  EnergyMomentum sum;
+  std::vector<double> jet(static_cast<std::size_t>(density.variables()));
+  for (int cell = 0; cell < lattice.sites(); ++cell) {
+    if (!rows.system.has_stencil(element, rows.newest, cell)) continue;
+    for (const TablePoint& point : element.table().lower_side) {
+      std::ranges::fill(jet, 0.0);
+      // its vertices are the first of the element's
+      const auto add = [&](JetSlot slot, double per) {
+        for (const auto& [vertex, weight] : point[slot])
+          for (std::size_t a = 0; a < d; ++a)
+            jet[static_cast<std::size_t>(slot) * d + a] +=
+                per * weight *
+                rows.rows(rows.newest, cell + element.table().pattern.vertices[static_cast<std::size_t>(vertex)].space,
+                          static_cast<int>(a));
+      };
+      add(JetSlot::phi, 1), add(JetSlot::phi_x, 1 / k);
+      const StressEnergy at = stress_energy(density, jet.data(), t, lattice.position(cell) + point.space * k);
+      sum.energy += k * point.weight * at.energy, sum.momentum += k * point.weight * at.momentum;
+    }
+  }
+  return sum;
 }
 
 /// max |q⁺ − q⁻|, as twice the distance of q⁻ from the observed q: a nodal flux finds q⁺ with the next row.
@@ -170,14 +208,14 @@ double jump(const RowsInTime& rows) {
   for (int c = 0; c < rows.system.components(); ++c) {
     const Component& trace = rows.system.component(c);
     if (trace.role != Role::trace || !trace.name.ends_with('-')) continue;
-    most = std::max(most, 2 * std::abs(rows.rows(rows.newest, 0, c) - rows.rows(rows.newest, 0, trace.field)));
+    for (int i = 0; i < rows.system.lattice().sites(); ++i)
+      most = std::max(most, 2 * std::abs(rows.rows(rows.newest, i, c) - rows.rows(rows.newest, i, trace.field)));
   }
   return most;
 }
 
 /// Each flux, with functions and Gauss's rule of as many points.
 std::vector<NamedScheme> variants(const Problem& base) {
-  if (base.lattice.space() != Space::point) return {{base.method, base}};
   std::vector<NamedScheme> schemes;
   for (int S = 1; S <= 4; ++S)
     for (const NamedFlux& flux : named_fluxes()) {
@@ -194,7 +232,8 @@ std::vector<NamedScheme> variants(const Problem& base) {
 std::string label(const Problem& p) {
   const Keys keys(p);
   return fmt::format("dgvi, {} flux, {} {} functions, {} {} points{}", keys.flux.name, keys.basis_name, keys.functions,
-                     keys.quadrature, keys.points, keys.nu == 0 ? "" : fmt::format(", nu = {}", keys.nu));
+                     keys.quadrature, keys.points, keys.nu == 0 ? "" : fmt::format(", nu = {}", keys.nu)) +
+         space_label(p);
 }
 
 }  // namespace
@@ -214,7 +253,10 @@ const MethodEntry dgvi_method{
                     .choices = names_of(named_fluxes())},
                    {.key = "scheme.nu",
                     .fallback = 0.0,
-                    .help = "a fault for `delf verify` to find: a gauge -nu d(theta.q)/dt on the jumps alone"}},
+                    .help = "a fault for `delf verify` to find: a gauge -nu d(theta.q)/dt on the jumps alone"},
+                   space_key(),
+                   space_order_key(),
+                   degree_space_key()},
     .label = label,
     .starts = {StartRule::values},
     .start = StartRule::values,

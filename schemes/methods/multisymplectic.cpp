@@ -32,12 +32,14 @@ void check_walls(const Problem& p, const StencilFamily& family) {
                              : fmt::format("lattice.stencil = {}: is for mechanics and couples no neighbours; use "
                                            "rectangle-symmetric, or lattice.space = point",
                                            p.stencil));
-  if (!p.lattice.is_circle() && width > 1)
+  const bool clamped = p.lattice.left() == Wall::clamped && p.lattice.right() == Wall::clamped;
+  if (!p.lattice.is_circle() && width > 1 && !clamped)
     throw BadInput(
         "lattice.stencil",
         fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
                     "at the walls out of the action, and the error there does not vanish with k; use "
-                    "triangle, rectangle or rectangle-symmetric, or lattice.space = circle",
+                    "triangle, rectangle or rectangle-symmetric, lattice.space = circle, or clamp both walls: "
+                    "boundary.left = clamped",
                     p.stencil));
 }
 

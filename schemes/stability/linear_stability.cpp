@@ -201,8 +201,8 @@ class Scan {
       for (std::size_t c = 0; c < v.size() / 2; ++c) like += std::real(std::conj(v[c]) * v[c + v.size() / 2]);
       if (like < 0) ghost.theta = pi - ghost.theta, ghost.z = -std::conj(ghost.z);
     }
-    // To rounding, very long waves of a massless field are a drift.
-    if (ghost.theta < 1e-3 && std::abs(ghost.z - 1.0) < 1e-4 && ghost.multiplicity <= 2 * drifts_) {
+    // To rounding, very long waves of a massless field are a drift; those of a beam, whose frequency is θ², sooner.
+    if (ghost.theta < 1e-2 && std::abs(ghost.z - 1.0) < 1e-4 && ghost.multiplicity <= 2 * drifts_) {
       verdict_.drift = true;
       return;
     }

@@ -43,7 +43,7 @@ double lasts_until(const StateBuild& build, double position, double speed, const
   if (!build.exact) return 0;
   const Lattice& lattice = build.lattice;
   // at rest between walls that keep their values, any piece of the kink is a solution
-  if (!lattice.is_circle() && speed == 0 && lattice.left() == Wall::fixed && lattice.right() == Wall::fixed)
+  if (!lattice.is_circle() && speed == 0 && lattice.left() != Wall::natural && lattice.right() != Wall::natural)
     return std::numeric_limits<double>::infinity();
   const double rate = lorentz_factor(speed) * profile.tail_rate();
   return clear_until(lattice, position, speed, reach(profile.tail_factor(), rate));

@@ -22,17 +22,17 @@ double Modes::wavenumber(double n) const { return half_waves(n) * std::numbers::
 
 double Modes::standing(double n, double x) const {
   const double turns = half_waves(n) * (x / lattice_.length());
-  return lattice_.left() == Wall::fixed ? boost::math::sin_pi(turns) : boost::math::cos_pi(turns);
+  return lattice_.left() != Wall::natural ? boost::math::sin_pi(turns) : boost::math::cos_pi(turns);
 }
 
 double Modes::standing_slope(double n, double x) const {
   const double turns = half_waves(n) * (x / lattice_.length());
-  return wavenumber(n) * (lattice_.left() == Wall::fixed ? boost::math::cos_pi(turns) : -boost::math::sin_pi(turns));
+  return wavenumber(n) * (lattice_.left() != Wall::natural ? boost::math::cos_pi(turns) : -boost::math::sin_pi(turns));
 }
 
 int Modes::most() const {
   if (lattice_.is_circle()) return lattice_.sites() / 2;
-  const bool both_fixed = lattice_.left() == Wall::fixed && lattice_.right() == Wall::fixed;
+  const bool both_fixed = lattice_.left() != Wall::natural && lattice_.right() != Wall::natural;
   return both_fixed ? lattice_.sites() - 2 : lattice_.sites() - 1;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "schemes/system/stress_energy.hpp"
 
 namespace delf {
 
@@ -44,6 +45,17 @@ EnergyMomentum energy_momentum(const BatchDensity& density, const RowPair& pair,
     }
   }
   return {pair.space_step * sum(energy), pair.space_step * sum(momentum)};
+}
+
+EnergyMomentum energy_momentum(const BatchDensity& density, const Lattice& lattice, CellJets& jets,
+                               std::span<const double> below, std::span<const double> above, double t) {
+  const double k = lattice.space_step();
+  EnergyMomentum sums;
+  for (int i = 0; i < lattice.cells(); ++i) {
+    const StressEnergy s = stress_energy(density, jets.at(i, below, above), t, lattice.position(i) + 0.5 * k);
+    sums.energy += k * s.energy, sums.momentum += k * s.momentum;
+  }
+  return sums;
 }
 
 }  // namespace delf

@@ -2,6 +2,7 @@
 #pragma once
 #include "jets/batch_density.hpp"
 #include "schemes/solvers/row_layout.hpp"
+#include "schemes/system/cell_jet.hpp"
 
 namespace delf {
 
@@ -30,5 +31,10 @@ struct EnergyMomentum {
 /// For sine-Gordon H is k times the sum of Marsden–Patrick–Shkoller's footnote 4. The lattice breaks the symmetries
 /// behind both: they are measured, not conserved. cells[slot]: 1 for each slot that is the left end of a cell, else 0.
 EnergyMomentum energy_momentum(const BatchDensity&, const RowPair&, const double* cells);
+
+/// The same site by site, for densities of second order too (StressEnergy says what their energy is). `jets` are of this
+/// lattice; rows [i·d + a]; t: between them.
+EnergyMomentum energy_momentum(const BatchDensity&, const Lattice&, CellJets& jets, std::span<const double> below,
+                               std::span<const double> above, double t);
 
 }  // namespace delf

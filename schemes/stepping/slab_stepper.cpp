@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "jets/fibre.hpp"
@@ -148,26 +151,56 @@ bool is_data(const LatticeSystem& system, const Node& value) {
   return value.site.time == 0 && (role == Role::field || role == Role::trace);
 }
 
+/// What an equation reads. Equations of one component are alike, but near walls.
+class Reads {
+ public:
+  explicit Reads(const LatticeSystem& system) : system_(system) {}
+
+  std::vector<Node> of(const Node& equation) {
+    const Lattice& lattice = system_.lattice();
+    const int i = equation.site.space, far = 2 * system_.width() + 1;
+    const bool circle = lattice.is_circle();
+    const auto [found, fresh] =
+        known_.try_emplace({equation.component, (equation.site.time + i) % 2, circle ? far : std::min(i, far),
+                            circle ? far : std::min(lattice.sites() - 1 - i, far)});
+    if (fresh) found->second = system_.linearised(equation.site, equation.component);
+    std::vector<Node> nodes;
+    for (const Coefficient& c : found->second) {
+      Site site = equation.site + c.offset;
+      site.space = lattice.home(site.space), site.node = 0;  // components tell nodes apart
+      nodes.push_back({site, c.component});
+    }
+    return nodes;
+  }
+
+ private:
+  const LatticeSystem& system_;
+  std::map<std::tuple<int, int, int, int>, std::vector<Coefficient>> known_;
+};
+
 /// Leaves out the equations that contain what lies before row 0, or what is found there by other equations than these,
 /// and the unknowns that they are solved for.
 void leave_out_earlier_rows(const LatticeSystem& system, Assembly::Parts& parts) {
-  const auto is_known = [&](const Node& value) {
-    return is_data(system, value) || std::ranges::find(parts.unknowns, value) != parts.unknowns.end();
-  };
-  const auto is_whole = [&](const Node& equation) {
-    return std::ranges::all_of(system.linearised(equation.site, equation.component), [&](const Coefficient& c) {
-      Site site = equation.site + c.offset;
-      site.space = system.lattice().home(site.space), site.node = 0;  // components tell nodes apart
-      return is_known({site, c.component});
-    });
-  };
-  for (std::size_t n = 0; n < parts.equations.size();)
-    if (is_whole(parts.equations[n])) ++n;
-    else {
-      const auto at = static_cast<std::ptrdiff_t>(n);
-      parts.equations.erase(parts.equations.begin() + at), parts.unknowns.erase(parts.unknowns.begin() + at);
-      n = 0;
+  const auto key = [](const Node& n) { return std::tuple{n.site.time, n.site.space, n.component}; };
+  std::set<std::tuple<int, int, int>> found;
+  for (const Node& unknown : parts.unknowns) found.insert(key(unknown));
+  Reads reads(system);
+  std::vector<std::vector<Node>> read;
+  for (const Node& equation : parts.equations) read.push_back(reads.of(equation));
+  std::vector<char> kept(parts.equations.size(), 1);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t n = 0; n < kept.size(); ++n) {
+      const auto is_known = [&](const Node& value) { return is_data(system, value) || found.contains(key(value)); };
+      if (kept[n] == 0 || std::ranges::all_of(read[n], is_known)) continue;
+      kept[n] = 0, changed = true;
+      found.erase(key(parts.unknowns[n]));
     }
+  }
+  std::size_t left = 0;
+  for (std::size_t n = 0; n < kept.size(); ++n)
+    if (kept[n] != 0) parts.equations[left] = parts.equations[n], parts.unknowns[left++] = parts.unknowns[n];
+  parts.equations.resize(left), parts.unknowns.resize(left);
 }
 
 }  // namespace

@@ -27,9 +27,10 @@ class NoetherCheck {
  private:
   /// Σ_l Jˡ(ξ) = dL(ξ) on single stencils at random jets, which is zero where ξ is a symmetry of L.
   Check invariance(const LinearSymmetry&, std::mt19937_64&) const;
-  /// Of a change δL of L that is linear in the values, and the same everywhere: that its terms cancel at every site, so that
-  /// the sum of δL over a region is one over its boundary. Nothing if δL is not of that form.
-  std::optional<Check> divergence(const LinearSymmetry&, std::mt19937_64&) const;
+  /// That the change δL is a divergence: its sum over a region is one over the region's boundary.
+  Check divergence(const LinearSymmetry&, std::mt19937_64&) const;
+  /// ∂/∂y of Σ_Δ δL_Δ at one value of a random field.
+  Balance change_at(Site, int component, const LinearSymmetry&, double centre, std::mt19937_64&) const;
 
   const LatticeSystem& system_;
   std::vector<LinearSymmetry> symmetries_;

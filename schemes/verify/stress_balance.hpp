@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lattice/lattice.hpp"
+#include "schemes/system/cell_jet.hpp"
 #include "schemes/verify/check.hpp"
 
 namespace delf {
@@ -62,7 +63,7 @@ class BalanceLaw {
 ///
 /// The lattice breaks both symmetries, so that nothing here is conserved: it is measured how fast the defects vanish
 /// with h. Every cell carries the symmetric rectangle's jet, whatever the scheme; where its sites move, these are not
-/// the laws. Rows are read as they come: no more than two are kept.
+/// the laws. Of densities of second order, the totals on a circle. Rows are read as they come: no more than two are kept.
 class StressBalance {
  public:
   /// `turn` is φ(x + L) − φ(x) on a circle. Keeps a reference to the theory.
@@ -77,15 +78,16 @@ class StressBalance {
 
  private:
   void add_cells(std::int64_t row, std::span<const double> above);
+  std::vector<Measured> of_second_order() const;
   Measured local_of(const std::string& name, const BalanceLaw&) const;
   Measured total_of(const std::string& name, const BalanceLaw&) const;
 
   const FieldTheory& theory_;
   Lattice lattice_;
-  double time_step_, turn_;
+  double time_step_;
   std::int64_t newest_ = 0;
   std::vector<double> row_;  ///< of index newest_; none at first
-  std::vector<double> phi_, phi_t_, phi_x_;
+  CellJets jets_;
   std::vector<Current> energy_cells_, momentum_cells_;
   BalanceLaw energy_, momentum_;
 };

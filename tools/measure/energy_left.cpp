@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/system/cell_jet.hpp"
 #include "schemes/system/stress_energy.hpp"
 #include "tools/measure/entries.hpp"
 
@@ -29,25 +30,14 @@ class EnergyLeft final : public Measurement {
   double value() const override {
     if (below_.empty() || field_.lattice.space() == Space::point) return unknown;
     const double h = field_.time_step, k = field_.lattice.space_step();
-    const auto d = static_cast<std::size_t>(field_.fields);
-    std::vector<double> phi(d), phi_t(d), phi_x(d);
+    CellJets jets(field_.theory->density(), field_.lattice, h, field_.turn);
     double energy = 0;
     for (int i = 0; i < field_.lattice.cells(); ++i) {
       const double begin = field_.lattice.position(i), share = std::clamp(x_ - begin, 0.0, k);
       if (share == 0) break;
-      const auto left = static_cast<std::size_t>(i) * d,
-                 right = static_cast<std::size_t>(field_.lattice.wrapped(i + 1)) * d;
-      const double turn = field_.lattice.is_circle() && i + 1 == field_.lattice.sites() ? field_.turn : 0;
-      for (std::size_t a = 0; a < d; ++a) {
-        const double y_0 = below_[left + a], y_1 = below_[right + a] + turn;
-        const double z_0 = above_[left + a], z_1 = above_[right + a] + turn;
-        phi[a] = 0.25 * (y_0 + y_1 + z_0 + z_1);
-        phi_t[a] = (z_0 + z_1 - y_0 - y_1) / (2 * h);
-        phi_x[a] = (y_1 + z_1 - y_0 - z_0) / (2 * k);
-      }
-      energy += share * stress_energy(field_.theory->density(), phi.data(), phi_t.data(), phi_x.data(), time_ - 0.5 * h,
-                                      begin + 0.5 * k)
-                            .energy;
+      energy +=
+          share *
+          stress_energy(field_.theory->density(), jets.at(i, below_, above_), time_ - 0.5 * h, begin + 0.5 * k).energy;
     }
     return energy;
   }

@@ -13,7 +13,7 @@ std::optional<double> exact_energy(const State& state, const BatchDensity& densi
                                    double width, double t) {
   constexpr double most_cells = 4096;
   const int d = density.components(), m = density.variables();
-  if (state.components() != d) return std::nullopt;
+  if (state.components() != d || density.slots() > 3) return std::nullopt;  // a state knows no second derivatives
   const bool point = lattice.space() == Space::point;
   const bool has_pulses = std::isfinite(width);
   // A wave may be two sites long; a pulse is resolved by two cells.

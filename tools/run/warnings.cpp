@@ -8,7 +8,6 @@
 #include <numbers>
 #include <set>
 
-#include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stability/linear_stability.hpp"
@@ -16,46 +15,15 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/theories/theory_registry.hpp"
 #include "tools/run/exact_energy.hpp"
 #include "tools/run/solution_error.hpp"
+#include "tools/run/vacuum_symbol.hpp"
 
 namespace delf {
 
 namespace {
 
 constexpr double one_percent = 0.01;
-// Symbols of more components take as long as many a run.
-constexpr int most_components = 12;
-
-// The theory's vacuum, if no constant field is unstable there: −∂²ℓ/∂φᵃ∂φᵇ is positive by the sums of its rows.
-std::optional<double> stable_vacuum(const TheoryEntry& entry, const BatchDensity& density) {
-  if (!entry.vacuum || density.is_placed()) return std::nullopt;
-  const int d = density.components();
-  const ScratchRows phi(d, lanes), curvature(d * d, lanes);
-  for (int a = 0; a < d; ++a) std::fill_n(phi[a], lanes, *entry.vacuum);
-  density.curvature({lanes, phi.data()}, curvature.data());
-  for (int a = 0; a < d; ++a) {
-    double least = -curvature[a * d + a][0];
-    for (int b = 0; b < d; ++b)
-      if (b != a) least -= std::abs(curvature[a * d + b][0]);
-    if (!(least >= 0)) return std::nullopt;
-  }
-  return entry.vacuum;
-}
-
-// The verdict about the vacuum; nothing where there is none, or it would cost too much.
-std::optional<Symbol> symbol_of(const Scene& scene, const Simulation& simulation) {
-  const auto vacuum = stable_vacuum(find_theory(scene.problem.theory), simulation.theory().density());
-  const LatticeSystem& system = simulation.evolution().system();
-  if (!vacuum || system.components() > most_components) return std::nullopt;
-  try {
-    return Symbol(system, *vacuum);
-  } catch (const BadInput&) {  // a scheme that has no symbol
-    return std::nullopt;
-  }
-}
-
 // The largest |z| of the waves that the lattice has near θ: θ_j = 2πj/N on a circle, πj/(N − 1) between walls.
 double growth_near(const Symbol& symbol, const Lattice& lattice, double theta) {
   if (lattice.space() == Space::point) return symbol.amplification(0);
@@ -173,6 +141,7 @@ Warnings::Found Warnings::linear_limit(const Outcome& outcome) const {
   const StabilityVerdict verdict = linear_stability(*symbol, symbol->size() > 1 ? 33 : 101);
   if (verdict.stable) return {};
   const double growth = growth_near(*symbol, scene_.problem.lattice, verdict.worst_theta);
+  if (!std::isfinite(growth)) return {};  // steps of that wave have no solution, and these had one: walls hold it
   const double decades = static_cast<double>(outcome.steps) * std::log10(growth);
   if (!(decades > 1)) return {};
   return fmt::format(

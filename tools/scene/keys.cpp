@@ -52,7 +52,8 @@ Names state_names() {
 Names fibres() { return {"R", "S1"}; }
 Names spaces() { return {"circle", "interval", "point", "complex"}; }
 Names mesh_times() { return {"rows", "none", "cells"}; }
-Names walls() { return {"fixed", "natural"}; }
+Names walls() { return {"fixed", "clamped", "natural"}; }
+Names mesh_walls() { return {"fixed", "natural"}; }
 Names faults() { return verify_faults(); }
 Names sweep_keeps() { return {"folders", "table"}; }
 Names stability_fault_names() { return stability_faults(); }
@@ -113,7 +114,8 @@ std::vector<Key> general_keys() {
           "a mesh file (text, Gmsh MSH 2.2 or 4.1), or icosahedron:LEVEL, graded:LENGTH,POINTS,RATIO, "
           "rectangle:WIDTH,HEIGHT,NX,NY, quadrilaterals:WIDTH,HEIGHT,NX,NY"},
       Key{"lattice.time", choice, "rows", "",
-          "on a mesh: all sites row by row, none (data all round: an elliptic problem), or each of its cells by its own "
+          "on a mesh: all sites row by row, none (data all round: an elliptic problem), or each of its cells by its "
+          "own "
           "step",
           "", any, mesh_times()},
       Key{"lattice.time_steps", KeyType::text, "", "none",
@@ -134,9 +136,11 @@ std::vector<Key> general_keys() {
           state_names()},
       Key{"initial.start", choice, "", usual_start(), "what gives row 1", "", any, starts()},
 
-      Key{"boundary.left", choice, "fixed", "", "the left wall of an interval", "", any, walls()},
-      Key{"boundary.right", choice, "fixed", "", "the right wall of an interval", "", any, walls()},
-      Key{"boundary.mesh", choice, "fixed", "", "the boundary of a mesh", "", any, walls()},
+      Key{"boundary.left", choice, "fixed", "", "the left wall of an interval; clamped: its neighbour is kept too", "",
+          any, walls()},
+      Key{"boundary.right", choice, "fixed", "", "the right wall of an interval; clamped: its neighbour is kept too",
+          "", any, walls()},
+      Key{"boundary.mesh", choice, "fixed", "", "the boundary of a mesh", "", any, mesh_walls()},
       Key{"boundary.winding", integer, "", own, "what the field gains around a circle, in units of 2 pi", "", whole},
 
       Key{"run.until", real, "", "this or run.steps", "time of the last row, rounded to whole steps", "time",

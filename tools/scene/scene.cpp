@@ -35,7 +35,8 @@ const std::string& chosen(const Scene& scene, DeclaredBy kind) {
 }
 
 Wall wall(const Values& values, std::string_view key) {
-  return values.choice(key) == "natural" ? Wall::natural : Wall::fixed;
+  const std::string wall = values.choice(key);
+  return wall == "natural" ? Wall::natural : wall == "clamped" ? Wall::clamped : Wall::fixed;
 }
 
 Space read_space(const Values& values) {

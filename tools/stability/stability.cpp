@@ -7,8 +7,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "lattice/error.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/seconds_since.hpp"
@@ -103,6 +106,10 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
 
 ExitCode stability(const Scene& scene, const fs::path& folder) {
   if (scene.problem.lattice.space() == Space::point) return point_stability(scene, folder);
+  if (make_theory(find_theory(scene.problem.theory), scene.problem.parameters)->density().slots() > 3)
+    throw BadInput("theory.density",
+                   "theory.density: limits are those of waves without second derivatives in the density, and this one has "
+                   "some; `delf plan` says which waves of the scheme grow at its steps");
   const Interrupt interrupt;
   const StabilityRequest request = read_stability_request(scene);
   const StabilityFindings findings = find_stability(request, scene.problem);

@@ -50,7 +50,8 @@ class Verification {
   void look_at_nearby(const Window&);
   void look_at_walls(std::int64_t row, const std::vector<double>& values);
   void diagnose_rows();
-  std::vector<LinearSymmetry> symmetries() const;
+  std::vector<LinearSymmetry> symmetries();
+  bool scheme_has(const LinearSymmetry&) const;
   Window window(std::int64_t first, std::int64_t last) const;
   void collect();
   void leave_out(const std::string& what) { verdict_.left_out.push_back(what); }
