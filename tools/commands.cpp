@@ -83,7 +83,11 @@ ExitCode carry_out_resume(const Arguments& arguments) {
 ExitCode carry_out_plan(const Arguments& arguments) {
   refuse(arguments, false);
   Settings settings = settings_of(arguments);
-  if (is_on_mesh(settings)) return plan(read_complex_scene(std::move(settings)));
+  if (is_on_mesh(settings)) {
+    if (arguments.latex)
+      throw BadScene("command line: --latex: is for lattices, and this scene is on a mesh; leave it out");
+    return plan(read_complex_scene(std::move(settings)));
+  }
   return plan(scene_of(std::move(settings)), arguments.latex);
 }
 
@@ -147,7 +151,8 @@ const std::vector<Command>& table() {
            "Keys, with what holds if they are not given (a key on the command line wins over the file):",
        true, carry_out_run},
       {"resume", "delf resume DIR [--run.until=T] [--KEY=VALUE ...]", "go on with a run that was ended early",
-       "Goes on with the run of the folder DIR from its last checkpoint, and leaves what the run would have given without "
+       "Goes on with the run of the folder DIR from its last checkpoint, and leaves what the run would have given "
+       "without "
        "a\n"
        "break: the rows, series.csv and summary.json are the same to the bit, but for timings. Checkpoints are written "
        "every\n"
@@ -179,9 +184,11 @@ const std::vector<Command>& table() {
        "(results/NAME of the scene, if not given) go verify.json and figures. Exit code 1 if a check fails.\n\n"
        "  --fields FILE      verify these rows, every row recorded, instead of stepping: a fields.h5, a table in .csv, "
        ".txt\n"
-       "                     or .dat, or an array in .npy, a line (or a column) for each row. Where the equations fail, a\n"
+       "                     or .dat, or an array in .npy, a line (or a column) for each row. Where the equations "
+       "fail, a\n"
        "                     diagnosis says what the rows do solve\n"
-       "  --dataset NAME     the data set of an HDF5 file that holds them, frames x sites (x fields); or FILE.h5:/NAME\n"
+       "  --dataset NAME     the data set of an HDF5 file that holds them, frames x sites (x fields); or "
+       "FILE.h5:/NAME\n"
        "  --nearby FILE.h5   given twice: two solutions of the same program from nearby data, whose differences stand "
        "for\n"
        "                     first variations; further pairs of other sizes are extrapolated to size zero\n\n"
@@ -189,7 +196,8 @@ const std::vector<Command>& table() {
        true, carry_out_verify, "verify", true},
       {"sweep", "delf sweep SCENE [--out DIR] --KEY=a,b,c [--KEY=from:to:step ...]",
        "a scene for many values of its keys, side by side",
-       "Runs a scene for every value of the keys that are given several: a,b,c or from:to:step, which ends at `to` or before it.\n"
+       "Runs a scene for every value of the keys that are given several: a,b,c or from:to:step, which ends at `to` or "
+       "before it.\n"
        "Several keys give all their pairs. Each run is a process of its own; one that fails is a row with its status.\n"
        "Into DIR (results/NAME-sweep, if not given) go sweep.csv and sweep.json, a row for each run with its numbers;\n"
        "sweep.rows, from which the same command goes on after Ctrl-C or worse; runs/, the folder of each run; and a\n"
@@ -207,7 +215,8 @@ const std::vector<Command>& table() {
        "and the time of each, with the scene's measures. Errors are those of the last row against the exact solution, "
        "or\n"
        "without one differences from the next line. Into DIR (results/NAME of the scene, if not given) go\n"
-       "convergence.json and convergence.csv. Exit code 1 if the last two lines miss the order of the scheme, where it is\n"
+       "convergence.json and convergence.csv. Exit code 1 if the last two lines miss the order of the scheme, where it "
+       "is\n"
        "known, or have another than convergence.order.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_convergence, "convergence"},

@@ -94,7 +94,9 @@ std::string report(const ComplexScene& c, const Outcome& o, std::int64_t updates
                               1e9 * o.seconds / static_cast<double>(updates)));
   if (o.iterations_max > 1)
     line("iterations", fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max));
-  line("residual", fmt::format("{:.2g} at most, relative to the terms of the equations", o.residual_max));
+  line("residual", std::isfinite(o.residual_max)
+                       ? fmt::format("{:.2g} at most, relative to the terms of the equations", o.residual_max)
+                       : "not measured; `delf verify` does");
   line("energy", fmt::format("{:.10g}{}", o.energy_final,
                              std::isfinite(o.energy_error_max)
                                  ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
@@ -126,18 +128,22 @@ void measure_error(const ComplexScene& c, std::span<const double> values, double
 class MeshRecorder {
  public:
   MeshRecorder(const ComplexScene& c, const fs::path& folder, std::int64_t frames, Outcome& outcome)
-      : outcome_(outcome), series_(folder / "series.csv", std::vector<std::string>{}) {
+      : c_(c), outcome_(outcome), series_(folder / "series.csv", std::vector<std::string>{}) {
     if (c.scene.fields) files_.emplace(c, folder, frames, c.time == MeshTime::cells);
   }
   void record(std::int64_t row, double time, std::span<const double> values, double energy, int iterations,
               double residual, std::span<const double> node_times = {}) {
     Outcome& o = outcome_;
+    if (!std::isfinite(energy))
+      throw NotFinite(
+          fmt::format("row {}, t = {:.6g}: the energy is not finite; use smaller fields or steps", row, time));
     if (o.records++ == 0) o.energy_initial = energy;
     o.energy_final = energy;
     const double error =
         o.energy_initial == 0 ? Outcome::unknown : std::abs(energy - o.energy_initial) / std::abs(o.energy_initial);
     if (!(error <= o.energy_error_max)) o.energy_error_max = error;
-    o.residual_max = std::max(o.residual_max, residual);
+    if (std::isfinite(residual)) o.residual_max = std::max(o.residual_max, residual);
+    else if (c_.time == MeshTime::cells) o.residual_max = residual;  // of asynchronous steps it is not measured
     series_.append({row, time, energy, error, Outcome::unknown, Outcome::unknown, iterations, residual, {}});
     if (files_) files_->append(time, values, node_times);
   }
@@ -147,6 +153,7 @@ class MeshRecorder {
   }
 
  private:
+  const ComplexScene& c_;
   Outcome& outcome_;
   SeriesFile series_;
   std::optional<MeshFiles> files_;
@@ -219,7 +226,8 @@ void run_cells(const ComplexScene& c, MeshRecorder& recorder, Outcome& o, std::i
   const double h = c.scene.problem.time_step;
   const std::int64_t every = c.scene.every > 0 ? c.scene.every : std::max<std::int64_t>(1, c.scene.steps);
   const auto record = [&] {
-    recorder.record(o.steps, o.time, evolution.values(o.time), evolution.energy(o.time), 0, 0, evolution.node_times());
+    recorder.record(o.steps, o.time, evolution.values(o.time), evolution.energy(o.time), 0, Outcome::unknown,
+                    evolution.node_times());
   };
   if (c.scene.every > 0 || c.scene.steps == 0) record();
   Progress progress(c.scene.steps);
@@ -268,6 +276,12 @@ ExitCode run(const ComplexScene& c, const fs::path& folder) {
     throw c.scene.settings.located(bad);
   }
   recorder.close();
+  constexpr double most_drift = 0.1;
+  if (c.time != MeshTime::none && o.energy_error_max > most_drift)
+    o.warnings.push_back(fmt::format(
+        "the energy is off by {:.3g} of itself: these steps are too long, or the mesh too "
+        "coarse; reduce {}",
+        o.energy_error_max, c.scene.settings.find("lattice.courant") ? "lattice.courant" : "lattice.time_step"));
   write_text_file(folder / "summary.json", summary(c, o, updates));
   fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}\n", report(c, o, updates), "files", folder.string(),
              c.scene.fields ? c.space->mesh.coordinates() > 1 ? " fields.h5 fields.xdmf" : " fields.h5" : "");

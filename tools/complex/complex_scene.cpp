@@ -29,12 +29,25 @@ const std::set<std::string, std::less<>> read_keys{
     "output.fields",     "output.figures",     "verify.variations", "verify.moments",   "verify.tolerance",
     "verify.fault",      "scheme.method"};
 
-void refuse_unread(const Settings& settings, const TheoryEntry& theory, const ParameterValues& parameters) {
+/// Keys of time, which lattice.time = none has none of.
+const std::set<std::string, std::less<>> time_keys{"lattice.courant", "lattice.time_step", "lattice.time_steps",
+                                                   "run.until",       "run.steps",         "output.every"};
+
+void refuse_unread(const Settings& settings, const TheoryEntry& theory, const ParameterValues& parameters,
+                   const std::vector<Component>& fields, bool still) {
   std::set<std::string, std::less<>> known = read_keys;
   for (const Parameter& p : parameters_of(theory, parameters)) known.insert(p.key);
-  for (const Setting& s : settings.all())
-    if (!known.contains(s.key) && !s.key.starts_with("exact.") && !s.key.starts_with("initial."))
-      throw settings.error(s.key, "needs a regular lattice (not applicable to lattice.space = complex); remove it");
+  for (const Component& field : fields)
+    known.insert({"exact." + field.name, "initial." + field.name, "initial." + field.name + "_t"});
+  for (const Setting& s : settings.all()) {
+    if (!known.contains(s.key))
+      throw settings.error(s.key,
+                           s.key.starts_with("exact.") || s.key.starts_with("initial.")
+                               ? "has no effect on a mesh, where fields start from formulas; remove it"
+                               : "needs a regular lattice (not applicable to lattice.space = complex); remove it");
+    if (still && (time_keys.contains(s.key) || (s.key.starts_with("initial.") && s.key.ends_with("_t"))))
+      throw settings.error(s.key, "has no effect with lattice.time = none; remove it");
+  }
 }
 
 ParameterValues read_parameters(const Values& values, const TheoryEntry& theory) {
@@ -87,11 +100,15 @@ std::vector<std::pair<std::string, double>> numbers_of(const ParameterValues& pa
 
 void read_fields(ComplexScene& c, const Values& values, const ParameterValues& parameters) {
   const auto numbers = numbers_of(parameters);
+  const Settings& settings = c.scene.settings;
   const auto formula = [&](const std::string& key) -> std::optional<PlaceFormula> {
     const auto text = values.given(key) ? values.text(key) : std::nullopt;
-    return text ? std::optional(PlaceFormula(*text, numbers, key)) : std::nullopt;
+    if (!text) return std::nullopt;
+    PlaceFormula read(*text, numbers, key);
+    if (read.reads_time() && !key.starts_with("exact."))
+      throw settings.error(key, "reads t, and is of t = 0; give a solution of t as exact." + key.substr(8));
+    return read;
   };
-  const Settings& settings = c.scene.settings;
   for (const Component& field : c.theory->fields()) {
     const std::string& name = field.name;
     c.fields.push_back({name, formula("initial." + name), formula("initial." + name + "_t"), formula("exact." + name)});
@@ -124,8 +141,8 @@ ComplexScene read_complex_scene(Settings given) {
     p.theory = values.choice("theory.name");
     const TheoryEntry& entry = find_theory(p.theory);
     const ParameterValues parameters = read_parameters(values, entry);
-    refuse_unread(settings, entry, parameters);
     c.theory = make_theory(entry, parameters);
+    refuse_unread(settings, entry, parameters, c.theory->fields(), values.choice("lattice.time") == "none");
     if (c.theory->constraint())
       throw BadInput("theory.name", "theory.name = " + p.theory +
                                         ": constraints need a regular lattice; choose lattice.space = circle");
@@ -225,8 +242,8 @@ std::string ComplexScene::state_in_words() const {
 
 std::string resolved_text(const ComplexScene& c) {
   const Settings& settings = c.scene.settings;
-  return fmt::format("{}{} understood it: `delf run scene.ini` gives the same rows to the bit.\n", resolved_scene_begins,
-                     DELF_VERSION) +
+  return fmt::format("{}{} understood it: `delf run scene.ini` gives the same rows to the bit.\n",
+                     resolved_scene_begins, DELF_VERSION) +
          sections_of(settings, [&](const Key& key) -> std::string {
            const Setting* const given = settings.find(key.name);
            if (!given) return {};

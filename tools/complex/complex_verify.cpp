@@ -10,6 +10,7 @@
 #include "schemes/complex/complex_form.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/static_field.hpp"
+#include "tools/files/fields_reader.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/seconds_since.hpp"
 #include "tools/scene/text_file.hpp"
@@ -45,9 +46,11 @@ class MeshVerification {
     verdict_.subject = "rows computed here";
   }
 
-  Verdict run() {
+  /// Of rows computed here, or of those of a file.
+  Verdict run(const std::optional<std::string>& fields) {
     const auto begin = std::chrono::steady_clock::now();
-    if (scene_.time == MeshTime::none) look_at_field();
+    if (fields) look_at_file(*fields);
+    else if (scene_.time == MeshTime::none) look_at_field();
     else if (scene_.time == MeshTime::cells) look_at_cells();
     else look_at_rows();
     verdict_.seconds = seconds_since(begin);
@@ -124,6 +127,65 @@ class MeshVerification {
         equations_.region = fmt::format("{}, {}", system.complex().name(site), where), worst_site_ = equations_.region;
     }
     if (!equations_.passed()) equations_.failure = "the values around " + worst_site_ + " are not those of a solution";
+  }
+
+  /// Every row but the first and the last has an equation; windows overlap by two rows.
+  void look_at_file(const std::string& name) {
+    const auto refuse = [&](const std::string& why) -> BadScene {
+      return BadScene(fmt::format("command line: --fields: {}: {}", name, why));
+    };
+    if (scene_.time == MeshTime::cells)
+      throw refuse("asynchronous rows hold sites at times of their own; verify the scene without --fields");
+    const FieldsReader file(name);
+    const CellSpace& space = *scene_.space;
+    const auto d = static_cast<int>(scene_.fields.size());
+    if (file.sites() != space.sites() || file.components() != d)
+      throw refuse(fmt::format("has {} sites and {} fields, and the scene {} and {}; use the scene of these rows",
+                               file.sites(), file.components(), space.sites(), d));
+    require_same_places(file, name);
+    verdict_.subject = "rows of " + name;
+    const int frames = file.frames();
+    if (scene_.time == MeshTime::none) {
+      const SpaceRows rows(space);
+      return look_at(rows.system(), file.row(frames - 1), fmt::format("frame {}", frames - 1));
+    }
+    if (frames < 3) throw refuse(fmt::format("has {} frames, and an equation takes three; record more rows", frames));
+    for (int first = 0, last = 0; last < frames - 1 && !Interrupt::asked(); first = last - 1) {
+      last = std::min(first + window, frames) - 1;
+      first = std::min(first, last - 2);
+      std::vector<double> rows, times;
+      for (int f = first; f <= last; ++f) {
+        const std::vector<double> row = file.row(f);
+        rows.insert(rows.end(), row.begin(), row.end());
+        const auto time = file.time(f);
+        if (!time) throw refuse("has no /time; record it");
+        if (!times.empty() && !(*time > times.back()))
+          throw refuse(fmt::format("frame {} is not later than the one before it; sort the frames", f));
+        times.push_back(*time);
+      }
+      const SpaceRows window_rows(space, times);
+      look_at(window_rows.system(), rows, fmt::format("frames {} to {}", first, last));
+    }
+    if (Interrupt::asked()) verdict_.status = "interrupted";
+  }
+
+  /// Rows of one mesh say nothing of another.
+  void require_same_places(const FieldsReader& file, const std::string& name) const {
+    const auto places = file.coordinates();
+    const Mesh& mesh = scene_.space->mesh;
+    const auto n = static_cast<std::size_t>(mesh.coordinates());
+    if (!places || places->size() != n * mesh.points.size()) return;  // of other programs: nothing to compare
+    double longest = 0;
+    for (const Mesh::Point& p : mesh.points)
+      longest = std::max({longest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+      for (std::size_t c = 0; c < n; ++c)
+        if (const double there = (*places)[i * n + c], here = mesh.points[i][c];
+            !(std::abs(there - here) <= 1e-6 * longest))
+          throw BadScene(fmt::format(
+              "command line: --fields: {}: point {} lies at {} = {:.10g} in /space, and at {:.10g} in the mesh; use "
+              "the mesh of these rows",
+              name, i, "xyz"[c], there, here));
   }
 
   void look_at_field() {
@@ -226,14 +288,15 @@ class MeshVerification {
 }  // namespace
 
 ExitCode verify(const ComplexScene& c, const std::filesystem::path& folder, const std::optional<std::string>& fields) {
-  if (fields)
-    throw BadScene("command line: --fields: rows of another program are verified on lattices only; leave it out");
   const Interrupt interrupt;
   const Values values(c.scene.settings);
   Verdict verdict;
   try {
-    verdict = MeshVerification(c, values).run();
+    verdict = MeshVerification(c, values).run(fields);
   } catch (const BadInput& bad) {
+    if (fields && bad.key() == "initial.file")  // the reader's name for any file of rows
+      throw BadScene(fmt::format("command line: --fields: {}: {}", *fields,
+                                 std::string_view(bad.what()).substr(std::string_view("initial.file: ").size())));
     throw c.scene.settings.located(bad);
   }
   make_results_folder(folder);

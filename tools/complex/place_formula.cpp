@@ -10,7 +10,9 @@ PlaceFormula::PlaceFormula(std::string_view text, const std::vector<std::pair<st
   expressions::Graph graph;
   const int root = expressions::parse(graph, text, {{{"t", 0}, {"x", 1}, {"y", 2}, {"z", 3}}, parameters}, key);
   value_ = expressions::Evaluation(graph, root);
-  by_t_ = expressions::Evaluation(graph, graph.differentiate(root, 0));
+  const int by_t = graph.differentiate(root, 0);
+  by_t_ = expressions::Evaluation(graph, by_t);
+  reads_time_ = !graph.is_constant(by_t, 0);
 }
 
 double PlaceFormula::evaluated(const expressions::Evaluation& formula, double t, const Mesh::Point& p) {

@@ -18,11 +18,13 @@ class PlaceFormula {
                const std::string& key);
 
   double operator()(double t, const Mesh::Point& p) const { return evaluated(value_, t, p); }
+  bool reads_time() const { return reads_time_; }
   double by_t(double t, const Mesh::Point& p) const { return evaluated(by_t_, t, p); }
 
  private:
   static double evaluated(const expressions::Evaluation&, double t, const Mesh::Point&);
   expressions::Evaluation value_, by_t_;
+  bool reads_time_ = false;
 };
 
 }  // namespace delf

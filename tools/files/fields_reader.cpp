@@ -129,6 +129,18 @@ std::optional<std::vector<double>> FieldsReader::positions() const {
   return read_slice(dataset, 1, &none, &sites, x.data()) ? std::optional(x) : std::nullopt;
 }
 
+std::optional<std::vector<double>> FieldsReader::coordinates() const {
+  const Hdf5Handle dataset(H5Dopen2(file_, "space", H5P_DEFAULT), H5Dclose);
+  if (!dataset || rank_of(dataset) != 2) return positions();
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  hsize_t extent[2];
+  H5Sget_simple_extent_dims(space, extent, nullptr);
+  constexpr hsize_t most_dimensions = 3, from[2] = {0, 0};
+  if (extent[0] != static_cast<hsize_t>(sites()) || extent[1] > most_dimensions) return std::nullopt;
+  std::vector<double> x(extent[0] * extent[1]);
+  return read_slice(dataset, 2, from, extent, x.data()) ? std::optional(x) : std::nullopt;
+}
+
 std::string FieldsReader::scene() const {
   if (H5Aexists(file_, "scene") <= 0) return {};
   const Hdf5Handle attribute(H5Aopen(file_, "scene", H5P_DEFAULT), H5Aclose);

@@ -31,6 +31,8 @@ class FieldsReader final : public RowsFile {
   std::string scene() const;
   /// Of the sites, /space; nothing where it is not one number for each.
   std::optional<std::vector<double>> positions() const;
+  /// All of /space, on a mesh n × dimension, row by row; nothing where it is neither that nor one number for each site.
+  std::optional<std::vector<double>> coordinates() const;
 
   struct Shape {
     int frames = 0, sites = 0, components = 0;

@@ -123,6 +123,40 @@ TEST_CASE("elliptic problems on a mesh converge with order 2, sine-Gordon and ha
   }
 }
 
+TEST_CASE("rows of a mesh are verified from a file, and a moved point or an edited value is named") {
+  const Folder folder;
+  const std::string bare = "--lattice.courant=0.5 --run.steps=12 --output.every=1 --lattice.time=rows";
+  REQUIRE(delf_program(folder, "run asynchronous " + bare + " --lattice.mesh=graded:24,41,1.05 --out out").code == 0);
+  const auto verify = [&](const std::string& arguments) {
+    return delf_program(folder, "verify asynchronous " + bare + " --fields out/fields.h5 --out v " + arguments);
+  };
+  const Ran right = verify("--lattice.mesh=graded:24,41,1.05");
+  CAPTURE(right.out, right.err);
+  CHECK(right.code == 0);
+  CHECK(contains(right.out, "rows of out/fields.h5"));
+  const Ran edited = verify("--lattice.mesh=graded:24,41,1.05 --verify.fault=field");
+  CHECK(edited.code == 1);
+  CHECK(contains(edited.out, "the values around site"));
+  const Ran moved = verify("--lattice.mesh=graded:24,41,1.06"), other = verify("--lattice.mesh=graded:24,31,1.05");
+  CHECK(moved.code == 2);
+  CHECK(contains(moved.err, "point 1 lies at x = "));
+  CHECK(other.code == 2);
+  CHECK(contains(other.err, "has 41 sites"));
+  CHECK(delf_program(folder, "verify asynchronous --fields v/verify.json").code == 2);
+}
+
+TEST_CASE("nonsense on a mesh is no success") {
+  const Folder folder;
+  const Ran huge = delf_program(folder, "run sphere --initial.phi='1e308*x' --lattice.mesh=icosahedron:1 --out out");
+  CHECK(huge.code == 3);
+  CHECK(summary(folder)["status"] == "not-finite");
+  REQUIRE(delf_program(folder, "run asynchronous --lattice.courant=2 --run.until=3 --out out").code == 0);
+  CHECK(contains(summary(folder)["warnings"].dump(), "the energy is off by"));
+  CHECK(summary(folder)["residual_max"].is_null());
+  REQUIRE(delf_program(folder, "run asynchronous --run.until=3 --out out").code == 0);
+  CHECK(summary(folder)["warnings"].empty());
+}
+
 TEST_CASE("a scene on a mesh with an error is refused in one line") {
   const Folder folder;
   const auto refused = [&](const std::string& arguments, const std::string& part) {
@@ -139,4 +173,8 @@ TEST_CASE("a scene on a mesh with an error is refused in one line") {
   refused("run sphere '--theory.density=0.5*phi_t^2 - phi_x^4'", "is not quadratic in phi_x");
   refused("convergence sphere", "works with run, plan and verify");
   refused("run sphere --lattice.time_steps=0.1,-1", "steps must be above 0");
+  refused("run sphere --initial.speed=0.3", "has no effect on a mesh");
+  refused("run sphere --initial.phi=x*t", "reads t");
+  refused("run static-kink --run.until=3", "has no effect with lattice.time = none");
+  refused("plan sphere --latex", "is for lattices");
 }
