@@ -151,17 +151,20 @@ std::optional<Finding> find_coefficients(const Evidence& evidence, const Sample&
         fmt::format("No time step, length or coefficient of this theory explains the rows: {} of the largest "
                     "force remains, at best with {}. It is another theory, or these are not its consecutive "
                     "rows.",
-                    remains, equation(*nearest))};
+                    remains, equation(*nearest)),
+        true, false};
   const std::string means = meaning(*nearest, evidence.problem);
   if (means.empty())
     return Finding{"coefficients",
                    fmt::format("The theory, the time step and the length are right to {} of the largest force: {}. The "
                                "scheme is none that was tried, or its steps were not solved to this tolerance.",
-                               remains, equation(*nearest))};
+                               remains, equation(*nearest)),
+                   true, false};
   return Finding{"coefficients",
                  fmt::format("{}. What remains is {} of the largest force: {}; the scheme is none that was "
                              "tried, or its steps were not solved to this tolerance.",
-                             upper_first(means), remains, equation(*nearest))};
+                             upper_first(means), remains, equation(*nearest)),
+                 true, false};
 }
 
 }  // namespace delf

@@ -49,12 +49,24 @@ Diagnosis diagnose(Evidence evidence) {
     return diagnosis;
   }
   if (evidence.failed.failed() > 0) evidence.tolerance = std::max(evidence.tolerance, 3 * error_of_rounding(evidence));
+  // Momenta tell maps apart whose rows are the same.
+  if (evidence.momenta)
+    if (auto finding = find_one_step(evidence, sample)) {
+      finding->settles = finding->settles && evidence.failed.failed() > 0;
+      diagnosis.findings.push_back(std::move(*finding));
+      if (diagnosis.findings.back().settles) return diagnosis;
+    }
   using Everywhere = std::optional<Finding> (*)(const Evidence&, const Sample&);
-  for (const Everywhere find : {find_elsewhere, find_scheme, find_time_weights, find_coefficients})
+  for (const Everywhere find : {find_elsewhere, find_scheme, find_time_weights})
     if (auto finding = find(evidence, sample)) {
       diagnosis.findings.push_back(std::move(*finding));
-      if (diagnosis.findings.back().settles) break;
+      if (diagnosis.findings.back().settles) return diagnosis;
     }
+  // A map that is exact goes before coefficients that are not.
+  auto coefficients = find_coefficients(evidence, sample);
+  if (!evidence.momenta && !(coefficients && coefficients->exact))
+    if (auto map = find_one_step(evidence, sample)) coefficients = std::move(map);
+  if (coefficients) diagnosis.findings.push_back(std::move(*coefficients));
   return diagnosis;
 }
 

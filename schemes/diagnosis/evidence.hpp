@@ -40,6 +40,7 @@ struct Evidence {
   std::int64_t rows = 0;
   std::function<std::vector<double>(std::int64_t)> row;  ///< row j: [i·C + c]
   FailedEquations failed = {};
+  std::function<std::vector<double>(std::int64_t)> momenta = {};  ///< of the same shape, if the file has them
 };
 
 }  // namespace delf

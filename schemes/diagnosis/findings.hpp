@@ -22,6 +22,9 @@ std::optional<Finding> find_seam(const Evidence&);
 // Where they fail everywhere:
 /// The scheme that the rows solve, at the steps of the scene, on every second site, or with every second row.
 std::optional<Finding> find_scheme(const Evidence&, const Sample&);
+/// The one-step map that takes each frame to the next, in (φ, φ_t): by the momenta of the file, or by those that lead to the
+/// next frame.
+std::optional<Finding> find_one_step(const Evidence&, const Sample&);
 /// φ_tt ≈ a φ_xx + b N′(φ) (+ c φ_t), for every scheme: what makes the rows solve its equations, or comes nearest.
 std::optional<Finding> find_coefficients(const Evidence&, const Sample&);
 /// D²φ and N′(φ) taken at other rows than the scheme's, by least squares: explicit Euler, averages, …

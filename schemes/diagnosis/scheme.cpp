@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "schemes/methods/method_registry.hpp"
 #include "schemes/diagnosis/findings.hpp"
+#include "schemes/methods/method_registry.hpp"
 
 namespace delf {
 
@@ -17,6 +17,9 @@ std::string keys_of(const Problem& scheme, const Problem& scene) {
   for (const auto& [key, value] : scheme.parameters)
     if (const int* number = std::get_if<int>(&value); number && scene.parameters.maybe<int>(key) != *number)
       keys.push_back(fmt::format("{} = {}", key, *number));
+    else if (const std::string* word = std::get_if<std::string>(&value);
+             word && scene.parameters.maybe<std::string>(key) != *word)
+      keys.push_back(fmt::format("{} = {}", key, *word));
   return fmt::format("{}", fmt::join(keys, ", "));
 }
 

@@ -27,6 +27,7 @@ struct Written {
   Rows rows;
   Problem problem;
   double turn = 0;
+  Rows momenta = {};
 };
 
 Problem scene(const std::string& theory = "sine-gordon", Lattice lattice = Lattice::circle(N, L), double step = h) {
@@ -53,7 +54,9 @@ std::vector<Finding> findings(const Written& w, double tolerance = 1e-13) {
     failed.add(j, check.newest(), system->components(), tolerance);
   }
   return diagnose({w.problem, *system, w.turn, tolerance, last + 1,
-                   [&](std::int64_t j) { return w.rows[static_cast<std::size_t>(j)]; }, failed})
+                   [&](std::int64_t j) { return w.rows[static_cast<std::size_t>(j)]; }, failed,
+                   w.momenta.empty() ? std::function<Row(std::int64_t)>{}
+                                     : [&](std::int64_t j) { return w.momenta[static_cast<std::size_t>(j)]; }})
       .findings;
 }
 
@@ -251,6 +254,9 @@ TEST_CASE("a diagnosis knows what a row takes from its neighbours in time") {
       q += by / 6 * (q1 + 2 * q2 + 2 * q3 + q4), p += by / 6 * (p1 + 2 * p2 + 2 * p3 + p4);
     };
   };
+  const auto twice = [&](double& q, double& p) {
+    for (int n = 0; n < 2; ++n) runge_kutta(0.4)(q, p);
+  };
   for (const Case& c : std::vector<Case>{
            {"averaged leapfrog", with(averaged), "D²φ of the rows j − 1, j, j + 1 with the weights 0, 0.5, 0.5",
             "Euler"},
@@ -276,11 +282,88 @@ TEST_CASE("a diagnosis knows what a row takes from its neighbours in time") {
                 on_point()),
             "No force N′(φ) acts", "Euler"},
            {"Runge-Kutta, steps of 0.4", with(pendulum(runge_kutta(0.4)), on_point(0.4)),
-            "The theory, the time step and the length are right to", "another theory"},
+            "a step of the classical Runge-Kutta method of order 4", "is a symplectic"},
            {"Runge-Kutta", with(pendulum(runge_kutta(step)), on_point()),
-            "The theory, the time step and the length are right to", "friction"},
+            "a step of the classical Runge-Kutta method of order 4", "friction"},
+           {"two steps of Runge-Kutta a frame", with(pendulum(twice), on_point(0.8)),
+            "The theory, the time step and the length are right to", "Each frame is a step"},
        })
     check(c);
+}
+
+TEST_CASE("a diagnosis names the one-step map of rows, with their momenta and without them") {
+  constexpr double step = 0.25;
+  using Map = std::function<void(double& q, double& p)>;
+  const auto kick = [](double q, double& p, double by) { p -= by * std::sin(q); };
+  const Map kick_first = [&](double& q, double& p) { kick(q, p, step / 2), q += step * p, kick(q, p, step / 2); };
+  const Map drift_first = [&](double& q, double& p) { q += step / 2 * p, kick(q, p, step), q += step / 2 * p; };
+  const Map euler = [&](double& q, double& p) { kick(q, p, step), q += step * p; };
+  const auto yoshida = [&](double& q, double& p) {
+    const double outer = 1 / (2 - std::cbrt(2.0));
+    for (const double w : {outer, 1 - 2 * outer, outer})
+      q += w * step / 2 * p, kick(q, p, w * step), q += w * step / 2 * p;
+  };
+  // Gauss's method of s = 1, 2 by fixed points, from its collocation matrix
+  const auto gauss = [&](std::vector<std::vector<double>> a, std::vector<double> b) {
+    return [=](double& q, double& p) {
+      std::vector<double> Q(b.size(), q), P(b.size(), p);
+      for (int n = 0; n < 60; ++n)
+        for (std::size_t i = 0; i < b.size(); ++i) {
+          double Qi = q, Pi = p;
+          for (std::size_t j = 0; j < b.size(); ++j) Qi += step * a[i][j] * P[j], Pi -= step * a[i][j] * std::sin(Q[j]);
+          Q[i] = Qi, P[i] = Pi;
+        }
+      for (std::size_t i = 0; i < b.size(); ++i) p -= step * b[i] * std::sin(Q[i]), q += step * b[i] * P[i];
+    };
+  };
+  const double r = std::sqrt(3.0) / 6;
+  const Map midpoint = gauss({{0.5}}, {1}), gauss2 = gauss({{0.25, 0.25 - r}, {0.25 + r, 0.25}}, {0.5, 0.5});
+  const Map heun = [&](double& q, double& p) {
+    const double q1 = q + step * p, p1 = p - step * std::sin(q), q0 = q;
+    q += step / 2 * (p + p1), p -= step / 2 * (std::sin(q0) + std::sin(q1));
+  };
+  const Map wrong = [&](double& q, double& p) { kick(q, p, step / 2), q += step * p, kick(q, p, 0.6 * step); };
+
+  struct Named {
+    const char* name;
+    Map map;
+    std::string with, without, never;  ///< said with momenta, of the rows alone, and of neither
+    double unit = 1;                   ///< of the momenta that are written
+  };
+  for (const Named& c : std::vector<Named>{
+           {"kick-drift-kick", kick_first, "kick-drift-kick Störmer-Verlet", "equations of vertex", "drift-kick-drift"},
+           {"drift-kick-drift", drift_first, "drift-kick-drift Störmer-Verlet", "drift-kick-drift", "kick-drift-kick"},
+           {"symplectic Euler", euler, "symplectic Euler, the kick first", "equations of vertex", "Verlet"},
+           {"Yoshida", yoshida, "method of order 4, drifts first", "method of order 4, drifts first", "kicks first"},
+           {"midpoint", midpoint, "cgvi, scheme.tableau = midpoint", "lattice.stencil = midpoint", "not symplectic"},
+           {"Gauss 2", gauss2, "scheme.tableau = gauss2", "scheme.tableau = gauss2", "not symplectic"},
+           {"Heun", heun, "Heun's method of order 2", "Heun's method of order 2", "is a symplectic"},
+           {"a wrong second kick", wrong, "1.1 times", "1.1 times", "Each frame is a step"},
+           {"another unit", drift_first, "neither φ_t", "drift-kick-drift", "in its momenta", 3},
+       }) {
+    Written w{{}, on_point(step), 0, {}};
+    double q = 2, p = 0;
+    while (w.rows.size() < 40) w.rows.push_back({q}), w.momenta.push_back({p * c.unit}), c.map(q, p);
+    check({c.name, w, c.with, c.never});
+    w.momenta.clear();
+    check({c.name, w, c.without, c.never});
+  }
+
+  // Fields on a line: drifts first, with π = φ_t.
+  Written w{{}, scene(), 0, {}};
+  Row phi = row_of(breather, 0), pi(N, 0.0);
+  while (w.rows.size() < 20) {
+    w.rows.push_back(phi), w.momenta.push_back(pi);
+    for (int i = 0; i < N; ++i) phi[i] += h / 2 * pi[i];
+    const Row F = sine_gordon()(phi, phi);
+    for (int i = 0; i < N; ++i) pi[i] += h * F[i], phi[i] += h / 2 * pi[i];
+  }
+  check({"fields", w, "drift-kick-drift Störmer-Verlet", "not symplectic"});
+  for (Row& row : w.momenta)
+    for (double& p : row) p *= k;
+  check({"fields, momenta of sites", w, "p is ∂L/∂φ_t of a site", "not symplectic"});
+  w.momenta.clear();
+  check({"fields without momenta", w, "drift-kick-drift Störmer-Verlet", "No time step"});
 }
 
 TEST_CASE("a diagnosis finds what is wrong with a seam") {
