@@ -52,8 +52,8 @@ Diagnosis diagnose(Evidence evidence) {
   // Momenta tell maps apart whose rows are the same.
   if (evidence.momenta)
     if (auto finding = find_one_step(evidence, sample)) {
-      finding->settles = finding->settles && evidence.failed.failed() > 0;
       diagnosis.findings.push_back(std::move(*finding));
+      if (auto scheme = find_scheme(evidence, sample)) diagnosis.findings.push_back(std::move(*scheme));
       if (diagnosis.findings.back().settles) return diagnosis;
     }
   using Everywhere = std::optional<Finding> (*)(const Evidence&, const Sample&);

@@ -7,8 +7,13 @@
 
 namespace delf {
 
-LeastSquares least_squares(const Eigen::VectorXd& target, const std::vector<Eigen::VectorXd>& columns) {
+LeastSquares least_squares(const Eigen::VectorXd& given, const std::vector<Eigen::VectorXd>& given_columns) {
   LeastSquares fit;
+  // In units of the target: squares of values above 1e154 are not finite.
+  const double largest = given.cwiseAbs().maxCoeff(), unit = largest > 0 ? largest : 1;
+  const Eigen::VectorXd target = given / unit;
+  std::vector<Eigen::VectorXd> columns = given_columns;
+  for (Eigen::VectorXd& column : columns) column /= unit;
   fit.coefficients.assign(columns.size(), 0.0);
   fit.errors.assign(columns.size(), std::numeric_limits<double>::infinity());
   std::vector<std::size_t> used;
@@ -32,7 +37,7 @@ LeastSquares least_squares(const Eigen::VectorXd& target, const std::vector<Eige
       fit.errors[at] = std::sqrt(std::abs(variance * inverse(n, n))) / columns[at].norm();
     }
   }
-  fit.remains = rest.cwiseAbs().maxCoeff();
+  fit.remains = rest.cwiseAbs().maxCoeff() * unit;
   return fit;
 }
 

@@ -174,8 +174,7 @@ std::optional<Finding> find_one_step(const Evidence& e, const Sample& sample) {
                                          found->keys.empty() ? "" : " (" + found->keys + ")",
                                          by_momenta ? fmt::format(", in φ and in its momenta ({})", momenta)
                                                     : ", with the momenta that lead there",
-                                         found->symplectic ? " It is a symplectic map."
-                                                           : " It is not symplectic.",
+                                         found->symplectic ? " It is a symplectic map." : " It is not symplectic.",
                                          same.empty() ? "" : fmt::format(" So it is of {}.", fmt::join(same, ", ")),
                                          unknown.empty() ? "" : " " + unknown)};
 }

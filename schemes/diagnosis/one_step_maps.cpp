@@ -167,7 +167,24 @@ struct ElementStep {
   }
 };
 
+std::optional<OneStepMap> element_step(const Problem& p, const std::vector<double>& masses) {
+  // Only from momenta; those that start from two rows are tried on the rows.
+  const auto& starts = find_method(p.method).starts;
+  if (starts.size() != 1 || starts[0] != StartRule::legendre || masses.empty()) return std::nullopt;
+  try {
+    const auto simulation = std::make_shared<Simulation>(p);
+    if (simulation->is_processed() || !is_variational(simulation->evolution().system()) ||
+        simulation->count(Role::field) != simulation->theory().components())
+      return std::nullopt;
+    return OneStepMap{scheme_label(p), "", true, ElementStep{simulation, masses}};
+  } catch (const BadInput&) {  // not for this theory or space
+    return std::nullopt;
+  }
+}
+
 }  // namespace
+
+Problem explicit_scheme(const Problem& p) { return explicit_scheme(p, 2); }
 
 std::vector<double> masses_of(const Problem& p) {
   const auto a = acceleration(p, 2);
@@ -187,23 +204,17 @@ std::vector<OneStepMap> steps_by_force(const Problem& p) {
   return maps;
 }
 
+std::optional<OneStepMap> step_of(const Problem& p) { return element_step(p, masses_of(p)); }
+
 std::vector<OneStepMap> steps_of_elements(const Problem& base) {
   std::vector<OneStepMap> maps;
   const std::vector<double> masses = masses_of(base);
-  if (masses.empty()) return maps;
-  for (const NamedScheme& scheme : named_schemes(base)) {
-    const auto& starts = find_method(scheme.problem.method).starts;
-    // Only from momenta; those that start from two rows are tried on the rows.
-    if (starts.size() != 1 || starts[0] != StartRule::legendre || scheme.nodes > 1) continue;
-    try {
-      const auto simulation = std::make_shared<Simulation>(scheme.problem);
-      if (simulation->is_processed() || !is_variational(simulation->evolution().system()) ||
-          simulation->count(Role::field) != simulation->theory().components())
-        continue;
-      maps.push_back({scheme.name, keys_of(scheme.problem, base), true, ElementStep{simulation, masses}});
-    } catch (const BadInput&) {  // not for this theory or space
-    }
-  }
+  for (const NamedScheme& scheme : named_schemes(base))
+    if (scheme.nodes == 1)
+      if (auto map = element_step(scheme.problem, masses)) {
+        map->name = scheme.name, map->keys = keys_of(scheme.problem, base);
+        maps.push_back(std::move(*map));
+      }
   return maps;
 }
 

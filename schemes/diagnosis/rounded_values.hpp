@@ -10,7 +10,7 @@ namespace delf {
 
 /// What all values were rounded to, if it is coarser than double precision.
 struct RoundedValues {
-  std::string words;  ///< "6 decimals"
+  std::string words;  ///< "6 decimals", "6 significant digits"
   double unit;        ///< the largest error of a value
 };
 std::optional<RoundedValues> rounding_of(const std::vector<std::vector<double>>& rows);

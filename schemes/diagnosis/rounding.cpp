@@ -10,12 +10,19 @@
 
 namespace delf {
 
+namespace {
+
+/// y as text with so many significant digits is y.
+bool has_digits(double y, int digits) { return std::stod(fmt::format("{:.{}e}", y, digits - 1)) == y; }
+
+}  // namespace
+
 std::optional<RoundedValues> rounding_of(const std::vector<std::vector<double>>& rows) {
-  constexpr int fewest = 16, most_decimals = 12;
+  constexpr int fewest = 16, most_decimals = 12, most_digits = 12;
   const double largest = largest_of(rows);
   std::int64_t values = 0;
   bool single = true;
-  int decimals = 0;
+  int decimals = 0, digits = 1;
   for (const auto& row : rows)
     for (const double y : row) {
       if (y == 0 || std::round(y) == y) continue;  // these are whole in any format
@@ -27,16 +34,24 @@ std::optional<RoundedValues> rounding_of(const std::vector<std::vector<double>>&
         return std::abs(scaled - std::round(scaled)) <= 4e-16 * std::abs(scaled);
       };
       while (decimals <= most_decimals && !is_decimal(decimals)) ++decimals;
-      if (!single && decimals > most_decimals) return std::nullopt;
+      while (digits <= most_digits && !has_digits(y, digits)) ++digits;
+      if (!single && decimals > most_decimals && digits > most_digits) return std::nullopt;
     }
   if (values < fewest) return std::nullopt;
   if (single) return RoundedValues{"single precision (float32)", std::ldexp(1.0, -25) * largest};
-  return RoundedValues{fmt::format("{} decimals", decimals), 0.5 * std::pow(10.0, -decimals)};
+  // Of both the coarser: decimals have more digits where values are large, and digits more decimals where they are small.
+  const double of_decimals = decimals > most_decimals ? 0 : 0.5 * std::pow(10.0, -decimals);
+  const double of_digits =
+      digits > most_digits ? 0 : 0.5 * std::pow(10.0, std::floor(std::log10(largest)) - digits + 1);
+  if (of_digits > 1.5 * of_decimals) return RoundedValues{fmt::format("{} significant digits", digits), of_digits};
+  return RoundedValues{fmt::format("{} decimals", decimals), of_decimals};
 }
 
 double error_of_rounding(const Evidence& e) {
   std::vector<std::vector<double>> rows;
-  for (int n = 0; n < 4; ++n) rows.push_back(e.row((e.rows - 1) * n / 3));
+  const auto values = static_cast<std::int64_t>(e.row(0).size());
+  const std::int64_t last = std::clamp<std::int64_t>(64 / values, 3, std::max<std::int64_t>(e.rows - 1, 3));
+  for (std::int64_t n = 0; n <= last; ++n) rows.push_back(e.row((e.rows - 1) * n / last));
   const auto rounding = rounding_of(rows);
   const double largest = largest_of(rows);
   return rounding && largest > 0 ? rounding->unit / largest : 0;

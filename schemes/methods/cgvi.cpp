@@ -140,12 +140,12 @@ std::vector<NamedScheme> on_spaces(const Problem& base) {
 
 /// One of each tableau, whatever keys of elements the base has.
 std::vector<NamedScheme> variants(const Problem& base) {
-  if (base.lattice.space() != Space::point) return on_spaces(base);
   Problem without = base;
   without.parameters = {};
   const std::vector<Parameter> own = TimeElementKeys::parameters();
   for (const auto& [key, value] : base.parameters)
     if (!find_parameter(own, key)) without.parameters[key] = value;
+  if (base.lattice.space() != Space::point) return on_spaces(without);
   std::vector<NamedScheme> schemes;
   for (const TimeTableau& tableau : time_tableaux()) {
     schemes.push_back({fmt::format("{} {}", base.method, tableau.name), without});

@@ -124,6 +124,9 @@ std::vector<RegionSystem::Values> RegionSystem::first_variations(const Values& y
                                          static_cast<Eigen::Index>(equations_.size()));
   transposed.setFromTriplets(entries.begin(), entries.end());
   transposed.makeCompressed();
+  // Each equation by its own size: the rank is judged by columns, and theirs may differ by many orders of magnitude.
+  for (Eigen::Index n = 0; n < transposed.cols(); ++n)
+    if (const double size = transposed.col(n).norm(); size > 0) transposed.col(n) /= size;
   const Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> qr(transposed);
   // Mᵀ P = Q R: the columns of Q after the first rank(M) span the null space of M.
   for (Values& V : variations) {

@@ -8,9 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "lattice/error.hpp"
@@ -45,11 +43,19 @@ std::optional<double> number(std::string_view word) {
   return error == std::errc() && end == word.data() + word.size() ? std::optional(value) : std::nullopt;
 }
 
-bool is_time(std::string_view name) {
+std::string plain_name(std::string_view name) {
   std::string lower;
   for (const char c : name)
     if (c != '"') lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower == "t" || lower == "time";
+  return lower;
+}
+
+bool is_time(std::string_view name) { return plain_name(name) == "t" || plain_name(name) == "time"; }
+
+/// "p", "p1", "p2", …
+bool is_momentum(std::string_view name) {
+  const std::string plain = plain_name(name);
+  return plain.starts_with('p') && std::ranges::all_of(plain.substr(1), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 }  // namespace
@@ -75,12 +81,19 @@ std::optional<double> PlainRows::time(int frame) const {
   return array_.times[static_cast<std::size_t>(frame)];
 }
 
-std::vector<double> PlainRows::row(int frame) const {
+std::vector<double> PlainRows::frame_of(const std::vector<double>& values, int frame) const {
   const auto j = static_cast<std::size_t>(frame), width = array_.shape[1];
   std::vector<double> row;
   for (std::size_t n = 0; n < (columns_ ? array_.shape[0] : width); ++n)
-    row.push_back(array_.values[columns_ ? n * width + j : j * width + n]);
+    row.push_back(values[columns_ ? n * width + j : j * width + n]);
   return row;
+}
+
+std::vector<double> PlainRows::row(int frame) const { return frame_of(array_.values, frame); }
+
+std::optional<std::vector<double>> PlainRows::momenta(int frame) const {
+  if (array_.momenta.empty()) return std::nullopt;
+  return frame_of(array_.momenta, frame);
 }
 
 PlainArray read_table(const std::filesystem::path& path, std::size_t row_size) {
@@ -90,6 +103,7 @@ PlainArray read_table(const std::filesystem::path& path, std::size_t row_size) {
   std::size_t lines = 0, columns = 0;
   int at = 0;
   bool time_first = false;
+  std::vector<bool> of_momenta;  // columns after the time
   for (std::string line; std::getline(in, line);) {
     ++at;
     if (at == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
@@ -98,6 +112,7 @@ PlainArray read_table(const std::filesystem::path& path, std::size_t row_size) {
     if (lines == 0 && columns == 0 && !number(words[0])) {  // names
       columns = words.size();
       time_first = is_time(words[0]);
+      for (std::size_t n = time_first ? 1 : 0; n < columns; ++n) of_momenta.push_back(is_momentum(words[n]));
       continue;
     }
     if (columns == 0) columns = words.size();
@@ -122,55 +137,15 @@ PlainArray read_table(const std::filesystem::path& path, std::size_t row_size) {
     array.values = std::move(fields);
     --columns;
   }
+  if (const auto momenta = static_cast<std::size_t>(std::ranges::count(of_momenta, true));
+      momenta == row_size && columns == 2 * row_size && of_momenta.size() == columns) {
+    std::vector<double> fields;
+    for (std::size_t n = 0; n < array.values.size(); ++n)
+      (of_momenta[n % columns] ? array.momenta : fields).push_back(array.values[n]);
+    array.values = std::move(fields);
+    columns = row_size;
+  }
   array.shape = {lines, columns};
-  return array;
-}
-
-PlainArray read_npy(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string all((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  const auto refuse = [](const char* why) {
-    return bad_file(std::string(why) + "; write it by numpy.save, of float64");
-  };
-  // "\x93NUMPY", version, length of the header, header, data
-  if (all.size() < 12 || all.compare(0, 6, "\x93NUMPY") != 0) throw refuse("is no .npy file");
-  const auto byte = [&](std::size_t n) { return static_cast<std::size_t>(static_cast<unsigned char>(all[n])); };
-  const bool long_header = byte(6) > 1;
-  const std::size_t begin = long_header ? 12 : 10;
-  const std::size_t length =
-      long_header ? byte(8) | byte(9) << 8 | byte(10) << 16 | byte(11) << 24 : byte(8) | byte(9) << 8;
-  if (all.size() < begin + length) throw refuse("is cut short");
-  const std::string header = all.substr(begin, length);
-  const bool doubles = header.find("'<f8'") != std::string::npos, singles = header.find("'<f4'") != std::string::npos;
-  if (!doubles && !singles) throw refuse("is not of float64 or float32");
-  PlainArray array;
-  const std::size_t open = header.find("'shape': ("), close = header.find(')', open);
-  if (open == std::string::npos || close == std::string::npos) throw refuse("has no shape");
-  for (const std::string_view word : words_of(std::string_view(header).substr(open + 10, close - open - 10)))
-    array.shape.push_back(static_cast<std::size_t>(number(word).value_or(0)));
-  if (array.shape.empty() || array.shape.size() > 3) throw refuse("has no axis, or more than three");
-  const std::size_t count = product(array.shape), size = doubles ? sizeof(double) : sizeof(float);
-  if (all.size() < begin + length + count * size) throw refuse("is cut short");
-  array.values.resize(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    const char* from = all.data() + begin + length + n * size;
-    if (doubles) std::memcpy(&array.values[n], from, size);
-    else {
-      float value = 0;
-      std::memcpy(&value, from, size);
-      array.values[n] = static_cast<double>(value);
-    }
-  }
-  if (header.find("'fortran_order': True") != std::string::npos) {
-    if (array.shape.size() == 3) throw refuse("has three axes in Fortran's order");
-    if (array.shape.size() == 2) {
-      const std::size_t frames = array.shape[0], width = array.shape[1];
-      std::vector<double> turned(count);
-      for (std::size_t j = 0; j < frames; ++j)
-        for (std::size_t n = 0; n < width; ++n) turned[j * width + n] = array.values[n * frames + j];
-      array.values = std::move(turned);
-    }
-  }
   return array;
 }
 
@@ -191,14 +166,31 @@ PlainArray read_dataset(const std::filesystem::path& path, const std::string& na
   array.values.resize(product(array.shape));
   if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0)
     throw bad_file(fmt::format("{} cannot be read as numbers", name));
+  for (const char* beside : {"momentum", "p", "pi"}) {
+    if (name == beside || H5Lexists(file, beside, H5P_DEFAULT) <= 0) continue;
+    const Hdf5Handle momenta(H5Dopen2(file, beside, H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle shape(momenta ? H5Dget_space(momenta) : H5I_INVALID_HID, H5Sclose);
+    hsize_t other[3] = {};
+    if (!momenta || H5Sget_simple_extent_ndims(shape) != rank ||
+        H5Sget_simple_extent_dims(shape, other, nullptr) != rank || !std::equal(other, other + rank, extent))
+      continue;
+    array.momenta.resize(array.values.size());
+    if (H5Dread(momenta, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.momenta.data()) < 0)
+      throw bad_file(fmt::format("{} cannot be read as numbers", beside));
+    break;
+  }
   return array;
 }
 
 std::unique_ptr<RowsFile> open_plain_rows(const std::filesystem::path& path, int sites, int components) {
   const std::string text = path.string(), ending = path.extension().string();
   const auto wanted = static_cast<std::size_t>(sites) * static_cast<std::size_t>(components);
-  if (const std::size_t colon = text.rfind(":/"); colon != std::string::npos && !std::filesystem::exists(path))
-    return std::make_unique<PlainRows>(read_dataset(text.substr(0, colon), text.substr(colon + 1)), sites, components);
+  if (const std::size_t colon = text.rfind(":/"); colon != std::string::npos && !std::filesystem::exists(path)) {
+    const std::string file = text.substr(0, colon), name = text.substr(colon + 1);
+    return std::make_unique<PlainRows>(
+        file.ends_with(".npz") ? read_npz(file, name.substr(1)) : read_dataset(file, name), sites, components);
+  }
+  if (ending == ".npz") return std::make_unique<PlainRows>(read_npz(path, ""), sites, components);
   if (ending == ".npy") return std::make_unique<PlainRows>(read_npy(path), sites, components);
   if (ending == ".csv" || ending == ".txt" || ending == ".dat") {
     if (ending == ".csv") {

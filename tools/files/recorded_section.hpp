@@ -29,6 +29,10 @@ class RecordedSection {
   /// All components, each at row j: [i·C + c]. Those that no frame has, because they would have been found with rows
   /// after the last, are zero.
   std::vector<double> row(std::int64_t j) const;
+  /// The file has values of this role.
+  bool has(Role role) const { return shape(role).frames > 0; }
+  /// Of the fields, at frame j, if the file has momenta of the same shape.
+  std::optional<std::vector<double>> momenta(std::int64_t j) const { return file_->momenta(static_cast<int>(j)); }
 
  private:
   struct Column {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "schemes/verify/check.hpp"
 #include "schemes/diagnosis/finding.hpp"
+#include "schemes/verify/check.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {

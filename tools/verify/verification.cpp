@@ -58,7 +58,25 @@ std::unique_ptr<LatticeSystem> with_wrong_sign(const LatticeSystem& right) {
                                          right.all_components());
 }
 
+void add_generator(const Scene& scene, const VerifyRequest& request, const LatticeSystem& system,
+                   std::vector<LinearSymmetry>& all) {
+  if (request.generator.empty()) return;
+  try {
+    all.push_back(generator_of(request.generator, {field_names(system), {}}, "generator (" + request.generator + ")",
+                               "verify.generator"));
+  } catch (const BadInput& bad) {
+    throw scene.settings.located(bad);
+  }
+}
+
 }  // namespace
+
+std::vector<LinearSymmetry> requested_symmetries(const Scene& scene, const VerifyRequest& request,
+                                                 const FieldTheory& theory, const LatticeSystem& system) {
+  std::vector<LinearSymmetry> all = theory.symmetries();
+  add_generator(scene, request, system, all);
+  return all;
+}
 
 Verification::Verification(const Scene& scene, const VerifyRequest& request, const std::optional<std::string>& fields,
                            const std::vector<std::string>& nearby)
@@ -179,14 +197,7 @@ std::vector<LinearSymmetry> Verification::symmetries() {
         leave_out(
             fmt::format("Noether, {}: the density has it up to a divergence, and the Lagrangian of the scheme has not",
                         symmetry.name));
-  if (!request_.generator.empty()) {
-    try {
-      all.push_back(generator_of(request_.generator, {field_names(system_), {}},
-                                 "generator (" + request_.generator + ")", "verify.generator"));
-    } catch (const BadInput& bad) {
-      throw scene_.settings.located(bad);
-    }
-  }
+  add_generator(scene_, request_, system_, all);
   if (!is_variational(system_)) all.clear();
   return all;
 }
@@ -332,7 +343,9 @@ void Verification::diagnose_rows() {
   };
   Problem problem = scene_.problem;
   problem.winding = winding_;
-  verdict_.diagnosis = diagnose({problem, system_, turn_, equations_->tolerance(), rows_, row, failed_}).findings;
+  Evidence evidence{problem, system_, turn_, equations_->tolerance(), rows_, row, failed_};
+  if (fields_->momenta(0)) evidence.momenta = [&](std::int64_t j) { return *fields_->momenta(j); };
+  verdict_.diagnosis = diagnose(std::move(evidence)).findings;
 }
 
 void Verification::look_at_moment() {

@@ -26,6 +26,10 @@
 
 namespace delf {
 
+/// The symmetries that the theory declares, and verify.generator. Throws BadScene.
+std::vector<LinearSymmetry> requested_symmetries(const Scene&, const VerifyRequest&, const FieldTheory&,
+                                                 const LatticeSystem&);
+
 /// The checks of `delf verify`: the rows of a scene are made, or read from a file, one after the other, and checked as
 /// they come; a few of them are held for the regions.
 class Verification {

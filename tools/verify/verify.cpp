@@ -10,6 +10,7 @@
 #include "tools/run/outcome.hpp"
 #include "tools/scene/brick_rows.hpp"
 #include "tools/scene/text_file.hpp"
+#include "tools/verify/momenta_verification.hpp"
 #include "tools/verify/verdict_figures.hpp"
 #include "tools/verify/verification.hpp"
 
@@ -29,9 +30,12 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
                    const std::vector<std::string>& nearby) {
   const Interrupt interrupt;
   const VerifyRequest request = read_verify_request(scene);
-  Verification verification(scene, request, fields, nearby);
+  std::optional<Verification> verification;
+  const bool momenta_alone = fields && has_momenta_alone(scene, *fields);
+  if (!momenta_alone) verification.emplace(scene, request, fields, nearby);
   make_results_folder(folder);  // earlier results stay until there are new ones
-  const Verdict verdict = verification.run();
+  Verdict verdict = verification ? verification->run() : Verdict{};
+  if (fields && verdict.status == "done") verify_momenta(scene, request, *fields, nearby, momenta_alone, verdict);
   write_text_file(folder / "verify.json", verdict_json(scene, verdict));
   remove_figures(folder);
   std::string missing;
@@ -45,7 +49,7 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   fmt::print("{}", verdict_report(scene, verdict));
   fmt::print("{}: verify.json{}\n", folder.string(), scene.figures && missing.empty() ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
-  if (verification.failure()) std::rethrow_exception(verification.failure());
+  if (verification && verification->failure()) std::rethrow_exception(verification->failure());
   if (verdict.status == "interrupted") return ExitCode::interrupted;
   return verdict.passed() ? ExitCode::done : ExitCode::check_failed;
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -160,6 +162,11 @@ TEST_CASE("a diagnosis says which coefficient, step or length is wrong") {
   Problem halved = scene();
   halved.lattice = Lattice::circle(N, 2 * L);
   Problem interval = scene("sine-gordon", Lattice::interval(N, 1.0005 * k * (N - 1)));
+  Rows huge = start();
+  for (Row& row : huge)
+    for (double& y : row) y *= 1e200;
+  huge = stepped(huge, sine_gordon(1, 0));
+  const Problem huge_scene = scene("wave", halved.lattice);
   const auto friction = [](double c) {
     // (1 + ch/2) y₊ = 2y − (1 − ch/2) y₋ + h² F
     return [c](const Row& y, const Row& before) {
@@ -190,6 +197,7 @@ TEST_CASE("a diagnosis says which coefficient, step or length is wrong") {
             "time step"},
            {"friction", with(stepped(start(), friction(0.2))), "There is friction 0.2 φ_t, φ_t by central",
             "wave speed"},
+           {"half the length, values of 1e200", with(huge, huge_scene), "lattice.length = 40", "time step"},
            {"another theory", with(leapfrog(), scene("phi4")), "No time step, length or coefficient", "friction 0"},
        })
     check(c);
@@ -436,7 +444,10 @@ TEST_CASE("a diagnosis tells rounding from errors") {
   };
   const auto six = [](double x) { return std::round(x * 1e6) / 1e6; };
   const auto single = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  const auto digits = [](double x) { return std::stod(fmt::format("{:.6g}", x)); };
   for (const Case& c : std::vector<Case>{
+           {"6 digits", with(rounded(leapfrog(), digits)), "The values have 6 significant digits, and that explains",
+            "decimals"},
            {"6 decimals", with(rounded(leapfrog(), six)), "The values have 6 decimals, and that explains", "is wrong."},
            {"single", with(rounded(leapfrog(), single)), "The values have single precision (float32), and that",
             "wrong"},

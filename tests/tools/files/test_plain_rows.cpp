@@ -23,7 +23,65 @@ std::string npy(const std::string& shape, const std::string& type, const std::ve
   return std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header + std::string(bytes, values.size() * sizeof(Number));
 }
 
+std::string bytes(std::size_t value, int count) {
+  std::string text;
+  for (int n = 0; n < count; ++n) text += static_cast<char>(value >> (8 * n) & 0xff);
+  return text;
+}
+
+// As numpy.savez writes it, with the fields of a ZIP archive that count.
+std::string npz(const std::vector<std::pair<std::string, std::string>>& files, std::size_t method = 0) {
+  std::string all, directory;
+  for (const auto& [name, data] : files) {
+    directory += "PK\1\2" + std::string(6, '\0') + bytes(method, 2) + std::string(12, '\0') + bytes(data.size(), 4) +
+                 bytes(name.size(), 2) + std::string(12, '\0') + bytes(all.size(), 4) + name;
+    all += "PK\3\4" + std::string(22, '\0') + bytes(name.size(), 2) + bytes(3, 2) + name + "abc" + data;
+  }
+  return all + directory + "PK\5\6" + std::string(6, '\0') + bytes(files.size(), 2) + std::string(4, '\0') +
+         bytes(all.size(), 4) + std::string(2, '\0');
+}
+
 }  // namespace
+
+TEST_CASE("momenta are read beside the fields") {
+  const Folder folder;
+  const auto q = npy<double>("(3, 2)", "<f8", {0, 1, 10, 11, 20, 21}),
+             p = npy<double>("(3, 2)", "<f8", {5, 6, 7, 8, 9, 10}), t = npy<double>("(3,)", "<f8", {0, 0.5, 1}),
+             other = npy<double>("(2,)", "<f8", {1, 2});
+  struct Case {
+    std::string name, text;
+    bool momenta = true, times = true;
+  };
+  for (const Case& c : std::vector<Case>{
+           {"a.csv", "t,q1,q2,p1,p2\n0,0,1,5,6\n0.5,10,11,7,8\n1,20,21,9,10\n"},
+           {"b.csv", "t,p1,q1,p2,q2\n0,5,0,6,1\n0.5,7,10,8,11\n1,9,20,10,21\n"},
+           {"c.npz", npz({{"q.npy", q}, {"p.npy", p}, {"t.npy", t}})},
+           {"d.npz", npz({{"phi.npy", q}, {"pi.npy", p}}), true, false},
+           {"e.npz", npz({{"anything.npy", q}}), false, false},
+           {"f.npz", npz({{"q.npy", q}, {"p.npy", other}}), false, false},  // of another shape
+       }) {
+    INFO(c.name);
+    const auto rows = delf::open_plain_rows(folder.write(c.name, c.text), 1, 2);
+    REQUIRE(rows->frames() == 3);
+    CHECK(rows->row(1) == std::vector<double>{10, 11});
+    REQUIRE(rows->momenta(1).has_value() == c.momenta);
+    if (c.momenta) CHECK(*rows->momenta(1) == std::vector<double>{7, 8});
+    CHECK(rows->time(1).has_value() == c.times);
+  }
+  folder.write("g.npz", npz({{"a.npy", q}, {"b.npy", p}}));
+  CHECK(delf::open_plain_rows(folder / "g.npz:/b", 1, 2)->row(0) == std::vector<double>{5, 6});
+  const auto refused = [&](const std::string& text) -> std::string {
+    try {
+      delf::open_plain_rows(folder.write("h.npz", text), 1, 2);
+      return {};
+    } catch (const delf::BadInput& bad) {
+      return bad.what();
+    }
+  };
+  CHECK(contains(refused(npz({{"a.npy", q}, {"b.npy", p}})), "has the arrays a, b; name the one"));
+  CHECK(contains(refused(npz({{"q.npy", q}}, 8)), "is compressed; write it by numpy.savez"));
+  CHECK(contains(refused("PK"), "is no .npz file"));
+}
 
 TEST_CASE("plain arrays are read as rows, whichever way they lie") {
   const Folder folder;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <random>
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
@@ -121,4 +124,22 @@ TEST_CASE("walls that a scene has fixed are fixed in its rows") {
   });
   const Json moving = walls("moving.h5", 1);
   CHECK(contains(moving["failure"].get<std::string>(), "The wall at site 31 is fixed in the scene"));
+}
+
+TEST_CASE("rows that mix 1e6 and 1e-6 are not accused, and a wrong variation on them is") {
+  const Folder folder;
+  folder.write(
+      "small.ini",
+      "[theory]\ndensity = (phi_t^2 - phi_x^2)/2 - phi^4/4\n[lattice]\nstencil = triangle-vertex\nlength = 8\n"
+      "sites = 16\ntime_step = 0.3\n[initial]\nstate = formula\nphi = 0\n[run]\nsteps = 9\n[output]\nfigures = off\n");
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::string rows;
+  for (int j = 0; j < 24; ++j)
+    for (int i = 0; i < 16; ++i)
+      rows += fmt::format("{:.17g}{}", (random() % 2 == 0 ? 1e6 : 1e-6) * normal(random), i < 15 ? ' ' : '\n');
+  folder.write("rows.txt", rows);
+  const std::string forms = "--fields rows.txt --verify.checks=forms --verify.moments=2 ";
+  CHECK(verified(folder, forms, 0)["checks"].size() > 4);
+  CHECK(contains(verified(folder, forms + "--verify.fault=variation", 1).dump(), "is no first variation"));
 }

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "lattice/error.hpp"
+#include "tools/files/plain_rows.hpp"
+
+namespace delf {
+namespace {
+
+BadInput bad_file(const std::string& what) { return {"initial.file", what}; }
+
+std::size_t product(const std::vector<std::size_t>& shape) {
+  std::size_t all = 1;
+  for (const std::size_t n : shape) all *= n;
+  return all;
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+PlainArray npy_of(const std::string& all) {
+  const auto refuse = [](const char* why) {
+    return bad_file(std::string(why) + "; write it by numpy.save, of float64");
+  };
+  // "\x93NUMPY", version, length of the header, header, data
+  if (all.size() < 12 || all.compare(0, 6, "\x93NUMPY") != 0) throw refuse("is no .npy file");
+  const auto byte = [&](std::size_t n) { return static_cast<std::size_t>(static_cast<unsigned char>(all[n])); };
+  const bool long_header = byte(6) > 1;
+  const std::size_t begin = long_header ? 12 : 10;
+  const std::size_t length =
+      long_header ? byte(8) | byte(9) << 8 | byte(10) << 16 | byte(11) << 24 : byte(8) | byte(9) << 8;
+  if (all.size() < begin + length) throw refuse("is cut short");
+  const std::string header = all.substr(begin, length);
+  const bool doubles = header.find("'<f8'") != std::string::npos, singles = header.find("'<f4'") != std::string::npos;
+  if (!doubles && !singles) throw refuse("is not of float64 or float32");
+  PlainArray array;
+  const std::size_t open = header.find("'shape': ("), close = header.find(')', open);
+  if (open == std::string::npos || close == std::string::npos) throw refuse("has no shape");
+  std::istringstream axes(header.substr(open + 10, close - open - 10));
+  for (std::string axis; std::getline(axes, axis, ',');)
+    if (axis.find_first_not_of(' ') != std::string::npos) array.shape.push_back(std::stoul(axis));
+  if (array.shape.empty() || array.shape.size() > 3) throw refuse("has no axis, or more than three");
+  const std::size_t count = product(array.shape), size = doubles ? sizeof(double) : sizeof(float);
+  if (all.size() < begin + length + count * size) throw refuse("is cut short");
+  array.values.resize(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const char* from = all.data() + begin + length + n * size;
+    if (doubles) std::memcpy(&array.values[n], from, size);
+    else {
+      float value = 0;
+      std::memcpy(&value, from, size);
+      array.values[n] = static_cast<double>(value);
+    }
+  }
+  if (header.find("'fortran_order': True") != std::string::npos) {
+    if (array.shape.size() == 3) throw refuse("has three axes in Fortran's order");
+    if (array.shape.size() == 2) {
+      const std::size_t frames = array.shape[0], width = array.shape[1];
+      std::vector<double> turned(count);
+      for (std::size_t j = 0; j < frames; ++j)
+        for (std::size_t n = 0; n < width; ++n) turned[j * width + n] = array.values[n * frames + j];
+      array.values = std::move(turned);
+    }
+  }
+  return array;
+}
+
+/// The files in a ZIP archive that are stored as they are, by name.
+std::map<std::string, std::string> stored_files(const std::string& all) {
+  const auto refuse = [](const char* why) { return bad_file(std::string(why) + "; write it by numpy.savez"); };
+  const auto number = [&](std::size_t at, int bytes) {
+    if (at + static_cast<std::size_t>(bytes) > all.size()) throw refuse("is cut short");
+    std::size_t value = 0;
+    for (int n = bytes; n-- > 0;)
+      value = value << 8 | static_cast<unsigned char>(all[at + static_cast<std::size_t>(n)]);
+    return value;
+  };
+  // The directory is named by the record at the end: "PK\5\6", …, entries (10), …, offset (16).
+  const std::size_t end = all.rfind("PK\5\6");
+  if (end == std::string::npos) throw refuse("is no .npz file");
+  std::map<std::string, std::string> files;
+  std::size_t at = number(end + 16, 4);
+  for (std::size_t n = number(end + 10, 2); n > 0; --n) {
+    // "PK\1\2", …, method (10), …, size (24), lengths of name, extra, comment (28), …, offset of the file (42), name (46)
+    const std::size_t size = number(at + 24, 4), name = number(at + 28, 2), file = number(at + 42, 4);
+    if (number(at + 10, 2) != 0) throw refuse("is compressed");
+    const std::size_t data = file + 30 + number(file + 26, 2) + number(file + 28, 2);
+    if (data + size > all.size() || at + 46 + name > all.size()) throw refuse("is cut short");
+    files[all.substr(at + 46, name)] = all.substr(data, size);
+    at += 46 + name + number(at + 30, 2) + number(at + 32, 2);
+  }
+  return files;
+}
+
+constexpr std::array field_names{"q", "phi", "u", "field"};
+constexpr std::array momentum_names{"p", "pi", "v", "momentum"};
+
+}  // namespace
+
+PlainArray read_npy(const std::filesystem::path& path) { return npy_of(bytes_of(path)); }
+
+PlainArray read_npz(const std::filesystem::path& path, const std::string& name) {
+  const auto files = stored_files(bytes_of(path));
+  const auto find = [&](const auto& names) {
+    for (const char* one : names)
+      if (const auto at = files.find(std::string(one) + ".npy"); at != files.end()) return at;
+    return files.end();
+  };
+  auto fields = name.empty() ? find(field_names) : files.find(name + ".npy");
+  if (fields == files.end() && name.empty() && files.size() == 1) fields = files.begin();
+  if (fields == files.end()) {
+    std::string all;
+    for (const auto& [file, bytes] : files) all += (all.empty() ? "" : ", ") + file.substr(0, file.find(".npy"));
+    throw bad_file(fmt::format("has the arrays {}; name the one with the rows by --dataset", all));
+  }
+  PlainArray array = npy_of(fields->second);
+  if (const auto momenta = find(momentum_names); momenta != files.end() && momenta != fields) {
+    PlainArray p = npy_of(momenta->second);
+    if (p.shape == array.shape) array.momenta = std::move(p.values);
+  }
+  if (const auto times = find(std::array{"t", "time"}); times != files.end() && times != fields)
+    array.times = npy_of(times->second).values;
+  return array;
+}
+
+}  // namespace delf
