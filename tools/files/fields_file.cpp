@@ -54,6 +54,14 @@ Hdf5Handle growing(hid_t file, const char* name, std::vector<hsize_t> chunk) {
   return {H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, access), H5Dclose};
 }
 
+hsize_t frames_of_a_chunk(hid_t dataset) {
+  const Hdf5Handle properties(H5Dget_create_plist(dataset), H5Pclose);
+  std::array<hsize_t, H5S_MAX_RANK> chunk{};
+  return H5Pget_layout(properties) == H5D_CHUNKED && H5Pget_chunk(properties, H5S_MAX_RANK, chunk.data()) > 0
+             ? std::max<hsize_t>(1, chunk[0])
+             : 1;
+}
+
 // {frames, sites, …}
 std::vector<hsize_t> block_of(hsize_t frames, const std::vector<hsize_t>& shape) {
   std::vector<hsize_t> block{frames};
@@ -140,15 +148,21 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0 && H5Fstart_swmr_write(file_) >= 0, "cannot be written");
   times_.reserve(frames_per_block_);
   if (kept == 0) return;
-  copy_frames(path, kept);
   std::error_code error;
+  try {
+    copy_frames(path, kept);
+  } catch (const std::exception&) {
+    std::filesystem::remove(made, error);
+    throw;
+  }
   std::filesystem::rename(made, path, error);
   require(!error, "cannot be replaced");
 }
 
 void FieldsFile::copy_frames(const std::filesystem::path& from, hsize_t frames) {
   const Hdf5Handle old = open_to_read(from);
-  // A kill in the midst of a block leaves a wrong checksum; the rows before the checkpoint are written again the same.
+  // A kill in the midst of the last block leaves a wrong checksum there; its rows before the checkpoint are written again
+  // the same. Blocks that were full at the checkpoint are written once, and must be whole.
   const Hdf5Handle trusting(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
   H5Pset_edc_check(trusting, H5Z_DISABLE_EDC);
   const auto read = [&](const char* name, hsize_t first, const std::vector<hsize_t>& block, double* to) {
@@ -160,7 +174,9 @@ void FieldsFile::copy_frames(const std::filesystem::path& from, hsize_t frames) 
     std::vector<hsize_t> offset(block.size());
     offset[0] = first;
     return H5Sselect_hyperslab(source, H5S_SELECT_SET, offset.data(), nullptr, block.data(), nullptr) >= 0 &&
-           H5Dread(dataset, H5T_NATIVE_DOUBLE, target, source, trusting, to) >= 0;
+           (H5Dread(dataset, H5T_NATIVE_DOUBLE, target, source, H5P_DEFAULT, to) >= 0 ||
+            (first + block[0] > frames - frames % frames_of_a_chunk(dataset) &&
+             H5Dread(dataset, H5T_NATIVE_DOUBLE, target, source, trusting, to) >= 0));
   };
   bool there = static_cast<bool>(old);
   for (hsize_t first = 0; there && first < frames; first += frames_per_block_) {
@@ -177,7 +193,10 @@ void FieldsFile::copy_frames(const std::filesystem::path& from, hsize_t frames) 
     }
     if (there) write_block();
   }
-  require(there, "the rows that the checkpoint counts on cannot be read; begin the run anew");
+  if (there) return;
+  abandon();
+  throw BadScene(fmt::format("{}: the {} rows that the checkpoint counts on {}; begin the run anew", from.string(),
+                             frames, old ? "cannot be read" : "are gone, or the file is damaged"));
 }
 
 std::uint64_t FieldsFile::flush(bool sync) {
@@ -247,12 +266,16 @@ void FieldsFile::close() {
   require(file_.close() && datasets, "cannot be closed");
 }
 
-void FieldsFile::require(bool went_well, const char* what) {
-  if (went_well) return;
-  // closing would write a header that promises more than there is; without it the last flush stays readable
+// Closing would write a header that promises more than there is; without it the last flush stays readable.
+void FieldsFile::abandon() {
   for (Rows* rows : all_rows()) rows->dataset.abandon();
   time_.abandon();
   file_.abandon();
+}
+
+void FieldsFile::require(bool went_well, const char* what) {
+  if (went_well) return;
+  abandon();
   throw SystemFailure(fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), what));
 }
 

@@ -34,6 +34,7 @@ struct MeshOfFile {
 ///     /       attributes scene (the resolved scene), version, winding
 ///
 /// With `kept`, a file of that name is gone on with behind its first frames: they are copied, and the copy takes its place.
+/// Throws BadScene where they cannot be read, and leaves the file as it is.
 /// Rows are written in blocks, and each block is flushed: what has been written stays readable. Throws SystemFailure.
 class FieldsFile {
  public:
@@ -57,6 +58,7 @@ class FieldsFile {
   Rows rows(const char* name, std::vector<hsize_t> shape) const;
   void write_block();
   void copy_frames(const std::filesystem::path& from, hsize_t frames);
+  void abandon();
   void require(bool went_well, const char* what);
 
   std::filesystem::path path_;

@@ -1,17 +1,34 @@
 // SPDX-License-Identifier: MIT
 #include "tools/run/recorder.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "schemes/stepping/saved_state.hpp"
+#include "tools/failure.hpp"
 
 namespace delf {
 
+namespace {
+
+// A file that was cut off would be filled with zeros where it is gone on with.
+void require_bytes(const std::filesystem::path& path, std::uint64_t kept) {
+  std::error_code error;
+  const auto there = std::filesystem::file_size(path, error);
+  if (error) throw BadScene(fmt::format("{}: {}; begin the run anew", path.string(), error.message()));
+  if (there < kept)
+    throw BadScene(fmt::format("{}: has {} bytes, and the checkpoint counts on {}; begin the run anew", path.string(),
+                               there, kept));
+}
+
+}  // namespace
+
 Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, const std::string& resolved_scene,
                    int winding, const RowNames& names, const std::optional<Written>& kept)
-    : names_(names),
-      series_(kept ? SeriesFile(folder / "series.csv", kept->series)
-                   : SeriesFile(folder / "series.csv", names.further)) {
+    : names_(names) {
+  const std::filesystem::path series = folder / "series.csv";
+  if (kept) require_bytes(series, kept->series);
   const Lattice& lattice = scene.problem.lattice;
   const std::int64_t expected = scene.every == 0 ? 1 : scene.steps / scene.every + 2;
   if (scene.fields) {
@@ -20,11 +37,13 @@ Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, cons
     fields_.emplace(folder / "fields.h5", space, expected, resolved_scene, winding, names, MeshOfFile{},
                     kept ? kept->frames : 0);
   }
+  if (kept) series_.emplace(series, kept->series);
+  else series_.emplace(series, names.further);
   if (scene.figures) film_.emplace(lattice, expected, names.drawn().size());
 }
 
 void Recorder::append(const Record& record, const RecordedRow& row, const RecordedDatasets& datasets) {
-  series_.append(record);
+  series_->append(record);
   if (fields_) fields_->append(record.time, row, datasets);
   if (film_) film_->append(record.time, drawn(row));
   if (std::isfinite(record.energy_error)) energy_errors_.append(record.time, record.energy_error);
@@ -48,7 +67,7 @@ std::vector<double> Recorder::drawn(const RecordedRow& row) const {
 Recorder::Written Recorder::flush(bool sync) {
   Written written;
   if (fields_) written.frames = fields_->flush(sync);
-  written.series = series_.flush(sync);
+  written.series = series_->flush(sync);
   return written;
 }
 
@@ -63,10 +82,10 @@ void Recorder::close() {
   try {
     if (fields_) fields_->close();
   } catch (...) {
-    series_.close();
+    series_->close();
     throw;
   }
-  series_.close();
+  series_->close();
 }
 
 }  // namespace delf

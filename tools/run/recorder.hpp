@@ -23,7 +23,8 @@ class Recorder {
   struct Written {
     std::uint64_t series = 0, frames = 0;  ///< bytes of series.csv, frames of fields.h5
   };
-  /// With `kept`, the files of an earlier run are gone on with from there.
+  /// With `kept`, the files of an earlier run are gone on with from there. Throws BadScene, and changes no file, where they
+  /// do not hold that much.
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&, const std::optional<Written>& kept = {});
 
@@ -43,8 +44,8 @@ class Recorder {
   std::vector<double> drawn(const RecordedRow&) const;
 
   RowNames names_;
-  SeriesFile series_;
   std::optional<FieldsFile> fields_;
+  std::optional<SeriesFile> series_;  ///< always there; made when the rows are
   std::optional<Film> film_;
   Trace energy_errors_;
   double largest_energy_error_ = 0;

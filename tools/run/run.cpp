@@ -72,6 +72,25 @@ void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
         "lattice.stencil", fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
 }
 
+// Room for the summary, whatever else fills the disk: write_text_file() takes it.
+class RoomForSummary {
+ public:
+  explicit RoomForSummary(const fs::path& folder) : part_(folder / "summary.json.part") {
+    TextFile room(part_);
+    room.write(std::string(1 << 14, ' '));
+    room.close();
+  }
+  ~RoomForSummary() {
+    std::error_code none;
+    fs::remove(part_, none);
+  }
+  RoomForSummary(const RoomForSummary&) = delete;
+  RoomForSummary& operator=(const RoomForSummary&) = delete;
+
+ private:
+  fs::path part_;
+};
+
 ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resumed) {
   const InitialRows initial(scene);
   Outcome outcome;
@@ -96,20 +115,18 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   const Interrupt interrupt;  // before, nothing is lost when a signal ends the program at once
   make_results_folder(folder);
   const FolderLock lock(folder);
-  if (resumed.state) {
-    remove_final_results(folder);
-  } else {
+  if (!resumed.state) {
     refuse_own_rows(folder, scene);
     remove_earlier_run(folder);
   }
-  // Room for the summary, whatever else fills the disk: write_text_file() takes it.
-  TextFile room(folder / "summary.json.part");
-  room.write(std::string(1 << 14, ' '));
-  room.close();
+  const RoomForSummary room(folder);
   const std::string resolved = resolved_text(scene, outcome.start, outcome.state);
-  write_text_file(folder / "scene.ini", resolved);
   Recorder recorder(scene, folder, resolved, outcome.winding, names, kept);
-  if (resumed.state) recorder.visit(*resumed.state);
+  if (resumed.state) {
+    recorder.visit(*resumed.state);
+    remove_final_results(folder);  // now that the run can go on
+  }
+  write_text_file(folder / "scene.ini", resolved);
   Checkpoints checkpoints(folder, {DELF_VERSION, instruction_set(), resolved, scene.name, scene.warnings},
                           scene.checkpoint);
 

@@ -73,6 +73,36 @@ TEST_CASE("what cannot be resumed is refused in one line that says why") {
   refused("--run.steps=30", "there is no checkpoint to resume from");
 }
 
+TEST_CASE("files that lack what the checkpoint counts on are refused, and nothing is lost") {
+  const Folder folder;
+  run_small(folder);
+  const fs::path out = folder / "out";
+  const auto refused = [&](const std::string& file, const std::string& text, const std::string& why) {
+    const std::string whole = read(out / file), summary = read(out / "summary.json");
+    const std::string other = file == "series.csv" ? "fields.h5" : "series.csv", of_other = read(out / other);
+    folder.write("out/" + file, text);
+    if (text.empty()) fs::remove(out / file);
+    const Ran ran = resume(folder, "--run.steps=30");
+    INFO(ran.err);
+    CHECK(ran.code == 2);
+    CHECK(lines(ran.err).size() == 1);
+    CHECK(contains(ran.err, "out/" + file + ": " + why));
+    CHECK(contains(ran.err, "begin the run anew"));
+    CHECK(fs::exists(out / file) == !text.empty());
+    if (!text.empty()) CHECK(read(out / file) == text);
+    CHECK(read(out / other) == of_other);
+    CHECK(read(out / "summary.json") == summary);
+    for (const auto& entry : fs::directory_iterator(out)) CHECK(entry.path().extension() != ".part");
+    folder.write("out/" + file, whole);
+  };
+  const std::string series = read(out / "series.csv"), fields = read(out / "fields.h5");
+  refused("series.csv", series.substr(0, 200), "has 200 bytes, and the checkpoint counts on");
+  refused("series.csv", "", "No such file");
+  refused("fields.h5", fields.substr(0, fields.size() / 2), "the 7 rows that the checkpoint counts on are gone");
+  refused("fields.h5", "", "the 7 rows that the checkpoint counts on are gone");
+  CHECK(resume(folder, "--run.steps=30").code == 0);
+}
+
 TEST_CASE("a damaged checkpoint is replaced by the one before it, and says so") {
   const Folder folder;
   run_small(folder, "--output.checkpoint=1e-9");
