@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/figures/figure_form.hpp"
+
 namespace delf {
 
 /// A figure to be drawn.
@@ -14,7 +16,10 @@ struct Drawing {
   std::function<std::string(const std::filesystem::path& scratch)> body;
 };
 
-/// Draws them into `folder`/figures, each as PNG and as SVG. Returns what is missing, in one line, or an empty string.
-std::string draw(const std::vector<Drawing>&, const std::filesystem::path& folder);
+/// Draws them into `folder`/figures, in all formats of the form. Returns what is missing, in one line, or an empty string.
+std::string draw(const std::vector<Drawing>&, const FigureForm&, const std::filesystem::path& folder);
+
+/// Removes these figures of an earlier run, in any format.
+void remove_figures(const std::vector<std::string>& names, const std::filesystem::path& folder);
 
 }  // namespace delf

@@ -39,11 +39,12 @@ std::string energy_figure(const FigureSource& source, const std::filesystem::pat
       grown ? "|E − E_0| / |E_0|" : fmt::format("(E − E_0) / |E_0|   in units of 10^{{{}}}", power);
   return figure_title(fmt::format("{}: the energy error{}", source.scene, round_off ? " is round-off" : ""),
                       fmt::format("{}, {}", source.theory, source.scheme)) +
-         fmt::format("set label 104 {} at screen 0.03,0.865 left font ',9' textcolor rgb '#666666' noenhanced\n",
-                     gnuplot_quoted("E = " + source.energy)) +
+         fmt::format(
+             "if (titles) set label 104 {} at screen 0.03,0.862 left font ',9' textcolor rgb '#666666' noenhanced\n",
+             gnuplot_quoted("E = " + source.energy)) +
          fmt::format(
              "set lmargin at screen {}\nset rmargin at screen 0.965\n"
-             "set bmargin at screen 0.12\nset tmargin at screen 0.825\n"
+             "set bmargin at screen 0.12\nset tmargin at screen (titles ? 0.825 : top)\n"
              "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\n{}"
              "set xlabel 'time t'\n"
              "set label 103 '{}' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"

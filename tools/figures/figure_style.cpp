@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/figures/gnuplot.hpp"
+#include "tools/files/text_columns.hpp"
 
 namespace delf {
 
@@ -29,6 +30,40 @@ set format y '%h'
 set format cb '%h'
 unset key
 )";
+
+// One size on paper: a third of it for each of the letters of 12 points.
+const char* terminal(std::string_view format) {
+  if (format == "png") return "pngcairo size 1800,1200 font 'DejaVu Sans,12' fontscale 2.1 linewidth 2.2";
+  if (format == "pdf") return "pdfcairo size 18cm,12cm font 'DejaVu Sans,12' fontscale 0.6 linewidth 1.3";
+  return "svg size 900,600 font 'sans-serif,12' fontscale 1.2 linewidth 1.1 background '#ffffff'";
+}
+
+// Text from the left to the right of the figure, whole: smaller where it is long, and on lines of its own below where it is
+// longer still.
+std::string fitted_label(int number, const std::string& text, double y, double size, const char* colour) {
+  constexpr double letters = 95 * 11;  // of size 1 that fit
+  constexpr double least = 8, between_lines = 0.0215;
+  const auto columns = static_cast<double>(columns_of(text));
+  const double fitted = std::clamp(letters / std::max(1.0, columns), std::min(least, size), size);
+  const auto room = static_cast<std::size_t>(letters / fitted);
+  std::vector<std::string> lines{""};
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    if (!lines.back().empty() && columns_of(lines.back()) + 1 + columns_of(word) > room) lines.emplace_back();
+    lines.back() += (lines.back().empty() ? "" : " ") + word;
+    begin = end + 1;
+  }
+  std::string labels;
+  y += between_lines / 2 * static_cast<double>(lines.size() - 1);
+  for (const std::string& line : lines) {
+    labels +=
+        fmt::format("if (titles) set label {} {} at screen 0.03,{} left font ',{:.3g}' textcolor rgb '{}' noenhanced\n",
+                    number++, gnuplot_quoted(line), y, fitted, colour);
+    y -= between_lines;
+  }
+  return labels;
+}
 
 }  // namespace
 
@@ -72,26 +107,72 @@ std::string component_colour(std::size_t component) {
   return colours[component % std::size(colours)];
 }
 
-std::string figure_script(const std::string& name, const std::string& body) {
+std::string figure_script(const std::string& name, const std::string& body, const FigureForm& form) {
   std::string script;
-  script += fmt::format(
-      "reset\nset terminal pngcairo size 1800,1200 font 'DejaVu Sans,12' fontscale 2.1 linewidth 2.2\n"
-      "set output '{}.png'\n",
-      name);
-  script += style + body + "unset output\n";
-  script += fmt::format(
-      "reset\nset terminal svg size 900,600 font 'sans-serif,12' fontscale 1.2 linewidth 1.1 background '#ffffff'\n"
-      "set output '{}.svg'\n",
-      name);
-  script += style + body + "unset output\n";
+  for (const std::string& format : form.formats)
+    script += fmt::format("reset\nset terminal {}\nset output '{}.{}'\ntitles = {}\ntop = {}\n", terminal(format), name,
+                          format, form.titles ? 1 : 0, form.titles ? 0.855 : 0.935) +
+              style + body + "unset output\n";
   return script;
 }
 
 std::string figure_title(const std::string& title, const std::string& subtitle) {
-  return fmt::format(
-      "set label 101 {} at screen 0.03,0.955 left font ',16' textcolor rgb '#111111' noenhanced\n"
-      "set label 102 {} at screen 0.03,0.905 left font ',11' textcolor rgb '#666666' noenhanced\n",
-      gnuplot_quoted(title), gnuplot_quoted(subtitle));
+  return fitted_label(91, title, 0.955, 16, "#111111") + fitted_label(93, subtitle, 0.908, 11, "#666666");
+}
+
+std::string key_of_curves(std::size_t count, const std::function<std::string(std::size_t)>& name,
+                          const std::vector<std::vector<double>>& curves) {
+  if (count < 2) return {};
+  std::vector<double> all;
+  for (const auto& curve : curves) all.insert(all.end(), curve.begin(), curve.end());
+  const ColourScale scale = colour_scale(all);
+  const auto on = coinciding(curves, scale.most - scale.least);
+  constexpr double room = 0.4;  // of the width; the title is to the left
+  std::vector<std::string> words;
+  std::vector<double> widths;
+  double all_widths = 0;
+  for (std::size_t c = 0; c < count && all_widths < room; ++c) {
+    words.push_back(name(c) + (on[c] < c ? fmt::format(" (on {})", name(on[c])) : ""));
+    widths.push_back(0.025 + 0.0105 * static_cast<double>(columns_of(words.back())));
+    all_widths += widths.back();
+  }
+  if (words.size() < count) words.back() = "...";  // more than fit
+  std::string labels;
+  double x = 0.97;
+  for (std::size_t c = words.size(); c-- > 0; x -= widths[c])
+    labels += fmt::format(
+        "set label {} {} at screen {},(titles ? 0.955 : 0.975) right font ',11' textcolor rgb '{}' noenhanced\n",
+        110 + c, gnuplot_quoted(words[c]), x, component_colour(c));
+  return labels;
+}
+
+std::string robust_range(const char* axis, const std::vector<std::vector<double>>& curves) {
+  std::vector<double> all;
+  for (const auto& curve : curves)
+    for (const double v : curve)
+      if (std::isfinite(v)) all.push_back(v);
+  if (all.empty()) return {};
+  const auto [least, most] = std::ranges::minmax(all);
+  const ColourScale scale = colour_scale(all);
+  if (scale.swings ? std::max(-least, most) <= 1.001 * scale.most : most - least <= 1.001 * (scale.most - scale.least))
+    return {};
+  const double room = 0.06 * (scale.most - scale.least);
+  return fmt::format("set {}range [{}:{}]\n", axis, scale.least - room, scale.most + room);
+}
+
+std::vector<std::size_t> coinciding(const std::vector<std::vector<double>>& curves, double range) {
+  constexpr double line = 0.004;
+  std::vector<std::size_t> on(curves.size());
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    on[c] = c;
+    for (std::size_t before = 0; before < c && on[c] == c; ++before) {
+      bool same = !curves[c].empty() && curves[c].size() == curves[before].size();
+      for (std::size_t i = 0; same && i < curves[c].size(); ++i)
+        same = std::abs(curves[c][i] - curves[before][i]) <= line * range;
+      if (same) on[c] = before;
+    }
+  }
+  return on;
 }
 
 }  // namespace delf

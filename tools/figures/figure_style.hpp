@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <functional>
 #include <span>
 #include <string>
+#include <vector>
+
+#include "tools/figures/figure_form.hpp"
 
 namespace delf {
 
@@ -16,10 +20,11 @@ ColourScale colour_scale(std::span<const double> values);
 /// As gnuplot commands.
 std::string gnuplot_colours(const ColourScale&);
 
-/// A figure as gnuplot commands: `body` drawn as NAME.png and as NAME.svg, both in one style.
-std::string figure_script(const std::string& name, const std::string& body);
+/// A figure as gnuplot commands: `body` drawn in each format, all in one style. It may use the variables `titles`, 0 or 1,
+/// and `top`, where plots end on the screen.
+std::string figure_script(const std::string& name, const std::string& body, const FigureForm& form = {});
 
-/// A title at the top left, and a quieter line below it.
+/// A title at the top left, and a quieter line below it: long ones are smaller, or broken. They are labels 91 to 99.
 std::string figure_title(const std::string& title, const std::string& subtitle);
 
 /// A round distance between at most `most` tics on a range: 1, 2 or 5 times a power of ten.
@@ -27,6 +32,18 @@ double nice_step(double range, int most);
 
 /// The dark colour of single lines.
 inline constexpr auto line_colour = "#31688e";
+/// For each curve the first of the curves before it that it cannot be told from: nowhere farther than a line's width on
+/// an axis of that range; or itself.
+std::vector<std::size_t> coinciding(const std::vector<std::vector<double>>& curves, double range);
+
+/// The names of curves in their colours, at the upper right, above the plots; of one that lies on another, which.
+std::string key_of_curves(std::size_t count, const std::function<std::string(std::size_t)>& name,
+                          const std::vector<std::vector<double>>& curves);
+
+/// The range of an axis, as gnuplot commands, where a few extreme values (half a per cent) would flatten all others; else
+/// nothing, and gnuplot chooses.
+std::string robust_range(const char* axis, const std::vector<std::vector<double>>& curves);
+
 /// The colour of a component's line, distinguishable by the colour-blind; the first is that of single lines.
 std::string component_colour(std::size_t component);
 

@@ -91,7 +91,7 @@ std::string draw_figures(const FigureSource& source, const fs::path& folder) {
   std::vector<Drawing> drawings;
   for (const Figure& figure : all)
     drawings.push_back({figure.name, [&](const fs::path& scratch) { return figure.body(source, scratch); }});
-  return draw(drawings, folder);
+  return draw(drawings, source.form, folder);
 }
 
 }  // namespace delf

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lattice/lattice.hpp"
+#include "tools/figures/figure_form.hpp"
 #include "tools/figures/film.hpp"
 #include "tools/run/trace.hpp"
 #include "tools/scene/row_names.hpp"
@@ -31,10 +32,11 @@ struct FigureSource {
   RowNames names = {};
   std::string energy = {};  ///< one line: what the energy is
   DrawnSection section = {};
+  FigureForm form = {};
 };
 
 /// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into
-/// `folder`/figures, each as PNG and as SVG. Returns what is missing, in one line, or an empty string.
+/// `folder`/figures, in all formats. Returns what is missing, in one line, or an empty string.
 std::string draw_figures(const FigureSource&, const std::filesystem::path& folder);
 
 /// The positions that are drawn: those of the film, and on a circle the first site once more, at x = L; where the mesh

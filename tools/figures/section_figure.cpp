@@ -15,7 +15,7 @@ std::string section_figure(const FigureSource& source, const std::filesystem::pa
   return figure_title(fmt::format("{}: where {}", source.scene, title),
                       fmt::format("{}, {}", source.theory, source.scheme)) +
          fmt::format(
-             "set bmargin at screen 0.12\nset tmargin at screen 0.855\nset grid lc rgb '#e4e4e4' lt 1 lw 0.7\n"
+             "set bmargin at screen 0.12\nset tmargin at screen top\nset grid lc rgb '#e4e4e4' lt 1 lw 0.7\n"
              "set datafile separator ','\nset xlabel 'q{0}'\nset ylabel 'p{0}'\n"
              "plot 'section' skip 1 using {1}:{2} with points pt 7 ps 0.3 lc rgb '{3}'\n",
              columns[0] - 1, columns[0], columns[1], line_colour);

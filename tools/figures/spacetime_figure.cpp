@@ -48,11 +48,11 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
                       fmt::format("{}, {}", source.theory, source.scheme)) +
          fmt::format(
              "set lmargin at screen 0.105\nset rmargin at screen 0.855\n"
-             "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
+             "set bmargin at screen 0.12\nset tmargin at screen top\n"
              "set xlabel 'space x'\nset label 103 'time t' at screen 0.025,0.4875 center rotate textcolor rgb "
              "'#333333'\n"
-             "set label 104 '{}' at screen 0.886,0.885 center textcolor rgb '#333333' noenhanced\n"
-             "set border 15\nset colorbox user origin screen 0.875,0.12 size screen 0.022,0.735 noborder\n"
+             "set label 104 '{}' at screen 0.886,(top+0.03) center textcolor rgb '#333333' noenhanced\n"
+             "set border 15\nset colorbox user origin screen 0.875,0.12 size screen 0.022,(top-0.12) noborder\n"
              "set cbtics {} scale 0.3\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
              "plot 'map' binary array=({},{}) dx={} dy={} origin=({},{}) format='%double' using 1 with image\n",
              quantity, nice_step(scale.most - scale.least, 8), space.front() - dx / 2, space.back() + dx / 2,

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tools/figures/figure_style.hpp"
 #include "tools/scene/text_file.hpp"
 
@@ -27,8 +30,25 @@ std::string coordinate(const FigureSource& source, std::size_t component) {
 }
 
 constexpr auto sides = "set lmargin at screen 0.105\nset rmargin at screen 0.965\n";
-constexpr auto rest =
-    "set bmargin at screen 0.12\nset tmargin at screen 0.855\nset grid lc rgb '#e4e4e4' lt 1 lw 0.7\n";
+constexpr auto rest = "set bmargin at screen 0.12\nset tmargin at screen top\nset grid lc rgb '#e4e4e4' lt 1 lw 0.7\n";
+
+// Both axes of an orbit have one unit: a narrow one has room for few numbers.
+std::string tics(const FigureSource& source) {
+  double least[2] = {1e300, 1e300}, most[2] = {-1e300, -1e300};
+  for (int f = 0; f < source.film.frames(); ++f)
+    for (const std::size_t c : {0UL, 1UL}) {
+      const double q = drawn_frame(source, f, c).front();
+      least[c] = std::min(least[c], q), most[c] = std::max(most[c], q);
+    }
+  constexpr double wide = 800, high = 440, number_wide = 60, number_high = 30;  // of 900 x 600
+  const double dx = most[0] - least[0], dy = most[1] - least[1];
+  if (!(dx > 0) || !(dy > 0)) return {};
+  const double unit = std::min(wide / dx, high / dy);
+  const auto step = [&](double range, double each) {
+    return nice_step(range, std::clamp(static_cast<int>(range * unit / each), 1, 10));
+  };
+  return fmt::format("set xtics {}\nset ytics {}\n", step(dx, number_wide), step(dy, number_high));
+}
 
 }  // namespace
 
@@ -45,9 +65,11 @@ std::string trajectory_figure(const FigureSource& source, const std::filesystem:
           "textcolor rgb '#333333'\n",
           source.film.time(0), source.film.time(source.film.frames() - 1), d == 1 ? "q" : "coordinates",
           source.angle ? " / 2π" : "");
-  for (std::size_t c = 0; d > 1 && c < d; ++c)
-    body += fmt::format("set label {} '{}' at screen {},0.905 right textcolor rgb '{}'\n", 110 + c,
-                        coordinate(source, c), 0.965 - 0.05 * static_cast<double>(d - 1 - c), component_colour(c));
+  std::vector<std::vector<double>> curves(d);
+  for (std::size_t c = 0; c < d; ++c)
+    for (int f = 0; f < source.film.frames(); ++f) curves[c].push_back(drawn_frame(source, f, c).front());
+  body += robust_range("y", curves) + key_of_curves(
+                                          d, [&](std::size_t c) { return coordinate(source, c); }, curves);
   for (std::size_t c = 0; c < d; ++c)
     body += fmt::format("{} 'trajectory' using 1:{} with lines lw 1.4 lc rgb '{}'", c == 0 ? "plot" : ",", c + 2,
                         component_colour(c));
@@ -60,9 +82,9 @@ std::string orbit_figure(const FigureSource& source, const std::filesystem::path
   return figure_title(fmt::format("{}: the orbit", source.scene), fmt::format("{}, {}", source.theory, source.scheme)) +
          rest +
          fmt::format(
-             "set xlabel 'q1'\nset ylabel 'q2'\nset size ratio -1\nplot 'orbit' using 2:3 with lines lw 1.2 lc rgb "
+             "set xlabel 'q1'\nset ylabel 'q2'\nset size ratio -1\n{}plot 'orbit' using 2:3 with lines lw 1.2 lc rgb "
              "'{}'\n",
-             line_colour);
+             tics(source), line_colour);
 }
 
 }  // namespace delf

@@ -36,16 +36,6 @@ std::vector<int> chosen_frames(const FigureSource& source) {
   return frames;
 }
 
-// The names of the components in their colours, at the upper right.
-std::string key_of_components(const FigureSource& source, const std::vector<std::size_t>& components) {
-  std::string labels;
-  for (std::size_t c = 0; c < components.size(); ++c)
-    labels += fmt::format("set label {} '{}' at screen {},0.955 right textcolor rgb '{}' noenhanced\n", 110 + c,
-                          source.names.drawn()[components[c]],
-                          0.97 - 0.07 * static_cast<double>(components.size() - 1 - c), component_colour(c));
-  return labels;
-}
-
 double mean(std::span<const double> row) {
   return std::accumulate(row.begin(), row.end(), 0.0) / static_cast<double>(row.size());
 }
@@ -61,19 +51,23 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   // An angle grows or falls as solitons pass: multiples of 2π are subtracted from the whole row, never site by site.
   std::string table;
   std::vector<double> shown;
+  std::vector<std::vector<double>> curves;  // of each component, in all panels
   bool turned = false;
   std::vector<std::size_t> components;
   for (std::size_t c = 0; c < source.film.components(); ++c)
     if (c != source.names.drawn_mesh()) components.push_back(c);
+  curves.resize(components.size());
   for (const int f : frames) {
     const auto nodes = source.names.drawn_mesh() ? drawn_sites(source, f, *source.names.drawn_mesh()) : space;
-    for (const std::size_t c : components) {
+    for (std::size_t which = 0; which < components.size(); ++which) {
+      const std::size_t c = components[which];
       const auto row = drawn_sites(source, f, c);
       const double drift = mean(row) - mean(drawn_sites(source, 0, c));
       const double turns = source.angle && std::isfinite(drift) ? std::round(drift) : 0;
       turned = turned || turns != 0;
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         shown.push_back(row[i] - turns);
+        curves[which].push_back(shown.back());
         table += fmt::format("{} {}\n", nodes[i], shown.back());
       }
       table += "\n\n";
@@ -87,7 +81,7 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   std::string body =
       figure_title(fmt::format("{}: waveforms", source.scene), fmt::format("{}, {}", source.theory, source.scheme)) +
       fmt::format(
-          "set multiplot layout {},{} margins screen 0.105,0.97,0.125,0.82 spacing screen 0.03,0.085\n"
+          "set multiplot layout {},{} margins screen 0.105,0.97,0.125,(top-0.035) spacing screen 0.03,0.085\n"
           "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xtics {}\n",
           rows, std::min(columns, panels), space.front(), space.back(), scale.least - room, scale.most + room,
           nice_step(space.back() - space.front(), panels > 1 ? 5 : 10));
@@ -104,9 +98,11 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
                         source.film.time(frames[static_cast<std::size_t>(p)]));
     if (p == 0 && turned)
       body +=
-          "set label 103 'multiples of 2 pi are subtracted' at screen 0.97,0.905 right font ',11' "
+          "set label 103 'multiples of 2 pi are subtracted' at screen 0.97,0.03 right font ',10' "
           "textcolor rgb '#666666'\n";
-    if (p == 0 && components.size() > 1) body += key_of_components(source, components);
+    if (p == 0)
+      body += key_of_curves(
+          components.size(), [&](std::size_t c) { return source.names.drawn()[components[c]]; }, curves);
     const int first = p * static_cast<int>(components.size());
     for (std::size_t c = 0; c < components.size(); ++c)
       body += fmt::format("{} 'waveforms' index {} using 1:2 with {} lw 1.6 lc rgb '{}'", c == 0 ? "plot" : ",",

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/failure.hpp"
+#include "tools/figures/drawing.hpp"
 #include "tools/figures/figures.hpp"
 #include "tools/scene/scene.hpp"
 
@@ -29,11 +30,9 @@ void refuse_foreign_scene(const fs::path& folder) {
 }  // namespace
 
 void remove_final_results(const fs::path& folder) {
-  std::vector<fs::path> earlier{folder / "summary.json", folder / "section.csv"};
-  for (const std::string& name : figure_names())
-    for (const char* ending : {".png", ".svg"}) earlier.push_back(folder / "figures" / (name + ending));
   std::error_code none;
-  for (const fs::path& file : earlier) fs::remove(file, none);
+  for (const char* name : {"summary.json", "section.csv"}) fs::remove(folder / name, none);
+  remove_figures(figure_names(), folder);
 }
 
 void remove_earlier_run(const fs::path& folder) {

@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> harmless{"run.until", "run.steps", "run.threads", "output.checkpoint"};
+const std::vector<std::string> harmless{"run.until",         "run.steps",     "run.threads",
+                                        "output.checkpoint", "output.format", "output.titles"};
 bool is_harmless(const std::string& key) { return std::ranges::find(harmless, key) != harmless.end(); }
 
 // The keys of a scene.ini with their values.

@@ -49,10 +49,10 @@ std::string drawn(const Scene& scene, int winding, const RowNames& names, const 
   const std::string& theory = scene.problem.theory;
   const bool angle = scene.problem.circle_valued || find_theory(theory).angle;
   try {
-    return draw_figures(
-        {scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding, *recorder.film(),
-         recorder.energy_errors(), scene.times, names, energy_in_words(scene.problem), std::move(section)},
-        folder);
+    return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding,
+                         *recorder.film(), recorder.energy_errors(), scene.times, names, energy_in_words(scene.problem),
+                         std::move(section), scene.figure_form},
+                        folder);
   } catch (const std::exception& error) {
     return error.what();
   }

@@ -154,6 +154,8 @@ std::vector<Key> general_keys() {
       Key{"output.every", integer, "", "about 400 records",
           "record rows 0, every, 2 every, ... and the last; 0: the last", "", count},
       Key{"output.figures", toggle, "on", "", "draw figures (by gnuplot)"},
+      Key{"output.format", KeyType::text, "png, svg", "", "of the figures: some of svg, png and pdf"},
+      Key{"output.titles", toggle, "on", "", "titles above the figures; a paper has captions instead"},
       Key{"output.fields", toggle, "on", "", "write the recorded rows to fields.h5"},
       Key{"output.estimate", toggle, "off", "",
           "estimate the errors of the last row and of the measures by two more runs, at half and at a quarter of h and "

@@ -11,6 +11,7 @@
 
 #include "jets/expressions/stencil_text.hpp"
 #include "jets/tables/named_tables.hpp"
+#include "lattice/text_parts.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/step_method.hpp"
 #include "schemes/system/legendre.hpp"
@@ -176,6 +177,17 @@ std::string why_not_read(const Scene& scene, std::string_view key) {
   return {};
 }
 
+FigureForm read_figure_form(const Settings& settings, const Values& values) {
+  FigureForm form;
+  form.titles = values.toggle("output.titles");
+  form.formats = parts_of(values.text("output.format").value_or(""), ',');
+  for (const std::string& format : form.formats)
+    if (std::ranges::find(figure_formats, format) == figure_formats.end())
+      throw settings.error("output.format", fmt::format("{} is none of {}", format.empty() ? "nothing" : format,
+                                                        fmt::join(figure_formats, ", ")));
+  return form;
+}
+
 }  // namespace
 
 Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_line) {
@@ -204,6 +216,7 @@ Scene read_scene(Settings given) {
   const auto every_default = std::llround(static_cast<double>(scene.steps) / usual_records);
   scene.every = values.maybe_integer("output.every").value_or(std::max(1LL, every_default));
   scene.figures = values.toggle("output.figures");
+  scene.figure_form = read_figure_form(settings, values);
   scene.fields = values.toggle("output.fields");
   scene.checkpoint = values.real("output.checkpoint");
   scene.times = values.times("output.times");
@@ -231,6 +244,7 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
   if (key.starts_with("stencil.") && scene.problem.stencil != stencil_as_text)
     return fmt::format("lattice.stencil = {} is in force", scene.problem.stencil);
   if ((key == "lattice.sites" || key == "lattice.length") && point) return "a point has neither length nor sites";
+  if ((key == "output.format" || key == "output.titles") && !scene.figures) return "output.figures = off is in force";
   if (key == "output.section" && !point) return "sections are of mechanics, lattice.space = point";
   if (key == "lattice.mesh" || key == "lattice.time" || key == "lattice.time_steps" || key == "boundary.mesh")
     return "only lattice.space = complex has a mesh";

@@ -10,6 +10,7 @@
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
+#include "tools/figures/figure_form.hpp"
 #include "tools/scene/settings.hpp"
 
 namespace delf {
@@ -30,6 +31,7 @@ struct Scene {
   std::int64_t steps = 0;          ///< after row 0
   std::int64_t every = 1;          ///< 0: the last row only
   bool figures = true, fields = true;
+  FigureForm figure_form;
   double checkpoint = 60;     ///< seconds from one to the next; 0: none
   std::string section;        ///< output.section as it is; empty: none
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread

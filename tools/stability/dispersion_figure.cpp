@@ -7,8 +7,8 @@
 
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/gnuplot.hpp"
-#include "tools/stability/stability_figures.hpp"
 #include "tools/scene/text_file.hpp"
+#include "tools/stability/stability_figures.hpp"
 
 namespace delf {
 
@@ -24,7 +24,7 @@ std::string key_entry(std::size_t place, const std::string& name, const std::str
   const double y = 0.84 - 0.033 * static_cast<double>(place);
   return fmt::format(
       "set arrow from screen 0.72,{} to screen 0.755,{} nohead {}\n"
-      "set label {} at screen 0.765,{} left font ',10' textcolor rgb '#333333' noenhanced\n",
+      "set label {} at screen 0.765,{} left font ',9' textcolor rgb '#333333' noenhanced\n",
       y, y, line, gnuplot_quoted(name), y);
 }
 
@@ -49,19 +49,28 @@ std::string dispersion_figure(const StabilityFindings& f, const std::string& sce
   const double mass = f.dispersion_mass;
   std::string table, above, below, key = key_entry(0, "exact", "lc rgb '#bbbbbb' lw 5");
   double farthest = std::numbers::pi;
+  std::vector<std::vector<double>> frequencies(f.dispersion.size());
   for (std::size_t s = 0; s < f.dispersion.size(); ++s) {
     const DispersionCurve& c = f.dispersion[s];
     table += "NaN NaN NaN\n";  // so that no table is empty
     for (const FrequencyPoint& p : c.points) {
       if (!std::isfinite(p.numerical) || !(p.exact > 0)) continue;
       farthest = std::max(farthest, p.wave_number);
-      table +=
-          fmt::format("{} {} {}\n", p.wave_number, p.numerical, std::max(std::abs(p.numerical / p.exact - 1), 1e-16));
+      const double error = std::max(std::abs(p.numerical / p.exact - 1), 1e-16);
+      table += fmt::format("{} {} {}\n", p.wave_number, p.numerical, error);
+      frequencies[s].push_back(p.numerical);
     }
     table += "\n\n";
     above += fmt::format(", 'dispersion' index {} using 1:2 with lines {} notitle", s, line_of(s));
-    key += key_entry(s + 1, c.scheme, line_of(s));
     below += fmt::format("{}'dispersion' index {} using 1:3 with lines {} notitle", s == 0 ? "" : ", ", s, line_of(s));
+  }
+  // one scheme's frequency may grow without bound where waves are shortest, and would flatten all others
+  const double highest = 1.6 * std::sqrt(farthest * farthest + mass * mass);
+  const auto on = coinciding(frequencies, highest);
+  for (std::size_t s = 0; s < f.dispersion.size(); ++s) {
+    key += key_entry(s + 1,
+                     f.dispersion[s].scheme + (on[s] < s ? fmt::format(" (on {})", f.dispersion[on[s]].scheme) : ""),
+                     line_of(s));
   }
   write_text_file(scratch / "dispersion", table);
   return figure_title(
@@ -74,13 +83,13 @@ std::string dispersion_figure(const StabilityFindings& f, const std::string& sce
              "set multiplot\nset lmargin at screen 0.1\nset rmargin at screen 0.7\nset grid lc rgb '#e4e4e4' lt 1 lw "
              "0.7\n"
              "set samples 400\nset xrange [0:{}]\nset xtics ({})\n"
-             "set tmargin at screen 0.855\nset bmargin at screen 0.53\nset ylabel 'ωk'\nset yrange [0:*]\n"
+             "set tmargin at screen top\nset bmargin at screen 0.53\nset ylabel 'ωk'\nset yrange [0:{}]\n"
              "plot sqrt(x*x+{}) with lines lc rgb '#bbbbbb' lw 5 notitle{}\n"
              "unset label\nunset arrow\n"
              "set tmargin at screen 0.46\nset bmargin at screen 0.12\nset logscale y\nset format y '10^{{%T}}'\n"
              "set yrange [1e-10:10]\nset ytics 1e2\nset mytics 1\nset ylabel 'error of ω' offset 1.5,0\n"
              "set xlabel 'wave number qk'\nplot {}\nunset multiplot\n",
-             farthest, tics(farthest), mass * mass, above, below);
+             farthest, tics(farthest), highest, mass * mass, above, below);
 }
 
 }  // namespace delf

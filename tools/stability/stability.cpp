@@ -12,6 +12,7 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "tools/figures/drawing.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/seconds_since.hpp"
@@ -26,12 +27,6 @@ namespace delf {
 namespace fs = std::filesystem;
 
 namespace {
-
-void remove_figures(const fs::path& folder, std::size_t schemes) {
-  std::error_code error;
-  for (const std::string& name : stability_figure_names(schemes))
-    for (const char* ending : {".png", ".svg"}) fs::remove(folder / "figures" / (name + ending), error);
-}
 
 // Limits are those of a field without constraint; the scene's own theory may have one. Empty: it has none, or no such
 // wave grows.
@@ -115,11 +110,11 @@ ExitCode stability(const Scene& scene, const fs::path& folder) {
   const StabilityFindings findings = find_stability(request, scene.problem);
   make_results_folder(folder);  // earlier results stay until there are new ones
   write_text_file(folder / "stability.json", stability_json(scene, findings));
-  remove_figures(folder, findings.maps.size() + maps_in_a_figure);
+  remove_figures(stability_figure_names(findings.maps.size() + maps_in_a_figure), folder);
   std::string missing;
   if (scene.figures) {
     try {
-      missing = draw_stability(findings, scene.name, folder);
+      missing = draw_stability(findings, scene.name, scene.figure_form, folder);
     } catch (const std::exception& error) {  // a failed figure does not fail the command
       missing = error.what();
     }

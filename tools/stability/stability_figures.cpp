@@ -19,14 +19,15 @@ std::vector<std::string> stability_figure_names(std::size_t schemes) {
   return names;
 }
 
-std::string draw_stability(const StabilityFindings& f, const std::string& scene, const std::filesystem::path& folder) {
+std::string draw_stability(const StabilityFindings& f, const std::string& scene, const FigureForm& form,
+                           const std::filesystem::path& folder) {
   std::vector<Drawing> drawings{
       {"dispersion", [&](const std::filesystem::path& scratch) { return dispersion_figure(f, scene, scratch); }}};
   for (std::size_t part = 0; part * maps_in_a_figure < f.maps.size(); ++part)
     drawings.push_back({map_name(part), [&f, &scene, part](const std::filesystem::path& scratch) {
                           return stability_map_figure(f, scene, part, scratch);
                         }});
-  return draw(drawings, folder);
+  return draw(drawings, form, folder);
 }
 
 }  // namespace delf

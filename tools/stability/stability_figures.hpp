@@ -10,7 +10,8 @@ namespace delf {
 
 /// Draws what the findings have data for into `folder`/figures, each as PNG and as SVG. Returns what is missing, in one
 /// line, or an empty string.
-std::string draw_stability(const StabilityFindings&, const std::string& scene, const std::filesystem::path& folder);
+std::string draw_stability(const StabilityFindings&, const std::string& scene, const FigureForm&,
+                           const std::filesystem::path& folder);
 
 /// The names of the figures, without ending; of the map there is one for each nine schemes.
 std::vector<std::string> stability_figure_names(std::size_t schemes);

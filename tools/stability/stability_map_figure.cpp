@@ -6,9 +6,9 @@
 
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/gnuplot.hpp"
-#include "tools/stability/stability_figures.hpp"
 #include "tools/files/text_columns.hpp"
 #include "tools/scene/text_file.hpp"
+#include "tools/stability/stability_figures.hpp"
 
 namespace delf {
 
@@ -91,7 +91,7 @@ std::string stability_map_figure(const StabilityFindings& f, const std::string& 
         "set palette defined ({})\nset cbrange [0:3]\nunset colorbox\n"
         "plot 'cells-{}-{}' using 1:2:($1-{}):($1+{}):($2-{}):($2+{}):3 with boxxyerror fs solid noborder lc palette, "
         "'edges-{}-{}' using 1:2 with points pt 7 ps (GPVAL_TERM eq 'svg' ? 0.22 : 0.6) lc rgb '#111111'\n"
-        "unset object\nunset label 101\nunset label 102\n",
+        "unset object\nunset label\n",
         left, left + width - 0.055, top, top - height + 0.075, gnuplot_quoted(m.scheme), m.courants.front() - dx / 2,
         m.courants.back() + dx / 2, decades.front() - dy / 2, decades.back() + dy / 2, tics, lowest ? "%h" : "",
         lowest ? "Courant number h/k" : "", column == 0 ? "mh" : "", palette, part, p, dx / 2, dx / 2, dy / 2, dy / 2,

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "tools/figures/drawing.hpp"
 #include "tools/measure/measure_names.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/seconds_since.hpp"
@@ -54,17 +55,18 @@ void write_tables(const SweepRequest& request, const SweepOutcome& outcome, cons
   write_text_file(folder / "sweep.json", sweep_json(request, outcome));
 }
 
-void draw_and_report(const SweepRequest& request, const SweepOutcome& outcome, const fs::path& folder) {
-  std::error_code none;
-  for (const char* ending : {".png", ".svg"}) fs::remove(folder / "figures" / (std::string("sweep") + ending), none);
+void draw_and_report(const SweepRequest& request, const SweepOutcome& outcome, const FigureForm& form,
+                     const fs::path& folder) {
+  remove_figures({"sweep"}, folder);
   std::string missing;
   try {
-    missing = draw_sweep(request, outcome, folder);
+    missing = draw_sweep(request, outcome, form, folder);
   } catch (const std::exception& error) {  // a failed figure does not fail the command
     missing = error.what();
   }
   fmt::print("{}", sweep_report(request, outcome));
-  const bool drawn = fs::exists(folder / "figures" / "sweep.svg", none);
+  std::error_code none;
+  const bool drawn = fs::exists(folder / "figures" / ("sweep." + form.formats.front()), none);
   fmt::print("{}: sweep.csv sweep.json{}{}\n", folder.string(), request.table ? "" : " runs", drawn ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
 }
@@ -82,6 +84,7 @@ ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_lin
     runs.push_back(request.run(values));
     check_measure_names(runs.back().scene);
   }
+  const FigureForm form = runs.empty() ? FigureForm{} : runs.front().scene.figure_form;
   make_results_folder(folder);
 
   SweepOutcome outcome;
@@ -99,7 +102,7 @@ ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_lin
   if (pool.number_is_unknown())
     throw BadScene(fmt::format("command line: --sweep.number = {}: is no number of summary.json and no measure{}",
                                request.number, suggestion(request.number, pool.known_numbers())));
-  draw_and_report(request, outcome, folder);
+  draw_and_report(request, outcome, form, folder);
   if (outcome.status == "interrupted") return ExitCode::interrupted;
   return outcome.done() == 0 ? ExitCode::numerics_failed : ExitCode::done;
 }

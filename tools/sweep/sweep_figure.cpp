@@ -52,7 +52,7 @@ std::string lines(const std::string& key, const std::string& number, const std::
   if (all_y.empty()) return {};
   std::string script =
       "set lmargin at screen 0.135\nset rmargin at screen 0.965\nset bmargin at screen 0.13\n"
-      "set tmargin at screen 0.86\nset grid lc rgb '#e4e4e4' lt 1 lw 0.7\n" +
+      "set tmargin at screen top\nset grid lc rgb '#e4e4e4' lt 1 lw 0.7\n" +
       label("x", key) + label("y", number) + axis("x", all_x) + axis("y", all_y);
   if (groups.size() > 1) script += "set key top right font ',10'\n";
   const double size = points.size() > 120 ? 0.25 : 0.6;
@@ -98,7 +98,8 @@ std::string map(const std::vector<std::string>& keys, const std::string& number,
 
 }  // namespace
 
-std::string draw_sweep(const SweepRequest& request, const SweepOutcome& outcome, const std::filesystem::path& folder) {
+std::string draw_sweep(const SweepRequest& request, const SweepOutcome& outcome, const FigureForm& form,
+                       const std::filesystem::path& folder) {
   if (outcome.rows.size() < 2 || outcome.number.empty()) return {};
   std::vector<std::size_t> numeric, worded;
   for (std::size_t a = 0; a < request.keys.size(); ++a) {
@@ -127,7 +128,7 @@ std::string draw_sweep(const SweepRequest& request, const SweepOutcome& outcome,
                                                      : lines(keys[0], outcome.number, points, scratch);
                   return body.empty() ? body : title + body;
                 }}},
-              folder);
+              form, folder);
 }
 
 }  // namespace delf

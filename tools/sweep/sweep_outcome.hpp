@@ -33,6 +33,7 @@ std::string sweep_json(const SweepRequest&, const SweepOutcome&);
 std::string sweep_report(const SweepRequest&, const SweepOutcome&);
 /// Figures over the keys with numbers for values: a line over one, for each value of a key with words; a map over two.
 /// Returns what is missing, in one line.
-std::string draw_sweep(const SweepRequest&, const SweepOutcome&, const std::filesystem::path& folder);
+std::string draw_sweep(const SweepRequest&, const SweepOutcome&, const FigureForm&,
+                       const std::filesystem::path& folder);
 
 }  // namespace delf

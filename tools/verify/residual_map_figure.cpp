@@ -83,17 +83,17 @@ std::string residual_map_figure(const VerdictSource& source, const std::filesyst
   const std::string head =
       verdict_title(source.scene + ": the residual of the equations", fmt::format("largest: {} at {}", largest, where),
                     source.scheme) +
-      fmt::format("set lmargin at screen {}\nset bmargin at screen 0.12\nset tmargin at screen 0.855\n",
+      fmt::format("set lmargin at screen {}\nset bmargin at screen 0.12\nset tmargin at screen top\n",
                   columns > 1 ? 0.105 : 0.13);
   if (columns == 1) return head + over_time(map, scale, scratch);
   return gnuplot_colours(scale) + head + ring(map, worst, width) +
          fmt::format(
              "set rmargin at screen 0.845\nset xlabel 'space x'\n"
              "set label 103 'time t' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
-             "set label 104 '|E| / Σ|terms|' at screen 0.92,0.872 center textcolor rgb '#333333' noenhanced\n"
+             "set label 104 '|E| / Σ|terms|' at screen 0.92,(top+0.017) center textcolor rgb '#333333' noenhanced\n"
              "set border 15\nset object 100 rectangle from graph 0,0 to graph 1,1 behind fc rgb '#dddddd' fs solid "
              "noborder\n"
-             "set colorbox user origin screen 0.868,0.12 size screen 0.022,0.71 noborder\n"
+             "set colorbox user origin screen 0.868,0.12 size screen 0.022,(top-0.145) noborder\n"
              "set format cb '10^{{%h}}'\nset cbtics {} scale 0.3\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
              "plot 'residuals' binary array=({},{}) dx={} dy={} origin=({},{}) format='%double' using 1 with image\n",
              std::max(1.0, nice_step(scale.most - scale.least, 8)), map.space.front() - dx / 2,

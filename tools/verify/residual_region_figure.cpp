@@ -114,13 +114,13 @@ std::string residual_region_figure(const VerdictSource& source, const std::files
          fmt::format(
              "size = GPVAL_TERM eq 'svg' ? 0.65 : 2.0\n"
              "set lmargin at screen 0.13\nset rmargin at screen 0.7\n"
-             "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
+             "set bmargin at screen 0.12\nset tmargin at screen top\n"
              "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset logscale xy\nset mxtics 1\nset mytics 1\n"
              "set format x '{}'\nset format y '10^{{%T}}'\nset ytics 1e{}\n"
              "set xlabel 'stencils in the region, n'\n"
              "set label 103 'residual |sum| / Σ|terms|' at screen 0.025,0.4875 center rotate textcolor rgb '#333333' "
              "noenhanced\n"
-             "set key at screen 0.715,0.855 left top Left reverse samplen 2 spacing 1.25 textcolor rgb '#333333'\n"
+             "set key at screen 0.715,top left top Left reverse samplen 2 spacing 1.25 textcolor rgb '#333333'\n"
              "set samples 200\nset xrange [{}:{}]\nset yrange [{}:{}]\n",
              x.most < 1e5 ? "%h" : "10^{%T}", std::max(1.0, nice_step(decades, 10)), x.least, x.most, y.least, y.most) +
          plots(v, kinds);

@@ -32,7 +32,7 @@ std::string time_reversal_figure(const VerdictSource& source, const std::filesys
                        source.scheme) +
          fmt::format(
              "set lmargin at screen 0.13\nset rmargin at screen 0.965\n"
-             "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
+             "set bmargin at screen 0.12\nset tmargin at screen top\n"
              "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset logscale xy\nset mxtics 1\nset mytics 1\n"
              "set format x '{}'\nset format y '10^{{%T}}'\nset ytics 1e{}\nset xlabel 'steps in each direction'\n"
              "set label 103 'distance' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"

@@ -27,10 +27,7 @@ constexpr Figure all[] = {{"residual-map", residual_map_figure},
 double drawn_logarithmic(double value) { return std::clamp(value, drawn_zero, 1e300); }
 
 std::string verdict_title(const std::string& title, const std::string& subtitle, const std::string& more) {
-  constexpr std::size_t widest_title = 62, widest_line = 92;
-  const std::string whole = subtitle + (more.empty() ? "" : "; ") + more;
-  return figure_title(shortened(title, widest_title),
-                      shortened(columns_of(whole) > widest_line ? subtitle : whole, widest_line));
+  return figure_title(title, subtitle + (more.empty() ? "" : "; ") + more);
 }
 
 std::vector<std::string> verdict_figure_names() {
@@ -40,12 +37,12 @@ std::vector<std::string> verdict_figure_names() {
 }
 
 std::string draw_verdict(const Verdict& verdict, const std::string& scene, const std::string& scheme,
-                         const fs::path& folder) {
+                         const FigureForm& form, const fs::path& folder) {
   const VerdictSource source{verdict, scene, scheme};
   std::vector<Drawing> drawings;
   for (const Figure& figure : all)
     drawings.push_back({figure.name, [&](const fs::path& scratch) { return figure.body(source, scratch); }});
-  return draw(drawings, folder);
+  return draw(drawings, form, folder);
 }
 
 }  // namespace delf

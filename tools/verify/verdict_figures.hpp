@@ -8,9 +8,9 @@
 
 namespace delf {
 
-/// Draws what a verdict has data for into `folder`/figures, each as PNG and as SVG; `scheme` is one line: stencil,
+/// Draws what a verdict has data for into `folder`/figures, in all formats; `scheme` is one line: stencil,
 /// method, sites. Returns what is missing, in one line, or an empty string.
-std::string draw_verdict(const Verdict&, const std::string& scene, const std::string& scheme,
+std::string draw_verdict(const Verdict&, const std::string& scene, const std::string& scheme, const FigureForm&,
                          const std::filesystem::path& folder);
 
 /// The names of the figures, without ending.
@@ -32,7 +32,7 @@ std::string time_reversal_figure(const VerdictSource&, const std::filesystem::pa
 inline constexpr double drawn_zero = 1e-18;
 /// A value on a logarithmic axis.
 double drawn_logarithmic(double value);
-/// A title with a quieter line below it, shortened to the width of a figure; `more` ends the line if there is room.
+/// A title with a quieter line below it, which `more` ends.
 std::string verdict_title(const std::string& title, const std::string& subtitle, const std::string& more = "");
 
 }  // namespace delf

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "tools/engine.hpp"
+#include "tools/figures/drawing.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/scene/brick_rows.hpp"
@@ -20,12 +21,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void remove_figures(const fs::path& folder) {
-  std::error_code error;
-  for (const std::string& name : verdict_figure_names())
-    for (const char* ending : {".png", ".svg"}) fs::remove(folder / "figures" / (name + ending), error);
-}
-
 ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::optional<std::string>& fields,
                    const std::vector<std::string>& nearby) {
   const Interrupt interrupt;
@@ -37,11 +32,11 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   Verdict verdict = verification ? verification->run() : Verdict{};
   if (fields && verdict.status == "done") verify_momenta(scene, request, *fields, nearby, momenta_alone, verdict);
   write_text_file(folder / "verify.json", verdict_json(scene, verdict));
-  remove_figures(folder);
+  remove_figures(verdict_figure_names(), folder);
   std::string missing;
   if (scene.figures) {
     try {
-      missing = draw_verdict(verdict, scene.name, scheme_in_words(scene.problem), folder);
+      missing = draw_verdict(verdict, scene.name, scheme_in_words(scene.problem), scene.figure_form, folder);
     } catch (const std::exception& error) {  // a failed figure does not fail the command
       missing = error.what();
     }

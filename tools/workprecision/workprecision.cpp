@@ -8,12 +8,13 @@
 #include <cstdio>
 
 #include "tools/engine.hpp"
+#include "tools/figures/drawing.hpp"
 #include "tools/run/interrupt.hpp"
-#include "tools/workprecision/lower_envelope.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/reference_run.hpp"
 #include "tools/run/seconds_since.hpp"
 #include "tools/scene/text_file.hpp"
+#include "tools/workprecision/lower_envelope.hpp"
 #include "tools/workprecision/timed_rounds.hpp"
 
 namespace delf {
@@ -42,8 +43,7 @@ ExitCode workprecision_in(const fs::path& folder, const Scene& scene) {
   write_text_file(folder / "workprecision.tex", workprecision_latex(scene, request, outcome));
   std::string missing;
   std::error_code none;
-  for (const char* ending : {".png", ".svg"})
-    fs::remove(folder / "figures" / (std::string("workprecision") + ending), none);
+  remove_figures({"workprecision"}, folder);
   if (scene.figures && !outcome.runs.empty()) {
     try {
       missing = draw_workprecision(scene, outcome, folder);
@@ -52,7 +52,7 @@ ExitCode workprecision_in(const fs::path& folder, const Scene& scene) {
     }
   }
   fmt::print("{}", workprecision_report(scene, request, outcome));
-  const bool drawn = fs::exists(folder / "figures" / "workprecision.svg", none);
+  const bool drawn = fs::exists(folder / "figures" / ("workprecision." + scene.figure_form.formats.front()), none);
   fmt::print("{}: workprecision.json workprecision.csv workprecision.md workprecision.tex{}\n", folder.string(),
              drawn ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);

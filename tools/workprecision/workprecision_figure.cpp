@@ -55,11 +55,13 @@ std::string figure(const Scene& scene, const WorkPrecisionOutcome& o, const std:
   if (all.empty()) return {};
   std::string plots, table, named;
   std::size_t block = 0, engine = 0, peer = 0;
+  // the axes are those of the coloured lines: runs of others that failed would flatten them
   double least = 1e300, most = 0, fastest = 1e300, slowest = 0;
-  const auto add = [&](std::span<const std::size_t> front) {
+  const auto add = [&](std::span<const std::size_t> front, bool seen) {
     for (const std::size_t i : front) {
       const double error = drawn_error(o.runs[i].error_linf), seconds = std::max(o.runs[i].seconds, 1e-9);
       table += fmt::format("{} {}\n", seconds, error);
+      if (!seen) continue;
       least = std::min(least, error), most = std::max(most, error);
       fastest = std::min(fastest, seconds), slowest = std::max(slowest, seconds);
     }
@@ -74,12 +76,13 @@ std::string figure(const Scene& scene, const WorkPrecisionOutcome& o, const std:
   constexpr auto size = "(GPVAL_TERM eq 'svg' ? 0.45 : 1.1)";
   if (!envelope.empty())
     plots +=
-        fmt::format("'runs' index {} using 1:2 with lines lw 9 lc rgb '#ffe08a' title 'lower envelope'", add(envelope));
+        fmt::format("'runs' index {} using 1:2 with lines lw 9 lc rgb '#ffe08a' title 'lower envelope of the engine'",
+                    add(envelope, true));
   bool others = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const WorkPrecisionLine& line = *all[i].line;
     const bool coloured = line.peer ? peer < std::size(peer_colours) : engine < std::size(engine_colours);
-    const std::size_t at = add(line.front);
+    const std::size_t at = add(line.front, coloured);
     if (!coloured) {
       if (!plots.empty()) plots += ", \\\n  ";
       plots += fmt::format("'runs' index {} using 1:2 with lines lw 0.8 lc rgb '#c4c4c4'{}{}", at,
@@ -100,13 +103,13 @@ std::string figure(const Scene& scene, const WorkPrecisionOutcome& o, const std:
              fmt::format("{}; the steps alone; slopes beside the names{}", scene.problem.theory,
                          std::ranges::any_of(o.runs, &WorkPrecisionRun::peer) ? "; other programs dashed" : "")) +
          fmt::format(
-             "set lmargin at screen 0.115\nset rmargin at screen 0.655\n"
-             "set bmargin at screen 0.12\nset tmargin at screen 0.855\n"
+             "set lmargin at screen 0.115\nset rmargin at screen 0.61\n"
+             "set bmargin at screen 0.12\nset tmargin at screen top\n"
              "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset logscale xy\nset mxtics 1\nset mytics 1\n"
              "set format x '10^{{%T}}'\nset format y '10^{{%T}}'\nset ytics 1e{}\nset xlabel 'seconds'\n"
              "set label 103 'largest error of the field at the end' at screen 0.025,0.4875 center rotate textcolor rgb "
              "'#333333'\n"
-             "set key at screen 0.985,0.85 right top Left reverse samplen 1.6 font ',9' noenhanced textcolor rgb "
+             "set key at screen 0.62,top left top Left reverse samplen 1.6 font ',9' noenhanced textcolor rgb "
              "'#333333'\nset xrange [{}:{}]\nset yrange [{}:{}]\nplot {}{}\n",
              std::max(1.0, nice_step(std::log10(most / least) + 1, 10)), fastest / 1.5, slowest * 1.5, least / 2,
              most * 2, plots, named);
@@ -116,7 +119,7 @@ std::string figure(const Scene& scene, const WorkPrecisionOutcome& o, const std:
 
 std::string draw_workprecision(const Scene& scene, const WorkPrecisionOutcome& o, const std::filesystem::path& folder) {
   return draw({{"workprecision", [&](const std::filesystem::path& scratch) { return figure(scene, o, scratch); }}},
-              folder);
+              scene.figure_form, folder);
 }
 
 }  // namespace delf

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
+
 #include "tests/catch.hpp"
 #include "tests/tools/figures/has_gnuplot.hpp"
 #include "tests/tools/program.hpp"
@@ -77,6 +79,33 @@ TEST_CASE("a trace keeps every extreme in bounded memory") {
   CHECK(least == -3);
   CHECK(trace.intervals().front().begin == 0);
   CHECK(trace.intervals().back().end == 999999);
+}
+
+TEST_CASE("a long subtitle is smaller, or on several lines, and never cut") {
+  const auto labels = [](const std::string& subtitle) {
+    return lines(delf::figure_title("title", subtitle)).size() - 1;
+  };
+  CHECK(labels("short") == 1);
+  std::string words;
+  for (int i = 0; i < 30; ++i) words += (i ? " word" : "word") + std::to_string(i);
+  CHECK(labels(words) == 2);
+  CHECK(labels(words + " " + words) == 4);
+  CHECK(contains(delf::figure_title("title", words), "word29"));
+}
+
+TEST_CASE("curves that cannot be told apart are said to, and a spike does not flatten the axis") {
+  std::vector<std::vector<double>> curves(3, std::vector<double>(1000));
+  for (std::size_t i = 0; i < 1000; ++i) {
+    const double x = 0.01 * static_cast<double>(i);
+    curves[0][i] = std::sin(x), curves[1][i] = std::cos(x), curves[2][i] = std::sin(x) + 0.001;
+  }
+  CHECK(delf::coinciding(curves, 2) == std::vector<std::size_t>{0, 1, 0});
+  const auto name = [](std::size_t c) { return "q" + std::to_string(c); };
+  CHECK(contains(delf::key_of_curves(3, name, curves), "'q2 (on q0)'"));
+  CHECK(delf::key_of_curves(1, name, {curves[0]}).empty());
+  CHECK(delf::robust_range("y", curves).empty());
+  curves[1][500] = 1e6;
+  CHECK(contains(delf::robust_range("y", curves), "set yrange [-1."));
 }
 
 TEST_CASE("a colour scale is symmetric for what swings about zero, and wide enough for what is constant") {

@@ -10,8 +10,8 @@
 #include "lattice/error.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
-#include "tools/stability/corner_list.hpp"
 #include "tools/scene/keys.hpp"
+#include "tools/stability/corner_list.hpp"
 #include "tools/stability/linear_theory.hpp"
 #include "tools/stability/observed_limit.hpp"
 #include "tools/stability/stability.hpp"
@@ -368,7 +368,7 @@ TEST_CASE("the map and the dispersion relation are drawn") {
                Growth::linear,  Growth::refused, Growth::exponential};
   f.maps = std::vector<StabilityMap>(maps_in_a_figure + 1, map);
   f.dispersion = {{"guo", {{0, 0.1, 0.1}, {1, 0.9, 1.0}, {3, 2, 3}}}};
-  CHECK(draw_stability(f, "test", folder.path()) == "");
+  CHECK(draw_stability(f, "test", {}, folder.path()) == "");
   for (const std::string& name : stability_figure_names(f.maps.size()))
     for (const char* ending : {".png", ".svg"})
       CHECK(std::filesystem::file_size(folder.path() / "figures" / (name + ending)) > 2000);

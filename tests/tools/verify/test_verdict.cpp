@@ -144,7 +144,7 @@ TEST_CASE("text is wrapped at blanks, by columns and not by bytes, and words tha
 TEST_CASE("the figures of a verdict are drawn as PNG and as SVG, and those without data are not") {
   if (!has_gnuplot()) return;
   const Folder folder;
-  CHECK(draw_verdict(verdict(), "the user's", "hexagon, N = 254", folder.path()).empty());
+  CHECK(draw_verdict(verdict(), "the user's", "hexagon, N = 254", {}, folder.path()).empty());
   CHECK(verdict_figure_names().size() == 4);
   for (const std::string& name : verdict_figure_names()) {
     INFO(name);
@@ -155,12 +155,12 @@ TEST_CASE("the figures of a verdict are drawn as PNG and as SVG, and those witho
   }
 
   const Folder empty;
-  CHECK(draw_verdict(Verdict{}, "nothing", "", empty.path()).empty());
+  CHECK(draw_verdict(Verdict{}, "nothing", "", {}, empty.path()).empty());
   CHECK_FALSE(std::filesystem::exists(empty / "figures"));
   Verdict one;
   one.map = {{0.5, 1.5}, {0}, {-16, not_a_number}};  // a point: time alone
   one.worst.sites = {{0, 0, 5, true, true, 0}};
-  CHECK(draw_verdict(one, "pendulum", "midpoint", empty.path()).empty());
+  CHECK(draw_verdict(one, "pendulum", "midpoint", {}, empty.path()).empty());
   CHECK(std::filesystem::exists(empty / "figures/residual-map.png"));
   CHECK(std::filesystem::exists(empty / "figures/worst-region.png"));
   CHECK_FALSE(std::filesystem::exists(empty / "figures/time-reversal.png"));
