@@ -9,6 +9,7 @@
 
 #include "schemes/complex/asynchronous.hpp"
 #include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_figures.hpp"
 #include "tools/complex/mesh_files.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/files/folder_lock.hpp"
@@ -128,7 +129,7 @@ void measure_error(const ComplexScene& c, std::span<const double> values, double
 class MeshRecorder {
  public:
   MeshRecorder(const ComplexScene& c, const fs::path& folder, std::int64_t frames, Outcome& outcome)
-      : c_(c), outcome_(outcome), series_(folder / "series.csv", std::vector<std::string>{}) {
+      : c_(c), outcome_(outcome), film_(c), series_(folder / "series.csv", std::vector<std::string>{}) {
     if (c.scene.fields) files_.emplace(c, folder, frames, c.time == MeshTime::cells);
   }
   void record(std::int64_t row, double time, std::span<const double> values, double energy, int iterations,
@@ -146,7 +147,9 @@ class MeshRecorder {
     else if (c_.time == MeshTime::cells) o.residual_max = residual;  // of asynchronous steps it is not measured
     series_.append({row, time, energy, error, Outcome::unknown, Outcome::unknown, iterations, residual, {}});
     if (files_) files_->append(time, values, node_times);
+    if (c_.scene.figures) film_.add(row, time, values);
   }
+  const MeshFilm& film() const { return film_; }
   void close() {
     series_.close();
     if (files_) files_->close();
@@ -155,6 +158,7 @@ class MeshRecorder {
  private:
   const ComplexScene& c_;
   Outcome& outcome_;
+  MeshFilm film_;
   SeriesFile series_;
   std::optional<MeshFiles> files_;
 };
@@ -245,6 +249,15 @@ void run_cells(const ComplexScene& c, MeshRecorder& recorder, Outcome& o, std::i
   measure_error(c, evolution.values(o.time), o.time, o);
 }
 
+// A failed figure does not fail the run.
+std::string drawn(const ComplexScene& c, const MeshFilm& film, const fs::path& folder) {
+  try {
+    return draw_mesh(c, film, folder);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 }  // namespace
 
 std::vector<double> cell_steps(const ComplexScene& c) {
@@ -283,8 +296,11 @@ ExitCode run(const ComplexScene& c, const fs::path& folder) {
         "coarse; reduce {}",
         o.energy_error_max, c.scene.settings.find("lattice.courant") ? "lattice.courant" : "lattice.time_step"));
   write_text_file(folder / "summary.json", summary(c, o, updates));
-  fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}\n", report(c, o, updates), "files", folder.string(),
-             c.scene.fields ? c.space->mesh.coordinates() > 1 ? " fields.h5 fields.xdmf" : " fields.h5" : "");
+  const std::string missing = c.scene.figures ? drawn(c, recorder.film(), folder) : std::string();
+  fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}{}\n", report(c, o, updates), "files", folder.string(),
+             c.scene.fields ? c.space->mesh.coordinates() > 1 ? " fields.h5 fields.xdmf" : " fields.h5" : "",
+             c.scene.figures && missing.empty() ? " figures" : "");
+  if (!missing.empty()) std::fputs(fmt::format("delf: no figures: {}\n", missing).c_str(), stderr);
   if (failure) std::rethrow_exception(failure);
   return o.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
 }

@@ -23,11 +23,11 @@ constexpr double usual_records = 100;
 
 /// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
 const std::set<std::string, std::less<>> read_keys{
-    "theory.name",       "lattice.space",      "lattice.mesh",      "lattice.time",     "lattice.courant",
-    "lattice.time_step", "lattice.time_steps", "boundary.mesh",     "scheme.tolerance", "scheme.max_iterations",
-    "initial.state",     "run.until",          "run.steps",         "run.seed",         "output.every",
-    "output.fields",     "output.figures",     "verify.variations", "verify.moments",   "verify.tolerance",
-    "verify.fault",      "scheme.method"};
+    "theory.name",       "lattice.space",      "lattice.mesh",  "lattice.time",     "lattice.courant",
+    "lattice.time_step", "lattice.time_steps", "boundary.mesh", "scheme.tolerance", "scheme.max_iterations",
+    "initial.state",     "run.until",          "run.steps",     "run.seed",         "output.every",
+    "output.fields",     "output.figures",     "output.format", "output.titles",    "verify.variations",
+    "verify.moments",    "verify.tolerance",   "verify.fault",  "scheme.method"};
 
 /// Keys of time, which lattice.time = none has none of.
 const std::set<std::string, std::less<>> time_keys{"lattice.courant", "lattice.time_step", "lattice.time_steps",
@@ -163,7 +163,8 @@ ComplexScene read_complex_scene(Settings given) {
     p.stencil = c.mesh_in_words();
     read_fields(c, values, parameters);
     scene.fields = values.toggle("output.fields");
-    scene.figures = false;
+    scene.figures = values.toggle("output.figures");
+    scene.figure_form = read_figure_form(settings, values);
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
     if (c.time == MeshTime::none) return c;
 

@@ -177,6 +177,8 @@ std::string why_not_read(const Scene& scene, std::string_view key) {
   return {};
 }
 
+}  // namespace
+
 FigureForm read_figure_form(const Settings& settings, const Values& values) {
   FigureForm form;
   form.titles = values.toggle("output.titles");
@@ -187,8 +189,6 @@ FigureForm read_figure_form(const Settings& settings, const Values& values) {
                                                         fmt::join(figure_formats, ", ")));
   return form;
 }
-
-}  // namespace
 
 Scene read_scene(const fs::path& file, const std::vector<Setting>& on_command_line) {
   return read_scene(read_settings(file, on_command_line));

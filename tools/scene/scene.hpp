@@ -15,6 +15,8 @@
 
 namespace delf {
 
+class Values;
+
 /// A scene, read and resolved: nothing in it is left to guess, except what only the initial state knows.
 struct Scene {
   explicit Scene(Settings given) : settings(std::move(given)) {}
@@ -38,6 +40,9 @@ struct Scene {
 
   bool from_file() const { return !initial_file.empty(); }
 };
+
+/// output.format and output.titles. Throws BadScene.
+FigureForm read_figure_form(const Settings&, const Values&);
 
 /// Reads, checks and resolves the scene `file`; throws BadScene.
 Scene read_scene(const std::filesystem::path& file, const std::vector<Setting>& on_command_line);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <tuple>
@@ -78,6 +79,8 @@ TEST_CASE("a wave on a mesh runs, is planned and verified through the program") 
   CHECK(json["solve_kind"] == "explicit");
   CHECK(json["energy_error_max"] < 0.05);
   CHECK(json["residual_max"] < 1e-13);
+  // figures of triangles in space, where there is gnuplot
+  CHECK((contains(ran.err, "no figures") || std::filesystem::exists(folder / "out/figures/field.svg")));
   CHECK(contains(read(folder / "out/fields.xdmf"), "TopologyType=\"Triangle\" NumberOfElements=\"320\""));
   // again to the same bits, from the scene that is left
   CHECK(delf_program(folder, "run out/scene.ini --out again").code == 0);
@@ -90,7 +93,7 @@ TEST_CASE("a wave on a mesh runs, is planned and verified through the program") 
 
 TEST_CASE("a static kink has the energies of Peierls and Nabarro, between sites and on one") {
   const Folder folder;
-  REQUIRE(delf_program(folder, "run static-kink --out out").code == 0);
+  REQUIRE(delf_program(folder, "run static-kink --output.figures=off --out out").code == 0);
   CHECK(summary(folder)["energy_final"].get<double>() == Approx(7.866565).margin(1e-6));
   REQUIRE(
       delf_program(folder, "run static-kink --initial.phi='4*atan(exp(x-20))' --lattice.mesh=graded:40,41,1 --out out")
@@ -112,7 +115,7 @@ TEST_CASE("elliptic problems on a mesh converge with order 2, sine-Gordon and ha
   for (const auto& [scene, coarse, fine] : {std::tuple(kink, "rectangle:2,1,16,8", "rectangle:2,1,32,16"),
                                             std::tuple(map, "rectangle:0.8,0.4,16,8", "rectangle:0.8,0.4,32,16")}) {
     const auto error = [&, file = scene](const char* mesh) {
-      const Ran ran = delf_program(folder, "run " + file + " --out out --lattice.mesh=" + mesh);
+      const Ran ran = delf_program(folder, "run " + file + " --output.figures=off --out out --lattice.mesh=" + mesh);
       CAPTURE(file, ran.err);
       REQUIRE(ran.code == 0);
       CHECK(summary(folder)["iterations_max"] < 12);
@@ -126,7 +129,9 @@ TEST_CASE("elliptic problems on a mesh converge with order 2, sine-Gordon and ha
 TEST_CASE("rows of a mesh are verified from a file, and a moved point or an edited value is named") {
   const Folder folder;
   const std::string bare = "--lattice.courant=0.5 --run.steps=12 --output.every=1 --lattice.time=rows";
-  REQUIRE(delf_program(folder, "run asynchronous " + bare + " --lattice.mesh=graded:24,41,1.05 --out out").code == 0);
+  REQUIRE(delf_program(folder,
+                       "run asynchronous --output.figures=off " + bare + " --lattice.mesh=graded:24,41,1.05 --out out")
+              .code == 0);
   const auto verify = [&](const std::string& arguments) {
     return delf_program(folder, "verify asynchronous " + bare + " --fields out/fields.h5 --out v " + arguments);
   };
@@ -150,11 +155,16 @@ TEST_CASE("nonsense on a mesh is no success") {
   const Ran huge = delf_program(folder, "run sphere --initial.phi='1e308*x' --lattice.mesh=icosahedron:1 --out out");
   CHECK(huge.code == 3);
   CHECK(summary(folder)["status"] == "not-finite");
-  REQUIRE(delf_program(folder, "run asynchronous --lattice.courant=2 --run.until=3 --out out").code == 0);
+  REQUIRE(
+      delf_program(folder, "run asynchronous --output.figures=off --lattice.courant=2 --run.until=3 --out out").code ==
+      0);
   CHECK(contains(summary(folder)["warnings"].dump(), "the energy is off by"));
   CHECK(summary(folder)["residual_max"].is_null());
-  REQUIRE(delf_program(folder, "run asynchronous --run.until=3 --out out").code == 0);
+  REQUIRE(delf_program(folder, "run asynchronous --run.until=3 --output.format=svg --out out").code == 0);
   CHECK(summary(folder)["warnings"].empty());
+  const bool drawn = std::filesystem::exists(folder / "out/figures/field.svg");
+  CHECK(std::filesystem::exists(folder / "out/figures/updates.svg") == drawn);
+  CHECK_FALSE(std::filesystem::exists(folder / "out/figures/field.png"));
 }
 
 TEST_CASE("a scene on a mesh with an error is refused in one line") {

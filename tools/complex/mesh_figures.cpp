@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "tools/complex/mesh_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/complex/complex_commands.hpp"
+#include "tools/figures/drawing.hpp"
+#include "tools/figures/figure_style.hpp"
+#include "tools/scene/text_file.hpp"
+
+namespace delf {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int panels = 4;
+constexpr int most_cells = 30'000;  // of a figure of triangles: ParaView opens what is larger
+
+std::string title(const ComplexScene& c, const std::string& what) {
+  return figure_title(fmt::format("{}: {}", c.scene.name, what),
+                      fmt::format("{}, {} points, {}", c.scene.problem.theory, c.space->sites(), c.mesh_in_words()));
+}
+
+double value_at(const ComplexScene& c, const MeshFilm::Frame& frame, std::size_t point) {
+  return frame.values[point * c.fields.size()];
+}
+
+// Curves, in the order of positions: a mesh may number its points in any.
+std::string curves(const ComplexScene& c, const MeshFilm& film, const fs::path& scratch) {
+  const auto& points = c.space->mesh.points;
+  std::vector<std::size_t> order(points.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::ranges::sort(order, {}, [&](std::size_t i) { return points[i][0]; });
+  std::string table, plot;
+  for (std::size_t f = 0; f < film.frames().size(); ++f) {
+    const MeshFilm::Frame& frame = film.frames()[f];
+    for (const std::size_t i : order) table += fmt::format("{} {}\n", points[i][0], value_at(c, frame, i));
+    table += "\n\n";
+    plot += fmt::format("{} 'curves' index {} using 1:2 with lines lw 1.6 lc rgb '{}' title '{}'",
+                        f == 0 ? "plot" : ",", f, component_colour(f),
+                        c.time == MeshTime::none ? c.fields.front().name : fmt::format("t = {:.4g}", frame.time));
+  }
+  write_text_file(scratch / "curves", table);
+  return title(c, c.fields.front().name + (c.time == MeshTime::none ? "" : " at some times")) +
+         fmt::format(
+             "set lmargin at screen 0.105\nset rmargin at screen 0.97\nset bmargin at screen 0.12\n"
+             "set tmargin at screen (top-0.05)\nset key at screen 0.97,(top-0.005) right top horizontal textcolor rgb "
+             "'#333333'\n"
+             "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xlabel 'space x'\nset ylabel '{}' noenhanced\n{}\n",
+             c.fields.front().name, plot);
+}
+
+// One facet of gnuplot's surfaces for each cell; the third corner of a triangle stands twice.
+std::string maps(const ComplexScene& c, const MeshFilm& film, const fs::path& scratch) {
+  const Mesh& mesh = c.space->mesh;
+  if (mesh.cells() > most_cells) return {};
+  const bool flat = mesh.coordinates() < 3;
+  std::vector<double> shown;
+  for (const MeshFilm::Frame& frame : film.frames())
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) shown.push_back(value_at(c, frame, i));
+  const ColourScale scale = colour_scale(shown);
+  const std::size_t count = film.frames().size();
+  std::string body =
+      gnuplot_colours(scale) + title(c, c.fields.front().name + (count == 1 ? "" : " at some times")) +
+      fmt::format(
+          "set pm3d {} corners2color mean\nunset key\nset border 0\nunset tics\nset cbtics {} scale 0.3\n"
+          "set multiplot layout {},{} margins screen 0.03,0.86,0.04,(top-0.05) spacing screen 0.02,0.07\n{}",
+          flat ? "map" : "depthorder", nice_step(scale.most - scale.least, 8), count > 2 ? 2 : 1, count > 1 ? 2 : 1,
+          flat ? "set size ratio -1\n" : "set view 65,40,1.4\nset view equal xyz\n");
+  for (std::size_t f = 0; f < count; ++f) {
+    std::string table;
+    const auto corner = [&](std::int32_t p) {
+      const Mesh::Point& at = mesh.points[static_cast<std::size_t>(p)];
+      const double v = value_at(c, film.frames()[f], static_cast<std::size_t>(p));
+      table += flat ? fmt::format("{} {} {}\n", at[0], at[1], v) : fmt::format("{} {} {} {}\n", at[0], at[1], at[2], v);
+    };
+    for (int cell = 0; cell < mesh.cells(); ++cell) {
+      const auto corners = mesh.cell(cell);
+      corner(corners[0]), corner(corners[1]), table += "\n";
+      corner(corners.back()), corner(corners[2]), table += "\n\n";
+    }
+    const std::string file = fmt::format("map{}", f);
+    write_text_file(scratch / file, table);
+    // one scale for all, shown beside them once
+    body += f == 0 ? "set colorbox user origin screen 0.885,0.12 size screen 0.022,0.7 noborder\n" : "unset colorbox\n";
+    if (c.time != MeshTime::none)
+      body += fmt::format("set title 't = {:.4g}' offset 0,-0.6 textcolor rgb '#333333'\n", film.frames()[f].time);
+    body += fmt::format("splot '{}' using {} with pm3d\n", file, flat ? "1:2:3" : "1:2:3:4");
+  }
+  return body + "unset multiplot\n";
+}
+
+// A line from end to end of a segment at each time when it acts.
+std::string updates(const ComplexScene& c, const fs::path& scratch) {
+  constexpr double shown_steps = 8;
+  constexpr std::int64_t most_lines = 20'000;
+  const Mesh& mesh = c.space->mesh;
+  const std::vector<double> steps = cell_steps(c);
+  const double until = shown_steps * std::ranges::max(steps);
+  std::string table;
+  std::int64_t lines = 0;
+  for (int cell = 0; cell < mesh.cells(); ++cell) {
+    const double h = steps[static_cast<std::size_t>(cell)];
+    const auto ends = mesh.cell(cell);
+    const double a = mesh.points[static_cast<std::size_t>(ends[0])][0],
+                 b = mesh.points[static_cast<std::size_t>(ends[1])][0];
+    for (std::int64_t n = 0; static_cast<double>(n) * h <= until && lines < most_lines; ++n, ++lines)
+      table += fmt::format("{} {} {} 0\n", a, static_cast<double>(n) * h, b - a);
+  }
+  if (lines == most_lines) return {};  // no eye would tell them apart
+  write_text_file(scratch / "updates", table);
+  return title(c, "when cells act, each by its own step") +
+         fmt::format(
+             "set lmargin at screen 0.105\nset rmargin at screen 0.97\nset bmargin at screen 0.12\n"
+             "set tmargin at screen top\nset xlabel 'space x'\nset ylabel 'time t'\n"
+             "plot 'updates' using 1:2:3:4 with vectors nohead lw 1 lc rgb '{}'\n",
+             line_colour);
+}
+
+}  // namespace
+
+MeshFilm::MeshFilm(const ComplexScene& c) : steps_(c.time == MeshTime::none ? 0 : c.scene.steps) {}
+
+void MeshFilm::add(std::int64_t step, double time, std::span<const double> values) {
+  // the first row at or after each third of the run
+  const auto wanted = static_cast<std::int64_t>(frames_.size()) * steps_ / (panels - 1);
+  if (static_cast<int>(frames_.size()) < panels && step >= wanted)
+    frames_.push_back({time, {values.begin(), values.end()}});
+}
+
+std::string draw_mesh(const ComplexScene& c, const MeshFilm& film, const fs::path& folder) {
+  if (film.frames().empty()) return {};
+  const bool line = c.space->mesh.coordinates() == 1;
+  std::vector<Drawing> drawings{
+      {"field", [&](const fs::path& scratch) { return line ? curves(c, film, scratch) : maps(c, film, scratch); }}};
+  if (c.time == MeshTime::cells && line)
+    drawings.push_back({"updates", [&](const fs::path& scratch) { return updates(c, scratch); }});
+  const std::string missing = draw(drawings, c.scene.figure_form, folder);
+  if (missing.empty() && !line && c.space->mesh.cells() > most_cells)
+    return fmt::format("the mesh has more than {} cells; open fields.xdmf in ParaView", most_cells);
+  return missing;
+}
+
+std::vector<std::string> mesh_figure_names() { return {"field", "updates"}; }
+
+}  // namespace delf

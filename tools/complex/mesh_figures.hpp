@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/complex/complex_scene.hpp"
+
+namespace delf {
+
+/// Rows of a run on a mesh for its figures: four, evenly spread.
+class MeshFilm {
+ public:
+  explicit MeshFilm(const ComplexScene&);
+  /// Rows come in the order of their steps.
+  void add(std::int64_t step, double time, std::span<const double> values);
+
+  struct Frame {
+    double time;
+    std::vector<double> values;
+  };
+  const std::vector<Frame>& frames() const { return frames_; }
+
+ private:
+  std::int64_t steps_;
+  std::vector<Frame> frames_;
+};
+
+/// Draws into `folder`/figures: `field`, the first field at these times (curves over an interval, maps of triangles in the
+/// plane and in space), and `updates`, in which order asynchronous cells of an interval act. Returns what is missing, in
+/// one line, or an empty string.
+std::string draw_mesh(const ComplexScene&, const MeshFilm&, const std::filesystem::path& folder);
+/// Their names, without ending.
+std::vector<std::string> mesh_figure_names();
+
+}  // namespace delf
