@@ -87,7 +87,7 @@ std::string maps(const ComplexScene& c, const MeshFilm& film, const fs::path& sc
     // one scale for all, shown beside them once
     body += f == 0 ? "set colorbox user origin screen 0.885,0.12 size screen 0.022,0.7 noborder\n" : "unset colorbox\n";
     if (c.time != MeshTime::none)
-      body += fmt::format("set title 't = {:.4g}' offset 0,-0.6 textcolor rgb '#333333'\n", film.frames()[f].time);
+      body += fmt::format("set title 't = {:.4g}' offset 0,0.1 textcolor rgb '#333333'\n", film.frames()[f].time);
     body += fmt::format("splot '{}' using {} with pm3d\n", file, flat ? "1:2:3" : "1:2:3:4");
   }
   return body + "unset multiplot\n";

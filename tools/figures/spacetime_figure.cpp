@@ -14,6 +14,26 @@
 
 namespace delf {
 
+namespace {
+
+/// Paths of the sites of a mesh that moves, over the map (Tyranowski–Desbrun, Figs. 8 and 9). Nothing where sites rest.
+std::string site_paths(const FigureSource& source, int frames, const std::filesystem::path& scratch) {
+  constexpr std::size_t most = 60;
+  const auto mesh = source.names.drawn_mesh();
+  if (!mesh) return {};
+  const std::size_t sites = source.film.space().size(), apart = (sites + most - 1) / most;
+  std::string table;
+  for (std::size_t i = 0; i < sites; i += apart) {
+    for (int f = 0; f < frames; ++f)
+      table += fmt::format("{} {}\n", drawn_sites(source, f, *mesh)[i], source.film.time(f));
+    table += "\n";
+  }
+  write_text_file(scratch / "paths", table);
+  return ", 'paths' using 1:2 with lines lw 0.6 lc rgb '#80ffffff'";
+}
+
+}  // namespace
+
 std::string spacetime_figure(const FigureSource& source, const std::filesystem::path& scratch) {
   const Film& film = source.film;
   std::vector<double> space = drawn_space(source);
@@ -54,9 +74,10 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
              "set label 104 '{}' at screen 0.886,(top+0.03) center textcolor rgb '#333333' noenhanced\n"
              "set border 15\nset colorbox user origin screen 0.875,0.12 size screen 0.022,(top-0.12) noborder\n"
              "set cbtics {} scale 0.3\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
-             "plot 'map' binary array=({},{}) dx={} dy={} origin=({},{}) format='%double' using 1 with image\n",
+             "plot 'map' binary array=({},{}) dx={} dy={} origin=({},{}) format='%double' using 1 with image{}\n",
              quantity, nice_step(scale.most - scale.least, 8), space.front() - dx / 2, space.back() + dx / 2,
-             t0 - dt / 2, t1 + dt / 2, space.size(), frames, dx, dt, space.front(), t0);
+             t0 - dt / 2, t1 + dt / 2, space.size(), frames, dx, dt, space.front(), t0,
+             site_paths(source, frames, scratch));
 }
 
 }  // namespace delf
