@@ -216,6 +216,7 @@ double jump(const RowsInTime& rows) {
 
 /// Each flux, with functions and Gauss's rule of as many points.
 std::vector<NamedScheme> variants(const Problem& base) {
+  if (base.lattice.space() != Space::point) return {{base.method, base}};
   std::vector<NamedScheme> schemes;
   for (int S = 1; S <= 4; ++S)
     for (const NamedFlux& flux : named_fluxes()) {

@@ -25,6 +25,7 @@ ConvergenceTable converge(const Scene& scene, int levels) {
   const double until = static_cast<double>(scene.steps) * scene.problem.time_step;
   table.exact = has_exact(scene, until);
   std::vector<double> before;  // the last row of the level before
+  PlacedRow placed_before;
   for (int level = 0; level < levels; ++level) {
     const Scene fine = refined(scene, 1 << level);
     const Lattice& lattice = fine.problem.lattice;
@@ -51,16 +52,23 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     for (const double phi : end.row) now.size = std::max(now.size, std::abs(phi));
     if (table.exact) {
       const FieldError error =
-          field_error(end.row, ComparedSolution::exact(fine, until).at(lattice, until), lattice.space_step());
+          end.placed.positions.empty()
+              ? field_error(end.row, ComparedSolution::exact(fine, until).at(lattice, until), lattice.space_step())
+              : field_error(end.placed, *make_state(fine.initial, lattice), until);
       now.linf = error.linf, now.l2 = error.l2;
     } else if (level > 0) {
       ConvergenceLevel& coarse = table.levels.back();
       const Scene there = refined(scene, 1 << (level - 1));
-      const FieldError error = field_error(before, at_sites_of(there, end.row), there.problem.lattice.space_step());
+      // where sites move, those of the finer row lie elsewhere
+      const FieldError error =
+          end.placed.positions.empty()
+              ? field_error(before, at_sites_of(there, end.row), there.problem.lattice.space_step())
+              : field_error(placed_before.fields, linearly_at(end.placed, placed_before.positions),
+                            there.problem.lattice.space_step());
       coarse.linf = error.linf, coarse.l2 = error.l2;
     }
     table.levels.push_back(std::move(now));
-    before = std::move(end.row);
+    before = std::move(end.row), placed_before = std::move(end.placed);
   }
   for (std::size_t i = 0; i + 1 < table.levels.size(); ++i) {
     const double rounding = 1e-12 * table.levels[i + 1].size;  // no order comes of it

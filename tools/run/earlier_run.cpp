@@ -8,8 +8,8 @@
 #include <system_error>
 #include <vector>
 
-#include "tools/failure.hpp"
 #include "tools/complex/mesh_figures.hpp"
+#include "tools/failure.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figures.hpp"
 #include "tools/scene/scene.hpp"

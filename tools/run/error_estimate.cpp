@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/error.hpp"
 #include "tools/run/field_error.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/refined_scene.hpp"
@@ -62,6 +63,10 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const s
     if (outcome.status != "done") throw BadInput("", "the run did not end well");
     const QuietEnd half = run_quietly(refined(scene, 2));
     if (!half.finished) return interrupted();
+    if (!half.placed.positions.empty())
+      throw BadInput("output.estimate",
+                     "output.estimate: sites move, and those of other runs lie elsewhere; use "
+                     "delf convergence");
     const QuietEnd quarter = run_quietly(refined(scene, 4));
     if (!quarter.finished) return interrupted();
     const std::vector<double> of_half = at_sites_of(scene, half.row, 2),

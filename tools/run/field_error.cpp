@@ -9,8 +9,9 @@ namespace delf {
 
 FieldError field_error(std::span<const double> field, std::span<const double> solution, double space_step) {
   if (field.size() != solution.size())
-    throw BadInput("scheme.method", "scheme.method: its rows hold more than the fields, such as a mesh that moves, and are "
-                                    "not compared here; use delf run, which compares at the mesh");
+    throw BadInput("scheme.method",
+                   "scheme.method: its rows hold more than the fields, such as a mesh that moves, and are "
+                   "not compared here; use delf run, which compares at the mesh");
   double largest = 0, squares = 0;
   for (std::size_t i = 0; i < field.size(); ++i) {
     const double e = std::abs(field[i] - solution[i]);

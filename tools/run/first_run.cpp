@@ -5,12 +5,22 @@
 #include <numbers>
 
 #include "lattice/error.hpp"
-#include "tools/scene/initial_rows.hpp"
 #include "tools/run/interrupt.hpp"
-#include "tools/workprecision/resolution_search.hpp"
+#include "tools/run/placed_row.hpp"
 #include "tools/run/seconds_since.hpp"
+#include "tools/scene/initial_rows.hpp"
+#include "tools/workprecision/resolution_search.hpp"
 
 namespace delf {
+namespace {
+
+std::vector<double> sites_of(const Lattice& lattice) {
+  std::vector<double> places;
+  for (int i = 0; i < lattice.sites(); ++i) places.push_back(lattice.position(i));
+  return places;
+}
+
+}  // namespace
 
 TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants, std::size_t which,
                   const Resolution& r, double until, const ComparedSolution& solution) {
@@ -59,6 +69,15 @@ TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants
   run.energy_error_max = largest;
   run.forces_per_step = forces / looked_at;
 
+  if (const std::vector<double> positions = racer->positions(); !positions.empty()) {
+    // at the sites, wherever they are; of a row of another run piecewise linearly at its own sites
+    const FieldError error = solution.is_exact()
+                                 ? field_error(PlacedRow{last, positions}, *make_state(scene.initial, lattice), until)
+                                 : field_error(linearly_at({last, positions}, sites_of(lattice)),
+                                               solution.at(lattice, until), lattice.space_step());
+    run.error_linf = error.linf, run.error_l2 = error.l2;
+    return tried;
+  }
   const std::vector<double> there = solution.at(lattice, until);
   const FieldError error = field_error(last, there, lattice.space_step());
   run.error_linf = error.linf, run.error_l2 = error.l2;

@@ -13,9 +13,9 @@
 #include "schemes/verify/stress_balance.hpp"
 #include "schemes/verify/time_reversal.hpp"
 #include "tools/engine.hpp"
+#include "tools/run/interrupt.hpp"
 #include "tools/run/refined_scene.hpp"
 #include "tools/scene/initial_rows.hpp"
-#include "tools/run/interrupt.hpp"
 #include "tools/scene/section_source.hpp"
 
 namespace delf {

@@ -10,9 +10,9 @@
 
 #include "lattice/error.hpp"
 #include "schemes/state.hpp"
-#include "tools/scene/initial_rows.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/seconds_since.hpp"
+#include "tools/scene/initial_rows.hpp"
 
 namespace delf {
 

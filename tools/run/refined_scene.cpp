@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "schemes/stepping/evolution.hpp"
 #include "tools/engine.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/seconds_since.hpp"
@@ -66,6 +67,7 @@ QuietEnd run_quietly(const Scene& scene) {
   }
   end.seconds = seconds_since(begin);
   end.finished = simulation.newest() >= scene.steps;
+  if (simulation.evolution().system().moves() && end.finished) end.placed = placed_row(simulation);
   end.measures = measures.results();
   return end;
 }

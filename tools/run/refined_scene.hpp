@@ -4,6 +4,7 @@
 
 #include "tools/measure/measures.hpp"
 #include "tools/scene/scene.hpp"
+#include "tools/run/placed_row.hpp"
 
 namespace delf {
 
@@ -16,6 +17,7 @@ std::vector<double> at_sites_of(const Scene&, const std::vector<double>& refined
 /// The end of a run that writes nothing.
 struct QuietEnd {
   std::vector<double> row;  ///< of the fields, [i·d + a]
+  PlacedRow placed;         ///< the same where sites move; else empty
   std::vector<NamedNumber> measures;
   double seconds = 0;     ///< of the steps alone
   bool finished = false;  ///< not if interrupted

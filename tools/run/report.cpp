@@ -37,13 +37,14 @@ std::string report(const Scene& scene, const Outcome& o) {
       o.iterations_max == 0 ? "none" : fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max);
   line("iterations", iterations);
   for (const auto& [why, steps] : o.continued)
-    line("continued", fmt::format("{} of {} steps were followed from a small time step: {}", steps, o.steps_taken,
-                                  in_words(why)));
+    line("continued",
+         fmt::format("{} of {} steps were followed from a small time step: {}", steps, o.steps_taken, in_words(why)));
   // Two measures: of the equations, and of the field.
-  line("residual", fmt::format("{:.2g} at most, relative to the terms of the equations{}", o.residual_max,
-                               o.iterates ? fmt::format("; scheme.tolerance = {:.3g} is of the last change of the field",
-                                                        p.tolerance)
-                                          : ""));
+  line("residual",
+       fmt::format("{:.2g} at most, relative to the terms of the equations{}", o.residual_max,
+                   o.iterates
+                       ? fmt::format("; scheme.tolerance = {:.3g} is of the last change of the field", p.tolerance)
+                       : ""));
   if (std::isfinite(o.energy_final))
     line("energy", fmt::format("{:.10g}{}", o.energy_final,
                                std::isfinite(o.energy_error_max)  // there is none relative to an energy of zero

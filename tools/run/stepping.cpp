@@ -11,8 +11,8 @@
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/momenta.hpp"
-#include "tools/run/field_error.hpp"
 #include "tools/run/interrupt.hpp"
+#include "tools/run/placed_row.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/seconds_since.hpp"
 
@@ -70,26 +70,13 @@ FieldError error_of(const RecordedRow& row, const RowNames& names, const State& 
     exact.values(time, lattice, solution);
     return field_error(fields, solution, lattice.space_step());
   }
-  const std::size_t d = static_cast<std::size_t>(exact.components()), width = names.of[Role::field].size(),
-                    step = names.of[mesh->role].size();
-  std::vector<FieldPoint> there(d);
-  FieldError error{0, 0};
-  double before = 0;
-  for (std::size_t i = 0; i * width < fields.size(); ++i) {
-    const double X = row[mesh->role][i * step + mesh->index];
-    exact.at(time, X, there);
-    double squares = 0;
-    for (std::size_t a = 0; a < d; ++a) {
-      const double e = std::abs(fields[i * width + a] - there[a].phi);
-      if (e > error.linf || std::isnan(e)) error.linf = e;
-      squares += e * e;
-    }
-    // √(Σ δ e²), half of each cell with either end
-    if (i > 0) error.l2 += 0.5 * (X - row[mesh->role][(i - 1) * step + mesh->index]) * (squares + before);
-    before = squares;
-  }
-  error.l2 = std::sqrt(error.l2);
-  return error;
+  const std::size_t width = names.of[Role::field].size(), step = names.of[mesh->role].size();
+  PlacedRow placed;
+  for (std::size_t n = 0; n < fields.size(); ++n)
+    if (mesh->role != Role::field || n % width != mesh->index) placed.fields.push_back(fields[n]);
+  for (std::size_t n = mesh->index; n < row[mesh->role].size(); n += step)
+    placed.positions.push_back(row[mesh->role][n]);
+  return field_error(placed, exact, time);
 }
 
 }  // namespace

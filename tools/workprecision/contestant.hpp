@@ -35,6 +35,8 @@ class Racer {
   virtual void advance(std::int64_t steps) = 0;
   /// The fields of the newest row: out[i·d + a].
   virtual void copy(std::span<double> out) const = 0;
+  /// Where its sites are in the newest row; empty: on the lattice.
+  virtual std::vector<double> positions() const { return {}; }
   /// Of the newest row; not a number if there is none.
   virtual double energy() const = 0;
   /// Evaluations of the force at each site in the last step; not a number if that is not known.

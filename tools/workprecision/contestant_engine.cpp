@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lattice/error.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/linear_stability.hpp"
@@ -11,6 +13,7 @@
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/run/interrupt.hpp"
+#include "tools/run/placed_row.hpp"
 #include "tools/scene/initial_rows.hpp"
 #include "tools/workprecision/contestant.hpp"
 
@@ -36,7 +39,13 @@ class EngineRacer final : public Racer {
     }
     if (steps > 0) simulation_.step(true);
   }
-  void copy(std::span<double> out) const override { simulation_.observe(0, out); }
+  void copy(std::span<double> out) const override {
+    if (simulation_.evolution().system().moves()) std::ranges::copy(placed_row(simulation_).fields, out.begin());
+    else simulation_.observe(0, out);
+  }
+  std::vector<double> positions() const override {
+    return simulation_.evolution().system().moves() ? placed_row(simulation_).positions : std::vector<double>();
+  }
   double energy() const override { return simulation_.monitors().energy; }
   // those of a pass; an explicit step is one, an implicit one as many as it has iterations
   double forces() const override {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
@@ -129,4 +130,16 @@ TEST_CASE("a convergence that cannot be measured is refused in one line") {
   CHECK(ran.code == 2);
   CHECK(contains(ran.err, "convergence.levels"));
   CHECK(lines(ran.err).size() == 1);
+}
+
+TEST_CASE("rows of a mesh that moves are compared at its sites") {
+  const Folder folder;
+  for (const char* scene : {"soliton-bounce --run.until=0.5", "phi4-moving-mesh --lattice.sites=41 --run.until=0.4"}) {
+    const Json table = convergence_of(
+        folder, std::string(scene) + " --convergence.levels=3 --convergence.order=2 --convergence.agreement=0.4", 0);
+    CHECK(table["order"].get<double>() == Approx(2).margin(0.4));
+  }
+  const Ran refused =
+      delf_program(folder, "run soliton-bounce --run.until=0.1 --output.estimate=on --output.figures=off");
+  CHECK(contains(refused.out + refused.err, "sites move"));
 }
