@@ -279,7 +279,7 @@ struct Simulation::Impl {
 
 Simulation::Simulation(const Problem& given) {
   const Problem problem = completed(given);
-  auto theory = find_theory(problem.theory).make(problem.parameters);
+  auto theory = make_theory(find_theory(problem.theory), problem.parameters);
   SchemeParts parts = make_parts(*theory, problem);
   impl_ = std::make_unique<Impl>(problem, std::move(theory), std::move(parts));
 }

@@ -12,6 +12,7 @@
 #include "schemes/stepping/energy.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/convergence/convergence.hpp"
+#include "tools/files/plain_rows.hpp"
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/plan.hpp"
@@ -96,6 +97,14 @@ ExitCode carry_out_verify(const Arguments& arguments) {
   if (is_on_mesh(settings)) {
     const ComplexScene mesh = read_complex_scene(std::move(settings));
     return verify(mesh, arguments.out.value_or("results/" + mesh.scene.name), arguments.fields);
+  }
+  if (arguments.fields) {  // a scene of rows needs no start, and no end
+    if (!settings.find("initial.state")) {
+      settings.imply("initial.state", "file", "theory.name");
+      settings.imply("initial.file", std::filesystem::absolute(file_of_rows(*arguments.fields)).string(),
+                     "theory.name");
+    }
+    if (!settings.find("run.until")) settings.imply("run.steps", "0", "theory.name");
   }
   const Scene scene = scene_of(std::move(settings));
   return verify(scene, arguments.out.value_or("results/" + scene.name), arguments.fields, arguments.nearby);

@@ -76,8 +76,9 @@ std::string meaning(const Fit& fit, const Problem& p) {
     if (!a_right) {
       if (fit.a > 0) {
         const double speed = std::sqrt(fit.a);
-        words.push_back(fmt::format("the wave speed is {:.7g}, or k is off by {}: try lattice.length = {:.10g}", speed,
-                                    off(1 / speed), L / speed));
+        words.push_back(fmt::format(
+            "the wave speed is {:.7g}, or k is off by {}: try lattice.length = {:.10g}, or theory.speed = {:.10g}",
+            speed, off(1 / speed), L / speed, speed * p.parameters.maybe<double>("theory.speed").value_or(1)));
       } else words.push_back(is(fit.a, 0, fit.a_error) ? "no D²φ acts" : "D²φ has the wrong sign");
     }
     if (!b_right) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "lattice/error.hpp"
 #include "schemes/diagnosis/findings.hpp"
 #include "schemes/diagnosis/momentum_scale.hpp"
 #include "schemes/diagnosis/one_step_maps.hpp"
@@ -88,12 +89,21 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
+/// A step; false where there is none, or no finite one.
+bool went(const OneStepMap& map, PhasePoint& z) {
+  try {
+    return map.step(z);
+  } catch (const NumericalFailure&) {
+    return false;
+  }
+}
+
 /// Whether the map takes frame j to frame j + 1, in φ and φ_t.
 bool takes(const OneStepMap& map, const Frames& frames, std::int64_t j, double tolerance) {
   PhasePoint z{frames.values(j), frames.velocities(j)};
   const std::vector<double> q = frames.values(j + 1), v = frames.velocities(j + 1);
   const double size = std::max({largest(q), largest(v), largest(z.v)});
-  return map.step(z) && frames.distance(z.q, q) <= tolerance * size && frames.distance(z.v, v) <= tolerance * size;
+  return went(map, z) && frames.distance(z.q, q) <= tolerance * size && frames.distance(z.v, v) <= tolerance * size;
 }
 
 /// Whether the rows come near the scene's own equations, as those of every scheme of its theory do: |E| is within a quarter of
@@ -115,7 +125,7 @@ bool leads(const OneStepMap& map, const Frames& frames, std::int64_t j, double h
   double before = std::numeric_limits<double>::infinity();
   for (int n = 0; n < most; ++n) {
     PhasePoint z{from, v};
-    if (!map.step(z)) return false;
+    if (!went(map, z)) return false;
     const double off = largest([&] {
       std::vector<double> by(v.size());
       for (std::size_t i = 0; i < v.size(); ++i) by[i] = to[i] - z.q[i], v[i] += by[i] / h;
@@ -128,13 +138,13 @@ bool leads(const OneStepMap& map, const Frames& frames, std::int64_t j, double h
     before = off;
     // What is wrong by far more than φ_t still is need not be found to the last digit.
     if (n == first_look) {
-      const bool far = !map.step(z) || frames.distance(z.q, next) > 100 * off + tolerance * size;
+      const bool far = !went(map, z) || frames.distance(z.q, next) > 100 * off + tolerance * size;
       if (far) return false;
     }
     if (off <= 2 * std::numeric_limits<double>::epsilon() * size) break;
   }
   PhasePoint z{from, v};
-  return map.step(z) && frames.distance(z.q, to) <= tolerance * size && map.step(z) &&
+  return went(map, z) && frames.distance(z.q, to) <= tolerance * size && went(map, z) &&
          frames.distance(z.q, next) <= tolerance * size;
 }
 
@@ -142,7 +152,8 @@ bool leads(const OneStepMap& map, const Frames& frames, std::int64_t j, double h
 
 std::optional<Finding> find_one_step(const Evidence& e, const Sample& sample) {
   if (e.rows < 4 || e.problem.circle_valued) return std::nullopt;
-  if (!e.momenta && (!can_be_split(e.problem) || !are_near(e, sample))) return std::nullopt;
+  if (!e.momenta && !can_be_split(e.problem)) return std::nullopt;
+  const bool near = e.momenta || are_near(e, sample);  // else frames are several steps apart, or of another theory
   // Elements are solved slab by slab.
   constexpr int most_sites = 256, most_sites_of_elements = 64;
   const double tolerance = std::max(10 * e.tolerance, 1e-13);
@@ -155,15 +166,16 @@ std::optional<Finding> find_one_step(const Evidence& e, const Sample& sample) {
     const Frames frames(e, elements ? most_sites_of_elements : most_sites);
     momenta = frames.momenta_in_words(), by_momenta = frames.has_velocities();
     for (const OneStepMap& map : elements ? steps_of_elements(frames.problem()) : steps_by_force(frames.problem())) {
+      if (!near && map.steps == 1) continue;
       if (!std::ranges::all_of(moments, [&](std::int64_t j) {
             return by_momenta ? takes(map, frames, j, tolerance)
-                              : leads(map, frames, j, e.problem.time_step, tolerance);
+                              : leads(map, frames, j, e.problem.time_step * map.steps, tolerance);
           }))
         continue;
       if (!found) found = map;
       else if (same.size() < 3) same.push_back(map.name);
     }
-    if (found) break;
+    if (found || !near) break;
   }
   const std::string unknown = e.momenta && !by_momenta
                                   ? "The momenta of the file are neither φ_t, nor ∂ℓ/∂φ_t, nor those of a site, within "

@@ -86,6 +86,14 @@ std::function<bool(PhasePoint&)> runge_kutta(Force a, double h, const RungeKutta
   };
 }
 
+std::function<bool(PhasePoint&)> repeated(std::function<bool(PhasePoint&)> step, int times) {
+  return [=](PhasePoint& z) {
+    for (int n = 0; n < times; ++n)
+      if (!step(z)) return false;
+    return true;
+  };
+}
+
 std::string with_space(const std::string& name, int space_order) {
   return space_order == 2 ? name : fmt::format("{}, with D² of order {}", name, space_order);
 }
@@ -110,6 +118,16 @@ void add_splittings(std::vector<OneStepMap>& maps, const Problem& p, const Force
                           : keys("leapfrog"),
        {0.5, 0.5}, {1});
   take("drift-kick-drift Störmer-Verlet (position Verlet)", "", {0, 1, 0}, {0.5, 0.5});
+  // Frames of which others were left out, and steps in parts.
+  for (const int m : {2, 3, 4, 5, 10})
+    for (const bool whole : {true, false}) {
+      const double step = whole ? h : h / m;
+      maps.push_back(
+          {with_space(fmt::format("{} steps of {:.7g} by kick-drift-kick Störmer-Verlet", m, step), space_order),
+           whole ? fmt::format("lattice.time_step = {:.10g}, and record every row", h)
+                 : fmt::format("lattice.time_step = {:.10g} is the step; record every row", step),
+           true, repeated(kicks_and_drifts(a, step, {0.5, 0.5}, {1}), m), whole ? m : 1});
+    }
   take("symplectic Euler, the kick first", "", {1, 0}, {1});
   take("symplectic Euler, the drift first", "", {0, 1}, {1});
   // H. Yoshida, Phys. Lett. A 150 (1990) 262: three steps of Störmer–Verlet

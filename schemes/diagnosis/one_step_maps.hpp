@@ -20,6 +20,7 @@ struct OneStepMap {
   std::string keys;  ///< by which a scene has it; empty: none
   bool symplectic = true;
   std::function<bool(PhasePoint&)> step;  ///< false where it finds no solution
+  int steps = 1;                          ///< of the scene's time step that it goes on by
 };
 
 /// The explicit scheme of order 2 of the same theory, steps and lattice, whose values are rows of fields.

@@ -8,6 +8,7 @@
 #include "schemes/diagnosis/fields_system.hpp"
 #include "schemes/diagnosis/findings.hpp"
 #include "schemes/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/wall_law.hpp"
 
 namespace delf {
 namespace {
@@ -121,6 +122,13 @@ std::optional<Finding> find_seam(const Evidence& e) {
     return Finding{"seam",
                    "The ends are mirrors half a cell beyond the last sites, φ₋₁ = φ₀. No wall here is of that kind; "
                    "everything else holds."};
+  if (const std::string at_left = wall_law(e, true), at_right = wall_law(e, false);
+      !at_left.empty() && !at_right.empty())
+    return Finding{
+        "seam",
+        fmt::format("The rows are of an interval with {} at its left end, and {} at its right one. No wall here is "
+                    "of that kind; everything else holds.",
+                    at_left, at_right)};
   return Finding{
       "seam", fmt::format("The equations fail at the ends alone, within {} site{} of them: the rows are of no circle, "
                           "and their ends are of none of the kinds that are known.",

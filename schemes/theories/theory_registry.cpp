@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/theories/theory_registry.hpp"
 
+#include "jets/scaled_density.hpp"
+#include "lattice/error.hpp"
 #include "schemes/declared.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/unknown_name.hpp"
@@ -66,9 +68,19 @@ std::vector<Parameter> parameters_of(const TheoryEntry& entry, const ParameterVa
   return all;
 }
 
+// In the units of theory.speed and theory.scale, if they are given.
 std::unique_ptr<FieldTheory> make_theory(const TheoryEntry& entry, ParameterValues given) {
   complete(given, parameters_of(entry, given));
-  return entry.make(given);
+  auto theory = entry.make(given);
+  const double speed = given.maybe<double>("theory.speed").value_or(1),
+               scale = given.maybe<double>("theory.scale").value_or(1);
+  if (speed == 1 && scale == 1) return theory;
+  if (theory->constraint())
+    throw BadInput("theory.scale",
+                   "theory.speed, theory.scale: for theories without constraints, which have units of "
+                   "their own; leave it out");
+  return std::make_unique<FieldTheory>(std::make_shared<ScaledDensity>(theory->shared_density(), speed, scale), nullptr,
+                                       theory->fields());
 }
 
 }  // namespace delf

@@ -182,6 +182,11 @@ PlainArray read_dataset(const std::filesystem::path& path, const std::string& na
   return array;
 }
 
+std::filesystem::path file_of_rows(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  return std::filesystem::exists(path) ? path : std::filesystem::path(text.substr(0, text.rfind(":/")));
+}
+
 std::unique_ptr<RowsFile> open_plain_rows(const std::filesystem::path& path, int sites, int components) {
   const std::string text = path.string(), ending = path.extension().string();
   const auto wanted = static_cast<std::size_t>(sites) * static_cast<std::size_t>(components);

@@ -13,8 +13,8 @@ namespace delf {
 /// Numbers with a shape, as other programs write them: 1-D, frames × values, or frames × sites × components.
 struct PlainArray {
   std::vector<std::size_t> shape;
-  std::vector<double> values;  ///< the last index runs first
-  std::vector<double> times;   ///< of the frames, if the file says them
+  std::vector<double> values;        ///< the last index runs first
+  std::vector<double> times;         ///< of the frames, if the file says them
   std::vector<double> momenta = {};  ///< as many as values, if the file has them
 };
 
@@ -55,6 +55,8 @@ PlainArray read_npz(const std::filesystem::path&, const std::string& name);
 /// A data set of an HDF5 file, of one to three axes, and its momenta: momentum, p or pi of the same shape.
 PlainArray read_dataset(const std::filesystem::path&, const std::string& name);
 
+/// FILE of FILE:/NAME, which is a data set in it; any other path as it is.
+std::filesystem::path file_of_rows(const std::filesystem::path&);
 /// By the name: .npy, .npz, a table if it ends in .csv, .txt or .dat, or the data set of an HDF5 file, or an array of an .npz,
 /// that is given as FILE:/NAME.
 /// Nothing for other names.

@@ -95,6 +95,13 @@ void RecordedSection::check_times(double time_step) const {
     if (!now && !fields_) return;  // a plain array: its rows are taken as a time step apart
     if (!now) throw wrong(fmt::format("has no dataset /time; {}", layout));
     const double slack = 1e-9 * time_step + 1e-15 * std::abs(*now);  // times far from 0 are rounded
+    const double steps = before ? (*now - *before) / time_step : 1;
+    if (std::abs(steps - std::round(steps)) < 1e-6 && std::round(steps) > 1)
+      throw wrong(fmt::format(
+          "frames {} and {} are {:.10g} apart, and the time step is {:.10g}: of {} rows one was recorded, and the "
+          "equations "
+          "read all. Record every row (output.every = 1); or use lattice.time_step = {:.10g}, if that was the step",
+          frame - 1, frame, *now - *before, time_step, std::lround(steps), *now - *before));
     if (before && !(std::abs(*now - *before - time_step) <= slack))
       throw wrong(
           fmt::format("frames {} and {} are {:.10g} apart, and the time step is {:.10g}; record every row "

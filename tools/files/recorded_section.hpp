@@ -29,6 +29,8 @@ class RecordedSection {
   /// All components, each at row j: [i·C + c]. Those that no frame has, because they would have been found with rows
   /// after the last, are zero.
   std::vector<double> row(std::int64_t j) const;
+  /// The resolved scene that the file has as an attribute; empty if it has none.
+  std::string scene() const { return fields_ ? fields_->scene() : std::string(); }
   /// The file has values of this role.
   bool has(Role role) const { return shape(role).frames > 0; }
   /// Of the fields, at frame j, if the file has momenta of the same shape.

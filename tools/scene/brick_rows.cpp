@@ -6,6 +6,7 @@
 #include "jets/tables/named_tables.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "tools/files/fields_reader.hpp"
+#include "tools/scene/recorded_scene.hpp"
 
 namespace delf {
 
@@ -33,7 +34,8 @@ void take_first_row(Scene& scene, const std::filesystem::path& file, int frame) 
       if (std::abs(steps) < 1e15 && std::abs(steps - std::round(steps)) < 1e-3) row = std::llround(steps);
     }
     const auto* fields = dynamic_cast<const FieldsReader*>(rows.get());
-    if (fields && fields->scene().find("\nfirst_row = 1\n") != std::string::npos) ++row;
+    if (fields)
+      if (const auto keys = recorded_keys(fields->scene()); keys.contains(key) && keys.at(key) == "1") ++row;
   } catch (const BadInput&) {
   }
   p.parameters[key] = static_cast<int>(row & 1);

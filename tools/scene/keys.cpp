@@ -100,6 +100,11 @@ std::vector<Key> general_keys() {
           theory_names()},
       Key{"theory.fibre", choice, "R", "", "where the field has its values: the line, or the circle of angles", "", any,
           fibres()},
+      Key{"theory.speed", real, "", "1",
+          "units of rows of --fields: the speed of waves there, c in phi_tt = c^2 phi_xx", "length/time", positive},
+      Key{"theory.scale", real, "", "1",
+          "units of rows of --fields: their values, of phi or q, over those of the theory; its cube is G M of kepler",
+          "", positive},
 
       Key{"lattice.stencil", choice, "rectangle-symmetric", "", "stencil and jet; see `delf list stencils`", "", any,
           known_stencils()},

@@ -73,6 +73,8 @@ void read_parameters(const Values& values, Problem& p) {
       else if (values.given(parameter.key) && !p.parameters.has(parameter.key))
         p.parameters[parameter.key] = values.parameter(parameter);
   }
+  for (const char* unit : {"theory.speed", "theory.scale"})
+    if (values.given(unit)) p.parameters[unit] = values.real(unit);
   const TheoryEntry& theory = find_theory(p.theory);
   if (theory.further)
     for (const Parameter& parameter : theory.further(p.parameters))
@@ -209,6 +211,12 @@ Scene read_scene(Settings given) {
     throw settings.located(bad);
   }
   if (!find_state(scene.initial.name).build) scene.initial_file = find_initial_file(settings, values);
+  for (const char* unit : {"theory.speed", "theory.scale"})
+    if (values.given(unit) &&
+        (!scene.from_file() || find_method(scene.problem.method).place_sites || scene.problem.circle_valued))
+      throw settings.error(unit,
+                           "is of rows of a file, in units of their own: states and meshes have those of the theory. "
+                           "Use delf verify --fields without [initial], or initial.state = file");
   scene.initial_frame = static_cast<int>(values.integer("initial.frame"));
   if (scene.from_file()) take_first_row(scene, scene.initial_file, scene.initial_frame);
   scene.start = read_start(settings, values, scene.problem);

@@ -21,6 +21,7 @@
 #include "tools/files/recorded_section.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/seconds_since.hpp"
+#include "tools/scene/recorded_scene.hpp"
 #include "tools/verify/verification.hpp"
 
 namespace delf {
@@ -110,6 +111,7 @@ void verify_momenta(const Scene& scene, const VerifyRequest& request, const std:
   if (!system || request.unwrap || system->lattice().sites() != scene.problem.lattice.sites()) return;
   CanonicalRows rows(fields, *system, scene, "--fields");
   if (!rows.section().momenta(0) || rows.section().rows() < 4) return;
+  require_recorded_parameters(scene, fields, rows.section().scene());
   std::vector<CanonicalRows> beside;
   for (const std::string& file : nearby) {
     beside.emplace_back(file, *system, scene, "--nearby");

@@ -24,6 +24,7 @@
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/seconds_since.hpp"
+#include "tools/scene/recorded_scene.hpp"
 
 namespace delf {
 
@@ -82,8 +83,8 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
                            const std::vector<std::string>& nearby)
     : scene_(scene),
       request_(request),
-      initial_(scene),
-      winding_(initial_.winding()),
+      initial_(fields && scene.from_file() ? std::nullopt : std::make_optional<InitialRows>(scene)),
+      winding_(initial_ ? initial_->winding() : scene.initial.winding.value_or(0)),
       turn_(2 * std::numbers::pi * winding_),
       simulation_(build(scene, winding_)),
       faulty_(request.fault == "sign" ? with_wrong_sign(simulation_.evolution().system()) : nullptr),
@@ -122,6 +123,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
 void Verification::open_files(const std::string& fields, const std::vector<std::string>& nearby) {
   const auto behind = simulation_.evolution().stepper().behind();
   fields_ = std::make_unique<RecordedSection>(fields, system_, behind, scene_.problem.time_step, "--fields");
+  require_recorded_parameters(scene_, fields, fields_->scene());
   if (const auto winding = fields_->winding(); winding && system_.lattice().is_circle())
     turn_ = 2 * std::numbers::pi * *winding;
   if (request_.unwrap) {
@@ -227,7 +229,7 @@ Window Verification::window(std::int64_t first, std::int64_t last) const {
 Verdict Verification::run() {
   const auto begin = std::chrono::steady_clock::now();
   try {
-    if (!fields_) initial_.start(simulation_);
+    if (!fields_) initial_->start(simulation_);
     pass_over_rows();
     if (!Interrupt::asked()) {
       if (!fields_ && balance_) {

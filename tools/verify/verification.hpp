@@ -63,7 +63,7 @@ class Verification {
 
   const Scene& scene_;
   const VerifyRequest& request_;
-  const InitialRows initial_;
+  const std::optional<InitialRows> initial_;  ///< none where the rows of --fields are all there is
   int winding_;
   double turn_;
   Simulation simulation_;

@@ -389,6 +389,26 @@ TEST_CASE("a diagnosis finds what is wrong with a seam") {
   const auto pulse = [](double t, double x) { return 3 / std::cosh(0.2 * (x - 18) - 0.1 * t); };
   Rows fixed = start(pulse);
   fixed[1].front() = fixed[0].front(), fixed[1].back() = fixed[0].back();
+  // φ_x = α φ + β φ_t at the left, −α φ − β φ_t at the right, by a site beyond each end and central differences:
+  // (1 + βh/k) y₊ = 2y − (1 − βh/k) y₋ + h² (2(y₁ − y − kα y)/k² − sin y)
+  const auto robin = [](double alpha, double beta) {
+    return [=](const Row& y, const Row& before) {
+      Row F = sine_gordon()(y, before);
+      for (const int i : {0, N - 1}) {
+        const double force = 2 * (y[i == 0 ? 1 : N - 2] - y[i] - k * alpha * y[i]) / (k * k) - std::sin(y[i]);
+        const double next = (2 * y[i] - (1 - beta * h / k) * before[i] + h * h * force) / (1 + beta * h / k);
+        F[i] = (next - 2 * y[i] + before[i]) / (h * h);
+      }
+      return F;
+    };
+  };
+  Rows pegged = start(pulse);
+  for (const int i : {10, 40}) pegged[1][i] = pegged[0][i];
+  pegged = stepped(pegged, [](const Row& y, const Row& before) {
+    Row F = sine_gordon()(y, before);
+    for (const int i : {10, 40}) F[i] = (before[i] - y[i]) / (h * h);
+    return F;
+  });
   Rows repeated = stepped(start(pulse), sine_gordon());
   for (Row& y : repeated) y.push_back(y[0]);
   for (const Case& c : std::vector<Case>{
@@ -396,6 +416,9 @@ TEST_CASE("a diagnosis finds what is wrong with a seam") {
            {"a kink that is stated", with(wound, scene(), circle), "the equations of triangle-vertex", "winding"},
            {"fixed ends", with(stepped(fixed, ends(true))), "between fixed walls", "mirrors"},
            {"mirrors", with(stepped(start(pulse), ends(false))), "The ends are mirrors, φ₋₁ = φ₁", "fixed"},
+           {"Robin ends", with(stepped(start(pulse), robin(0.3, 0))), "φ_x = 0.3 φ, a Robin condition", "absorbs"},
+           {"absorbing ends", with(stepped(start(pulse), robin(0, 1))), "φ_x = 1 φ_t, which absorbs waves", "Robin"},
+           {"pegs", with(pegged), "Sites 10, 40 keep the same value", "wall"},
            {"a site twice", with(repeated, scene("sine-gordon", Lattice::circle(N + 1, k * (N + 1)))),
             "The last site repeats the first", "wall"},
        })
@@ -420,6 +443,14 @@ TEST_CASE("a diagnosis finds frames and values that were changed") {
            {"a frame dropped", with(changed(rows, [](Rows& r) { r.erase(r.begin() + 30); })),
             "A frame is missing between frames 29 and 30", "No time step"},
            {"none dropped", with(kicked), "", "is missing"},
+           {"every second row",
+            with(changed(rows,
+                         [](Rows& r) {
+                           Rows kept;
+                           for (std::size_t j = 0; j < r.size(); j += 2) kept.push_back(r[j]);
+                           r = kept;
+                         })),
+            "a step of 2 steps of 0.3125 by kick", "is missing"},
            {"a frame doubled", with(changed(rows, [](Rows& r) { r.insert(r.begin() + 20, r[20]); })),
             "Frames 20 and 21 are the same", "missing"},
            {"a value edited", with(changed(rows, [](Rows& r) { r[25][33] += 1e-7; })),

@@ -61,7 +61,7 @@ TEST_CASE("verify says what rows are that fail, and whose they are if asked") {
   copy(folder / "run/fields.h5", folder / "nowhere.h5", [](int, std::vector<double>&) {});  // without positions
   const Json longer = verified(folder, "--fields nowhere.h5 --lattice.length=40", 1);
   CHECK(longer["diagnosis"][0]["kind"] == "coefficients");
-  CHECK(says(longer, "try lattice.length = 20."));
+  CHECK(says(longer, "try lattice.length = 20,"));
   CHECK(longer["measured"][0]["name"] == "equations: |E| beside the largest force");
   CHECK(longer["measured"][0]["value"] > 0.1);
   CHECK(says(verified(folder, fields + "--lattice.stencil=hexagon", 1), "lattice.stencil = triangle-vertex"));
@@ -142,4 +142,56 @@ TEST_CASE("rows that mix 1e6 and 1e-6 are not accused, and a wrong variation on 
   const std::string forms = "--fields rows.txt --verify.checks=forms --verify.moments=2 ";
   CHECK(verified(folder, forms, 0)["checks"].size() > 4);
   CHECK(contains(verified(folder, forms + "--verify.fault=variation", 1).dump(), "is no first variation"));
+}
+
+TEST_CASE("rows in other units are verified as they are, by a scene that has no start") {
+  const Folder folder;
+  const std::string units =
+      "[theory]\nname = sine-gordon\n[lattice]\nstencil = leapfrog\nlength = 40\nsites = 64\n"
+      "time_step = 0.15625\n[output]\nfigures = off\n";
+  folder.write("small.ini", units);
+  // φ_tt = 4 φ_xx − 3 sin(φ/3): waves of speed 2, and the field is three times that of sine-Gordon
+  constexpr int N = 64;
+  constexpr double k = 40.0 / N, h = 0.15625;
+  std::vector<std::vector<double>> rows(2, std::vector<double>(N));
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < N; ++i) rows[j][i] = 9 / std::cosh(0.3 * (i * k - 18) - 0.1 * j * h);
+  while (rows.size() < 30) {
+    const auto &y = rows.back(), &before = rows[rows.size() - 2];
+    std::vector<double> next(N);
+    for (int i = 0; i < N; ++i)
+      next[i] = 2 * y[i] - before[i] +
+                h * h * (4 * (y[(i + N - 1) % N] - 2 * y[i] + y[(i + 1) % N]) / (k * k) - 3 * std::sin(y[i] / 3));
+    rows.push_back(next);
+  }
+  std::string text, table = "row,site,phi\n";
+  for (std::size_t j = 0; j < rows.size(); ++j)
+    for (int i = 0; i < N; ++i) {
+      text += fmt::format("{:.17g}{}", rows[j][i], i < N - 1 ? ' ' : '\n');
+      table += fmt::format("{},{},{:.17g}\n", j, i, rows[j][i]);
+    }
+  folder.write("rows.txt", text);
+  CHECK(verified(folder, "--fields rows.txt --theory.speed=2 --theory.scale=3", 0)["passed"] == true);
+  CHECK(says(verified(folder, "--fields rows.txt --theory.scale=3", 1), "theory.speed = 2"));
+  CHECK(says(verified(folder, "--fields rows.txt --theory.speed=2", 1), "No time step, length or coefficient"));
+  // Its Hessian is that of its gradient.
+  folder.write("table.csv", table);
+  const std::string from_file = "--theory.speed=2 --theory.scale=3 --initial.state=file --initial.file=table.csv ";
+  const Json whole = verified(folder, from_file + "--run.steps=20 --verify.checks=derivatives,newton,forms", 0);
+  CHECK(whole["checks"].size() > 6);
+  check_refused(delf_program(folder, "run small.ini --theory.speed=2 --initial.state=breather --run.steps=9"),
+                {"--theory.speed = 2", "is of rows of a file"});
+  check_refused(delf_program(folder, "run small.ini"), {"neither run.until nor run.steps is given"});
+}
+
+TEST_CASE("parameters that a file of rows was made with, and a thinned one, are refused with both values") {
+  const Folder folder;
+  folder.write("small.ini", scene());
+  REQUIRE(delf_program(folder, "run small.ini --out run --theory.mass=1.25").code == 0);
+  CHECK(verified(folder, "--fields run/fields.h5 --theory.mass=1.25", 0)["passed"] == true);
+  check_refused(delf_program(folder, "verify small.ini --fields run/fields.h5 --out refused"),
+                {"was made with theory.mass = 1.25, and the scene has 1"});
+  REQUIRE(delf_program(folder, "run small.ini --out thin --output.every=3").code == 0);
+  check_refused(delf_program(folder, "verify small.ini --fields thin/fields.h5 --out refused"),
+                {"of 3 rows one was recorded", "output.every = 1"});
 }
