@@ -48,7 +48,10 @@ Arguments taken_apart(const std::vector<std::string>& words) {
     } else if (option.string_key == "latex" && !option.unregistered) {
       arguments.latex = true;
     } else if (option.string_key == "out") {
-      if (arguments.out || value.empty()) throw BadScene("command line: --out: give one directory, as --out DIR");
+      if (value.empty()) throw BadScene("command line: --out: give a directory, as --out DIR");
+      if (arguments.out)
+        throw BadScene(fmt::format("command line: --out {}: is a second one, after --out {}; keep one of them", value,
+                                   *arguments.out));
       arguments.out = value;
     } else if (option.string_key == "fields") {
       if (arguments.fields || value.empty())

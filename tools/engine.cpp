@@ -4,13 +4,35 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 #include <new>
 #include <stdexcept>
 
 #include "tools/run/in_words.hpp"
+#include "tools/run/outcome.hpp"
+#include "tools/scene/keys.hpp"
+#include "tools/scene/values.hpp"
 
 namespace delf {
+
+namespace {
+
+// The number among those given that is farthest from 1, where it is out of all proportion; empty if there is none.
+std::string extreme_number(const Settings& settings) {
+  double farthest = 60;  // powers of ten: squares and products of two of them still fit
+  std::string found;
+  for (const Key& key : settings.all_keys()) {
+    const Setting* s = key.type == KeyType::real ? settings.find(key.name) : nullptr;
+    if (!s) continue;
+    const double value = std::abs(Values(settings).real(key.name));
+    if (const double powers = value > 0 ? std::abs(std::log10(value)) : 0; powers > farthest)
+      farthest = powers, found = key.name;
+  }
+  return found;
+}
+
+}  // namespace
 
 Simulation build(const Scene& scene, int winding) {
   Problem problem = scene.problem;
@@ -18,6 +40,9 @@ Simulation build(const Scene& scene, int winding) {
   try {
     return Simulation(problem);
   } catch (const BadInput& bad) {
+    if (bad.key() == "theory.name")
+      if (const auto extreme = extreme_number(scene.settings); !extreme.empty())
+        throw scene.settings.error(extreme, "the field equations overflow double precision; use a number nearer to 1");
     throw scene.settings.located(bad);
   }
 }
@@ -76,14 +101,20 @@ ExitCode with_memory_for(const Scene& scene, const std::function<ExitCode()>& wo
                     "lattice.sites",
                     sites, bytes_in_words(least), bytes_in_words(there)));
   };
+  const auto of_work = [&] {
+    return SystemFailure(
+        fmt::format("out of memory: {} steps of {} asked for more than this machine, with {}, can give now; lower "
+                    "lattice.sites, or raise output.every",
+                    scene.steps, scheme_in_words(scene.problem), bytes_in_words(there)));
+  };
   if (there > 0 && least > there) throw failure();
   try {
     foresee_memory(scene);
     return work();
   } catch (const std::bad_alloc&) {
-    throw failure();
+    throw least > 0.1 * there ? failure() : of_work();
   } catch (const std::length_error&) {
-    throw failure();
+    throw least > 0.1 * there ? failure() : of_work();
   }
 }
 

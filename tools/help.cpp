@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/commands.hpp"
@@ -26,10 +27,13 @@ std::string values_of(const Key& key) {
   return low ? "; " + from : high ? fmt::format("; at most {}", key.range.high) : "";
 }
 
+// Of a command with a section of its own those, of others all that belong to no such command.
 void print_keys(std::string_view only) {
   std::string_view section;
   for (const Key& key : keys()) {
-    if (!only.empty() && !key.name.starts_with(only)) continue;
+    const auto of = section_of(key.name);
+    const bool elsewhere = std::ranges::any_of(commands(), [&](const Command& c) { return c.section == of; });
+    if (only.empty() ? elsewhere : of != only) continue;
     if (const auto now = section_of(key.name); now != section) {
       section = now;
       fmt::print("\n[{}]\n", section);

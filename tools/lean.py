@@ -49,7 +49,7 @@ def planned(plan):
     what is left out, as `delf plan` says.
 
     >>> text = '''  left out   fields.h5: HDF5 is not touched
-    ... memory       39628 bytes: rows of the field 6528 B, increments 17408 B, nonlinear terms 4352 B, matrix 2432 B, \
+    ... memory       39.6 kB, 39628 bytes: rows of the field 6528 B, increments 17408 B, nonlinear terms 4352 B, matrix 2432 B, \
 work space 6732 B, monitors 2176 B
     ... left out     any matrix, Jacobians of the full Newton method, until a step needs one, nodes inside cells
     ... '''
@@ -71,7 +71,7 @@ work space 6732 B, monitors 2176 B
     ...
     lean.Refused: the plan says nothing of memory
     """
-    memory = re.search(r"^ *memory +(\d+) bytes: (.*)$", plan, re.MULTILINE)
+    memory = re.search(r"^ *memory +(?:[\d.]+ k?M?G?B, )?(\d+) bytes: (.*)$", plan, re.MULTILINE)
     if not memory:
         raise Refused("the plan says nothing of memory")
     parts = {name: int(size) for name, size in re.findall(r"([^,]+?) (\d+) B(?:, |$)", memory[2])}

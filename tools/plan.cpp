@@ -119,6 +119,11 @@ ExitCode plan(const Scene& scene, bool latex) {
     }
     fmt::print("{}: {}, {}, {} steps to t = {:.6g}\n", scene.name, scene.problem.theory, scheme_in_words(scene.problem),
                scene.steps, static_cast<double>(scene.steps) * scene.problem.time_step);
+    fmt::print(
+        "  (A slab is what is solved together, row j and its inner nodes; stencils are sites (row, site) from the "
+        "first one.\n"
+        "   Below: what each value is solved from, by which matrix, the memory of the whole run, and the time of trial "
+        "steps.)\n");
     fmt::print("  state      {}; row 1 is {}\n", initial.description(),
                initial.rule() == StartRule::exact     ? "known"
                : initial.rule() == StartRule::centred ? "solved for, with y(-1) = y(1) - 2 h phi_t"

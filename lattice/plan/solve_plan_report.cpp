@@ -29,10 +29,14 @@ std::string field(const SolvePlan& plan, int component) {
 
 const char* to_string(SolveKind kind) {
   switch (kind) {
-    case SolveKind::explicit_: return "explicit";
-    case SolveKind::chain: return "chain";
-    case SolveKind::cyclic_band: return "cyclic-band";
-    case SolveKind::sparse: return "sparse";
+    case SolveKind::explicit_:
+      return "explicit";
+    case SolveKind::chain:
+      return "chain";
+    case SolveKind::cyclic_band:
+      return "cyclic-band";
+    case SolveKind::sparse:
+      return "sparse";
   }
   return "";
 }
@@ -41,11 +45,14 @@ std::string SolvePlan::describe() const {
   const std::string size = ", " + std::to_string(unknowns) + " unknowns a slab";
   const std::string width = ", width " + std::to_string(lower) + "+" + std::to_string(upper);
   switch (kind) {
-    case SolveKind::explicit_: return "explicit" + size;
-    case SolveKind::chain: return "chain" + width + size + (lower > 0 ? ", rightwards" : ", leftwards");
+    case SolveKind::explicit_:
+      return "explicit" + size;
+    case SolveKind::chain:
+      return "chain" + width + size + (lower > 0 ? ", rightwards" : ", leftwards");
     case SolveKind::cyclic_band:
       return (cyclic ? "cyclic band" : "band") + width + size + ", " + blocks_in_words(*this);
-    case SolveKind::sparse: return "sparse" + size + ", " + blocks_in_words(*this);
+    case SolveKind::sparse:
+      return "sparse" + size + ", " + blocks_in_words(*this);
   }
   return "";
 }
@@ -63,12 +70,19 @@ std::string SolvePlan::report() const {
   }
   for (const Exception& e : exceptional)
     text += field(*this, e.component) + "site " + std::to_string(e.site) +
-            (table.parities == 1 ? "" : e.parity == 0 ? ", even rows" : ", odd rows") + ": the value at " +
-            row("j", e.offset) + ", the equation at " + row("j", -e.shift) + "\n";
-  for (const int site : {0, table.lattice_sites - 1})
+            (table.parities == 1 ? ""
+             : e.parity == 0     ? ", even rows"
+                                 : ", odd rows") +
+            ": the value at " + row("j", e.offset) + ", the equation at " + row("j", -e.shift) + "\n";
+  for (const int site : {0, table.lattice_sites - 1}) {
+    std::string data;
+    int count = 0;
     for (int component = 0; component < components; ++component)
-      if (!solved(site, component))
-        text += field(*this, component) + "site " + std::to_string(site) + ": data, no equation\n";
+      if (!solved(site, component)) data += field(*this, component), ++count;
+    if (count == 0) continue;
+    if (count == components && components > 1) data = "all components: ";
+    text += data + "site " + std::to_string(site) + ": data, no equation\n";
+  }
   text += "rows: an equation reaches " + std::to_string(forward) + " ahead and " + std::to_string(backward) +
           " back; a slab reads the " + std::to_string(history) + " rows before it\n";
   text += "coefficients: ";

@@ -81,6 +81,18 @@ MeshMonitor monitor_of(const Problem& p, const std::vector<Component>& fields) {
   expressions::Graph graph;
   const int root = expressions::parse(graph, text, names, "mesh.monitor");
   monitor.rho = std::make_shared<const expressions::Evaluation>(graph, root);
+  // cells of equal ∫ρ dX: where ρ is 0 they have no bounds, and where it is below they fold
+  double most = 0;
+  for (const double phi : {0.0, 0.5, -1.0})
+    for (const double slope : {0.0, 1.0, -2.0}) {
+      const double rho = monitor.rho->operator()<double>([&](int v) { return v < d ? phi : slope; });
+      most = std::max(most, rho);
+      if (rho < 0)
+        throw BadInput("mesh.monitor", fmt::format("must be positive, and is {:.3g} where the fields are {} and their "
+                                                   "slopes {}; such as 1 + alpha*phi_X^2",
+                                                   rho, phi, slope));
+    }
+  if (!(most > 0)) throw BadInput("mesh.monitor", "must be positive, and is 0 or no number; such as 1 + alpha*phi_X^2");
   return monitor;
 }
 

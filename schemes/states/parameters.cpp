@@ -43,7 +43,12 @@ double subluminal(const StateBuild& build, const std::string& what) {
   return v;
 }
 
-double centre(const StateBuild& build) { return build.number("initial.position", build.lattice.length() / 2); }
+double centre(const StateBuild& build) {
+  const double L = build.lattice.length(), x0 = build.number("initial.position", L / 2);
+  if (!build.lattice.is_circle() || (x0 >= 0 && x0 < L)) return x0;
+  const double once = std::fmod(x0, L);  // the same place of the circle
+  return once < 0 ? once + L : once;
+}
 
 double pulse_mass(const StateBuild& build) {
   const double m = build.mass();

@@ -59,6 +59,10 @@ std::unique_ptr<State> wave_packet(const StateBuild& build) {
   if (w < lattice.space_step())
     throw BadInput("initial.width", "initial.width = " + text(w) + ": the sites are " + text(lattice.space_step()) +
                                         " apart; choose a wider packet, or raise lattice.sites");
+  if (w > L / 4)  // at the other side of the circle it is e⁻² of its height
+    throw BadInput("initial.width", "initial.width = " + text(w) +
+                                        ": such a packet does not fit on a circle of length " + text(L) +
+                                        "; choose a width of at most " + text(L / 4) + ", or a longer circle");
   const Modes modes(lattice);
   const int carrier = modes.read(build, std::min(8, modes.most()));
   const double q0 = modes.wavenumber(std::abs(carrier)), direction = carrier < 0 ? -1 : 1;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "schemes/stability/constraint_ghost.hpp"
+#include "schemes/stepping/bytes_in_words.hpp"
 
 namespace delf {
 namespace {
@@ -77,24 +78,45 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
                                                  : fmt::format(" ({})", to_string(c.role)));
     out += '\n';
   }
+  std::string last;  // families of one kind, such as those of the nodes of an element, are one line
+  int equal = 1;
+  const auto finish = [&] {
+    if (equal > 1) last.insert(last.find('\n'), fmt::format("  ({} of them)", equal));
+    out += last;
+    equal = 1;
+  };
   for (const auto& family : system.families()) {
-    out += "stencil      ";
+    std::string one = "stencil      ";
     std::vector<std::pair<int, int>> sites;  // each once, however many nodes of its cell there are
     for (const Site& v : family->pattern().vertices)
       if (std::ranges::find(sites, std::pair(v.time, v.space)) == sites.end()) sites.emplace_back(v.time, v.space);
-    for (const auto& [time, space] : sites) out += fmt::format("({:+d},{:+d}) ", time, space);
+    for (const auto& [time, space] : sites) one += fmt::format("({:+d},{:+d}) ", time, space);
     switch (family->pattern().placement) {
-      case Placement::every_site: break;
-      case Placement::brick_wall: out += " in a brick wall"; break;
-      case Placement::left_wall: out += " at the left wall, natural"; break;
-      case Placement::right_wall: out += " at the right wall, natural"; break;
+      case Placement::every_site:
+        break;
+      case Placement::brick_wall:
+        one += " in a brick wall";
+        break;
+      case Placement::left_wall:
+        one += " at the left wall, natural";
+        break;
+      case Placement::right_wall:
+        one += " at the right wall, natural";
+        break;
     }
-    out += family->is_variational() ? "\nresidual     dL/dy of a discrete Lagrangian\n"
+    one += family->is_variational() ? "\nresidual     dL/dy of a discrete Lagrangian\n"
                                     : "\nresidual     given directly: no Lagrangian, not multisymplectic\n";
+    if (one == last) {
+      ++equal;
+      continue;
+    }
+    finish();
+    last = one;
   }
-  out += fmt::format("solve        {}\n", to_string(plan.kind));
+  finish();
   std::istringstream lines(plan.report());
-  for (std::string line; std::getline(lines, line);) out += "             " + line + '\n';
+  const char* head = "solve        ";
+  for (std::string line; std::getline(lines, line); head = "             ") out += head + line + '\n';
   if (!stepper.iterates() && !stepper.layout()) out += "step         " + solver + '\n';
   else if (!stepper.layout())
     out +=
@@ -119,8 +141,8 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   if (const auto ghost = ghost_under_constraint(system))
     out += fmt::format("\nghost        {};\n             {}\n", in_words_under_constraint(*ghost),
                        without_ghost_under_constraint);
-  out += fmt::format("\nmemory       {} bytes: {}, monitors {} B\n",
-                     asked.bytes + asked.bytes_to_come + monitor_bytes, asked.memory,
+  const std::size_t all = asked.bytes + asked.bytes_to_come + monitor_bytes;
+  out += fmt::format("\nmemory       {}, {} bytes: {}, monitors {} B\n", bytes_in_words(all), all, asked.memory,
                      monitor_bytes);
   if (!stepper.layout() && stepper.report(false).bytes_to_come > 0 && solver.find("sparse") != std::string::npos)
     out += "             besides the sparse LU, whose size is known when it is there\n";

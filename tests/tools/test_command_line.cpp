@@ -24,9 +24,11 @@ TEST_CASE("help, version and lists go to stdout and succeed") {
   CHECK(contains(delf_program(folder, "list scenes").out, "collision"));
 }
 
-TEST_CASE("delf help run lists every key") {
+TEST_CASE("the helps of all commands list every key") {
   const Folder folder;
-  const std::string help = delf_program(folder, "help run").out;
+  std::string help;
+  for (const char* command : {"run", "verify", "sweep", "convergence", "stability", "workprecision"})
+    help += delf_program(folder, std::string("help ") + command).out;
   for (const auto& key : delf::keys()) CHECK(contains(help, std::string(key.name)));
 }
 

@@ -21,11 +21,4 @@ std::string cost_in_words(double ns) {
   return ns < 999.5 ? fmt::format("{:.3g} ns per site and step", ns) : fmt::format("{:.0f} ns per site and step", ns);
 }
 
-std::string bytes_in_words(double bytes) {
-  if (bytes < 1000) return fmt::format("{} B", bytes);
-  for (const char* unit : {"kB", "MB", "GB"})
-    if ((bytes /= 1000) < 1000) return fmt::format("{:.3g} {}", bytes, unit);
-  return fmt::format("{:.3g} TB", bytes / 1000);
-}
-
 }  // namespace delf

@@ -47,8 +47,6 @@ Space read_space(const Values& values) {
 }
 
 Lattice read_lattice(const Settings& settings, const Values& values) {
-  if (values.choice("lattice.space") == "complex")
-    throw settings.error("lattice.space", "works with run, plan and verify; use one of these, or another space");
   const Space space = read_space(values);
   if (space == Space::point) return Lattice::point();
   const auto sites = static_cast<int>(values.integer("lattice.sites"));
@@ -202,6 +200,8 @@ Scene read_scene(Settings given) {
   scene.name = settings.file().stem().string();
   const Values values(settings);
   for (const Key& key : settings.all_keys()) values.check(key);  // in the order of the table, whatever reads them below
+  if (const Setting* space = settings.find("lattice.space"); space && space->value == "complex")
+    throw settings.error("lattice.space", "works with run, plan and verify; use one of these, or another space");
   settings.keep_one_of("lattice.courant", "lattice.time_step", "give one of them, such as lattice.courant = 0.5");
   settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 100");
   try {

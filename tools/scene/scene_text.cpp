@@ -49,6 +49,8 @@ std::string read_scene_text(const std::filesystem::path& file) {
     throw BadScene(fmt::format("{}: is too large for a scene; is it the right file?", name));
   if (text.find('\0') != std::string::npos || !is_utf8(text))
     throw BadScene(fmt::format("{}: is a binary file, not a scene; is it the right file?", name));
+  if (text.find('\r') != std::string::npos && text.find('\n') == std::string::npos)
+    throw BadScene(fmt::format("{}: its lines end in CR alone, which makes all of it one line; end them in LF", name));
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   return text;
 }

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/files/text_columns.hpp"
 #include "tools/run/in_words.hpp"
 #include "tools/stability/stability_findings.hpp"
-#include "tools/files/text_columns.hpp"
 
 namespace delf {
 
@@ -186,8 +186,12 @@ std::int64_t StabilityFindings::must_not_be() const {
 }
 
 std::string stability_report(const Scene& scene, const StabilityFindings& f) {
-  return fmt::format("{}: stability of phi_tt - phi_xx + m^2 phi = 0, and stress cases; seed {}\n", scene.name,
-                     f.seed) +
+  return fmt::format(
+             "{}: stability of phi_tt - phi_xx + m^2 phi = 0, and stress cases; seed {}\n\n"
+             "  A scheme is stable up to the h/k of its line, at that mh: by the roots of its symbol, and by steps "
+             "from noise.\n"
+             "  ok: both agree. Ghosts are waves that grow slowly or not at all, and are no part of the solution.\n",
+             scene.name, f.seed) +
          limits(f) + constraints(f) + corner_table(f) + failures(f) + "\n" + conclusion(f);
 }
 

@@ -111,8 +111,12 @@ std::string conclusion(const Verdict& v) {
 }  // namespace
 
 std::string verdict_report(const Scene& scene, const Verdict& v) {
-  return header(scene, v) + table_of_checks(v) + table_of_measured(v) + left_out(v) + failures(v) + diagnosis(v) +
-         "\n" + conclusion(v);
+  const char* how_to_read =
+      "\n  Each sum is zero in theory: `largest` is the worst, over the sum of its absolute terms, 1e-16 being "
+      "rounding; a check\n"
+      "  passes below its tolerance, or fails and says why. What is measured below is not promised to vanish.\n";
+  return header(scene, v) + how_to_read + table_of_checks(v) + table_of_measured(v) + left_out(v) + failures(v) +
+         diagnosis(v) + "\n" + conclusion(v);
 }
 
 }  // namespace delf

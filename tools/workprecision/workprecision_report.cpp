@@ -191,6 +191,10 @@ std::string workprecision_report(const Scene& scene, const WorkPrecisionRequest&
       "  {} of {} resolutions tried are timed, {} times each{}, interleaved, in random order; median of the steps "
       "alone\n",
       o.runs.size(), o.tried, request.repeats, o.fewer_repeats ? ", the long ones less often" : "");
+  text +=
+      "  A line is a run: errors of its last row, and the time of its steps. Take the line with the least time whose "
+      "error is\n"
+      "  small enough; a scheme is the better choice where its line stands in the table of accuracies below.\n";
   if (!o.runs.empty()) {
     constexpr std::size_t few = 40;
     const bool all = o.runs.size() <= few;

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "schemes/stepping/evolution.hpp"
-#include "schemes/solvers/row_layout.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/solvers/row_layout.hpp"
+#include "schemes/stepping/bytes_in_words.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 
@@ -131,9 +132,10 @@ TEST_CASE("an explicit step on a circle has no arrays but its rows, and those in
       // residual() works in rows for the left side, its rounding, the newest values and, if there are any, source terms.
       const std::size_t measured = (theory == std::string("wave") ? 3 : 4) * row;
       const std::string memory = fmt::format(
-          "memory       {} bytes: rows of the field and increments {} B, source terms 0 B, matrix 0 B, work space {} B, "
+          "memory       {}, {} bytes: rows of the field and increments {} B, source terms 0 B, matrix 0 B, work space "
+          "{} B, "
           "monitors {} B\n",
-          7 * row + index + measured, 6 * row, index + measured, row);
+          bytes_in_words(7 * row + index + measured), 7 * row + index + measured, 6 * row, index + measured, row);
       CHECK(contains(simulation.plan_report(), memory));
       CHECK(contains(simulation.plan_report(), "any matrix"));
       simulation.start(two_rows(sites));

@@ -47,6 +47,32 @@ TEST_CASE("errors in a scene name file, line, key, value, reason and remedy") {
   CHECK_FALSE(std::filesystem::exists(folder / "results"));
 }
 
+TEST_CASE("what overflows, does not fit, or comes twice is named") {
+  const Folder folder;
+  const auto [command, reason] = GENERATE(table<const char*, const char*>({
+      {"run soliton-bounce --mesh.alpha=1e300", "--mesh.alpha = 1e300: the field equations overflow"},
+      {"run soliton-bounce --mesh.monitor=-1", "--mesh.monitor = -1: must be positive"},
+      {"run soliton-bounce --mesh.monitor=0", "--mesh.monitor = 0: must be positive"},
+      {"run wave-packet --initial.width=100", "does not fit on a circle of length 80; choose a width of at most 20"},
+      {"run kink --out one --out two", "--out two: is a second one, after --out one"},
+      {"convergence static-kink", "lattice.space = complex: works with run, plan and verify"},
+      {"run cr.ini", "cr.ini: its lines end in CR alone"},
+  }));
+  std::string scene = small_scene();
+  for (char& c : scene)
+    if (c == '\n') c = '\r';
+  folder.write("cr.ini", scene);
+  check_refused(delf_program(folder, command), {reason});
+}
+
+TEST_CASE("help lists the keys of one command, and a position beyond the circle is on it") {
+  const Folder folder;
+  CHECK_FALSE(contains(delf_program(folder, "help run").out, "sweep.jobs"));
+  CHECK(contains(delf_program(folder, "help sweep").out, "sweep.jobs"));
+  CHECK(contains(delf_program(folder, "run kink --initial.position=-30 --run.steps=2 --output.figures=off").out,
+                 "x0 = 10,"));
+}
+
 TEST_CASE("errors on the command line name key, value, reason and remedy") {
   struct Bad {
     const char *argument, *reason;
