@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "jets/simd/pack.hpp"
 #include "jets/tables/stencil_table.hpp"
 #include "schemes/families/stencil_family.hpp"
 
@@ -50,7 +51,19 @@ class JetFamily final : public StencilFamily {
   };
   struct Jets;
 
+  /// Of one stencil, its points as lanes of packs, so many at once: what the value at a vertex weighs in a slot of their
+  /// jets, and what ∂ℓ/∂j there weighs in its residual. Lanes left over repeat the last point, with nothing in a residual.
+  struct Lanes {
+    struct Entry {
+      int slot, vertex;
+      Pack weight;
+    };
+    std::vector<Entry> jets, tests;
+  };
+
   void find_sources();
+  void find_lanes();
+  bool residual_of_one(const StencilBatch&, std::span<const int> equations, double* r) const;
   bool adds_to(const Point&, std::span<const int> equations) const;  ///< to one of them
 
   StencilTable table_;
@@ -58,6 +71,7 @@ class JetFamily final : public StencilFamily {
   int d_;
   bool has_sources_;
   std::vector<Point> points_;
+  std::vector<Lanes> across_points_;  ///< none where a density depends on the place, which a batch has one time of
   SourceTerms sources_;
 };
 
