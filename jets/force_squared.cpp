@@ -2,6 +2,7 @@
 #include "jets/force_squared.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
@@ -68,32 +69,39 @@ ForceSquared::ForceSquared(std::shared_ptr<const BatchDensity> of, double scale)
 
 namespace {
 
-/// to = from + factor · row
-void set_row(double* to, const double* from, double factor, const double* row, int count) {
-  for (int at = 0; at < count; at += lanes) (Pack::load(from + at) + factor * Pack::load(row + at)).store(to + at);
+/// g from the slopes in g[2d + a] and the curvatures c, for d fields, or for one where that is known when it is compiled: the
+/// force of one field stays in a register.
+template <int known>
+void squares_at_rest(int fields, int count, double twice, const double* stiffness, const double* const* c,
+                     const double* const* phi_xx, double* const* g) {
+  const int d = known > 0 ? known : fields;
+  constexpr std::size_t most = known > 0 ? known : Abstract::most_variables / 6;
+  std::array<Pack, most> force;
+  for (int at = 0; at < count; at += lanes) {
+    for (int a = 0; a < d; ++a) {
+      Pack sum = Pack::load(g[2 * d + a] + at);
+      for (int b = 0; b < d; ++b) sum += stiffness[a * d + b] * Pack::load(phi_xx[b] + at);
+      force[static_cast<std::size_t>(a)] = twice * sum;
+    }
+    for (int a = 0; a < d; ++a) {
+      Pack by_phi(0.0), by_phi_xx(0.0);
+      for (int b = 0; b < d; ++b) {
+        by_phi += Pack::load(c[a * d + b] + at) * force[static_cast<std::size_t>(b)];
+        by_phi_xx += stiffness[b * d + a] * force[static_cast<std::size_t>(b)];
+      }
+      by_phi.store(g[a] + at), by_phi_xx.store(g[d + a] + at);
+    }
+  }
 }
 
 }  // namespace
 
-void ForceSquared::gradient_at_rest(const JetBatch& phi, const double* const* given, double* const* g) const {
-  const int d = components_, count = phi.count;
-  const ScratchRows c(d * d, count), force(d, count);
-  double* const* const slope = g + 2 * d;
-  derivatives_->slope_and_curvature(phi, slope, c.data());
-  for (int a = 0; a < d; ++a) {
-    for (int b = 0; b < d; ++b) set_row(force[a], b == 0 ? slope[a] : force[a], stiffness(a, b), given[b], count);
-  }
-  const double twice = 2 * scale_;
-  for (int a = 0; a < d; ++a) {
-    for (int at = 0; at < count; at += lanes)
-      (twice * (Pack::load(c[a * d] + at) * Pack::load(force[0] + at))).store(g[a] + at);
-    for (int b = 1; b < d; ++b)
-      for (int at = 0; at < count; at += lanes)
-        (Pack::load(g[a] + at) + twice * (Pack::load(c[a * d + b] + at) * Pack::load(force[b] + at))).store(g[a] + at);
-    for (int at = 0; at < count; at += lanes)
-      (twice * stiffness(0, a) * Pack::load(force[0] + at)).store(g[d + a] + at);
-    for (int b = 1; b < d; ++b) set_row(g[d + a], g[d + a], twice * stiffness(b, a), force[b], count);
-  }
+void ForceSquared::gradient_at_rest(const JetBatch& phi, const double* const* phi_xx, double* const* g) const {
+  const int d = components_;
+  const ScratchRows c(d * d, phi.count);
+  derivatives_->slope_and_curvature(phi, g + 2 * d, c.data());
+  const auto squares = d == 1 ? squares_at_rest<1> : squares_at_rest<0>;
+  squares(d, phi.count, 2 * scale_, stiffness_.data(), c.data(), phi_xx, g);
 }
 
 void ForceSquared::value(const JetBatch& jets, double* l) const {

@@ -83,7 +83,7 @@ struct Dual {
   Dual& operator-=(const Dual& b) { return *this = *this - b; }
   Dual& operator*=(const Dual& b) { return *this = *this * b; }
 
-  friend Dual sin(const Dual& u) { return chain(u, sin(u.value), cos(u.value)); }
+  friend Dual sin(const Dual& u) { return chain(u, sin(u.value), cosine_beside_sine(u.value)); }
   friend Dual cos(const Dual& u) { return chain(u, cos(u.value), -sin(u.value)); }
   friend Dual cosm1(const Dual& u) { return chain(u, cosm1(u.value), -sin(u.value)); }
   friend Dual tan(const Dual& u) {

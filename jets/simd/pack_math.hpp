@@ -186,6 +186,12 @@ inline Pack cosm1(Pack x) {
   return detail::asked(x, detail::cosm1_in_reach(x), detail::largest_reduced, [](double y) { return cosm1(y); });
 }
 
+/// cos x where sin x is wanted too, whose derivative it is: from the same multiple of π, which compilers then find once.
+/// Error below 3e-16 absolute.
+inline Pack cosine_beside_sine(Pack x) { return cosm1(x) + 1.0; }
+/// Of other numbers there is no cheaper way.
+inline auto cosine_beside_sine(const auto& x) { return cos(x); }
+
 namespace detail {
 
 // log 2 = a part of 42 bits, whose products with |n| < 2¹¹ are exact, and a rest (and 2e-31).
