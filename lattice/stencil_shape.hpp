@@ -15,7 +15,9 @@ enum class Placement {
   every_site,  ///< one stencil for each site
   brick_wall,  ///< only where time + space is even, so that rows of bricks are laid half a brick apart
   left_wall,   ///< at the first column of an interval, if the wall there is natural: a term of the boundary
-  right_wall   ///< at the last column, likewise
+  right_wall,  ///< at the last column, likewise
+  left_mirror,  ///< at the first column of an interval, whatever its wall: what wide stencils have beyond it
+  right_mirror  ///< at the last column, likewise
 };
 
 /// A tuple of n sites, written as offsets from its anchor; the order is that of the paper's Δ¹, Δ², …, Δⁿ.
@@ -57,8 +59,8 @@ struct StencilPattern {
   bool placed_at(Site site) const {
     return placement != Placement::brick_wall || (site.time + site.space) % 2 == 0;
   }
-  /// It stands at a natural wall alone: all of space, and a circle, have none.
-  bool is_of_wall() const { return placement == Placement::left_wall || placement == Placement::right_wall; }
+  /// It stands at a wall alone: all of space, and a circle, have none.
+  bool is_of_wall() const { return placement != Placement::every_site && placement != Placement::brick_wall; }
 };
 
 /// One of the numbers that a stencil reads: the component `component` of the section at a vertex of its pattern.

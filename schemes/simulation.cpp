@@ -2,6 +2,7 @@
 #include "schemes/simulation.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,7 @@
 #include "jets/tables/named_tables.hpp"
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
+#include "schemes/families/mirror_check.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -190,6 +192,28 @@ struct Simulation::Impl {
     }
   }
 
+  /// Stencils that go on beyond a wall by mirror images: whether the density has any about the wall's value.
+  void check_mirrors(const std::vector<double>& row) const {
+    const int C = system.components();
+    for (const auto& family : system.families()) {
+      const Placement at = family->pattern().placement;
+      if (at != Placement::left_mirror && at != Placement::right_mirror) continue;
+      const bool left = at == Placement::left_mirror;
+      const int site = left ? 0 : system.lattice().sites() - 1;
+      const bool fixed = system.lattice().is_fixed(site);
+      std::vector<double> wall;
+      for (int a = 0; a < theory->components(); ++a)
+        wall.push_back(row[static_cast<std::size_t>(site * C + system.field_component(a))]);
+      if (has_mirror_images(theory->density(), fixed ? Mirror::odd : Mirror::even, wall)) continue;
+      throw BadInput(
+          left ? "boundary.left" : "boundary.right",
+          fmt::format("boundary.{0} = {1}: beyond this wall wide stencils go on by mirror images, and the "
+                      "density is not even {2}; use lattice.space = circle or scheme.method = multisymplectic",
+                      left ? "left" : "right", fixed ? "fixed" : "natural",
+                      fixed ? fmt::format("about the wall's value {:.6g}", fmt::join(wall, ", ")) : "in phi_x"));
+    }
+  }
+
   std::size_t monitor_bytes() const {
     return cell_weights.bytes() + positions.bytes() + last_rows.bytes() + (own_layout ? own_layout->bytes() : 0);
   }
@@ -227,7 +251,7 @@ struct Simulation::Impl {
     const auto d = static_cast<std::size_t>(theory->components());
     const double h = problem.time_step, turn = 2 * std::numbers::pi * winding;
     std::vector<double> fields, rates, value(static_cast<std::size_t>(problem.lattice.sites()));
-    stepper.observe(0, fields, rates);
+    stepper.observe(0, fields, &rates);
     const auto put = [&](double of_field, double of_rate, std::size_t row, double gained) {
       for (std::size_t a = 0; a < d; ++a) {
         for (std::size_t i = 0; i < value.size(); ++i)
@@ -292,12 +316,14 @@ void Simulation::start(const std::vector<std::vector<double>>& given) {
   for (const auto& row : given) impl_->stepper.require_row(row.size());
   std::vector<std::vector<double>> rows = given;
   for (auto& row : rows) impl_->hold_walls(row, false);
+  impl_->check_mirrors(rows[0]);
   impl_->stepper.start(impl_->problem.circle_valued ? impl_->lifted(rows) : rows);
 }
 
 void Simulation::start_centred(std::span<const double> row0, std::span<const double> velocity) {
   std::vector<std::vector<double>> rows{{row0.begin(), row0.end()}};
   if (impl_->problem.circle_valued) rows = impl_->lifted(rows);
+  impl_->check_mirrors(rows[0]);
   impl_->stepper.start_centred(rows[0], {velocity.begin(), velocity.end()});
 }
 
@@ -317,6 +343,7 @@ void Simulation::start_legendre(std::span<const double> fields, std::span<const 
   for (const std::size_t values : {fields.size(), rates.size()}) impl_->stepper.require_row(values);
   std::vector<double> row0(fields.begin(), fields.end()), velocity(rates.begin(), rates.end());
   impl_->hold_walls(row0, false), impl_->hold_walls(velocity, true);
+  impl_->check_mirrors(row0);
   const double turn = 2 * std::numbers::pi * impl_->winding;
   std::vector<double> momenta(row0.size(), 0.0), phi, phi_t, p;
   bool any = false;
@@ -360,8 +387,8 @@ void Simulation::copy_row(int back, std::span<double> out, Role role) const {
 
 void Simulation::observe(int back, std::span<double> out) const {
   if (!is_processed()) return copy_row(back, out);
-  std::vector<double> fields, rates;
-  impl_->stepper.observe(back, fields, rates);
+  std::vector<double> fields;
+  impl_->stepper.observe(back, fields, nullptr);
   std::ranges::copy(fields, out.begin());
 }
 bool Simulation::is_processed() const { return impl_->stepper.is_processed(); }

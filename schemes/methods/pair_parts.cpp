@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "jets/tables/mirror_table.hpp"
 #include "jets/tables/pair_element.hpp"
 #include "lattice/error.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -27,11 +28,18 @@ int pairs_of_order(const Problem& p, const char* key, int order) {
   return order / 2;
 }
 
+std::vector<StencilTable> at_both_walls(const StencilTable& table, const Lattice& lattice) {
+  if (lattice.space() != Space::interval) return {};
+  const auto mirror = [](Wall wall) { return wall == Wall::fixed ? Mirror::odd : Mirror::even; };
+  return {mirror_table(table, Placement::left_mirror, mirror(lattice.left())),
+          mirror_table(table, Placement::right_mirror, mirror(lattice.right()))};
+}
+
 SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitting& splitting,
                        const std::vector<double>& pairs) {
-  if (!p.lattice.is_circle())
-    throw BadInput("lattice.space", fmt::format("scheme.method = {}: wide stencils have no walls in this version; use "
-                                                "lattice.space = circle",
+  if (p.lattice.space() == Space::point)
+    throw BadInput("lattice.space", fmt::format("scheme.method = {}: wide stencils have no neighbours at a point; use "
+                                                "lattice.space = circle or interval",
                                                 p.method));
   if (theory.constraint())
     throw BadInput("scheme.method",
@@ -42,9 +50,14 @@ SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitt
     throw BadInput("theory.name", fmt::format("theory.name = {}: scheme.method = {} takes densities that are "
                                               "nonlinear in phi alone; use scheme.method = multisymplectic",
                                               p.theory, p.method));
-  const StencilTable element = pair_element(splitting, pairs);
+  const StencilTable time = splitting_element(splitting), space = pair_space(pairs), element = product(time, space);
   // Between sub-steps momenta change by ∂ℓ/∂φ, linear or not.
   SchemeParts parts{{theory.on_table(element, true)}, theory.fields(), theory.symmetries(), splitting.processor, {}};
+  for (const StencilTable& at_wall : at_both_walls(space, p.lattice)) {
+    StencilTable term = product(time, at_wall);
+    term.pattern.placement = at_wall.pattern.placement;
+    parts.families.push_back(theory.on_table(std::move(term), true));
+  }
   for (std::size_t s = 1; s < element.nodes.size(); ++s)
     for (const Component& field : theory.fields())
       parts.components.push_back(

@@ -13,8 +13,12 @@ Parameter space_order_parameter();
 /// Checks lattice.space_order, an even number, and gives the number of pairs p.
 int pairs_of_order(const Problem&, const char* key, int order);
 
-/// The sub-steps of a splitting over pairs of these weights, on a circle, for densities that are nonlinear in φ alone. The row
-/// after s sub-steps carries the d fields: component = s · d + a. Throws BadInput for what there is no scheme for.
+/// The sub-steps of a splitting over pairs of these weights, for densities that are nonlinear in φ alone. The row
+/// after s sub-steps carries the d fields: component = s · d + a. The first family is that of whole stencils; those of the walls
+/// of an interval follow. Throws BadInput for what there is no scheme for.
 SchemeParts pair_parts(const FieldTheory&, const Problem&, const Splitting&, const std::vector<double>& pairs);
+
+/// Of both walls of an interval, what a table of one row has there (mirror_table); none on a circle.
+std::vector<StencilTable> at_both_walls(const StencilTable&, const Lattice&);
 
 }  // namespace delf

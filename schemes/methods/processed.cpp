@@ -64,11 +64,14 @@ Chosen chosen(const Problem& p) {
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   const Chosen c = chosen(p);
   SchemeParts parts = pair_parts(theory, p, c.splitting, c.pairs);
-  if (c.gradient_pairs > 0)
-    parts.families.push_back(std::make_shared<JetFamily>(
-        force_table(c.gradient_pairs, c.splitting.offset),
-        std::make_shared<ForceSquared>(theory.shared_density(),
-                                       gradient_scale(theory.density(), c.splitting.gradient, p.time_step))));
+  if (c.gradient_pairs > 0) {
+    const auto squares = std::make_shared<ForceSquared>(
+        theory.shared_density(), gradient_scale(theory.density(), c.splitting.gradient, p.time_step));
+    const StencilTable table = force_table(c.gradient_pairs, c.splitting.offset);
+    parts.families.insert(parts.families.begin() + 1, std::make_shared<JetFamily>(table, squares));
+    for (StencilTable& at_wall : at_both_walls(table, p.lattice))
+      parts.families.push_back(std::make_shared<JetFamily>(std::move(at_wall), squares));
+  }
   const double k = p.lattice.space_step(), decay = p.parameters.get<double>("lattice.analyticity") / k;
   const std::vector<double> force = c.gradient_pairs > 0 ? pair_weights(c.gradient_pairs) : c.pairs;
   parts.remarks = {

@@ -50,7 +50,7 @@ void CompositionStepper::add_gradient(std::int64_t n, const SubStep& step, const
       now_[static_cast<std::size_t>(a)] = from + row;
       for (int part = 0; part < 3; ++part) out_[static_cast<std::size_t>(part * d_ + a)] = squares_.row(part) + row;
       with_reach(Q, [&]<int R>(std::integral_constant<int, R>) {
-        sum_pairs<R>(packs, gradient_.sums.data(), Q, differences + row, second[a]);
+        sum_pairs<R>(packs, gradient_.sums.data(), differences + row, second[a]);
       });
     }
     gradient_.density->gradient_at_rest(
@@ -61,10 +61,12 @@ void CompositionStepper::add_gradient(std::int64_t n, const SubStep& step, const
   const double kick = step.gradient * gradient_.kick;
   for (int a = 0; a < d_; ++a) {
     const auto row = static_cast<std::ptrdiff_t>(a) * static_cast<std::ptrdiff_t>(size_);
-    layout_.fill_halo(squares_.row(1) + row);
+    double* const G = squares_.row(1) + row;
+    layout_.fill_halo(G);
+    for (const Image& image : values_beyond_) G[image.to] = image.sign * G[image.from];
     const std::ptrdiff_t at = row + layout_.at(0);
     with_reach(Q, [&]<int R>(std::integral_constant<int, R>) {
-      add_squares<R>(layout_.packs(), kick, gradient_.weights.data(), Q, squares_.row(0) + at, squares_.row(1) + at,
+      add_squares<R>(layout_.packs(), kick, gradient_.weights.data(), squares_.row(0) + at, squares_.row(1) + at,
                      velocity + at);
     });
   }

@@ -42,7 +42,7 @@ void CompositionStepper::prepare_processor() {
 }
 
 /// The momenta below an older row are those above it, less its kick.
-void CompositionStepper::observe(int back, std::vector<double>& fields, std::vector<double>& rates) const {
+void CompositionStepper::observe(int back, std::vector<double>& fields, std::vector<double>* rates) const {
   require(back);
   const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
   double *const y = observed_.row(0), *const u = observed_.row(1);
@@ -59,22 +59,25 @@ void CompositionStepper::observe(int back, std::vector<double>& fields, std::vec
     less.stride = 0, less.gradient = -less.gradient;
     sub_step(n_ - back, less, y, observed_differences_.row(0), y, observed_differences_.row(1), u);
   }
-  undo_processor(n_ - back);
+  undo_processor(n_ - back, rates != nullptr);
   const auto d = static_cast<std::size_t>(d_);
   std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
-  fields.resize(site.size() * d), rates.resize(site.size() * d);
-  for (const auto& [from, to] : {std::pair{y, &fields}, {u, &rates}})
+  for (const auto& [from, to] : {std::pair{y, &fields}, {u, rates}}) {
+    if (!to) continue;
+    to->resize(site.size() * d);
     for (std::size_t a = 0; a < d; ++a) {
       layout_.gather(from + a * size_, site);
       for (std::size_t i = 0; i < site.size(); ++i) (*to)[i * d + a] = site[i];
     }
+  }
 }
 
-void CompositionStepper::undo_processor(std::int64_t n) const {
+/// The last of its kicks is for the rates alone.
+void CompositionStepper::undo_processor(std::int64_t n, bool with_rates) const {
   double *const y = observed_.row(0), *const u = observed_.row(1);
-  find_differences(y, observed_differences_.row(0));
   int at = 0;
   for (const SubStep& s : undo_) {
+    if (&s == &undo_.back() && s.stride == 0 && !with_rates) break;
     sub_step(n, s, y, observed_differences_.row(at), y, observed_differences_.row(1 - at), u);
     at = 1 - at;
   }

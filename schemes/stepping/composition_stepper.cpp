@@ -24,18 +24,30 @@ int reach_of(const StencilFamily& family) {
   return most.space - least.space;
 }
 
+bool is_of_mirror(const std::shared_ptr<const StencilFamily>& family) {
+  const Placement at = family->pattern().placement;
+  return at == Placement::left_mirror || at == Placement::right_mirror;
+}
+
+/// Rows lie in memory as those of a circle do: halos between arcs are packs then, and beyond walls there are images.
+Lattice closed(const Lattice& lattice) { return Lattice::circle(lattice.sites(), lattice.length()); }
+
 }  // namespace
 
 std::unique_ptr<CompositionStepper> CompositionStepper::make(const LatticeSystem& system, const StepOptions& options) {
-  if (!system.lattice().is_circle() || options.fibre == Fibre::circle || system.families().empty()) return nullptr;
+  if (options.fibre == Fibre::circle || system.families().empty()) return nullptr;
+  const int mirrors = static_cast<int>(std::ranges::count_if(system.families(), is_of_mirror));
+  if (system.lattice().space() == Space::interval ? mirrors == 0 : !system.lattice().is_circle()) return nullptr;
   const StencilFamily& family = *system.families()[0];
   if (!family.sources()) return nullptr;
   // The source terms at a node are those of its own value.
   for (const SourceTerms::Group& group : family.sources()->groups)
     for (const SourceTerms::QuadratureValue& value : group.inputs)
       if (value.size() != 1 || value[0].weight != 1) return nullptr;
-  if (system.families().size() > 2) return nullptr;
-  if (system.families().size() == 2 && !read_gradient(family, *system.families()[1], system.lattice().space_step()))
+  const int whole = static_cast<int>(system.families().size()) - mirrors;
+  if (whole < 1 || whole > 2 || is_of_mirror(system.families()[0])) return nullptr;
+  if (whole == 2 && (is_of_mirror(system.families()[1]) ||
+                     !read_gradient(family, *system.families()[1], system.lattice().space_step())))
     return nullptr;
   std::unique_ptr<CompositionStepper> stepper(new CompositionStepper(system, options));
   return stepper->assemble() ? std::move(stepper) : nullptr;
@@ -48,8 +60,8 @@ CompositionStepper::CompositionStepper(const LatticeSystem& system, const StepOp
       d_(system.fields()),
       S_(system.components() / system.fields()),
       reach_(reach_of(family_)),
-      layout_(system.lattice(), std::max(1, reach_)),
-      ends_(system.lattice(), 1),
+      layout_(closed(system.lattice()), std::max(1, reach_)),
+      ends_(closed(system.lattice()), 1),
       size_(layout_.doubles()),
       now_(static_cast<std::size_t>(d_)),
       out_(static_cast<std::size_t>(3 * d_)),
@@ -111,7 +123,7 @@ CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_b
 }
 
 bool CompositionStepper::assemble() {
-  if (S_ * d_ != system_.components()) return false;
+  if (S_ * d_ != system_.components() || reach_ < 1 || reach_ > widest_pair) return false;
   for (int c = 0; c < system_.components(); ++c) {
     // sub-step by sub-step, the fields first
     const Component& component = system_.component(c);
@@ -119,13 +131,14 @@ bool CompositionStepper::assemble() {
     if (component.at.space != 0) return false;
   }
   bool fits = true;
-  if (system_.families().size() == 2) {
+  if (system_.families().size() > 1 && !is_of_mirror(system_.families()[1])) {
     gradient_ = *read_gradient(family_, *system_.families()[1], system_.lattice().space_step());
     fits = static_cast<int>(gradient_.weights.size()) <= layout_.halo();
   }
   for (int s = 0; s < S_; ++s) steps_.push_back(read_sub_step(s, true, fits));
   first_ = read_sub_step(0, false, fits);
   if (!fits) return false;
+  if (system_.lattice().space() == Space::interval) find_mirrors();
 
   // K: the strides of a step add up to h.
   double strides = 0;
@@ -157,6 +170,38 @@ bool CompositionStepper::assemble() {
   return true;
 }
 
+/// Beyond a wall at site w, with D(i) = y(i + 1) − y(i), of an odd image and of an even one,
+///
+///     D(w + j) = ± D(w − 1 − j),    f(w + j) = ∓ f(w − j)      for what is odd or even with y, as the force is.
+///
+void CompositionStepper::find_mirrors() {
+  const Lattice& lattice = system_.lattice();
+  const int last = lattice.sites() - 1;
+  const auto odd = [&](bool left) { return (left ? lattice.left() : lattice.right()) == Wall::fixed; };
+  for (int l = 0; l < lanes; ++l)
+    for (int v = -layout_.halo(); v < layout_.packs() + layout_.halo(); ++v) {
+      const int i = layout_.start(l) + v, to = static_cast<int>(layout_.at(v)) + l;
+      if (i < 0) {
+        differences_beyond_.push_back({to, layout_.slot(-1 - i), odd(true) ? 1.0 : -1.0});
+        values_beyond_.push_back({to, layout_.slot(-i), odd(true) ? -1.0 : 1.0});
+      }
+      if (i >= last) differences_beyond_.push_back({to, layout_.slot(2 * last - 1 - i), odd(false) ? 1.0 : -1.0});
+      if (i > last) values_beyond_.push_back({to, layout_.slot(2 * last - i), odd(false) ? -1.0 : 1.0});
+    }
+  for (const int wall : {0, last})
+    for (const int slot : layout_.slots_of(wall)) {
+      if (lattice.is_fixed(wall)) held_.push_back({slot, std::vector<double>(static_cast<std::size_t>(d_))});
+      else natural_.push_back(slot);
+    }
+}
+void CompositionStepper::mirror_differences(double* D) const {
+  for (const Image& image : differences_beyond_) D[image.to] = image.sign * D[image.from];
+}
+/// A fixed wall keeps its value to the bit.
+void CompositionStepper::hold_walls(double* y, double* velocity, int a) const {
+  for (const Held& held : held_) y[held.slot] = held.value[static_cast<std::size_t>(a)], velocity[held.slot] = 0;
+}
+
 /// One sub-step of a row, with D(i) = y(i + 1) − y(i):
 ///
 ///     u += Σ_m g_m (y(i + m) − 2y(i) + y(i − m)) + nonlinear ∂ℓ/∂φ(y(i)),    next = y + stride u
@@ -166,7 +211,9 @@ bool CompositionStepper::assemble() {
 double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const double* from, const double* differences,
                                     double* to, double* next_differences, double* velocity) const {
   constexpr int strip = 32;
-  const bool has_sources = !family_.sources()->groups.empty();
+  // A processor may have a drift without a kick.
+  const bool has_sources =
+      !family_.sources()->groups.empty() && std::ranges::any_of(step.nonlinear, [](double b) { return b != 0; });
   const ScratchRows slopes(d_, strip * lanes);
   const bool has_gradient = step.gradient != 0 && gradient_.density;
   if (has_gradient) add_gradient(n, step, from, differences, velocity);
@@ -186,7 +233,6 @@ double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const d
       const auto at = row(a) + begin;
       const Strip rows{packs,
                        step.linear.data() + static_cast<std::ptrdiff_t>(a) * reach_,
-                       reach_,
                        step.nonlinear[static_cast<std::size_t>(a)],
                        step.stride,
                        differences + at,
@@ -208,6 +254,8 @@ double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const d
     fill_ends(y);
     (Pack::load(y + last + lanes) - Pack::load(y + last)).store(D + last);
     layout_.fill_halo(D);
+    mirror_differences(D);
+    hold_walls(y, velocity + row(a), a);
   }
   return max_or_nan(largest);
 }
@@ -219,6 +267,7 @@ void CompositionStepper::find_differences(const double* row, double* differences
     for (int v = 0; v < layout_.packs(); ++v)
       (Pack::load(y + layout_.at(v + 1)) - Pack::load(y + layout_.at(v))).store(D + layout_.at(v));
     layout_.fill_halo(D);
+    mirror_differences(D);
   }
 }
 
@@ -247,6 +296,11 @@ void CompositionStepper::set(RowBuffer& rows, const std::vector<double>& section
       throw NotFinite("the rows of the start are not finite");
     layout_.scatter(site, rows.row(0) + static_cast<std::size_t>(a) * size_, turn);
   }
+  if (&rows != &newest_) return;
+  for (Held& held : held_)
+    for (int a = 0; a < d_; ++a)
+      held.value[static_cast<std::size_t>(a)] =
+          rows.row(0)[static_cast<std::size_t>(a) * size_ + static_cast<std::size_t>(held.slot)];
 }
 
 void CompositionStepper::start(const std::vector<std::vector<double>>& rows) {
@@ -270,6 +324,10 @@ void CompositionStepper::start(const std::vector<std::vector<double>>& rows) {
 void CompositionStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
   set(newest_, row0, options_.turn);
   set(velocity_, momenta, 0);
+  // A natural wall has half a cell, and half of its momentum; steps take the equation of a whole one.
+  for (const int slot : natural_)
+    for (int a = 0; a < d_; ++a)
+      velocity_.row(0)[static_cast<std::size_t>(a) * size_ + static_cast<std::size_t>(slot)] *= 2;
   for (std::size_t at = 0; at < static_cast<std::size_t>(d_) * size_; ++at) velocity_.row(0)[at] /= scale_;
   n_ = 0;
   known_ = 0;
@@ -404,6 +462,7 @@ void CompositionStepper::visit(SavedState& state) {
   };
   visit_rows("y", newest_), visit_rows("velocity", velocity_), visit_rows("differences", differences_);
   visit_rows("slabs", slabs_), visit_rows("saved", saved_);
+  for (Held& held : held_) state.numbers("wall", held.value.data(), held.value.size());
   state("which differences", at_), state("newest row", n_), state("row saved", saved_row_), state("slabs held", known_);
 }
 

@@ -22,6 +22,9 @@ namespace delf {
 /// node 0, adds its gradient there. Where rows are those of a kernel, its processor gives the first one, and is undone on
 /// copies of rows that are observed. A step that no one looks at writes rows over
 /// each other; one that is looked at keeps those between its sub-steps.
+///
+/// On an interval the families with the placement of a mirror say that the field goes on beyond the walls as its mirror image:
+/// steps take the equations of the first family everywhere, and halos are mirror images.
 class CompositionStepper final : public StepMethod {
  public:
   /// Nothing if the equations are not of this kind.
@@ -35,7 +38,7 @@ class CompositionStepper final : public StepMethod {
   StepState state() const override { return {n_, 0}; }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
-  void observe(int back, std::vector<double>& fields, std::vector<double>& rates) const override;
+  void observe(int back, std::vector<double>& fields, std::vector<double>* rates) const override;
   double residual() const override;
 
   StepReport report(bool residual) const override;
@@ -54,18 +57,21 @@ class CompositionStepper final : public StepMethod {
   struct ForceGradient {
     const ForceSquared* density = nullptr;
     std::vector<double> weights, sums;  ///< w_m/k² at [m − 1]; Σ_{m > j} w_m/k² at [j]
-    double kick = 0;              ///< hk/K
+    double kick = 0;                    ///< hk/K
   };
 
   CompositionStepper(const LatticeSystem&, const StepOptions&);
   /// False where an equation is not of the form above.
   bool assemble();
   SubStep read_sub_step(int s, bool from_below, bool& fits) const;
+  void find_mirrors();
+  void mirror_differences(double* D) const;
+  void hold_walls(double* y, double* velocity, int a) const;
   static std::optional<ForceGradient> read_gradient(const StencilFamily& of, const StencilFamily&, double k);
   void prepare_processor();
   void add_gradient(std::int64_t n, const SubStep&, const double* from, const double* differences,
                     double* velocity) const;
-  void undo_processor(std::int64_t n) const;
+  void undo_processor(std::int64_t n, bool with_rates) const;
   double sub_step(std::int64_t n, const SubStep&, const double* from, const double* differences, double* to,
                   double* next_differences, double* velocity) const;
   void find_differences(const double* row, double* differences) const;
@@ -86,32 +92,46 @@ class CompositionStepper final : public StepMethod {
   int scratch_rows() const { return S_ < 3 ? 3 - S_ : 0; }
   void require(int slabs) const;
 
+  /// A slot of a halo that repeats another one, or its opposite.
+  struct Image {
+    int to, from;
+    double sign;
+  };
+
   static constexpr int slabs_held = 4;
   const LatticeSystem& system_;
   StepOptions options_;
   const StencilFamily& family_;
   ForceGradient gradient_;  ///< without a density where there is none
   int d_, S_, reach_;
-  double scale_ = 1;  ///< K: velocities are P/K
+  double scale_ = 1;         ///< K: velocities are P/K
   RowLayout layout_, ends_;  ///< with the halo of differences, and of rows: one pack
-  std::size_t size_;  ///< of a row of d components
+  std::size_t size_;         ///< of a row of d components
+  // Of an interval: images of differences and of what lies at sites, the slots of fixed walls with their values, and natural walls.
+  std::vector<Image> differences_beyond_, values_beyond_;
+  struct Held {
+    int slot;
+    std::vector<double> value;
+  };
+  std::vector<Held> held_;
+  std::vector<int> natural_;
   // Room of a sub-step: where its strip begins, where a gradient goes, the last values of the strip before.
   mutable std::vector<const double*> now_;
   mutable std::vector<double*> out_;
   mutable std::vector<Pack> before_;
   std::vector<SubStep> steps_;
-  SubStep first_;  ///< from row 0, with nothing below
+  SubStep first_;                        ///< from row 0, with nothing below
   std::vector<SubStep> process_, undo_;  ///< of the processor
   RowBuffer positions_;
   // Each "row" has the rows of its d components one after the other.
-  RowBuffer newest_, velocity_;  ///< y_n; P/K of the sub-step before it
+  RowBuffer newest_, velocity_;    ///< y_n; P/K of the sub-step before it
   mutable RowBuffer differences_;  ///< of y_n to its neighbours, and others, by turns
-  int at_ = 0;                   ///< which are those of y_n
-  mutable RowBuffer slabs_;      ///< of the newest steps: S nodes each; the oldest is room to work in
-  RowBuffer saved_;              ///< y and P/K, now and then: a row that overflows is found again from there
-  mutable RowBuffer scratch_;    ///< of the residual, where S nodes are too few
-  mutable RowBuffer squares_;    ///< ∂ℓ̃/∂φ, ∂ℓ̃/∂φ_xx of the squared force, and ∂ℓ/∂φ
-  mutable RowBuffer observed_;   ///< a row to be observed: y and P/K
+  int at_ = 0;                     ///< which are those of y_n
+  mutable RowBuffer slabs_;        ///< of the newest steps: S nodes each; the oldest is room to work in
+  RowBuffer saved_;                ///< y and P/K, now and then: a row that overflows is found again from there
+  mutable RowBuffer scratch_;      ///< of the residual, where S nodes are too few
+  mutable RowBuffer squares_;      ///< ∂ℓ̃/∂φ, ∂ℓ̃/∂φ_xx of the squared force, and ∂ℓ/∂φ
+  mutable RowBuffer observed_;     ///< a row to be observed: y and P/K
   mutable RowBuffer observed_differences_;
   std::int64_t n_ = 0, saved_row_ = -1;
   int known_ = 0;  ///< newest slabs that are held

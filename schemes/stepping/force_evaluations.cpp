@@ -34,7 +34,7 @@ double forces_in_a_pass(const LatticeSystem& system) {
   double forces = 0;
   for (const auto& family : system.families()) {
     const SourceTerms* sources = family->sources();
-    if (!sources) continue;
+    if (!sources || family->pattern().is_of_wall()) continue;
     std::vector<std::vector<std::vector<Part>>> shapes;
     for (const SourceTerms::Group& group : sources->groups)
       if (const auto shape = shape_of(group); std::ranges::count(shapes, shape) == 0) shapes.push_back(shape);

@@ -103,6 +103,12 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
       case Placement::right_wall:
         one += " at the right wall, natural";
         break;
+      case Placement::left_mirror:
+        one += " at the left wall, pairs with mirror images";
+        break;
+      case Placement::right_mirror:
+        one += " at the right wall, pairs with mirror images";
+        break;
     }
     one += family->is_variational() ? "\nresidual     dL/dy of a discrete Lagrangian\n"
                                     : "\nresidual     given directly: no Lagrangian, not multisymplectic\n";

@@ -21,8 +21,8 @@ struct StepOptions {
   int seed_order = 8;        ///< rows that the seed of an implicit step is extrapolated from
   int max_iterations = 50;
   Fibre fibre = Fibre::real;
-  double turn = 0;           ///< φ(x + L) − φ(x)
-  int threads = 1;           ///< that explicit steps are shared by; the bits are the same for any number
+  double turn = 0;  ///< φ(x + L) − φ(x)
+  int threads = 1;  ///< that explicit steps are shared by; the bits are the same for any number
   Processor processor =
       {};  ///< rows are those of a kernel: it gives the first, and is undone on copies that are observed
 };
@@ -55,12 +55,12 @@ struct StepState {
 /// What a stepper is like.
 struct StepReport {
   int starting_rows = 2;
-  std::vector<int> behind = {};       ///< of each component, rows before the newest that its newest is; none: 0
+  std::vector<int> behind = {};  ///< of each component, rows before the newest that its newest is; none: 0
   bool iterates = true, matrix_free = false;
-  std::string solver = {};            ///< in words
-  const RowLayout* layout = nullptr;  ///< of rows by lanes; null when stepped slab by slab
+  std::string solver = {};                   ///< in words
+  const RowLayout* layout = nullptr;         ///< of rows by lanes; null when stepped slab by slab
   std::size_t bytes = 0, bytes_to_come = 0;  ///< allocated now; on top while it steps, and by residual() if asked for
-  std::string memory = {};            ///< both, in parts
+  std::string memory = {};                   ///< both, in parts
 };
 
 /// How a system is stepped: by whole rows (RowStepper), by sub-steps (CompositionStepper) or slab by slab (SlabStepper).
@@ -82,7 +82,7 @@ class StepMethod {
   virtual StepState state() const = 0;
   virtual std::vector<double> row(int back) const = 0;
   virtual Window window(int rows) const = 0;
-  virtual void observe(int /*back*/, std::vector<double>& /*fields*/, std::vector<double>& /*rates*/) const {
+  virtual void observe(int /*back*/, std::vector<double>& /*fields*/, std::vector<double>* /*rates*/) const {
     throw std::logic_error("delf: these rows have no processor");
   }
   virtual double residual() const = 0;

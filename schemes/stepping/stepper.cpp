@@ -15,7 +15,9 @@ namespace {
 std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan& plan, StepOptions options) {
   options.tolerance = std::max(options.tolerance, smallest_tolerance);
   const bool processed = !options.processor.empty();
-  if (!processed && goes_by_rows(system, plan)) {
+  const bool mirrored = std::ranges::any_of(
+      system.families(), [](const auto& family) { return family->pattern().placement == Placement::left_mirror; });
+  if (!processed && !mirrored && goes_by_rows(system, plan)) {
     try {
       return std::make_unique<RowStepper>(system, plan, options);
     } catch (const NoConvergence&) {

@@ -57,9 +57,9 @@ class Stepper {
   std::vector<double> row(int back) const { return method_->row(back); }
   /// Rows are those of a kernel: a processor makes them of φ and φ_t at the start.
   bool is_processed() const { return processed_; }
-  /// The fields and their rates [i·d + a] at the newest row or one before it, the processor undone on a copy. For
+  /// The fields and, unless null, their rates [i·d + a] at the newest row or one before it, the processor undone on a copy. For
   /// is_processed() alone.
-  void observe(int back, std::vector<double>& fields, std::vector<double>& rates) const {
+  void observe(int back, std::vector<double>& fields, std::vector<double>* rates) const {
     method_->observe(back, fields, rates);
   }
   /// The newest rows, every component at its own row: for checks.
@@ -78,8 +78,8 @@ class Stepper {
   /// increment from one to the other, all with the pack after the end.
   void newest_pair(const double** rows) const { method_->newest_pair(rows); }
 
-  bool iterates() const { return report_.iterates; }          ///< a step is not one solve
-  bool matrix_free() const { return report_.matrix_free; }    ///< one number for all sites: no matrix is allocated
+  bool iterates() const { return report_.iterates; }        ///< a step is not one solve
+  bool matrix_free() const { return report_.matrix_free; }  ///< one number for all sites: no matrix is allocated
   /// What it is like now: its solver, its memory, and what comes on top by residual() if that is asked for. What depends on
   /// the data is not foreseen: see Simulation::bytes_of_run.
   StepReport report(bool residual) const { return method_->report(residual); }

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "jets/force_squared.hpp"
 #include "jets/tables/pair_element.hpp"
@@ -9,6 +10,7 @@
 #include "jets/tables/suited_pairs.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/methods/pair_parts.hpp"
 #include "schemes/stability/splitting_limit.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/coupled_sine_gordon.hpp"
@@ -87,7 +89,7 @@ Row last_row(const std::string& kernel, int sites, int steps, bool processed) {
   scheme.run(steps);
   if (!processed) return scheme.fields();
   Row phi, rate;
-  scheme.evolution.stepper().observe(0, phi, rate);
+  scheme.evolution.stepper().observe(0, phi, &rate);
   return phi;
 }
 
@@ -124,24 +126,35 @@ TEST_CASE("processed kernels are of effective order 4 and 6, and of 2 without th
   }
 }
 
-TEST_CASE("kernels satisfy the form formula on their own rows, force gradients and all") {
+TEST_CASE("kernels satisfy the form formula on their own rows, force gradients, walls and all") {
   std::mt19937_64 random(72);
   constexpr double k = 0.6, h = 0.3;
-  const auto families = [&](const char* kernel, auto density, int p) {
+  const Lattice lines[] = {Lattice::circle(16, 16 * k), Lattice::interval(16, 15 * k),
+                           Lattice::interval(16, 15 * k, Wall::natural, Wall::fixed)};
+  const auto families = [&](const char* kernel, auto density, int p, const Lattice& lattice) {
     const Splitting splitting = processed_splitting(kernel);
     FamilyList list{jet_family(pair_element(splitting, p), density)};
-    if (splitting.gradient != 0)
-      list.push_back(std::make_shared<JetFamily>(
-          force_table(p, splitting.offset),
-          std::make_shared<ForceSquared>(std::make_shared<BatchOf<decltype(density)>>(density),
-                                         splitting.gradient * h * h)));
+    for (const StencilTable& wall : at_both_walls(pair_space(pair_weights(p)), lattice)) {
+      StencilTable term = product(splitting_element(splitting), wall);
+      term.pattern.placement = wall.pattern.placement;
+      list.push_back(jet_family(std::move(term), density));
+    }
+    if (splitting.gradient == 0) return list;
+    const auto squares = std::make_shared<ForceSquared>(std::make_shared<BatchOf<decltype(density)>>(density),
+                                                        splitting.gradient * h * h);
+    const StencilTable force = force_table(p, splitting.offset);
+    list.push_back(std::make_shared<JetFamily>(force, squares));
+    for (StencilTable& wall : at_both_walls(force, lattice))
+      list.push_back(std::make_shared<JetFamily>(std::move(wall), squares));
     return list;
   };
-  for (const auto& [list, S] : {std::pair{families("ti4", SineGordon{}, 2), 1},
-                                {families("ti4", PhiFour{}, 1), 1},
-                                {families("b6", SineGordon{}, 2), 6}})
-    for (int trial = 0; trial < 3; ++trial) {
-      Patch patch(Lattice::circle(16, 16 * k), list, h, random_centres(random, 12, S));
+  for (const Lattice& lattice : lines)
+    for (int trial = 0; trial < 6; ++trial) {
+      const int S = trial % 3 == 2 ? 6 : 1;
+      const FamilyList list = trial % 3 == 0   ? families("ti4", SineGordon{}, 2, lattice)
+                              : trial % 3 == 1 ? families("ti4", PhiFour{}, 1, lattice)
+                                               : families("b6", SineGordon{}, 2, lattice);
+      Patch patch(lattice, list, h, random_centres(random, lattice.is_circle() ? 12 : 0, S));
       REQUIRE(patch.U().regular());
       REQUIRE(!patch.on.equations().empty());
       patch.y = random_values(random, patch.on.nodes());
@@ -152,6 +165,90 @@ TEST_CASE("kernels satisfy the form formula on their own rows, force gradients a
       pair.V[*node] += 0.01;  // V is no first variation any more
       CHECK(patch.form_formula(pair).relative() > 1e-8);
     }
+}
+
+namespace {
+
+/// Rows of a scheme that start from sin and cos on an interval of 24 cells, or on a circle of the images of two intervals.
+struct BetweenWalls {
+  Problem problem;
+  Simulation simulation;
+  std::size_t C;
+
+  BetweenWalls(const std::string& method, const std::string& kernel, const Lattice& lattice, bool odd)
+      : problem([&] {
+          Problem p;
+          p.method = method, p.lattice = lattice, p.time_step = 0.2;
+          p.parameters["lattice.space_order"] = 8;
+          if (method == "processed") p.parameters["scheme.kernel"] = kernel;
+          return p;
+        }()),
+        simulation(problem),
+        C(simulation.components().size()) {
+    const auto sites = static_cast<std::size_t>(lattice.sites());
+    Row row(sites * C), rate(sites * C);
+    for (std::size_t i = 0; i < sites; ++i)
+      for (std::size_t c = 0; c < C; ++c) {
+        const double x = M_PI * static_cast<double>(i) / 24;
+        row[i * C + c] =
+            odd ? 1.5 * std::sin(x) + 0.4 * std::sin(2 * x) : 0.3 + 1.5 * std::cos(x) - 0.2 * std::cos(2 * x);
+        rate[i * C + c] = odd ? 0.5 * std::sin(2 * x) : 0.2 + 0.5 * std::cos(x);
+      }
+    simulation.start_legendre(row, rate);
+    while (simulation.newest() < 60) simulation.step();
+  }
+  Row fields() const {
+    Row phi(static_cast<std::size_t>(problem.lattice.sites()));
+    simulation.observe(0, phi);
+    return phi;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("between walls wide pairs have the rows of a circle of mirror images, and solve the generated equations") {
+  for (const Wall wall : {Wall::fixed, Wall::natural})
+    for (const auto& [method, kernel] : {std::pair{"processed", "ti4"}, {"processed", "b6"}, {"composition", ""}}) {
+      const bool odd = wall == Wall::fixed;
+      const BetweenWalls interval(method, kernel, Lattice::interval(25, 12, wall, wall), odd),
+          circle(method, kernel, Lattice::circle(48, 24), odd);
+      const Row inside = interval.fields(), images = circle.fields();
+      double furthest = 0;
+      for (std::size_t i = 0; i < 25; ++i) furthest = std::max(furthest, std::abs(inside[i] - images[i]));
+      CAPTURE(method, kernel, odd);
+      CHECK(furthest < 1e-13);
+      const Evolution& evolution = interval.simulation.evolution();
+      CHECK(evolution.stepper().residual() < 1e-14);
+      std::vector<LatticeSystem::Value> values;
+      const Window window = evolution.stepper().window(3);
+      evolution.system().equations(window, window.last_row() - 1, values);
+      double worst = 0, size = 0;
+      for (std::size_t at = 0; at < values.size(); ++at) {
+        if (interval.problem.lattice.is_fixed(static_cast<int>(at / interval.C))) continue;  // no equation
+        worst = std::max(worst, std::abs(values[at].sum)), size = std::max(size, values[at].absolute);
+      }
+      CHECK(worst < 1e-14 * size);
+      if (!odd) continue;
+      // Other walls make other rows.
+      const BetweenWalls mixed(method, kernel, Lattice::interval(25, 12, wall, Wall::natural), odd);
+      CHECK(distance(mixed.fields(), inside) > 1e-2);
+    }
+}
+
+TEST_CASE("wide pairs refuse a wall that the density has no mirror image about") {
+  for (const auto& [theory, wall, fits] : {std::tuple{"phi4", 1.0, false},
+                                           {"phi4", 0.0, true},
+                                           {"sine-gordon", M_PI, true},
+                                           {"sine-gordon", 1.0, false}}) {
+    Problem p;
+    p.theory = theory, p.method = "processed", p.parameters["scheme.kernel"] = std::string("ti4");
+    p.lattice = Lattice::interval(25, 12), p.time_step = 0.2;
+    Simulation simulation(p);
+    const Row row(25, wall), rate(25, 0.0);
+    CAPTURE(theory, wall);
+    if (fits) CHECK_NOTHROW(simulation.start_legendre(row, rate));
+    else CHECK_THROWS_WITH(simulation.start_legendre(row, rate), Catch::Contains("boundary.left"));
+  }
 }
 
 TEST_CASE("a kernel returns over its own rows, and its rows solve the generated equations") {
@@ -198,19 +295,19 @@ TEST_CASE("the processor is undone at any row that is held, with the bits of oth
     Kernel scheme(p, true), other(p, true);
     scheme.start(first.phi, first.rate), other.start(first.phi, first.rate);
     Row phi, rate, before, before_rate, again;
-    scheme.evolution.stepper().observe(1, phi, rate);
+    scheme.evolution.stepper().observe(1, phi, &rate);
     CAPTURE(kernel);
     // at the start, and what was done is undone
     CHECK(distance(phi, first.phi) < 1e-13);
     CHECK(distance(rate, first.rate) < 1e-12);
     scheme.run(40);
-    scheme.evolution.stepper().observe(0, phi, rate);
+    scheme.evolution.stepper().observe(0, phi, &rate);
     while (other.evolution.stepper().newest() < 40) other.evolution.stepper().step(false);
-    other.evolution.stepper().observe(0, again, before_rate);
+    other.evolution.stepper().observe(0, again, &before_rate);
     CHECK(phi == again);
     // a row that was observed before it became the row before
     scheme.evolution.stepper().step(true);
-    scheme.evolution.stepper().observe(1, before, before_rate);
+    scheme.evolution.stepper().observe(1, before, &before_rate);
     CHECK(distance(before, phi) < 1e-13);
     CHECK(distance(scheme.fields(), phi) > 1e-3);  // the kernel's own row is another one
   }
