@@ -17,7 +17,7 @@ namespace delf::peers {
 struct CircleRow {
   explicit CircleRow(int number) : sites(static_cast<std::size_t>(number)) {}
 
-  static constexpr std::size_t halo = (4 + lanes - 1) / lanes * lanes;  ///< 4 sites at least
+  static constexpr std::size_t halo = (6 + lanes - 1) / lanes * lanes;  ///< 6 sites at least
   std::size_t sites;
 
   std::size_t end() const { return halo + whole_packs(sites); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tools/peers/odeint_peers.hpp"
 
+#include <algorithm>
+#include <boost/numeric/odeint/stepper/base/symplectic_rkn_stepper_base.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <boost/numeric/odeint/stepper/symplectic_rkn_sb3a_mclachlan.hpp>
 #include <boost/numeric/odeint/stepper/velocity_verlet.hpp>
@@ -8,6 +10,7 @@
 #include <functional>
 #include <utility>
 
+#include "jets/tables/splitting.hpp"
 #include "tools/peers/flush_to_zero.hpp"
 #include "tools/peers/method_of_lines.hpp"
 #include "tools/peers/odeint_algebra.hpp"
@@ -99,6 +102,79 @@ class McLachlan final : public TwoRows<Lines> {
       stepper_;
 };
 
+/// Blanes and Moan's symmetric Nyström methods, kicks first, by odeint's stepper for coefficients of one's own. Kicks where two
+/// steps meet are one: a call begins with a kick before its first step, and takes the half that is too much back at its end.
+template <class Lines, int order_in_time, std::size_t stages>
+class BlanesMoan : public TwoRows<Lines> {
+ public:
+  static constexpr int order = order_in_time;
+  static constexpr std::size_t forces = stages;
+
+  explicit BlanesMoan(const WaveEquation& equation)
+      : TwoRows<Lines>(equation),
+        end_(splitting_of_order(order).kicks.front()),
+        stepper_(drifts(), kicks()),
+        first_(this->phi_.size()),
+        newest_(&first_) {
+    stepper_.adjust_size(this->phi_);
+  }
+  void start(std::span<const double> phi, std::span<const double> phi_t) override {
+    TwoRows<Lines>::start(phi, phi_t);
+    this->lines_.acceleration(this->phi_.data(), first_.data());
+    newest_ = &first_;
+  }
+  void advance(double h, std::int64_t steps) override {
+    if (steps <= 0) return;
+    const FlushToZero guard;
+    const auto system = [this](const Row& q, Row& a) {
+      this->lines_.acceleration(writable(q), a.data());
+      newest_ = &a;  // the stepper keeps one row for all of them
+    };
+    kick(end_ * h);
+    for (std::int64_t n = 0; n < steps; ++n) stepper_.do_step(std::ref(system), this->phi_, this->phi_t_, 0.0, h);
+    kick(-end_ * h);
+  }
+
+ private:
+  using Stepper =
+      odeint::symplectic_nystroem_stepper_base<stages, order_in_time, Row, Row, double, Row, Row, double, PackAlgebra,
+                                               odeint::default_operations, odeint::initially_resizer>;
+  static typename Stepper::coef_type drifts() {
+    typename Stepper::coef_type a;
+    std::ranges::copy(splitting_of_order(order).drifts, a.begin());
+    return a;
+  }
+  static typename Stepper::coef_type kicks() {
+    const std::vector<double> all = splitting_of_order(order).kicks;
+    typename Stepper::coef_type b;
+    std::copy(all.begin() + 1, all.end(), b.begin());
+    b[stages - 1] += all.front();
+    return b;
+  }
+  void kick(double c) {
+    PackAlgebra::for_each3(this->phi_t_, this->phi_t_, *newest_,
+                           odeint::default_operations::scale_sum2<double>(1.0, c));
+  }
+
+  double end_;
+  Stepper stepper_;
+  Row first_;
+  const Row* newest_;  ///< the force at φ
+};
+// Beyond these h times the highest frequency grows at once; there are weak resonances near π before.
+template <class Lines>
+struct BlanesMoan4 final : BlanesMoan<Lines, 4, 6> {
+  static constexpr const char* name = "srkn-6b 4";
+  static constexpr double stable = 5.026;
+  using BlanesMoan<Lines, 4, 6>::BlanesMoan;
+};
+template <class Lines>
+struct BlanesMoan6 final : BlanesMoan<Lines, 6, 11> {
+  static constexpr const char* name = "srkn-11b 6";
+  static constexpr double stable = 9.073;
+  using BlanesMoan<Lines, 6, 11>::BlanesMoan;
+};
+
 /// The state is φ, then φ_t.
 template <class Lines>
 class Fehlberg final : public Peer {
@@ -158,7 +234,9 @@ PeerInfo info() {
 std::vector<PeerInfo> odeint_peers() {
   return {info<VelocityVerlet, 1>(), info<VelocityVerlet, 2>(), info<VelocityVerlet, 3>(), info<VelocityVerlet, 4>(),
           info<McLachlan, 1>(),      info<McLachlan, 2>(),      info<McLachlan, 3>(),      info<McLachlan, 4>(),
-          info<Fehlberg, 1>(),       info<Fehlberg, 2>(),       info<Fehlberg, 3>(),       info<Fehlberg, 4>()};
+          info<BlanesMoan4, 2>(),    info<BlanesMoan4, 4>(),    info<BlanesMoan4, 6>(),    info<McLachlan, 6>(),
+          info<BlanesMoan6, 3>(),    info<BlanesMoan6, 4>(),    info<BlanesMoan6, 6>(),    info<Fehlberg, 1>(),
+          info<Fehlberg, 2>(),       info<Fehlberg, 3>(),       info<Fehlberg, 4>()};
 }
 
 }  // namespace delf::peers

@@ -206,7 +206,7 @@ bool has_mass_in_flow(const PeerInfo& info) { return info.name.find("mass in the
 TEST_CASE("peers have the order in time that they state, for every potential, and a wrong force is seen") {
   for (const Potential potential : {Potential::none, Potential::quadratic, Potential::sine_gordon, Potential::phi4}) {
     const WaveEquation e = equation(potential);
-    for (const int order_space : {0, 2, 4, 6, 8}) {
+    for (const int order_space : {0, 2, 4, 6, 8, 12}) {
       CAPTURE(static_cast<int>(potential), order_space);
       const Rows truth = solution(e, order_space);
       CHECK(difference(solution(e, order_space, 1, rough, 32), truth) < 5e-12);
@@ -263,6 +263,9 @@ TEST_CASE("peers have the order in space that they state, and another order is d
   const int fine = 120;
   const Rows truth = solution(light(fine), 0, 1, 0, 64);
   for (const PeerInfo& info : peers()) {
+    // Of order 12 the power of k shows between the truth's own error and too few sites to have one: the first test
+    // holds it against the symbol.
+    if (info.order_space > 8) continue;
     CAPTURE(info.name);
     const auto error = [&](int sites) {
       const WaveEquation e = light(sites);
@@ -275,14 +278,15 @@ TEST_CASE("peers have the order in space that they state, and another order is d
       }
       return difference(rows, sampled);
     };
-    const double coarse = error(20), finer = error(40);
+    const double coarse = error(20), finer = error(40), found = std::log2(coarse / finer);
+    CAPTURE(coarse, finer, found);
     if (is_split_step(info)) {
       CHECK(finer < 2e-9);
       CHECK(error(12) > 1e-7);
     } else {
-      CHECK(is_order(std::log2(coarse / finer), info.order_space));
-      CHECK_FALSE(is_order(std::log2(coarse / finer), info.order_space + 2));
-      CHECK_FALSE(is_order(std::log2(coarse / finer), info.order_space - 2));
+      CHECK(is_order(found, info.order_space));
+      CHECK_FALSE(is_order(found, info.order_space + 2));
+      CHECK_FALSE(is_order(found, info.order_space - 2));
     }
   }
 }
@@ -351,7 +355,9 @@ TEST_CASE("peers refuse what they cannot run") {
     CHECK_THROWS_AS(peer->copy(wrong, right), std::invalid_argument);
     CHECK_THROWS_AS(peer->copy(right, wrong), std::invalid_argument);
   }
-  CHECK(names.count("odeint rkn-mclachlan 4, differences 6") == 1);
+  for (const char* name : {"odeint rkn-mclachlan 4, differences 6", "odeint srkn-6b 4, differences 8",
+                           "odeint srkn-11b 6, differences 12"})
+    CHECK(names.count(name) == 1);
 }
 
 TEST_CASE("peers know theories by the names in scenes") {

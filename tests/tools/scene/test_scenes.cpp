@@ -95,7 +95,9 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
                                           "wave-packet",
                                           "workprecision-breather",
                                           "workprecision-collision",
-                                          "workprecision-moving"});
+                                          "workprecision-moving",
+                                          "workprecision-packet",
+                                          "workprecision-phi4"});
 }
 
 TEST_CASE("every command that a scene names runs, and warns of nothing") {
