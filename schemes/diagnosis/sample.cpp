@@ -43,6 +43,7 @@ Sample::Sample(const Evidence& evidence) : evidence_(evidence), fields_(evidence
   }
   rests_ = !(change > 1e-12 * largest);
   first_ = std::clamp(static_cast<int>(steepest / d) - count_ / 2, 0, lattice.sites() - count_);
+  first_ -= first_ % 2;  // bricks keep their parity
   find_schemes();
 }
 

@@ -224,6 +224,12 @@ TEST_CASE("a diagnosis names the scheme that the rows are of") {
   Problem hexagon = scene();
   hexagon.stencil = "hexagon";
   const Rows bricks = engine_rows(hexagon, first);
+  Problem long_wall = hexagon;
+  long_wall.lattice = Lattice::circle(132, 132 * k);
+  const auto bricks_at = [&](int site) {
+    const auto pulse = [&](double t, double x) { return breather(t, x - site * k + 21.3); };
+    return engine_rows(long_wall, {row_of(pulse, 0, 132), row_of(pulse, h, 132)}, 30);
+  };
 
   for (const Case& c : std::vector<Case>{
            {"Vu-Quoc and Li", with(avf), "the equations of vu-quoc-li (scheme.method = vu-quoc-li)", "every second"},
@@ -232,6 +238,9 @@ TEST_CASE("a diagnosis names the scheme that the rows are of") {
            {"at half steps", with(between, scene("sine-gordon", Lattice::circle(N, L), h / 2)),
             "of triangle-vertex of every second row", "site"},
            {"bricks", with(bricks, hexagon), "the equations of hexagon.", "one site further"},
+           {"bricks on a long lattice", with(bricks_at(66), long_wall), "the equations of hexagon.",
+            "one site further"},
+           {"bricks a site on", with(bricks_at(67), long_wall), "the equations of hexagon.", "one site further"},
            {"bricks from an odd frame", with({bricks.begin() + 1, bricks.end()}, hexagon),
             "Its bricks begin one site further", "every second"},
        })
