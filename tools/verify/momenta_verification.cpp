@@ -16,6 +16,9 @@
 #include "schemes/diagnosis/one_step_maps.hpp"
 #include "schemes/diagnosis/own_equations.hpp"
 #include "schemes/diagnosis/rounded_values.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/system/legendre.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/verify/phase_space_check.hpp"
 #include "tools/engine.hpp"
 #include "tools/files/recorded_section.hpp"
@@ -90,6 +93,29 @@ Check check_map(const OneStepMap& map, const CanonicalRows& rows, const std::vec
   return check;
 }
 
+/// Of H(q, p) = p·q̇ − ℓ at every row: the largest change, and where it begins, ends and goes. A map that keeps dq^dp swings
+/// about a modified energy; one that does not has a trend.
+Measured energy_history(const std::vector<double>& H, double time_step) {
+  const auto n = static_cast<double>(H.size());
+  double most = 0, mean = 0, slope = 0, square = 0;
+  std::size_t worst = 0;
+  for (std::size_t j = 0; j < H.size(); ++j) {
+    if (const double off = std::abs(H[j] - H[0]); !(off <= most)) most = off, worst = j;
+    mean += H[j] / n;
+  }
+  for (std::size_t j = 0; j < H.size(); ++j) {
+    const double t = (static_cast<double>(j) - (n - 1) / 2) * time_step;
+    slope += t * (H[j] - mean), square += t * t;
+  }
+  return {.name = "energy H(q, p) of the rows",
+          .region = fmt::format("row {}; {:.8g} first, {:.8g} last, trend {:.2g} a unit of time", worst, H.front(),
+                                H.back(), slope / square),
+          .value = H[0] == 0 ? most : most / std::abs(H[0]),
+          .normaliser = H[0] == 0 ? 1 : std::abs(H[0]),
+          .count = static_cast<std::int64_t>(H.size()),
+          .remark = "largest |H - H of the first row|, relative to that"};
+}
+
 }  // namespace
 
 bool has_momenta_alone(const Scene& scene, const std::string& fields) {
@@ -108,7 +134,10 @@ void verify_momenta(const Scene& scene, const VerifyRequest& request, const std:
   const auto begin = std::chrono::steady_clock::now();
   const Problem plain = explicit_scheme(scene.problem);
   const auto system = fields_system(plain);
-  if (!system || request.unwrap || system->lattice().sites() != scene.problem.lattice.sites()) return;
+  if (!system || request.unwrap) return;
+  // Where sites move, or the scheme has more fields than the theory, rows are not those of an explicit scheme.
+  const Simulation simulation = build(scene, 0);
+  if (simulation.evolution().system().moves() || simulation.count(Role::field) != system->components()) return;
   CanonicalRows rows(fields, *system, scene, "--fields");
   if (!rows.section().momenta(0) || rows.section().rows() < 4) return;
   require_recorded_parameters(scene, fields, rows.section().scene());
@@ -163,15 +192,21 @@ void verify_momenta(const Scene& scene, const VerifyRequest& request, const std:
   for (int c = 0; c < system->components(); ++c)
     held = held || system->is_held(0, c) || system->is_held(system->lattice().sites() - 1, c);
   if (request.wants("noether") && !held)
-    symmetries = requested_symmetries(scene, request, build(scene, 0).theory(), *system);
+    symmetries = requested_symmetries(scene, request, simulation.theory(), *system);
   PhaseSpaceCheck check(symmetries, of_steps, rounding);
+  std::vector<double> energies;  // on a point, H(q, p) of every row
   for (std::int64_t j = 0; j < rows.section().rows() && !Interrupt::asked(); ++j) {
     std::vector<CanonicalRow> others;
     for (const CanonicalRows& file : beside)
       if (auto z = file.at(j)) others.push_back(std::move(*z));
-    if (others.size() == beside.size()) check.at(j, *rows.at(j), others);
+    const CanonicalRow here = *rows.at(j);
+    if (others.size() == beside.size()) check.at(j, here, others);
+    if (system->lattice().space() == Space::point)
+      energies.push_back(
+          hamiltonian(simulation.theory().density(), here.q, here.p, static_cast<double>(j) * scene.problem.time_step));
   }
   for (Check& one : check.checks()) verdict.checks.push_back(std::move(one));
+  if (!energies.empty()) verdict.measured.push_back(energy_history(energies, scene.problem.time_step));
   if (check.too_far())
     verdict.left_out.push_back(
         "symplectic form dq^dp of a step: the differences to the nearby solutions are too large, or rounding");

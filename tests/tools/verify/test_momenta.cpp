@@ -111,6 +111,15 @@ TEST_CASE("rows of a (q, p) program: its map is named, and what it keeps is chec
     const Json* form = check(json, "symplectic form dq^dp of a step");
     REQUIRE((form || std::string(c.format) != "{:.17g}"));
     if (form) CHECK((*form)["passed"] == c.form);
+    // Gauss 2 keeps H to h^4, and position Verlet to h^2
+    for (const Json& measured : json["measured"])
+      if (measured["name"] == "energy H(q, p) of the rows") {
+        const bool fourth_order = c.map(first) == gauss2(first);
+        CHECK(measured["value"] > (fourth_order ? 1e-8 : 1e-6));
+        CHECK(measured["value"] < (fourth_order ? 1e-6 : 1e-2));
+        CHECK(contains(measured["region"].get<std::string>(), "-0.70857143 first"));
+      }
+    CHECK(contains(json["measured"].dump(), "energy H(q, p) of the rows"));
     const Json* momentum = check(json, "Noether with momenta, angular_momentum");
     REQUIRE(momentum);
     CHECK((*momentum)["passed"] == c.momentum);
