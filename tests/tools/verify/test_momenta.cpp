@@ -87,8 +87,8 @@ TEST_CASE("rows of a (q, p) program: its map is named, and what it keeps is chec
   const std::string gauss = "--scheme.method=cgvi --scheme.tableau=gauss2";
   for (const Case& c : std::vector<Case>{
            {"verlet", position_verlet, "", "drift-kick-drift Störmer-Verlet", "not symplectic", true, true, false},
-           {"gauss", gauss2, "", "cgvi gauss2 (scheme.method = cgvi, scheme.tableau = gauss2)", "not symplectic", true,
-            true, false},
+           {"gauss", gauss2, "", "cgvi gauss2 from the frame before it (scheme.method = cgvi, scheme.tableau = gauss2)",
+            "not symplectic", true, true, false},
            {"gauss as stated", gauss2, gauss, "", "", true, true, true},
            {"runge-kutta", runge_kutta, gauss, "Runge-Kutta method of order 4", "is a symplectic", false, false, false},
            {"nine decimals", position_verlet, "", "drift-kick-drift", "Runge", true, true, false, "{:.9f}"},
