@@ -2,14 +2,15 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <sstream>
 #include <string>
 
 #include "lattice/error.hpp"
+#include "lattice/text_parts.hpp"
 #include "tools/files/plain_rows.hpp"
 
 namespace delf {
@@ -46,9 +47,18 @@ PlainArray npy_of(const std::string& all) {
   PlainArray array;
   const std::size_t open = header.find("'shape': ("), close = header.find(')', open);
   if (open == std::string::npos || close == std::string::npos) throw refuse("has no shape");
-  std::istringstream axes(header.substr(open + 10, close - open - 10));
-  for (std::string axis; std::getline(axes, axis, ',');)
-    if (axis.find_first_not_of(' ') != std::string::npos) array.shape.push_back(std::stoul(axis));
+  const auto room = static_cast<double>(all.size());
+  double values = 1;
+  for (const std::string& axis : parts_of(header.substr(open + 10, close - open - 10))) {
+    if (axis.empty()) continue;  // behind the comma of (n,)
+    std::size_t length_of_axis = 0;
+    const auto [end, wrong] = std::from_chars(axis.data(), axis.data() + axis.size(), length_of_axis);
+    values *= static_cast<double>(length_of_axis);
+    if (wrong != std::errc{} || end != axis.data() + axis.size() || static_cast<double>(length_of_axis) > room ||
+        values > room)
+      throw refuse("has a shape of which it does not hold the values");
+    array.shape.push_back(length_of_axis);
+  }
   if (array.shape.empty() || array.shape.size() > 3) throw refuse("has no axis, or more than three");
   const std::size_t count = product(array.shape), size = doubles ? sizeof(double) : sizeof(float);
   if (all.size() < begin + length + count * size) throw refuse("is cut short");

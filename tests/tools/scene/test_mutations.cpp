@@ -115,6 +115,9 @@ TEST_CASE("rows with wrong bytes are refused, or read") {
   npy += static_cast<char>(head.size());
   npy += '\0';
   npy += head + std::string(4 * 3 * 8, '\x3f');
+  std::string negative = npy;
+  negative.replace(negative.find("(4, 3)"), 6, "(4,-3)");
+  CHECK_THROWS_AS(open_plain_rows(folder.write("c.npy", negative), 3, 1), BadInput);
   CHECK(refused(150, npy,
                 [&](const std::string& text) { all_of(*open_plain_rows(folder.write("c.npy", text), 3, 1)); }) > 20);
 }
