@@ -11,6 +11,9 @@ namespace delf {
 
 bool has_mirror_images(const BatchDensity& density, Mirror mirror, std::span<const double> wall) {
   constexpr int trials = 64;
+  // The tail of a kink ends near its vacuum, not on it. Equations and action agree about any wall; what is not even costs as
+  // much accuracy.
+  constexpr double tolerance = 1e-6;
   const int d = density.components(), m = density.variables();
   const ScratchRows jets(m, trials), images(m, trials), x(1, trials), values(2, trials);
   std::mt19937 random(7);
@@ -26,7 +29,7 @@ bool has_mirror_images(const BatchDensity& density, Mirror mirror, std::span<con
     density.value({trials, jets.data(), t, x[0]}, values[0]);
     density.value({trials, images.data(), t, x[0]}, values[1]);
     for (int i = 0; i < trials; ++i)
-      if (!(std::abs(values[0][i] - values[1][i]) <= 1e-12 * (1 + std::abs(values[0][i])))) return false;
+      if (!(std::abs(values[0][i] - values[1][i]) <= tolerance * (1 + std::abs(values[0][i])))) return false;
     return true;
   };
   if (!even(2, [](int, double phi_x) { return -phi_x; })) return false;

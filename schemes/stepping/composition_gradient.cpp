@@ -62,6 +62,7 @@ void CompositionStepper::add_gradient(std::int64_t n, const SubStep& step, const
   for (int a = 0; a < d_; ++a) {
     const auto row = static_cast<std::ptrdiff_t>(a) * static_cast<std::ptrdiff_t>(size_);
     double* const G = squares_.row(1) + row;
+    for (const Held& held : held_) G[held.slot] = 0;  // a sum of images, with the opposite sign
     layout_.fill_halo(G);
     for (const Image& image : values_beyond_) G[image.to] = image.sign * G[image.from];
     const std::ptrdiff_t at = row + layout_.at(0);

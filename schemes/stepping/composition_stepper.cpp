@@ -188,18 +188,24 @@ void CompositionStepper::find_mirrors() {
       if (i >= last) differences_beyond_.push_back({to, layout_.slot(2 * last - 1 - i), odd(false) ? 1.0 : -1.0});
       if (i > last) values_beyond_.push_back({to, layout_.slot(2 * last - i), odd(false) ? -1.0 : 1.0});
     }
-  for (const int wall : {0, last})
+  for (const int wall : {0, last}) {
+    if (lattice.is_fixed(wall))
+      for (const int slot : layout_.slots_of(wall == 0 ? 0 : last - 1))
+        differences_at_walls_.push_back(
+            {slot, layout_.slot(wall == 0 ? 1 : last), layout_.slot(wall == 0 ? 0 : last - 1)});
     for (const int slot : layout_.slots_of(wall)) {
       if (lattice.is_fixed(wall)) held_.push_back({slot, std::vector<double>(static_cast<std::size_t>(d_))});
       else natural_.push_back(slot);
     }
+  }
 }
 void CompositionStepper::mirror_differences(double* D) const {
   for (const Image& image : differences_beyond_) D[image.to] = image.sign * D[image.from];
 }
-/// A fixed wall keeps its value to the bit.
-void CompositionStepper::hold_walls(double* y, double* velocity, int a) const {
+/// A fixed wall keeps its value to the bit, whatever force there is.
+void CompositionStepper::hold_walls(double* y, double* D, double* velocity, int a) const {
   for (const Held& held : held_) y[held.slot] = held.value[static_cast<std::size_t>(a)], velocity[held.slot] = 0;
+  for (const AtWall& d : differences_at_walls_) D[d.slot] = y[d.above] - y[d.below];
 }
 
 /// One sub-step of a row, with D(i) = y(i + 1) − y(i):
@@ -253,9 +259,9 @@ double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const d
     double *const y = to + row(a), *const D = next_differences + row(a);
     fill_ends(y);
     (Pack::load(y + last + lanes) - Pack::load(y + last)).store(D + last);
+    hold_walls(y, D, velocity + row(a), a);
     layout_.fill_halo(D);
     mirror_differences(D);
-    hold_walls(y, velocity + row(a), a);
   }
   return max_or_nan(largest);
 }

@@ -66,7 +66,7 @@ class CompositionStepper final : public StepMethod {
   SubStep read_sub_step(int s, bool from_below, bool& fits) const;
   void find_mirrors();
   void mirror_differences(double* D) const;
-  void hold_walls(double* y, double* velocity, int a) const;
+  void hold_walls(double* y, double* differences, double* velocity, int a) const;
   static std::optional<ForceGradient> read_gradient(const StencilFamily& of, const StencilFamily&, double k);
   void prepare_processor();
   void add_gradient(std::int64_t n, const SubStep&, const double* from, const double* differences,
@@ -113,6 +113,11 @@ class CompositionStepper final : public StepMethod {
     int slot;
     std::vector<double> value;
   };
+  /// D of a wall and its neighbour.
+  struct AtWall {
+    int slot, above, below;
+  };
+  std::vector<AtWall> differences_at_walls_;
   std::vector<Held> held_;
   std::vector<int> natural_;
   // Room of a sub-step: where its strip begins, where a gradient goes, the last values of the strip before.
