@@ -59,5 +59,5 @@ TEST_CASE("kernels say which pairs and densities they do not take") {
   check_refused(delf_program(folder, "run " + ti4 + "--lattice.gradient_order=12"),
                 {"lattice.gradient_order", "lower it"});
   check_refused(delf_program(folder, "run " + b6 + "--scheme.kernel=b7"), {"scheme.kernel", "not known"});
-  check_refused(delf_program(folder, "run " + b6 + "--lattice.space=interval"), {"lattice.space"});
+  check_refused(delf_program(folder, "run phi4-kink --scheme.method=processed"), {"boundary.left", "not even about"});
 }
