@@ -293,13 +293,19 @@ def kilobytes(count):
     return f"{count / 1e3:.0f}"
 
 
+def steps(scene, option):
+    """The option, or none for a scene without time."""
+    path = pathlib.Path(__file__).parent / "scenes" / (scene.split()[0] + ".ini")
+    return [] if path.exists() and "time = none" in path.read_text() else [option]
+
+
 def run_words(scene, *more):
-    return ["run", *scene.split(), *QUIET, *more, "--out", "out"]
+    return ["run", *scene.split(), *QUIET, *[word for option in more for word in steps(scene, option)], "--out", "out"]
 
 
 def described(program, scenes):
     """Rows of the table without what is measured, and the line below it."""
-    plans = [planned(program.says("plan", *scene.split(), *QUIET, FEW)) for scene in scenes]
+    plans = [planned(program.says("plan", *scene.split(), *QUIET, *steps(scene, FEW))) for scene in scenes]
     cells, line = lettered([left_out for _, _, left_out in plans])
     rows = [[f"`{scene}`", str(own), str(other), "", "", "", "", cell]
             for scene, (own, other, _), cell in zip(scenes, plans, cells)]

@@ -473,7 +473,10 @@ TEST_CASE("a charged particle drifts along H, and its jump is a monitor") {
 TEST_CASE("what the method cannot be built for is refused with the key, the reason and a remedy") {
   Problem circle = problem_of("lotka-volterra", 0.1, {3, "gauss2"});
   circle.lattice = Lattice::circle(31, 20);
-  CHECK(contains(refusal(circle), "lattice.space = point"));
+  circle.parameters["scheme.space"] = "linear";
+  CHECK(contains(refusal(circle), "use lumped or pairs"));
+  circle.parameters["scheme.space"] = "lumped", circle.lattice = Lattice::interval(31, 20, Wall::natural);
+  CHECK(contains(refusal(circle), "boundary.left = natural"));
   CHECK(contains(refusal(problem_of("pendulum", 0.1, {3, "gauss2"})), "not linear in phi_t; use scheme.method = cgvi"));
   CHECK(contains(refusal(text_problem("p*q_t - 0.5*p^2*q_t^2", "q, p", 0.1, {3, "gauss2"})), "not linear in q_t"));
   CHECK(contains(refusal(text_problem("p*q_t - r^2*q_t", "q, p, r", 0.1, {3, "gauss2"})), "even number"));

@@ -144,7 +144,8 @@ TEST_CASE("a tableau is the basis and the rule that it stands for") {
     const double off =
         apart(problem_of("double-pendulum", 0.1, name), problem_of("double-pendulum", 0.1, elements), q, v, 10);
     CAPTURE(name, off);
-    CHECK(off < 1e-13);  // lobatto3 and 4 have another basis of the same space
+    // lobatto3 and 4 have another basis of the same space, and round otherwise
+    CHECK(off < (elements.quadrature == "lobatto" && elements.functions > 3 ? 5e-13 : 1e-13));
   }
   // the mass depends on q: without the bubble it is another method
   CHECK(apart(problem_of("double-pendulum", 0.1, "lobatto2"), problem_of("double-pendulum", 0.1, "stormer-verlet"), q,

@@ -149,7 +149,7 @@ TEST_CASE("a file that is no scene is refused in one line") {
   check_refused(delf_program(folder, "run colision"),
                 {"colision: no such file or shipped scene; did you mean collision?"});
   check_refused(delf_program(folder, "run collision.ini"), {"did you mean collision?"});
-  check_refused(delf_program(folder, "run qwertyuiop"), {"known: asynchronous, born-infeld, breather, collision"});
+  check_refused(delf_program(folder, "run qwertyuiop"), {"known: asynchronous, beam, born-infeld, boussinesq, breather"});
   check_refused(delf_program(folder, "run ''"), {"no such file"});
 }
 
