@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "jets/tables/mirror_table.hpp"
 #include "jets/tables/pair_element.hpp"
 #include "lattice/error.hpp"
@@ -41,6 +43,11 @@ SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitt
     throw BadInput("lattice.space", fmt::format("scheme.method = {}: wide stencils have no neighbours at a point; use "
                                                 "lattice.space = circle or interval",
                                                 p.method));
+  for (const auto& [wall, key] : {std::pair{p.lattice.left(), "boundary.left"}, {p.lattice.right(), "boundary.right"}})
+    if (wall == Wall::clamped)
+      throw BadInput(key, fmt::format("{} = clamped: is for densities with second derivatives, and pairs of sites are "
+                                      "mirrored at walls; use fixed or natural",
+                                      key));
   if (theory.constraint())
     throw BadInput("scheme.method",
                    fmt::format("scheme.method = {}: this version has no constraints between sub-steps; "

@@ -297,6 +297,8 @@ std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simula
   if (start_rows.size() != 2 || (!elements && simulation->starting_rows() != 2) || planned.empty() ||
       !(rows_suffice || elements))
     return std::nullopt;
+  // A start from momenta applies the processor, and a kernel's own momenta have it behind them.
+  if (elements && simulation->is_processed()) return std::nullopt;
 
   const Motion motion(system, elements);
   Reversal reversal;

@@ -36,7 +36,7 @@ struct Reversal {
 
 /// `make` gives fresh simulations that have not started; `start_rows` are rows 0 and 1 of all components, of which a
 /// start reads the fields; the way forward takes steps + 2 steps. Nothing where
-/// neither these are the whole state: schemes of more rows, traces. A step that fails, on
+/// neither these are the whole state: schemes of more rows, traces, processed kernels with nodes inside. A step that fails, on
 /// either way, is a check that fails.
 std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simulation>()>& make,
                                       const std::vector<std::vector<double>>& start_rows, std::int64_t steps,

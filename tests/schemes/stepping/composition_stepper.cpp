@@ -169,6 +169,7 @@ TEST_CASE("compositions refuse what they cannot start from or be built on") {
   CHECK(refused([](Problem& p) { p.parameters["lattice.space_order"] = 22; }) == "lattice.space_order");
   CHECK(refused([](Problem& p) { p.parameters["lattice.space_order"] = 12, p.lattice = Lattice::circle(12, 12); }) ==
         "lattice.sites");
+  CHECK(refused([](Problem& p) { p.lattice = Lattice::interval(30, 12, Wall::clamped); }) == "boundary.left");
   CHECK(refused([](Problem& p) { p.theory = "wave-map"; }) == "scheme.method");
   CHECK(refused([](Problem& p) { p.circle_valued = true; }) == "theory.fibre");
 }

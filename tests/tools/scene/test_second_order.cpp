@@ -148,7 +148,7 @@ TEST_CASE("equations of second order and NLS are verified, and a planted fault i
        {"beam", "boussinesq", "kdv --lattice.stencil=nine-tuple --lattice.courant=0.05", "camassa-holm", "nls",
         "nls --scheme.method=multisymplectic --lattice.stencil=rectangle-symmetric"}) {
     const std::string run = "verify " + scene +
-                            " --lattice.sites=41 --run.steps=14 --verify.checks=forms,noether,equations" +
+                            " --lattice.sites=41 --run.steps=14 --output.figures=off --verify.checks=forms,noether,equations" +
                             " --lattice.length=" +
                             (scene[0] == 'n'   ? "12"
                              : scene[0] == 'c' ? "2*pi"
