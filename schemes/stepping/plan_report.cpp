@@ -43,6 +43,18 @@ void append_table(std::string& out, const LatticeSystem& system, Site site, cons
   }
 }
 
+const char* in_words(Placement placement) {
+  switch (placement) {
+    case Placement::every_site: break;
+    case Placement::brick_wall: return " in a brick wall";
+    case Placement::left_wall: return " at the left wall, natural";
+    case Placement::right_wall: return " at the right wall, natural";
+    case Placement::left_mirror: return " at the left wall, pairs with mirror images";
+    case Placement::right_mirror: return " at the right wall, pairs with mirror images";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string solve_in_words(const SolvePlan& plan, const Stepper& stepper) {
@@ -91,25 +103,7 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
     for (const Site& v : family->pattern().vertices)
       if (std::ranges::find(sites, std::pair(v.time, v.space)) == sites.end()) sites.emplace_back(v.time, v.space);
     for (const auto& [time, space] : sites) one += fmt::format("({:+d},{:+d}) ", time, space);
-    switch (family->pattern().placement) {
-      case Placement::every_site:
-        break;
-      case Placement::brick_wall:
-        one += " in a brick wall";
-        break;
-      case Placement::left_wall:
-        one += " at the left wall, natural";
-        break;
-      case Placement::right_wall:
-        one += " at the right wall, natural";
-        break;
-      case Placement::left_mirror:
-        one += " at the left wall, pairs with mirror images";
-        break;
-      case Placement::right_mirror:
-        one += " at the right wall, pairs with mirror images";
-        break;
-    }
+    one += in_words(family->pattern().placement);
     one += family->is_variational() ? "\nresidual     dL/dy of a discrete Lagrangian\n"
                                     : "\nresidual     given directly: no Lagrangian, not multisymplectic\n";
     if (one == last) {

@@ -18,12 +18,6 @@ namespace {
 
 BadInput bad_file(const std::string& what) { return {"initial.file", what}; }
 
-std::size_t product(const std::vector<std::size_t>& shape) {
-  std::size_t all = 1;
-  for (const std::size_t n : shape) all *= n;
-  return all;
-}
-
 std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
@@ -60,7 +54,7 @@ PlainArray npy_of(const std::string& all) {
     array.shape.push_back(length_of_axis);
   }
   if (array.shape.empty() || array.shape.size() > 3) throw refuse("has no axis, or more than three");
-  const std::size_t count = product(array.shape), size = doubles ? sizeof(double) : sizeof(float);
+  const std::size_t count = array.count(), size = doubles ? sizeof(double) : sizeof(float);
   if (all.size() < begin + length + count * size) throw refuse("is cut short");
   array.values.resize(count);
   for (std::size_t n = 0; n < count; ++n) {

@@ -19,12 +19,6 @@ namespace {
 
 BadInput bad_file(const std::string& what) { return {"initial.file", what}; }
 
-std::size_t product(const std::vector<std::size_t>& shape) {
-  std::size_t all = 1;
-  for (const std::size_t n : shape) all *= n;
-  return all;
-}
-
 std::vector<std::string_view> words_of(std::string_view line) {
   constexpr std::string_view separators = ",; \t\r";
   std::vector<std::string_view> words;
@@ -163,7 +157,7 @@ PlainArray read_dataset(const std::filesystem::path& path, const std::string& na
   H5Sget_simple_extent_dims(space, extent, nullptr);
   PlainArray array;
   array.shape.assign(extent, extent + rank);
-  array.values.resize(product(array.shape));
+  array.values.resize(array.count());
   if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0)
     throw bad_file(fmt::format("{} cannot be read as numbers", name));
   for (const char* beside : {"momentum", "p", "pi"}) {

@@ -2,7 +2,9 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,9 @@ struct PlainArray {
   std::vector<double> values;        ///< the last index runs first
   std::vector<double> times;         ///< of the frames, if the file says them
   std::vector<double> momenta = {};  ///< as many as values, if the file has them
+
+  /// How many values the shape has.
+  std::size_t count() const { return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies{}); }
 };
 
 /// The rows of such an array, for a scheme whose rows have sites · components values. A line is a frame, or a column is,

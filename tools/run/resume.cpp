@@ -5,15 +5,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
-#include <sstream>
 #include <string>
 
-#include "lattice/text_parts.hpp"
 #include "tools/files/checkpoint_file.hpp"
 #include "tools/run/checkpoints.hpp"
 #include "tools/run/run.hpp"
+#include "tools/scene/recorded_scene.hpp"
 #include "tools/scene/scene.hpp"
 #include "tools/scene/scene_text.hpp"
 
@@ -27,24 +25,9 @@ const std::vector<std::string> harmless{"run.until",         "run.steps",     "r
                                         "output.checkpoint", "output.format", "output.titles"};
 bool is_harmless(const std::string& key) { return std::ranges::find(harmless, key) != harmless.end(); }
 
-// The keys of a scene.ini with their values.
-std::map<std::string, std::string> keys_of(const std::string& text) {
-  std::map<std::string, std::string> keys;
-  std::istringstream in(text);
-  std::string section;
-  for (std::string line; std::getline(in, line);) {
-    line = trimmed(line.substr(0, line.find('#')));
-    const auto equals = line.find('=');
-    if (line.starts_with('[')) section = trimmed(line.substr(1, line.find(']') - 1));
-    else if (equals != std::string::npos)
-      keys[section + "." + trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
-  }
-  return keys;
-}
-
 // Throws BadScene if a key that matters has another value than the run began with.
 void check_unchanged(const fs::path& file, const std::string& began_with) {
-  const auto now = keys_of(read_scene_text(file)), then = keys_of(began_with);
+  const auto now = recorded_keys(read_scene_text(file)), then = recorded_keys(began_with);
   const auto refuse = [&](const std::string& key, const std::string& value) {
     throw BadScene(fmt::format("{}: {}: the run began with {}; put that back, or begin a new run from this file",
                                file.string(), key, value.empty() ? "none" : value));

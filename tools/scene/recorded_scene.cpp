@@ -18,7 +18,7 @@ std::map<std::string, std::string> recorded_keys(const std::string& scene_text) 
   for (std::string line; std::getline(lines, line);) {
     line = trimmed(line.substr(0, line.find('#')));
     const std::size_t equals = line.find('=');
-    if (line.starts_with('[')) section = line.substr(1, line.find(']') - 1) + ".";
+    if (line.starts_with('[')) section = trimmed(line.substr(1, line.find(']') - 1)) + ".";
     else if (equals != std::string::npos)
       keys[section + trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
   }
