@@ -11,6 +11,8 @@ extern const MeasurementEntry value_measurement, minimum_measurement, maximum_me
 extern const MeasurementEntry kinks_measurement, charge_measurement, position_measurement, speed_measurement;
 // energy_left.cpp
 extern const MeasurementEntry energy_left_measurement;
+// energy_error_time.cpp
+extern const MeasurementEntry energy_error_time_measurement;
 // wavenumber.cpp
 extern const MeasurementEntry wavenumber_measurement;
 // mode.cpp

@@ -44,11 +44,11 @@ double MeasuredField::place(double x) const {
 }
 
 std::span<const MeasurementEntry> measurements() {
-  static const MeasurementEntry all[] = {value_measurement,        minimum_measurement,      maximum_measurement,
-                                         minimum_time_measurement, maximum_time_measurement, crossings_measurement,
-                                         frequency_measurement,    kinks_measurement,        charge_measurement,
-                                         position_measurement,     speed_measurement,        energy_left_measurement,
-                                         wavenumber_measurement,   mode_measurement,         mode_rate_measurement};
+  static const MeasurementEntry all[] = {
+      value_measurement,        minimum_measurement,   maximum_measurement,   minimum_time_measurement,
+      maximum_time_measurement, crossings_measurement, frequency_measurement, kinks_measurement,
+      charge_measurement,       position_measurement,  speed_measurement,     energy_left_measurement,
+      wavenumber_measurement,   mode_measurement,      mode_rate_measurement, energy_error_time_measurement};
   return all;
 }
 

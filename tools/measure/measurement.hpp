@@ -34,6 +34,7 @@ struct MeasuredField {
 struct MeasuredRow {
   double time;
   std::span<const double> row, other;
+  double energy_error = std::numeric_limits<double>::quiet_NaN();  ///< relative to row 0
 };
 
 /// One number of a run. It sees the recorded rows, in their order, and keeps no more of them than it needs.
@@ -54,6 +55,7 @@ struct MeasurementEntry {
   std::size_t least, most;  ///< how many numbers
   /// Throws BadInput, with no key, for numbers that it cannot take.
   std::unique_ptr<Measurement> (*make)(const MeasuredField&, const std::vector<double>& numbers);
+  bool reads_field = true;  ///< at places, so that sites must stay where they are
 };
 
 /// All measurements: a new one is a file and a line there.

@@ -103,6 +103,7 @@ struct Measures::Expression {
     std::unique_ptr<Measurement> measurement;
   };
   std::vector<Quantity> quantities;
+  bool sites_move = false;
 
   // Measurements become quantities, which the arithmetic names.
   void read(std::string_view text, const MeasuredField& field) {
@@ -132,6 +133,9 @@ struct Measures::Expression {
 
   std::size_t read_measurement(const MeasurementEntry& entry, std::string_view text, std::size_t at,
                                const MeasuredField& field) {
+    if (sites_move && entry.reads_field)
+      throw BadInput(key,
+                     fmt::format("the sites of this scheme move, and {} needs sites that stay; remove it", entry.name));
     std::vector<double> numbers;
     while (at < text.size() && text[at] == ' ') ++at;
     if (at < text.size() && text[at] == '(') {
@@ -184,9 +188,8 @@ Measures::Measures(const Scene& scene, int winding, const Simulation& simulation
                             make_theory(find_theory(p.theory), p.parameters)};
   for (const std::string& name : names) {
     Expression expression{name, key_of_measure(name), {}, constants_of(scene), {}};
+    expression.sites_move = std::ranges::any_of(components, &Component::position);
     try {
-      if (std::ranges::any_of(components, &Component::position))
-        throw BadInput(expression.key, "the sites of this scheme move; measurements need sites that stay; remove it");
       expression.read(scene.settings.find(expression.key)->value, field);
     } catch (const BadInput& bad) {
       throw scene.settings.located(bad);

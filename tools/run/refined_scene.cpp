@@ -2,6 +2,8 @@
 #include "tools/run/refined_scene.hpp"
 
 #include <chrono>
+#include <cmath>
+#include <optional>
 
 #include "schemes/stepping/evolution.hpp"
 #include "tools/engine.hpp"
@@ -46,13 +48,18 @@ QuietEnd run_quietly(const Scene& scene) {
   end.row.resize(static_cast<std::size_t>(scene.problem.lattice.sites() * simulation.count(Role::field)));
   std::vector<double> other(end.row.size());
   const bool two = simulation.starting_rows() > 1;
+  std::optional<double> energy_initial;
   const auto see = [&](std::int64_t row) {
     if (row > scene.steps) return;
     const int back = static_cast<int>(simulation.newest() - row);
     simulation.observe(back, end.row);  // as run records it: the rows of a kernel with the processor undone
+    if (measures.empty()) return;
+    const double energy = simulation.monitors().energy;
+    if (!energy_initial) energy_initial = energy;
     if (two) simulation.observe(back == 0 ? 1 : 0, other);
     measures.see({static_cast<double>(row) * scene.problem.time_step, end.row,
-                  two ? std::span<const double>(other) : std::span<const double>()});
+                  two ? std::span<const double>(other) : std::span<const double>(),
+                  (energy - *energy_initial) / std::abs(*energy_initial)});
   };
   const auto recorded = [&](std::int64_t row) {
     return row == scene.steps || (scene.every > 0 && row % scene.every == 0);

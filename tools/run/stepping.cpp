@@ -292,7 +292,7 @@ void Stepping::record(std::int64_t row) {
   recorded_ = row;
   if (started_) {
     warnings_.see(record.time, row_[Role::field], of_method);
-    measure(record.time, static_cast<int>(newest_ - row));
+    measure(record, static_cast<int>(newest_ - row));
   }
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
@@ -327,7 +327,7 @@ bool Stepping::varies() const {
 }
 
 // The row before it, or after row 0, is held by schemes that start from two rows.
-void Stepping::measure(double time, int back) {
+void Stepping::measure(const Record& record, int back) {
   if (measures_.empty()) return;
   std::vector<double> other;
   const int neighbour = back + 1 < simulation_.starting_rows() ? back + 1 : back - 1;
@@ -335,7 +335,7 @@ void Stepping::measure(double time, int back) {
     other.resize(row_[Role::field].size());
     simulation_.observe(neighbour, other);  // as the row itself
   }
-  measures_.see({time, row_[Role::field], other});
+  measures_.see({record.time, row_[Role::field], other, record.energy_error});
 }
 
 // The constraint, the monitors of the method, and the conserved sums.

@@ -39,7 +39,7 @@ class Stepping {
   void record(std::int64_t row);
   void judge(double residual) const;
   bool varies() const;
-  void measure(double time, int back);
+  void measure(const Record&, int back);
   void fail(const NumericalFailure&);
   bool to_be_recorded(std::int64_t row) const;
   std::int64_t next_record() const;

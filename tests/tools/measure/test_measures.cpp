@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "lattice/error.hpp"
 #include "tests/catch.hpp"
@@ -263,4 +265,36 @@ TEST_CASE("a measure that cannot be read is refused in one line") {
     CHECK_FALSE(std::filesystem::exists(folder / "out"));
   }
   CHECK(contains(delf_program(folder, "help measures").out, "energy_left(x)"));
+}
+
+TEST_CASE("the time at which the energy is lost is measured, of sites that move too") {
+  const Folder folder;
+  const std::string scene = folder.write(
+      "damped.ini",
+      "[theory]\nname = sine-gordon\n[lattice]\nlength = 40\nsites = 101\ncourant = 0.5\n[scheme]\nmethod = "
+      "damped\n[initial]\nstate = breather\nfrequency = 0.6\n[run]\nuntil = 10\n[output]\nfigures = off\n"
+      "fields = off\nevery = 3\n[measure]\nlost = energy_error_time(0.1)\nnever = energy_error_time(2)\n");
+  const auto m = measures_of(folder, scene);
+  double first = 0;
+  std::istringstream series(read(folder / "out/series.csv"));
+  std::string line;
+  for (std::getline(series, line); first == 0 && std::getline(series, line);) {
+    double step, time, energy, error;
+    REQUIRE(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &step, &time, &energy, &error) == 4);
+    if (std::abs(error) > 0.1) first = time;
+  }
+  CHECK(first > 0);
+  CHECK(m["lost"].get<double>() == Approx(first));
+  CHECK(m["never"].is_null());
+
+  const std::string moving = "run two-soliton-bounce --run.until=0.5 --output.figures=off --output.fields=off ";
+  Ran ran = delf_program(folder, moving + "'--measure.lost=energy_error_time(1e-12)' --out moving");
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK(nlohmann::json::parse(read(folder / "moving/summary.json"))["measures"]["lost"].get<double>() > 0);
+  ran = delf_program(folder, moving + "--measure.k=kinks --out refused");
+  CHECK(ran.code == 2);
+  CHECK(ran.err.find("the sites of this scheme move") != std::string::npos);
+  ran = delf_program(folder, moving + "'--measure.lost=energy_error_time(0)' --out refused");
+  CHECK(ran.code == 2);
 }
