@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/complex/mesh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "lattice/complex/mesh_refinement.hpp"
 #include "tests/catch.hpp"
 
 namespace {
@@ -34,6 +36,18 @@ TEST_CASE("generated meshes are sound, and fill their space") {
   CHECK(sphere.points.size() == 642);
   CHECK(boundary_points(sphere).empty());
   CHECK(total(sphere) == Approx(4 * std::numbers::pi).epsilon(0.02));
+}
+
+TEST_CASE("a refined mesh fills the same space with halved sides, its old points first") {
+  for (const Mesh& mesh :
+       {rectangle_mesh(3, 2, 6, 4, false), rectangle_mesh(3, 2, 6, 4, true), graded_interval(10, 11, 0.9)}) {
+    const Mesh fine = refined(mesh);
+    CHECK_FALSE(find_fault(fine));
+    CHECK(fine.cells() == mesh.cells() * (mesh.dimension == 1 ? 2 : 4));
+    CHECK(total(fine) == Approx(total(mesh)));
+    CHECK(shortest_edge(fine) == Approx(shortest_edge(mesh) / 2));
+    CHECK(std::equal(mesh.points.begin(), mesh.points.end(), fine.points.begin()));
+  }
 }
 
 TEST_CASE("a mesh with a fault is refused, with the line of the cell or point") {
