@@ -41,6 +41,7 @@ class ComplexSystem {
     return static_cast<std::size_t>(complex_.sites()) * static_cast<std::size_t>(components_);
   }
   const PlacedFamily& family(int number) const { return families_[static_cast<std::size_t>(number)]; }
+  int families() const { return static_cast<int>(families_.size()); }
   const PlacedFamily& family_of(int stencil) const { return family(complex_.shape_number(stencil)); }
   std::size_t bytes() const;
 

@@ -28,15 +28,18 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
+double area_of(const CellSpace& space) {
+  double area = 0;
+  for (const double A : space.masses) area += A;
+  return area;
+}
+
 /// summary.json, with the names of any other run; what a mesh does not have is null.
 std::string summary(const ComplexScene& c, const Outcome& o, std::int64_t updates) {
   const Scene& scene = c.scene;
-  const Mesh& mesh = c.space->mesh;
-  double area = 0;
-  for (const double A : c.space->masses) area += A;
   nlohmann::ordered_json json;
   const auto null = nlohmann::ordered_json();
-  const bool still = c.time == MeshTime::none;
+  const auto of_mesh = [&](const auto& number) { return c.space ? nlohmann::ordered_json(number(*c.space)) : null; };
   json["version"] = DELF_VERSION;
   json["scene"] = scene.name;
   json["status"] = o.status;
@@ -44,20 +47,23 @@ std::string summary(const ComplexScene& c, const Outcome& o, std::int64_t update
   json["theory"] = scene.problem.theory;
   json["fibre"] = "R";
   json["stencil"] = c.mesh_in_words();
-  json["method"] = c.time == MeshTime::cells ? "asynchronous" : still ? "elliptic" : scene.problem.method;
+  json["method"] = c.time == MeshTime::cells   ? "asynchronous"
+                   : c.time == MeshTime::none  ? "elliptic"
+                   : c.time == MeshTime::sites ? "complex"
+                                               : scene.problem.method;
   json["space"] = "complex";
-  json["length"] = area;
-  json["sites"] = c.space->sites();
-  json["cells"] = mesh.cells();
-  json["space_step"] = shortest_edge(mesh);
-  json["time_step"] = still ? null : nlohmann::ordered_json(scene.problem.time_step);
+  json["length"] = of_mesh(area_of);
+  json["sites"] = c.sites();
+  json["cells"] = c.cells();
+  json["space_step"] = of_mesh([](const CellSpace& space) { return shortest_edge(space.mesh); });
+  json["time_step"] = c.is_one_problem() ? null : nlohmann::ordered_json(scene.problem.time_step);
   json["state"] = o.state;
   json["seed"] = scene.initial.seed;
   json["steps"] = o.steps;
   json["time"] = o.time;
   json["records"] = o.records;
   json["seconds"] = o.seconds;
-  json["ns_per_site_step"] = o.ns_per_site_step(c.space->sites());
+  json["ns_per_site_step"] = o.ns_per_site_step(c.sites());
   if (c.time == MeshTime::cells) {
     json["updates"] = updates;
     json["ns_per_update"] = 1e9 * o.seconds / static_cast<double>(updates);
@@ -79,17 +85,17 @@ std::string summary(const ComplexScene& c, const Outcome& o, std::int64_t update
 }
 
 std::string report(const ComplexScene& c, const Outcome& o, std::int64_t updates) {
-  std::string text = fmt::format("{}: {} on {} points, {}\n", c.scene.name, c.scene.problem.theory, c.space->sites(),
-                                 c.mesh_in_words());
+  std::string text = fmt::format("{}: {} on {} {}, {}\n", c.scene.name, c.scene.problem.theory, c.sites(),
+                                 c.stencils ? "sites" : "points", c.mesh_in_words());
   const auto line = [&](const char* name, const std::string& what) {
     text += fmt::format("  {:<10} {}\n", name, what);
   };
   line("state", o.state);
   line("solve", o.solve);
-  if (c.time != MeshTime::none) line("steps", fmt::format("{} to t = {:.6g}", o.steps, o.time));
+  if (!c.is_one_problem()) line("steps", fmt::format("{} to t = {:.6g}", o.steps, o.time));
   if (o.steps_taken > 0)
     line("speed", fmt::format("{} for the steps, {}", duration_in_words(o.seconds),
-                              cost_in_words(o.ns_per_site_step(c.space->sites()))));
+                              cost_in_words(o.ns_per_site_step(c.sites()))));
   if (updates > 0)
     line("speed", fmt::format("{} for {} updates of cells, {:.4g} ns an update", duration_in_words(o.seconds), updates,
                               1e9 * o.seconds / static_cast<double>(updates)));
@@ -98,10 +104,11 @@ std::string report(const ComplexScene& c, const Outcome& o, std::int64_t updates
   line("residual", std::isfinite(o.residual_max)
                        ? fmt::format("{:.2g} at most, relative to the terms of the equations", o.residual_max)
                        : "not measured; `delf verify` does");
-  line("energy", fmt::format("{:.10g}{}", o.energy_final,
-                             std::isfinite(o.energy_error_max)
-                                 ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
-                                 : ""));
+  if (!c.stencils)
+    line("energy", fmt::format("{:.10g}{}", o.energy_final,
+                               std::isfinite(o.energy_error_max)
+                                   ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
+                                   : ""));
   if (std::isfinite(o.error_linf))
     line("error",
          fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));
@@ -110,7 +117,7 @@ std::string report(const ComplexScene& c, const Outcome& o, std::int64_t updates
   return text;
 }
 
-/// The largest error, and √(Σ A_i e_i²).
+/// The largest error, and √(Σ A_i e_i²); of sites without masses √(Σ e²/sites).
 void measure_error(const ComplexScene& c, std::span<const double> values, double t, Outcome& o) {
   if (!c.has_solution()) return;
   const std::vector<double> exact = c.solution(t);
@@ -120,7 +127,7 @@ void measure_error(const ComplexScene& c, std::span<const double> values, double
   for (std::size_t n = 0; n < exact.size(); ++n) {
     const double error = std::abs(values[n] - exact[n]);
     o.error_linf = std::max(o.error_linf, error);
-    sum += c.space->masses[n / d] * error * error;
+    sum += (c.space ? c.space->masses[n / d] : 1 / static_cast<double>(c.sites())) * error * error;
   }
   o.error_l2 = std::sqrt(sum);
 }
@@ -135,9 +142,12 @@ class MeshRecorder {
   void record(std::int64_t row, double time, std::span<const double> values, double energy, int iterations,
               double residual, std::span<const double> node_times = {}) {
     Outcome& o = outcome_;
-    if (!std::isfinite(energy))
+    if (!c_.stencils && !std::isfinite(energy))
       throw NotFinite(
           fmt::format("row {}, t = {:.6g}: the energy is not finite; use smaller fields or steps", row, time));
+    if (c_.stencils)
+      for (std::size_t n = 0; n < values.size(); ++n)
+        if (!std::isfinite(values[n])) throw NotFinite("a value is not finite; use smaller data, or a finer complex");
     if (o.records++ == 0) o.energy_initial = energy;
     o.energy_final = energy;
     const double error =
@@ -172,7 +182,8 @@ void run_static(const ComplexScene& c, MeshRecorder& recorder, Outcome& o) {
   const ComplexSolver::Report solved = field.solve();
   o.seconds = seconds_since(begin);
   o.iterations_mean = o.iterations_max = solved.iterations;
-  recorder.record(0, 0, field.values(), field.energy(), solved.iterations, field.residual());
+  recorder.record(0, 0, field.values(), c.stencils ? Outcome::unknown : field.energy(), solved.iterations,
+                  field.residual());
   measure_error(c, field.values(), 0, o);
 }
 
@@ -279,7 +290,7 @@ ExitCode run(const ComplexScene& c, const fs::path& folder) {
   std::exception_ptr failure;
   std::int64_t updates = 0;
   try {
-    if (c.time == MeshTime::none) run_static(c, recorder, o);
+    if (c.is_one_problem()) run_static(c, recorder, o);
     else if (c.time == MeshTime::cells) run_cells(c, recorder, o, updates);
     else run_rows(c, recorder, o);
   } catch (const NumericalFailure& error) {
@@ -290,7 +301,7 @@ ExitCode run(const ComplexScene& c, const fs::path& folder) {
   }
   recorder.close();
   constexpr double most_drift = 0.1;
-  if (c.time != MeshTime::none && o.energy_error_max > most_drift)
+  if (!c.is_one_problem() && o.energy_error_max > most_drift)
     o.warnings.push_back(fmt::format(
         "the energy is off by {:.3g} of itself: these steps are too long, or the mesh too "
         "coarse; reduce {}",
@@ -298,17 +309,44 @@ ExitCode run(const ComplexScene& c, const fs::path& folder) {
   write_text_file(folder / "summary.json", summary(c, o, updates));
   const std::string missing = c.scene.figures ? drawn(c, recorder.film(), folder) : std::string();
   fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}{}\n", report(c, o, updates), "files", folder.string(),
-             c.scene.fields ? c.space->mesh.coordinates() > 1 ? " fields.h5 fields.xdmf" : " fields.h5" : "",
+             c.scene.fields ? has_xdmf(c) ? " fields.h5 fields.xdmf" : " fields.h5" : "",
              c.scene.figures && missing.empty() ? " figures" : "");
   if (!missing.empty()) std::fputs(fmt::format("delf: no figures: {}\n", missing).c_str(), stderr);
   if (failure) std::rethrow_exception(failure);
   return o.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
 }
 
+namespace {
+
+/// Of a finite complex.
+ExitCode plan_sites(const ComplexScene& c) {
+  try {
+    const StaticField field(c);
+    fmt::print("{}: {}, {} sites, {}\n", c.scene.name, c.scene.problem.theory, c.sites(), c.mesh_in_words());
+    fmt::print("  state      {}\n", c.state_in_words());
+    const ComplexPlan& plan = field.solver().plan();
+    const std::size_t bytes = field.system().bytes();
+    fmt::print("  stencils   {} in {} families: of one shape, and coupled alike\n", c.cells(),
+               field.system().families());
+    fmt::print("  solve      {}\n", plan.describe());
+    fmt::print("             level by level, each by {}\n",
+               field.solver().is_direct() ? plan.largest == 1 ? "divisions: explicit" : "one sparse factorisation"
+                                          : "Newton steps with a sparse matrix and a line search");
+    fmt::print("  memory     {} bytes: the field {} B, sites and stencils {} B\n", bytes + 8 * field.values().size(),
+               8 * field.values().size(), bytes);
+  } catch (const BadInput& bad) {
+    throw c.scene.settings.located(bad);
+  }
+  fmt::print("  left out   energies, symbol, lattice norms: not applicable to a finite complex\n");
+  return ExitCode::done;
+}
+
+}  // namespace
+
 ExitCode plan(const ComplexScene& c) {
+  if (c.stencils) return plan_sites(c);
   const CellSpace& space = *c.space;
-  double area = 0;
-  for (const double A : space.masses) area += A;
+  const double area = area_of(space);
   fmt::print("{}: {}, {} points, {}\n", c.scene.name, c.scene.problem.theory, space.sites(), c.mesh_in_words());
   fmt::print("  state      {}\n", c.state_in_words());
   fmt::print("  mesh       {} {:.6g}, shortest edge {:.6g}, {} boundary points{}\n",

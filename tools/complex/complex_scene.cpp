@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <set>
 
 #include "jets/expressions/expression.hpp"
@@ -22,19 +23,40 @@ namespace {
 constexpr double usual_records = 100;
 
 /// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
-const std::set<std::string, std::less<>> read_keys{
-    "theory.name",       "lattice.space",      "lattice.mesh",  "lattice.time",     "lattice.courant",
-    "lattice.time_step", "lattice.time_steps", "boundary.mesh", "scheme.tolerance", "scheme.max_iterations",
-    "initial.state",     "run.until",          "run.steps",     "run.seed",         "output.every",
-    "output.fields",     "output.figures",     "output.format", "output.titles",    "verify.variations",
-    "verify.moments",    "verify.tolerance",   "verify.fault",  "scheme.method"};
+const std::set<std::string, std::less<>> read_keys{"theory.name",
+                                                   "lattice.space",
+                                                   "lattice.mesh",
+                                                   "lattice.time",
+                                                   "lattice.courant",
+                                                   "lattice.time_step",
+                                                   "lattice.time_steps",
+                                                   "boundary.mesh",
+                                                   "scheme.tolerance",
+                                                   "scheme.max_iterations",
+                                                   "initial.state",
+                                                   "run.until",
+                                                   "run.steps",
+                                                   "run.seed",
+                                                   "output.every",
+                                                   "output.fields",
+                                                   "output.figures",
+                                                   "output.format",
+                                                   "output.titles",
+                                                   "verify.variations",
+                                                   "verify.moments",
+                                                   "verify.tolerance",
+                                                   "verify.fault",
+                                                   "scheme.method",
+                                                   "convergence.levels",
+                                                   "convergence.order",
+                                                   "convergence.agreement"};
 
 /// Keys of time, which lattice.time = none has none of.
 const std::set<std::string, std::less<>> time_keys{"lattice.courant", "lattice.time_step", "lattice.time_steps",
                                                    "run.until",       "run.steps",         "output.every"};
 
 void refuse_unread(const Settings& settings, const TheoryEntry& theory, const ParameterValues& parameters,
-                   const std::vector<Component>& fields, bool still) {
+                   const std::vector<Component>& fields, bool still, bool spacetime) {
   std::set<std::string, std::less<>> known = read_keys;
   for (const Parameter& p : parameters_of(theory, parameters)) known.insert(p.key);
   for (const Component& field : fields)
@@ -45,8 +67,11 @@ void refuse_unread(const Settings& settings, const TheoryEntry& theory, const Pa
                            s.key.starts_with("exact.") || s.key.starts_with("initial.")
                                ? "has no effect on a mesh, where fields start from formulas; remove it"
                                : "needs a regular lattice (not applicable to lattice.space = complex); remove it");
-    if (still && (time_keys.contains(s.key) || (s.key.starts_with("initial.") && s.key.ends_with("_t"))))
-      throw settings.error(s.key, "has no effect with lattice.time = none; remove it");
+    if ((still || spacetime) &&
+        (time_keys.contains(s.key) || (s.key.starts_with("initial.") && s.key.ends_with("_t")) ||
+         (spacetime && (s.key == "lattice.time" || s.key == "boundary.mesh"))))
+      throw settings.error(s.key, spacetime ? "has no effect where sites have times of their own; remove it"
+                                            : "has no effect with lattice.time = none; remove it");
   }
 }
 
@@ -105,7 +130,7 @@ void read_fields(ComplexScene& c, const Values& values, const ParameterValues& p
     const auto text = values.given(key) ? values.text(key) : std::nullopt;
     if (!text) return std::nullopt;
     PlaceFormula read(*text, numbers, key);
-    if (read.reads_time() && !key.starts_with("exact."))
+    if (read.reads_time() && !c.stencils && !key.starts_with("exact."))
       throw settings.error(key, "reads t, and is of t = 0; give a solution of t as exact." + key.substr(8));
     return read;
   };
@@ -129,7 +154,7 @@ bool is_on_mesh(const Settings& settings) {
   return space && space->value == "complex";
 }
 
-ComplexScene read_complex_scene(Settings given) {
+ComplexScene read_complex_scene(Settings given, int halvings) {
   ComplexScene c((Scene(std::move(given))));
   Scene& scene = c.scene;
   Settings& settings = scene.settings;
@@ -142,36 +167,47 @@ ComplexScene read_complex_scene(Settings given) {
     const TheoryEntry& entry = find_theory(p.theory);
     const ParameterValues parameters = read_parameters(values, entry);
     c.theory = make_theory(entry, parameters);
-    refuse_unread(settings, entry, parameters, c.theory->fields(), values.choice("lattice.time") == "none");
+    if (!values.given("lattice.mesh"))
+      throw settings.error("lattice.mesh", "must be given with lattice.space = complex: a file, or icosahedron:4");
+    auto mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file);
+    if (const auto* list = std::get_if<StencilList>(&mesh)) c.stencils = std::make_unique<const StencilList>(*list);
+    refuse_unread(settings, entry, parameters, c.theory->fields(), values.choice("lattice.time") == "none",
+                  c.stencils != nullptr);
     if (c.theory->constraint())
       throw BadInput("theory.name", "theory.name = " + p.theory +
                                         ": constraints need a regular lattice; choose lattice.space = circle");
     p.method = values.choice("scheme.method");
     if (p.method != find_key("scheme.method")->fallback)
       throw settings.error("scheme.method", "needs a regular lattice; leave it out on a mesh");
-    if (!values.given("lattice.mesh"))
-      throw settings.error("lattice.mesh", "must be given with lattice.space = complex: a file, or icosahedron:4");
-    Mesh mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file);
-    c.space = std::make_unique<CellSpace>(std::move(mesh), c.theory->shared_density(),
-                                          values.choice("boundary.mesh") == "fixed");
+    double edge = 1;  // of the mesh as it is given
+    if (!c.stencils) {
+      edge = shortest_edge(std::get<Mesh>(mesh));
+      c.space = std::make_unique<CellSpace>(
+          finer_mesh(*values.text("lattice.mesh"), std::get<Mesh>(std::move(mesh)), halvings),
+          c.theory->shared_density(), values.choice("boundary.mesh") == "fixed");
+    }
     const std::string time = values.choice("lattice.time");
-    c.time = time == "none" ? MeshTime::none : time == "cells" ? MeshTime::cells : MeshTime::rows;
+    c.time = c.stencils        ? MeshTime::sites
+             : time == "none"  ? MeshTime::none
+             : time == "cells" ? MeshTime::cells
+                               : MeshTime::rows;
     p.tolerance = values.real("scheme.tolerance");
     p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
-    const double edge = shortest_edge(c.space->mesh);
-    p.lattice = Lattice::circle(std::max(2, c.space->sites()), edge * std::max(2, c.space->sites()));
+    p.lattice = Lattice::circle(std::max(2, c.sites()), edge * std::max(2, c.sites()));
     p.stencil = c.mesh_in_words();
     read_fields(c, values, parameters);
     scene.fields = values.toggle("output.fields");
     scene.figures = values.toggle("output.figures");
     scene.figure_form = read_figure_form(settings, values);
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
-    if (c.time == MeshTime::none) return c;
+    if (c.is_one_problem()) return c;
 
     for (const char* other : {"lattice.courant", "lattice.time_step"})
       if (values.given("lattice.time_steps") && values.given(other))
         settings.keep_one_of("lattice.time_steps", other, {});
     c.time_steps = read_time_steps(settings, values);
+    if (halvings > 0 && !c.time_steps.empty())
+      throw settings.error("lattice.time_steps", "are not refined; give lattice.courant or lattice.time_step");
     if (!c.time_steps.empty()) {
       if (c.time == MeshTime::cells)
         throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
@@ -193,6 +229,8 @@ ComplexScene read_complex_scene(Settings given) {
       else
         for (double t = 0; t < until * (1 - 1e-12); t += c.time_step(scene.steps)) ++scene.steps;
     }
+    p.time_step = std::ldexp(p.time_step, -halvings);
+    scene.steps <<= halvings;
     scene.every = values.maybe_integer("output.every")
                       .value_or(std::max(1LL, std::llround(static_cast<double>(scene.steps) / usual_records)));
   } catch (const BadInput& bad) {
@@ -201,8 +239,28 @@ ComplexScene read_complex_scene(Settings given) {
   return c;
 }
 
+int ComplexScene::sites() const { return stencils ? static_cast<int>(stencils->sites.size()) : space->sites(); }
+int ComplexScene::cells() const { return stencils ? static_cast<int>(stencils->stencils.size()) : space->mesh.cells(); }
+int ComplexScene::coordinates() const { return stencils ? stencils->coordinates() : space->mesh.coordinates(); }
+
+std::vector<double> ComplexScene::places() const {
+  std::vector<double> all;
+  const auto add = [&](const auto& point) { all.insert(all.end(), point.begin(), point.begin() + coordinates()); };
+  if (stencils)
+    for (const auto& site : stencils->sites) add(site.position);
+  else
+    for (const Mesh::Point& p : space->mesh.points) add(p);
+  return all;
+}
+
 std::vector<double> ComplexScene::values() const {
   std::vector<double> all;
+  if (stencils) {
+    for (const auto& [position, role, line] : stencils->sites)
+      for (const Field& f : fields)
+        all.push_back((f.exact ? *f.exact : *f.value)(position[0], {position[1], position[2], position[3]}));
+    return all;
+  }
   for (const Mesh::Point& p : space->mesh.points)
     for (const Field& f : fields) all.push_back(f.exact ? (*f.exact)(0, p) : (*f.value)(0, p));
   return all;
@@ -214,6 +272,7 @@ std::vector<double> ComplexScene::rates() const {
   return all;
 }
 std::vector<double> ComplexScene::solution(double t) const {
+  if (stencils) return values();
   std::vector<double> all;
   for (const Mesh::Point& p : space->mesh.points)
     for (const Field& f : fields) all.push_back((*f.exact)(t, p));
@@ -221,6 +280,13 @@ std::vector<double> ComplexScene::solution(double t) const {
 }
 
 std::string ComplexScene::mesh_in_words() const {
+  if (stencils) {
+    std::map<std::string, int> count;
+    for (const auto& e : stencils->stencils) ++count[e.shape];
+    std::string text;
+    for (const auto& [shape, n] : count) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, shape);
+    return "stencils " + text;
+  }
   const Mesh& mesh = space->mesh;
   std::array<int, 5> count{};
   for (int c = 0; c < mesh.cells(); ++c) ++count[mesh.cell(c).size()];

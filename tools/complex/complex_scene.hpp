@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "schemes/complex/space_rows.hpp"
+#include "schemes/complex/stencil_list.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "tools/complex/place_formula.hpp"
 #include "tools/scene/scene.hpp"
@@ -16,9 +17,10 @@ namespace delf {
 
 /// How time goes on over a mesh.
 enum class MeshTime {
-  rows,  ///< all sites at once
-  none,  ///< there is none: data all round, an elliptic problem
-  cells  ///< each cell by its own step: asynchronous
+  rows,   ///< all sites at once
+  none,   ///< there is none: data all round, an elliptic problem
+  cells,  ///< each cell by its own step: asynchronous
+  sites   ///< each site has its own: a finite complex of spacetime, given as such
 };
 
 /// A scene on a mesh, read and resolved.
@@ -28,8 +30,9 @@ struct ComplexScene {
   /// Name, settings, steps, records. Its lattice stands for the mesh in reports: as many sites, and k the shortest edge.
   Scene scene;
   std::shared_ptr<const FieldTheory> theory;
-  std::unique_ptr<const CellSpace> space;
-  std::filesystem::path mesh_file;  ///< empty: generated
+  std::unique_ptr<const CellSpace> space;       ///< a mesh; none where the complex is one of spacetime:
+  std::unique_ptr<const StencilList> stencils;  ///< then these
+  std::filesystem::path mesh_file;              ///< empty: generated
   MeshTime time = MeshTime::rows;
   std::vector<double> time_steps;  ///< of rows, over and over; empty: all scene.problem.time_step
   double courant = 0;              ///< of cells: h_K over the shortest edge of the cell
@@ -44,6 +47,13 @@ struct ComplexScene {
     return time_steps.empty() ? scene.problem.time_step
                               : time_steps[static_cast<std::size_t>(step) % time_steps.size()];
   }
+  /// Solved at once: there are no steps.
+  bool is_one_problem() const { return time == MeshTime::none || time == MeshTime::sites; }
+  int sites() const;
+  int cells() const;
+  /// The coordinates of a site, and all of them, site by site: t x y z in spacetime, x y z on a mesh.
+  int coordinates() const;
+  std::vector<double> places() const;
   bool has_solution() const { return fields.front().exact.has_value(); }
   /// φ and φ_t at t = 0, and the solution, if there is one, at any time; [i·d + a].
   std::vector<double> values() const;
@@ -56,7 +66,8 @@ struct ComplexScene {
 
 /// Whether a scene's space is a mesh. Throws BadScene for what is no scene.
 bool is_on_mesh(const Settings&);
-ComplexScene read_complex_scene(Settings);
+/// `halvings`: on the mesh whose sides are halved so often, with steps as much shorter, and as many more.
+ComplexScene read_complex_scene(Settings, int halvings = 0);
 /// The scene with what is in force: it runs again to the same bits.
 std::string resolved_text(const ComplexScene&);
 

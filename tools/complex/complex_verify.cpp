@@ -50,7 +50,7 @@ class MeshVerification {
   Verdict run(const std::optional<std::string>& fields) {
     const auto begin = std::chrono::steady_clock::now();
     if (fields) look_at_file(*fields);
-    else if (scene_.time == MeshTime::none) look_at_field();
+    else if (scene_.is_one_problem()) look_at_field();
     else if (scene_.time == MeshTime::cells) look_at_cells();
     else look_at_rows();
     verdict_.seconds = seconds_since(begin);
@@ -137,17 +137,16 @@ class MeshVerification {
     if (scene_.time == MeshTime::cells)
       throw refuse("asynchronous rows hold sites at times of their own; verify the scene without --fields");
     const FieldsReader file(name);
-    const CellSpace& space = *scene_.space;
     const auto d = static_cast<int>(scene_.fields.size());
-    if (file.sites() != space.sites() || file.components() != d)
+    if (file.sites() != scene_.sites() || file.components() != d)
       throw refuse(fmt::format("has {} sites and {} fields, and the scene {} and {}; use the scene of these rows",
-                               file.sites(), file.components(), space.sites(), d));
+                               file.sites(), file.components(), scene_.sites(), d));
     require_same_places(file, name);
     verdict_.subject = "rows of " + name;
     const int frames = file.frames();
-    if (scene_.time == MeshTime::none) {
-      const SpaceRows rows(space);
-      return look_at(rows.system(), file.row(frames - 1), fmt::format("frame {}", frames - 1));
+    if (scene_.is_one_problem()) {
+      const StaticField field(scene_);
+      return look_at(field.system(), file.row(frames - 1), fmt::format("frame {}", frames - 1));
     }
     if (frames < 3) throw refuse(fmt::format("has {} frames, and an equation takes three; record more rows", frames));
     for (int first = 0, last = 0; last < frames - 1 && !Interrupt::asked(); first = last - 1) {
@@ -163,7 +162,7 @@ class MeshVerification {
           throw refuse(fmt::format("frame {} is not later than the one before it; sort the frames", f));
         times.push_back(*time);
       }
-      const SpaceRows window_rows(space, times);
+      const SpaceRows window_rows(*scene_.space, times);
       look_at(window_rows.system(), rows, fmt::format("frames {} to {}", first, last));
     }
     if (Interrupt::asked()) verdict_.status = "interrupted";
@@ -172,20 +171,17 @@ class MeshVerification {
   /// Rows of one mesh say nothing of another.
   void require_same_places(const FieldsReader& file, const std::string& name) const {
     const auto places = file.coordinates();
-    const Mesh& mesh = scene_.space->mesh;
-    const auto n = static_cast<std::size_t>(mesh.coordinates());
-    if (!places || places->size() != n * mesh.points.size()) return;  // of other programs: nothing to compare
+    const std::vector<double> own = scene_.places();
+    const auto n = static_cast<std::size_t>(scene_.coordinates());
+    if (!places || places->size() != own.size()) return;  // of other programs: nothing to compare
     double longest = 0;
-    for (const Mesh::Point& p : mesh.points)
-      longest = std::max({longest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-    for (std::size_t i = 0; i < mesh.points.size(); ++i)
-      for (std::size_t c = 0; c < n; ++c)
-        if (const double there = (*places)[i * n + c], here = mesh.points[i][c];
-            !(std::abs(there - here) <= 1e-6 * longest))
-          throw BadScene(fmt::format(
-              "command line: --fields: {}: point {} lies at {} = {:.10g} in /space, and at {:.10g} in the mesh; use "
-              "the mesh of these rows",
-              name, i, "xyz"[c], there, here));
+    for (const double x : own) longest = std::max(longest, std::abs(x));
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if (const double there = (*places)[i], here = own[i]; !(std::abs(there - here) <= 1e-6 * longest))
+        throw BadScene(fmt::format(
+            "command line: --fields: {}: {} {} lies at {} = {:.10g} in /space, and at {:.10g} in the mesh; use the "
+            "mesh of these rows",
+            name, scene_.stencils ? "site" : "point", i / n, (scene_.stencils ? "txyz" : "xyz")[i % n], there, here));
   }
 
   void look_at_field() {

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_files.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/scene/text_file.hpp"
@@ -21,7 +23,31 @@ constexpr int most_cells = 30'000;  // of a figure of triangles: ParaView opens 
 
 std::string title(const ComplexScene& c, const std::string& what) {
   return figure_title(fmt::format("{}: {}", c.scene.name, what),
-                      fmt::format("{}, {} points, {}", c.scene.problem.theory, c.space->sites(), c.mesh_in_words()));
+                      fmt::format("{}, {} {}, {}", c.scene.problem.theory, c.sites(), c.stencils ? "sites" : "points",
+                                  c.mesh_in_words()));
+}
+
+/// Stencils in the plane of x and t as triangles: the sites of each in order around their middle, cut from the first.
+/// Those across the seam of a circle are left out.
+Mesh spacetime_mesh(const StencilList& list) {
+  Mesh mesh{.points = {}, .vertices = {}};
+  for (const auto& site : list.sites) mesh.points.push_back({site.position[1], site.position[0], 0});
+  for (const StencilList::Entry& e : list.stencils) {
+    double x = 0, t = 0, least = INFINITY, most = -INFINITY;
+    for (const int s : e.sites) {
+      const Mesh::Point& p = mesh.points[static_cast<std::size_t>(s)];
+      x += p[0] / static_cast<double>(e.sites.size()), t += p[1] / static_cast<double>(e.sites.size());
+      least = std::min(least, p[0]), most = std::max(most, p[0]);
+    }
+    if (e.sites.size() < 3 || (list.circumference > 0 && most - least > list.circumference / 2)) continue;
+    std::vector<int> around = e.sites;
+    std::ranges::sort(around, {}, [&](int s) {
+      const Mesh::Point& p = mesh.points[static_cast<std::size_t>(s)];
+      return std::atan2(p[1] - t, p[0] - x);
+    });
+    for (std::size_t l = 1; l + 1 < around.size(); ++l) mesh.add_cell(std::array{around[0], around[l], around[l + 1]});
+  }
+  return mesh;
 }
 
 double value_at(const ComplexScene& c, const MeshFilm::Frame& frame, std::size_t point) {
@@ -54,8 +80,7 @@ std::string curves(const ComplexScene& c, const MeshFilm& film, const fs::path& 
 }
 
 // One facet of gnuplot's surfaces for each cell; the third corner of a triangle stands twice.
-std::string maps(const ComplexScene& c, const MeshFilm& film, const fs::path& scratch) {
-  const Mesh& mesh = c.space->mesh;
+std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, const fs::path& scratch) {
   if (mesh.cells() > most_cells) return {};
   const bool flat = mesh.coordinates() < 3;
   std::vector<double> shown;
@@ -86,7 +111,7 @@ std::string maps(const ComplexScene& c, const MeshFilm& film, const fs::path& sc
     write_text_file(scratch / file, table);
     // one scale for all, shown beside them once
     body += f == 0 ? "set colorbox user origin screen 0.885,0.12 size screen 0.022,0.7 noborder\n" : "unset colorbox\n";
-    if (c.time != MeshTime::none)
+    if (!c.is_one_problem())
       body += fmt::format("set title 't = {:.4g}' offset 0,0.1 textcolor rgb '#333333'\n", film.frames()[f].time);
     body += fmt::format("splot '{}' using {} with pm3d\n", file, flat ? "1:2:3" : "1:2:3:4");
   }
@@ -122,7 +147,7 @@ std::string updates(const ComplexScene& c, const fs::path& scratch) {
 
 }  // namespace
 
-MeshFilm::MeshFilm(const ComplexScene& c) : steps_(c.time == MeshTime::none ? 0 : c.scene.steps) {}
+MeshFilm::MeshFilm(const ComplexScene& c) : steps_(c.is_one_problem() ? 0 : c.scene.steps) {}
 
 void MeshFilm::add(std::int64_t step, double time, std::span<const double> values) {
   // the first row at or after each third of the run
@@ -133,14 +158,18 @@ void MeshFilm::add(std::int64_t step, double time, std::span<const double> value
 
 std::string draw_mesh(const ComplexScene& c, const MeshFilm& film, const fs::path& folder) {
   if (film.frames().empty()) return {};
-  const bool line = c.space->mesh.coordinates() == 1;
-  std::vector<Drawing> drawings{
-      {"field", [&](const fs::path& scratch) { return line ? curves(c, film, scratch) : maps(c, film, scratch); }}};
+  if (c.stencils && c.coordinates() > 2) return "a complex of t, x and y has no figure in the plane";
+  const Mesh mesh = c.stencils ? spacetime_mesh(*c.stencils) : c.space->mesh;
+  const bool line = !c.stencils && mesh.coordinates() == 1;
+  std::vector<Drawing> drawings{{"field", [&](const fs::path& scratch) {
+                                   return line ? curves(c, film, scratch) : maps(c, mesh, film, scratch);
+                                 }}};
   if (c.time == MeshTime::cells && line)
     drawings.push_back({"updates", [&](const fs::path& scratch) { return updates(c, scratch); }});
   const std::string missing = draw(drawings, c.scene.figure_form, folder);
-  if (missing.empty() && !line && c.space->mesh.cells() > most_cells)
-    return fmt::format("the mesh has more than {} cells; open fields.xdmf in ParaView", most_cells);
+  if (missing.empty() && !line && mesh.cells() > most_cells)
+    return fmt::format("the mesh has more than {} cells{}", most_cells,
+                       has_xdmf(c) ? "; open fields.xdmf in ParaView" : "");
   return missing;
 }
 

@@ -20,23 +20,24 @@ RowNames names_of(const ComplexScene& scene) {
 
 }  // namespace
 
+bool has_xdmf(const ComplexScene& scene) { return scene.space && scene.space->mesh.coordinates() > 1; }
+
 MeshFiles::MeshFiles(const ComplexScene& scene, const std::filesystem::path& folder, std::int64_t frames,
                      bool node_times)
     : scene_(scene), folder_(folder), corners_(0) {
-  const Mesh& mesh = scene.space->mesh;
-  const auto coordinates = static_cast<std::size_t>(mesh.coordinates());
-  for (int c = 0; c < mesh.cells(); ++c) corners_ = std::max(corners_, static_cast<int>(mesh.cell(c).size()));
-  std::vector<double> points;
-  for (const Mesh::Point& p : mesh.points)
-    points.insert(points.end(), p.begin(), p.begin() + static_cast<std::ptrdiff_t>(coordinates));
+  const auto corners_of = [&](int c) -> std::span<const std::int32_t> {
+    return scene.stencils ? std::span<const std::int32_t>(scene.stencils->stencils[static_cast<std::size_t>(c)].sites)
+                          : scene.space->mesh.cell(c);
+  };
+  for (int c = 0; c < scene.cells(); ++c) corners_ = std::max(corners_, static_cast<int>(corners_of(c).size()));
   std::vector<std::int32_t> cells;
-  for (int c = 0; c < mesh.cells(); ++c) {
-    const auto corners = mesh.cell(c);
+  for (int c = 0; c < scene.cells(); ++c) {
+    const auto corners = corners_of(c);
     cells.insert(cells.end(), corners.begin(), corners.end());
     cells.resize(static_cast<std::size_t>(c + 1) * static_cast<std::size_t>(corners_), -1);
   }
-  file_ = std::make_unique<FieldsFile>(folder / "fields.h5", points, frames, resolved_text(scene), 0, names_of(scene),
-                                       MeshOfFile{mesh.coordinates(), cells, corners_, node_times});
+  file_ = std::make_unique<FieldsFile>(folder / "fields.h5", scene.places(), frames, resolved_text(scene), 0,
+                                       names_of(scene), MeshOfFile{scene.coordinates(), cells, corners_, node_times});
 }
 
 void MeshFiles::append(double time, std::span<const double> values, std::span<const double> node_times) {
@@ -48,7 +49,7 @@ void MeshFiles::append(double time, std::span<const double> values, std::span<co
 
 void MeshFiles::close() {
   file_->close();
-  if (scene_.space->mesh.coordinates() > 1) write_text_file(folder_ / "fields.xdmf", xdmf());
+  if (has_xdmf(scene_)) write_text_file(folder_ / "fields.xdmf", xdmf());
 }
 
 std::string MeshFiles::xdmf() const {

@@ -9,7 +9,10 @@
 
 namespace delf {
 
-/// fields.h5 of a scene on a mesh, and fields.xdmf beside it, which ParaView opens. XDMF needs two coordinates at least.
+/// Whether there is a fields.xdmf: XDMF needs cells of space, and two coordinates at least.
+bool has_xdmf(const ComplexScene&);
+
+/// fields.h5 of a scene on a mesh, and fields.xdmf beside it, which ParaView opens.
 class MeshFiles {
  public:
   MeshFiles(const ComplexScene&, const std::filesystem::path& folder, std::int64_t frames, bool node_times = false);

@@ -3,71 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <unordered_map>
+
+#include "tools/complex/text_lines.hpp"
 
 namespace delf {
 namespace {
 
-/// Lines, and the words of each.
-class Lines {
- public:
-  explicit Lines(std::string_view text) : rest_(text) {}
-
-  int number() const { return number_; }
-  /// The next line that has words; false at the end.
-  bool next() {
-    while (!rest_.empty()) {
-      const auto end = std::min(rest_.find('\n'), rest_.size());
-      line_ = rest_.substr(0, end);
-      rest_.remove_prefix(std::min(end + 1, rest_.size()));
-      ++number_;
-      line_ = line_.substr(0, line_.find('#'));
-      if (skip(); !line_.empty()) return true;
-    }
-    return false;
-  }
-  std::string_view word() {
-    const auto end = std::min(line_.find_first_of(blanks), line_.size());
-    const std::string_view first = line_.substr(0, end);
-    line_.remove_prefix(end);
-    skip();
-    return first;
-  }
-  bool has_words() const { return !line_.empty(); }
-  [[noreturn]] void refuse(const std::string& what) const { throw MeshError(number_, what); }
-
-  template <class Number>
-  Number read(const char* what) {
-    const std::string_view text = word();
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || text.empty())
-      refuse(fmt::format("\"{}\" is not {}; correct it", text.substr(0, 40), what));
-    if constexpr (std::is_floating_point_v<Number>)
-      if (!std::isfinite(value)) refuse(fmt::format("\"{}\" is not finite; correct it", text.substr(0, 40)));
-    return value;
-  }
-  void need_next(const char* what) {
-    if (!next()) refuse(fmt::format("the file ends before {}; it is cut short", what));
-  }
-  void need_section(std::string_view name) {
-    need_next(std::string(name).c_str());
-    if (word() != name) refuse(fmt::format("{} is missing here; correct the count above it", name));
-  }
-
- private:
-  static constexpr auto blanks = " \t\r\v\f";
-  void skip() { line_.remove_prefix(std::min(line_.find_first_not_of(blanks), line_.size())); }
-
-  std::string_view rest_, line_;
-  int number_ = 0;
-};
-
 constexpr std::string_view point_word = "point", cell_word = "cell";
 
-Mesh plain_mesh(Lines& lines) {
+Mesh plain_mesh(TextLines& lines) {
   Mesh mesh{.points = {}, .vertices = {}};
   std::vector<std::vector<std::int32_t>> cells;
   do {
@@ -107,7 +52,7 @@ const Element* element_of(int type) {
 
 class Gmsh {
  public:
-  explicit Gmsh(Lines& lines) : lines_(lines) {}
+  explicit Gmsh(TextLines& lines) : lines_(lines) {}
 
   Mesh read() {
     lines_.need_next("the version");
@@ -232,7 +177,7 @@ class Gmsh {
     mesh_ = std::move(kept);
   }
 
-  Lines& lines_;
+  TextLines& lines_;
   Mesh mesh_{.points = {}, .vertices = {}};
   std::vector<int> dimensions_;
   std::unordered_map<std::int64_t, std::int32_t> number_;
@@ -241,7 +186,7 @@ class Gmsh {
 }  // namespace
 
 Mesh parse_mesh(std::string_view text) {
-  Lines lines(text);
+  TextLines lines(text);
   if (!lines.next()) throw MeshError(1, "the mesh is empty; write lines like point 0 0 and cell 0 1 2");
   Mesh mesh = text.starts_with("$MeshFormat") ? Gmsh(lines).read() : plain_mesh(lines);
   if (const auto fault = find_fault(mesh)) throw MeshError(fault->line, fault->what);

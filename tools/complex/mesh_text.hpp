@@ -4,8 +4,10 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include "lattice/complex/mesh.hpp"
+#include "schemes/complex/stencil_list.hpp"
 
 namespace delf {
 
@@ -25,8 +27,12 @@ struct MeshError : std::runtime_error {
 Mesh parse_mesh(std::string_view text);
 
 /// What lattice.mesh names: a generator icosahedron:LEVEL, graded:LENGTH,POINTS,RATIO, rectangle:WIDTH,HEIGHT,NX,NY or
-/// quadrilaterals:WIDTH,HEIGHT,NX,NY, else a file, beside `folder` or here. `file` receives its path, empty for a
-/// generator. Throws BadInput "lattice.mesh".
-Mesh named_mesh(const std::string& name, const std::filesystem::path& folder, std::filesystem::path& file);
+/// quadrilaterals:WIDTH,HEIGHT,NX,NY, else a file, beside `folder` or here: a mesh, or a finite complex if it begins with
+/// the line `complex` (see parse_stencils()). `file` receives its path, empty for a generator. Throws BadInput
+/// "lattice.mesh".
+std::variant<Mesh, StencilList> named_mesh(const std::string& name, const std::filesystem::path& folder,
+                                           std::filesystem::path& file);
+/// The mesh of that name with its sides halved so often: icosahedra of the next levels, and others cut (see refined()).
+Mesh finer_mesh(const std::string& name, Mesh, int halvings);
 
 }  // namespace delf

@@ -6,9 +6,11 @@
 #include <iterator>
 
 #include "jets/expressions/expression.hpp"
+#include "lattice/complex/mesh_refinement.hpp"
 #include "lattice/error.hpp"
 #include "lattice/text_parts.hpp"
 #include "tools/complex/mesh_text.hpp"
+#include "tools/complex/stencil_text.hpp"
 
 namespace delf {
 namespace {
@@ -39,7 +41,7 @@ double positive(const std::string& name, double value) {
   return value;
 }
 
-Mesh read_file(const std::string& name, const fs::path& folder, fs::path& file) {
+std::variant<Mesh, StencilList> read_file(const std::string& name, const fs::path& folder, fs::path& file) {
   std::error_code none;
   for (const fs::path& path : {folder / name, fs::path(name)})
     if (file.empty() && fs::is_regular_file(path, none)) file = fs::absolute(path).lexically_normal();
@@ -50,6 +52,7 @@ Mesh read_file(const std::string& name, const fs::path& folder, fs::path& file) 
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   try {
+    if (is_stencil_text(text)) return parse_stencils(text);
     return parse_mesh(text);
   } catch (const MeshError& error) {
     throw BadInput(key, fmt::format("{} = {}: {}{}: {}", key, name, file.filename().string(),
@@ -59,7 +62,7 @@ Mesh read_file(const std::string& name, const fs::path& folder, fs::path& file) 
 
 }  // namespace
 
-Mesh named_mesh(const std::string& name, const fs::path& folder, fs::path& file) {
+std::variant<Mesh, StencilList> named_mesh(const std::string& name, const fs::path& folder, fs::path& file) {
   constexpr int most = 3000;
   file.clear();
   Mesh mesh;
@@ -77,6 +80,21 @@ Mesh named_mesh(const std::string& name, const fs::path& folder, fs::path& file)
     return read_file(name, folder, file);
   }
   if (const auto fault = find_fault(mesh)) refuse(name, fault->what);
+  return mesh;
+}
+
+Mesh finer_mesh(const std::string& name, Mesh mesh, int halvings) {
+  constexpr std::string_view sphere = "icosahedron:";
+  fs::path none;
+  if (halvings > 0 && name.starts_with(sphere))
+    return std::get<Mesh>(
+        named_mesh(fmt::format("{}{}", sphere, number_of(name.substr(sphere.size()), key) + halvings), {}, none));
+  constexpr int most = 10'000'000;
+  for (; halvings > 0; --halvings) {
+    if (mesh.cells() > most / 4)
+      refuse(name, fmt::format("has more than {} cells when it is cut; use fewer levels", most));
+    mesh = refined(mesh);
+  }
   return mesh;
 }
 

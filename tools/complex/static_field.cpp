@@ -1,18 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "tools/complex/static_field.hpp"
 
+#include "schemes/complex/spacetime_complex.hpp"
+
 namespace delf {
 
+namespace {
+
+ComplexSystem system_of(const ComplexScene& scene) {
+  if (scene.stencils) return spacetime_complex(*scene.stencils, scene.theory->shared_density());
+  return SpaceRows(*scene.space).system();
+}
+
+}  // namespace
+
 StaticField::StaticField(const ComplexScene& scene)
-    : rows_(*scene.space),
-      solver_(rows_.system(), {scene.scene.problem.tolerance, scene.scene.problem.max_iterations}),
+    : system_(system_of(scene)),
+      solver_(system_, {scene.scene.problem.tolerance, scene.scene.problem.max_iterations}),
       y_(scene.values()) {
   const std::size_t d = scene.fields.size();
-  const std::vector<Mesh::Point>& points = scene.space->mesh.points;
-  for (std::size_t i = 0; i < points.size(); ++i)
+  const Complex& complex = system_.complex();
+  for (int i = 0; i < complex.sites(); ++i)
     for (std::size_t a = 0; a < d; ++a)
-      if (const auto& f = scene.fields[a]; !scene.space->fixed[i] && f.exact)
-        y_[i * d + a] = f.value ? (*f.value)(0, points[i]) : 0.0;
+      if (const auto& f = scene.fields[a]; complex.is_unknown(i) && f.exact) {
+        const auto& [t, x, y, z] = complex.position(i);
+        y_[static_cast<std::size_t>(i) * d + a] = f.value ? (*f.value)(t, {x, y, z}) : 0.0;
+      }
 }
 
 double StaticField::energy() const {

@@ -5,23 +5,24 @@
 
 namespace delf {
 
-/// An elliptic problem of a scene: data on the fixed boundary, and the field inside by Newton's method. It begins with
-/// initial.FIELD, or with 0 inside if only a solution is given: from a solution nothing begins.
+/// What is solved at once: an elliptic problem on a mesh, with data on the fixed boundary, or a finite complex of
+/// spacetime, with data where its list says. Newton's method begins with initial.FIELD, or with 0 where values are unknown
+/// if only a solution is given: from a solution nothing begins.
 class StaticField {
  public:
   explicit StaticField(const ComplexScene&);
 
-  const ComplexSystem& system() const { return rows_.system(); }
+  const ComplexSystem& system() const { return system_; }
   const ComplexSolver& solver() const { return solver_; }
   const std::vector<double>& values() const { return y_; }
   ComplexSolver::Report solve() { return solver_.solve(y_); }
-  /// −S: the energy of a static field.
+  /// −S on a mesh: the energy of a static field.
   double energy() const;
   /// The largest |E|, relative to the largest sum of absolute terms.
   double residual() const;
 
  private:
-  SpaceRows rows_;
+  ComplexSystem system_;
   ComplexSolver solver_;
   std::vector<double> y_;
 };

@@ -116,7 +116,8 @@ std::vector<Key> general_keys() {
       Key{"lattice.time_step", real, "", "this or lattice.courant", "h", "time", positive},
 
       Key{"lattice.mesh", KeyType::text, "", "must be given with space = complex",
-          "a mesh file (text, Gmsh MSH 2.2 or 4.1), or icosahedron:LEVEL, graded:LENGTH,POINTS,RATIO, "
+          "a mesh file (text, Gmsh MSH 2.2 or 4.1), a file of sites and stencils in spacetime, or icosahedron:LEVEL, "
+          "graded:LENGTH,POINTS,RATIO, "
           "rectangle:WIDTH,HEIGHT,NX,NY, quadrilaterals:WIDTH,HEIGHT,NX,NY"},
       Key{"lattice.time", choice, "rows", "",
           "on a mesh: all sites row by row, none (data all round: an elliptic problem), or each of its cells by its "

@@ -9,6 +9,7 @@
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/complex/mesh_text.hpp"
+#include "tools/complex/stencil_text.hpp"
 
 using namespace delf;
 using namespace delf::testing;
@@ -148,6 +149,84 @@ TEST_CASE("rows of a mesh are verified from a file, and a moved point or an edit
   CHECK(other.code == 2);
   CHECK(contains(other.err, "has 41 sites"));
   CHECK(delf_program(folder, "verify asynchronous --fields v/verify.json").code == 2);
+}
+
+namespace {
+
+/// Rows of bent cells over 0 ≤ x ≤ 3, rectangles and pairs of triangles in turn, as a file has them. Walls and two rows are
+/// data.
+std::string bent_cells(int sites, int rows, const std::string& fault = "") {
+  StencilList list;
+  const double k = 3.0 / (sites - 1), h = 0.4 * k;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < sites; ++i) {
+      const double bend = 0.05 * std::sin(2 * k * i) * std::sin(3 * h * j);
+      const bool wall = i == 0 || i == sites - 1;
+      list.sites.push_back({{h * j + (wall ? 0 : bend), k * i + (wall ? 0 : bend), 0, 0},
+                            wall || j == 0  ? SiteRole::given
+                            : j == 1        ? SiteRole::initial
+                            : j == rows - 1 ? SiteRole::final
+                                            : SiteRole::free});
+    }
+  for (int j = 0; j + 1 < rows; ++j)
+    for (int i = 0; i + 1 < sites; ++i) {
+      const int a = j * sites + i, b = a + 1, c = a + sites, d = c + 1;
+      if (j % 4 < 2) list.stencils.push_back({"rectangle", {a, c, d, b}});
+      else list.stencils.push_back({"triangle", {a, c, b}, 0.5}), list.stencils.push_back({"triangle", {b, c, d}, 0.5});
+    }
+  const auto middle = static_cast<std::size_t>(2 * sites + 3);
+  if (fault == "flipped") std::swap(list.stencils[3].sites[1], list.stencils[3].sites[3]);
+  if (fault == "doubled") list.stencils.push_back(list.stencils[4]);
+  if (fault == "moved") list.sites[middle].position[1] += 0.01;
+  if (fault == "too much") list.sites[middle].role = SiteRole::initial;
+  if (fault == "too little") list.sites[middle].role = SiteRole::final;
+  return stencil_text(list);
+}
+
+}  // namespace
+
+TEST_CASE("a finite complex of mixed shapes runs, is planned and verified, and its faults are named") {
+  const Folder folder;
+  folder.write("coarse.mesh", bent_cells(17, 11)), folder.write("fine.mesh", bent_cells(33, 21));
+  folder.write("kink.ini",
+               "[theory]\nname = sine-gordon\n[lattice]\nspace = complex\nmesh = coarse.mesh\n"
+               "[exact]\nphi = 4*atan(exp((x - 1.5 - 0.3*t)/sqrt(0.91)))\n[output]\nfigures = off\n");
+  const auto error = [&](const std::string& mesh) {
+    const Ran ran = delf_program(folder, "run kink.ini --out out --lattice.mesh=" + mesh);
+    CAPTURE(ran.out, ran.err);
+    REQUIRE(ran.code == 0);
+    CHECK(summary(folder)["residual_max"] < 1e-13);
+    CHECK(summary(folder)["energy_final"].is_null());
+    return summary(folder)["error_l2"].get<double>();
+  };
+  const double fine = error("fine.mesh"), coarse = error("coarse.mesh");
+  CHECK(std::log2(coarse / fine) == Approx(2).margin(0.2));
+  CHECK(contains(delf_program(folder, "plan kink.ini").out, "39 levels, 135 unknowns in 65 blocks, the largest of 15"));
+  CHECK(delf_program(folder, "run out/scene.ini --out again").code == 0);
+  CHECK(read(folder / "again/series.csv") == read(folder / "out/series.csv"));
+  CHECK(delf_program(folder, "verify kink.ini --out v").code == 0);
+  CHECK(delf_program(folder, "verify kink.ini --fields out/fields.h5 --out v").code == 0);
+  for (const char* fault : {"field", "variation", "sign"})
+    CHECK(delf_program(folder, std::string("verify kink.ini --out v --verify.fault=") + fault).code == 1);
+
+  for (const auto& [fault, command, part] :
+       {std::tuple("flipped", "run", "bad.mesh:192: stencil 3 (rectangle) is listed the wrong way round"),
+        std::tuple("doubled", "run", "is stencil 4 again (line 193)"),
+        std::tuple("moved", "verify --fields out/fields.h5", "site 37 lies at x = "),
+        std::tuple("too much", "plan", "more equations than unknowns at site"),
+        std::tuple("too little", "plan", "no equation is left for the values of site")}) {
+    folder.write("bad.mesh", bent_cells(17, 11, fault));
+    const Ran ran = delf_program(folder, std::string(command) + " kink.ini --lattice.mesh=bad.mesh");
+    CAPTURE(fault, ran.err);
+    CHECK(ran.code == 2);
+    CHECK(lines(ran.err).size() == 1);
+    CHECK(contains(ran.err, part));
+  }
+  folder.write("bad.mesh", "complex\nsite 0 0\nsite 1 2 begin\n");
+  CHECK(contains(delf_program(folder, "run kink.ini --lattice.mesh=bad.mesh").err, "bad.mesh:3: \"begin\" is neither"));
+  folder.write("bad.mesh", "complex\nstencil triangel 0 1 2\n");
+  CHECK(contains(delf_program(folder, "run kink.ini --lattice.mesh=bad.mesh").err, "bad.mesh:2: \"triangel\" is no"));
+  CHECK(contains(delf_program(folder, "run kink.ini --run.until=3").err, "where sites have times of their own"));
 }
 
 TEST_CASE("nonsense on a mesh is no success") {

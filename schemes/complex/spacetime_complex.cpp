@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/complex/spacetime_complex.hpp"
+
+#include <map>
+#include <optional>
+
+#include "lattice/error.hpp"
+#include "schemes/complex/space_tables.hpp"
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Families by shape and by the entries that their tables have.
+class Families {
+ public:
+  Families(ComplexSystem& system, const StencilList& list, std::shared_ptr<const BatchDensity> density)
+      : system_(system), list_(list), density_(std::move(density)) {}
+
+  void add(const StencilList::Entry& e) {
+    const StencilShapeKind kind = *stencil_shape(e.shape);
+    if (kind.table) add_table(e, *kind.table);
+    else add_part(e);
+  }
+
+ private:
+  void add_table(const StencilList::Entry& e, const StencilTable& table) {
+    if (density_->slots() > 3)
+      throw BadInput("theory.name",
+                     "theory.name: a density with second derivatives needs a regular lattice; choose lattice.space = "
+                     "circle");
+    const std::vector<TablePoint> points = placed_points(table, list_.positions(e));
+    std::vector<int> form;
+    for (const TablePoint& p : points)
+      for (std::size_t slot = 0; slot < 3; ++slot) {
+        for (const auto& entry : p.slots[slot]) form.push_back(entry.vertex);
+        form.push_back(-1);
+      }
+    auto& family = families_[{e.shape, form}];
+    if (!family.number)
+      family.number = system_.add_family(PlacedFamily(density_, static_cast<int>(e.sites.size()), points));
+    // equal steps have equal tables: the last one is kept at hand
+    if (!same(family.last, points)) family.table = system_.add_table(*family.number, points), family.last = points;
+    system_.add_stencil(*family.number, e.sites, family.table, e.share.value_or(table.measure));
+  }
+
+  void add_part(const StencilList::Entry& e) {
+    if (!space_) space_.emplace(density_);
+    const int size = static_cast<int>(e.sites.size());
+    auto& family = families_[{e.shape, {size}}];
+    const Complex::Position& p = list_.sites[at(e.sites.front())].position;
+    if (e.shape == "motion") {
+      if (!family.number) family.number = system_.add_family(space_->motion());
+      const double h = list_.sites[at(e.sites[1])].position[0] - p[0];
+      system_.add_stencil(*family.number, e.sites, 0, *e.share * h, h);
+    } else if (e.shape == "site") {
+      if (!family.number) family.number = system_.add_family(space_->site());
+      system_.add_stencil(*family.number, e.sites, 0, *e.share);
+    } else {
+      if (!family.number) family.number = system_.add_family(space_->gradient(size));
+      Mesh cell{.points = {}, .vertices = {}};
+      std::vector<std::int32_t> corners;
+      for (const Complex::Position& corner : list_.positions(e)) {
+        corners.push_back(static_cast<std::int32_t>(cell.points.size()));
+        cell.points.push_back({corner[1], corner[2], corner[3]});
+      }
+      cell.add_cell(corners);
+      system_.add_stencil(*family.number, e.sites, system_.add_table(*family.number, space_->gradient_table(cell, 0)),
+                          *e.share);
+    }
+  }
+
+  static bool same(const std::vector<TablePoint>& a, const std::vector<TablePoint>& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t q = 0; q < a.size(); ++q) {
+      if (a[q].weight != b[q].weight) return false;
+      for (std::size_t slot = 0; slot < 3; ++slot)
+        for (std::size_t n = 0; n < a[q].slots[slot].size(); ++n)
+          if (a[q].slots[slot][n].weight != b[q].slots[slot][n].weight) return false;
+    }
+    return true;
+  }
+
+  struct Family {
+    std::optional<int> number = {};
+    int table = 0;
+    std::vector<TablePoint> last = {};
+  };
+  ComplexSystem& system_;
+  const StencilList& list_;
+  std::shared_ptr<const BatchDensity> density_;
+  std::optional<SpaceTables> space_;
+  std::map<std::pair<std::string, std::vector<int>>, Family> families_;
+};
+
+}  // namespace
+
+ComplexSystem spacetime_complex(const StencilList& list, const std::shared_ptr<const BatchDensity>& density) {
+  ComplexSystem system(density->components());
+  for (const StencilList::Site& s : list.sites) system.add_site(s.position, s.role);
+  Families families(system, list, density);
+  for (const StencilList::Entry& e : list.stencils) families.add(e);
+  return system;
+}
+
+}  // namespace delf

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/complex/stencil_list.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "jets/tables/named_tables.hpp"
+#include "schemes/complex/space_tables.hpp"
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double rounding = 1e-12;
+
+/// The parts of T + V, whose share must be given.
+struct Part {
+  const char* name;
+  int least, most;
+};
+constexpr std::array<Part, 3> parts{{{"motion", 2, 2}, {"site", 1, 1}, {"gradient", 2, 4}}};
+
+/// a + b, or 0 if that is what rounding has left of them.
+double sum_of(double a, double b) { return std::abs(a + b) <= rounding * (std::abs(a) + std::abs(b)) ? 0 : a + b; }
+
+/// A jet slot of a coordinate, its weights applied to the coordinates of the sites.
+double applied(const std::vector<TablePoint::Entry>& weights, std::span<const Complex::Position> sites, std::size_t c) {
+  double sum = 0, absolute = 0;
+  for (const auto& e : weights) {
+    const double term = e.weight * sites[at(e.vertex)][c];
+    sum += term, absolute += std::abs(term);
+  }
+  return std::abs(sum) <= rounding * absolute ? 0 : sum;
+}
+
+std::vector<double> dense(const std::vector<TablePoint::Entry>& entries, std::size_t sites) {
+  std::vector<double> weights(sites, 0.0);
+  for (const auto& e : entries) weights[at(e.vertex)] = e.weight;
+  return weights;
+}
+
+/// A number that stencils of one shape and one set of sites share if they are the same function of the values there.
+double fingerprint(const std::vector<TablePoint>& points, const std::vector<int>& sites) {
+  double sum = 0;
+  for (const TablePoint& p : points) {
+    const auto slot = [&](JetSlot s) {
+      double value = 0;
+      for (const auto& e : p[s]) value += e.weight * std::sin(1.0 + 0.7 * sites[at(e.vertex)]);
+      return value;
+    };
+    sum += p.weight * std::sin(0.3 + slot(JetSlot::phi) + 1.1 * slot(JetSlot::phi_t) + 1.3 * slot(JetSlot::phi_x));
+  }
+  return sum;
+}
+
+class Faults {
+ public:
+  explicit Faults(const StencilList& list) : list_(list) {}
+
+  std::optional<MeshFault> find() {
+    if (list_.stencils.empty()) return MeshFault{0, "there is no stencil; write lines like stencil triangle 0 1 2"};
+    std::map<Complex::Position, int> places;
+    for (std::size_t s = 0; s < list_.sites.size(); ++s)
+      if (const auto [first, is_new] = places.emplace(list_.sites[s].position, static_cast<int>(s)); !is_new)
+        return MeshFault{list_.sites[s].line, "site " + std::to_string(s) + " lies where site " +
+                                                  std::to_string(first->second) + " does; remove one"};
+    std::vector<char> used(list_.sites.size(), 0);
+    for (std::size_t n = 0; n < list_.stencils.size(); ++n) {
+      if (auto fault = of_stencil(n)) return fault;
+      for (const int s : list_.stencils[n].sites) used[at(s)] = 1;
+    }
+    const auto unused = std::ranges::find(used, 0);
+    if (unused == used.end()) return std::nullopt;
+    const auto s = static_cast<std::size_t>(unused - used.begin());
+    return MeshFault{list_.sites[s].line, "site " + std::to_string(s) + " is in no stencil; remove it"};
+  }
+
+ private:
+  std::optional<MeshFault> of_stencil(std::size_t n) {
+    const StencilList::Entry& e = list_.stencils[n];
+    const std::string name = "stencil " + std::to_string(n) + " (" + e.shape + ")";
+    const auto fault = [&](const std::string& what) { return MeshFault{e.line, name + " " + what}; };
+    const auto kind = stencil_shape(e.shape);
+    if (!kind) return fault("has an unknown shape");
+    const auto size = static_cast<int>(e.sites.size());
+    if (size < kind->least || size > kind->most)
+      return fault("has " + std::to_string(size) + " sites and needs " + std::to_string(kind->least) +
+                   (kind->most > kind->least ? " to " + std::to_string(kind->most) : "") + "; correct the list");
+    std::vector<int> sorted = e.sites;
+    std::ranges::sort(sorted);
+    if (sorted.front() < 0 || sorted.back() >= static_cast<int>(list_.sites.size()))
+      return fault("names site " + std::to_string(sorted.front() < 0 ? sorted.front() : sorted.back()) +
+                   ", and there are sites 0 to " + std::to_string(list_.sites.size() - 1) + "; correct it");
+    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+      return fault("names site " + std::to_string(*twice) + " twice; name it once");
+    if (!kind->table && !e.share) return fault("needs its share; end the line with share NUMBER");
+    if (e.share && !(*e.share > 0 && std::isfinite(*e.share)))
+      return fault("has a share that is not above 0; correct it");
+
+    const std::vector<Complex::Position> positions = list_.positions(e);
+    double mark = 0;
+    if (kind->table) {
+      for (const auto& p : positions)
+        if (p[2] != 0 || p[3] != 0)
+          return fault("is of t and x alone; where there are y and z use motion, site and gradient");
+      const std::vector<TablePoint> points = placed_points(*kind->table, positions);
+      for (const TablePoint& p : points) {
+        if (!std::isfinite(p.weight) || p.weight == 0) return fault("spans no area of t and x; move its sites");
+        if (p.weight < 0)
+          return fault(
+              "is listed the wrong way round, or folds over itself; list its sites as the lattice's shape does");
+      }
+      mark = fingerprint(points, e.sites);
+    } else if (e.shape == parts[0].name && !(positions[0][0] < positions[1][0])) {
+      return fault("goes back in time; list the earlier site first");
+    } else if (e.shape == parts[2].name) {
+      for (const auto& p : positions)
+        if (p[0] != positions[0][0]) return fault("has sites at several times, and is of space; correct it");
+      Mesh cell{.points = {}, .vertices = {}};
+      std::vector<std::int32_t> corners;
+      for (const auto& p : positions) {
+        corners.push_back(static_cast<std::int32_t>(cell.points.size()));
+        cell.points.push_back({p[1], p[2], p[3]});
+      }
+      cell.add_cell(corners);
+      for (const double share : corner_shares(cell, 0))
+        if (!(share > 0)) return fault("spans no length or area of space; move its sites");
+    }
+    const auto [begin, end] = seen_.equal_range({e.shape, sorted});
+    for (auto other = begin; other != end; ++other)
+      if (std::abs(other->second.second - mark) <= 1e-9 * std::abs(mark))
+        return fault("is stencil " + std::to_string(other->second.first) + " again" +
+                     (list_.stencils[other->second.first].line > 0
+                          ? " (line " + std::to_string(list_.stencils[other->second.first].line) + ")"
+                          : "") +
+                     "; remove one");
+    seen_.emplace(std::pair(e.shape, sorted), std::pair(n, mark));
+    return std::nullopt;
+  }
+
+  const StencilList& list_;
+  std::multimap<std::pair<std::string, std::vector<int>>, std::pair<std::size_t, double>> seen_;
+};
+
+}  // namespace
+
+int StencilList::coordinates() const {
+  int most = 2;
+  for (const Site& s : sites)
+    for (int c = most; c < 4; ++c)
+      if (s.position[at(c)] != 0) most = c + 1;
+  return most;
+}
+
+std::vector<Complex::Position> StencilList::positions(const Entry& e) const {
+  std::vector<Complex::Position> all;
+  for (const int s : e.sites) {
+    all.push_back(sites[at(s)].position);
+    if (circumference > 0) {
+      const double apart = all.back()[1] - all.front()[1];
+      if (std::abs(apart) > circumference / 2) all.back()[1] = all.front()[1] + std::remainder(apart, circumference);
+    }
+  }
+  return all;
+}
+
+std::optional<StencilShapeKind> stencil_shape(std::string_view name) {
+  for (const Part& part : parts)
+    if (name == part.name) return StencilShapeKind{nullptr, part.least, part.most};
+  for (const NamedTable& named : named_tables())
+    if (named.name == name && !named.is_for_point())
+      return StencilShapeKind{&named.table, named.table.pattern.size(), named.table.pattern.size()};
+  return std::nullopt;
+}
+
+std::vector<std::string> stencil_shape_names() {
+  std::vector<std::string> names;
+  for (const NamedTable& named : named_tables())
+    if (!named.is_for_point()) names.push_back(named.name);
+  for (const Part& part : parts) names.emplace_back(part.name);
+  return names;
+}
+
+std::vector<TablePoint> placed_points(const StencilTable& table, std::span<const Complex::Position> sites) {
+  std::vector<TablePoint> points;
+  for (const TablePoint& q : table.points) {
+    const double t_tau = applied(q[JetSlot::phi_t], sites, 0), x_tau = applied(q[JetSlot::phi_t], sites, 1);
+    const double t_xi = applied(q[JetSlot::phi_x], sites, 0), x_xi = applied(q[JetSlot::phi_x], sites, 1);
+    const double D = sum_of(t_tau * x_xi, -x_tau * t_xi);
+    TablePoint point{.weight = q.weight * D, .slots = {}};
+    point.slots[at(static_cast<int>(JetSlot::phi))] = q[JetSlot::phi];
+    // φ_t = (x_ξ φ_τ − x_τ φ_ξ)/D,    φ_x = (t_τ φ_ξ − t_ξ φ_τ)/D
+    const std::vector<double> tau = dense(q[JetSlot::phi_t], sites.size()), xi = dense(q[JetSlot::phi_x], sites.size());
+    std::vector<double> by_t(sites.size()), by_x(sites.size());
+    for (std::size_t l = 0; l < sites.size(); ++l) {
+      by_t[l] = sum_of(x_xi * tau[l], -x_tau * xi[l]) / D;
+      by_x[l] = sum_of(t_tau * xi[l], -t_xi * tau[l]) / D;
+    }
+    point.set(JetSlot::phi_t, by_t);
+    point.set(JetSlot::phi_x, by_x);
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+std::optional<MeshFault> find_fault(const StencilList& list) { return Faults(list).find(); }
+
+}  // namespace delf
