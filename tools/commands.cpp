@@ -115,7 +115,12 @@ ExitCode carry_out_sweep(const Arguments& arguments) {
 }
 
 ExitCode carry_out_convergence(const Arguments& arguments) {
-  const Scene scene = scene_of(arguments);
+  Settings settings = settings_of(arguments);
+  if (is_on_mesh(settings)) {
+    const ComplexScene mesh = read_complex_scene(std::move(settings));
+    return convergence(mesh, arguments.out.value_or("results/" + mesh.scene.name));
+  }
+  const Scene scene = scene_of(std::move(settings));
   return convergence(scene, arguments.out.value_or("results/" + scene.name));
 }
 

@@ -7,7 +7,11 @@
 
 namespace delf {
 
+struct ComplexScene;
+
 /// `delf convergence`: a scene at steps halved again and again, its errors and their order.
 ExitCode convergence(const Scene&, const std::filesystem::path& folder);
+/// The same on a mesh: its sides are halved.
+ExitCode convergence(const ComplexScene&, const std::filesystem::path& folder);
 
 }  // namespace delf

@@ -70,12 +70,16 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     table.levels.push_back(std::move(now));
     before = std::move(end.row), placed_before = std::move(end.placed);
   }
+  find_orders(table);
+  return table;
+}
+
+void find_orders(ConvergenceTable& table) {
   for (std::size_t i = 0; i + 1 < table.levels.size(); ++i) {
     const double rounding = 1e-12 * table.levels[i + 1].size;  // no order comes of it
     const double a = table.levels[i].linf, b = table.levels[i + 1].linf;
     if (b > rounding && std::isfinite(a)) table.levels[i].order = std::log2(a / b);
   }
-  return table;
 }
 
 }  // namespace delf

@@ -30,6 +30,9 @@ struct ConvergenceTable {
   double order() const;
 };
 
+/// Each level's order, from its error and the next level's where both are above rounding.
+void find_orders(ConvergenceTable&);
+
 /// Levels 0, 1, …: the scene at 1, ½, ¼, … of its steps in time and space. A level that fails, or that
 /// cannot be run, is the end of the table; the first throws.
 ConvergenceTable converge(const Scene&, int levels);

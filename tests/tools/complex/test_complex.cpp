@@ -229,6 +229,29 @@ TEST_CASE("a finite complex of mixed shapes runs, is planned and verified, and i
   CHECK(contains(delf_program(folder, "run kink.ini --run.until=3").err, "where sites have times of their own"));
 }
 
+TEST_CASE("waves on spheres and graded intervals converge with order 2, and a missed order fails") {
+  const Folder folder;
+  // z = cos θ is the first harmonic: z cos(√2 t) solves the wave equation on the sphere
+  const std::string sphere =
+      "sphere --theory.name=wave --lattice.mesh=icosahedron:2 --exact.phi='z*cos(sqrt(2)*t)' "
+      "--run.until=1 --convergence.levels=3 --out out ";
+  const Ran right = delf_program(folder, "convergence " + sphere + "--convergence.order=2");
+  CAPTURE(right.out, right.err);
+  CHECK(right.code == 0);
+  const auto json = nlohmann::json::parse(read(folder / "out/convergence.json"));
+  CHECK(json["levels"].size() == 3);
+  CHECK(json["levels"][2]["sites"] == 2562);
+  CHECK(delf_program(folder, "convergence " + sphere + "--convergence.order=3").code == 1);
+  // a graded mesh, and a sphere without a solution: differences at the points of the coarser mesh
+  for (const char* scene : {"asynchronous --lattice.time=rows --lattice.mesh=graded:24,41,1.02 --run.until=2",
+                            "sphere --lattice.mesh=icosahedron:2 --initial.phi=z --run.until=1"}) {
+    const Ran ran = delf_program(
+        folder, std::string("convergence ") + scene + " --convergence.levels=3 --convergence.order=2 --out out");
+    CAPTURE(ran.out, ran.err);
+    CHECK(ran.code == 0);
+  }
+}
+
 TEST_CASE("nonsense on a mesh is no success") {
   const Folder folder;
   const Ran huge = delf_program(folder, "run sphere --initial.phi='1e308*x' --lattice.mesh=icosahedron:1 --out out");
@@ -260,7 +283,7 @@ TEST_CASE("a scene on a mesh with an error is refused in one line") {
   refused("run sphere --lattice.mesh=icosahedron:99", "99 must be a whole number from 0 to 9");
   refused("run sphere --lattice.sites=10", "not applicable to lattice.space = complex");
   refused("run sphere '--theory.density=0.5*phi_t^2 - phi_x^4'", "is not quadratic in phi_x");
-  refused("convergence sphere", "works with run, plan and verify");
+  refused("sweep sphere --lattice.courant=0.3,0.4", "works with run, plan, verify and convergence");
   refused("run sphere --lattice.time_steps=0.1,-1", "steps must be above 0");
   refused("run sphere --initial.speed=0.3", "has no effect on a mesh");
   refused("run sphere --initial.phi=x*t", "reads t");

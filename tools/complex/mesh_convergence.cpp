@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "tools/complex/mesh_convergence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "lattice/error.hpp"
+#include "schemes/complex/asynchronous.hpp"
+#include "tools/complex/complex_commands.hpp"
+#include "tools/complex/static_field.hpp"
+#include "tools/failure.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/seconds_since.hpp"
+
+namespace delf {
+namespace {
+
+struct End {
+  std::vector<double> values;
+  double time = 0, seconds = 0;
+};
+
+/// The last row alone; nothing if the run was interrupted.
+std::optional<End> last_row(const ComplexScene& c) {
+  End end;
+  const auto begin = std::chrono::steady_clock::now();
+  const std::int64_t steps = c.scene.steps;
+  if (c.time == MeshTime::none) {
+    StaticField field(c);
+    field.solve();
+    end.values = field.values();
+  } else if (c.time == MeshTime::cells) {
+    AsynchronousEvolution evolution(*c.space, cell_steps(c));
+    evolution.start(c.values(), c.rates());
+    for (std::int64_t n = 1; n <= steps && !Interrupt::asked(); ++n)
+      evolution.advance(end.time = static_cast<double>(n) * c.scene.problem.time_step);
+    end.values = evolution.values(end.time);
+  } else {
+    SpaceEvolution evolution(*c.space, c.time_step(0), {c.scene.problem.tolerance, c.scene.problem.max_iterations});
+    evolution.start(c.values(), c.rates());
+    while (evolution.newest() < steps && !Interrupt::asked())
+      c.time_steps.empty() ? evolution.step() : evolution.step(c.time_step(evolution.newest()));
+    end.values.assign(evolution.row().begin(), evolution.row().end());
+    end.time = evolution.time();
+  }
+  if (Interrupt::asked()) return std::nullopt;
+  end.seconds = seconds_since(begin);
+  return end;
+}
+
+/// max |a − b| and √(Σ A_i (a − b)²) over the points of a mesh; b may have further points behind them.
+void measure(const CellSpace& space, const std::vector<double>& a, const std::vector<double>& b, ConvergenceLevel& to) {
+  const std::size_t d = a.size() / space.masses.size();
+  double sum = 0;
+  to.linf = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    to.linf = std::max(to.linf, std::abs(a[n] - b[n]));
+    sum += space.masses[n / d] * (a[n] - b[n]) * (a[n] - b[n]);
+  }
+  to.l2 = std::sqrt(sum);
+}
+
+}  // namespace
+
+ConvergenceTable converge(const ComplexScene& scene, int levels) {
+  if (scene.stencils)
+    throw scene.scene.settings.error("lattice.mesh",
+                                     "is a finite complex, and has no finer one; give a mesh or a generator");
+  if (!scene.is_one_problem() && scene.scene.steps < 2)
+    throw scene.scene.settings.error("run.steps", "must be 2 at least for an order; raise it");
+  ConvergenceTable table;
+  table.exact = scene.has_solution();
+  std::unique_ptr<const ComplexScene> coarse;
+  std::vector<double> before;
+  for (int level = 0; level < levels; ++level) {
+    std::unique_ptr<const ComplexScene> now;
+    std::optional<End> end;
+    try {
+      now = std::make_unique<const ComplexScene>(read_complex_scene(scene.scene.settings, level));
+      end = last_row(*now);
+    } catch (const NumericalFailure& error) {
+      if (level == 0) throw;
+      table.status = status_of(error), table.ended = error.what();
+      break;
+    } catch (const Error& error) {  // such as more points than are taken
+      if (level == 0) throw;
+      table.ended = error.what();
+      break;
+    }
+    if (!end) {
+      table.status = "interrupted";
+      break;
+    }
+    ConvergenceLevel line;
+    line.sites = now->sites(), line.space_step = shortest_edge(now->space->mesh);
+    line.time_step = now->is_one_problem() ? 0 : now->scene.problem.time_step;
+    line.seconds = end->seconds;
+    for (const double phi : end->values) line.size = std::max(line.size, std::abs(phi));
+    if (table.exact) measure(*now->space, end->values, now->solution(end->time), line);
+    else if (level > 0) measure(*coarse->space, before, end->values, table.levels.back());
+    table.levels.push_back(line);
+    before = std::move(end->values), coarse = std::move(now);
+  }
+  find_orders(table);
+  return table;
+}
+
+}  // namespace delf
