@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/methods/own_energy.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/convergence/convergence.hpp"
 #include "tools/files/plain_rows.hpp"
+#include "tools/files/text_columns.hpp"
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/plan.hpp"
@@ -152,6 +154,19 @@ std::string own_energies() {
   return names.empty() ? "" : fmt::format(" Methods with one of their own: {}.", fmt::join(names, ", "));
 }
 
+// What energy_own is.
+std::string own_energies_of_rows() {
+  std::string text =
+      "\nThe rows of some schemes have an energy of their own: energy_own of series.csv, and in `delf verify`.";
+  const auto add = [&](const std::string& of, const std::string& formula) {
+    const char* begin = "\n  ";
+    for (const std::string& line : wrapped(of + ": " + formula, 112)) text += begin + line, begin = "\n    ";
+  };
+  add("linear theories on two rows", quadratic_invariant_formula);
+  for (const OwnEnergyEntry* entry : own_energy_entries()) add(entry->method, entry->formula);
+  return text;
+}
+
 const std::vector<Command>& table() {
   static const std::vector<Command> all{
       {"run", "delf run SCENE [--out DIR] [--KEY=VALUE ...]", "step a scene, and record it",
@@ -160,7 +175,7 @@ const std::vector<Command>& table() {
        "Ctrl-C ends a run early, with all so far written.\n\n" +
            std::string("The energy of a run is\n  E = ") + energy_formula +
            ".\nIt is measured, not conserved, and known to second order for schemes of higher order too." +
-           own_energies() +
+           own_energies() + own_energies_of_rows() +
            "\n\n"
            "Keys, with what holds if they are not given (a key on the command line wins over the file):",
        true, carry_out_run},
@@ -195,7 +210,11 @@ const std::vector<Command>& table() {
        "the\n"
        "generated derivatives and Newton's method; energy and momentum balances are measured. Prints a table; into "
        "DIR\n"
-       "(results/NAME of the scene, if not given) go verify.json and figures. Exit code 1 if a check fails.\n\n"
+       "(results/NAME of the scene, if not given) go verify.json and figures; severity.csv of rows of a file, |E| of "
+       "each\n"
+       "site beside its force; and energy_own.csv, where the rows have an energy of their own (`delf help run`). Exit "
+       "code\n"
+       "1 if a check fails.\n\n"
        "  --fields FILE      verify these rows, every row recorded, instead of stepping: a fields.h5, a table in .csv, "
        ".txt\n"
        "                     or .dat, or an array in .npy or .npz, a line (or a column) for each row; with momenta "

@@ -102,8 +102,12 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   outcome.solve = simulation.solve_summary();
   outcome.solve_kind = simulation.solve_kind();
 
-  const RowNames names(simulation);
-  Stepping stepping(scene, initial, simulation, names, outcome);
+  RowNames names(simulation);
+  Problem problem = scene.problem;
+  problem.winding = outcome.winding;
+  const std::optional<OwnEnergy> own = own_energy(simulation, problem);
+  if (own) names.further.emplace_back("energy_own");
+  Stepping stepping(scene, initial, simulation, names, own, outcome);
   std::optional<Recorder::Written> kept;
   if (resumed.state) {
     (*resumed.state)("written", kept.emplace());

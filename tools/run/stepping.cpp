@@ -91,12 +91,13 @@ std::string threads_in_words(const Simulation& simulation, int asked) {
 }
 
 Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,
-                   Outcome& outcome)
+                   const std::optional<OwnEnergy>& own, Outcome& outcome)
     : scene_(scene),
       initial_(initial),
       simulation_(simulation),
       outcome_(outcome),
       names_(names),
+      own_energy_(own),
       warnings_(scene, initial, simulation),
       measures_(scene, initial.winding(), simulation) {
   const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
@@ -113,6 +114,9 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
   if (scene.fields) datasets_.resize(names.datasets.size());
   for (const std::string& name : simulation.conserved_names())
     outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+  if (own)
+    outcome.conserved.push_back(
+        {names.further.back() + ", " + own->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   outcome.iterates = simulation.evolution().stepper().iterates();
   outcome.threads = threads_in_words(simulation, scene.problem.threads);
 }
@@ -125,7 +129,7 @@ void Stepping::start() {
   }
   started_ = true;
   newest_ = simulation_.newest();
-  const auto monitors = simulation_.monitors();
+  const auto monitors = this->monitors();
   outcome_.energy_initial = monitors.energy;
   outcome_.momentum_initial = monitors.momentum;
   for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
@@ -279,7 +283,7 @@ void Stepping::record(std::int64_t row) {
     for (const Role role : all_roles)
       if (role != Role::field && !row_[role].empty()) simulation_.copy_row(back, row_[role], role);
     for (std::size_t d = 0; d < datasets_.size(); ++d) datasets_[d] = simulation_.dataset(d, back);
-    const auto monitors = simulation_.monitors();
+    const auto monitors = this->monitors();
     record.energy = monitors.energy;
     record.energy_error = (monitors.energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);
     record.momentum = monitors.momentum;
@@ -336,6 +340,15 @@ void Stepping::measure(const Record& record, int back) {
     simulation_.observe(neighbour, other);  // as the row itself
   }
   measures_.see({record.time, row_[Role::field], other, record.energy_error});
+}
+
+Simulation::Monitors Stepping::monitors() const {
+  Simulation::Monitors all = simulation_.monitors();
+  if (own_energy_) {
+    all.conserved.push_back(newest_own_energy(*own_energy_, simulation_));
+    all.conserved_scale.push_back(std::abs(all.conserved.back()));
+  }
+  return all;
 }
 
 // The constraint, the monitors of the method, and the conserved sums.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include "schemes/methods/own_energy.hpp"
 #include "tools/measure/measures.hpp"
 #include "tools/run/checkpoints.hpp"
 #include "tools/run/outcome.hpp"
@@ -18,7 +19,9 @@ std::string threads_in_words(const Simulation&, int asked);
 /// last. The outcome receives the cost and the results, also when steps fail.
 class Stepping {
  public:
-  Stepping(const Scene&, const InitialRows&, Simulation&, const RowNames&, Outcome&);
+  /// `own`: the energy of the scheme's own rows, if it has one: the last of names.further and of the conserved sums.
+  Stepping(const Scene&, const InitialRows&, Simulation&, const RowNames&, const std::optional<OwnEnergy>& own,
+           Outcome&);
 
   /// Gives the simulation its first rows. Throws BadScene; a numerical failure is reported by run().
   void start();
@@ -47,6 +50,7 @@ class Stepping {
   void measure_error();
   std::vector<double> phase_point(int back) const;
   void monitor(const Simulation::Monitors&, Record&);
+  Simulation::Monitors monitors() const;
 
   const Scene& scene_;
   const InitialRows& initial_;
@@ -57,6 +61,7 @@ class Stepping {
   Due rows_due_{10};         ///< recorded rows reach the disk after so many seconds
   std::int64_t saved_ = -1;  ///< row of the last checkpoint
   const RowNames& names_;
+  const std::optional<OwnEnergy>& own_energy_;
   Warnings warnings_;
   Measures measures_;
   RecordedRow row_;
