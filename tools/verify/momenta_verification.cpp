@@ -25,6 +25,7 @@
 #include "tools/run/interrupt.hpp"
 #include "tools/run/seconds_since.hpp"
 #include "tools/scene/recorded_scene.hpp"
+#include "tools/verify/energy_history.hpp"
 #include "tools/verify/verification.hpp"
 
 namespace delf {
@@ -91,29 +92,6 @@ Check check_map(const OneStepMap& map, const CanonicalRows& rows, const std::vec
         map.name, j, check.value, j + 1);
   }
   return check;
-}
-
-/// Of H(q, p) = p·q̇ − ℓ at every row: the largest change, and where it begins, ends and goes. A map that keeps dq^dp swings
-/// about a modified energy; one that does not has a trend.
-Measured energy_history(const std::vector<double>& H, double time_step) {
-  const auto n = static_cast<double>(H.size());
-  double most = 0, mean = 0, slope = 0, square = 0;
-  std::size_t worst = 0;
-  for (std::size_t j = 0; j < H.size(); ++j) {
-    if (const double off = std::abs(H[j] - H[0]); !(off <= most)) most = off, worst = j;
-    mean += H[j] / n;
-  }
-  for (std::size_t j = 0; j < H.size(); ++j) {
-    const double t = (static_cast<double>(j) - (n - 1) / 2) * time_step;
-    slope += t * (H[j] - mean), square += t * t;
-  }
-  return {.name = "energy H(q, p) of the rows",
-          .region = fmt::format("row {}; {:.8g} first, {:.8g} last, trend {:.2g} a unit of time", worst, H.front(),
-                                H.back(), slope / square),
-          .value = H[0] == 0 ? most : most / std::abs(H[0]),
-          .normaliser = H[0] == 0 ? 1 : std::abs(H[0]),
-          .count = static_cast<std::int64_t>(H.size()),
-          .remark = "largest |H - H of the first row|, relative to that"};
 }
 
 }  // namespace
@@ -206,7 +184,9 @@ void verify_momenta(const Scene& scene, const VerifyRequest& request, const std:
           hamiltonian(simulation.theory().density(), here.q, here.p, static_cast<double>(j) * scene.problem.time_step));
   }
   for (Check& one : check.checks()) verdict.checks.push_back(std::move(one));
-  if (!energies.empty()) verdict.measured.push_back(energy_history(energies, scene.problem.time_step));
+  if (!energies.empty())
+    verdict.measured.push_back(measured_energy("energy H(q, p) of the rows", energies, scene.problem.time_step,
+                                               "H = p qdot - l; largest |H - H of the first row|, relative to that"));
   if (check.too_far())
     verdict.left_out.push_back(
         "symplectic form dq^dp of a step: the differences to the nearby solutions are too large, or rounding");

@@ -45,7 +45,8 @@ std::string ring(const ResidualMap& map, std::size_t worst, double width) {
 }
 
 // On a point there is no space to show: the residual against time.
-std::string over_time(const ResidualMap& map, const ColourScale& scale, const std::filesystem::path& scratch) {
+std::string over_time(const ResidualMap& map, const ColourScale& scale, const char* label,
+                      const std::filesystem::path& scratch) {
   std::string table;
   for (std::size_t i = 0; i < map.time.size(); ++i)
     if (!std::isnan(map.log10[i])) table += fmt::format("{} {}\n", map.time[i], map.log10[i]);
@@ -53,16 +54,16 @@ std::string over_time(const ResidualMap& map, const ColourScale& scale, const st
   return fmt::format(
       "set rmargin at screen 0.965\nset grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset format y '10^{{%h}}'\n"
       "set ytics {}\nset xlabel 'time t'\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
-      "set label 103 'largest |E| / Σ|terms|' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
+      "set label 103 'largest {}' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
       "plot 'residual' using 1:2 with points pt 7 ps (GPVAL_TERM eq 'svg' ? 0.3 : 0.8) lc rgb '{}'\n",
       std::max(1.0, nice_step(scale.most - scale.least, 8)), map.time.front() - bin_width(map.time) / 2,
-      map.time.back() + bin_width(map.time) / 2, scale.least - 0.5, scale.most + 0.5, line_colour);
+      map.time.back() + bin_width(map.time) / 2, scale.least - 0.5, scale.most + 0.5, label, line_colour);
 }
 
-}  // namespace
-
-std::string residual_map_figure(const VerdictSource& source, const std::filesystem::path& scratch) {
-  ResidualMap map = source.verdict.map;
+/// `label`: what is drawn; `title`: after the scene's name.
+std::string figure_of(const ResidualMap& given, const char* title, const char* label, const VerdictSource& source,
+                      const std::filesystem::path& scratch) {
+  ResidualMap map = given;
   const std::size_t rows = map.time.size(), columns = map.space.size();
   if (map.log10.empty() || map.log10.size() != rows * columns) return {};
   if (rows < 2) return {};  // gnuplot refuses an image of one row
@@ -76,29 +77,39 @@ std::string residual_map_figure(const VerdictSource& source, const std::filesyst
 
   const ColourScale scale = scale_of(map.log10);
   const double dx = bin_width(map.space), dt = bin_width(map.time), width = dx * static_cast<double>(columns);
-  const bool finite = std::isfinite(source.verdict.map.log10[worst]) || map.log10[worst] < 0;
+  const bool finite = std::isfinite(given.log10[worst]) || map.log10[worst] < 0;
   const std::string largest = finite ? fmt::format("{:.2g}", std::pow(10, map.log10[worst])) : "not a finite number";
   const std::string where = fmt::format("t = {:.4g}", map.time[worst / columns]) +
                             (columns > 1 ? fmt::format(", x = {:.4g}", map.space[worst % columns]) : "");
   const std::string head =
-      verdict_title(source.scene + ": the residual of the equations", fmt::format("largest: {} at {}", largest, where),
-                    source.scheme) +
+      verdict_title(source.scene + title, fmt::format("largest: {} at {}", largest, where), source.scheme) +
       fmt::format("set lmargin at screen {}\nset bmargin at screen 0.12\nset tmargin at screen top\n",
                   columns > 1 ? 0.105 : 0.13);
-  if (columns == 1) return head + over_time(map, scale, scratch);
+  if (columns == 1) return head + over_time(map, scale, label, scratch);
   return gnuplot_colours(scale) + head + ring(map, worst, width) +
          fmt::format(
              "set rmargin at screen 0.845\nset xlabel 'space x'\n"
              "set label 103 'time t' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
-             "set label 104 '|E| / Σ|terms|' at screen 0.92,(top+0.017) center textcolor rgb '#333333' noenhanced\n"
+             "set label 104 '{}' at screen 0.92,(top+0.017) center textcolor rgb '#333333' noenhanced\n"
              "set border 15\nset object 100 rectangle from graph 0,0 to graph 1,1 behind fc rgb '#dddddd' fs solid "
              "noborder\n"
              "set colorbox user origin screen 0.868,0.12 size screen 0.022,(top-0.145) noborder\n"
              "set format cb '10^{{%h}}'\nset cbtics {} scale 0.3\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
              "plot 'residuals' binary array=({},{}) dx={} dy={} origin=({},{}) format='%double' using 1 with image\n",
-             std::max(1.0, nice_step(scale.most - scale.least, 8)), map.space.front() - dx / 2,
+             label, std::max(1.0, nice_step(scale.most - scale.least, 8)), map.space.front() - dx / 2,
              map.space.back() + dx / 2, map.time.front() - dt / 2, map.time.back() + dt / 2, columns, rows, dx, dt,
              map.space.front(), map.time.front());
+}
+
+}  // namespace
+
+std::string residual_map_figure(const VerdictSource& source, const std::filesystem::path& scratch) {
+  return figure_of(source.verdict.map, ": the residual of the equations", "|E| / Σ|terms|", source, scratch);
+}
+
+std::string severity_map_figure(const VerdictSource& source, const std::filesystem::path& scratch) {
+  return figure_of(source.verdict.severity, ": the residual beside the force of each site", "|E| / max|force|", source,
+                   scratch);
 }
 
 }  // namespace delf

@@ -7,6 +7,7 @@
 
 #include "schemes/diagnosis/finding.hpp"
 #include "schemes/verify/check.hpp"
+#include "schemes/verify/force_share.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
@@ -39,6 +40,12 @@ struct ResidualMap {
   std::vector<double> log10;        ///< rows × columns: of the largest |E| / normaliser; NaN if no equation is there
 };
 
+/// The energy that the rows have for themselves (schemes/methods/own_energy.hpp), row by row.
+struct EnergyHistory {
+  std::string name, meaning;
+  std::vector<double> time, value;
+};
+
 /// How far a run forth and back, of so many steps, ends from where it began.
 struct ReversalCurve {
   std::vector<std::int64_t> steps;
@@ -54,6 +61,9 @@ struct Verdict {
   std::vector<RegionPoint> points;
   WorstRegion worst;
   ResidualMap map;
+  ResidualMap severity;                ///< of rows of a file: |E| of a site beside the largest force there
+  std::vector<SiteSeverity> severest;  ///< the same of each site, over all rows
+  EnergyHistory energy;
   ReversalCurve reversal;
   std::uint64_t seed = 0;
   double seconds = 0;

@@ -17,10 +17,9 @@ struct Figure {
   const char* name;
   std::string (*body)(const VerdictSource&, const fs::path& scratch);
 };
-constexpr Figure all[] = {{"residual-map", residual_map_figure},
-                          {"residual-region", residual_region_figure},
-                          {"worst-region", worst_region_figure},
-                          {"time-reversal", time_reversal_figure}};
+constexpr Figure all[] = {{"residual-map", residual_map_figure}, {"severity-map", severity_map_figure},
+                          {"energy-own", own_energy_figure},     {"residual-region", residual_region_figure},
+                          {"worst-region", worst_region_figure}, {"time-reversal", time_reversal_figure}};
 
 }  // namespace
 

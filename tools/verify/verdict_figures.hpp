@@ -24,6 +24,8 @@ struct VerdictSource {
 
 // Each writes its data into the scratch folder and gives the gnuplot commands, or nothing if there is nothing to show.
 std::string residual_map_figure(const VerdictSource&, const std::filesystem::path& scratch);
+std::string severity_map_figure(const VerdictSource&, const std::filesystem::path& scratch);
+std::string own_energy_figure(const VerdictSource&, const std::filesystem::path& scratch);
 std::string residual_region_figure(const VerdictSource&, const std::filesystem::path& scratch);
 std::string worst_region_figure(const VerdictSource&, const std::filesystem::path& scratch);
 std::string time_reversal_figure(const VerdictSource&, const std::filesystem::path& scratch);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <functional>
+
 #include "tools/verify/findings_json.hpp"
 #include "tools/verify/verdict.hpp"
 
@@ -29,6 +32,20 @@ Json json_of(const RegionPoint& p) {
       {"kind", p.kind}, {"stencils", p.stencils}, {"value", p.value}, {"variations", p.local ? "local" : "evolved"}};
 }
 
+Json json_of(const SiteSeverity& s) {
+  return {{"site", s.site},   {"field", s.field}, {"row", s.row},
+          {"error", s.error}, {"force", s.force}, {"share", s.share()}};
+}
+
+// The worst of them; severity.csv has all.
+std::vector<SiteSeverity> worst_of(std::vector<SiteSeverity> sites) {
+  constexpr std::size_t most = 8;
+  std::ranges::stable_sort(sites, std::greater{}, &SiteSeverity::share);
+  std::erase_if(sites, [](const SiteSeverity& s) { return s.share() == 0; });
+  if (sites.size() > most) sites.erase(sites.begin() + most, sites.end());
+  return sites;
+}
+
 constexpr auto of_each = [](const auto& one) { return json_of(one); };
 
 }  // namespace
@@ -50,6 +67,13 @@ std::string verdict_json(const Scene& scene, const Verdict& v) {
   json["checks"] = json_list(v.checks, of_each);
   json["measured"] = json_list(v.measured, of_each);
   json["diagnosis"] = json_list(v.diagnosis, of_each);
+  json["severity"] = json_list(worst_of(v.severest), of_each);
+  const EnergyHistory& energy = v.energy;
+  json["energy_own"] = energy.value.empty() ? Json()
+                                            : Json{{"name", energy.name},
+                                                   {"meaning", energy.meaning},
+                                                   {"first", energy.value.front()},
+                                                   {"last", energy.value.back()}};
   json["left_out"] = v.left_out;
   json["regions"] = json_list(v.points, of_each);
   json["reversal"] = {{"steps", v.reversal.steps}, {"distance", v.reversal.distance}};

@@ -25,6 +25,7 @@
 #include "tools/run/progress.hpp"
 #include "tools/run/seconds_since.hpp"
 #include "tools/scene/recorded_scene.hpp"
+#include "tools/verify/energy_history.hpp"
 
 namespace delf {
 
@@ -106,7 +107,6 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   drawer_.emplace(system_, Tangent::solved_rows(system_, plan_, moment_rows_));
   const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
   if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows());
-  if (equations_ && fields) share_.emplace(system_);
   if (request.wants("forms") && (!fields || request.chosen))
     forms_.emplace(system_, plan_, moment_rows_,
                    FormCheck::Options{request.regions, request.variations, request.tolerance, turn_,
@@ -117,6 +117,10 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   if (!nearby.empty()) near_.emplace(request.tolerance);
   require_interiors();
   choose_moments();
+  Problem problem = scene_.problem;
+  problem.winding = winding_;
+  if (request_.wants("equations")) energy_ = own_energy(simulation_, problem);
+  if (energy_) verdict_.energy.name = energy_->name, verdict_.energy.meaning = energy_->meaning;
   if (fields) open_nearby(*fields, nearby);
 }
 
@@ -171,6 +175,11 @@ void Verification::choose_moments() {
     leave_out(fmt::format("regions: they take {} rows, and there are {}", moment_rows_, rows_));
   }
   if (equations_) bins_.emplace(system_.lattice(), scene_.problem.time_step, reach, rows_ - 2 * reach);
+  if (equations_ && fields_) {
+    severity_.emplace(system_.lattice(), scene_.problem.time_step, reach, rows_ - 2 * reach);
+    const bool iterates = simulation_.evolution().stepper().iterates();
+    share_.emplace(system_, rows_ - 2 * reach, iterates ? scene_.problem.tolerance : 0);
+  }
   const FieldTheory& theory = simulation_.theory();
   if (request_.wants("balance")) {
     if (system_.moves()) leave_out("balance of energy and momentum: the sites move");
@@ -285,6 +294,7 @@ void Verification::take(std::vector<double> row) {
     held_.rows.erase(held_.rows.begin());
     ++held_.first_row;
   }
+  look_at_energy(j);
   if (equations_ && j >= 2 * equations_->reach()) {
     const std::int64_t middle = j - equations_->reach();
     equations_->at(held_, middle);
@@ -292,6 +302,7 @@ void Verification::take(std::vector<double> row) {
     if (fields_) {
       failed_.add(middle, equations_->newest(), system_.components(), equations_->tolerance());
       share_->at(held_, middle, equations_->sums(), equations_->newest(), equations_->tolerance());
+      severity_->add(middle, share_->errors(), system_.components());
     }
   }
   for (const auto& nearby : nearby_) nearby->take(j);
@@ -299,6 +310,14 @@ void Verification::take(std::vector<double> row) {
     look_at_moment();
     ++next_moment_;
   }
+}
+
+// Of the last two rows.
+void Verification::look_at_energy(std::int64_t j) {
+  if (!energy_ || j < 1 || held_.rows.size() < 2) return;
+  verdict_.energy.time.push_back(static_cast<double>(j) * scene_.problem.time_step);
+  verdict_.energy.value.push_back(
+      energy_->value({simulation_.theory(), system_, window(j - 1, j), j, scene_.problem.time_step}));
 }
 
 // The first two rows are data, and the wall keeps what the second has.
@@ -375,6 +394,20 @@ void Verification::look_at_nearby(const Window& rows) {
   }
 }
 
+// Each column of the map by the largest force of its own sites.
+void Verification::collect_severity() {
+  verdict_.measured = share_->measured();
+  verdict_.severest = share_->sites();
+  ResidualMap& map = verdict_.severity = severity_->map();
+  const std::size_t columns = map.space.size(), N = static_cast<std::size_t>(system_.lattice().sites());
+  std::vector<double> scale(columns, 0.0);
+  for (const SiteSeverity& site : verdict_.severest) {
+    double& of_column = scale[static_cast<std::size_t>(site.site) * columns / N];
+    of_column = std::max({of_column, site.force, site.rounding});
+  }
+  for (std::size_t n = 0; n < map.log10.size(); ++n) map.log10[n] -= std::log10(scale[n % columns]);
+}
+
 void Verification::collect() {
   std::vector<Check> later = std::move(verdict_.checks);
   verdict_.checks.clear();
@@ -386,7 +419,7 @@ void Verification::collect() {
     add(equations_->checks());
     verdict_.map = bins_->map();
     if (walls_) add({*walls_});
-    if (share_) verdict_.measured = share_->measured();
+    if (share_) collect_severity();
     diagnose_rows();
     verdict_.stencils += equations_->rows() * system_.lattice().sites();
   }
@@ -437,6 +470,10 @@ void Verification::collect() {
   if (fields_ && request_.chosen)
     for (const char* name : {"reversal", "derivatives", "newton"})
       if (request_.wants(name)) leave_out(fmt::format("{}: of the scheme and not of rows; leave out --fields", name));
+  if (const EnergyHistory& energy = verdict_.energy; energy.value.size() > 2)
+    verdict_.measured.push_back(measured_energy("energy of the rows' own: " + energy.name, energy.value,
+                                                scene_.problem.time_step,
+                                                "largest |E - E first| beside that; " + energy.meaning));
   if (balance_) {  // without an order
     for (Measured& m : balance_->results()) verdict_.measured.push_back(std::move(m));
   }

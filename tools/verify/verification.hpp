@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "schemes/diagnosis/evidence.hpp"
+#include "schemes/methods/own_energy.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/verify/equation_check.hpp"
@@ -52,12 +53,14 @@ class Verification {
   void take(std::vector<double> row);
   void look_at_moment();
   void look_at_nearby(const Window&);
+  void look_at_energy(std::int64_t row);
   void look_at_walls(std::int64_t row, const std::vector<double>& values);
   void diagnose_rows();
   std::vector<LinearSymmetry> symmetries();
   bool scheme_has(const LinearSymmetry&) const;
   Window window(std::int64_t first, std::int64_t last) const;
   void collect();
+  void collect_severity();
   void leave_out(const std::string& what) { verdict_.left_out.push_back(what); }
   std::uint64_t seed() { return random_(); }
 
@@ -80,7 +83,8 @@ class Verification {
   std::optional<NoetherCheck> noether_;
   std::optional<NearbyCheck> near_;
   std::optional<StressBalance> balance_;
-  std::optional<ResidualBins> bins_;
+  std::optional<ResidualBins> bins_, severity_;
+  std::optional<OwnEnergy> energy_;
   FailedEquations failed_;
   std::optional<ForceShare> share_;  ///< of rows of a file
   std::optional<Check> walls_;       ///< of rows of a file: fixed walls keep their values

@@ -21,6 +21,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// What tables there are of rows and sites; those of an earlier time go.
+void write_tables(const fs::path& folder, const Verdict& verdict) {
+  const auto write = [&](const char* name, const char* head, const std::string& lines) {
+    std::error_code none;
+    if (lines.empty()) fs::remove(folder / name, none);
+    else write_text_file(folder / name, head + lines);
+  };
+  std::string sites, energies;
+  for (const SiteSeverity& s : verdict.severest)
+    sites += fmt::format("{},{},{},{},{},{}\n", s.site, s.field, s.row, s.error, s.force, s.share());
+  for (std::size_t n = 0; n < verdict.energy.value.size(); ++n)
+    energies += fmt::format("{},{}\n", verdict.energy.time[n], verdict.energy.value[n]);
+  write("severity.csv", "site,field,row,error,force,share\n", sites);
+  write("energy_own.csv", "time,energy_own\n", energies);
+}
+
 ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::optional<std::string>& fields,
                    const std::vector<std::string>& nearby) {
   const Interrupt interrupt;
@@ -32,6 +48,7 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   Verdict verdict = verification ? verification->run() : Verdict{};
   if (fields && verdict.status == "done") verify_momenta(scene, request, *fields, nearby, momenta_alone, verdict);
   write_text_file(folder / "verify.json", verdict_json(scene, verdict));
+  write_tables(folder, verdict);
   remove_figures(verdict_figure_names(), folder);
   std::string missing;
   if (scene.figures) {

@@ -92,6 +92,64 @@ TEST_CASE("every report on rows says how large a residual is beside the force, a
   CHECK(value(tail, of_site) > 10 * value(tail, whole));
 }
 
+TEST_CASE("a tail that is wrong by less than the tolerance is seen beside the force of its own sites") {
+  const Folder folder;
+  folder.write("small.ini", scene());
+  const std::string wide = " --lattice.length=60 --lattice.sites=96 --initial.frequency=0.6 ";
+  REQUIRE(delf_program(folder, "run small.ini --out run" + wide).code == 0);
+  CHECK(verified(folder, "--fields run/fields.h5" + wide, 0)["severity"].empty());
+  copy(folder / "run/fields.h5", folder / "tail.h5", [](int j, std::vector<double>& row) {
+    if (j > 15)
+      for (int i = 0; i < 2; ++i) row[static_cast<std::size_t>(i)] *= 1.0002;
+  });
+  const Json wrong = verified(folder, "--fields tail.h5" + wide, 0);
+  REQUIRE(!wrong["severity"].empty());
+  const Json& worst = wrong["severity"][0];
+  CHECK(worst["site"] < 8);
+  CHECK(worst["row"].get<int>() >= 15);
+  CHECK(worst["row"].get<int>() <= 16);
+  CHECK(worst["share"] > 1e-3);
+  CHECK(contains(read(folder / "out/severity.csv"), "site,field,row,error,force,share\n0,phi,"));
+  for (const Json& measured : wrong["measured"])
+    if (measured["name"] == "equations: |E| of a site beside its force")
+      CHECK(measured["remark"] == "more than rounding, and below the tolerance of the checks");
+}
+
+TEST_CASE("run and verify report the energy that rows have for themselves, where there is one") {
+  const Folder folder;
+  folder.write("small.ini", scene());
+  const auto conserved = [&](const std::string& arguments) {
+    REQUIRE(delf_program(folder, "run small.ini --out run --run.steps=60 " + arguments).code == 0);
+    return Json::parse(read(folder / "run/summary.json"))["conserved"];
+  };
+  struct Case {
+    std::string arguments, name;
+    double most, least_of_all_schemes;
+  };
+  for (const Case& c : std::vector<Case>{
+           {"--theory.name=klein-gordon --initial.state=noise --lattice.stencil=triangle", "quadratic invariant",
+            1e-13, 1e-6},
+           {"--scheme.method=guo", "energy of (5.15)", 1e-13, 1e-6},
+           {"--scheme.method=composition --scheme.order=6 --lattice.space_order=12", "H(q, p) of the composition", 1e-5,
+            1e-4},
+       }) {
+    INFO(c.arguments);
+    const Json own = conserved(c.arguments);
+    REQUIRE(own.size() == 1);
+    CHECK(own[0]["name"] == "energy_own, " + c.name);
+    CHECK(own[0]["error_max"] < c.most);
+    CHECK(Json::parse(read(folder / "run/summary.json"))["energy_error_max"] > c.least_of_all_schemes);
+    CHECK(contains(read(folder / "run/series.csv"), ",residual,energy_own\n"));
+    const Json verdict = verified(folder, "--fields run/fields.h5 " + c.arguments, 0);
+    CHECK(verdict["energy_own"]["name"] == c.name);
+    CHECK(verdict["energy_own"]["first"].get<double>() == Approx(own[0]["initial"].get<double>()).epsilon(1e-12));
+    CHECK(contains(read(folder / "out/energy_own.csv"), "time,energy_own\n0.3,"));
+  }
+  CHECK(conserved("").empty());  // none of leapfrog's for sine-Gordon
+  CHECK(verified(folder, "--fields run/fields.h5", 0)["energy_own"].is_null());
+  CHECK(!std::filesystem::exists(folder / "out/energy_own.csv"));
+}
+
 TEST_CASE("values modulo 2π are found, and verified with verify.unwrap") {
   const Folder folder;
   folder.write("small.ini", scene());
