@@ -37,7 +37,7 @@ Diagnosis diagnose(Evidence evidence) {
   // The common first. What settles the case ends it: a seam is no wrong coefficient.
   using Local = std::optional<Finding> (*)(const Evidence&);
   for (const Local find : {find_rounding, find_wrapped, find_doubled_frame, find_dropped_frame, find_edited_value,
-                           find_first_rows, find_seam, find_fixed_sites}) {
+                           find_first_rows, find_seam, find_fixed_sites, find_sponge}) {
     if (evidence.failed.failed() == 0) break;
     if (auto finding = find(evidence)) {
       diagnosis.findings.push_back(std::move(*finding));

@@ -19,6 +19,7 @@ std::optional<Finding> find_edited_value(const Evidence&);
 std::optional<Finding> find_first_rows(const Evidence&);
 std::optional<Finding> find_seam(const Evidence&);
 std::optional<Finding> find_fixed_sites(const Evidence&);
+std::optional<Finding> find_sponge(const Evidence&);
 
 // Where they fail everywhere:
 /// The scheme that the rows solve, at the steps of the scene, on every second site, or with every second row.

@@ -418,6 +418,20 @@ TEST_CASE("a diagnosis finds what is wrong with a seam") {
     for (const int i : {10, 40}) F[i] = (before[i] - y[i]) / (h * h);
     return F;
   });
+  // layers of eight sites at both ends with the friction γ(x) φ_t, φ_t by the rows around or by the last step
+  const auto sponge = [](bool central) {
+    return [central](const Row& y, const Row& before) {
+      Row F = sine_gordon()(y, before);
+      for (int i = 0; i < N; ++i) {
+        const double depth = std::max(0, std::max(8 - i, i - (N - 9))) / 8.0, g = 0.9 * depth * depth;
+        if (!central) F[i] -= g * (y[i] - before[i]) / h;
+        else
+          F[i] = ((2 * y[i] - (1 - g * h / 2) * before[i] + h * h * F[i]) / (1 + g * h / 2) - 2 * y[i] + before[i]) /
+                 (h * h);
+      }
+      return F;
+    };
+  };
   Rows repeated = stepped(start(pulse), sine_gordon());
   for (Row& y : repeated) y.push_back(y[0]);
   for (const Case& c : std::vector<Case>{
@@ -427,6 +441,13 @@ TEST_CASE("a diagnosis finds what is wrong with a seam") {
            {"mirrors", with(stepped(start(pulse), ends(false))), "The ends are mirrors, φ₋₁ = φ₁", "fixed"},
            {"Robin ends", with(stepped(start(pulse), robin(0.3, 0))), "φ_x = 0.3 φ, a Robin condition", "absorbs"},
            {"absorbing ends", with(stepped(start(pulse), robin(0, 1))), "φ_x = 1 φ_t, which absorbs waves", "Robin"},
+           {"a sponge", with(stepped(start(pulse), sponge(true))),
+            "An absorbing layer: at the sites 0 to 7, 56 to 63 there is a friction γ(x) φ_t, φ_t = (y₊ − y₋)/2h, of "
+            "0.9 "
+            "at most (site 0)",
+            "wall"},
+           {"a sponge by the last step", with(stepped(start(pulse), sponge(false))), "φ_t = (y − y₋)/h, of 0.9 at most",
+            "wall"},
            {"pegs", with(pegged), "Sites 10, 40 keep the same value", "wall"},
            {"a site twice", with(repeated, scene("sine-gordon", Lattice::circle(N + 1, k * (N + 1)))),
             "The last site repeats the first", "wall"},
