@@ -18,6 +18,15 @@ std::vector<RegionSystem::Pair> pairs_of(std::vector<RegionSystem::Values> varia
   return pairs;
 }
 
+/// "X": the slaved components at the vertices.
+std::string slaved_names(const LatticeSystem& system) {
+  std::string names;
+  for (const Component& c : system.all_components())
+    if (c.role == Role::slaved && (c.position || names.empty()))
+      names = c.position ? c.name : "slaved values";  // nodes inside a step go with the position
+  return names;
+}
+
 }  // namespace
 
 std::vector<Balance> symplectic_form(const LatticeSystem& system, const Window& y, const std::vector<Window>& V,
@@ -33,7 +42,8 @@ std::vector<Balance> symplectic_form(const LatticeSystem& system, const Window& 
       Assembly::gather(at, variations[2 * p], cut, v);
       Assembly::gather(at, variations[2 * p + 1], cut, w);
       for (int n = 0; n < at.family.size(); ++n)
-        if (at.anchor.site.time + at.family.site(n).time >= 0)
+        if (at.anchor.site.time + at.family.site(n).time >= 0 &&
+            system.component(at.family.values()[static_cast<std::size_t>(n)].component).role != Role::slaved)
           add_form(balances[p], static_cast<std::size_t>(n), at.derivatives, v, w);
     }
   });
@@ -44,12 +54,23 @@ FormCheck::FormCheck(const LatticeSystem& system, const SolvePlan& plan, int row
     : system_(system),
       options_(std::move(options)),
       variational_(is_variational(system)),
+      slaved_(slaved_names(system)),
+      constrained_(std::ranges::any_of(system.families(), [&](const auto& f) { return has_multiplier(system, *f); })),
       tangent_(std::make_unique<Tangent>(system, plan, rows, options_.turn)),
       solved_(Tangent::solved_rows(system, plan, rows)),
       forms_(options_.regions.size()),
       drawn_(options_.regions.size(), false) {
-  for (std::size_t n = 0; n < forms_.size(); ++n)
-    forms_[n] = {.name = "form formula, " + options_.regions[n].name, .region = {}, .tolerance = options_.tolerance};
+  beyond_.resize(forms_.size());
+  for (std::size_t n = 0; n < forms_.size(); ++n) {
+    const std::string& kind = options_.regions[n].name;
+    forms_[n] = {.name = "form formula, " + kind, .region = {}, .tolerance = options_.tolerance};
+    if (!slaved_.empty()) {
+      forms_[n].name = fmt::format("form formula with {} known, {}", slaved_, kind);
+      beyond_[n].name = fmt::format("form formula with {} solved for, {}", slaved_, kind);
+    } else {
+      beyond_[n].name = "form formula without multipliers, " + kind;
+    }
+  }
   local_ = {.name = "local identity of the forms", .region = {}, .tolerance = options_.tolerance};
   cuts_ = {.name = "symplectic form, slab to slab", .region = {}, .tolerance = options_.tolerance};
 }
@@ -79,18 +100,34 @@ void FormCheck::at(const Window& y, std::mt19937_64& random) {
     const RegionSystem system(system_, *region, y.first_row, options_.turn);
     const auto values = system.restricted(y);
     if (variational_) look_at_stencils(system, values, random);
-    if (!evolved.empty()) {
+    if (!evolved.empty() && slaved_.empty()) {
       std::vector<RegionSystem::Values> restricted;
       for (const Window& V : evolved) restricted.push_back(system.restricted(V));
       auto pairs = pairs_of(std::move(restricted));
       look(request, system, values, pairs, false);
     }
-    if (system.nodes() <= most_local) {
-      auto pairs = pairs_of(system.first_variations(values, count, random));
+    if (system.nodes() > most_local) continue;
+    auto pairs = pairs_of(system.first_variations(values, count, random));
+    if (slaved_.empty()) {
       look(request, system, values, pairs, true);
+      if (constrained_) measure(request, system, values, pairs);
+      continue;
     }
+    measure(request, system, values, pairs);
+    const RegionSystem known(system_, *region, y.first_row, options_.turn, SlavedValues::known);
+    pairs = pairs_of(known.first_variations(values, count, random));
+    look(request, known, values, pairs, true);
   }
-  if (!evolved.empty() && variational_) look_at_cuts(y, evolved);
+  if (!evolved.empty() && (variational_ || !slaved_.empty())) look_at_cuts(y, evolved);
+}
+
+void FormCheck::measure(const RegionRequest& request, const RegionSystem& system, const RegionSystem::Values& y,
+                        const std::vector<RegionSystem::Pair>& pairs) {
+  Check& beyond = beyond_[static_cast<std::size_t>(&request - options_.regions.data())];
+  const std::string where = in_words(system.region(), system.origin(), system.stencils());
+  for (const Balance& left :
+       slaved_.empty() ? system.form_without_multipliers(y, pairs) : system.form_formula(y, pairs))
+    beyond.take(left, where);
 }
 
 void FormCheck::look(const RegionRequest& request, const RegionSystem& system, const RegionSystem::Values& y,
@@ -178,7 +215,7 @@ void FormCheck::look_at_cuts(const Window& y, const std::vector<Window>& V) {
       cuts_.take(change, fmt::format("between rows {} and {}", first, cut));
     }
   }
-  if (!cuts_.passed())
+  if (!cuts_.passed() && slaved_.empty())
     cuts_.failure = fmt::format(
         "The symplectic form of two first variations changes {}: the step is no symplectic map, or its linearisation "
         "is "
@@ -191,7 +228,26 @@ std::vector<Check> FormCheck::checks() const {
   for (const Check& check : forms_)
     if (check.samples > 0) result.push_back(check);
   if (local_.samples > 0) result.push_back(local_);
-  if (cuts_.samples > 0) result.push_back(cuts_);
+  if (cuts_.samples > 0 && slaved_.empty()) result.push_back(cuts_);
+  return result;
+}
+
+std::vector<Measured> FormCheck::measured() const {
+  std::vector<Measured> result;
+  const auto add = [&](const Check& of, const std::string& remark) {
+    if (of.samples > 0)
+      result.push_back({.name = of.name,
+                        .region = of.region,
+                        .value = of.value,
+                        .normaliser = of.normaliser,
+                        .count = of.count,
+                        .remark = remark});
+  };
+  for (const Check& check : beyond_) add(check, "");
+  if (slaved_.empty()) return result;
+  Check cuts = cuts_;
+  cuts.name = "symplectic form of the fields, slab to slab";
+  add(cuts, fmt::format("{} follows the field, and the step is not symplectic", slaved_));
   return result;
 }
 
@@ -206,8 +262,14 @@ std::vector<std::string> FormCheck::left_out() const {
     if (drawn_[n] && forms_[n].samples == 0)
       words.push_back(fmt::format("form formula, {}: more than {} nodes, and no evolved variations",
                                   options_.regions[n].name, most_local));
+  if (!slaved_.empty())
+    words.push_back(
+        fmt::format("the equations of {}: it is slaved, and to the forms a known function, V = 0 there; what "
+                    "they leave where it is solved for is measured",
+                    slaved_));
   if (!no_evolution_.empty()) words.push_back("evolved variations: " + no_evolution_);
-  if (!variational_) words.push_back("local identity and symplectic form: the scheme has no Lagrangian");
+  if (!variational_ && slaved_.empty())
+    words.push_back("local identity and symplectic form: the scheme has no Lagrangian");
   return words;
 }
 

@@ -17,6 +17,10 @@ namespace delf {
 /// are evolved from random values on the first rows of a window, and, on regions of up to `most_local` nodes, drawn
 /// from the null space of the region's own linearised equations. It is an identity of the linearised equations at any
 /// section.
+///
+/// Values that are slaved to others have an equation that comes from no action. What is checked then is (5.6) where they are
+/// known functions: V = 0 there, and their equations are dropped. What it leaves where they follow the field is measured; and
+/// so is, of constraints, what it leaves without the terms of their multipliers (Tyranowski–Desbrun, remark 5).
 class FormCheck {
  public:
   struct Options {
@@ -39,6 +43,7 @@ class FormCheck {
   void at(const Window&, std::mt19937_64&);
 
   std::vector<Check> checks() const;
+  std::vector<Measured> measured() const;
   /// Kinds of regions for which there was no room.
   std::vector<std::string> left_out() const;
   std::int64_t stencils() const { return stencils_; }  ///< on which sums were taken
@@ -64,6 +69,8 @@ class FormCheck {
  private:
   void look(const RegionRequest&, const RegionSystem&, const RegionSystem::Values& y,
             std::vector<RegionSystem::Pair>& pairs, bool local);
+  void measure(const RegionRequest&, const RegionSystem&, const RegionSystem::Values& y,
+               const std::vector<RegionSystem::Pair>& pairs);
   std::string why(const RegionSystem&, const RegionSystem::Values& y, const RegionSystem::Pair&) const;
   void look_at_stencils(const RegionSystem&, const RegionSystem::Values& y, std::mt19937_64&);
   void look_at_cuts(const Window& y, const std::vector<Window>& V);
@@ -71,9 +78,11 @@ class FormCheck {
   const LatticeSystem& system_;
   Options options_;
   bool variational_;
+  std::string slaved_;  ///< the names of what is slaved; empty: nothing
+  bool constrained_;    ///< by multipliers
   std::unique_ptr<Tangent> tangent_;
   Range solved_;
-  std::vector<Check> forms_;  ///< one for each request
+  std::vector<Check> forms_, beyond_;  ///< one for each request: what is checked, and what is measured
   std::vector<bool> drawn_;
   Check local_, cuts_;
   std::vector<Point> points_;
@@ -83,7 +92,7 @@ class FormCheck {
 };
 
 /// ω(V, W) over the cut below row `cut`: Σ_Δ Σ_{l: Δˡ at or above it} Ωˡ(V, W), over the stencils that reach across.
-/// It is the same at every cut between which the linearised equations hold.
+/// It is the same at every cut between which the linearised equations hold. Of slaved values there is no p.
 std::vector<Balance> symplectic_form(const LatticeSystem&, const Window& y, const std::vector<Window>& V,
                                      std::int64_t cut);
 

@@ -21,12 +21,21 @@ std::vector<StencilPattern> patterns_of(const LatticeSystem& system) {
   return patterns;
 }
 
-RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int64_t origin, double turn)
+/// Reads the multiplier of a constraint: one that is a momentum ties the ends of an element.
+bool has_multiplier(const LatticeSystem& system, const StencilFamily& family) {
+  return std::ranges::any_of(family.values(), [&](const VertexValue& value) {
+    const Component& c = system.component(value.component);
+    return c.role == Role::multiplier && !c.momentum;
+  });
+}
+
+RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int64_t origin, double turn,
+                           SlavedValues slaved)
     : system_(system),
       region_(std::move(region)),
       origin_(origin),
       components_(system.components()),
-      variational_(is_variational(system)),
+      by_forms_(is_variational(system) || slaved == SlavedValues::known),
       kind_(region_.sites().size(), outside) {
   for (const Site site : region_.interior()) kind_[region_.place(site)] = inside;
   for (const Site site : region_.boundary()) kind_[region_.place(site)] = boundary;
@@ -44,7 +53,8 @@ RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int6
     for (const VertexValue& value : system_.families()[static_cast<std::size_t>(f)]->values()) {
       const std::size_t place = places[static_cast<std::size_t>(value.vertex)];
       const std::size_t node = place * C + static_cast<std::size_t>(value.component);
-      held_[node] = system_.is_held(region_.sites()[place].space, value.component);
+      held_[node] = system_.is_held(region_.sites()[place].space, value.component) ||
+                    (slaved == SlavedValues::known && system_.component(value.component).role == Role::slaved);
       solved_[node] = kind_[place] == inside && !held_[node];
     }
   });
@@ -150,16 +160,18 @@ std::optional<std::size_t> RegionSystem::coupling_node(const Values& y) const {
   return static_cast<std::size_t>(most - felt.begin());
 }
 
-std::vector<Balance> RegionSystem::form_formula(const Values& y, std::span<const Pair> pairs) const {
+template <class Wanted>
+std::vector<Balance> RegionSystem::form_sums(const Values& y, std::span<const Pair> pairs, const Wanted& wanted) const {
   std::vector<Balance> balances(pairs.size());
   std::vector<double> v, w;
   each_jacobian(y, true, [&](const Assembly::Local& at, Reads read, std::span<const double> J) {
+    if (!wanted(at.family)) return;
     const std::size_t n = read.size();
     for (std::size_t p = 0; p < pairs.size(); ++p) {
       gather(at, pairs[p].V, v);
       gather(at, pairs[p].W, w);
       for (std::size_t i = 0; i < n; ++i) {
-        if (variational_) {
+        if (by_forms_) {
           if (at_boundary(read[i])) add_form(balances[p], i, J, v, w);
           continue;
         }
@@ -171,13 +183,21 @@ std::vector<Balance> RegionSystem::form_formula(const Values& y, std::span<const
   return balances;
 }
 
+std::vector<Balance> RegionSystem::form_formula(const Values& y, std::span<const Pair> pairs) const {
+  return form_sums(y, pairs, [](const StencilFamily&) { return true; });
+}
+
+std::vector<Balance> RegionSystem::form_without_multipliers(const Values& y, std::span<const Pair> pairs) const {
+  return form_sums(y, pairs, [&](const StencilFamily& family) { return !has_multiplier(system_, family); });
+}
+
 double RegionSystem::form_error(const Values& y, const Pair& pair, double delta) const {
   double sum = 0;
   each_jacobian(y, true, [&](const Assembly::Local&, Reads read, std::span<const double> J) {
     const auto size = [&](std::size_t i) { return std::abs(pair.V[read[i]]) + std::abs(pair.W[read[i]]); };
     for (std::size_t i = 0; i < read.size(); ++i)
       for (std::size_t m = 0; m < read.size(); ++m)
-        if (at_boundary(read[variational_ ? i : m])) sum += std::abs(J[i * read.size() + m]) * (size(i) + size(m));
+        if (at_boundary(read[by_forms_ ? i : m])) sum += std::abs(J[i * read.size() + m]) * (size(i) + size(m));
   });
   return delta * sum;
 }

@@ -14,8 +14,15 @@
 
 namespace delf {
 
+/// What values that are slaved to others are to forms: solved for with the rest, or functions of t that are known, which do
+/// not vary and have no equations.
+enum class SlavedValues { solved, known };
+
 /// The patterns of a system's families, as regions want them.
 std::vector<StencilPattern> patterns_of(const LatticeSystem&);
+
+/// A family's stencils have the multiplier of a constraint.
+bool has_multiplier(const LatticeSystem&, const StencilFamily&);
 
 /// A system on a region U alone: its equations at int U, their linearisation, and the sums over ∂U that the form
 /// formula and Noether's theorem are about. Sections and variations are vectors over the nodes of U: node number
@@ -25,7 +32,8 @@ class RegionSystem {
   using Values = std::vector<double>;
 
   /// Rows of U count from `origin`, which is even: brick walls keep their parity. `turn` is φ(x + L) − φ(x).
-  RegionSystem(const LatticeSystem&, Region, std::int64_t origin = 0, double turn = 0);
+  RegionSystem(const LatticeSystem&, Region, std::int64_t origin = 0, double turn = 0,
+               SlavedValues = SlavedValues::solved);
 
   const Region& region() const { return region_; }
   std::int64_t origin() const { return origin_; }
@@ -57,10 +65,13 @@ class RegionSystem {
   ///
   ///     Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} Ωˡ(V, W)                                                      (5.6)
   ///
-  /// or, if some family has no Lagrangian and with it no Ω, the same for the equations alone:
+  /// or, if some family has no Lagrangian and with it no Ω, the same for the equations alone (where slaved values are known
+  /// it is Ω even so: what is varied may have an action of its own):
   ///
   ///     Σ_{b ∈ int U, a ∈ ∂U} ∂E_b/∂y_a (W_a V_b − V_a W_b)
   std::vector<Balance> form_formula(const Values& y, std::span<const Pair> pairs) const;
+  /// (5.6) over the stencils without multipliers alone: on (φ, X) in place of (φ, X, λ), Tyranowski–Desbrun, remark 5.
+  std::vector<Balance> form_without_multipliers(const Values& y, std::span<const Pair> pairs) const;
 
   /// What an error of δ in every value of V and W can make of that sum: δ Σ |∂rⁱ/∂yᵐ| (|Vᵐ| + |Wⁱ| + |Wᵐ| + |Vⁱ|).
   double form_error(const Values& y, const Pair&, double delta) const;
@@ -97,6 +108,8 @@ class RegionSystem {
   /// Calls visit(stencil, reads, ∂r/∂y) for every stencil in U, or for those that meet ∂U.
   template <class Visit>
   void each_jacobian(const Values& y, bool at_boundary, const Visit& visit) const;
+  template <class Wanted>
+  std::vector<Balance> form_sums(const Values& y, std::span<const Pair> pairs, const Wanted& wanted) const;
   bool at_boundary(int node) const { return kind_[static_cast<std::size_t>(node / components_)] == boundary; }
   bool is_solved(int node) const { return solved_[static_cast<std::size_t>(node)]; }
   bool is_held(int node) const { return held_[static_cast<std::size_t>(node)]; }
@@ -108,7 +121,7 @@ class RegionSystem {
   Region region_;
   std::int64_t origin_;
   int components_;
-  bool variational_;
+  bool by_forms_;           ///< Ω is that of residuals; or else the sum is that of equations
   std::vector<Kind> kind_;  ///< of each site
   std::vector<std::size_t> equations_;
   std::vector<char> solved_;  ///< of each node: it is in equations_

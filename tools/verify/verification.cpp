@@ -425,6 +425,7 @@ void Verification::collect() {
   }
   if (forms_) {
     add(forms_->checks());
+    for (Measured& m : forms_->measured()) verdict_.measured.push_back(std::move(m));
     for (const std::string& words : forms_->left_out()) leave_out(words);
     for (const auto& p : forms_->points()) verdict_.points.push_back({p.kind, p.stencils, p.value, p.local});
     const auto& worst = forms_->worst();
