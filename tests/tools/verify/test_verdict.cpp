@@ -38,6 +38,9 @@ Verdict verdict() {
              {{812, 3, 0, true, false, 0}, {813, 3, 0, false, true, 0.1}, {813, 4, 0, false, true, not_a_number}},
              3e-15};
   v.map = {{0.5, 1.5}, {0, 1, 2}, {not_a_number, -16, -15.5, INFINITY, -INFINITY, -16}};
+  v.severity = v.map;
+  v.severest = {{3, "phi", 99, 4e-4, 1e-3, 1e-16}, {4, "phi", 7, 1e-17, 1e-3, 1e-16}};
+  v.energy = {"an energy", "its formula", {0, 0.5, 1}, {2, 2 + 1e-15, 2}};
   v.reversal = {{1, 10, 100}, {0, 1e-16, 1e-15}};
   v.seed = 7;
   v.stencils = 25500;
@@ -145,7 +148,7 @@ TEST_CASE("the figures of a verdict are drawn as PNG and as SVG, and those witho
   if (!has_gnuplot()) return;
   const Folder folder;
   CHECK(draw_verdict(verdict(), "the user's", "hexagon, N = 254", {}, folder.path()).empty());
-  CHECK(verdict_figure_names().size() == 4);
+  CHECK(verdict_figure_names().size() == 6);
   for (const std::string& name : verdict_figure_names()) {
     INFO(name);
     CHECK(read(folder / ("figures/" + name + ".png")).starts_with("\x89PNG"));
