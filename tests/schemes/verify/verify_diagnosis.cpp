@@ -522,3 +522,94 @@ TEST_CASE("a diagnosis tells rounding from errors") {
   CHECK(tolerance < 1e-5);
   CHECK(diagnosis(with(rounded(leapfrog(), six)), tolerance).find("rounding") == std::string::npos);
 }
+
+TEST_CASE("a diagnosis knows the usual programs for fields") {
+  // φ⁴, by leapfrog
+  const auto bump = [](double t, double x) { return 1 - 1.4 / std::cosh(0.5 * (x - 18) - 0.2 * t); };
+  const Rows quartic = stepped(start(bump), [](const Row& y, const Row&) {
+    Row F = second_difference(y);
+    for (std::size_t i = 0; i < y.size(); ++i) F[i] += y[i] - y[i] * y[i] * y[i];
+    return F;
+  });
+  // ½D²(y₊ + y₋) with D² of order 4, by fixed points
+  const auto wide = [](const Row& y, int i) {
+    const auto at = [&](int n) { return y[static_cast<std::size_t>((n + N) % N)]; };
+    return (-at(i - 2) + 16 * at(i - 1) - 30 * at(i) + 16 * at(i + 1) - at(i + 2)) / (12 * k * k);
+  };
+  Rows implicit = start();
+  while (implicit.size() < 40) {
+    const Row y = implicit.back(), before = implicit[implicit.size() - 2];
+    Row next = y;
+    for (int n = 0; n < 120; ++n) {
+      const Row last = next;
+      for (int i = 0; i < N; ++i)
+        next[static_cast<std::size_t>(i)] =
+            2 * y[static_cast<std::size_t>(i)] - before[static_cast<std::size_t>(i)] +
+            h * h * (0.5 * (wide(last, i) + wide(before, i)) - std::sin(y[static_cast<std::size_t>(i)]));
+    }
+    implicit.push_back(next);
+  }
+  // Symplectic Euler in (φ, π): the ends fixed; mirrors at the last sites, or half a cell beyond them.
+  enum class Ends { fixed, mirror, half_a_cell };
+  const auto euler = [](Ends ends) {
+    Rows rows;
+    Row phi, pi(N, 0.0);
+    for (int i = 0; i < N; ++i) phi.push_back(3 / std::cosh(0.2 * (i * k - 18)));
+    for (int j = 0; j < frames; ++j) {
+      rows.push_back(phi);
+      const auto at = [&](int i) {
+        const int inside = ends == Ends::half_a_cell ? (i < 0    ? 0
+                                                        : i == N ? N - 1
+                                                                 : i)
+                                                     : (i < 0    ? 1
+                                                        : i == N ? N - 2
+                                                                 : i);
+        return phi[static_cast<std::size_t>(inside)];
+      };
+      Row F;
+      for (int i = 0; i < N; ++i) F.push_back((at(i - 1) - 2 * at(i) + at(i + 1)) / (k * k) - std::sin(at(i)));
+      for (int i = 0; i < N; ++i) {
+        if (ends == Ends::fixed && (i == 0 || i == N - 1)) continue;
+        const auto n = static_cast<std::size_t>(i);
+        pi[n] += h * F[n], phi[n] += h * pi[n];
+      }
+    }
+    return rows;
+  };
+  const auto between = [](Wall wall) { return scene("sine-gordon", Lattice::interval(N, k * (N - 1), wall, wall)); };
+  // Fourth order, drifts first: frames are those of whole steps.
+  Rows yoshida;
+  Row phi = row_of(breather, 0), pi(N, 0.0);
+  const double outer = 1 / (2 - std::cbrt(2.0));
+  while (yoshida.size() < 30) {
+    yoshida.push_back(phi);
+    for (const double w : {outer, 1 - 2 * outer, outer}) {
+      for (std::size_t i = 0; i < phi.size(); ++i) phi[i] += w * h / 2 * pi[i];
+      const Row F = sine_gordon()(phi, phi);
+      for (std::size_t i = 0; i < phi.size(); ++i) pi[i] += w * h * F[i], phi[i] += w * h / 2 * pi[i];
+    }
+  }
+  for (const Case& c : std::vector<Case>{
+           {"quartic", with(quartic, scene("phi4")), "the equations of triangle-vertex", "coefficient"},
+           {"quartic, k too large", with(quartic, scene("phi4", Lattice::circle(N, 1.1 * L))), "lattice.length = 40",
+            "time step"},
+           {"quartic, h too small", with(quartic, scene("phi4", Lattice::circle(N, L), h / 1.1)),
+            "try lattice.time_step = 0.3125", "wave speed"},
+           {"semi-implicit, order 4", with(implicit),
+            "D²φ of the rows j − 1, j, j + 1 with the weights 0.5, 0, 0.5, and N′(φ) with the weights 0, 1, 0 (D² and "
+            "N′ of "
+            "composition (2,4))",
+            "time step"},
+           {"Euler, fixed ends", with(euler(Ends::fixed), between(Wall::fixed)), "the equations of triangle-vertex",
+            "seam"},
+           {"Euler, fixed ends on a circle", with(euler(Ends::fixed)), "between fixed walls", "mirrors"},
+           {"Euler, mirrors", with(euler(Ends::mirror), between(Wall::natural)), "the equations of triangle-vertex",
+            "seam"},
+           {"Euler, mirrors on a circle", with(euler(Ends::mirror)), "The ends are mirrors, φ₋₁ = φ₁", "fixed"},
+           {"Euler, mirrors half a cell on", with(euler(Ends::half_a_cell)), "φ₋₁ = φ₀", "fixed"},
+           {"Yoshida on fields", with(yoshida), "method of order 4, drifts first", "not symplectic"},
+           {"an aliased first row", with(changed(leapfrog(), [](Rows& r) { r[0] = r[1]; })),
+            "Frames 0 and 1 are the same", "time step"},
+       })
+    check(c);
+}
