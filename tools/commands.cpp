@@ -101,6 +101,8 @@ ExitCode carry_out_verify(const Arguments& arguments) {
     return verify(mesh, arguments.out.value_or("results/" + mesh.scene.name), arguments.fields);
   }
   if (arguments.fields) {  // a scene of rows needs no start, and no end
+    if (std::error_code none; !std::filesystem::exists(file_of_rows(*arguments.fields), none))
+      throw BadScene(fmt::format("command line: --fields {}: no such file; check the path", *arguments.fields));
     if (!settings.find("initial.state")) {
       settings.imply("initial.state", "file", "theory.name");
       settings.imply("initial.file", std::filesystem::absolute(file_of_rows(*arguments.fields)).string(),

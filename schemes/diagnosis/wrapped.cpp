@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "schemes/theories/theory_registry.hpp"
 #include "schemes/diagnosis/findings.hpp"
 #include "schemes/diagnosis/own_equations.hpp"
 #include "schemes/diagnosis/unwrap.hpp"
+#include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 
@@ -63,7 +63,7 @@ std::optional<Finding> find_wrapped(const Evidence& e) {
   return Finding{
       "wrapped",
       "The values are reduced modulo 2π: with the jumps by 2π taken back the equations hold. Use verify.unwrap = "
-      "on, which follows every value from row to row."};
+      "on, which follows every value from row to row, or theory.fibre = S1."};
 }
 
 }  // namespace delf

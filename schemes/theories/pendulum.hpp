@@ -4,7 +4,7 @@
 
 namespace delf {
 
-/// One angle q: sine-Gordon at one point of space.
+/// One angle q: sine-Gordon at one point of space. A pendulum of length L under gravity g has m² = g/L.
 ///
 /// ℓ = ½q_t² + m²(cos q − 1)                               q_tt + m² sin q = 0
 struct Pendulum {

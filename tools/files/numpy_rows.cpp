@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "lattice/error.hpp"
 #include "lattice/text_parts.hpp"
@@ -79,8 +83,35 @@ PlainArray npy_of(const std::string& all) {
   return array;
 }
 
-/// The files in a ZIP archive that are stored as they are, by name.
-std::map<std::string, std::string> stored_files(const std::string& all) {
+/// What zlib has made `size` bytes smaller to; nothing if it is not whole.
+std::optional<std::string> inflated(const std::string& packed, std::size_t size) {
+  constexpr std::size_t most = 1032;  // times smaller, by its format
+  if (size / most > packed.size()) return std::nullopt;
+  std::string bytes(size, '\0');
+  z_stream stream{};
+  constexpr int without_header = -15;
+  if (inflateInit2(&stream, without_header) != Z_OK) return std::nullopt;
+  // zlib counts in 32 bits
+  std::size_t read = 0, written = 0;
+  int state = Z_OK;
+  while (state == Z_OK) {
+    constexpr std::size_t part = 1 << 30;
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data())) + read;
+    stream.avail_in = static_cast<uInt>(std::min(part, packed.size() - read));
+    stream.next_out = reinterpret_cast<Bytef*>(bytes.data()) + written;
+    stream.avail_out = static_cast<uInt>(std::min(part, size - written));
+    const uInt in = stream.avail_in, out = stream.avail_out;
+    state = inflate(&stream, Z_NO_FLUSH);
+    read += in - stream.avail_in, written += out - stream.avail_out;
+    if (state == Z_OK && in == stream.avail_in && out == stream.avail_out) break;
+  }
+  inflateEnd(&stream);
+  if (state != Z_STREAM_END || written != size) return std::nullopt;
+  return bytes;
+}
+
+/// The files in a ZIP archive, by name: stored as they are, or deflated.
+std::map<std::string, std::string> files_of(const std::string& all) {
   const auto refuse = [](const char* why) { return bad_file(std::string(why) + "; write it by numpy.savez"); };
   const auto number = [&](std::size_t at, int bytes) {
     if (at + static_cast<std::size_t>(bytes) > all.size()) throw refuse("is cut short");
@@ -95,12 +126,21 @@ std::map<std::string, std::string> stored_files(const std::string& all) {
   std::map<std::string, std::string> files;
   std::size_t at = number(end + 16, 4);
   for (std::size_t n = number(end + 10, 2); n > 0; --n) {
-    // "PK\1\2", …, method (10), …, size (24), lengths of name, extra, comment (28), …, offset of the file (42), name (46)
-    const std::size_t size = number(at + 24, 4), name = number(at + 28, 2), file = number(at + 42, 4);
-    if (number(at + 10, 2) != 0) throw refuse("is compressed");
+    // "PK\1\2", …, method (10), …, bytes in the archive (20), size (24), lengths of name, extra, comment (28), …, offset of
+    // the file (42), name (46)
+    const std::size_t method = number(at + 10, 2), packed = number(at + 20, 4), size = number(at + 24, 4),
+                      name = number(at + 28, 2), file = number(at + 42, 4);
+    if (method != 0 && method != 8) throw refuse("is compressed in a way that zlib does not know");
     const std::size_t data = file + 30 + number(file + 26, 2) + number(file + 28, 2);
-    if (data + size > all.size() || at + 46 + name > all.size()) throw refuse("is cut short");
-    files[all.substr(at + 46, name)] = all.substr(data, size);
+    const std::size_t stored = method == 0 ? size : packed;
+    if (data + stored > all.size() || at + 46 + name > all.size()) throw refuse("is cut short");
+    std::string bytes = all.substr(data, stored);
+    if (method == 8) {
+      auto whole = inflated(bytes, size);
+      if (!whole) throw refuse("is damaged");
+      bytes = std::move(*whole);
+    }
+    files[all.substr(at + 46, name)] = std::move(bytes);
     at += 46 + name + number(at + 30, 2) + number(at + 32, 2);
   }
   return files;
@@ -114,7 +154,7 @@ constexpr std::array momentum_names{"p", "pi", "v", "momentum"};
 PlainArray read_npy(const std::filesystem::path& path) { return npy_of(bytes_of(path)); }
 
 PlainArray read_npz(const std::filesystem::path& path, const std::string& name) {
-  const auto files = stored_files(bytes_of(path));
+  const auto files = files_of(bytes_of(path));
   const auto find = [&](const auto& names) {
     for (const char* one : names)
       if (const auto at = files.find(std::string(one) + ".npy"); at != files.end()) return at;

@@ -24,6 +24,7 @@ std::unique_ptr<RowsFile> opened(const std::filesystem::path& path, const std::s
   if (!std::filesystem::exists(path)) name = name.substr(0, name.rfind(":/"));
   if (!std::filesystem::exists(name))
     throw BadScene(place + ": no such file; name the fields.h5 of a run, or a file of the same layout");
+  if (path.extension() == ".gz") throw BadScene(place + ": is compressed; unpack it by gunzip");
   try {
     if (auto plain = open_plain_rows(path, system.lattice().sites(), system.fields())) return plain;
   } catch (const BadInput& bad) {

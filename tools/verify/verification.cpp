@@ -128,8 +128,15 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
   const auto behind = simulation_.evolution().stepper().behind();
   fields_ = std::make_unique<RecordedSection>(fields, system_, behind, scene_.problem.time_step, "--fields");
   require_recorded_parameters(scene_, fields, fields_->scene());
-  if (const auto winding = fields_->winding(); winding && system_.lattice().is_circle())
+  verdict_.subject += recorded_otherwise(scene_, fields_->scene());
+  if (const auto winding = fields_->winding(); winding && system_.lattice().is_circle()) {
+    if (const auto here = scene_.initial.winding; here && *here != *winding)
+      throw BadScene(
+          fmt::format("command line: --fields {}: was made with boundary.winding = {}, and the scene has {}; "
+                      "use --boundary.winding={}, or leave out its attribute winding",
+                      fields, *winding, *here, *winding));
     turn_ = 2 * std::numbers::pi * *winding;
+  }
   if (request_.unwrap) {
     if (!nearby.empty())
       throw scene_.settings.error("verify.unwrap", "unwraps the rows of --fields alone; leave --nearby out");

@@ -40,7 +40,9 @@ void write_tables(const fs::path& folder, const Verdict& verdict) {
 ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::optional<std::string>& fields,
                    const std::vector<std::string>& nearby) {
   const Interrupt interrupt;
-  const VerifyRequest request = read_verify_request(scene);
+  VerifyRequest request = read_verify_request(scene);
+  // on the fibre S1 values modulo 2π are those of the field
+  if (scene.problem.circle_valued && fields && nearby.empty()) request.unwrap = true;
   std::optional<Verification> verification;
   const bool momenta_alone = fields && has_momenta_alone(scene, *fields);
   if (!momenta_alone) verification.emplace(scene, request, fields, nearby);

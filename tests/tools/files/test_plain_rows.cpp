@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <zlib.h>
+
 #include <cstdint>
 
 #include "lattice/error.hpp"
@@ -29,12 +31,27 @@ std::string bytes(std::size_t value, int count) {
   return text;
 }
 
-// As numpy.savez writes it, with the fields of a ZIP archive that count.
+std::string deflated(const std::string& data) {
+  std::string packed(2 * data.size() + 64, '\0');
+  z_stream stream{};
+  REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data.data()));
+  stream.avail_in = static_cast<uInt>(data.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+// As numpy.savez writes it (method 0), or numpy.savez_compressed (8), with the fields of a ZIP archive that count.
 std::string npz(const std::vector<std::pair<std::string, std::string>>& files, std::size_t method = 0) {
   std::string all, directory;
-  for (const auto& [name, data] : files) {
-    directory += "PK\1\2" + std::string(6, '\0') + bytes(method, 2) + std::string(12, '\0') + bytes(data.size(), 4) +
-                 bytes(name.size(), 2) + std::string(12, '\0') + bytes(all.size(), 4) + name;
+  for (const auto& [name, whole] : files) {
+    const std::string data = method == 8 ? deflated(whole) : whole;
+    directory += "PK\1\2" + std::string(6, '\0') + bytes(method, 2) + std::string(8, '\0') + bytes(data.size(), 4) +
+                 bytes(whole.size(), 4) + bytes(name.size(), 2) + std::string(12, '\0') + bytes(all.size(), 4) + name;
     all += "PK\3\4" + std::string(22, '\0') + bytes(name.size(), 2) + bytes(3, 2) + name + "abc" + data;
   }
   return all + directory + "PK\5\6" + std::string(6, '\0') + bytes(files.size(), 2) + std::string(4, '\0') +
@@ -56,6 +73,7 @@ TEST_CASE("momenta are read beside the fields") {
            {"a.csv", "t,q1,q2,p1,p2\n0,0,1,5,6\n0.5,10,11,7,8\n1,20,21,9,10\n"},
            {"b.csv", "t,p1,q1,p2,q2\n0,5,0,6,1\n0.5,7,10,8,11\n1,9,20,10,21\n"},
            {"c.npz", npz({{"q.npy", q}, {"p.npy", p}, {"t.npy", t}})},
+           {"c8.npz", npz({{"q.npy", q}, {"p.npy", p}, {"t.npy", t}}, 8)},
            {"d.npz", npz({{"phi.npy", q}, {"pi.npy", p}}), true, false},
            {"e.npz", npz({{"anything.npy", q}}), false, false},
            {"f.npz", npz({{"q.npy", q}, {"p.npy", other}}), false, false},  // of another shape
@@ -79,7 +97,10 @@ TEST_CASE("momenta are read beside the fields") {
     }
   };
   CHECK(contains(refused(npz({{"a.npy", q}, {"b.npy", p}})), "has the arrays a, b; name the one"));
-  CHECK(contains(refused(npz({{"q.npy", q}}, 8)), "is compressed; write it by numpy.savez"));
+  CHECK(contains(refused(npz({{"q.npy", q}}, 14)), "is compressed in a way that zlib does not know"));
+  std::string damaged = npz({{"q.npy", q}}, 8);
+  damaged[38] = '\xff';  // behind the names: a block of no kind
+  CHECK(contains(refused(damaged), "is damaged; write it by numpy.savez"));
   CHECK(contains(refused("PK"), "is no .npz file"));
 }
 

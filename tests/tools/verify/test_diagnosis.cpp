@@ -127,8 +127,8 @@ TEST_CASE("run and verify report the energy that rows have for themselves, where
     double most, least_of_all_schemes;
   };
   for (const Case& c : std::vector<Case>{
-           {"--theory.name=klein-gordon --initial.state=noise --lattice.stencil=triangle", "quadratic invariant",
-            1e-13, 1e-6},
+           {"--theory.name=klein-gordon --initial.state=noise --lattice.stencil=triangle", "quadratic invariant", 1e-13,
+            1e-6},
            {"--scheme.method=guo", "energy of (5.15)", 1e-13, 1e-6},
            {"--scheme.method=composition --scheme.order=6 --lattice.space_order=12", "H(q, p) of the composition", 1e-5,
             1e-4},
@@ -160,6 +160,8 @@ TEST_CASE("values modulo 2π are found, and verified with verify.unwrap") {
   CHECK(says(verified(folder, "--fields modulo.h5", 1), "Use verify.unwrap = on"));
   const Json unwrapped = verified(folder, "--fields modulo.h5 --verify.unwrap=on --verify.identify=on", 0);
   CHECK(says(unwrapped, "the equations of triangle-vertex."));
+  CHECK(verified(folder, "--fields modulo.h5 --theory.fibre=S1", 0)["passed"] == true);
+  CHECK(says(verified(folder, "--fields modulo.h5 --theory.fibre=S1 --lattice.length=40", 1), "lattice.length = 20"));
   check_refused(delf_program(folder,
                              "verify small.ini --fields run/fields.h5 --nearby modulo.h5 --nearby run/fields.h5 "
                              "--verify.unwrap=on --out refused"),
@@ -242,6 +244,37 @@ TEST_CASE("rows in other units are verified as they are, by a scene that has no 
   check_refused(delf_program(folder, "run small.ini"), {"neither run.until nor run.steps is given"});
 }
 
+TEST_CASE("a pendulum's g and L, and a planet's GM, are keys") {
+  const Folder folder;
+  // velocity Verlet; of the pendulum modulo 2π
+  constexpr double h = 0.02, g = 9.81, arm = 0.7, GM = 3.986;
+  double q = 1.2, p = 6.5, x = 1, y = 0, u = 0, v = 1.9;
+  std::string pendulum, planet;
+  for (int j = 0; j < 120; ++j) {
+    pendulum += fmt::format("{:.17g}\n", q - 2 * std::numbers::pi * std::floor(q / (2 * std::numbers::pi)));
+    planet += fmt::format("{:.17g},{:.17g}\n", x, y);
+    p -= h / 2 * g / arm * std::sin(q), q += h * p, p -= h / 2 * g / arm * std::sin(q);
+    const auto kick = [&] {
+      const double r = std::hypot(x, y), by = h / 2 * GM / (r * r * r);
+      u -= by * x, v -= by * y;
+    };
+    kick(), x += h * u, y += h * v, kick();
+  }
+  folder.write("pendulum.csv", pendulum);
+  folder.write("planet.csv", planet);
+  const auto passes = [&](const std::string& theory, const std::string& file, const std::string& keys, int code) {
+    folder.write("small.ini", "[theory]\nname = " + theory +
+                                  "\n[lattice]\nspace = point\nstencil = vertex\ntime_step = "
+                                  "0.02\n[output]\nfigures = off\n");
+    CHECK(verified(folder, "--fields " + file + keys, code)["passed"] == (code == 0));
+  };
+  passes("pendulum", "pendulum.csv", " --theory.gravity=9.81 --theory.arm=0.7 --theory.fibre=S1", 0);
+  passes("pendulum", "pendulum.csv", " --theory.gravity=9.81 --theory.arm=0.7", 1);
+  passes("pendulum", "pendulum.csv", " --theory.gravity=9.8 --theory.arm=0.7 --verify.unwrap=on", 1);
+  passes("kepler", "planet.csv", " --theory.gm=3.986", 0);
+  passes("kepler", "planet.csv", "", 1);
+}
+
 TEST_CASE("parameters that a file of rows was made with, and a thinned one, are refused with both values") {
   const Folder folder;
   folder.write("small.ini", scene());
@@ -249,6 +282,20 @@ TEST_CASE("parameters that a file of rows was made with, and a thinned one, are 
   CHECK(verified(folder, "--fields run/fields.h5 --theory.mass=1.25", 0)["passed"] == true);
   check_refused(delf_program(folder, "verify small.ini --fields run/fields.h5 --out refused"),
                 {"was made with theory.mass = 1.25, and the scene has 1"});
+  folder.write(
+      "no-start.ini",
+      "[theory]\nname = sine-gordon\n[lattice]\nstencil = triangle-vertex\nlength = 20\nsites = 32\ntime_step = 0.3\n");
+  check_refused(
+      delf_program(folder, "verify no-start.ini --fields run/fields.h5 --theory.mass=1.25 --boundary.winding=1"),
+      {"was made with boundary.winding = 0, and the scene has 1"});
+  REQUIRE(delf_program(folder, "run small.ini --out walls --lattice.space=interval --boundary.left=natural").code == 0);
+  check_refused(delf_program(folder, "verify small.ini --fields walls/fields.h5 --lattice.space=interval"),
+                {"was made with boundary.left = natural, and the scene has fixed"});
+  check_refused(delf_program(folder, "verify small.ini --fields walls/fields.h5 --lattice.length=20.64516129032258"),
+                {"was made with lattice.space = interval, and the scene has circle"});
+  REQUIRE(delf_program(folder, "run small.ini --out run").code == 0);
+  const Ran other = delf_program(folder, "verify small.ini --fields run/fields.h5 --lattice.stencil=triangle");
+  CHECK(contains(other.out, "recorded with lattice.stencil = triangle-vertex"));
   REQUIRE(delf_program(folder, "run small.ini --out thin --output.every=3").code == 0);
   check_refused(delf_program(folder, "verify small.ini --fields thin/fields.h5 --out refused"),
                 {"of 3 rows one was recorded", "output.every = 1"});

@@ -297,6 +297,10 @@ TEST_CASE("files of rows that cannot be verified are refused in one line") {
   edit(folder / "run/fields.h5", folder / "nan.h5", 20, 3, std::nan(""));
   const std::string fields = "small.ini --fields run/fields.h5 ";
   refused(folder, "small.ini --fields missing.h5", "--fields missing.h5: no such file");
+  folder.write("no-start.ini", "[theory]\nname = wave\n[lattice]\nlength = 9\nsites = 9\ntime_step = 0.1\n");
+  refused(folder, "no-start.ini --fields missing.h5", "command line: --fields missing.h5: no such file");
+  folder.write("rows.csv.gz", "\x1f\x8b");
+  refused(folder, "small.ini --fields rows.csv.gz", "is compressed; unpack it by gunzip");
   refused(folder, "small.ini --fields text.h5", "--fields text.h5: is not an HDF5 file");
   refused(folder, "small.ini --fields short/fields.h5", "has 2 whole rows, and an equation reads 3");
   refused(folder, fields + "--lattice.sites=33", "has 32 sites, and the lattice has 33");
