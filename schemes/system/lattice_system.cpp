@@ -12,6 +12,7 @@
 
 #include "lattice/error.hpp"
 #include "lattice/stencil.hpp"
+#include "schemes/system/assembled_row.hpp"
 #include "schemes/system/assembly.hpp"
 
 namespace delf {
@@ -238,18 +239,7 @@ bool LatticeSystem::has_stencil(const StencilFamily& family, std::int64_t row, i
 }
 
 void LatticeSystem::equations(const Window& window, std::int64_t row, std::vector<Value>& values) const {
-  std::vector<Node> all;
-  for (int i = 0; i < lattice_.sites(); ++i)
-    for (int c = 0; c < components(); ++c) all.push_back({{0, i}, c});
-  const Assembly assembly(*this, {.equations = std::move(all),
-                                  .parity = static_cast<int>(row & 1),
-                                  .past = height_,
-                                  .future = height_,
-                                  .turn = window.turn});
-  std::vector<double> E, absolute;
-  assembly.residual(SectionRing(window, row - height_, row + height_), row, E, &absolute);
-  values.resize(E.size());
-  for (std::size_t n = 0; n < E.size(); ++n) values[n] = {E[n], absolute[n]};
+  AssembledRow(*this).equations(window, row, values);
 }
 
 void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, int component, std::int64_t unknown_row,

@@ -15,7 +15,7 @@
 namespace delf {
 
 EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan, double tolerance, int data_rows)
-    : system_(&system), tolerance_(tolerance), data_rows_(data_rows), seen_(3) {
+    : system_(&system), row_(system), tolerance_(tolerance), data_rows_(data_rows), seen_(3) {
   reach_ = std::max(1, system.height());
   constexpr std::array names{"field equations", "field equations at natural ends", "constraints"};
   for (std::size_t n = 0; n < seen_.size(); ++n)
@@ -88,7 +88,7 @@ int EquationCheck::largest_site(int component) const {
 }
 
 void EquationCheck::at(const Window& window, std::int64_t row) {
-  system_->equations(window, row, values_);
+  row_.equations(window, row, values_);
   const auto C = static_cast<std::size_t>(system_->components());
   find_sizes(window, row);
   std::array<double, 3> scale{};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/assembled_row.hpp"
 #include "schemes/system/lattice_system.hpp"
 #include "schemes/verify/check.hpp"
 
@@ -47,6 +48,7 @@ class EquationCheck {
   int largest_site(int component) const;
 
   const LatticeSystem* system_;
+  AssembledRow row_;
   double tolerance_;
   int data_rows_;
   int reach_ = 1;

@@ -17,6 +17,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 ForceShare::ForceShare(const LatticeSystem& system, std::int64_t rows, double solver)
     : system_(&system),
+      row_(system),
       stride_(std::clamp<std::int64_t>(rows / 64, 1, 8)),
       solver_(solver),
       at_(static_cast<std::size_t>(system.lattice().sites() * system.components())) {
@@ -39,7 +40,7 @@ void ForceShare::at(const Window& window, std::int64_t row, const std::vector<La
     Window still = window;
     still.first_row = row - reach;
     still.rows.assign(static_cast<std::size_t>(2 * reach + 1), here);
-    system_->equations(still, row, forces_);
+    row_.equations(still, row, forces_);
   }
   errors_.assign(at_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t n = 0; n < at_.size(); ++n) {

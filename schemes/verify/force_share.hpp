@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "schemes/system/assembled_row.hpp"
 #include "schemes/system/lattice_system.hpp"
 #include "schemes/verify/check.hpp"
 
@@ -55,6 +56,7 @@ class ForceShare {
   SiteSeverity severity(std::size_t n) const;
 
   const LatticeSystem* system_;
+  AssembledRow row_;
   std::int64_t stride_, seen_ = 0;
   double solver_, coefficients_ = 0, largest_value_ = 0;
   std::vector<Largest> at_;  ///< [i·C + c]
