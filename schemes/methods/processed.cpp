@@ -11,6 +11,7 @@
 #include "jets/tables/suited_pairs.hpp"
 #include "lattice/error.hpp"
 #include "schemes/families/jet_family.hpp"
+#include "schemes/methods/kernel_alone.hpp"
 #include "schemes/methods/pair_parts.hpp"
 #include "schemes/stability/splitting_limit.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -61,8 +62,11 @@ Chosen chosen(const Problem& p) {
   return c;
 }
 
+bool has_processor(const Problem& p) { return p.parameters.maybe<std::string>(processor_key).value_or("on") == "on"; }
+
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
-  const Chosen c = chosen(p);
+  Chosen c = chosen(p);
+  if (!has_processor(p)) c.splitting.processor = {};
   SchemeParts parts = pair_parts(theory, p, c.splitting, c.pairs);
   if (c.gradient_pairs > 0) {
     const auto squares = std::make_shared<ForceSquared>(
@@ -74,20 +78,22 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   }
   const double k = p.lattice.space_step(), decay = p.parameters.get<double>("lattice.analyticity") / k;
   const std::vector<double> force = c.gradient_pairs > 0 ? pair_weights(c.gradient_pairs) : c.pairs;
-  parts.remarks = {
-      "rows         of a kernel; residuals and the form formula are theirs. Recorded rows have the processor undone",
-      fmt::format("pairs        weights {:.10g}", fmt::join(c.pairs, ", ")),
-      fmt::format("dispersion   max |S(θ) − θ²| e^(−ρθ/k)/θ = {:.3g}, ρ = {:g}", weighted_defect(c.pairs, decay),
-                  decay * k),
-      fmt::format("limits       ωh < {:.4g}; without a mass h/k < {:.4g}", frequency_limit(c.splitting),
-                  courant_limit(c.splitting, c.pairs, force))};
+  parts.remarks = {has_processor(p) ? "rows         of a kernel; residuals and the form formula are theirs. Recorded "
+                                      "rows have the processor undone"
+                                    : "rows         of a kernel alone, without its processor: of lower order",
+                   fmt::format("pairs        weights {:.10g}", fmt::join(c.pairs, ", ")),
+                   fmt::format("dispersion   max |S(θ) − θ²| e^(−ρθ/k)/θ = {:.3g}, ρ = {:g}",
+                               weighted_defect(c.pairs, decay), decay * k),
+                   fmt::format("limits       ωh < {:.4g}; without a mass h/k < {:.4g}", frequency_limit(c.splitting),
+                               courant_limit(c.splitting, c.pairs, force))};
   return parts;
 }
 
 std::string name_of(const Problem& p) {
   return fmt::format("processed ({},{}){}", p.parameters.get<std::string>("scheme.kernel"),
                      p.parameters.get<int>("lattice.space_order"),
-                     p.parameters.get<std::string>("lattice.pairs") == "suited" ? " suited" : "");
+                     p.parameters.get<std::string>("lattice.pairs") == "suited" ? " suited" : "") +
+         (has_processor(p) ? "" : ", kernel alone");
 }
 
 std::vector<NamedScheme> variants(const Problem& base) {
@@ -108,7 +114,7 @@ std::vector<NamedScheme> variants(const Problem& base) {
 
 /// Of kernel and pairs, the less; pairs suited to a solution have an order at a finer k only.
 std::optional<int> order(const Problem& p) {
-  if (p.parameters.get<std::string>("lattice.pairs") == "suited") return std::nullopt;
+  if (p.parameters.get<std::string>("lattice.pairs") == "suited" || !has_processor(p)) return std::nullopt;
   const int time = p.parameters.get<std::string>("scheme.kernel") == "ti4" ? 4 : 6;
   return std::min(time, p.parameters.get<int>("lattice.space_order"));
 }
@@ -138,7 +144,11 @@ const MethodEntry processed_method{
                    {.key = "scheme.kernel",
                     .fallback = std::string("b6"),
                     .help = "ti4: one kick a step, with a force gradient; b6: six kicks",
-                    .choices = {"ti4", "b6"}}},
+                    .choices = {"ti4", "b6"}},
+                   {.key = processor_key,
+                    .fallback = std::string("on"),
+                    .help = "off: rows of the kernel alone, which verify --fields takes; of lower order",
+                    .choices = {"on", "off"}}},
     .label = name_of,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "schemes/methods/kernel_alone.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/verify/stress_balance.hpp"
 #include "schemes/verify/time_reversal.hpp"
@@ -45,7 +46,9 @@ void measure_orders(const Scene& scene, int winding, std::vector<Measured> balan
 
 void reverse_time(const Scene& scene, int winding, const std::vector<std::vector<double>>& first_rows, double tolerance,
                   Verdict& verdict) {
-  const auto fresh = [&] { return std::make_unique<Simulation>(build(scene, winding)); };
+  Scene alone = scene;  // a start applies a kernel's processor, and the state at the turning point has it behind it
+  if (build(scene, winding).is_processed()) alone.problem = kernel_alone(scene.problem);
+  const auto fresh = [&] { return std::make_unique<Simulation>(build(alone, winding)); };
   const bool by_rows = fresh()->evolution().stepper().layout() != nullptr;
   const std::int64_t most = most_updates / (by_rows ? 1 : 40) / scene.problem.lattice.sites();
   const std::int64_t steps = std::clamp<std::int64_t>(scene.steps, 8, std::max<std::int64_t>(8, most));

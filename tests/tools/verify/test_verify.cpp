@@ -144,6 +144,19 @@ TEST_CASE("verify passes on intervals, points, elements, moving meshes and const
   CHECK(verified(folder, arguments, 0).failed().empty());
 }
 
+TEST_CASE("kernels with nodes between rows are reversed without their processor, and their own rows verified") {
+  const Folder folder;
+  const std::string b6 =
+      "breather --scheme.method=processed --lattice.sites=40 --lattice.space_order=6 --run.steps=12 ";
+  CHECK(verified(folder, b6, 0).check("time reversal")["value"] < 1e-13);
+  REQUIRE(delf_program(folder, "run " + b6 + "--scheme.processor=off --output.every=1 --output.figures=off --out run")
+              .code == 0);
+  const std::string rows = " --fields run/fields.h5 ";
+  CHECK(verified(folder, b6 + "--scheme.processor=off" + rows, 0).failed().empty());
+  CHECK(verified(folder, b6 + "--scheme.processor=off --lattice.pairs=suited" + rows, 1).failed().size() == 1);
+  refused(folder, b6 + rows, "have its processor undone");
+}
+
 TEST_CASE("verify.json has fixed fields for each check, and is the same to the byte but for the seconds") {
   const Folder folder;
   const Verified v = verified_text(folder, scene(), "", 0);
