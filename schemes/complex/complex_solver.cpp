@@ -64,7 +64,7 @@ class ComplexSolver::Level {
         }
         for (std::size_t m = 0; m < vertices.size() && !linear; ++m)
           if (equation >= 0 && get(column, columns, vertices[m]) >= 0 &&
-              complex.shape(s).is_coupled(static_cast<int>(l), static_cast<int>(m)))
+              system.family_of(s).is_varying(static_cast<int>(l), static_cast<int>(m)))
             direct_ = false;
       }
     }
@@ -82,6 +82,10 @@ class ComplexSolver::Level {
       all.emplace_back(linear_.rows[i], static_cast<int>(node), value);
       if (linear_.columns[m] >= 0) of_unknowns.emplace_back(linear_.rows[i], linear_.columns[m], value);
     });
+    if (direct_)  // what nonlinear stencils make of the unknowns is constant too
+      each(nonlinear_, zero, 2, [&](std::size_t i, std::size_t m, std::size_t, double value) {
+        if (nonlinear_.columns[m] >= 0) of_unknowns.emplace_back(nonlinear_.rows[i], nonlinear_.columns[m], value);
+      });
     matrix_.resize(n, static_cast<Eigen::Index>(system_.nodes()));
     matrix_.setFromTriplets(all.begin(), all.end());
     constant_.resize(n, n);

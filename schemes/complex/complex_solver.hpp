@@ -11,7 +11,7 @@
 namespace delf {
 
 /// Solves a complex level by level. What is proved linear is assembled once, as a sparse matrix of the level's equations.
-/// If no other term contains an unknown of the level, the level is one solve: divisions where every unknown is a block of
+/// If all other terms are linear in the unknowns of the level, the level is one solve: divisions where every unknown is a block of
 /// its own, a sparse factorisation otherwise. Else Newton's method with a sparse matrix and a line search, from the values
 /// that stand there.
 class ComplexSolver {

@@ -56,6 +56,7 @@ PlacedFamily::PlacedFamily(std::shared_ptr<const BatchDensity> density, int vert
     throw BadInput("theory.name",
                    "theory.name: a density of t and x needs a regular lattice; choose lattice.space = circle");
   shape_ = {vertices, std::vector<char>(at(vertices * vertices), 0)};
+  varying_.assign(at(vertices * vertices), 0);
   for (const TablePoint& p : form) {
     Point point{stride_++, {}};
     for (int slot = 0; slot < density_->slots(); ++slot)
@@ -67,7 +68,9 @@ PlacedFamily::PlacedFamily(std::shared_ptr<const BatchDensity> density, int vert
             const int i = u.slot * d_ + a, m = v.slot * d_ + b;
             if (density_->is_zero(i, m)) continue;
             shape_.couples[at(u.vertex * vertices + v.vertex)] = 1;
-            linear_ = linear_ && density_->is_constant(i, m);
+            if (density_->is_constant(i, m)) continue;
+            varying_[at(u.vertex * vertices + v.vertex)] = 1;
+            linear_ = false;
           }
     points_.push_back(std::move(point));
   }

@@ -44,6 +44,8 @@ class PlacedFamily {
   const ComplexShape& shape() const { return shape_; }
   /// ∂r/∂y is proved to be the same at all y: the equations of these stencils are linear.
   bool is_linear() const { return linear_; }
+  /// ∂r/∂y of vertex m in the equation of vertex l is not proved to be the same at all y.
+  bool is_varying(int l, int m) const { return varying_[static_cast<std::size_t>(l * vertices_ + m)] != 0; }
 
   void lagrangian(const PlacedBatch&, double* L) const;
   /// r[i·most + s] = ∂L/∂yⁱ
@@ -68,6 +70,7 @@ class PlacedFamily {
   std::vector<Point> points_;
   std::vector<double> numbers_;  ///< table by table
   ComplexShape shape_;
+  std::vector<char> varying_;  ///< [l·vertices + m]
   bool linear_ = true;
 };
 

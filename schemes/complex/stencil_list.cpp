@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/container_hash/hash.hpp>
 #include <cmath>
-#include <map>
-#include <set>
+#include <numeric>
+#include <unordered_map>
 
 #include "jets/tables/named_tables.hpp"
 #include "schemes/complex/space_tables.hpp"
@@ -62,11 +63,13 @@ class Faults {
 
   std::optional<MeshFault> find() {
     if (list_.stencils.empty()) return MeshFault{0, "there is no stencil; write lines like stencil triangle 0 1 2"};
-    std::map<Complex::Position, int> places;
-    for (std::size_t s = 0; s < list_.sites.size(); ++s)
-      if (const auto [first, is_new] = places.emplace(list_.sites[s].position, static_cast<int>(s)); !is_new)
+    std::vector<std::size_t> order(list_.sites.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t s) { return list_.sites[s].position; });
+    for (std::size_t n = 1; n < order.size(); ++n)
+      if (const std::size_t s = order[n], first = order[n - 1]; list_.sites[s].position == list_.sites[first].position)
         return MeshFault{list_.sites[s].line, "site " + std::to_string(s) + " lies where site " +
-                                                  std::to_string(first->second) + " does; remove one"};
+                                                  std::to_string(first) + " does; remove one"};
     std::vector<char> used(list_.sites.size(), 0);
     for (std::size_t n = 0; n < list_.stencils.size(); ++n) {
       if (auto fault = of_stencil(n)) return fault;
@@ -81,8 +84,9 @@ class Faults {
  private:
   std::optional<MeshFault> of_stencil(std::size_t n) {
     const StencilList::Entry& e = list_.stencils[n];
-    const std::string name = "stencil " + std::to_string(n) + " (" + e.shape + ")";
-    const auto fault = [&](const std::string& what) { return MeshFault{e.line, name + " " + what}; };
+    const auto fault = [&](const std::string& what) {
+      return MeshFault{e.line, "stencil " + std::to_string(n) + " (" + e.shape + ") " + what};
+    };
     const auto kind = stencil_shape(e.shape);
     if (!kind) return fault("has an unknown shape");
     const auto size = static_cast<int>(e.sites.size());
@@ -129,20 +133,24 @@ class Faults {
       for (const double share : corner_shares(cell, 0))
         if (!(share > 0)) return fault("spans no length or area of space; move its sites");
     }
-    const auto [begin, end] = seen_.equal_range({e.shape, sorted});
-    for (auto other = begin; other != end; ++other)
-      if (std::abs(other->second.second - mark) <= 1e-9 * std::abs(mark))
-        return fault("is stencil " + std::to_string(other->second.first) + " again" +
-                     (list_.stencils[other->second.first].line > 0
-                          ? " (line " + std::to_string(list_.stencils[other->second.first].line) + ")"
-                          : "") +
-                     "; remove one");
-    seen_.emplace(std::pair(e.shape, sorted), std::pair(n, mark));
+    std::size_t hash = std::hash<std::string>()(e.shape);
+    for (const int site : sorted) boost::hash_combine(hash, site);
+    const auto [begin, end] = seen_.equal_range(hash);
+    for (auto other = begin; other != end; ++other) {
+      const auto& [first, its_mark] = other->second;
+      const StencilList::Entry& known = list_.stencils[first];
+      if (known.shape == e.shape && std::ranges::is_permutation(known.sites, e.sites) &&
+          std::abs(its_mark - mark) <= 1e-9 * std::abs(mark))
+        return fault("is stencil " + std::to_string(first) + " again" +
+                     (known.line > 0 ? " (line " + std::to_string(known.line) + ")" : "") + "; remove one");
+    }
+    seen_.emplace(hash, std::pair(n, mark));
     return std::nullopt;
   }
 
   const StencilList& list_;
-  std::multimap<std::pair<std::string, std::vector<int>>, std::pair<std::size_t, double>> seen_;
+  /// By shape and set of sites: the stencil, and what tells its function.
+  std::unordered_multimap<std::size_t, std::pair<std::size_t, double>> seen_;
 };
 
 }  // namespace

@@ -245,7 +245,8 @@ int ComplexScene::coordinates() const { return stencils ? stencils->coordinates(
 
 std::vector<double> ComplexScene::places() const {
   std::vector<double> all;
-  const auto add = [&](const auto& point) { all.insert(all.end(), point.begin(), point.begin() + coordinates()); };
+  const int n = coordinates();
+  const auto add = [&](const auto& point) { all.insert(all.end(), point.begin(), point.begin() + n); };
   if (stencils)
     for (const auto& site : stencils->sites) add(site.position);
   else
