@@ -95,4 +95,42 @@ struct EquidistributionRate {
   }
 };
 
+/// A mesh that follows the monitor with a delay, Tyranowski–Desbrun §6.5: τ X_t = G in place of G = 0, for the step of rows
+/// 0 and 1,
+///
+///     −μ [τ (X¹ − X⁰)/h − Σ_r b_r G(c_r q⁰ + (1 − c_r) q¹)]
+///
+/// with G at the mean of the rows, or the mean of G at both. Values q = (φ, X) at the three sites of row 0, then of row 1,
+/// then μ.
+struct DelayedEquidistribution {
+  int d = 1;
+  MeshMonitor monitor = {};
+  double delay = 0;  ///< τ
+  bool at_mean = true;
+
+  StencilPattern pattern() const { return StencilPattern({{0, 0}}); }
+  std::vector<VertexValue> values() const {
+    std::vector<VertexValue> list;
+    for (int c = 0; c <= 6 * (d + 1); ++c) list.push_back({0, c});
+    return list;
+  }
+  template <class T>
+  T operator()(std::span<const T> y, const Cell& cell) const {
+    const std::size_t n = static_cast<std::size_t>(d) + 1;
+    const auto G = [&](std::span<const T> q) -> T {
+      return monitor(q.subspan(n, n), q.subspan(2 * n, n)) - monitor(q.subspan(0, n), q.subspan(n, n));
+    };
+    const auto lower = y.subspan(0, 3 * n), upper = y.subspan(3 * n, 3 * n);
+    T drive(0.0);
+    if (at_mean) {
+      std::vector<T> mean(3 * n);
+      for (std::size_t i = 0; i < 3 * n; ++i) mean[i] = 0.5 * (lower[i] + upper[i]);
+      drive = G(mean);
+    } else {
+      drive = 0.5 * (G(lower) + G(upper));
+    }
+    return -(y[6 * n] * ((delay / cell.time_step) * (upper[2 * n - 1] - lower[2 * n - 1]) - drive));
+  }
+};
+
 }  // namespace delf

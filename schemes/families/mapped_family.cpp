@@ -56,6 +56,14 @@ MappedFamily::MappedFamily(std::shared_ptr<const StencilFamily> family, const Ma
   fill(map.reads, reads_);
   fill(map.tests.empty() ? map.reads : map.tests, tests_);
   for (const auto& entries : tests_) varied_.push_back(!entries.empty());
+  if (!map.cell) return;
+  cell_time_ = map.time;
+  for (int i = 0; i < size(); ++i) {
+    double weight = 0;
+    for (const Entry& entry : reads_[at(i)])
+      weight += entry.value == map.cell->second ? entry.weight : entry.value == map.cell->first ? -entry.weight : 0.0;
+    if (weight != 0) cell_.push_back({i, weight});
+  }
 }
 
 int MappedFamily::number_of(const Part& p) const {

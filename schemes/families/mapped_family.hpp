@@ -18,7 +18,7 @@ namespace delf {
 /// Variational for N = Mᵀ. A stage of an element in time is such a map of a density on one row; an N without the rows of a
 /// field reads that field without varying it; an N that moves r̂ to another value makes a constraint the equation of what it
 /// determines, in place of its multiplier.
-class MappedFamily final : public StencilFamily {
+class MappedFamily : public StencilFamily {
  public:
   struct Part {
     Site site;
@@ -29,8 +29,19 @@ class MappedFamily final : public StencilFamily {
   struct Map {
     std::vector<Sum> reads;  ///< of each value of the family; empty: it is 0
     std::vector<Sum> tests;  ///< where the residual of each of its values goes; none at all: the same
+    /// Values of the family of which the first must stay below the second: the ends of a cell at a stage.
+    std::optional<std::pair<int, int>> cell = {};
+    double time = 0;  ///< of the stage, as a fraction of the step
   };
   MappedFamily(std::shared_ptr<const StencilFamily>, const Map&);
+
+  struct Entry {
+    int value;
+    double weight;
+  };
+  /// How wide the map's cell is: a sum of own values. None: there is no cell.
+  const std::vector<Entry>& cell() const { return cell_; }
+  double cell_time() const { return cell_time_; }
 
   using StencilFamily::jacobian;
   using StencilFamily::lagrangian;
@@ -45,10 +56,6 @@ class MappedFamily final : public StencilFamily {
                 std::span<double> p) const override;
 
  private:
-  struct Entry {
-    int value;  ///< of the family
-    double weight;
-  };
   struct Mapped;
 
   MappedFamily(std::shared_ptr<const StencilFamily>, const Map&,
@@ -56,7 +63,10 @@ class MappedFamily final : public StencilFamily {
   int number_of(const Part&) const;
 
   std::shared_ptr<const StencilFamily> family_;
-  std::vector<std::vector<Entry>> reads_, tests_;  ///< of each own value: columns of M, rows of N
+  std::vector<std::vector<Entry>> reads_,
+      tests_;  ///< of each own value: columns of M, rows of N, by the family's values
+  std::vector<Entry> cell_;
+  double cell_time_ = 0;
 };
 
 }  // namespace delf

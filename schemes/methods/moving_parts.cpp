@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -16,6 +18,7 @@
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/mapped_family.hpp"
+#include "schemes/families/mesh_constraint.hpp"
 #include "schemes/stepping/semi_discrete.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -160,6 +163,7 @@ void add_action(SchemeParts& parts, const FieldTheory& theory, const MovingSchem
             map.reads.push_back(layout.value(point, c, space, rate));
             if (!variational) map.tests.push_back(layout.test(point, c, space, rate));
           }
+      map.cell = {d, D + d}, map.time = scheme.time.points[i].time;
       auto stage = std::make_shared<const JetFamily>(stage_table(scheme.time.points[i], part.space), part.density);
       parts.families.push_back(std::make_shared<const MappedFamily>(std::move(stage), map));
     }
@@ -167,8 +171,9 @@ void add_action(SchemeParts& parts, const FieldTheory& theory, const MovingSchem
 
 /// G of the three sites around each: of rows for point = −1, or else at a point of time. Its multiplier is `multiplier`; or
 /// it determines the component `slaved`, one of the two.
-void add_constraint(SchemeParts& parts, int d, const MeshMonitor& monitor, const Layout& layout, int point,
+void add_constraint(SchemeParts& parts, const MeshConstraint::Facts& facts, const Layout& layout, int point,
                     std::optional<int> multiplier, std::optional<int> slaved) {
+  const int d = facts.d;
   MappedFamily::Map map;
   for (int space = -1; space <= 1; ++space) {
     for (int c = 0; c <= d; ++c)
@@ -181,8 +186,45 @@ void add_constraint(SchemeParts& parts, int d, const MeshMonitor& monitor, const
     map.tests.resize(map.reads.size());
     map.tests[at(2 * (d + 1))] = {{{0, 0}, *slaved, 1}};
   }
-  parts.families.push_back(std::make_shared<const MappedFamily>(
-      std::make_shared<const LagrangianFamily<Equidistribution>>(Equidistribution{d, monitor}), map));
+  parts.families.push_back(std::make_shared<const MeshConstraint>(
+      facts, std::make_shared<const LagrangianFamily<Equidistribution>>(Equidistribution{d, facts.monitor}), map));
+}
+
+/// τ X_t = G of a step, which determines X of its upper row.
+void add_delayed(SchemeParts& parts, const MeshConstraint::Facts& facts, const MovingScheme& scheme) {
+  const int d = facts.d;
+  MappedFamily::Map map;
+  for (int row = 0; row < 2; ++row)
+    for (int space = -1; space <= 1; ++space)
+      for (int c = 0; c <= d; ++c) map.reads.push_back({{{row, space}, c, 1}});
+  map.reads.emplace_back();
+  map.tests.resize(map.reads.size());
+  map.tests.back() = {{{1, 0}, d, 1}};
+  parts.families.push_back(std::make_shared<const MeshConstraint>(
+      facts,
+      std::make_shared<const LagrangianFamily<DelayedEquidistribution>>(
+          DelayedEquidistribution{d, facts.monitor, facts.delay, scheme.time.points.size() == 1}),
+      map));
+}
+
+/// c of the waves φ_tt = c² φ_xx that a density has where it is quadratic in its derivatives: the fastest of its fields.
+double wave_speed(const BatchDensity& density) {
+  const auto H = density.constant_hessian();
+  const int d = density.components(), m = density.variables();
+  double fastest = 0;
+  for (int a = 0; a < d; ++a) {
+    const double inertia = H[at((d + a) * m + d + a)], stiffness = -H[at((2 * d + a) * m + 2 * d + a)];
+    if (inertia > 0 && stiffness > 0) fastest = std::max(fastest, std::sqrt(stiffness / inertia));
+  }
+  return fastest;
+}
+
+/// Linear elements of width δ have waves up to ω = c√12/δ: h/δ where an element of time that is stable up to ωh meets them.
+double stable_step(const FieldTheory& theory, const MovingScheme& scheme) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  if (scheme.most_phase == 0 || !Reparametrised::has_parts(theory.density())) return unlimited;
+  const double speed = wave_speed(theory.density());
+  return speed > 0 ? scheme.most_phase / (std::sqrt(12.) * speed) : unlimited;
 }
 
 /// Dg(q)·h q̇ at a point of time, with a component and its weight: its multiplier; or, if it is slaved, what Dg(q)·h q̇ = 0
@@ -227,6 +269,42 @@ void add_slack(SchemeParts& parts, int d, const MovingScheme& scheme, Layout& la
   }
 }
 
+/// Dg·(φ̇, Ẋ) = 0 at a row.
+void bind(const RowsInTime& rows, const MeshConstraint& constraint, Bonds& bonds) {
+  const LatticeSystem& system = rows.system;
+  const int d = rows.theory.components(), C = system.components();
+  // the equation of λ, or of X
+  int equation = 0;
+  for (int i = 0; i < constraint.size(); ++i) {
+    const Role role = system.component(constraint.values()[at(i)].component).role;
+    if (constraint.is_varied(i) && (role == Role::multiplier || role == Role::slaved)) equation = i;
+  }
+  std::vector<double> y(at(constraint.size())), J(y.size());
+  for (int i = 1; i + 1 < system.lattice().sites(); ++i) {
+    const auto place = [&](int m) { return i + constraint.site(m).space; };
+    const auto component = [&](int m) { return constraint.values()[at(m)].component; };
+    for (int m = 0; m < constraint.size(); ++m) y[at(m)] = rows.rows(rows.newest, place(m), component(m));
+    constraint.jacobian_row(equation, {rows.time_step, system.lattice().space_step(), 0, 0}, y, J);
+    for (int m = 0; m < constraint.size(); ++m)
+      if (component(m) <= d && J[at(m)] != 0)
+        bonds.entries.push_back({i * C + d, place(m) * C + component(m), J[at(m)]});
+  }
+}
+
+/// Ẋ = G/τ at a row.
+void bind_delayed(const RowsInTime& rows, const MeshConstraint& constraint, double delay, Bonds& bonds) {
+  const int d = rows.theory.components(), C = rows.system.components();
+  const auto q = [&](int i) {
+    std::vector<double> values;
+    for (int c = 0; c <= d; ++c) values.push_back(rows.rows(rows.newest, i, c));
+    return values;
+  };
+  for (int i = 1; i + 1 < rows.system.lattice().sites(); ++i) {
+    bonds.entries.push_back({i * C + d, i * C + d, 1});
+    bonds.rates[i * C + d] = constraint.G(q(i - 1), q(i), q(i + 1)) / delay;
+  }
+}
+
 }  // namespace
 
 SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) {
@@ -234,11 +312,14 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
   Layout layout(theory, scheme);
   SchemeParts parts;
   // First, where moving_energy() finds it.
+  const MeshConstraint::Facts facts{d, scheme.monitor, stable_step(theory, scheme), scheme.delay};
   if (scheme.varied) {
     const int lambda = layout.add("lambda", Role::multiplier, {});
-    add_constraint(parts, d, scheme.monitor, layout, -1, lambda, {});
+    add_constraint(parts, facts, layout, -1, lambda, {});
+  } else if (scheme.delay > 0) {
+    add_delayed(parts, facts, scheme);
   } else {
-    add_constraint(parts, d, scheme.monitor, layout, -1, {}, d);
+    add_constraint(parts, facts, layout, -1, {}, d);
   }
   add_action(parts, theory, scheme, layout);
   for (int i = 0; i < points; ++i) {
@@ -246,9 +327,9 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
     if (scheme.varied) {
       if (Layout::is_row(here.time) || points == 1) continue;
       const int lambda = layout.add(fmt::format("lambda at {:.4g}", here.time), Role::multiplier, here);
-      add_constraint(parts, d, scheme.monitor, layout, i, lambda, {});
+      add_constraint(parts, facts, layout, i, lambda, {});
     } else if (!layout.by_element()) {
-      if (layout.position(i) >= 0) add_constraint(parts, d, scheme.monitor, layout, i, {}, layout.position(i));
+      if (layout.position(i) >= 0) add_constraint(parts, facts, layout, i, {}, layout.position(i));
       add_rate(parts, d, scheme.monitor, layout, i, {layout.rate(i), 1}, true);
     }
   }
@@ -263,34 +344,19 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
           : fmt::format("space: linear functions of the moving cells; the density is integrated by Gauss's rule of {} "
                         "points",
                         scheme.points));
+  if (std::isfinite(facts.stable_step))
+    parts.remarks.push_back(
+        fmt::format("limit: by linear theory h must stay below {:.3g} of the narrowest cell", facts.stable_step));
   return parts;
 }
 
 EnergyMomentum moving_energy(const RowsInTime& rows) {
   const LatticeSystem& system = rows.system;
-  const int d = rows.theory.components(), C = system.components();
-  // ∂G/∂q of the row: the first family, whose equation is that of λ, or of X
-  const StencilFamily& constraint = *system.families().front();
-  const auto residual_of = [&] {
-    for (int i = 0; i < constraint.size(); ++i) {
-      const VertexValue& value = constraint.values()[at(i)];
-      const Role role = system.component(value.component).role;
-      if (constraint.is_varied(i) && (role == Role::multiplier || role == Role::slaved)) return i;
-    }
-    return 0;
-  };
-  const int equation = residual_of();
+  const int d = rows.theory.components();
   Bonds bonds{.slaved = system.component(d).role == Role::slaved};
-  std::vector<double> y(at(constraint.size())), J(y.size());
-  for (int i = 1; i + 1 < system.lattice().sites(); ++i) {
-    const auto place = [&](int m) { return i + constraint.site(m).space; };
-    const auto component = [&](int m) { return constraint.values()[at(m)].component; };
-    for (int m = 0; m < constraint.size(); ++m) y[at(m)] = rows.rows(rows.newest, place(m), component(m));
-    constraint.jacobian_row(equation, {rows.time_step, system.lattice().space_step(), 0, 0}, y, J);
-    for (int m = 0; m < constraint.size(); ++m)
-      if (component(m) <= d && J[at(m)] != 0)
-        bonds.entries.push_back({i * C + d, place(m) * C + component(m), J[at(m)]});
-  }
+  const auto& constraint = dynamic_cast<const MeshConstraint&>(*system.families().front());
+  if (const double delay = constraint.facts().delay; delay > 0) bind_delayed(rows, constraint, delay, bonds);
+  else bind(rows, constraint, bonds);
   const auto density =
       std::make_shared<const Reparametrised>(rows.theory.shared_density(), Reparametrised::Part::whole);
   StencilTable table = linear_elements(10);

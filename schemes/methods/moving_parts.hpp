@@ -21,7 +21,9 @@ struct MovingScheme {
   /// Slaved: X is that of the rows, between them as the element has it; or else it is solved for at each point of time,
   /// with its rate, as if it were a function X(y): Tyranowski–Desbrun (36).
   bool rows_alone = false;
-  int points = 10;  ///< of Gauss's rule in a cell
+  double delay = 0;       ///< slaved, X of the rows: τ in τ X_t = G; 0: G = 0
+  double most_phase = 0;  ///< ωh up to which the element of time is stable; 0: always
+  int points = 10;        ///< of Gauss's rule in a cell
   /// The whole action of this element in closed form, without points; null: none.
   std::shared_ptr<const StencilFamily> action = {};
 };

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -19,6 +20,7 @@
 #include "jets/tables/table_product.hpp"
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
+#include "schemes/families/mesh_constraint.hpp"
 #include "schemes/methods/element_parts.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/moving_parts.hpp"
@@ -37,14 +39,15 @@ struct NamedTime {
   bool multipliers;           ///< has both ends of a step among its points, or no others than their mean
   bool rows_alone;            ///< a slaved mesh is that of the rows
   bool rectangle = false;     ///< is what TheoryEntry::moving_rectangle has
+  double most_phase = 0;      ///< ωh up to which it is stable, by the trace of a step; 0: always
 };
 const std::vector<NamedTime>& times() {
-  static const std::vector<NamedTime> all{{"trapezoid", "stormer-verlet", true, true, true},
+  static const std::vector<NamedTime> all{{"trapezoid", "stormer-verlet", true, true, true, 2},
                                           {"midpoint", "midpoint", true, true},
                                           {"gauss1", "gauss1", false, false},
                                           {"gauss2", "gauss2", false, false},
-                                          {"lobatto2", "lobatto2", true, false},
-                                          {"lobatto3", "lobatto3", true, false},
+                                          {"lobatto2", "lobatto2", true, false, false, 2},
+                                          {"lobatto3", "lobatto3", true, false, false, 2 * std::numbers::sqrt2},
                                           {"radau3", "", false, false}};
   return all;
 }
@@ -108,6 +111,17 @@ std::optional<int> points_of(const Problem& p) {
   return points;
 }
 
+/// τ of mesh.delay, where the mesh is that of the rows.
+double delay_of(const Problem& p, const NamedTime& time) {
+  const double delay = p.parameters.get<double>("mesh.delay");
+  if (delay > 0 && (strategy(p) != "control" || !time.rows_alone))
+    throw BadInput(
+        "mesh.delay",
+        "mesh.delay: a mesh that follows with a delay is no constraint of the field, and not for multipliers or "
+        "stages; use scheme.strategy = control with scheme.time = midpoint or trapezoid, or mesh.delay = 0");
+  return delay;
+}
+
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   if (p.lattice.space() != Space::interval || p.lattice.left() != Wall::fixed || p.lattice.right() != Wall::fixed)
     throw BadInput("lattice.space",
@@ -135,6 +149,8 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                       .monitor = monitor_of(p, theory.fields()),
                       .varied = varied,
                       .rows_alone = time.rows_alone,
+                      .delay = delay_of(p, time),
+                      .most_phase = time.most_phase,
                       .points = points};
   if (const auto rectangle = find_theory(p.theory).moving_rectangle; rectangle && time.rectangle && !asked)
     scheme.action = rectangle(p.parameters);
@@ -143,7 +159,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
 
 MovingSites place_sites(const Problem& p, int components, const Profile& profile) {
   const auto theory = find_theory(p.theory).make(p.parameters);
-  return place_moving_sites(monitor_of(p, theory->fields()), p.lattice, components, profile);
+  MovingSites sites = place_moving_sites(monitor_of(p, theory->fields()), p.lattice, components, profile);
+  if (p.parameters.get<double>("mesh.delay") > 0) std::ranges::fill(sites.X_t, 0.0);  // τ X_t = G, which is 0
+  return sites;
 }
 
 EnergyMomentum energy(const RowsInTime& rows) {
@@ -160,6 +178,27 @@ double narrowest_cell(const RowsInTime& rows) {
   for (int i = 0; i + 1 < system.lattice().sites(); ++i)
     least = std::min(least, rows.rows(rows.newest, i + 1, X) - rows.rows(rows.newest, i, X));
   return least;
+}
+const MeshConstraint* constraint_of(const RowsInTime& rows) {
+  return rows.system.moves() ? dynamic_cast<const MeshConstraint*>(rows.system.families().front().get()) : nullptr;
+}
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// How far the newest row is from having no mesh.
+double mesh_margin(const RowsInTime& rows) {
+  const MeshConstraint* constraint = constraint_of(rows);
+  if (!constraint) return unknown;
+  std::vector<double> y;
+  const auto d = static_cast<std::size_t>(rows.theory.components());
+  for (int i = 0; i < rows.system.lattice().sites(); ++i)
+    for (std::size_t a = 0; a < d; ++a) y.push_back(rows.rows(rows.newest, i, static_cast<int>(a)));
+  return constraint->margin(y, d, rows.system.lattice().length()).value_or(unknown);
+}
+/// h over what is stable on the narrowest cell.
+double step_over_limit(const RowsInTime& rows) {
+  const MeshConstraint* constraint = constraint_of(rows);
+  if (!constraint || std::isinf(constraint->facts().stable_step)) return unknown;
+  return rows.time_step / (constraint->facts().stable_step * narrowest_cell(rows));
 }
 /// The largest |λ| that was found with the newest row; 0 without multipliers.
 double largest_multiplier(const RowsInTime& rows) {
@@ -210,6 +249,11 @@ const MethodEntry r_adaptive_method{
                     .fallback = 0.1,
                     .help = "saturated: cells stay above beta/alpha of the arclength in one",
                     .range = {.low = 0, .open = true}},
+                   {.key = "mesh.delay",
+                    .fallback = 0.0,
+                    .help = "the mesh follows the monitor as tau X_t = G, smoother in time; control with midpoint or "
+                            "trapezoid; 0: at once",
+                    .range = {.low = 0}},
                    {.key = "mesh.points",
                     .fallback = "exact",
                     .help = "Gauss's points in a cell, 2 to 20; exact: no points where theory and element have the "
@@ -219,6 +263,8 @@ const MethodEntry r_adaptive_method{
     .start = StartRule::legendre,
     .energy = energy,
     .monitors = {{.name = "mesh_min_spacing", .value = narrowest_cell, .least = true},
+                 {.name = "mesh_margin", .value = mesh_margin, .least = true},
+                 {.name = "step_over_limit", .value = step_over_limit},
                  {.name = "multiplier_max", .value = largest_multiplier}},
     .place_sites = place_sites};
 

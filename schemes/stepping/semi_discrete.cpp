@@ -136,6 +136,7 @@ class LowerSide {
 /// ∂G/∂y over the unknowns at `places`, and the forces that go with it, one column for each bond.
 struct BoundRows {
   Sparse J, forces;
+  Vector rates;
 
   BoundRows(const std::vector<int>& places, const Bonds& bonds) {
     std::map<int, int> number, bond;
@@ -150,6 +151,9 @@ struct BoundRows {
     }
     const auto n = static_cast<Eigen::Index>(places.size()), m = static_cast<Eigen::Index>(bond.size());
     J.resize(m, n), J.setFromTriplets(equations.begin(), equations.end());
+    rates = Vector::Zero(m);
+    for (const auto& [own, row] : bond)
+      if (const auto rate = bonds.rates.find(own); rate != bonds.rates.end()) rates[row] = rate->second;
     forces = J.transpose();
     if (bonds.slaved) forces.setFromTriplets(reactions.begin(), reactions.end());
   }
@@ -186,7 +190,7 @@ EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const bool factor = varies || iteration == 0;
     Vector gap(n + m);
-    gap << wanted - side.momenta(v, factor ? &mass : nullptr) - bound.forces * force, -(bound.J * v);
+    gap << wanted - side.momenta(v, factor ? &mass : nullptr) - bound.forces * force, bound.rates - bound.J * v;
     if (factor) lu.compute(m == 0 ? mass : bound.beside(mass));
     if (lu.info() != Eigen::Success) return {none, none};
     const Vector change = lu.solve(gap);

@@ -50,6 +50,9 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
     parities_.push_back({std::move(equations), std::move(solver), std::move(unknowns)});
     parities_.back().has_constant = factor_constant(parities_.back());
   }
+  for (const auto& family : system.families())
+    if (const auto* mapped = dynamic_cast<const MappedFamily*>(family.get()); mapped && !mapped->cell().empty())
+      stages_.push_back(mapped);
   predicted_.resize(row);
   // Made now, so that memory that is short is told at the start.
   for (std::vector<double>* numbers : {&E_, &known_E_, &change_}) numbers->reserve(unknowns() + 1);
@@ -212,9 +215,14 @@ bool SlabStepper::solve_slab_of_start(const std::vector<double>* momenta) {
   if (!whole.matched) return false;
   Assembly::Parts parts = whole;
   parts.equations.clear(), parts.unknowns.clear();
+  Reads reads(system_);
   for (std::size_t n = 0; n < whole.equations.size(); ++n) {
     const Node &equation = whole.equations[n], &unknown = whole.unknowns[n];
     if (equation.site.time < 0 || unknown.site.time < 0 || is_data(system_, unknown)) continue;
+    // What is slaved to the row before keeps what the start gave.
+    if (momenta && system_.component(unknown.component).role == Role::slaved &&
+        std::ranges::any_of(reads.of(equation), [](const Node& value) { return value.site.time < 0; }))
+      continue;
     parts.equations.push_back(equation), parts.unknowns.push_back(unknown);
   }
   if (!momenta) leave_out_earlier_rows(system_, parts);
@@ -280,6 +288,9 @@ void SlabStepper::fail(std::int64_t J, const char* why) const {
   std::string remedy = remedy_for(options_.max_iterations);
   if (const auto ghost = ghost_under_constraint(system_))
     remedy = fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint);
+  if (system_.moves() && J > 0)
+    remedy = fmt::format("in the row before, {}; reduce lattice.time_step or mesh.alpha, or raise lattice.sites",
+                         narrowest_cell(ring_->row(J - 1 - lag_)));
   throw NoConvergence(fmt::format("step {}, t = {:.6g}: the equations of the slab were not solved: {}; {}", J,
                                   static_cast<double>(J) * system_.time_step(), why, remedy));
 }
@@ -291,6 +302,55 @@ std::optional<int> SlabStepper::crossing(const double* row) const {
     for (int i = 0; system_.component(c).position && i + 1 < system_.lattice().sites(); ++i)
       if (!(row[i * components_ + c] < row[(i + 1) * components_ + c])) return i;
   return std::nullopt;
+}
+
+/// Whether cells have turned over in slab J, in its row or at a stage before it; in words, empty if not.
+std::string SlabStepper::crossing_at(std::int64_t J) const {
+  const std::int64_t row = J - lag_;
+  if (const auto i = crossing(ring_->row(row)))
+    return fmt::format("sites {} and {} of the mesh pass each other", *i, *i + 1);
+  for (const MappedFamily* stage : stages_) {
+    int top = 0;
+    for (const Site& vertex : stage->pattern().vertices) top = std::max(top, vertex.time);
+    for (int i = 0; i + 1 < system_.lattice().sites(); ++i) {
+      double size = 0;
+      for (const auto& [value, weight] : stage->cell()) {
+        const Site site = stage->site(value);
+        const int component = stage->values()[static_cast<std::size_t>(value)].component;
+        size += weight * ring_->row(row - top + site.time)[(i + site.space) * components_ + component];
+      }
+      if (!(size > 0))
+        return fmt::format("sites {} and {} of the mesh pass each other at {:.3g} of the step", i, i + 1,
+                           stage->cell_time());
+    }
+  }
+  return {};
+}
+
+/// The new row is farther from the one before than twice what that was from its own: another root than the motion's.
+bool SlabStepper::leaps(std::int64_t J) const {
+  if (J < 2) return false;
+  const auto motion = [&](std::int64_t row) {
+    double most = 0;
+    for (std::size_t at = 0; at < predicted_.size(); ++at) {
+      const Component& c = system_.component(static_cast<int>(at) % components_);
+      if (c.role == Role::field || c.position)
+        most = std::max(most, std::abs(ring_->row(row)[at] - ring_->row(row - 1)[at]));
+    }
+    return most;
+  };
+  return motion(J - lag_) > 2 * motion(J - 1 - lag_);
+}
+
+/// "sites 5 and 6 are 0.0073 apart, closer than any others"
+std::string SlabStepper::narrowest_cell(const double* row) const {
+  double least = infinity;
+  int where = 0;
+  for (int c = 0; c < components_; ++c)
+    for (int i = 0; system_.component(c).position && i + 1 < system_.lattice().sites(); ++i)
+      if (const double size = row[(i + 1) * components_ + c] - row[i * components_ + c]; size < least)
+        least = size, where = i;
+  return fmt::format("sites {} and {} are {:.2g} apart, closer than any others", where, where + 1, least);
 }
 
 /// y −= change
@@ -419,18 +479,33 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
     waiting_ = solved ? 0 : wait_;
     wait_ = solved ? 1 : std::min(2 * wait_ + 1, 63);
   }
-  if (!solved) {
-    const char* why = newton(p, J, points_, momenta);
-    // Rough sections are predicted better by a few slabs.
-    if (why && points_ > least_points) why = newton(p, J, least_points, momenta);
+  const bool moves = system_.moves();
+  std::string crossed = solved && moves ? crossing_at(J) : "";
+  if (!solved || !crossed.empty()) {
+    const char* why = nullptr;
+    bool found = false;
+    // Rough sections are predicted better by a few slabs, and a tangled mesh is a root that another predictor may avoid.
     // Traces alternate about their mean: what is extrapolated may lie where the density is not defined.
-    if (why && by_values_) why = newton(p, J, 1, momenta);
-    if (why) fail(J, why);
+    for (const int points : {points_, least_points, 1}) {
+      if ((points == least_points && points_ <= least_points) || (points == 1 && !by_values_ && !moves)) continue;
+      if (const char* failed = newton(p, J, points, momenta)) {
+        why = failed;
+        continue;
+      }
+      const std::string tangled = moves ? crossing_at(J) : "";
+      if (crossed.empty()) crossed = tangled;
+      if (!tangled.empty()) continue;
+      found = !moves || points == points_ || !leaps(J);
+      if (found) break;
+      why = "Newton's method finds no root but one that leaps away";
+    }
+    if (found) crossed.clear();
+    else if (crossed.empty()) fail(J, why);
   }
-  if (const auto i = crossing(ring_->row(J - lag_)))
-    throw MeshCrossing(fmt::format(
-        "step {}, t = {:.6g}: sites {} and {} of the mesh pass each other; reduce lattice.time_step or mesh.alpha", J,
-        static_cast<double>(J) * system_.time_step(), *i, *i + 1));
+  if (!crossed.empty())
+    throw MeshCrossing(
+        fmt::format("step {}, t = {:.6g}: {}; in the row before, {}; reduce lattice.time_step or mesh.alpha", J,
+                    static_cast<double>(J) * system_.time_step(), crossed, narrowest_cell(ring_->row(J - 1 - lag_))));
   if (options_.fibre == Fibre::circle) check_increments(J);
   ++known_;
   largest_[1] = std::exchange(largest_[0], largest_of(ring_->row(J - lag_)));

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "lattice/plan/solve_plan.hpp"
+#include "schemes/families/mapped_family.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 #include "schemes/stepping/step_method.hpp"
 
@@ -80,6 +81,9 @@ class SlabStepper final : public StepMethod {
   void check_increments(std::int64_t J) const;
   void solve(std::int64_t J, const std::vector<double>* momenta);
   std::optional<int> crossing(const double* row) const;
+  std::string crossing_at(std::int64_t J) const;
+  bool leaps(std::int64_t J) const;
+  std::string narrowest_cell(const double* row) const;
   [[noreturn]] void fail(std::int64_t J, const char* why) const;
   std::size_t unknowns() const;  ///< of a slab, the larger one
   std::size_t equation_bytes() const, matrix_bytes() const, matrix_bytes_to_come() const, work_bytes() const,
@@ -89,9 +93,10 @@ class SlabStepper final : public StepMethod {
   const SolvePlan& plan_;
   StepOptions options_;
   int components_, past_ = 0, future_ = 0, lag_ = 0, starting_rows_ = 0;
-  bool by_values_ = false;  ///< runs begin with the values of row 0 alone
-  int points_;              ///< slabs that a predictor goes through, if there are as many
-  std::vector<int> back_;   ///< of each component: rows that its newest value lies behind the newest field
+  std::vector<const MappedFamily*> stages_;  ///< that have cells of a mesh that moves
+  bool by_values_ = false;                   ///< runs begin with the values of row 0 alone
+  int points_;                               ///< slabs that a predictor goes through, if there are as many
+  std::vector<int> back_;  ///< of each component: rows that its newest value lies behind the newest field
   std::vector<Parity> parities_;
   std::unique_ptr<SectionRing> ring_;
   std::int64_t J_ = -1;      ///< newest slab

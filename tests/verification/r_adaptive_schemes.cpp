@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "schemes/families/lagrangian_family.hpp"
+#include "schemes/families/mesh_constraint.hpp"
 #include "schemes/methods/moving_parts.hpp"
 #include "schemes/moving_start.hpp"
 #include "tests/catch.hpp"
@@ -17,17 +19,19 @@ namespace {
 namespace reference = r_adaptive_steps;
 using reference::Row;
 
-/// A kink of velocity 0.9 in the middle of 0 ≤ x ≤ 25, with the values of the walls there.
-void kink(double x, std::span<FieldPoint> out) {
+/// A kink of a velocity in percent in the middle of 0 ≤ x ≤ 25, with the values of the walls there.
+template <int percent>
+void kink_of(double x, std::span<FieldPoint> out) {
   static const auto state = [] {
     StateRequest request{.name = "kink", .theory = "sine-gordon"};
-    request.values["initial.speed"] = 0.9;
+    request.values["initial.speed"] = percent / 100.0;
     return make_state(request, Lattice::interval(17, 25));
   }();
   state->at(0, x, out);
   if (x == 0) out[0].phi = 0;
   if (x == 25) out[0].phi = 2 * std::numbers::pi;
 }
+constexpr auto kink = kink_of<90>;
 
 Problem problem(const std::string& strategy, const std::string& time, int nodes, double alpha = 2.5) {
   Problem p;
@@ -197,4 +201,54 @@ TEST_CASE("other densities and monitors move the mesh too, and keep their constr
     CHECK(std::ranges::is_sorted(X));
     CHECK((std::abs(X[4] - 6.25) > 0.1) == (std::string(monitor) != "uniform"));
   }
+}
+
+TEST_CASE("the margin of a mesh is what cells of equal arclength leave of the length") {
+  const auto constraint = [](const MeshMonitor& monitor) {
+    return MeshConstraint({1, monitor}, std::make_shared<const LagrangianFamily<Equidistribution>>(Equidistribution{}),
+                          {});
+  };
+  const std::vector<double> y{0, 0.6, 1.6};
+  CHECK(*constraint({.alpha = 0.5}).margin(y, 1, 1) == Approx(1 - 0.5 * 0.8));
+  CHECK(*constraint({.alpha = 1.5}).margin(y, 1, 1) == Approx(-0.2));
+  CHECK_FALSE(constraint({.kind = MeshMonitor::Kind::saturated}).margin(y, 1, 1));
+}
+
+TEST_CASE("cells that turn over between two rows end a run, and the rows before are in order") {
+  Problem p = problem("control", "lobatto3", 12, 1.5);
+  p.time_step = 0.1;
+  Simulation simulation = started(p, kink_of<97>);
+  std::string failure;
+  try {
+    while (simulation.newest() < 20) simulation.step();
+  } catch (const MeshCrossing& crossing) {
+    failure = crossing.what();
+  }
+  CAPTURE(failure);
+  CHECK(failure.find("pass each other at 0.5 of the step; in the row before, sites 6 and 7 are 0.0") !=
+        std::string::npos);
+  CHECK(std::ranges::is_sorted(values(simulation, 14, true)));
+}
+
+TEST_CASE(
+    "a mesh that follows with a delay is another one, of order 2 in time, and for rows alone") {
+  const auto run = [](const std::string& time, double delay, int steps) {
+    Problem p = problem("control", time, 15);
+    p.parameters["mesh.delay"] = delay, p.time_step = 0.2 / steps;
+    Simulation simulation = started(p, kink);
+    while (simulation.newest() < steps) simulation.step();
+    return values(simulation, 17, true);
+  };
+  for (const char* time : {"midpoint", "trapezoid"}) {
+    CAPTURE(time);
+    // order 2 in time, the delay fixed
+    const Row coarse = run(time, 0.5, 8), middle = run(time, 0.5, 16), fine = run(time, 0.5, 32);
+    const double order = std::log2(distance(coarse, middle) / distance(middle, fine));
+    CHECK(order > 1.7);
+    CHECK(order < 2.3);
+    CHECK(distance(fine, run(time, 0, 32)) > 1e-2);
+  }
+  Problem p = problem("multiplier", "trapezoid", 15);
+  p.parameters["mesh.delay"] = 0.1;
+  CHECK_THROWS_AS(Simulation(p), BadInput);
 }

@@ -90,12 +90,18 @@ TEST_CASE("a wave map on a stencil with a staggered ghost is refused with exit c
 TEST_CASE("a mesh that crosses itself ends with exit code 3, and the last mesh in order is saved") {
   const Folder folder;
   const Ran ran = delf_program(folder,
-                               "run r-adaptive --lattice.time_step=0.2 --run.steps=100 --output.every=1 "
-                               "--output.figures=off --out out");
+                               "run soliton-bounce --scheme.time=trapezoid --mesh.alpha=5 --lattice.sites=65 "
+                               "--lattice.time_step=0.05 --output.every=1 --output.figures=off --out out");
   INFO(ran.err);
   CHECK(ran.code == 3);
   CHECK(contains(ran.err, "of the mesh pass each other"));
+  CHECK(contains(ran.err, "apart, closer than any others"));
   CHECK(status(folder, "out") == "mesh-crossing");
+  const auto summary = nlohmann::json::parse(read(folder / "out/summary.json"));
+  CHECK(summary["break_reason"] == "mesh-crossing");
+  CHECK(summary["break_time"].get<double>() == Approx(0.05 * (summary["steps"].get<double>() + 1)));
+  CHECK(summary["mesh_min_spacing"] > 0);
+  CHECK(summary["step_over_limit"] > 1);  // 0.577 of the narrowest cell
   const FieldsReader fields(folder / "out/fields.h5");
   const auto last = fields.row(fields.frames() - 1);  // phi, X site by site
   for (std::size_t n = 1; n + 2 < last.size(); n += 2) CHECK(last[n] < last[n + 2]);
