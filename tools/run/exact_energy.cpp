@@ -16,8 +16,10 @@ std::optional<double> exact_energy(const State& state, const BatchDensity& densi
   if (state.components() != d || density.slots() > 3) return std::nullopt;  // a state knows no second derivatives
   const bool point = lattice.space() == Space::point;
   const bool has_pulses = std::isfinite(width);
-  // A wave may be two sites long; a pulse is resolved by two cells.
-  const double wanted = has_pulses ? std::max(64.0, std::ceil(2 * lattice.length() / width)) : lattice.cells();
+  // A wave may be two sites long; a pulse is resolved by two cells. A formula may be narrower than the cells of the lattice.
+  constexpr double fine = 512;
+  const double wanted = has_pulses ? std::max(64.0, std::ceil(2 * lattice.length() / width))
+                                   : lattice.cells() * std::ceil(fine / lattice.cells());
   if (!(wanted <= most_cells)) return std::nullopt;
   const int cells = point ? 1 : static_cast<int>(wanted);
   const double cell = lattice.length() / cells;

@@ -134,7 +134,8 @@ TEST_CASE("a convergence that cannot be measured is refused in one line") {
 
 TEST_CASE("rows of a mesh that moves are compared at its sites") {
   const Folder folder;
-  for (const char* scene : {"soliton-bounce --run.until=0.5", "phi4-moving-mesh --lattice.sites=41 --run.until=0.4"}) {
+  for (const char* scene :
+       {"soliton-bounce --lattice.sites=24 --run.until=0.5", "phi4-moving-mesh --lattice.sites=41 --run.until=0.4"}) {
     const Json table = convergence_of(
         folder, std::string(scene) + " --convergence.levels=3 --convergence.order=2 --convergence.agreement=0.4", 0);
     CHECK(table["order"].get<double>() == Approx(2).margin(0.4));
@@ -142,4 +143,26 @@ TEST_CASE("rows of a mesh that moves are compared at its sites") {
   const Ran refused =
       delf_program(folder, "run soliton-bounce --run.until=0.1 --output.estimate=on --output.figures=off");
   CHECK(contains(refused.out + refused.err, "sites move"));
+}
+
+// Tyranowski–Desbrun, section 5.3, at t = 50 with α = 2.5 and h = 0.01: 15 nodes between the walls
+TEST_CASE("a bouncing soliton has the error of an independent program to 1 %, and breaks down when that does") {
+  const Folder folder;
+  struct Case {
+    const char *strategy, *time;
+    double error, until, break_time;
+  };
+  for (const Case& c : {Case{"multiplier", "trapezoid", 0.3380150906, 50, -1},
+                        {"uniform", "lobatto2", 0.8245507883, 50, -1},
+                        {"control", "gauss1", 1.305526414, 36, 35.98}}) {
+    const Ran ran = delf_program(folder, std::string("run soliton-bounce --lattice.sites=17 --output.every=0 "
+                                                     "--output.figures=off --output.fields=off --out bounce") +
+                                             " --scheme.strategy=" + c.strategy + " --scheme.time=" + c.time +
+                                             " --run.until=" + std::to_string(c.until));
+    CAPTURE(c.strategy, c.time, ran.err);
+    CHECK(ran.code == (c.break_time > 0 ? 3 : 0));
+    const Json summary = Json::parse(read(folder / "bounce/summary.json"));
+    CHECK(summary["error_linf"].get<double>() == Approx(c.error).epsilon(0.01));
+    if (c.break_time > 0) CHECK(summary["break_time"].get<double>() == Approx(c.break_time).margin(0.02));
+  }
 }

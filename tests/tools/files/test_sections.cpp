@@ -59,7 +59,7 @@ TEST_CASE("fields, nodes inside cells and multipliers are recorded with their na
       {"complex-klein-gordon", "phi1,phi2", ",charge_u1", 320, 2, 0, 0},
       {"wave-map", "phi1,phi2,phi3", ",constraint,rotation_x,rotation_y,rotation_z", 128, 3, 0, 1},
       {"spacetime-element", "phi", "", 80, 1, 3, 0},
-      {"r-adaptive", "phi,X", ",constraint,mesh_min_spacing,multiplier_max", 17, 2, 0, 1},
+      {"r-adaptive", "phi,X", ",constraint,mesh_min_spacing,mesh_margin,step_over_limit,multiplier_max", 17, 2, 0, 1},
       {"breather", "", "", 512, 1, 0, 0},
   }));
   const Folder folder;

@@ -77,6 +77,7 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
                                           "phi4-kink",
                                           "phi4-moving-mesh",
                                           "phi6-kink",
+                                          "phi6-moving-mesh",
                                           "r-adaptive",
                                           "sine-gordon-text",
                                           "sinh-gordon",
