@@ -8,8 +8,7 @@ namespace delf {
 
 SiteSet::SiteSet(std::vector<Site> sites) : sites_(std::move(sites)) {
   std::ranges::sort(sites_);
-  const auto duplicates = std::ranges::unique(sites_);
-  sites_.erase(duplicates.begin(), duplicates.end());
+  sites_.erase(std::unique(sites_.begin(), sites_.end()), sites_.end());
   for (std::size_t n = 0; n < sites_.size(); ++n)
     if (rows_.empty() || rows_.back().time != sites_[n].time)
       rows_.push_back({sites_[n].time, n, n + 1});

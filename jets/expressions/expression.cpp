@@ -247,7 +247,7 @@ Formula::Formula(std::string_view text, const std::vector<std::pair<std::string,
   Graph graph;
   const Names names{{{"x", 0}, {"t", 1}}, parameters};
   const int f = parse(graph, text, names, key);
-  impl_ = std::make_unique<const Impl>(Tape(graph, {f, graph.differentiate(f, 1), graph.differentiate(f, 0)}, 2));
+  impl_.reset(new Impl{Tape(graph, {f, graph.differentiate(f, 1), graph.differentiate(f, 0)}, 2)});
 }
 Formula::~Formula() = default;
 Formula::Formula(Formula&&) noexcept = default;

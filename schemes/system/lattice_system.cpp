@@ -25,22 +25,6 @@ Cell cell_at(const Lattice& lattice, std::int64_t row, int i, double time_step) 
 
 }  // namespace
 
-const char* to_string(Role role) {
-  switch (role) {
-    case Role::field:
-      return "field";
-    case Role::inner:
-      return "inner";
-    case Role::multiplier:
-      return "multiplier";
-    case Role::trace:
-      return "trace";
-    case Role::slaved:
-      return "slaved";
-  }
-  return "";
-}
-
 std::vector<Component> fields(int d) {
   std::vector<Component> result;
   for (int a = 0; a < d; ++a)

@@ -9,6 +9,8 @@
 
 #include "lattice/error.hpp"
 #include "tools/files/open_to_read.hpp"
+#include "tools/files/read_apart.hpp"
+#include "tools/files/written_storage.hpp"
 
 namespace delf {
 
@@ -54,9 +56,27 @@ bool fits(const std::array<hsize_t, 3>& extent) {
 
 FieldsReader::FieldsReader(const std::filesystem::path& path) {
   quiet_hdf5();
+  read_apart(path, [&] {
+    open(path);
+    read_all();
+  });
+  open(path);
+}
+
+void FieldsReader::read_all() const {
+  winding(), scene(), coordinates();
+  for (int frame = 0; frame < frames(); ++frame) {
+    time(frame), momenta(frame);
+    for (const Role role : all_roles)
+      if (frame < shape(role).frames) values(role, frame);
+  }
+}
+
+void FieldsReader::open(const std::filesystem::path& path) {
   file_ = open_to_read(path);
   if (!file_) throw bad_file("is not an HDF5 file that can be read; name the fields.h5 of a run");
   time_ = open_dataset(file_, "time");
+  if (time_ && !was_written(time_)) throw bad_file("/time was never written; write the time of each frame there");
   momentum_ = open_dataset(file_, "momentum");
   for (const Role role : all_roles) {
     const bool needed = role == Role::field;
@@ -68,6 +88,9 @@ FieldsReader::FieldsReader(const std::filesystem::path& path) {
       throw bad_file(
           fmt::format("/field is {} x {} x {}; name the fields.h5 of a run", (*extent)[0], (*extent)[1], (*extent)[2]));
     if (!extent || !fits(*extent)) continue;
+    if (!was_written(dataset))
+      throw bad_file(fmt::format("/{} is {} x {} x {}, and not all of that was ever written; write it whole",
+                                 to_string(role), (*extent)[0], (*extent)[1], (*extent)[2]));
     parts_[static_cast<std::size_t>(role)] = {
         std::move(dataset),
         {static_cast<int>((*extent)[0]), static_cast<int>((*extent)[1]), static_cast<int>((*extent)[2])}};

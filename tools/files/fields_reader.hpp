@@ -47,6 +47,8 @@ class FieldsReader final : public RowsFile {
     Hdf5Handle dataset;
     Shape shape;
   };
+  void open(const std::filesystem::path&);
+  void read_all() const;
   const Part& part(Role role) const { return parts_[static_cast<std::size_t>(role)]; }
 
   Hdf5Handle file_, time_, momentum_;

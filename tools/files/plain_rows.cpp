@@ -13,6 +13,8 @@
 
 #include "lattice/error.hpp"
 #include "tools/files/hdf5_handle.hpp"
+#include "tools/files/read_apart.hpp"
+#include "tools/files/written_storage.hpp"
 
 namespace delf {
 namespace {
@@ -143,8 +145,9 @@ PlainArray read_table(const std::filesystem::path& path, std::size_t row_size) {
   return array;
 }
 
-PlainArray read_dataset(const std::filesystem::path& path, const std::string& name) {
-  quiet_hdf5();
+namespace {
+
+PlainArray dataset_of(const std::filesystem::path& path, const std::string& name) {
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) throw bad_file("is not an HDF5 file that can be read");
   const Hdf5Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
@@ -155,6 +158,7 @@ PlainArray read_dataset(const std::filesystem::path& path, const std::string& na
     throw bad_file(fmt::format("{} has {} axes; give frames x sites, or frames x sites x fields", name, rank));
   hsize_t extent[3] = {};
   H5Sget_simple_extent_dims(space, extent, nullptr);
+  if (!was_written(dataset)) throw bad_file(fmt::format("not all of {} was ever written; write it whole", name));
   PlainArray array;
   array.shape.assign(extent, extent + rank);
   array.values.resize(array.count());
@@ -166,7 +170,8 @@ PlainArray read_dataset(const std::filesystem::path& path, const std::string& na
     const Hdf5Handle shape(momenta ? H5Dget_space(momenta) : H5I_INVALID_HID, H5Sclose);
     hsize_t other[3] = {};
     if (!momenta || H5Sget_simple_extent_ndims(shape) != rank ||
-        H5Sget_simple_extent_dims(shape, other, nullptr) != rank || !std::equal(other, other + rank, extent))
+        H5Sget_simple_extent_dims(shape, other, nullptr) != rank || !std::equal(other, other + rank, extent) ||
+        !was_written(momenta))
       continue;
     array.momenta.resize(array.values.size());
     if (H5Dread(momenta, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.momenta.data()) < 0)
@@ -174,6 +179,14 @@ PlainArray read_dataset(const std::filesystem::path& path, const std::string& na
     break;
   }
   return array;
+}
+
+}  // namespace
+
+PlainArray read_dataset(const std::filesystem::path& path, const std::string& name) {
+  quiet_hdf5();
+  read_apart(path, [&] { dataset_of(path, name); });
+  return dataset_of(path, name);
 }
 
 std::filesystem::path file_of_rows(const std::filesystem::path& path) {

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
+#include "tools/verify/region_text.hpp"
 
 namespace delf {
 
@@ -21,45 +21,6 @@ std::vector<std::string> words_of(const std::string& text) {
     begin = end + 1;
   }
   return words;
-}
-
-// "2:5" or "7", which is 7:7
-bool read_range(std::string_view text, Range& range) {
-  const auto integer = [](std::string_view t, int& value) {
-    const auto [end, error] = std::from_chars(t.data(), t.data() + t.size(), value);
-    return error == std::errc() && end == t.data() + t.size();
-  };
-  const std::size_t colon = text.find(':');
-  if (colon == std::string_view::npos) return integer(text, range.first) && integer(text, range.last);
-  return integer(text.substr(0, colon), range.first) && integer(text.substr(colon + 1), range.last) &&
-         range.first <= range.last;
-}
-
-// Rectangles ROWSxSITES, added and taken away: "0:8x10:30-3:5x18:22"
-RegionRequest read_region(const Scene& scene, const std::string& word) {
-  constexpr int most_rows = 10000;
-  RegionRequest request{"given " + word, std::nullopt, {}};
-  for (std::size_t begin = 0; begin < word.size();) {
-    const bool away = begin > 0 && word[begin] == '-';  // there is nothing yet that the first could be taken from
-    if (begin > 0) ++begin;
-    const std::size_t end = std::min(word.find_first_of("+-", begin), word.size()), cross = word.find('x', begin);
-    Range rows, sites;
-    if (cross >= end || !read_range(std::string_view(word).substr(begin, cross - begin), rows) ||
-        !read_range(std::string_view(word).substr(cross + 1, end - cross - 1), sites) || rows.first < 0 ||
-        rows.last > most_rows || sites.first < 0 || sites.last >= 2 * scene.problem.lattice.sites())
-      throw scene.settings.error("verify.regions",
-                                 fmt::format("\"{}\" is no region; write a kind, such as hole, or ROWSxSITES, such as "
-                                             "0:8x10:30, with more added by + or taken away by -",
-                                             word));
-    for (int j = rows.first; j <= rows.last; ++j)
-      for (int i = sites.first; i <= sites.last; ++i) {
-        const Site site{j, scene.problem.lattice.is_circle() ? scene.problem.lattice.wrapped(i) : i};
-        if (away) std::erase(request.sites, site);
-        else request.sites.push_back(site);
-      }
-    begin = end;
-  }
-  return request;
 }
 
 }  // namespace
@@ -84,8 +45,13 @@ VerifyRequest read_verify_request(const Scene& scene) {
     const auto& kinds = region_kinds();
     const auto kind = std::ranges::find_if(kinds, [&](RegionKind k) { return word == to_string(k); });
     if (kind != kinds.end()) request.regions.push_back({word, *kind, {}});
-    else if (word.find_first_of("0123456789") != std::string::npos) request.regions.push_back(read_region(scene, word));
-    else {
+    else if (word.find_first_of("0123456789") != std::string::npos) {
+      try {
+        request.regions.push_back({"given " + word, std::nullopt, sites_of_region(word, scene.problem.lattice)});
+      } catch (const BadInput& bad) {
+        throw scene.settings.located(bad);
+      }
+    } else {
       std::vector<std::string> names;
       for (const RegionKind k : kinds) names.emplace_back(to_string(k));
       throw scene.settings.error("verify.regions",

@@ -80,9 +80,10 @@ std::filesystem::path write(const Folder& folder, const Layout& layout, double (
   return path;
 }
 
-// datasets of zeros, of whatever shape
+// datasets of zeros, of whatever shape; or of no values at all, which read as zeros
 std::filesystem::path write_raw(const Folder& folder,
-                                const std::vector<std::pair<const char*, std::vector<hsize_t>>>& datasets) {
+                                const std::vector<std::pair<const char*, std::vector<hsize_t>>>& datasets,
+                                bool values = true) {
   const auto path = folder / "raw.h5";
   delf::quiet_hdf5();
   const delf::Hdf5Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
@@ -91,6 +92,8 @@ std::filesystem::path write_raw(const Folder& folder,
     const delf::Hdf5Handle dataset(
         H5Dcreate2(file, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
     REQUIRE(dataset);
+    const std::vector<double> zeros(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    if (values) REQUIRE(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()) >= 0);
   }
   return path;
 }
@@ -175,6 +178,7 @@ TEST_CASE("a file without recorded rows is refused") {
   check_refused(write_raw(folder, {}), plain(), {"has no dataset /field"});
   check_refused(write_raw(folder, {{"field", {4, 4}}}), plain(), {"/field is not frames x sites x components"});
   check_refused(write_raw(folder, {{"field", {4, 4, 1}}}), plain(), {"has no dataset /time"});
+  check_refused(write_raw(folder, {{"field", {4, 4, 1}}}, false), plain(), {"not all of that was ever written"});
   check_refused(write_raw(folder, {{"field", {4, 4, 1}}, {"time", {3}}}), plain(), {"apart"});
   check_refused(write_raw(folder, {{"field", {2, 4, 1}}, {"time", {1}}}), plain(), {"/time has no frame 1"});
   check_refused(write_raw(folder, {{"field", {4, 4, 1}}, {"time", {4, 1}}}), plain(), {"/time has no frame 0"});
