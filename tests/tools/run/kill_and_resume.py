@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: MIT
 """Kills runs at random instants, resumes them, and compares with the whole run.
 
-    kill_and_resume.py DELF --scenes collision kink … [--kills N] [--arguments=--KEY=VALUE]…   by kill -9
+    kill_and_resume.py DELF --scenes collision "breather --scheme.method=composition" … --kills N      by kill -9
     kill_and_resume.py DELF --scenes … --half                       ends at half of the steps, and goes on
+    kill_and_resume.py DELF --scenes … --age SECONDS                kills a long run then: how old are its last rows?
 
-Datasets of fields.h5, series.csv, section.csv and scene.ini must be equal to the bit, summary.json but for timings. With
---kills a run checkpoints as often as it can, is killed and resumed N times, and then resumed to its end.
+--arguments=--KEY=VALUE is of all scenes. Datasets of fields.h5, series.csv, section.csv and scene.ini must be equal to the
+bit, summary.json but for timings. With --kills a run checkpoints as often as it can, is killed and resumed N times, and then
+resumed to its end.
 """
 import argparse
 import json
 import pathlib
 import random
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -105,29 +108,51 @@ def kills(delf, scene, arguments, work, count, rng):
     return done, differences(whole, cut)
 
 
+def age_of_rows(delf, scene, arguments, work, seconds):
+    """How long before it was killed a run, which has no end and writes no checkpoint, last wrote rows."""
+    cut = work / "cut"
+    command = [delf, "run", scene, *arguments, "--run.steps=1000000000", "--output.every=1000", "--output.checkpoint=0"]
+    command += ["--output.figures=off", "--out", cut]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    time.sleep(seconds)
+    if process.poll() is not None:
+        sys.exit(f"{scene}: ended with exit code {process.returncode} before it was killed")
+    process.kill()
+    killed = time.time()
+    process.wait()
+    return max(killed - (cut / name).stat().st_mtime for name in ("series.csv", "fields.h5"))
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("delf")
     parser.add_argument("--scenes", nargs="+", required=True)
     parser.add_argument("--half", action="store_true")
     parser.add_argument("--kills", type=int, default=0)
+    parser.add_argument("--age", type=float, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--arguments", action="append", default=[])
     asked = parser.parse_args()
     rng = random.Random(asked.seed)
     failed, killed = 0, 0
-    for scene in asked.scenes:
+    for name in asked.scenes:
+        scene, *own = shlex.split(name)
+        arguments = own + asked.arguments
         with tempfile.TemporaryDirectory() as work:
             work = pathlib.Path(work)
             wrong = []
             if asked.half:
-                wrong += halves(asked.delf, scene, asked.arguments, work)
+                wrong += halves(asked.delf, scene, arguments, work)
             if asked.kills:
-                count, different = kills(asked.delf, scene, asked.arguments, work, asked.kills, rng)
+                count, different = kills(asked.delf, scene, arguments, work, asked.kills, rng)
                 killed, wrong = killed + count, wrong + different
+            if asked.age:
+                age = age_of_rows(asked.delf, scene, arguments, work, asked.age)
+                print(f"{name}: killed after {asked.age:g} s, its last rows {age:.1f} s old")
+                wrong += ["rows are lost that are older than 10 s"] if age > 10.5 else []
             if wrong:
                 failed += 1
-                print(f"{scene}: {'; '.join(wrong)}")
+                print(f"{name}: {'; '.join(wrong)}")
     print(f"{len(asked.scenes)} scenes, {killed} kills, {failed} different")
     sys.exit(failed > 0)
 
