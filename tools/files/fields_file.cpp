@@ -85,7 +85,7 @@ bool append_block(hid_t dataset, hsize_t old, const std::vector<hsize_t>& block,
 
 FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double> space, std::int64_t expected_frames,
                        const std::string& scene, int winding, const RowNames& names, const MeshOfFile& mesh,
-                       hsize_t kept)
+                       const WrittenPart& kept)
     : path_(path), sites_(space.size() / static_cast<std::size_t>(mesh.coordinates)), names_(names) {
   constexpr std::size_t block = 1 << 17;  // doubles: 1 MiB
   std::size_t columns = 0;
@@ -94,7 +94,7 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   frames_per_block_ = std::clamp<std::size_t>(block / (sites_ * columns), 1, 1024);
   frames_per_block_ = std::min(frames_per_block_, static_cast<std::size_t>(std::max<std::int64_t>(1, expected_frames)));
   quiet_hdf5();
-  const std::filesystem::path made = kept > 0 ? std::filesystem::path(path.string() + ".part") : path;
+  const std::filesystem::path made = kept.size > 0 ? std::filesystem::path(path.string() + ".part") : path;
   const Hdf5Handle format(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(format, H5F_LIBVER_V110, H5F_LIBVER_V110);
   const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
@@ -147,7 +147,7 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   // From here on (single writer, multiple readers) every write leaves a file that can be read, whenever the process ends.
   require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0 && H5Fstart_swmr_write(file_) >= 0, "cannot be written");
   times_.reserve(frames_per_block_);
-  if (kept == 0) return;
+  if (kept.size == 0) return;
   std::error_code error;
   try {
     copy_frames(path, kept);
@@ -159,10 +159,12 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   require(!error, "cannot be replaced");
 }
 
-void FieldsFile::copy_frames(const std::filesystem::path& from, hsize_t frames) {
+void FieldsFile::copy_frames(const std::filesystem::path& from, const WrittenPart& kept) {
+  const hsize_t frames = kept.size;
   const Hdf5Handle old = open_to_read(from);
   // A kill in the midst of the last block leaves a wrong checksum there; its rows before the checkpoint are written again
-  // the same. Blocks that were full at the checkpoint are written once, and must be whole.
+  // the same. Blocks that were full at the checkpoint are written once, and must be whole. What the rows are, its checksum
+  // tells.
   const Hdf5Handle trusting(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
   H5Pset_edc_check(trusting, H5Z_DISABLE_EDC);
   const auto read = [&](const char* name, hsize_t first, const std::vector<hsize_t>& block, double* to) {
@@ -193,19 +195,22 @@ void FieldsFile::copy_frames(const std::filesystem::path& from, hsize_t frames) 
     }
     if (there) write_block();
   }
-  if (there) return;
+  if (there && written_.sum == kept.sum) return;
   abandon();
+  if (there)
+    throw BadScene(fmt::format(
+        "{}: is damaged: its rows are not those that the checkpoint counts on; begin the run anew", from.string()));
   throw BadScene(fmt::format("{}: the {} rows that the checkpoint counts on {}; begin the run anew", from.string(),
                              frames, old ? "cannot be read" : "are gone, or the file is damaged"));
 }
 
-std::uint64_t FieldsFile::flush(bool sync) {
+const WrittenPart& FieldsFile::flush(bool sync) {
   write_block();
   void* descriptor = nullptr;
   if (sync)
     require(H5Fget_vfd_handle(file_, H5P_DEFAULT, &descriptor) >= 0 && fsync(*static_cast<int*>(descriptor)) == 0,
             "cannot be written");
-  return frames_written_;
+  return written_;
 }
 
 FieldsFile::Rows FieldsFile::rows(const char* name, std::vector<hsize_t> shape) const {
@@ -241,19 +246,26 @@ void FieldsFile::append(double time, const RecordedRow& row, const RecordedDatas
   if (node_times_.dataset) add(node_times_, node_times);
   for (std::size_t d = 0; d < datasets_.size(); ++d) add(datasets_[d], datasets[d]);
   // blocks end where chunks do
-  if ((frames_written_ + times_.size()) % frames_per_block_ == 0) write_block();
+  if ((written_.size + times_.size()) % frames_per_block_ == 0) write_block();
 }
 
 void FieldsFile::write_block() {
   if (times_.empty()) return;
   const hsize_t frames = times_.size();
-  bool written = append_block(time_, frames_written_, {frames}, times_.data());
+  bool written = append_block(time_, written_.size, {frames}, times_.data());
   for (Rows* rows : all_rows())
     if (rows->dataset)
       written =
-          written && append_block(rows->dataset, frames_written_, block_of(frames, rows->shape), rows->waiting.data());
+          written && append_block(rows->dataset, written_.size, block_of(frames, rows->shape), rows->waiting.data());
   require(written && H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
-  frames_written_ += frames;
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    written_.sum.add(std::span(times_).subspan(frame, 1));
+    for (const Rows* rows : all_rows()) {
+      const std::size_t values = rows->waiting.size() / frames;
+      written_.sum.add(std::span(rows->waiting).subspan(frame * values, values));
+    }
+  }
+  written_.size += frames;
   times_.clear();
   for (Rows* rows : all_rows()) rows->waiting.clear();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/files/hdf5_handle.hpp"
+#include "tools/files/written_part.hpp"
 #include "tools/run/record.hpp"
 #include "tools/scene/row_names.hpp"
 
@@ -34,17 +35,18 @@ struct MeshOfFile {
 ///     /       attributes scene (the resolved scene), version, winding
 ///
 /// With `kept`, a file of that name is gone on with behind its first frames: they are copied, and the copy takes its place.
-/// Throws BadScene where they cannot be read, and leaves the file as it is.
+/// Throws BadScene where they cannot be read or are others, and leaves the file as it is.
 /// Rows are written in blocks, and each block is flushed: what has been written stays readable. Throws SystemFailure.
 class FieldsFile {
  public:
   FieldsFile(const std::filesystem::path&, std::span<const double> space, std::int64_t expected_frames,
-             const std::string& scene, int winding, const RowNames& = {}, const MeshOfFile& = {}, hsize_t kept = 0);
+             const std::string& scene, int winding, const RowNames& = {}, const MeshOfFile& = {},
+             const WrittenPart& kept = {});
   ~FieldsFile();
 
   void append(double time, const RecordedRow&, const RecordedDatasets& = {}, std::span<const double> node_times = {});
-  /// Writes the buffered rows; with `sync` they reach the disk. The number of frames that are there.
-  std::uint64_t flush(bool sync);
+  /// Writes the buffered rows; with `sync` they reach the disk. The frames that are there.
+  const WrittenPart& flush(bool sync);
   /// Writes the buffered rows. Until then they may be missing on the disk.
   void close();
 
@@ -57,13 +59,13 @@ class FieldsFile {
   };
   Rows rows(const char* name, std::vector<hsize_t> shape) const;
   void write_block();
-  void copy_frames(const std::filesystem::path& from, hsize_t frames);
+  void copy_frames(const std::filesystem::path& from, const WrittenPart& kept);
   void abandon();
   void require(bool went_well, const char* what);
 
   std::filesystem::path path_;
   std::size_t sites_, frames_per_block_;
-  hsize_t frames_written_ = 0;
+  WrittenPart written_;        ///< frames
   std::vector<double> times_;  ///< buffered
   RowNames names_;
   Hdf5Handle file_, time_;  ///< closed in the other order

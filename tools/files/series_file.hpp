@@ -15,10 +15,10 @@ class SeriesFile {
  public:
   SeriesFile(const std::filesystem::path&, const std::vector<std::string>& further);
   /// Goes on behind the first bytes of a file.
-  SeriesFile(const std::filesystem::path& path, std::uint64_t kept) : file_(path, kept) {}
+  SeriesFile(const std::filesystem::path& path, const WrittenPart& kept) : file_(path, kept) {}
   void append(const Record&);
-  /// Bytes that have reached the system, and with `sync` the disk.
-  std::uint64_t flush(bool sync) { return file_.flush(sync), file_.size(); }
+  /// What has reached the system, and with `sync` the disk.
+  const WrittenPart& flush(bool sync) { return file_.flush(sync), file_.written(); }
   void close() { file_.close(); }
 
  private:

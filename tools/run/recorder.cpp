@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "schemes/stepping/saved_state.hpp"
 #include "tools/failure.hpp"
@@ -12,14 +14,25 @@ namespace delf {
 
 namespace {
 
-// A file that was cut off would be filled with zeros where it is gone on with.
-void require_bytes(const std::filesystem::path& path, std::uint64_t kept) {
+// A file that was cut off would be filled with zeros where it is gone on with; and what was changed in it would stay.
+void require_part(const std::filesystem::path& path, const WrittenPart& kept) {
   std::error_code error;
   const auto there = std::filesystem::file_size(path, error);
   if (error) throw BadScene(fmt::format("{}: {}; begin the run anew", path.string(), error.message()));
-  if (there < kept)
+  if (there < kept.size)
     throw BadScene(fmt::format("{}: has {} bytes, and the checkpoint counts on {}; begin the run anew", path.string(),
-                               there, kept));
+                               there, kept.size));
+  std::ifstream in(path, std::ios::binary);
+  std::string block(1 << 16, '\0');
+  Checksum sum;
+  for (std::uint64_t left = kept.size; left > 0 && in;) {
+    in.read(block.data(), static_cast<std::streamsize>(std::min<std::uint64_t>(left, block.size())));
+    sum.add(std::string_view(block).substr(0, static_cast<std::size_t>(in.gcount())));
+    left -= static_cast<std::uint64_t>(in.gcount());
+  }
+  if (sum != kept.sum)
+    throw BadScene(fmt::format(
+        "{}: is damaged: its lines are not those that the checkpoint counts on; begin the run anew", path.string()));
 }
 
 }  // namespace
@@ -28,14 +41,14 @@ Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, cons
                    int winding, const RowNames& names, const std::optional<Written>& kept)
     : names_(names) {
   const std::filesystem::path series = folder / "series.csv";
-  if (kept) require_bytes(series, kept->series);
+  if (kept) require_part(series, kept->series);
   const Lattice& lattice = scene.problem.lattice;
   const std::int64_t expected = scene.every == 0 ? 1 : scene.steps / scene.every + 2;
   if (scene.fields) {
     std::vector<double> space;
     for (int i = 0; i < lattice.sites(); ++i) space.push_back(lattice.position(i));
     fields_.emplace(folder / "fields.h5", space, expected, resolved_scene, winding, names, MeshOfFile{},
-                    kept ? kept->frames : 0);
+                    kept ? kept->fields : WrittenPart{});
   }
   if (kept) series_.emplace(series, kept->series);
   else series_.emplace(series, names.further);
@@ -66,7 +79,7 @@ std::vector<double> Recorder::drawn(const RecordedRow& row) const {
 
 Recorder::Written Recorder::flush(bool sync) {
   Written written;
-  if (fields_) written.frames = fields_->flush(sync);
+  if (fields_) written.fields = fields_->flush(sync);
   written.series = series_->flush(sync);
   return written;
 }

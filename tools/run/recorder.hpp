@@ -21,10 +21,10 @@ class Recorder {
  public:
   /// What of the files has reached the disk.
   struct Written {
-    std::uint64_t series = 0, frames = 0;  ///< bytes of series.csv, frames of fields.h5
+    WrittenPart series, fields;
   };
   /// With `kept`, the files of an earlier run are gone on with from there. Throws BadScene, and changes no file, where they
-  /// do not hold that much.
+  /// do not hold that much, or other values.
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&, const std::optional<Written>& kept = {});
 

@@ -16,9 +16,9 @@ TextFile::TextFile(const std::filesystem::path& path)
   if (!file_) fail();
 }
 
-TextFile::TextFile(const std::filesystem::path& path, std::uint64_t kept)
-    : path_(path), size_(kept), file_(std::fopen(path.c_str(), "r+b"), std::fclose) {
-  if (!file_ || ftruncate(fileno(file_.get()), static_cast<off_t>(kept)) != 0 ||
+TextFile::TextFile(const std::filesystem::path& path, const WrittenPart& kept)
+    : path_(path), written_(kept), file_(std::fopen(path.c_str(), "r+b"), std::fclose) {
+  if (!file_ || ftruncate(fileno(file_.get()), static_cast<off_t>(kept.size)) != 0 ||
       std::fseek(file_.get(), 0, SEEK_END) != 0)
     fail();
 }
@@ -28,7 +28,8 @@ void TextFile::flush(bool sync) {
 }
 
 void TextFile::write(std::string_view text) {
-  size_ += text.size();
+  written_.size += text.size();
+  written_.sum.add(text);
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) fail();
 }
 

@@ -6,6 +6,8 @@
 #include <memory>
 #include <string_view>
 
+#include "tools/files/written_part.hpp"
+
 namespace delf {
 
 /// A text file that reaches the disk, or throws SystemFailure naming it.
@@ -13,19 +15,19 @@ class TextFile {
  public:
   explicit TextFile(const std::filesystem::path&);
   /// Goes on with a file behind its first bytes; what follows them is cut off.
-  TextFile(const std::filesystem::path&, std::uint64_t kept);
+  TextFile(const std::filesystem::path&, const WrittenPart& kept);
   void write(std::string_view);
   /// What has been written so far reaches the system, and with `sync` the disk.
   void flush(bool sync = false);
   /// Bytes from its beginning.
-  std::uint64_t size() const { return size_; }
+  const WrittenPart& written() const { return written_; }
   /// Writes what still waits; without it nothing is promised.
   void close();
 
  private:
   [[noreturn]] void fail() const;
   std::filesystem::path path_;
-  std::uint64_t size_ = 0;
+  WrittenPart written_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 

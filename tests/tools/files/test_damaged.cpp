@@ -71,7 +71,7 @@ TEST_CASE("a fields.h5 that is still written can be read") {
   RecordedRow row;
   row[Role::field].assign(sites, 1.5);
   for (int frame = 0; frame < 3; ++frame) file.append(frame, row);
-  CHECK(file.flush(false) == 3);
+  CHECK(file.flush(false).size == 3);
   const FieldsReader reader(folder / "fields.h5");
   CHECK(reader.frames() == 3);
   CHECK(reader.row(2)[4] == 1.5);

@@ -2,6 +2,7 @@
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/python.hpp"
+#include "tools/files/fields_reader.hpp"
 
 using namespace delf::testing;
 namespace fs = std::filesystem;
@@ -100,6 +101,15 @@ TEST_CASE("files that lack what the checkpoint counts on are refused, and nothin
   refused("series.csv", "", "No such file");
   refused("fields.h5", fields.substr(0, fields.size() / 2), "the 7 rows that the checkpoint counts on are gone");
   refused("fields.h5", "", "the 7 rows that the checkpoint counts on are gone");
+  // a bit of what is there, in the last block too: a kill in the midst of it leaves no right checksum of HDF5's own
+  std::string digit = series, bit = fields;
+  digit[digit.find("\n3,") + 1] = '4';
+  const double value = delf::FieldsReader(out / "fields.h5").row(5)[40];
+  const std::size_t at = bit.find(std::string(reinterpret_cast<const char*>(&value), sizeof value));
+  REQUIRE(at != std::string::npos);
+  bit[at] ^= 1;
+  refused("series.csv", digit, "is damaged: its lines are not those that the checkpoint counts on");
+  refused("fields.h5", bit, "is damaged: its rows are not those that the checkpoint counts on");
   CHECK(resume(folder, "--run.steps=30").code == 0);
 }
 
