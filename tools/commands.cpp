@@ -48,7 +48,25 @@ std::filesystem::path file_of(const Arguments& arguments) {
   return find_scene(only_word(arguments, nullptr));
 }
 
-Settings settings_of(const Arguments& arguments) { return read_settings(file_of(arguments), arguments.keys); }
+// A scene serves many commands, and has the sections of some; what is asked for beside it is meant.
+void warn_of_other_sections(const Arguments& arguments) {
+  for (const Setting& s : arguments.keys) {
+    const std::string_view section = section_of(s.key);
+    if (section == find_command(arguments.words[0]).section) continue;
+    for (const Command& other : commands())
+      if (section == other.section)
+        std::fputs(
+            fmt::format("command line: --{} = {}: warning: only `delf {}` reads it\n", s.key, s.value, other.name)
+                .c_str(),
+            stderr);
+  }
+}
+
+Settings settings_of(const Arguments& arguments) {
+  Settings settings = read_settings(file_of(arguments), arguments.keys);
+  warn_of_other_sections(arguments);
+  return settings;
+}
 
 Scene scene_of(Settings settings) {
   Scene scene = read_scene(std::move(settings));
@@ -190,8 +208,9 @@ const std::vector<Command>& table() {
        "output.checkpoint seconds, at the end, and on SIGINT (Ctrl-C), SIGTERM and SIGHUP. A finished run goes on if "
        "run.until\n"
        "(from time 0) or run.steps is raised. The keys are those that the run began with; besides these two, "
-       "run.threads and\n"
-       "output.checkpoint may change. It takes the same version of delf, on a processor with the same instructions.",
+       "run.threads,\n"
+       "output.checkpoint, output.format and output.titles may change. It takes the same version of delf, on a "
+       "processor with the same instructions.",
        false, carry_out_resume},
       {"plan",
        "delf plan SCENE [--latex] [--KEY=VALUE ...]",

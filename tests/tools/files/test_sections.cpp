@@ -185,7 +185,7 @@ TEST_CASE("incompatible keys are refused in one line") {
   refused("pendulum --scheme.method=dgvi", "not linear in phi_t; use scheme.method = cgvi");
 }
 
-TEST_CASE("keys of another method are warned of") {
+TEST_CASE("keys of another method or command are warned of") {
   const Folder folder;
   const auto warned = [&](const std::string& arguments, const std::string& part) {
     const Ran ran = delf_program(folder, "run " + arguments + " --run.steps=2 --output.figures=off --out out");
@@ -197,6 +197,7 @@ TEST_CASE("keys of another method are warned of") {
   warned("breather --scheme.quadrature=lobatto", "only scheme.method = spacetime or cgvi or dgvi reads it");
   warned("breather --mesh.alpha=3", "only scheme.method = r-adaptive reads it");
   warned("breather --initial.eccentricity=0.3", "the state breather does not read it");
+  warned("breather --verify.regions=hole", "--verify.regions = hole: warning: only `delf verify` reads it");
 }
 
 TEST_CASE("a table of rows is read in any order, and its errors are reported with their line") {
