@@ -79,7 +79,9 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   const double room = 0.06 * (scale.most - scale.least);
   const int rows = (panels + columns - 1) / columns;
   std::string body =
-      figure_title(fmt::format("{}: waveforms", source.scene), fmt::format("{}, {}", source.theory, source.scheme)) +
+      figure_title(
+          fmt::format("{}: waveforms", source.scene),
+          fmt::format("{}, {}{}", source.theory, source.scheme, turned ? "; multiples of 2π are subtracted" : "")) +
       fmt::format(
           "set multiplot layout {},{} margins screen 0.105,0.97,0.125,(top-0.035) spacing screen 0.03,0.085\n"
           "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xtics {}\n",
@@ -96,10 +98,6 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
                         bottom ? "space x" : "");
     body += fmt::format("set label 1 't = {:.4g}' at graph 0,1 left offset 0,0.7 textcolor rgb '#333333'\n",
                         source.film.time(frames[static_cast<std::size_t>(p)]));
-    if (p == 0 && turned)
-      body +=
-          "set label 103 'multiples of 2 pi are subtracted' at screen 0.97,0.03 right font ',10' "
-          "textcolor rgb '#666666'\n";
     if (p == 0)
       body += key_of_curves(
           components.size(), [&](std::size_t c) { return source.names.drawn()[components[c]]; }, curves);

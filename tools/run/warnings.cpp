@@ -73,7 +73,8 @@ Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulat
 
 /// What makes steps finer, in keys.
 std::string Warnings::finer() const {
-  return scene_.problem.lattice.space() == Space::point ? "reduce lattice.time_step" : "raise lattice.sites";
+  return scene_.problem.lattice.space() == Space::point ? "reduce lattice.time_step"
+                                                        : "raise lattice.sites, unless the lattice itself is the model";
 }
 /// Elements have several, and are as fine as their nodes.
 int Warnings::nodes_in_cell() const {
