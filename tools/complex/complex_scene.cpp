@@ -206,8 +206,6 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
       if (values.given("lattice.time_steps") && values.given(other))
         settings.keep_one_of("lattice.time_steps", other, {});
     c.time_steps = read_time_steps(settings, values);
-    if (halvings > 0 && !c.time_steps.empty())
-      throw settings.error("lattice.time_steps", "are not refined; give lattice.courant or lattice.time_step");
     if (!c.time_steps.empty()) {
       if (c.time == MeshTime::cells)
         throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");

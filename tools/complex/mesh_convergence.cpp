@@ -69,6 +69,9 @@ ConvergenceTable converge(const ComplexScene& scene, int levels) {
   if (scene.stencils)
     throw scene.scene.settings.error("lattice.mesh",
                                      "is a finite complex, and has no finer one; give a mesh or a generator");
+  if (!scene.time_steps.empty())
+    throw scene.scene.settings.error("lattice.time_steps",
+                                     "are not refined; give lattice.courant or lattice.time_step");
   if (!scene.is_one_problem() && scene.scene.steps < 2)
     throw scene.scene.settings.error("run.steps", "must be 2 at least for an order; raise it");
   ConvergenceTable table;
@@ -96,7 +99,7 @@ ConvergenceTable converge(const ComplexScene& scene, int levels) {
     }
     ConvergenceLevel line;
     line.sites = now->sites(), line.space_step = shortest_edge(now->space->mesh);
-    line.time_step = now->is_one_problem() ? 0 : now->scene.problem.time_step;
+    line.time_step = now->is_one_problem() ? ConvergenceLevel::unknown : now->scene.problem.time_step;
     line.seconds = end->seconds;
     for (const double phi : end->values) line.size = std::max(line.size, std::abs(phi));
     if (table.exact) measure(*now->space, end->values, now->solution(end->time), line);
@@ -104,7 +107,7 @@ ConvergenceTable converge(const ComplexScene& scene, int levels) {
     table.levels.push_back(line);
     before = std::move(end->values), coarse = std::move(now);
   }
-  find_orders(table);
+  find_orders(table, &ConvergenceLevel::l2);
   return table;
 }
 

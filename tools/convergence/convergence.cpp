@@ -61,8 +61,8 @@ std::string report(const Scene& scene, const std::string& label, const Convergen
   for (std::size_t i = 0; i < table.levels.size(); ++i) {
     const ConvergenceLevel& l = table.levels[i];
     // the order that has led to this line
-    text += fmt::format("  {:>7} {:>10.4g} {:>10.4g} {:>10} {:>10} {:>7} {:>9}", l.sites, l.space_step, l.time_step,
-                        number("{:.3e}", l.linf), number("{:.3e}", l.l2),
+    text += fmt::format("  {:>7} {:>10.4g} {:>10} {:>10} {:>10} {:>7} {:>9}", l.sites, l.space_step,
+                        number("{:.4g}", l.time_step), number("{:.3e}", l.linf), number("{:.3e}", l.l2),
                         i == 0 ? "-" : number("{:.3f}", table.levels[i - 1].order), duration_in_words(l.seconds));
     for (const NamedNumber& m : l.measures) text += fmt::format(" {:>14.8g}", m.value);
     text += "\n";

@@ -70,14 +70,14 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     table.levels.push_back(std::move(now));
     before = std::move(end.row), placed_before = std::move(end.placed);
   }
-  find_orders(table);
+  find_orders(table, &ConvergenceLevel::linf);
   return table;
 }
 
-void find_orders(ConvergenceTable& table) {
+void find_orders(ConvergenceTable& table, double ConvergenceLevel::*norm) {
   for (std::size_t i = 0; i + 1 < table.levels.size(); ++i) {
     const double rounding = 1e-12 * table.levels[i + 1].size;  // no order comes of it
-    const double a = table.levels[i].linf, b = table.levels[i + 1].linf;
+    const double a = table.levels[i].*norm, b = table.levels[i + 1].*norm;
     if (b > rounding && std::isfinite(a)) table.levels[i].order = std::log2(a / b);
   }
 }

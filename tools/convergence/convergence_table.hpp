@@ -16,7 +16,7 @@ struct ConvergenceLevel {
   double space_step = 0, time_step = 0, seconds = 0;
   double size = 0;                      ///< the largest |φ| of the last row
   double linf = unknown, l2 = unknown;  ///< errors, or differences from the next level
-  double order = unknown;               ///< log₂ of the maximum norm's ratio to the next level's
+  double order = unknown;  ///< log₂ of an error's ratio to the next level's: the maximum norm's, on meshes L2's
   std::vector<NamedNumber> measures;
 };
 
@@ -30,8 +30,8 @@ struct ConvergenceTable {
   double order() const;
 };
 
-/// Each level's order, from its error and the next level's where both are above rounding.
-void find_orders(ConvergenceTable&);
+/// Each level's order, from its error in that norm and the next level's, where both are above rounding.
+void find_orders(ConvergenceTable&, double ConvergenceLevel::*norm);
 
 /// Levels 0, 1, …: the scene at 1, ½, ¼, … of its steps in time and space. A level that fails, or that
 /// cannot be run, is the end of the table; the first throws.

@@ -284,6 +284,7 @@ TEST_CASE("a scene on a mesh with an error is refused in one line") {
   refused("run sphere --lattice.sites=10", "not applicable to lattice.space = complex");
   refused("run sphere '--theory.density=0.5*phi_t^2 - phi_x^4'", "is not quadratic in phi_x");
   refused("sweep sphere --lattice.courant=0.3,0.4", "works with run, plan, verify and convergence");
+  refused("convergence sphere --lattice.time_steps=0.1,0.2", "are not refined");
   refused("run sphere --lattice.time_steps=0.1,-1", "steps must be above 0");
   refused("run sphere --initial.speed=0.3", "has no effect on a mesh");
   refused("run sphere --initial.phi=x*t", "reads t");
