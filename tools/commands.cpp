@@ -273,7 +273,7 @@ const std::vector<Command>& table() {
        "without one differences from the next line. Into DIR (results/NAME of the scene, if not given) go\n"
        "convergence.json and convergence.csv. Exit code 1 if the last two lines miss the order of the scheme, where it "
        "is\n"
-       "known, or have another than convergence.order.\n\n"
+       "known, or have another than convergence.order. On a mesh its sides are halved, and the order is that of L2.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_convergence, "convergence"},
       {"workprecision", "delf workprecision SCENE [--out DIR] [--KEY=VALUE ...]",
