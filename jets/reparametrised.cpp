@@ -74,7 +74,8 @@ struct Reparametrised::Inner {
   Inner(const Reparametrised& density, const JetBatch& batch)
       : of(density), m(density.inner_), jet(m, batch.count), g(m, batch.count), l(1, batch.count) {
     const int d = of.of_->components();
-    std::vector<Pack> one(at(m));
+    thread_local std::vector<Pack> one;
+    one.resize(at(m));
     for (int i = 0; i < batch.count; i += lanes) {
       inner_jet(
           d, [&](int v) { return Pack::load(batch.slots[v] + i); }, one);

@@ -87,7 +87,8 @@ struct EquidistributionRate {
   T operator()(std::span<const T> y, const Cell&) const {
     using Along = Dual<T, 1>;
     const std::size_t n = static_cast<std::size_t>(d) + 1;
-    std::vector<Along> q(3 * n);
+    thread_local std::vector<Along> q;  // made anew it costs as much as what it is for
+    q.resize(3 * n);
     for (std::size_t i = 0; i < 3 * n; ++i) q[i].value = y[i], q[i].d[0] = y[3 * n + i];
     const std::span<const Along> all(q);
     const Along G = monitor(all.subspan(n, n), all.subspan(2 * n, n)) - monitor(all.subspan(0, n), all.subspan(n, n));
@@ -123,7 +124,8 @@ struct DelayedEquidistribution {
     const auto lower = y.subspan(0, 3 * n), upper = y.subspan(3 * n, 3 * n);
     T drive(0.0);
     if (at_mean) {
-      std::vector<T> mean(3 * n);
+      thread_local std::vector<T> mean;
+      mean.resize(3 * n);
       for (std::size_t i = 0; i < 3 * n; ++i) mean[i] = 0.5 * (lower[i] + upper[i]);
       drive = G(mean);
     } else {

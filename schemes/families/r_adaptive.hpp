@@ -29,21 +29,43 @@ struct MovingRectangle {
     return (1. / 6) * (size * (w_a * w_a + w_a * w_b + w_b * w_b));
   }
 
+  /// ∫ ℓ dx over a cell of one row, from (φ, X) and (φ_t, X_t) at its ends
+  template <class T>
+  T of_row(const T& a, const T& mesh_a, const T& b, const T& mesh_b, const T& a_t, const T& mesh_a_t, const T& b_t,
+           const T& mesh_b_t) const {
+    using std::cos;
+    const T size = mesh_b - mesh_a, slope = (b - a) / size;
+    const T w_a = a_t - slope * mesh_a_t, w_b = b_t - slope * mesh_b_t;
+    const T mean_cos = cos(0.5 * (a + b)) * sinc(0.5 * (a - b));
+    return kinetic(size, w_a, w_b) - size * (0.5 * slope * slope + (mass * mass) * (1.0 - mean_cos));
+  }
+
   /// y = (φ, X) at (j, i), (j+1, i), (j+1, i+1), (j, i+1)
   template <class T>
   T operator()(std::span<const T> y, const Cell& cell) const {
     const double per_h = 1 / cell.time_step;
     const T left_t = per_h * (y[2] - y[0]), left_mesh_t = per_h * (y[3] - y[1]);
     const T right_t = per_h * (y[4] - y[6]), right_mesh_t = per_h * (y[5] - y[7]);
-    const double m2 = mass * mass;
     const auto row = [&](const T& a, const T& mesh_a, const T& b, const T& mesh_b) -> T {
-      using std::cos;
-      const T size = mesh_b - mesh_a, slope = (b - a) / size;
-      const T w_a = left_t - slope * left_mesh_t, w_b = right_t - slope * right_mesh_t;
-      const T mean_cos = cos(0.5 * (a + b)) * sinc(0.5 * (a - b));
-      return kinetic(size, w_a, w_b) - size * (0.5 * slope * slope + m2 * (1.0 - mean_cos));
+      return of_row(a, mesh_a, b, mesh_b, left_t, left_mesh_t, right_t, right_mesh_t);
     };
     return (0.5 * cell.time_step) * (row(y[0], y[1], y[6], y[7]) + row(y[2], y[3], y[4], y[5]));
+  }
+};
+
+/// The same at one point of an element in time, of a weight: (φ, X) at the ends of the cell, then h (φ_t, X_t) there.
+struct MovingStage {
+  MovingRectangle rectangle;
+  double weight = 1;
+
+  StencilPattern pattern() const { return StencilPattern({{0, 0}}); }
+  std::vector<VertexValue> values() const { return {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}, {0, 6}, {0, 7}}; }
+
+  template <class T>
+  T operator()(std::span<const T> y, const Cell& cell) const {
+    const double per_h = 1 / cell.time_step;
+    return (weight * cell.time_step) *
+           rectangle.of_row<T>(y[0], y[1], y[2], y[3], per_h * y[4], per_h * y[5], per_h * y[6], per_h * y[7]);
   }
 };
 

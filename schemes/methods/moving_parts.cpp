@@ -153,7 +153,9 @@ void add_action(SchemeParts& parts, const FieldTheory& theory, const MovingSchem
     return;
   }
   const bool variational = scheme.varied && scheme.time.tests.empty();
-  for (const DensityPart& part : density_parts(theory, scheme.points))
+  std::vector<DensityPart> density(1);
+  if (!scheme.stages) density = density_parts(theory, scheme.points);
+  for (const DensityPart& part : density)
     for (std::size_t i = 0; i < scheme.time.points.size(); ++i) {
       const int point = static_cast<int>(i);
       MappedFamily::Map map;
@@ -164,7 +166,9 @@ void add_action(SchemeParts& parts, const FieldTheory& theory, const MovingSchem
             if (!variational) map.tests.push_back(layout.test(point, c, space, rate));
           }
       map.cell = {d, D + d}, map.time = scheme.time.points[i].time;
-      auto stage = std::make_shared<const JetFamily>(stage_table(scheme.time.points[i], part.space), part.density);
+      std::shared_ptr<const StencilFamily> stage;
+      if (scheme.stages) stage = scheme.stages->stage(scheme.time.points[i].weight);
+      else stage = std::make_shared<const JetFamily>(stage_table(scheme.time.points[i], part.space), part.density);
       parts.families.push_back(std::make_shared<const MappedFamily>(std::move(stage), map));
     }
 }
@@ -336,7 +340,8 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
   if (scheme.varied) add_slack(parts, d, scheme, layout);
   parts.components = layout.components;
   parts.remarks.push_back(
-      scheme.action ? "space: linear functions of the moving cells; the action is their exact integral, in closed form"
+      scheme.action || scheme.stages
+          ? "space: linear functions of the moving cells; the action is their exact integral, in closed form"
       : Reparametrised::has_parts(theory.density())
           ? fmt::format("space: linear functions of the moving cells; the quadratic part of the density is integrated "
                         "exactly, its potential by Gauss's rule of {} points{}",

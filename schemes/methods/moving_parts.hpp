@@ -7,6 +7,7 @@
 
 #include "jets/tables/stencil_table.hpp"
 #include "schemes/families/equidistribution.hpp"
+#include "schemes/families/moving_rectangle.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/state.hpp"
 
@@ -26,6 +27,8 @@ struct MovingScheme {
   int points = 10;        ///< of Gauss's rule in a cell
   /// The whole action of this element in closed form, without points; null: none.
   std::shared_ptr<const StencilFamily> action = {};
+  /// That of one of its points, where there is no such action of the whole.
+  std::shared_ptr<const MovingAction> stages = {};
 };
 
 /// Families and components: φ, X, the nodes inside a step; then multipliers, or the slaved positions and rates at the

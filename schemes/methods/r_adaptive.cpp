@@ -152,8 +152,12 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                       .delay = delay_of(p, time),
                       .most_phase = time.most_phase,
                       .points = points};
-  if (const auto rectangle = find_theory(p.theory).moving_rectangle; rectangle && time.rectangle && !asked)
+  if (const auto rectangle = find_theory(p.theory).moving_rectangle; rectangle && !asked) {
     scheme.action = rectangle(p.parameters);
+    scheme.stages = std::dynamic_pointer_cast<const MovingAction>(scheme.action);
+    if (!time.rectangle) scheme.action = nullptr;
+    else scheme.stages = nullptr;
+  }
   return moving_parts(theory, scheme);
 }
 
