@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "schemes/diagnosis/findings.hpp"
+#include "schemes/diagnosis/from_values.hpp"
 #include "schemes/diagnosis/rounded_values.hpp"
 
 namespace delf {
@@ -62,6 +63,10 @@ Diagnosis diagnose(Evidence evidence) {
       diagnosis.findings.push_back(std::move(*finding));
       if (diagnosis.findings.back().settles) return diagnosis;
     }
+  if (auto finding = find_from_values(evidence)) {
+    diagnosis.findings.push_back(std::move(*finding));
+    return diagnosis;
+  }
   // A map that is exact goes before coefficients that are not.
   auto coefficients = find_coefficients(evidence, sample);
   if (!evidence.momenta && !(coefficients && coefficients->exact))
