@@ -8,6 +8,8 @@
 
 #include "schemes/diagnosis/findings.hpp"
 #include "schemes/diagnosis/least_squares.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 namespace {
@@ -26,11 +28,27 @@ std::string list(const std::array<double, 3>& w) {
   return fmt::format("{}, {}, {}", number(w[0]), number(w[1]), number(w[2]));
 }
 
+/// Of a linear force three rows make φ_tt itself, N′(φ₊ − 2φ + φ₋) = N′(1) h² φ_tt, whatever the rows are: it is taken at one
+/// of them.
+std::optional<LeastSquares> with_one_force(const Eigen::VectorXd& time, const std::vector<Eigen::VectorXd>& columns,
+                                           double allowed) {
+  for (const std::size_t at : {4u, 3u, 5u}) {
+    std::vector<Eigen::VectorXd> some = columns;
+    for (const std::size_t other : {3u, 4u, 5u})
+      if (other != at) some[other].setZero();
+    if (LeastSquares fit = least_squares(time, some); fit.remains <= allowed) return fit;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 // (φ_{j+1} − 2φ_j + φ_{j−1})/h² = Σ_r a_r D²φ_{j+r} + b_r N′(φ_{j+r}),  r = −1, 0, 1, of every scheme's D² and N′
 std::optional<Finding> find_time_weights(const Evidence& evidence, const Sample& sample) {
   if (!can_be_split(evidence.problem) || evidence.rows < 9) return std::nullopt;
+  const Problem given = completed(evidence.problem);
+  const bool linear =
+      make_theory(find_theory(given.theory), given.parameters)->density().nonlinearity() == Nonlinearity::none;
   for (const NamedScheme& scheme : sample.schemes()) {
     const auto at = sample.split(scheme.problem), before = sample.split(scheme.problem, -1),
                after = sample.split(scheme.problem, 1);
@@ -46,11 +64,12 @@ std::optional<Finding> find_time_weights(const Evidence& evidence, const Sample&
     const double allowed = 10 * evidence.tolerance * at->scale;
     // A matter of coefficients, or of nothing at all.
     if (least_squares(at->time, {columns[1], columns[4]}).remains <= allowed) return std::nullopt;
-    const LeastSquares fit = least_squares(at->time, columns);
-    if (!(fit.remains <= allowed)) continue;
+    const auto fit =
+        linear ? with_one_force(at->time, columns, allowed) : std::optional(least_squares(at->time, columns));
+    if (!fit || !(fit->remains <= allowed)) continue;
     Weights w;
-    std::copy_n(fit.coefficients.begin(), 3, w.space.begin());
-    std::copy_n(fit.coefficients.begin() + 3, 3, w.force.begin());
+    std::copy_n(fit->coefficients.begin(), 3, w.space.begin());
+    std::copy_n(fit->coefficients.begin() + 3, 3, w.force.begin());
     const bool field = w.space != std::array<double, 3>{}, source = w.force != std::array<double, 3>{};
     const auto all_are = [&](double b, double a, double c) {
       return (!field || are(w.space, b, a, c)) && (!source || are(w.force, b, a, c));

@@ -199,6 +199,10 @@ TEST_CASE("a diagnosis says which coefficient, step or length is wrong") {
             "wave speed"},
            {"half the length, values of 1e200", with(huge, huge_scene), "lattice.length = 40", "time step"},
            {"another theory", with(leapfrog(), scene("phi4")), "No time step, length or coefficient", "friction 0"},
+           {"a linear theory", with(leapfrog(), scene("klein-gordon")), "No time step, length or coefficient",
+            "average"},
+           {"no force in the scene", with(leapfrog(), scene("wave")), "No time step, length or coefficient",
+            "friction"},
        })
     check(c);
 }
