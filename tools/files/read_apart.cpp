@@ -28,7 +28,7 @@ bool has_checksums(const std::filesystem::path& path) {
 constexpr int in_order = 40;
 
 [[noreturn]] void child(const std::function<void()>& read, std::uintmax_t bytes) {
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL, SIGALRM, SIGXCPU}) std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL, SIGALRM, SIGPROF, SIGXCPU}) std::signal(signal, SIG_DFL);
   const rlim_t seconds = 2 + bytes / 50'000'000;
   const rlimit none{0, 0}, most{seconds, seconds + 1};
   setrlimit(RLIMIT_CORE, &none);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
+#include <cstddef>
+
 #include "tools/files/hdf5_handle.hpp"
 
 namespace delf {
@@ -9,7 +12,10 @@ namespace delf {
 inline bool was_written(hid_t dataset) {
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose),
       properties(H5Dget_create_plist(dataset), H5Pclose);
-  double least = static_cast<double>(H5Sget_simple_extent_npoints(space)) * static_cast<double>(H5Tget_size(type));
+  std::array<hsize_t, H5S_MAX_RANK> extents{};
+  const int rank = H5Sget_simple_extent_dims(space, extents.data(), nullptr);
+  double least = static_cast<double>(H5Tget_size(type));  // HDF5 counts the values as an integer, which may overflow
+  for (int axis = 0; axis < rank; ++axis) least *= static_cast<double>(extents[static_cast<std::size_t>(axis)]);
   const int filters = H5Pget_nfilters(properties);
   for (int n = 0; n < filters; ++n) {
     unsigned flags = 0;
