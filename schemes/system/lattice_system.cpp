@@ -139,7 +139,7 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
     };
     // One random value for each unknown near the site, the same for all stencils that contain it.
     std::map<std::tuple<Site, int>, std::array<double, 3>> field;
-    std::map<const StencilFamily*, std::optional<ConstantPart>> constant;
+    std::map<const StencilFamily*, std::optional<ConstantPart>> constant_parts;
     for (const Touch& touch : touching(lattice, site, component)) {
       const int size = touch.family->size();
       std::vector<double> y(static_cast<std::size_t>(size)), J(y.size());
@@ -153,7 +153,7 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
         return std::tuple{touch.anchor + Site{vertex.time, vertex.space},
                           touch.family->values()[static_cast<std::size_t>(m)].component};
       };
-      const auto [part, first] = constant.try_emplace(touch.family);
+      const auto [part, first] = constant_parts.try_emplace(touch.family);
       if (first) part->second = touch.family->constant_part(cell);
       if (part->second)
         for (int m = 0; m < size; ++m)

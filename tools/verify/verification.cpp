@@ -209,12 +209,13 @@ bool Verification::scheme_has(const LinearSymmetry& symmetry) const {
 std::vector<LinearSymmetry> Verification::symmetries() {
   std::vector<LinearSymmetry> all = simulation_.symmetries();
   if (const auto* density = dynamic_cast<const SymbolicDensity*>(&simulation_.theory().density()))
-    for (const LinearSymmetry& symmetry : density->up_to_divergence())
+    for (const LinearSymmetry& symmetry : density->up_to_divergence()) {
       if (scheme_has(symmetry)) all.push_back(symmetry);
       else
         leave_out(
             fmt::format("Noether, {}: the density has it up to a divergence, and the Lagrangian of the scheme has not",
                         symmetry.name));
+    }
   add_generator(scene_, request_, system_, all);
   if (!is_variational(system_)) all.clear();
   return all;
