@@ -76,7 +76,7 @@ void FieldsReader::open(const std::filesystem::path& path) {
   file_ = open_to_read(path);
   if (!file_) throw bad_file("is not an HDF5 file that can be read; name the fields.h5 of a run");
   time_ = open_dataset(file_, "time");
-  if (time_ && !was_written(time_)) throw bad_file("/time was never written; write the time of each frame there");
+  if (time_ && !was_written(time_, true)) throw bad_file("/time was never written; write the time of each frame there");
   momentum_ = open_dataset(file_, "momentum");
   for (const Role role : all_roles) {
     const bool needed = role == Role::field;
@@ -88,7 +88,7 @@ void FieldsReader::open(const std::filesystem::path& path) {
       throw bad_file(
           fmt::format("/field is {} x {} x {}; name the fields.h5 of a run", (*extent)[0], (*extent)[1], (*extent)[2]));
     if (!extent || !fits(*extent)) continue;
-    if (!was_written(dataset))
+    if (!was_written(dataset, true))
       throw bad_file(fmt::format("/{} is {} x {} x {}, and not all of that was ever written; write it whole",
                                  to_string(role), (*extent)[0], (*extent)[1], (*extent)[2]));
     parts_[static_cast<std::size_t>(role)] = {
@@ -111,6 +111,8 @@ std::vector<double> FieldsReader::values(Role role, int frame) const {
   std::vector<double> values(static_cast<std::size_t>(shape.sites) * static_cast<std::size_t>(shape.components));
   const std::array<hsize_t, 3> offset{static_cast<hsize_t>(frame), 0, 0},
       count{1, static_cast<hsize_t>(shape.sites), static_cast<hsize_t>(shape.components)};
+  if (!frame_was_written(dataset, offset[0]))
+    throw bad_file(fmt::format("frame {} of /{} was never written; take an earlier frame", frame, to_string(role)));
   if (!read_slice(dataset, 3, offset.data(), count.data(), values.data()))
     throw bad_file(fmt::format("frame {} cannot be read; the file is damaged", frame));
   return values;
