@@ -22,6 +22,12 @@ struct Limits {
 
 using ParameterValue = std::variant<double, int, std::string>;
 
+/// Values of another key, in whose presence a key has no effect.
+struct Without {
+  std::string key;
+  std::vector<std::string> values;
+};
+
 /// A key of a scene that a theory, a method or a state declares.
 struct Parameter {
   std::string key;                        ///< "scheme.alpha"
@@ -31,6 +37,7 @@ struct Parameter {
   Limits range = {};                      ///< of a number
   std::vector<std::string> choices = {};  ///< of a string; empty: any text
   std::string otherwise = {};             ///< if not empty, there is no fallback, and this says what holds: "L/2"
+  std::vector<Without> without = {};      ///< who gives it all the same is warned
 };
 
 /// Values of parameters by their keys: values["scheme.alpha"] = 2.5; values.get<double>("scheme.alpha").

@@ -56,6 +56,7 @@ struct Monitor {
   const char* when_it_grows = nullptr;
   /// Of the recorded rows, summary.json has the least value; false: the largest.
   bool least = false;
+  const char* when_above_1 = nullptr;  ///< a run warns by these words if the value passes 1; null: never
 };
 
 /// What fields.h5 has of every recorded row beside the components, frames × sites × values: declared, as data, by a

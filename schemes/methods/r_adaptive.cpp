@@ -244,15 +244,18 @@ const MethodEntry r_adaptive_method{
                    {.key = "mesh.monitor",
                     .fallback = "arclength",
                     .help = "what all cells have the same of: arclength, saturated, uniform, or a density as a formula "
-                            "of phi and phi_X"},
+                            "of phi and phi_X",
+                    .without = {{"scheme.strategy", {"uniform"}}}},
                    {.key = "mesh.alpha",
                     .fallback = 1.0,
                     .help = "how much the mesh follows the field; 0: not at all",
-                    .range = {.low = 0}},
+                    .range = {.low = 0},
+                    .without = {{"scheme.strategy", {"uniform"}}, {"mesh.monitor", {"uniform"}}}},
                    {.key = "mesh.beta",
                     .fallback = 0.1,
                     .help = "saturated: cells stay above beta/alpha of the arclength in one",
-                    .range = {.low = 0, .open = true}},
+                    .range = {.low = 0, .open = true},
+                    .without = {{"scheme.strategy", {"uniform"}}, {"mesh.monitor", {"arclength", "uniform"}}}},
                    {.key = "mesh.delay",
                     .fallback = 0.0,
                     .help = "the mesh follows the monitor as tau X_t = G, smoother in time; control with midpoint or "
@@ -268,7 +271,11 @@ const MethodEntry r_adaptive_method{
     .energy = energy,
     .monitors = {{.name = "mesh_min_spacing", .value = narrowest_cell, .least = true},
                  {.name = "mesh_margin", .value = mesh_margin, .least = true},
-                 {.name = "step_over_limit", .value = step_over_limit},
+                 {.name = "step_over_limit",
+                  .value = step_over_limit,
+                  .when_above_1 = "the step is beyond what linear theory allows on the narrowest cell; reduce "
+                                  "lattice.time_step or mesh.alpha, or let scheme.strategy = control and scheme.time = "
+                                  "gauss2 have no such limit"},
                  {.name = "multiplier_max", .value = largest_multiplier}},
     .place_sites = place_sites};
 

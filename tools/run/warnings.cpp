@@ -232,12 +232,15 @@ Warnings::Found Warnings::pinned(const Outcome& outcome, std::span<const double>
       now < 0 ? now + lattice.length() : now, *late_time_, wanted, finer());
 }
 
-/// A monitor that ends a hundred times above all that it is in the first tenth of the run.
+/// A monitor that passes a limit of 1; and one that ends a hundred times above all that it is in the first tenth of the run.
 std::vector<std::string> Warnings::grown() const {
   std::vector<std::string> all;
   const std::vector<Monitor>& monitors = find_method(scene_.problem.method).monitors;
   for (std::size_t m = 0; m < std::min(monitors.size(), growth_.size()); ++m) {
     const Growth& g = growth_[m];
+    if (const double most = std::max(g.early, g.later); monitors[m].when_above_1 && most > 1)
+      all.push_back(fmt::format("{} is {:.3g} at t = {:.4g}, and should stay below 1: {}", monitors[m].name, most,
+                                g.later > g.early ? g.later_time : g.early_time, monitors[m].when_above_1));
     if (!monitors[m].when_it_grows || !(g.early > 0) || !(g.later > 100 * g.early)) continue;
     all.push_back(fmt::format("{} grows from {:.2g} at t = {:.4g} to {:.2g} at t = {:.4g}, like exp({:.3g} t): {}",
                               monitors[m].name, g.early, g.early_time, g.later, g.later_time,

@@ -157,6 +157,29 @@ std::int64_t read_steps(const Settings& settings, const Values& values, double t
   return static_cast<std::int64_t>(steps);
 }
 
+// Beside a value of another key that does not read it.
+std::string why_not_beside(const Scene& scene, const Parameter& parameter) {
+  for (const auto& [key, values] : parameter.without) {
+    const auto value = scene.problem.parameters.maybe<std::string>(key);
+    if (value && std::ranges::find(values, *value) != values.end())
+      return fmt::format("with {} = {} it has no effect", key, *value);
+  }
+  return {};
+}
+
+// A file may serve many schemes: a key of it is no mistake where the command line chooses what does not read it.
+bool is_for_others(const Scene& scene, const Setting& given) {
+  if (given.line == 0) return false;
+  const auto on_command_line = [&](const Without& other) {
+    const Setting* chosen = scene.settings.find(other.key);
+    return chosen && chosen->line == 0;
+  };
+  for (const Declaration& declaration : declarations())
+    for (const Parameter& parameter : declaration.parameters)
+      if (parameter.key == given.key && std::ranges::any_of(parameter.without, on_command_line)) return true;
+  return false;
+}
+
 // For a key that theories, methods or states declare; empty where the scene's own does, and for other keys.
 std::string why_not_read(const Scene& scene, std::string_view key) {
   std::optional<DeclaredBy> kind;
@@ -167,7 +190,8 @@ std::string why_not_read(const Scene& scene, std::string_view key) {
   }
   for (const Declaration& declaration : declarations()) {
     if (std::ranges::find(declaration.parameters, key, &Parameter::key) == declaration.parameters.end()) continue;
-    if (chosen(scene, declaration.kind) == declaration.name) return {};
+    if (chosen(scene, declaration.kind) == declaration.name)
+      return why_not_beside(scene, *std::ranges::find(declaration.parameters, key, &Parameter::key));
     kind = kind.value_or(declaration.kind);
   }
   if (kind == DeclaredBy::theory) return fmt::format("the theory {} does not read it", scene.problem.theory);
@@ -236,7 +260,8 @@ Scene read_scene(Settings given) {
   };
   for (const Key& key : settings.all_keys())
     if (const Setting* s = settings.find(key.name))
-      if (const std::string why = why_without_effect(scene, key.name); !why.empty()) warn(*s, why);
+      if (const std::string why = why_without_effect(scene, key.name); !why.empty() && !is_for_others(scene, *s))
+        warn(*s, why);
   // A scene serves many methods, and may have the stencil of one; what is asked for beside it is meant.
   if (const Setting* s = settings.find("lattice.stencil");
       s && s->line == 0 && !find_method(scene.problem.method).reads_stencil)

@@ -102,6 +102,7 @@ TEST_CASE("a mesh that crosses itself ends with exit code 3, and the last mesh i
   CHECK(summary["break_time"].get<double>() == Approx(0.05 * (summary["steps"].get<double>() + 1)));
   CHECK(summary["mesh_min_spacing"] > 0);
   CHECK(summary["step_over_limit"] > 1);  // 0.577 of the narrowest cell
+  CHECK(contains(summary["warnings"].dump(), "and should stay below 1"));
   const FieldsReader fields(folder / "out/fields.h5");
   const auto last = fields.row(fields.frames() - 1);  // phi, X site by site
   for (std::size_t n = 1; n + 2 < last.size(); n += 2) CHECK(last[n] < last[n + 2]);

@@ -94,6 +94,17 @@ TEST_CASE("keys that have no effect are warned of, with their line, and stop not
   CHECK(scene_of(folder, small_scene("[theory]\nmass = 2\n[initial]\nspeed = 0.1\n")).warnings.empty());
 }
 
+TEST_CASE("a key that another key's value leaves without effect is warned of, unless the scene meant it for others") {
+  const Folder folder;
+  const std::string scene = small_scene("[lattice]\nanalyticity = 2\n[scheme]\nmethod = processed\n");
+  const auto warnings = scene_of(folder, scene).warnings;
+  REQUIRE(warnings.size() == 1);
+  CHECK(contains(warnings.front(), "lattice.analyticity = 2: warning: with lattice.pairs = maximal it has no effect"));
+  CHECK(scene_of(folder, scene, {{"lattice.pairs", "suited"}}).warnings.empty());
+  CHECK(scene_of(folder, scene, {{"lattice.pairs", "maximal"}}).warnings.empty());
+  CHECK(scene_of(folder, scene, {{"lattice.pairs", "suited"}, {"lattice.gradient_order", "2"}}).warnings.size() == 1);
+}
+
 TEST_CASE("keys of verify are read, and mean nothing to a run") {
   const Folder folder;
   const Scene scene = scene_of(
