@@ -5,19 +5,17 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <nlohmann/json.hpp>
 
 #include "schemes/complex/asynchronous.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_figures.hpp"
 #include "tools/complex/mesh_files.hpp"
+#include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/files/folder_lock.hpp"
 #include "tools/files/series_file.hpp"
 #include "tools/run/earlier_run.hpp"
-#include "tools/run/in_words.hpp"
 #include "tools/run/interrupt.hpp"
-#include "tools/run/outcome.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/seconds_since.hpp"
 #include "tools/scene/text_file.hpp"
@@ -27,95 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-double area_of(const CellSpace& space) {
-  double area = 0;
-  for (const double A : space.masses) area += A;
-  return area;
-}
-
-/// summary.json, with the names of any other run; what a mesh does not have is null.
-std::string summary(const ComplexScene& c, const Outcome& o, std::int64_t updates) {
-  const Scene& scene = c.scene;
-  nlohmann::ordered_json json;
-  const auto null = nlohmann::ordered_json();
-  const auto of_mesh = [&](const auto& number) { return c.space ? nlohmann::ordered_json(number(*c.space)) : null; };
-  json["version"] = DELF_VERSION;
-  json["scene"] = scene.name;
-  json["status"] = o.status;
-  json["failure"] = o.failure.empty() ? null : nlohmann::ordered_json(o.failure);
-  json["theory"] = scene.problem.theory;
-  json["fibre"] = "R";
-  json["stencil"] = c.mesh_in_words();
-  json["method"] = c.time == MeshTime::cells   ? "asynchronous"
-                   : c.time == MeshTime::none  ? "elliptic"
-                   : c.time == MeshTime::sites ? "complex"
-                                               : scene.problem.method;
-  json["space"] = "complex";
-  json["length"] = of_mesh(area_of);
-  json["sites"] = c.sites();
-  json["cells"] = c.cells();
-  json["space_step"] = of_mesh([](const CellSpace& space) { return shortest_edge(space.mesh); });
-  json["time_step"] = c.is_one_problem() ? null : nlohmann::ordered_json(scene.problem.time_step);
-  json["state"] = o.state;
-  json["seed"] = scene.initial.seed;
-  json["steps"] = o.steps;
-  json["time"] = o.time;
-  json["records"] = o.records;
-  json["seconds"] = o.seconds;
-  json["ns_per_site_step"] = o.ns_per_site_step(c.sites());
-  if (c.time == MeshTime::cells) {
-    json["updates"] = updates;
-    json["ns_per_update"] = 1e9 * o.seconds / static_cast<double>(updates);
-  }
-  json["solve"] = o.solve;
-  json["solve_kind"] = o.solve_kind;
-  json["bytes"] = o.bytes;
-  json["iterations_mean"] = o.iterations_mean;
-  json["iterations_max"] = o.iterations_max;
-  json["residual_max"] = o.residual_max;
-  json["energy_initial"] = o.energy_initial;
-  json["energy_final"] = o.energy_final;
-  json["energy_error_max"] = o.energy_error_max;
-  json["error_linf"] = o.error_linf;
-  json["error_l2"] = o.error_l2;
-  json["warnings"] = scene.warnings;
-  for (const std::string& warning : o.warnings) json["warnings"].push_back(warning);
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
-std::string report(const ComplexScene& c, const Outcome& o, std::int64_t updates) {
-  std::string text = fmt::format("{}: {} on {} {}, {}\n", c.scene.name, c.scene.problem.theory, c.sites(),
-                                 c.stencils ? "sites" : "points", c.mesh_in_words());
-  const auto line = [&](const char* name, const std::string& what) {
-    text += fmt::format("  {:<10} {}\n", name, what);
-  };
-  line("state", o.state);
-  line("solve", o.solve);
-  if (!c.is_one_problem()) line("steps", fmt::format("{} to t = {:.6g}", o.steps, o.time));
-  if (o.steps_taken > 0)
-    line("speed", fmt::format("{} for the steps, {}", duration_in_words(o.seconds),
-                              cost_in_words(o.ns_per_site_step(c.sites()))));
-  if (updates > 0)
-    line("speed", fmt::format("{} for {} updates of cells, {:.4g} ns an update", duration_in_words(o.seconds), updates,
-                              1e9 * o.seconds / static_cast<double>(updates)));
-  if (o.iterations_max > 1)
-    line("iterations", fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max));
-  line("residual", std::isfinite(o.residual_max)
-                       ? fmt::format("{:.2g} at most, relative to the terms of the equations", o.residual_max)
-                       : "not measured; `delf verify` does");
-  if (!c.stencils)
-    line("energy", fmt::format("{:.10g}{}", o.energy_final,
-                               std::isfinite(o.energy_error_max)
-                                   ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
-                                   : ""));
-  if (std::isfinite(o.error_linf))
-    line("error",
-         fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));
-  for (const std::string& warning : o.warnings) line("warning", warning);
-  line("status", o.status);
-  return text;
-}
 
 /// The largest error, and √(Σ A_i e_i²); of sites without masses √(Σ e²/sites).
 void measure_error(const ComplexScene& c, std::span<const double> values, double t, Outcome& o) {
@@ -232,7 +141,7 @@ void run_rows(const ComplexScene& c, MeshRecorder& recorder, Outcome& o) {
   measure_error(c, c.scene.steps == 0 ? std::span<const double>(start) : evolution.row(), o.time, o);
 }
 
-void run_cells(const ComplexScene& c, MeshRecorder& recorder, Outcome& o, std::int64_t& updates) {
+void run_cells(const ComplexScene& c, MeshRecorder& recorder, MeshOutcome& o) {
   AsynchronousEvolution evolution(*c.space, cell_steps(c));
   o.solve = "each cell by its own step, in the order of a priority queue (explicit)";
   o.solve_kind = "explicit";
@@ -252,7 +161,7 @@ void run_cells(const ComplexScene& c, MeshRecorder& recorder, Outcome& o, std::i
     o.time = static_cast<double>(o.steps) * h;
     evolution.advance(o.time);
     o.seconds += seconds_since(begin);
-    updates = evolution.updates();
+    o.updates = evolution.updates();
     progress.at(o.steps);
     record();
   }
@@ -284,14 +193,13 @@ ExitCode run(const ComplexScene& c, const fs::path& folder) {
   const FolderLock lock(folder);
   remove_earlier_run(folder);
   write_text_file(folder / "scene.ini", resolved_text(c));
-  Outcome o;
+  MeshOutcome o;
   o.state = c.state_in_words();
   MeshRecorder recorder(c, folder, c.scene.every > 0 ? c.scene.steps / c.scene.every + 2 : 1, o);
   std::exception_ptr failure;
-  std::int64_t updates = 0;
   try {
     if (c.is_one_problem()) run_static(c, recorder, o);
-    else if (c.time == MeshTime::cells) run_cells(c, recorder, o, updates);
+    else if (c.time == MeshTime::cells) run_cells(c, recorder, o);
     else run_rows(c, recorder, o);
   } catch (const NumericalFailure& error) {
     o.status = status_of(error), o.failure = error.what();
@@ -306,96 +214,14 @@ ExitCode run(const ComplexScene& c, const fs::path& folder) {
         "the energy is off by {:.3g} of itself: these steps are too long, or the mesh too "
         "coarse; reduce {}",
         o.energy_error_max, c.scene.settings.find("lattice.courant") ? "lattice.courant" : "lattice.time_step"));
-  write_text_file(folder / "summary.json", summary(c, o, updates));
+  write_text_file(folder / "summary.json", summary_json(c, o));
   const std::string missing = c.scene.figures ? drawn(c, recorder.film(), folder) : std::string();
-  fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}{}\n", report(c, o, updates), "files", folder.string(),
+  fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}{}\n", report(c, o), "files", folder.string(),
              c.scene.fields ? has_xdmf(c) ? " fields.h5 fields.xdmf" : " fields.h5" : "",
              c.scene.figures && missing.empty() ? " figures" : "");
   if (!missing.empty()) std::fputs(fmt::format("delf: no figures: {}\n", missing).c_str(), stderr);
   if (failure) std::rethrow_exception(failure);
   return o.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
-}
-
-namespace {
-
-/// Of a finite complex.
-ExitCode plan_sites(const ComplexScene& c) {
-  try {
-    const StaticField field(c);
-    fmt::print("{}: {}, {} sites, {}\n", c.scene.name, c.scene.problem.theory, c.sites(), c.mesh_in_words());
-    fmt::print("  state      {}\n", c.state_in_words());
-    const ComplexPlan& plan = field.solver().plan();
-    const std::size_t bytes = field.system().bytes();
-    fmt::print("  stencils   {} in {} families: of one shape, and coupled alike\n", c.cells(),
-               field.system().families());
-    fmt::print("  solve      {}\n", plan.describe());
-    fmt::print("             level by level, each by {}\n",
-               field.solver().is_direct() ? plan.largest == 1 ? "divisions: explicit" : "one sparse factorisation"
-                                          : "Newton steps with a sparse matrix and a line search");
-    fmt::print("  memory     {} bytes: the field {} B, sites and stencils {} B\n", bytes + 8 * field.values().size(),
-               8 * field.values().size(), bytes);
-  } catch (const BadInput& bad) {
-    throw c.scene.settings.located(bad);
-  }
-  fmt::print("  left out   energies, symbol, lattice norms: not applicable to a finite complex\n");
-  return ExitCode::done;
-}
-
-}  // namespace
-
-ExitCode plan(const ComplexScene& c) {
-  if (c.stencils) return plan_sites(c);
-  const CellSpace& space = *c.space;
-  const double area = area_of(space);
-  fmt::print("{}: {}, {} points, {}\n", c.scene.name, c.scene.problem.theory, space.sites(), c.mesh_in_words());
-  fmt::print("  state      {}\n", c.state_in_words());
-  fmt::print("  mesh       {} {:.6g}, shortest edge {:.6g}, {} boundary points{}\n",
-             space.mesh.dimension == 1 ? "length" : "area", area, shortest_edge(space.mesh),
-             boundary_points(space.mesh).size(),
-             boundary_points(space.mesh).empty()      ? ""
-             : std::ranges::count(space.fixed, 1) > 0 ? ", fixed"
-                                                      : ", natural");
-  const std::size_t values = 8 * static_cast<std::size_t>(space.sites()) * c.fields.size();
-  const auto say_memory = [](std::size_t bytes, std::size_t rows) {
-    fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes, rows,
-               bytes - rows);
-  };
-  try {
-    if (c.time == MeshTime::none) {
-      const StaticField field(c);
-      fmt::print("  stencils   {} of sites and cells\n  solve      {}: sparse Newton steps with a line search\n",
-                 field.system().complex().stencils(), field.solver().plan().describe());
-      say_memory(field.system().bytes(), values);
-    } else if (c.time == MeshTime::cells) {
-      const std::vector<double> steps = cell_steps(c);
-      const auto [least, largest] = std::ranges::minmax(steps);
-      double updates = 0;
-      for (const double h : steps) updates += static_cast<double>(c.scene.steps) * c.scene.problem.time_step / h;
-      fmt::print(
-          "  steps      each cell by its own, {:.6g} to {:.6g}: {:.6g} updates, and {:.6g} with the least for all\n",
-          least, largest, updates, static_cast<double>(c.scene.steps) * static_cast<double>(steps.size()));
-      fmt::print("  solve      explicit, in the order of a priority queue\n");
-      say_memory(AsynchronousEvolution(space, steps).bytes(), 2 * values);
-    } else {
-      const SpaceEvolution evolution(space, c.time_step(0));
-      fmt::print("  steps      {} of {}\n", c.scene.steps,
-                 c.time_steps.empty() ? fmt::format("h = {:.6g}", c.scene.problem.time_step)
-                                      : fmt::format("{} lengths in turn", c.time_steps.size()));
-      fmt::print("  stencils   a row has {} of motion, {} of sites, {} of cells\n", space.sites(), space.sites(),
-                 space.mesh.cells());
-      fmt::print("  solve      {}{}\n", evolution.plan().describe(),
-                 evolution.is_direct() ? ": explicit, one sparse product a row" : ": Newton steps");
-      if (const auto most = evolution.largest_step())
-        fmt::print("  stable     h below {:.6g}, by linear theory about 0\n", *most);
-      say_memory(evolution.bytes(), 3 * values);
-    }
-  } catch (const BadInput& bad) {
-    throw c.scene.settings.located(bad);
-  }
-  fmt::print(
-      "  left out   symbol, strips, lattice norms: not applicable to a mesh; errors are sums over sites with their "
-      "masses\n");
-  return ExitCode::done;
 }
 
 }  // namespace delf

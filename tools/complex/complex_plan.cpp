@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "schemes/complex/asynchronous.hpp"
+#include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_summary.hpp"
+#include "tools/complex/static_field.hpp"
+
+namespace delf {
+namespace {
+
+/// Of a finite complex.
+ExitCode plan_sites(const ComplexScene& c) {
+  try {
+    const StaticField field(c);
+    fmt::print("{}: {}, {} sites, {}\n", c.scene.name, c.scene.problem.theory, c.sites(), c.mesh_in_words());
+    fmt::print("  state      {}\n", c.state_in_words());
+    const ComplexPlan& plan = field.solver().plan();
+    const std::size_t bytes = field.system().bytes();
+    fmt::print("  stencils   {} in {} families: of one shape, and coupled alike\n", c.cells(),
+               field.system().families());
+    fmt::print("  solve      {}\n", plan.describe());
+    fmt::print("             level by level, each by {}\n",
+               field.solver().is_direct() ? plan.largest == 1 ? "divisions: explicit" : "one sparse factorisation"
+                                          : "Newton steps with a sparse matrix and a line search");
+    fmt::print("  memory     {} bytes: the field {} B, sites and stencils {} B\n", bytes + 8 * field.values().size(),
+               8 * field.values().size(), bytes);
+  } catch (const BadInput& bad) {
+    throw c.scene.settings.located(bad);
+  }
+  fmt::print("  left out   energies, symbol, lattice norms: not applicable to a finite complex\n");
+  return ExitCode::done;
+}
+
+}  // namespace
+
+ExitCode plan(const ComplexScene& c) {
+  if (c.stencils) return plan_sites(c);
+  const CellSpace& space = *c.space;
+  const double area = area_of(space);
+  fmt::print("{}: {}, {} points, {}\n", c.scene.name, c.scene.problem.theory, space.sites(), c.mesh_in_words());
+  fmt::print("  state      {}\n", c.state_in_words());
+  fmt::print("  mesh       {} {:.6g}, shortest edge {:.6g}, {} boundary points{}\n",
+             space.mesh.dimension == 1 ? "length" : "area", area, shortest_edge(space.mesh),
+             boundary_points(space.mesh).size(),
+             boundary_points(space.mesh).empty()      ? ""
+             : std::ranges::count(space.fixed, 1) > 0 ? ", fixed"
+                                                      : ", natural");
+  const std::size_t values = 8 * static_cast<std::size_t>(space.sites()) * c.fields.size();
+  const auto say_memory = [](std::size_t bytes, std::size_t rows) {
+    fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes, rows,
+               bytes - rows);
+  };
+  try {
+    if (c.time == MeshTime::none) {
+      const StaticField field(c);
+      fmt::print("  stencils   {} of sites and cells\n  solve      {}: sparse Newton steps with a line search\n",
+                 field.system().complex().stencils(), field.solver().plan().describe());
+      say_memory(field.system().bytes(), values);
+    } else if (c.time == MeshTime::cells) {
+      const std::vector<double> steps = cell_steps(c);
+      const auto [least, largest] = std::ranges::minmax(steps);
+      double updates = 0;
+      for (const double h : steps) updates += static_cast<double>(c.scene.steps) * c.scene.problem.time_step / h;
+      fmt::print(
+          "  steps      each cell by its own, {:.6g} to {:.6g}: {:.6g} updates, and {:.6g} with the least for all\n",
+          least, largest, updates, static_cast<double>(c.scene.steps) * static_cast<double>(steps.size()));
+      fmt::print("  solve      explicit, in the order of a priority queue\n");
+      say_memory(AsynchronousEvolution(space, steps).bytes(), 2 * values);
+    } else {
+      const SpaceEvolution evolution(space, c.time_step(0));
+      fmt::print("  steps      {} of {}\n", c.scene.steps,
+                 c.time_steps.empty() ? fmt::format("h = {:.6g}", c.scene.problem.time_step)
+                                      : fmt::format("{} lengths in turn", c.time_steps.size()));
+      fmt::print("  stencils   a row has {} of motion, {} of sites, {} of cells\n", space.sites(), space.sites(),
+                 space.mesh.cells());
+      fmt::print("  solve      {}{}\n", evolution.plan().describe(),
+                 evolution.is_direct() ? ": explicit, one sparse product a row" : ": Newton steps");
+      if (const auto most = evolution.largest_step())
+        fmt::print("  stable     h below {:.6g}, by linear theory about 0\n", *most);
+      say_memory(evolution.bytes(), 3 * values);
+    }
+  } catch (const BadInput& bad) {
+    throw c.scene.settings.located(bad);
+  }
+  fmt::print(
+      "  left out   symbol, strips, lattice norms: not applicable to a mesh; errors are sums over sites with their "
+      "masses\n");
+  return ExitCode::done;
+}
+
+}  // namespace delf

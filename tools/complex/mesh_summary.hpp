@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "tools/complex/complex_scene.hpp"
+#include "tools/run/outcome.hpp"
+
+namespace delf {
+
+/// The result of a run on a mesh.
+struct MeshOutcome : Outcome {
+  std::int64_t updates = 0;  ///< of asynchronous cells
+};
+
+/// summary.json, with the names of any other run; what a mesh does not have is null.
+std::string summary_json(const ComplexScene&, const MeshOutcome&);
+/// The same for people.
+std::string report(const ComplexScene&, const MeshOutcome&);
+
+/// Σ_i A_i.
+double area_of(const CellSpace&);
+
+}  // namespace delf
