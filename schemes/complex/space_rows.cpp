@@ -137,16 +137,18 @@ void SpaceEvolution::take(double below, double above, double row_measure) {
   if (!std::isfinite(y_[2 * n])) throw NotFinite("the field is not finite; use a shorter time step");
 }
 
-void SpaceEvolution::start(std::span<const double> values, std::span<const double> rates) {
+void SpaceEvolution::start(std::span<const double> values, std::span<const double> rates,
+                           std::optional<double> time_step) {
   const std::size_t n = y_.size() / 3;
+  const double h = time_step.value_or(h_);
   for (std::size_t i = 0; i < n; ++i) {
-    y_[n + i] = values[i] - h_ * rates[i];  // so that the motion below row 0 is the rate; the rows move down in take()
+    y_[n + i] = values[i] - h * rates[i];  // so that the motion below row 0 is the rate; the rows move down in take()
     y_[2 * n + i] = values[i];
   }
   for (std::size_t i = 0; i < n; ++i)
     if (space_.fixed[i / at(space_.density->components())]) y_[n + i] = values[i];
-  take(h_, h_, 0.5 * h_);
-  newest_ = 1, time_ = h_, before_ = h_;
+  take(h, h, 0.5 * h);
+  newest_ = 1, time_ = h, before_ = h;
 }
 
 void SpaceEvolution::step(std::optional<double> time_step) {

@@ -65,7 +65,9 @@ class SpaceEvolution {
   SpaceEvolution(const CellSpace&, double time_step, ComplexSolver::Options = {});
 
   /// Row 0 and its rate, by the discrete Legendre transform: ∂T/∂φ_t(φ_t) A = A ∂T/∂φ_t((y¹ − y⁰)/h) − ½h ∂V/∂y⁰.
-  void start(std::span<const double> values, std::span<const double> rates);
+  /// The first step may have a length of its own, as any other.
+  void start(std::span<const double> values, std::span<const double> rates,
+             std::optional<double> time_step = std::nullopt);
   /// One step, of another length if it is given.
   void step(std::optional<double> time_step = std::nullopt);
 
@@ -75,6 +77,8 @@ class SpaceEvolution {
   std::int64_t newest() const { return newest_; }
   double time() const { return time_; }
   double time_step() const { return h_; }
+  /// Between the last two rows.
+  double last_step() const { return before_; }
   /// The newest row, or the one `back` rows before: 0 or 1.
   std::span<const double> row(int back = 0) const;
   const ComplexPlan& plan() const { return solver_->plan(); }

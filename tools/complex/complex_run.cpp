@@ -11,6 +11,7 @@
 #include "tools/complex/mesh_figures.hpp"
 #include "tools/complex/mesh_files.hpp"
 #include "tools/complex/mesh_summary.hpp"
+#include "tools/complex/row_steps.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/files/folder_lock.hpp"
 #include "tools/files/series_file.hpp"
@@ -96,7 +97,7 @@ void run_static(const ComplexScene& c, MeshRecorder& recorder, Outcome& o) {
   measure_error(c, field.values(), 0, o);
 }
 
-void run_rows(const ComplexScene& c, MeshRecorder& recorder, Outcome& o) {
+void run_rows(const ComplexScene& c, MeshRecorder& recorder, MeshOutcome& o) {
   SpaceEvolution evolution(*c.space, c.time_step(0), {c.scene.problem.tolerance, c.scene.problem.max_iterations});
   o.solve = evolution.plan().describe() + (evolution.is_direct() ? " (explicit)" : "");
   o.solve_kind = evolution.is_direct() ? "explicit" : "sparse";
@@ -105,38 +106,44 @@ void run_rows(const ComplexScene& c, MeshRecorder& recorder, Outcome& o) {
     o.warnings.push_back(fmt::format("waves on this mesh grow at h = {:.4g} by linear theory; take h below {:.4g}",
                                      c.scene.problem.time_step, *most));
   const std::vector<double> start = c.values();
-  evolution.start(start, c.rates());
+  RowSteps row_steps(c);
+  row_steps.start(evolution);
   Progress progress(c.scene.steps);
-  const auto is_recorded = [&](std::int64_t row) {
-    return row == c.scene.steps || (c.scene.every > 0 && row % c.scene.every == 0);
+  const auto is_over = [&] { return c.is_over(evolution.newest(), evolution.time()); };
+  const auto is_recorded = [&] { return is_over() || (c.scene.every > 0 && evolution.newest() % c.scene.every == 0); };
+  const auto note_step = [&] {
+    if (c.time_steps.empty() && !c.step_control) return;
+    const double h = evolution.last_step();
+    o.longest = std::max(o.longest, h);
+    o.shortest = o.shortest == 0 ? h : std::min(o.shortest, h);
   };
+  note_step();
   const auto record = [&] {
     recorder.record(evolution.newest(), evolution.time(), evolution.row(), evolution.energy(),
                     evolution.report().iterations, evolution.residual());
   };
   if (c.scene.every > 0 || c.scene.steps == 0) recorder.record(0, 0, start, evolution.energy(), 0, 0);
-  if (c.scene.steps > 0 && is_recorded(1)) record();
+  if (c.scene.steps > 0 && is_recorded()) record();
   double iterations = 0;
-  while (evolution.newest() < c.scene.steps && !Interrupt::asked()) {
-    const std::int64_t next = c.scene.every > 0
-                                  ? std::min(c.scene.steps, (evolution.newest() / c.scene.every + 1) * c.scene.every)
-                                  : c.scene.steps;
-    const std::int64_t last = std::min(next, evolution.newest() + 256);
+  while (!is_over() && !Interrupt::asked()) {
+    std::int64_t last = evolution.newest() + 256;
+    if (c.scene.every > 0) last = std::min(last, (evolution.newest() / c.scene.every + 1) * c.scene.every);
     const auto begin = Clock::now();
-    while (evolution.newest() < last) {
-      c.time_steps.empty() ? evolution.step() : evolution.step(c.time_step(evolution.newest()));
+    while (evolution.newest() < last && !is_over()) {
+      row_steps.step(evolution);
+      note_step();
       iterations += evolution.report().iterations;
       o.iterations_max = std::max(o.iterations_max, evolution.report().iterations);
       ++o.steps_taken;
     }
     o.seconds += seconds_since(begin);
-    progress.at(evolution.newest());
-    if (is_recorded(evolution.newest())) record();
+    progress.at(std::min(evolution.newest(), c.scene.steps));
+    if (is_recorded()) record();
   }
-  if (evolution.newest() < c.scene.steps) o.status = "interrupted";
+  if (!is_over()) o.status = "interrupted";
   if (evolution.is_direct()) o.iterations_max = 0;
   else if (o.steps_taken > 0) o.iterations_mean = iterations / static_cast<double>(o.steps_taken);
-  o.steps = std::min(evolution.newest(), c.scene.steps);
+  o.steps = c.scene.steps == 0 ? 0 : evolution.newest();
   o.time = c.scene.steps == 0 ? 0 : evolution.time();
   measure_error(c, c.scene.steps == 0 ? std::span<const double>(start) : evolution.row(), o.time, o);
 }

@@ -21,6 +21,7 @@ namespace delf {
 namespace {
 
 constexpr double usual_records = 100;
+constexpr std::string_view reversible = "reversible";  // of lattice.time_steps: chosen by the field
 
 /// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
 const std::set<std::string, std::less<>> read_keys{"theory.name",
@@ -30,6 +31,7 @@ const std::set<std::string, std::less<>> read_keys{"theory.name",
                                                    "lattice.courant",
                                                    "lattice.time_step",
                                                    "lattice.time_steps",
+                                                   "lattice.step_control",
                                                    "boundary.mesh",
                                                    "scheme.tolerance",
                                                    "scheme.max_iterations",
@@ -52,8 +54,9 @@ const std::set<std::string, std::less<>> read_keys{"theory.name",
                                                    "convergence.agreement"};
 
 /// Keys of time, which lattice.time = none has none of.
-const std::set<std::string, std::less<>> time_keys{"lattice.courant", "lattice.time_step", "lattice.time_steps",
-                                                   "run.until",       "run.steps",         "output.every"};
+const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "lattice.time_step", "lattice.time_steps",
+                                                   "lattice.step_control", "run.until",         "run.steps",
+                                                   "output.every"};
 
 void refuse_unread(const Settings& settings, const TheoryEntry& theory, const ParameterValues& parameters,
                    const std::vector<Component>& fields, bool still, bool spacetime) {
@@ -86,7 +89,7 @@ ParameterValues read_parameters(const Values& values, const TheoryEntry& theory)
 
 std::vector<double> read_time_steps(const Settings& settings, const Values& values) {
   const auto text = values.text("lattice.time_steps");
-  if (!text) return {};
+  if (!text || *text == reversible) return {};
   std::string list = *text;
   std::error_code none;
   for (const auto& path : {settings.file().parent_path() / *text, std::filesystem::path(*text)})
@@ -202,8 +205,15 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
     if (c.is_one_problem()) return c;
 
+    if (values.text("lattice.time_steps") == reversible) {
+      if (c.time == MeshTime::cells)
+        throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
+      c.step_control = values.real("lattice.step_control");
+    } else if (values.given("lattice.step_control")) {
+      throw settings.error("lattice.step_control", "has no effect without lattice.time_steps = reversible; remove it");
+    }
     for (const char* other : {"lattice.courant", "lattice.time_step"})
-      if (values.given("lattice.time_steps") && values.given(other))
+      if (values.given("lattice.time_steps") && !c.step_control && values.given(other))
         settings.keep_one_of("lattice.time_steps", other, {});
     c.time_steps = read_time_steps(settings, values);
     if (!c.time_steps.empty()) {
@@ -223,7 +233,10 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     } else {
       const double until = values.real("run.until");
       if (until / p.time_step > 1e12) throw settings.error("run.until", "is too many steps; use less");
-      if (c.time_steps.empty()) scene.steps = std::llround(until / p.time_step);
+      if (c.step_control) {
+        c.until = until;
+        scene.steps = static_cast<std::int64_t>(std::ceil(until / p.time_step));
+      } else if (c.time_steps.empty()) scene.steps = std::llround(until / p.time_step);
       else
         for (double t = 0; t < until * (1 - 1e-12); t += c.time_step(scene.steps)) ++scene.steps;
     }
@@ -314,7 +327,8 @@ std::string resolved_text(const ComplexScene& c) {
            const Setting* const given = settings.find(key.name);
            if (!given) return {};
            if (key.name == "lattice.mesh" && !c.mesh_file.empty()) return c.mesh_file.string();
-           if (key.name == "lattice.time_steps") return fmt::format("{}", fmt::join(c.time_steps, ", "));
+           if (key.name == "lattice.time_steps")
+             return c.step_control ? given->value : fmt::format("{}", fmt::join(c.time_steps, ", "));
            return given->value;
          });
 }

@@ -9,6 +9,7 @@
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_form.hpp"
 #include "tools/complex/complex_commands.hpp"
+#include "tools/complex/row_steps.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/run/interrupt.hpp"
@@ -219,8 +220,9 @@ class MeshVerification {
     SpaceEvolution evolution(*scene_.space, scene_.time_step(0),
                              {scene_.scene.problem.tolerance, scene_.scene.problem.max_iterations});
     const std::vector<double> start = scene_.values();
-    evolution.start(start, scene_.rates());
-    const std::int64_t steps = std::max<std::int64_t>(scene_.scene.steps, window);
+    RowSteps row_steps(scene_);
+    row_steps.start(evolution);
+    const std::int64_t steps = std::max<std::int64_t>(rows_of_run(), window);
     std::vector<double> rows, times;
     const auto keep = [&](std::span<const double> row, double t) {
       if (times.size() == window)
@@ -231,7 +233,7 @@ class MeshVerification {
     keep(start, 0), keep(evolution.row(), evolution.time());
     int moment = 0;
     while (evolution.newest() < steps && !Interrupt::asked()) {
-      step(evolution, evolution.newest());
+      row_steps.step(evolution);
       const std::int64_t next =
           std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_);  // the last row of the next window
       if (evolution.newest() > next - window) keep(evolution.row(), evolution.time());
@@ -244,26 +246,34 @@ class MeshVerification {
         ++moment;
     }
     if (Interrupt::asked()) verdict_.status = "interrupted";
-    else reverse(evolution, start);
+    else reverse(evolution, row_steps, start);
   }
 
-  void step(SpaceEvolution& evolution, std::int64_t number) const {
-    scene_.time_steps.empty() ? evolution.step() : evolution.step(scene_.time_step(number));
+  // Where the field chooses the steps only a run tells how many there are.
+  std::int64_t rows_of_run() const {
+    if (!scene_.until) return scene_.scene.steps;
+    SpaceEvolution evolution(*scene_.space, scene_.time_step(0),
+                             {scene_.scene.problem.tolerance, scene_.scene.problem.max_iterations});
+    RowSteps row_steps(scene_);
+    row_steps.start(evolution);
+    while (!scene_.is_over(evolution.newest(), evolution.time()) && !Interrupt::asked()) row_steps.step(evolution);
+    return evolution.newest();
   }
 
   // Rows n, n − 1 in exchange, and back to rows 1, 0. The time step between them has been the last one.
-  void reverse(SpaceEvolution& evolution, const std::vector<double>& start) {
+  void reverse(SpaceEvolution& evolution, RowSteps& row_steps, const std::vector<double>& start) {
     const std::int64_t there = evolution.newest(), back = std::min<std::int64_t>(there - 1, 200);
     std::vector<double> goal(start);
     if (back < there - 1) {  // a long way: over the last steps alone
       SpaceEvolution again(*scene_.space, scene_.time_step(0),
                            {scene_.scene.problem.tolerance, scene_.scene.problem.max_iterations});
-      again.start(start, scene_.rates());
-      while (again.newest() < there - 1 - back) step(again, again.newest());
+      RowSteps again_steps(scene_);
+      again_steps.start(again);
+      while (again.newest() < there - 1 - back) again_steps.step(again);
       goal.assign(again.row().begin(), again.row().end());
     }
-    evolution.turn_back();
-    for (std::int64_t n = 0; n < back; ++n) step(evolution, there - 2 - n);
+    row_steps.turn_back(evolution);
+    for (std::int64_t n = 0; n < back; ++n) row_steps.step(evolution);
     double distance = 0, size = 0;
     for (std::size_t n = 0; n < goal.size(); ++n)
       distance = std::max(distance, std::abs(goal[n] - evolution.row()[n])), size = std::max(size, std::abs(goal[n]));

@@ -10,6 +10,7 @@
 #include "lattice/error.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "tools/complex/complex_commands.hpp"
+#include "tools/complex/row_steps.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/failure.hpp"
 #include "tools/run/interrupt.hpp"
@@ -40,9 +41,9 @@ std::optional<End> last_row(const ComplexScene& c) {
     end.values = evolution.values(end.time);
   } else {
     SpaceEvolution evolution(*c.space, c.time_step(0), {c.scene.problem.tolerance, c.scene.problem.max_iterations});
-    evolution.start(c.values(), c.rates());
-    while (evolution.newest() < steps && !Interrupt::asked())
-      c.time_steps.empty() ? evolution.step() : evolution.step(c.time_step(evolution.newest()));
+    RowSteps row_steps(c);
+    row_steps.start(evolution);
+    while (!c.is_over(evolution.newest(), evolution.time()) && !Interrupt::asked()) row_steps.step(evolution);
     end.values.assign(evolution.row().begin(), evolution.row().end());
     end.time = evolution.time();
   }
@@ -72,6 +73,10 @@ ConvergenceTable converge(const ComplexScene& scene, int levels) {
   if (!scene.time_steps.empty())
     throw scene.scene.settings.error("lattice.time_steps",
                                      "are not refined; give lattice.courant or lattice.time_step");
+  if (scene.step_control && !(scene.has_solution() && scene.until))
+    throw scene.scene.settings.error("lattice.time_steps",
+                                     "reversible steps end at times of their own; give run.until, and exact.FIELD to "
+                                     "compare with");
   if (!scene.is_one_problem() && scene.scene.steps < 2)
     throw scene.scene.settings.error("run.steps", "must be 2 at least for an order; raise it");
   ConvergenceTable table;

@@ -38,6 +38,7 @@ std::string summary_json(const ComplexScene& c, const MeshOutcome& o) {
   json["cells"] = c.cells();
   json["space_step"] = of_mesh([](const CellSpace& space) { return shortest_edge(space.mesh); });
   json["time_step"] = c.is_one_problem() ? null : nlohmann::ordered_json(scene.problem.time_step);
+  if (o.longest > 0) json["time_step_min"] = o.shortest, json["time_step_max"] = o.longest;
   json["state"] = o.state;
   json["seed"] = scene.initial.seed;
   json["steps"] = o.steps;
@@ -73,7 +74,11 @@ std::string report(const ComplexScene& c, const MeshOutcome& o) {
   };
   line("state", o.state);
   line("solve", o.solve);
-  if (!c.is_one_problem()) line("steps", fmt::format("{} to t = {:.6g}", o.steps, o.time));
+  if (!c.is_one_problem())
+    line("steps", fmt::format("{} to t = {:.6g}{}", o.steps, o.time,
+                              o.longest > 0 ? fmt::format(", {:.4g} to {:.4g} long{}", o.shortest, o.longest,
+                                                          c.step_control ? ", chosen by the field" : "")
+                                            : ""));
   if (o.steps_taken > 0)
     line("speed", fmt::format("{} for the steps, {}", duration_in_words(o.seconds),
                               cost_in_words(o.ns_per_site_step(c.sites()))));

@@ -7,7 +7,9 @@
 
 #include "jets/batch_of.hpp"
 #include "jets/expressions/expression.hpp"
+#include "lattice/error.hpp"
 #include "schemes/complex/complex_form.hpp"
+#include "schemes/complex/reversible_steps.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
 
@@ -119,6 +121,79 @@ TEST_CASE("momenta on rows with steps of their own: a uniform shift of a wave go
     CHECK(momentum() / h == Approx(first).epsilon(1e-12));
   }
   CHECK(evolution.residual() < 1e-12);
+}
+
+TEST_CASE("steps that the field chooses run back to where they began, and plain ones do not") {
+  const CellSpace space(icosahedral_sphere(1), sine_gordon(), false);
+  std::vector<double> start, rates;
+  for (const Mesh::Point& p : space.mesh.points) start.push_back(2 * p[0] + 1), rates.push_back(1 + p[1] * p[2]);
+  const auto distance = [&](bool reversible) {
+    ReversibleSteps steps(space, 0.2, 1);
+    SpaceEvolution evolution(space, 0.2);
+    evolution.start(start, rates, steps.first(start, rates));
+    const auto go = [&](int count) {
+      for (int n = 0; n < count; ++n) evolution.step(reversible ? steps.next(evolution) : steps.plain(evolution));
+    };
+    go(100);
+    evolution.turn_back();
+    go(100);
+    double most = 0;
+    for (std::size_t i = 0; i < start.size(); ++i) most = std::max(most, std::abs(evolution.row()[i] - start[i]));
+    return most;
+  };
+  CHECK(distance(true) < 1e-10);
+  CHECK(distance(false) > 1e-4);
+}
+
+TEST_CASE("steps that the field chooses have order 2, and keep the energy without drift") {
+  // all points swing as one pendulum, to 2.9: slow at its ends, fast between them
+  const CellSpace space(icosahedral_sphere(0), sine_gordon(), false);
+  const std::vector<double> start(12, 2.9), rest(12, 0.0);
+  const auto error = [&](double longest) {
+    ReversibleSteps steps(space, longest, 1.5);
+    SpaceEvolution evolution(space, longest);
+    evolution.start(start, rest, steps.first(start, rest));
+    // the pendulum by Runge-Kutta steps of order 4, a tenth as long
+    double q = 2.9, v = 0, t = 0, most = 0;
+    for (; t < 20; evolution.step(steps.next(evolution))) {
+      const double h = (evolution.time() - t) / 10;
+      for (int n = 0; n < 10; ++n) {
+        const double k1 = v, l1 = -std::sin(q), k2 = v + h / 2 * l1, l2 = -std::sin(q + h / 2 * k1);
+        const double k3 = v + h / 2 * l2, l3 = -std::sin(q + h / 2 * k2), k4 = v + h * l3, l4 = -std::sin(q + h * k3);
+        q += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), v += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+      }
+      t = evolution.time();
+      most = std::max(most, std::abs(evolution.row()[0] - q));
+    }
+    return most;
+  };
+  CHECK(std::log2(error(0.1) / error(0.05)) == Approx(2).margin(0.2));
+
+  const auto drift = [&](bool reversible) {
+    ReversibleSteps steps(space, 0.25, 1.5);
+    SpaceEvolution evolution(space, 0.25);
+    evolution.start(start, rest, steps.first(start, rest));
+    const double energy = evolution.energy();
+    double shortest = 1, longest = 0;
+    std::array<double, 2> mean{};  // of the energy's change, over the first and the last fifth
+    constexpr int count = 4000, part = count / 5;
+    for (int n = 0; n < count; ++n) {
+      evolution.step(reversible ? steps.next(evolution) : steps.plain(evolution));
+      shortest = std::min(shortest, evolution.last_step()), longest = std::max(longest, evolution.last_step());
+      if (n < part) mean[0] += (evolution.energy() / energy - 1) / part;
+      if (n >= count - part) mean[1] += (evolution.energy() / energy - 1) / part;
+    }
+    INFO("steps from " << shortest << " to " << longest);
+    CHECK(longest > 2 * shortest);
+    return std::abs(mean[1] - mean[0]);
+  };
+  const double reversible = drift(true), plain = drift(false);
+  CAPTURE(reversible, plain);
+  CHECK(reversible < 1e-3);
+  CHECK(plain > 20 * reversible);
+  CHECK_THROWS_AS(
+      ReversibleSteps(CellSpace(icosahedral_sphere(0), expression("phi_t^2 + phi_t^4 - phi_x^2"), false), 1, 1),
+      BadInput);
 }
 
 TEST_CASE("the energy of a wave on a sphere stays in a band that shrinks with the square of the step") {

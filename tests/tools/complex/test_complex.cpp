@@ -92,6 +92,22 @@ TEST_CASE("a wave on a mesh runs, is planned and verified through the program") 
     CHECK(delf_program(folder, "verify " + scene + " --out v --verify.fault=" + fault).code == 1);
 }
 
+TEST_CASE("steps that the field chooses run, end by time, and run again and back to the same") {
+  const Folder folder;
+  const std::string scene = "sphere --lattice.mesh=icosahedron:1 --lattice.time_steps=reversible --run.until=4 ";
+  REQUIRE(delf_program(folder, "run " + scene + "--output.figures=off --out out").code == 0);
+  const auto json = summary(folder);
+  CHECK(json["time"].get<double>() >= 4);
+  CHECK(json["time"].get<double>() < 4 + json["time_step_max"].get<double>());
+  CHECK(json["time_step_max"] > 1.3 * json["time_step_min"].get<double>());
+  REQUIRE(delf_program(folder, "run out/scene.ini --output.figures=off --out again").code == 0);
+  CHECK(read(folder / "again/series.csv") == read(folder / "out/series.csv"));
+  const Ran verified = delf_program(folder, "verify " + scene + "--out v");
+  CAPTURE(verified.out, verified.err);
+  CHECK(verified.code == 0);
+  CHECK(contains(verified.out, "time reversal"));
+}
+
 TEST_CASE("a static kink has the energies of Peierls and Nabarro, between sites and on one") {
   const Folder folder;
   REQUIRE(delf_program(folder, "run static-kink --output.figures=off --out out").code == 0);
@@ -286,6 +302,10 @@ TEST_CASE("a scene on a mesh with an error is refused in one line") {
   refused("sweep sphere --lattice.courant=0.3,0.4", "works with run, plan, verify and convergence");
   refused("convergence sphere --lattice.time_steps=0.1,0.2", "are not refined");
   refused("run sphere --lattice.time_steps=0.1,-1", "steps must be above 0");
+  refused("run sphere --lattice.step_control=2", "has no effect without lattice.time_steps = reversible");
+  refused("convergence sphere --lattice.time_steps=reversible", "reversible steps end at times of their own");
+  refused("run sphere --lattice.time_steps=reversible '--theory.density=0.5*phi_t^2 + phi_t^4 - phi_x^2'",
+          "need a density quadratic in phi_t");
   refused("run sphere --initial.speed=0.3", "has no effect on a mesh");
   refused("run sphere --initial.phi=x*t", "reads t");
   refused("run static-kink --run.until=3", "has no effect with lattice.time = none");

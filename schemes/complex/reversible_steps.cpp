@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/complex/reversible_steps.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "lattice/error.hpp"
+
+namespace delf {
+
+ReversibleSteps::ReversibleSteps(const CellSpace& space, double longest, double strength)
+    : space_(space), still_(space), longest_(longest), strength_(strength) {
+  for (const double A : space.masses) area_ += A;
+  const BatchDensity& density = *space.density;
+  const int d = density.components();
+  Eigen::MatrixXd mass(d, d);
+  bool constant = true;
+  for (int a = 0; a < d; ++a)
+    for (int b = 0; b < d; ++b) {
+      constant = constant && density.is_constant(d + a, d + b);
+      mass(a, b) = density.constant_hessian()[static_cast<std::size_t>((d + a) * density.variables() + d + b)];
+    }
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(mass);
+  if (!constant || !lu.isInvertible())
+    throw BadInput("lattice.time_steps",
+                   "lattice.time_steps: reversible steps need a density quadratic in phi_t; give a list of steps");
+  const Eigen::MatrixXd inverse = lu.inverse();
+  for (int a = 0; a < d; ++a)
+    for (int b = 0; b < d; ++b) inverse_mass_.push_back(inverse(a, b));
+}
+
+ReversibleSteps::Row ReversibleSteps::look(std::span<const double> values, std::vector<double> rates, double share) {
+  const ComplexSystem& system = still_.system();
+  std::vector<double> force(values.size(), 0.0);
+  system.each_residual(system.all_stencils(), values, [&](ComplexSystem::Stencils batch, const double* r) {
+    const int size = system.family_of(batch[0]).size();
+    for (std::size_t s = 0; s < batch.size(); ++s)
+      for (int i = 0; i < size; ++i)
+        force[system.node(batch[s], i)] += r[static_cast<std::size_t>(i * PlacedFamily::most) + s];
+  });
+  const auto d = static_cast<std::size_t>(space_.density->components());
+  double square = 0, product = 0;  // Σ A φ_t², Σ A φ_t·φ_tt
+  for (std::size_t i = 0; i < space_.masses.size(); ++i) {
+    if (space_.fixed[i]) continue;
+    for (std::size_t a = 0; a < d; ++a) {
+      double acceleration = 0;  // φ_tt = (∂²T)⁻¹ ∂V/∂φ
+      for (std::size_t b = 0; b < d; ++b)
+        acceleration += inverse_mass_[a * d + b] * force[i * d + b] / space_.masses[i];
+      const double rate = rates[i * d + a] + share * acceleration;
+      square += space_.masses[i] * rate * rate;
+      product += space_.masses[i] * rate * acceleration;
+    }
+  }
+  const double s2 = strength_ * strength_, of_path = 1 + s2 * square / area_;
+  return {std::sqrt(of_path), s2 * product / area_ / of_path};
+}
+
+ReversibleSteps::Row ReversibleSteps::look(const SpaceEvolution& evolution) {
+  const double below = evolution.last_step();
+  std::vector<double> rates(evolution.row().begin(), evolution.row().end());
+  for (std::size_t n = 0; n < rates.size(); ++n) rates[n] = (rates[n] - evolution.row(1)[n]) / below;
+  return look(evolution.row(), std::move(rates), 0.5 * below);
+}
+
+double ReversibleSteps::step() const {
+  const double h = longest_ / density_;
+  if (!(density_ > 0) || !std::isnormal(h))
+    throw NotFinite("the density of rows in time is not positive; use a shorter time step or a weaker step control");
+  return h;
+}
+
+double ReversibleSteps::first(std::span<const double> values, std::span<const double> rates) {
+  const Row row = look(values, {rates.begin(), rates.end()}, 0);
+  density_ = row.density + 0.5 * longest_ * row.slope;
+  return step();
+}
+
+double ReversibleSteps::next(const SpaceEvolution& evolution) {
+  density_ += longest_ * look(evolution).slope;
+  return step();
+}
+
+double ReversibleSteps::plain(const SpaceEvolution& evolution) { return longest_ / look(evolution).density; }
+
+}  // namespace delf

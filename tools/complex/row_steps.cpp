@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "tools/complex/row_steps.hpp"
+
+namespace delf {
+
+RowSteps::RowSteps(const ComplexScene& scene) : scene_(scene) {
+  if (scene.step_control) reversible_.emplace(*scene.space, scene.scene.problem.time_step, *scene.step_control);
+}
+
+void RowSteps::start(SpaceEvolution& evolution) {
+  const std::vector<double> values = scene_.values(), rates = scene_.rates();
+  evolution.start(values, rates, reversible_ ? reversible_->first(values, rates) : scene_.time_step(0));
+  next_ = 1, direction_ = 1;
+}
+
+void RowSteps::step(SpaceEvolution& evolution) {
+  evolution.step(reversible_ ? reversible_->next(evolution) : scene_.time_step(next_));
+  next_ += direction_;
+}
+
+void RowSteps::turn_back(SpaceEvolution& evolution) {
+  evolution.turn_back();
+  direction_ = -direction_;
+  next_ += 2 * direction_;  // the last step is between the two rows that are there
+}
+
+}  // namespace delf
