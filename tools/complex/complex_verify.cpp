@@ -8,6 +8,7 @@
 
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_form.hpp"
+#include "schemes/complex/first_and_last_step.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/row_steps.hpp"
 #include "tools/complex/static_field.hpp"
@@ -42,6 +43,7 @@ class MeshVerification {
            .tolerance = tolerance});
     reversal_ = {
         .name = "time reversal", .region = {}, .tolerance = std::max(tolerance, 100 * scene.scene.problem.tolerance)};
+    first_step_ = {.name = "form of the first step, the last as long", .region = {}, .tolerance = tolerance};
     order_ = {.name = "order of the updates, planned", .region = {}, .tolerance = 0};
     verdict_.seed = scene.scene.initial.seed;
     verdict_.subject = "rows computed here";
@@ -60,6 +62,11 @@ class MeshVerification {
     verdict_.checks.push_back(local_);
     if (order_.samples > 0) verdict_.checks.push_back(order_);
     if (reversal_.samples > 0) verdict_.checks.push_back(reversal_);
+    if (first_step_.samples > 0) verdict_.checks.push_back(first_step_);
+    if (scene_.step_control)
+      verdict_.left_out.push_back(
+          "symplecticity: the forms here are of steps as given; with steps chosen by the field the map of rows is "
+          "reversible, not symplectic, and its energy is what is measured");
     for (const char* name : {"rectangles, staircases and slabs of a lattice", "balances of energy and momentum",
                              "time reversal without rows"})
       if (std::string_view(name).find("reversal") == std::string_view::npos || reversal_.samples == 0)
@@ -231,9 +238,12 @@ class MeshVerification {
       times.push_back(t);
     };
     keep(start, 0), keep(evolution.row(), evolution.time());
+    const bool own_steps = !scene_.time_steps.empty() || scene_.step_control;
+    const double energy = evolution.energy();
     int moment = 0;
     while (evolution.newest() < steps && !Interrupt::asked()) {
       row_steps.step(evolution);
+      if (own_steps) measure_energy(evolution.energy(), energy, evolution.newest());
       const std::int64_t next =
           std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_);  // the last row of the next window
       if (evolution.newest() > next - window) keep(evolution.row(), evolution.time());
@@ -241,12 +251,33 @@ class MeshVerification {
       const SpaceRows window_rows(*scene_.space, times);
       look_at(window_rows.system(), rows,
               fmt::format("rows {} to {}", evolution.newest() - window + 1, evolution.newest()));
+      if (own_steps) look_at_first_step(times, rows, fmt::format("rows from {}", evolution.newest() - window + 1));
       while (moment < moments_ &&
              std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_) <= evolution.newest())
         ++moment;
     }
+    if (energy_) verdict_.measured.push_back(*energy_);
     if (Interrupt::asked()) verdict_.status = "interrupted";
     else reverse(evolution, row_steps, start);
+  }
+
+  /// Rows of steps of their own, and one more as long as the first of them: Marsden–Patrick–Shkoller (6.6).
+  void look_at_first_step(std::vector<double> times, std::vector<double> rows, const std::string& where) {
+    times.back() = times[times.size() - 2] + (times[1] - times[0]);
+    const SpaceRows same(*scene_.space, times);
+    ComplexSolver(same.system()).solve(rows);
+    for (int v = 0; v < variations_; ++v)
+      if (first_step_.take(form_of_first_step(*scene_.space, times, rows, random_, fault_ == "variation"), where) &&
+          !first_step_.passed())
+        first_step_.failure = "the 2-form of the last two rows is not that of the first two";
+  }
+
+  /// The energy is no sum that vanishes where steps differ.
+  void measure_energy(double energy, double first, std::int64_t row) {
+    if (!energy_) energy_ = Measured{.name = "change of the energy", .normaliser = std::abs(first)};
+    const double change = first == 0 ? 0 : std::abs(energy - first) / std::abs(first);
+    if (++energy_->count == 1 || worse(change, energy_->value))
+      energy_->value = change, energy_->region = fmt::format("row {}, relative to row 0", row);
   }
 
   // Where the field chooses the steps only a run tells how many there are.
@@ -286,7 +317,8 @@ class MeshVerification {
   int variations_, moments_;
   std::string fault_, worst_site_;
   std::mt19937_64 random_;
-  Check equations_, local_, reversal_, order_;
+  Check equations_, local_, reversal_, order_, first_step_;
+  std::optional<Measured> energy_;
   std::vector<Check> forms_;
   Verdict verdict_;
 };

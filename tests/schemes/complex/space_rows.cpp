@@ -9,6 +9,7 @@
 #include "jets/expressions/expression.hpp"
 #include "lattice/error.hpp"
 #include "schemes/complex/complex_form.hpp"
+#include "schemes/complex/first_and_last_step.hpp"
 #include "schemes/complex/reversible_steps.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
@@ -194,6 +195,26 @@ TEST_CASE("steps that the field chooses have order 2, and keep the energy withou
   CHECK_THROWS_AS(
       ReversibleSteps(CellSpace(icosahedral_sphere(0), expression("phi_t^2 + phi_t^4 - phi_x^2"), false), 1, 1),
       BadInput);
+}
+
+TEST_CASE("one 2-form is kept if the last step is as long as the first, and only then") {
+  const std::array same{0.0, 0.05, 0.12, 0.15, 0.19, 0.24}, other{0.0, 0.05, 0.12, 0.15, 0.19, 0.27};
+  for (const bool fixed : {false, true}) {
+    const CellSpace space(rectangle_mesh(2, 1, 6, 3, false), sine_gordon(), fixed);
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal;
+    const auto change = [&](std::span<const double> times, bool fault) {
+      const SpaceRows rows(space, times);
+      std::vector<double> y(rows.system().nodes());
+      for (double& value : y) value = normal(random);
+      ComplexSolver(rows.system()).solve(y);
+      return form_of_first_step(space, times, y, random, fault);
+    };
+    CHECK(change(same, false).count > 0);
+    CHECK(change(same, false).relative() < 1e-13);
+    CHECK(change(same, true).relative() > 1e-7);
+    CHECK(change(other, false).relative() > 1e-5);
+  }
 }
 
 TEST_CASE("the energy of a wave on a sphere stays in a band that shrinks with the square of the step") {
