@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/complex/complex_solver.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "lattice/error.hpp"
@@ -105,7 +108,8 @@ class ComplexSolver::Level {
     Vector E = residual(y), change;
     double size = E.norm();
     for (report.iterations = 1;; ++report.iterations) {
-      step(y, E, change);
+      if (!direct_) linearise(y);
+      change = correction(E);
       if (!change.allFinite()) throw NotFinite("a value is not finite; use a shorter step, or another start");
       double share = 1;
       const std::vector<double> before = direct_ ? std::vector<double>() : values(y);
@@ -116,6 +120,14 @@ class ComplexSolver::Level {
         E = residual(y);
         // Armijo's rule on |E|, until rounding is all that is left of it
         if (E.norm() <= (1 - 1e-4 * share) * size || share < 1e-6 || relative(y, change) <= rounding) break;
+        if (share == 1 && size <= rounding_of_residual(before, y)) {
+          report.undetermined = relative(y, change);
+          put(before, y);
+          return report;
+        }
+        // Along a valley, as a kink's place is one, |E| rises by its curvature, and yet the next correction is shorter:
+        // the natural monotonicity test, Deuflhard, Newton Methods for Nonlinear Problems (2004), section 3.3.
+        if (correction(E).norm() <= (1 - share / 2) * change.norm()) break;
       }
       report.shortest = std::min(report.shortest, share);
       size = E.norm();
@@ -124,10 +136,11 @@ class ComplexSolver::Level {
       if (direct_ || report.correction <= options.tolerance) return report;
       if (report.correction <= rounding && report.correction > last / 2) return report;  // no digits are left to gain
       if (share < 1e-6 || report.iterations >= options.max_iterations) {
-        for (std::size_t u = 0; u < unknowns_.size(); ++u) y[unknowns_[u]] = before[u];
-        throw NoConvergence("Newton's method on a block of " + std::to_string(unknowns_.size()) +
-                            " unknowns stopped at a relative correction of " + std::to_string(report.correction) +
-                            "; start nearer to a solution, or allow more scheme.max_iterations");
+        put(before, y);
+        throw NoConvergence(
+            fmt::format("Newton's method on a block of {} unknowns stopped at a relative correction of {:.2g}; start "
+                        "nearer to a solution, or allow more scheme.max_iterations",
+                        unknowns_.size(), report.correction));
       }
     }
   }
@@ -155,7 +168,7 @@ class ComplexSolver::Level {
       finite += change * 0;
     }
     if (!(finite == 0)) throw NotFinite("a value is not finite; use a shorter step, or another start");
-    return {1, 0, 1};
+    return {1, 0, 1, 0};
   }
 
   static void require(bool regular) {
@@ -199,25 +212,40 @@ class ComplexSolver::Level {
     require(solver_.info() == Eigen::Success);
   }
 
-  void step(std::span<const double> y, const Vector& E, Vector& change) {
-    if (!direct_) {
-      std::vector<Triplet> entries;
-      each(nonlinear_, y, 2, [&](std::size_t i, std::size_t m, std::size_t, double value) {
-        if (nonlinear_.columns[m] >= 0) entries.emplace_back(nonlinear_.rows[i], nonlinear_.columns[m], value);
-      });
-      Matrix A(constant_.rows(), constant_.cols());
-      A.setFromTriplets(entries.begin(), entries.end());
-      A += constant_;
-      if (single_) {
-        change = E.cwiseQuotient(Vector(A.diagonal()));
-        return;
-      }
-      A.makeCompressed();
-      factor(A);
-    }
-    change = solver_.solve(E);
+  /// The Jacobian at y, factorised.
+  void linearise(std::span<const double> y) {
+    std::vector<Triplet> entries;
+    each(nonlinear_, y, 2, [&](std::size_t i, std::size_t m, std::size_t, double value) {
+      if (nonlinear_.columns[m] >= 0) entries.emplace_back(nonlinear_.rows[i], nonlinear_.columns[m], value);
+    });
+    Matrix A(constant_.rows(), constant_.cols());
+    A.setFromTriplets(entries.begin(), entries.end());
+    A += constant_;
+    A.makeCompressed();
+    if (single_) diagonal_ = A.diagonal();
+    else factor(A);
   }
 
+  Vector correction(const Vector& E) const {
+    return single_ ? Vector(E.cwiseQuotient(diagonal_)) : Vector(solver_.solve(E));
+  }
+
+  /// What |E| cannot be less than, since values have 53 bits: 8 ε |Σ_j |∂E_i/∂y_j| |y_j||. If Newton's method stalls below
+  /// it, the matrix is nearly singular: a static kink on a fine lattice may stand anywhere.
+  double rounding_of_residual(const std::vector<double>& unknowns, std::span<double> y) const {
+    put(unknowns, y);
+    constexpr double few = 8 * std::numeric_limits<double>::epsilon();
+    Vector sum =
+        matrix_.cwiseAbs() * Eigen::Map<const Vector>(y.data(), static_cast<Eigen::Index>(y.size())).cwiseAbs();
+    each(nonlinear_, y, 2, [&](std::size_t i, std::size_t, std::size_t node, double value) {
+      sum[nonlinear_.rows[i]] += std::abs(value * y[node]);
+    });
+    return few * sum.norm();
+  }
+
+  void put(const std::vector<double>& unknowns, std::span<double> y) const {
+    for (std::size_t u = 0; u < unknowns_.size(); ++u) y[unknowns_[u]] = unknowns[u];
+  }
   std::vector<double> values(std::span<const double> y) const {
     std::vector<double> now(unknowns_.size());
     for (std::size_t u = 0; u < now.size(); ++u) now[u] = y[unknowns_[u]];
@@ -271,6 +299,7 @@ ComplexSolver::Report ComplexSolver::solve(std::span<double> y) const {
     all.iterations = std::max(all.iterations, one.iterations);
     all.correction = std::max(all.correction, one.correction);
     all.shortest = std::min(all.shortest, one.shortest);
+    all.undetermined = std::max(all.undetermined, one.undetermined);
   }
   return all;
 }

@@ -92,6 +92,11 @@ void run_static(const ComplexScene& c, MeshRecorder& recorder, Outcome& o) {
   const ComplexSolver::Report solved = field.solve();
   o.seconds = seconds_since(begin);
   o.iterations_mean = o.iterations_max = solved.iterations;
+  if (solved.undetermined > 0)
+    o.warnings.push_back(
+        fmt::format("the equations hold to rounding, and hardly change in one direction: along it the values are known "
+                    "to {:.2g} of themselves only",
+                    solved.undetermined));
   recorder.record(0, 0, field.values(), c.stencils ? Outcome::unknown : field.energy(), solved.iterations,
                   field.residual());
   measure_error(c, field.values(), 0, o);

@@ -117,6 +117,29 @@ TEST_CASE("a static kink has the energies of Peierls and Nabarro, between sites 
       delf_program(folder, "run static-kink --initial.phi='4*atan(exp(x-20))' --lattice.mesh=graded:40,41,1 --out out")
           .code == 0);
   CHECK(summary(folder)["energy_final"].get<double>() == Approx(7.891929).margin(1e-6));
+  CHECK(summary(folder)["warnings"].empty());
+}
+
+TEST_CASE("Newton's method says where a kink on a fine lattice may stand anywhere, and fails without a solution") {
+  const Folder folder;
+  const Ran fine =
+      delf_program(folder, "run static-kink --lattice.mesh=graded:39,155,1 --output.figures=off --out out");
+  CAPTURE(fine.err);
+  REQUIRE(fine.code == 0);
+  CHECK(summary(folder)["residual_max"].get<double>() < 1e-12);
+  CHECK(summary(folder)["iterations_max"].get<int>() < 40);
+  CHECK(summary(folder)["energy_final"].get<double>() == Approx(7.992844).margin(1e-6));
+  CHECK(contains(summary(folder)["warnings"].dump(), "hardly change in one direction"));
+  // Bratu's phi_xx = -exp(phi), 0 at both ends, has solutions up to a length of sqrt(3.5138) = 1.8745
+  folder.write("bratu.ini",
+               "[theory]\nname = text\ndensity = 0.5*phi_t^2 - 0.5*phi_x^2 + exp(phi)\n[lattice]\nspace = complex\n"
+               "mesh = graded:1,41,1\ntime = none\n[boundary]\nmesh = fixed\n[initial]\nphi = 0\n"
+               "[output]\nfigures = off\n");
+  REQUIRE(delf_program(folder, "run bratu.ini --lattice.mesh=graded:1.8,41,1 --out out").code == 0);
+  CHECK(summary(folder)["warnings"].empty());
+  const Ran none = delf_program(folder, "run bratu.ini --lattice.mesh=graded:2,41,1 --out out");
+  CHECK(none.code == 3);
+  CHECK_FALSE(contains(none.err, "0.000000"));
 }
 
 TEST_CASE("elliptic problems on a mesh converge with order 2, sine-Gordon and harmonic maps to the sphere") {
