@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "jets/fibre.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_figures.hpp"
@@ -35,7 +36,8 @@ void measure_error(const ComplexScene& c, std::span<const double> values, double
   o.error_linf = 0;
   double sum = 0;
   for (std::size_t n = 0; n < exact.size(); ++n) {
-    const double error = std::abs(values[n] - exact[n]);
+    const double apart = values[n] - exact[n];
+    const double error = std::abs(c.scene.problem.circle_valued ? wrap(apart) : apart);
     o.error_linf = std::max(o.error_linf, error);
     sum += (c.space ? c.space->masses[n / d] : 1 / static_cast<double>(c.sites())) * error * error;
   }

@@ -12,6 +12,7 @@
 
 #include "jets/expressions/expression.hpp"
 #include "lattice/text_parts.hpp"
+#include "schemes/complex/circle_fibre.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/mesh_text.hpp"
@@ -24,34 +25,15 @@ constexpr double usual_records = 100;
 constexpr std::string_view reversible = "reversible";  // of lattice.time_steps: chosen by the field
 
 /// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
-const std::set<std::string, std::less<>> read_keys{"theory.name",
-                                                   "lattice.space",
-                                                   "lattice.mesh",
-                                                   "lattice.time",
-                                                   "lattice.courant",
-                                                   "lattice.time_step",
-                                                   "lattice.time_steps",
-                                                   "lattice.step_control",
-                                                   "boundary.mesh",
-                                                   "scheme.tolerance",
-                                                   "scheme.max_iterations",
-                                                   "initial.state",
-                                                   "run.until",
-                                                   "run.steps",
-                                                   "run.seed",
-                                                   "output.every",
-                                                   "output.fields",
-                                                   "output.figures",
-                                                   "output.format",
-                                                   "output.titles",
-                                                   "verify.variations",
-                                                   "verify.moments",
-                                                   "verify.tolerance",
-                                                   "verify.fault",
-                                                   "scheme.method",
-                                                   "convergence.levels",
-                                                   "convergence.order",
-                                                   "convergence.agreement"};
+const std::set<std::string, std::less<>> read_keys{
+    "theory.name",          "theory.fibre",      "lattice.space",      "lattice.mesh",
+    "lattice.time",         "lattice.courant",   "lattice.time_step",  "lattice.time_steps",
+    "lattice.step_control", "boundary.mesh",     "scheme.tolerance",   "scheme.max_iterations",
+    "initial.state",        "run.until",         "run.steps",          "run.seed",
+    "output.every",         "output.fields",     "output.figures",     "output.format",
+    "output.titles",        "verify.variations", "verify.moments",     "verify.tolerance",
+    "verify.fault",         "scheme.method",     "convergence.levels", "convergence.order",
+    "convergence.agreement"};
 
 /// Keys of time, which lattice.time = none has none of.
 const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "lattice.time_step", "lattice.time_steps",
@@ -194,6 +176,9 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
              : time == "none"  ? MeshTime::none
              : time == "cells" ? MeshTime::cells
                                : MeshTime::rows;
+    p.circle_valued = values.choice("theory.fibre") == "S1";
+    if (p.circle_valued && (c.time != MeshTime::rows || c.theory->fields().size() > 1))
+      throw settings.error("theory.fibre", "S1 on a mesh is for one field with lattice.time = rows; use R");
     p.tolerance = values.real("scheme.tolerance");
     p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
     p.lattice = Lattice::circle(std::max(2, c.sites()), edge * std::max(2, c.sites()));
@@ -275,7 +260,7 @@ std::vector<double> ComplexScene::values() const {
   }
   for (const Mesh::Point& p : space->mesh.points)
     for (const Field& f : fields) all.push_back(f.exact ? (*f.exact)(0, p) : (*f.value)(0, p));
-  return all;
+  return scene.problem.circle_valued ? lifted(space->mesh, std::move(all)) : all;
 }
 std::vector<double> ComplexScene::rates() const {
   std::vector<double> all;

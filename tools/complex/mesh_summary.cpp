@@ -26,7 +26,7 @@ std::string summary_json(const ComplexScene& c, const MeshOutcome& o) {
   json["status"] = o.status;
   json["failure"] = o.failure.empty() ? null : nlohmann::ordered_json(o.failure);
   json["theory"] = scene.problem.theory;
-  json["fibre"] = "R";
+  json["fibre"] = scene.problem.circle_valued ? "S1" : "R";
   json["stencil"] = c.mesh_in_words();
   json["method"] = c.time == MeshTime::cells   ? "asynchronous"
                    : c.time == MeshTime::none  ? "elliptic"

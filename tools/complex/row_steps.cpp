@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tools/complex/row_steps.hpp"
 
+#include "schemes/complex/circle_fibre.hpp"
+
 namespace delf {
 
 RowSteps::RowSteps(const ComplexScene& scene) : scene_(scene) {
@@ -11,11 +13,18 @@ void RowSteps::start(SpaceEvolution& evolution) {
   const std::vector<double> values = scene_.values(), rates = scene_.rates();
   evolution.start(values, rates, reversible_ ? reversible_->first(values, rates) : scene_.time_step(0));
   next_ = 1, direction_ = 1;
+  check(evolution);
 }
 
 void RowSteps::step(SpaceEvolution& evolution) {
   evolution.step(reversible_ ? reversible_->next(evolution) : scene_.time_step(next_));
   next_ += direction_;
+  check(evolution);
+}
+
+void RowSteps::check(const SpaceEvolution& evolution) const {
+  if (scene_.scene.problem.circle_valued)
+    check_wrapped_differences(scene_.space->mesh, evolution.row(), evolution.row(1));
 }
 
 void RowSteps::turn_back(SpaceEvolution& evolution) {

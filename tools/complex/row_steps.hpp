@@ -19,6 +19,8 @@ class RowSteps {
   void turn_back(SpaceEvolution&);
 
  private:
+  void check(const SpaceEvolution&) const;
+
   const ComplexScene& scene_;
   std::optional<ReversibleSteps> reversible_;
   std::int64_t next_ = 0;  ///< place of a step's length in the list

@@ -26,7 +26,11 @@ inline bool was_written(hid_t dataset, bool growing = false) {
         H5Pget_filter2(properties, static_cast<unsigned>(n), &flags, &values, nullptr, 0, nullptr, nullptr);
     if (filter != H5Z_FILTER_FLETCHER32 && filter != H5Z_FILTER_SHUFFLE) least /= 1e6;
   }
-  return static_cast<double>(H5Dget_storage_size(dataset)) >= least;
+  // A damaged header may claim more than the file has.
+  const Hdf5Handle file(H5Iget_file_id(dataset), H5Fclose);
+  hsize_t bytes = 0;
+  return H5Fget_filesize(file, &bytes) >= 0 && static_cast<double>(bytes) >= least &&
+         static_cast<double>(H5Dget_storage_size(dataset)) >= least;
 }
 
 /// Whether the chunk that the frame begins in is there; true where there are no chunks.

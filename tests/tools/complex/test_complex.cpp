@@ -109,6 +109,30 @@ TEST_CASE("steps that the field chooses run, end by time, and run again and back
     CHECK(contains(verified.out, part));
 }
 
+TEST_CASE("angles on a mesh: the same rows from any representatives, and what winds or jumps is refused") {
+  const Folder folder;
+  const std::string scene =
+      "run sphere --lattice.mesh=icosahedron:2 --theory.fibre=S1 --run.steps=30 --output.figures=off --out ";
+  // tan has the period of 4z/2 modulo pi: the same angles, between -pi and pi
+  REQUIRE(delf_program(folder, scene + "one --initial.phi='4*z'").code == 0);
+  const Ran other = delf_program(folder, scene + "two --initial.phi='2*atan(tan(2*z))'");
+  CAPTURE(other.err);
+  REQUIRE(other.code == 0);
+  const auto energy = [&](const char* file) { return nlohmann::json::parse(read(folder / file))["energy_final"]; };
+  CHECK(energy("two/summary.json").get<double>() == Approx(energy("one/summary.json").get<double>()).epsilon(1e-12));
+  CHECK(delf_program(folder, scene + "three --initial.phi='40*z'").code == 3);                   // jumps at once
+  CHECK(delf_program(folder, scene + "four --initial.phi=z --initial.phi_t='90*x'").code == 3);  // in a step
+  CHECK(delf_program(folder, scene + "five --initial.phi=z --lattice.time=cells").code == 2);
+  folder.write("ring.mesh",
+               "point 1 1\npoint -1 1\npoint -1 -1\npoint 1 -1\npoint 2 2\npoint -2 2\npoint -2 -2\npoint 2 -2\n"
+               "cell 0 4 5 1\ncell 1 5 6 2\ncell 2 6 7 3\ncell 3 7 4 0\n");
+  CHECK(contains(delf_program(folder,
+                              "run sphere --lattice.mesh=ring.mesh --boundary.mesh=natural --theory.fibre=S1 "
+                              "--initial.phi='2*atan(y/(x + sqrt(x^2 + y^2)))' --out six")
+                     .err,
+                 "winds around a hole of the mesh"));
+}
+
 TEST_CASE("a static kink has the energies of Peierls and Nabarro, between sites and on one") {
   const Folder folder;
   REQUIRE(delf_program(folder, "run static-kink --output.figures=off --out out").code == 0);
