@@ -274,7 +274,10 @@ class MeshVerification {
 
   /// The energy is no sum that vanishes where steps differ.
   void measure_energy(double energy, double first, std::int64_t row) {
-    if (!energy_) energy_ = Measured{.name = "change of the energy", .normaliser = std::abs(first)};
+    if (!energy_) {
+      energy_.emplace();
+      energy_->name = "change of the energy", energy_->normaliser = std::abs(first);
+    }
     const double change = first == 0 ? 0 : std::abs(energy - first) / std::abs(first);
     if (++energy_->count == 1 || worse(change, energy_->value))
       energy_->value = change, energy_->region = fmt::format("row {}, relative to row 0", row);

@@ -15,7 +15,9 @@ inline bool was_written(hid_t dataset, bool growing = false) {
       properties(H5Dget_create_plist(dataset), H5Pclose);
   std::array<hsize_t, H5S_MAX_RANK> extents{};
   const int rank = H5Sget_simple_extent_dims(space, extents.data(), nullptr);
-  double least = static_cast<double>(H5Tget_size(type));  // HDF5 counts the values as an integer, which may overflow
+  const std::size_t size = H5Tget_size(type);
+  if (size == 0) return false;               // a damaged type
+  double least = static_cast<double>(size);  // HDF5 counts the values as an integer, which may overflow
   for (int axis = growing && H5Pget_layout(properties) == H5D_CHUNKED ? 1 : 0; axis < rank; ++axis)
     least *= static_cast<double>(extents[static_cast<std::size_t>(axis)]);
   const int filters = H5Pget_nfilters(properties);
