@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
+#include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 namespace {
@@ -37,11 +38,8 @@ AsynchronousEvolution::AsynchronousEvolution(const CellSpace& space, std::vector
 }
 
 void AsynchronousEvolution::start(std::span<const double> values, std::span<const double> rates) {
-  y_.assign(values.begin(), values.end());
-  momenta_.assign(y_.size(), 0.0);
-  times_.assign(at(space_.sites()), 0.0);
-  std::fill(done_.begin(), done_.end(), 0);
-  queue_ = {};
+  make_room();
+  std::ranges::copy(values, y_.begin());
   const int variables = space_.density->variables();
   for (int i = 0; i < space_.sites(); ++i)  // p = A ∂²T φ_t
     for (int a = 0; a < d_ && !space_.fixed[at(i)]; ++a)
@@ -49,12 +47,33 @@ void AsynchronousEvolution::start(std::span<const double> values, std::span<cons
         momenta_[at(i * d_ + a)] += space_.masses[at(i)] *
                                     space_.density->constant_hessian()[at((d_ + a) * variables + d_ + b)] *
                                     rates[at(i * d_ + b)];
-  for (int c = 0; c < space_.mesh.cells(); ++c) {
-    kick(c, y_, 0.5, momenta_);
-    queue_.emplace(steps_[at(c)], c);
-  }
+  for (int c = 0; c < space_.mesh.cells(); ++c) kick(c, y_, 0.5, momenta_);
+  fill_queue();
+}
+
+void AsynchronousEvolution::make_room() {
+  y_.assign(at(space_.sites() * d_), 0.0);
+  momenta_.assign(y_.size(), 0.0);
+  times_.assign(at(space_.sites()), 0.0);
+  std::fill(done_.begin(), done_.end(), 0);
   time_ = 0, updates_ = 0;
   simultaneous_ = 1e-6 * *std::ranges::min_element(steps_);
+}
+
+/// n h, not a sum: two cells of one step stay together.
+void AsynchronousEvolution::fill_queue() {
+  queue_ = {};
+  for (int c = 0; c < space_.mesh.cells(); ++c)
+    queue_.emplace(static_cast<double>(done_[at(c)] + 1) * steps_[at(c)], c);
+}
+
+void AsynchronousEvolution::visit(SavedState& state) {
+  if (state.restores()) make_room();
+  state("time", time_), state("updates", updates_);
+  state.numbers("updates of cells", done_.data(), done_.size());
+  state.numbers("field", y_.data(), y_.size()), state.numbers("momenta", momenta_.data(), momenta_.size());
+  state.numbers("times of sites", times_.data(), times_.size());
+  if (state.restores()) fill_queue();
 }
 
 void AsynchronousEvolution::kick(int cell, std::span<const double> y, double factor,
@@ -91,7 +110,6 @@ void AsynchronousEvolution::update_next() {
   for (const auto site : space_.mesh.cell(cell)) drift(site, t);
   kick(cell, y_, 1, momenta_);
   if (keeps_) cells_.push_back({cell, t});
-  // n h, not a sum: two cells of one step stay together
   queue_.emplace(static_cast<double>(++done_[at(cell)] + 1) * steps_[at(cell)], cell);
   time_ = t;
   ++updates_;

@@ -30,6 +30,9 @@ class AsynchronousEvolution {
   /// So many updates.
   void update(std::int64_t count);
 
+  /// Saves or restores what further updates depend on, without the window; what is restored needs no start.
+  void visit(SavedState&);
+
   std::int64_t updates() const { return updates_; }
   /// Of the last update.
   double time() const { return time_; }
@@ -61,6 +64,8 @@ class AsynchronousEvolution {
     std::vector<double> values;
   };
 
+  void make_room();
+  void fill_queue();
   void update_next();
   void drift(int site, double t);
   /// h_K ∂L/∂y at the corners of a cell, added to the momenta, times a factor.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
+#include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 
@@ -79,6 +80,8 @@ double ReversibleSteps::next(const SpaceEvolution& evolution) {
   density_ += longest_ * look(evolution).slope;
   return step();
 }
+
+void ReversibleSteps::visit(SavedState& state) { state("density of rows", density_); }
 
 double ReversibleSteps::plain(const SpaceEvolution& evolution) { return longest_ / look(evolution).density; }
 

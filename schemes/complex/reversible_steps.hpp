@@ -30,6 +30,8 @@ class ReversibleSteps {
   double next(const SpaceEvolution&);
   /// ε σ of the newest row: the plain step, which is not reversible.
   double plain(const SpaceEvolution&);
+  /// Saves or restores the density of rows.
+  void visit(SavedState&);
 
  private:
   struct Row {

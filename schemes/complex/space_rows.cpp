@@ -8,6 +8,7 @@
 #include <random>
 
 #include "lattice/error.hpp"
+#include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 namespace {
@@ -122,15 +123,17 @@ std::size_t SpaceEvolution::bytes() const {
   return rows_.system().bytes() + energy_rows_.system().bytes() + 8 * y_.size();
 }
 
+void SpaceEvolution::set_steps(const std::array<double, 3>& now) {
+  const auto [below, above, row_measure] = now;
+  rows_.set_motion(0, below, below);
+  rows_.set_motion(1, above, above);
+  rows_.set_row_measure(1, row_measure);
+  solver_->refresh();
+  steps_ = now;
+}
+
 void SpaceEvolution::take(double below, double above, double row_measure) {
-  const std::array now{below, above, row_measure};
-  if (now != steps_) {
-    rows_.set_motion(0, below, below);
-    rows_.set_motion(1, above, above);
-    rows_.set_row_measure(1, row_measure);
-    solver_->refresh();
-    steps_ = now;
-  }
+  if (const std::array now{below, above, row_measure}; now != steps_) set_steps(now);
   const std::size_t n = y_.size() / 3;
   std::copy(y_.begin() + static_cast<std::ptrdiff_t>(n), y_.end(), y_.begin());
   report_ = solver_->solve(y_);
@@ -157,6 +160,14 @@ void SpaceEvolution::step(std::optional<double> time_step) {
   before_ = h;
   time_ += h;
   ++newest_;
+}
+
+void SpaceEvolution::visit(SavedState& state) {
+  std::array<double, 3> steps = steps_;
+  state("newest", newest_), state("time", time_), state("step before", before_), state("steps", steps);
+  state("iterations", report_.iterations);
+  state.numbers("rows", y_.data(), y_.size());
+  if (state.restores()) set_steps(steps);
 }
 
 double SpaceEvolution::energy() const {

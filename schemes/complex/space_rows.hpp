@@ -12,6 +12,8 @@
 
 namespace delf {
 
+class SavedState;
+
 /// A mesh of space and a density on it, with what rows of any steps have in common.
 struct CellSpace {
   /// Throws BadInput for a density that has no form on cells.
@@ -71,6 +73,9 @@ class SpaceEvolution {
   /// One step, of another length if it is given.
   void step(std::optional<double> time_step = std::nullopt);
 
+  /// Saves or restores what further steps depend on; what is restored needs no start.
+  void visit(SavedState&);
+
   /// Exchanges the last two rows: further steps, of the same lengths, go back.
   void turn_back();
 
@@ -94,6 +99,7 @@ class SpaceEvolution {
   std::optional<double> largest_step() const;
 
  private:
+  void set_steps(const std::array<double, 3>& now);
   void take(double below, double above, double row_measure);
 
   const CellSpace& space_;

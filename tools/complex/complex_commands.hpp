@@ -7,11 +7,12 @@
 
 #include "tools/complex/complex_scene.hpp"
 #include "tools/failure.hpp"
+#include "tools/run/run.hpp"
 
 namespace delf {
 
-/// `delf run`, `delf plan` and `delf verify` of a scene on a mesh.
-ExitCode run(const ComplexScene&, const std::filesystem::path& folder);
+/// `delf run`, `delf plan` and `delf verify` of a scene on a mesh. With `resumed`, the run of that folder goes on from there.
+ExitCode run(const ComplexScene&, const std::filesystem::path& folder, Resumed resumed = {});
 ExitCode plan(const ComplexScene&);
 ExitCode verify(const ComplexScene&, const std::filesystem::path& folder, const std::optional<std::string>& fields);
 

@@ -30,7 +30,7 @@ const std::set<std::string, std::less<>> read_keys{
     "lattice.time",         "lattice.courant",   "lattice.time_step",  "lattice.time_steps",
     "lattice.step_control", "boundary.mesh",     "scheme.tolerance",   "scheme.max_iterations",
     "initial.state",        "run.until",         "run.steps",          "run.seed",
-    "output.every",         "output.fields",     "output.figures",     "output.format",
+    "output.every",         "output.checkpoint", "output.fields",     "output.figures",     "output.format",
     "output.titles",        "verify.variations", "verify.moments",     "verify.tolerance",
     "verify.fault",         "scheme.method",     "convergence.levels", "convergence.order",
     "convergence.agreement"};
@@ -187,6 +187,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     scene.fields = values.toggle("output.fields");
     scene.figures = values.toggle("output.figures");
     scene.figure_form = read_figure_form(settings, values);
+    scene.checkpoint = values.real("output.checkpoint");
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
     if (c.is_one_problem()) return c;
 
@@ -309,6 +310,8 @@ std::string resolved_text(const ComplexScene& c) {
   return fmt::format("{}{} understood it: `delf run scene.ini` gives the same rows to the bit.\n",
                      resolved_scene_begins, DELF_VERSION) +
          sections_of(settings, [&](const Key& key) -> std::string {
+           // of more steps the fallback is another
+           if (key.name == "output.every" && !c.is_one_problem()) return fmt::format("{}", c.scene.every);
            const Setting* const given = settings.find(key.name);
            if (!given) return {};
            if (key.name == "lattice.mesh" && !c.mesh_file.empty()) return c.mesh_file.string();

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "schemes/stepping/saved_state.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_files.hpp"
 #include "tools/figures/drawing.hpp"
@@ -153,7 +154,22 @@ void MeshFilm::add(std::int64_t step, double time, std::span<const double> value
   // the first row at or after each third of the run
   const auto wanted = static_cast<std::int64_t>(frames_.size()) * steps_ / (panels - 1);
   if (static_cast<int>(frames_.size()) < panels && step >= wanted)
-    frames_.push_back({time, {values.begin(), values.end()}});
+    frames_.push_back({step, time, {values.begin(), values.end()}});
+}
+
+void MeshFilm::visit(SavedState& state) {
+  std::vector<std::int64_t> steps;
+  std::vector<double> times, values;
+  for (const Frame& f : frames_) {
+    steps.push_back(f.step), times.push_back(f.time);
+    values.insert(values.end(), f.values.begin(), f.values.end());
+  }
+  state("steps of frames", steps), state("times of frames", times), state("frames", values);
+  if (!state.restores()) return;
+  frames_.clear();
+  const std::size_t size = steps.empty() ? 0 : values.size() / steps.size();
+  for (std::size_t f = 0; f < std::min(steps.size(), times.size()); ++f)
+    add(steps[f], times[f], std::span(values).subspan(f * size, size));
 }
 
 std::string draw_mesh(const ComplexScene& c, const MeshFilm& film, const fs::path& folder) {

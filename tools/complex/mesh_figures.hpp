@@ -9,6 +9,8 @@
 
 namespace delf {
 
+class SavedState;
+
 /// Rows of a run on a mesh for its figures: four, evenly spread.
 class MeshFilm {
  public:
@@ -16,7 +18,11 @@ class MeshFilm {
   /// Rows come in the order of their steps.
   void add(std::int64_t step, double time, std::span<const double> values);
 
+  /// A run that is resumed with more steps keeps of its frames those that it would have chosen.
+  void visit(SavedState&);
+
   struct Frame {
+    std::int64_t step;
     double time;
     std::vector<double> values;
   };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <ranges>
 
+#include "schemes/stepping/saved_state.hpp"
 #include "tools/scene/text_file.hpp"
 
 namespace delf {
@@ -23,7 +24,7 @@ RowNames names_of(const ComplexScene& scene) {
 bool has_xdmf(const ComplexScene& scene) { return scene.space && scene.space->mesh.coordinates() > 1; }
 
 MeshFiles::MeshFiles(const ComplexScene& scene, const std::filesystem::path& folder, std::int64_t frames,
-                     bool node_times)
+                     bool node_times, const WrittenPart& kept)
     : scene_(scene), folder_(folder), corners_(0) {
   const auto corners_of = [&](int c) -> std::span<const std::int32_t> {
     return scene.stencils ? std::span<const std::int32_t>(scene.stencils->stencils[static_cast<std::size_t>(c)].sites)
@@ -36,8 +37,9 @@ MeshFiles::MeshFiles(const ComplexScene& scene, const std::filesystem::path& fol
     cells.insert(cells.end(), corners.begin(), corners.end());
     cells.resize(static_cast<std::size_t>(c + 1) * static_cast<std::size_t>(corners_), -1);
   }
-  file_ = std::make_unique<FieldsFile>(folder / "fields.h5", scene.places(), frames, resolved_text(scene), 0,
-                                       names_of(scene), MeshOfFile{scene.coordinates(), cells, corners_, node_times});
+  file_ =
+      std::make_unique<FieldsFile>(folder / "fields.h5", scene.places(), frames, resolved_text(scene), 0,
+                                   names_of(scene), MeshOfFile{scene.coordinates(), cells, corners_, node_times}, kept);
 }
 
 void MeshFiles::append(double time, std::span<const double> values, std::span<const double> node_times) {
@@ -46,6 +48,8 @@ void MeshFiles::append(double time, std::span<const double> values, std::span<co
   file_->append(time, row, {}, node_times);
   times_.push_back(time);
 }
+
+void MeshFiles::visit(SavedState& state) { state("times of frames", times_); }
 
 void MeshFiles::close() {
   file_->close();

@@ -9,14 +9,20 @@
 
 namespace delf {
 
+class SavedState;
+
 /// Whether there is a fields.xdmf: XDMF needs cells of space, and two coordinates at least.
 bool has_xdmf(const ComplexScene&);
 
 /// fields.h5 of a scene on a mesh, and fields.xdmf beside it, which ParaView opens.
 class MeshFiles {
  public:
-  MeshFiles(const ComplexScene&, const std::filesystem::path& folder, std::int64_t frames, bool node_times = false);
+  MeshFiles(const ComplexScene&, const std::filesystem::path& folder, std::int64_t frames, bool node_times = false,
+            const WrittenPart& kept = {});
   void append(double time, std::span<const double> values, std::span<const double> node_times = {});
+  /// See FieldsFile.
+  const WrittenPart& flush(bool sync) { return file_->flush(sync); }
+  void visit(SavedState&);
   void close();
 
  private:

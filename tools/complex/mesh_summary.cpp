@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "jets/fibre.hpp"
 #include "tools/run/in_words.hpp"
 
 namespace delf {
@@ -90,7 +92,7 @@ std::string report(const ComplexScene& c, const MeshOutcome& o) {
   line("residual", std::isfinite(o.residual_max)
                        ? fmt::format("{:.2g} at most, relative to the terms of the equations", o.residual_max)
                        : "not measured; `delf verify` does");
-  if (!c.stencils)
+  if (std::isfinite(o.energy_final))
     line("energy", fmt::format("{:.10g}{}", o.energy_final,
                                std::isfinite(o.energy_error_max)
                                    ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
@@ -101,6 +103,21 @@ std::string report(const ComplexScene& c, const MeshOutcome& o) {
   for (const std::string& warning : o.warnings) line("warning", warning);
   line("status", o.status);
   return text;
+}
+
+void measure_error(const ComplexScene& c, std::span<const double> values, double t, Outcome& o) {
+  if (!c.has_solution()) return;
+  const std::vector<double> exact = c.solution(t);
+  const std::size_t d = c.fields.size();
+  o.error_linf = 0;
+  double sum = 0;
+  for (std::size_t n = 0; n < exact.size(); ++n) {
+    const double apart = values[n] - exact[n];
+    const double error = std::abs(c.scene.problem.circle_valued ? wrap(apart) : apart);
+    o.error_linf = std::max(o.error_linf, error);
+    sum += (c.space ? c.space->masses[n / d] : 1 / static_cast<double>(c.sites())) * error * error;
+  }
+  o.error_l2 = std::sqrt(sum);
 }
 
 }  // namespace delf

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "tools/complex/complex_scene.hpp"
@@ -18,6 +19,9 @@ struct MeshOutcome : Outcome {
 std::string summary_json(const ComplexScene&, const MeshOutcome&);
 /// The same for people.
 std::string report(const ComplexScene&, const MeshOutcome&);
+
+/// From the solution, if there is one: the largest error, and √(Σ A_i e_i²); of sites without masses √(Σ e²/sites).
+void measure_error(const ComplexScene&, std::span<const double> values, double t, Outcome&);
 
 /// Σ_i A_i.
 double area_of(const CellSpace&);

@@ -2,6 +2,7 @@
 #include "tools/complex/row_steps.hpp"
 
 #include "schemes/complex/circle_fibre.hpp"
+#include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 
@@ -25,6 +26,11 @@ void RowSteps::step(SpaceEvolution& evolution) {
 void RowSteps::check(const SpaceEvolution& evolution) const {
   if (scene_.scene.problem.circle_valued)
     check_wrapped_differences(scene_.space->mesh, evolution.row(), evolution.row(1));
+}
+
+void RowSteps::visit(SavedState& state) {
+  state("place in the list of steps", next_), state("direction of steps", direction_);
+  if (reversible_) reversible_->visit(state);
 }
 
 void RowSteps::turn_back(SpaceEvolution& evolution) {

@@ -17,6 +17,7 @@ class RowSteps {
   void step(SpaceEvolution&);
   /// Further steps go back by the lengths of those that were taken.
   void turn_back(SpaceEvolution&);
+  void visit(SavedState&);
 
  private:
   void check(const SpaceEvolution&) const;

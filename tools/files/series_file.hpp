@@ -25,4 +25,8 @@ class SeriesFile {
   TextFile file_;
 };
 
+/// Throws BadScene if the file does not begin so: where it was cut off, it would be filled with zeros, and what was changed
+/// in it would stay.
+void require_part(const std::filesystem::path&, const WrittenPart& kept);
+
 }  // namespace delf

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "tools/complex/complex_commands.hpp"
 #include "tools/files/checkpoint_file.hpp"
 #include "tools/run/checkpoints.hpp"
 #include "tools/run/run.hpp"
@@ -86,15 +87,24 @@ ExitCode resume(const fs::path& folder, const std::vector<Setting>& on_command_l
                     "it there, or begin it anew",
                     head.instructions, instruction_set()));
   check_unchanged(folder / "scene.ini", head.scene);
-  Scene scene = read_scene(folder / "scene.ini", on_command_line);
-  scene.name = head.name;
-  scene.warnings = head.warnings;
-  if (std::error_code none; head.row >= scene.steps && fs::exists(folder / "summary.json", none))
-    refuse(fmt::format("the run is finished, at row {}; to go on, raise run.until or run.steps, as --run.steps={}",
-                       head.row, 2 * std::max<std::int64_t>(1, head.row)));
-  if (head.row > scene.steps)
-    refuse(fmt::format("the run is at row {}, beyond run.steps = {}; raise run.until or run.steps", head.row,
-                       scene.steps));
+  const auto take_over = [&](Scene& scene) {
+    scene.name = head.name;
+    scene.warnings = head.warnings;
+    if (std::error_code none; head.row >= scene.steps && fs::exists(folder / "summary.json", none))
+      refuse(fmt::format("the run is finished, at row {}; to go on, raise run.until or run.steps, as --run.steps={}",
+                         head.row, 2 * std::max<std::int64_t>(1, head.row)));
+    if (head.row > scene.steps)
+      refuse(fmt::format("the run is at row {}, beyond run.steps = {}; raise run.until or run.steps", head.row,
+                         scene.steps));
+  };
+  Settings settings = read_settings(folder / "scene.ini", on_command_line);
+  if (is_on_mesh(settings)) {
+    ComplexScene mesh = read_complex_scene(std::move(settings));
+    take_over(mesh.scene);
+    return run(mesh, folder, std::move(resumed));
+  }
+  Scene scene = read_scene(std::move(settings));
+  take_over(scene);
   return run(scene, folder, std::move(resumed));
 }
 

@@ -133,6 +133,41 @@ TEST_CASE("angles on a mesh: the same rows from any representatives, and what wi
                  "winds around a hole of the mesh"));
 }
 
+TEST_CASE("a run on a mesh that ends at half of its steps and goes on is the whole run, to the bit") {
+  const Folder folder;
+  const auto scene =
+      GENERATE(as<std::string>(), "sphere --lattice.mesh=icosahedron:1",
+               "sphere --lattice.mesh=icosahedron:1 --lattice.time_steps=0.02,0.05,0.03", "asynchronous");
+  const std::string keys = " --output.every=3 --output.figures=off --run.steps=";
+  REQUIRE(delf_program(folder, "run " + scene + keys + "41 --out whole").code == 0);
+  REQUIRE(delf_program(folder, "run " + scene + keys + "20 --out out").code == 0);
+  const Ran finished = delf_program(folder, "resume out");
+  CHECK(finished.code == 2);
+  CHECK(contains(finished.err, "the run is finished, at row 20"));
+  CHECK(read(folder / "out/series.csv") != read(folder / "whole/series.csv"));
+  const Ran resumed = delf_program(folder, "resume out --run.steps=41");
+  CAPTURE(resumed.err);
+  REQUIRE(resumed.code == 0);
+  CHECK(read(folder / "out/series.csv") == read(folder / "whole/series.csv"));
+  CHECK(read(folder / "out/fields.h5") == read(folder / "whole/fields.h5"));
+}
+
+TEST_CASE("a mesh that has changed is not gone on with, and what is solved at once has no checkpoint") {
+  const Folder folder;
+  folder.write("square.txt", square + "cell 0 1 2\ncell 0 2 3\n");
+  REQUIRE(
+      delf_program(folder, "run sphere --lattice.mesh=square.txt --run.steps=4 --output.figures=off --out out").code ==
+      0);
+  folder.write("square.txt", "point 0 0\npoint 1 0\npoint 1 1.1\npoint 0 1\ncell 0 1 2\ncell 0 2 3\n");
+  const Ran moved = delf_program(folder, "resume out --run.steps=9");
+  CHECK(moved.code == 2);
+  CHECK(contains(moved.err, "is another mesh than the run began with"));
+  REQUIRE(delf_program(folder, "run static-kink --output.figures=off --out still").code == 0);
+  const Ran still = delf_program(folder, "resume still");
+  CHECK(still.code == 2);
+  CHECK(contains(still.err, "there is no checkpoint to resume from"));
+}
+
 TEST_CASE("a static kink has the energies of Peierls and Nabarro, between sites and on one") {
   const Folder folder;
   REQUIRE(delf_program(folder, "run static-kink --output.figures=off --out out").code == 0);

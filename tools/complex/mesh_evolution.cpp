@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "tools/complex/mesh_evolution.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "schemes/complex/asynchronous.hpp"
+#include "schemes/stepping/saved_state.hpp"
+#include "tools/complex/complex_commands.hpp"
+#include "tools/complex/row_steps.hpp"
+
+namespace delf {
+namespace {
+
+class AllSites final : public MeshEvolution {
+ public:
+  explicit AllSites(const ComplexScene& c)
+      : c_(c),
+        evolution_(*c.space, c.time_step(0), {c.scene.problem.tolerance, c.scene.problem.max_iterations}),
+        steps_(c) {}
+
+  void start() override {
+    steps_.start(evolution_);
+    note_step();
+  }
+  std::int64_t newest() const override { return evolution_.newest(); }
+  double time() const override { return evolution_.time(); }
+  void step() override {
+    steps_.step(evolution_);
+    note_step();
+  }
+  bool iterates() const override { return !evolution_.is_direct(); }
+  int iterations() const override { return evolution_.report().iterations; }
+  MeshRow row(std::int64_t row) override {
+    if (row < evolution_.newest()) return {row, 0, evolution_.row(1), evolution_.energy(), 0, 0};
+    return {row, evolution_.time(), evolution_.row(), evolution_.energy(), iterations(), evolution_.residual()};
+  }
+  void visit(SavedState& state) override {
+    evolution_.visit(state);
+    steps_.visit(state);
+    state("shortest step", shortest_), state("longest step", longest_);
+  }
+  void describe(MeshOutcome& o) const override {
+    if (!c_.time_steps.empty() || c_.step_control) o.shortest = shortest_, o.longest = longest_;
+    o.solve = evolution_.plan().describe() + (evolution_.is_direct() ? " (explicit)" : "");
+    o.solve_kind = evolution_.is_direct() ? "explicit" : "sparse";
+    o.bytes = evolution_.bytes();
+    if (const auto most = evolution_.largest_step(); most && *most < c_.scene.problem.time_step)
+      o.warnings.push_back(fmt::format("waves on this mesh grow at h = {:.4g} by linear theory; take h below {:.4g}",
+                                       c_.scene.problem.time_step, *most));
+  }
+
+ private:
+  void note_step() {
+    const double h = evolution_.last_step();
+    longest_ = std::max(longest_, h);
+    shortest_ = shortest_ == 0 ? h : std::min(shortest_, h);
+  }
+
+  const ComplexScene& c_;
+  SpaceEvolution evolution_;
+  RowSteps steps_;
+  double shortest_ = 0, longest_ = 0;
+};
+
+/// Row n is at n h, with h = scene.problem.time_step.
+class OwnSteps final : public MeshEvolution {
+ public:
+  explicit OwnSteps(const ComplexScene& c) : c_(c), evolution_(*c.space, cell_steps(c)) {}
+
+  void start() override { evolution_.start(c_.values(), c_.rates()); }
+  std::int64_t newest() const override { return newest_; }
+  double time() const override { return static_cast<double>(newest_) * c_.scene.problem.time_step; }
+  void step() override { ++newest_, evolution_.advance(time()); }
+  bool iterates() const override { return false; }
+  int iterations() const override { return 0; }
+  MeshRow row(std::int64_t row) override {
+    values_ = evolution_.values(time());
+    return {row, time(), values_, evolution_.energy(time()), 0, Outcome::unknown, evolution_.node_times()};
+  }
+  void visit(SavedState& state) override {
+    state("newest row", newest_);
+    evolution_.visit(state);
+  }
+  void describe(MeshOutcome& o) const override {
+    o.solve = "each cell by its own step, in the order of a priority queue (explicit)";
+    o.solve_kind = "explicit";
+    o.bytes = evolution_.bytes();
+    o.updates = evolution_.updates();
+  }
+
+ private:
+  const ComplexScene& c_;
+  AsynchronousEvolution evolution_;
+  std::int64_t newest_ = 0;
+  std::vector<double> values_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshEvolution> make_mesh_evolution(const ComplexScene& c) {
+  if (c.time == MeshTime::cells) return std::make_unique<OwnSteps>(c);
+  return std::make_unique<AllSites>(c);
+}
+
+std::vector<double> cell_steps(const ComplexScene& c) {
+  std::vector<double> steps;
+  for (int cell = 0; cell < c.space->mesh.cells(); ++cell)
+    steps.push_back(c.courant * shortest_edge(c.space->mesh, cell));
+  return steps;
+}
+
+}  // namespace delf

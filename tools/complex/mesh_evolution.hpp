@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "tools/complex/complex_scene.hpp"
+#include "tools/complex/mesh_summary.hpp"
+
+namespace delf {
+
+class SavedState;
+
+/// A row of a mesh, and what is said of it.
+struct MeshRow {
+  std::int64_t row = 0;
+  double time = 0;
+  std::span<const double> values;  ///< [i·d + a], until the next step
+  double energy = 0;
+  int iterations = 0;
+  double residual = 0;
+  std::span<const double> node_times = {};  ///< of asynchronous cells
+};
+
+/// How a field goes on over a mesh, row after row: with all sites at once, or with cells that take their own steps between
+/// rows.
+class MeshEvolution {
+ public:
+  virtual ~MeshEvolution() = default;
+  /// The first rows.
+  virtual void start() = 0;
+  virtual std::int64_t newest() const = 0;
+  virtual double time() const = 0;  ///< of the newest row
+  /// To the next row.
+  virtual void step() = 0;
+  /// Whether steps are solved by Newton's method, and how many iterations the last one took.
+  virtual bool iterates() const = 0;
+  virtual int iterations() const = 0;
+  /// The newest row; or row 0 where that is held still.
+  virtual MeshRow row(std::int64_t) = 0;
+  /// Saves or restores what the rest of the run depends on; what is restored needs no start.
+  virtual void visit(SavedState&) = 0;
+  /// How it is solved, and what it costs.
+  virtual void describe(MeshOutcome&) const = 0;
+};
+
+/// Of a scene whose time is rows or cells.
+std::unique_ptr<MeshEvolution> make_mesh_evolution(const ComplexScene&);
+
+}  // namespace delf

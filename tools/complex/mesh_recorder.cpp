@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "tools/complex/mesh_recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace delf {
+
+MeshRecorder::MeshRecorder(const ComplexScene& c, const std::filesystem::path& folder, MeshOutcome& outcome,
+                           const std::optional<Recorder::Written>& kept)
+    : c_(c), outcome_(outcome), film_(c) {
+  const std::filesystem::path series = folder / "series.csv";
+  if (kept) require_part(series, kept->series);
+  const std::int64_t expected = c.scene.every > 0 ? c.scene.steps / c.scene.every + 2 : 1;
+  if (c.scene.fields)
+    files_.emplace(c, folder, expected, c.time == MeshTime::cells, kept ? kept->fields : WrittenPart{});
+  if (kept) series_.emplace(series, kept->series);
+  else series_.emplace(series, std::vector<std::string>{});
+}
+
+void MeshRecorder::record(const MeshRow& r) {
+  Outcome& o = outcome_;
+  if (!c_.stencils && !std::isfinite(r.energy))
+    throw NotFinite(
+        fmt::format("row {}, t = {:.6g}: the energy is not finite; use smaller fields or steps", r.row, r.time));
+  if (c_.stencils && !std::ranges::all_of(r.values, [](double y) { return std::isfinite(y); }))
+    throw NotFinite("a value is not finite; use smaller data, or a finer complex");
+  if (o.records++ == 0) o.energy_initial = r.energy;
+  o.energy_final = r.energy;
+  const double error =
+      o.energy_initial == 0 ? Outcome::unknown : std::abs(r.energy - o.energy_initial) / std::abs(o.energy_initial);
+  if (!(error <= o.energy_error_max)) o.energy_error_max = error;
+  if (std::isfinite(r.residual)) o.residual_max = std::max(o.residual_max, r.residual);
+  else if (c_.time == MeshTime::cells) o.residual_max = r.residual;  // of asynchronous steps it is not measured
+  series_->append({r.row, r.time, r.energy, error, Outcome::unknown, Outcome::unknown, r.iterations, r.residual, {}});
+  if (files_) files_->append(r.time, r.values, r.node_times);
+  if (c_.scene.figures) film_.add(r.row, r.time, r.values);
+}
+
+Recorder::Written MeshRecorder::flush(bool sync) {
+  Recorder::Written written;
+  if (files_) written.fields = files_->flush(sync);
+  written.series = series_->flush(sync);
+  return written;
+}
+
+void MeshRecorder::visit(SavedState& state) {
+  if (files_) files_->visit(state);
+  film_.visit(state);
+}
+
+void MeshRecorder::close() {
+  series_->close();
+  if (files_) files_->close();
+}
+
+}  // namespace delf

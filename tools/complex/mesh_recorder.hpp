@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "tools/complex/mesh_evolution.hpp"
+#include "tools/complex/mesh_figures.hpp"
+#include "tools/complex/mesh_files.hpp"
+#include "tools/files/series_file.hpp"
+#include "tools/run/recorder.hpp"
+
+namespace delf {
+
+/// Where the recorded rows of a mesh go: series.csv; fields.h5 and the film for figures, if the scene wants them; and what
+/// the outcome says of energies and residuals.
+class MeshRecorder {
+ public:
+  /// With `kept`, the files of an earlier run are gone on with from there: see Recorder.
+  MeshRecorder(const ComplexScene&, const std::filesystem::path& folder, MeshOutcome&,
+               const std::optional<Recorder::Written>& kept = {});
+
+  void record(const MeshRow&);
+  /// Writes all buffered rows, and with `sync` waits until they are on the disk.
+  Recorder::Written flush(bool sync);
+  /// What is kept for figures and fields.xdmf.
+  void visit(SavedState&);
+  void close();
+  const MeshFilm& film() const { return film_; }
+
+ private:
+  const ComplexScene& c_;
+  MeshOutcome& outcome_;
+  MeshFilm film_;
+  std::optional<SeriesFile> series_;  ///< always there
+  std::optional<MeshFiles> files_;
+};
+
+}  // namespace delf
