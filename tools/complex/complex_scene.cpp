@@ -47,6 +47,7 @@ void refuse_unread(const Settings& settings, const TheoryEntry& theory, const Pa
   for (const Component& field : fields)
     known.insert({"exact." + field.name, "initial." + field.name, "initial." + field.name + "_t"});
   for (const Setting& s : settings.all()) {
+    if (s.key.starts_with("sweep.")) continue;  // of the command
     if (!known.contains(s.key))
       throw settings.error(s.key,
                            s.key.starts_with("exact.") || s.key.starts_with("initial.")

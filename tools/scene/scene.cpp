@@ -225,8 +225,9 @@ Scene read_scene(Settings given) {
   const Values values(settings);
   for (const Key& key : settings.all_keys()) values.check(key);  // in the order of the table, whatever reads them below
   if (const Setting* space = settings.find("lattice.space"); space && space->value == "complex")
-    throw settings.error("lattice.space",
-                         "works with run, plan, verify and convergence; use one of these, or another space");
+    throw settings.error(
+        "lattice.space",
+        "works with run, resume, plan, verify, sweep and convergence; use one of these, or another space");
   settings.keep_one_of("lattice.courant", "lattice.time_step", "give one of them, such as lattice.courant = 0.5");
   settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 100");
   try {

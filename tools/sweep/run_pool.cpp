@@ -19,6 +19,7 @@
 #include <fstream>
 #include <map>
 
+#include "tools/complex/complex_commands.hpp"
 #include "tools/failure.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
@@ -48,7 +49,8 @@ constexpr auto log_name = "run.log";
     _exit(static_cast<int>(ExitCode::system_failed));
   ExitCode code = ExitCode::done;
   try {
-    code = delf::run(run.scene, folder);
+    code = is_on_mesh(run.scene.settings) ? delf::run(read_complex_scene(run.scene.settings), folder)
+                                          : delf::run(run.scene, folder);
   } catch (const std::exception& error) {
     std::fflush(stdout);
     fmt::print(stderr, "{}\n", error_line(error));

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "lattice/text_parts.hpp"
+#include "tools/complex/complex_scene.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/sweep/swept_number.hpp"
@@ -104,6 +105,12 @@ void read_bisection(const Scene& scene, const Values& values, SweepRequest& requ
       SweepRequest::Bisection{*low, *high, values.real("sweep.accuracy"), values.maybe_real("sweep.level")};
 }
 
+/// A mesh is not kept: a run reads it again.
+Scene scene_of(Settings settings) {
+  return is_on_mesh(settings) ? std::move(read_complex_scene(std::move(settings)).scene)
+                              : read_scene(std::move(settings));
+}
+
 }  // namespace
 
 std::vector<std::string> swept_values(const Setting& s) {
@@ -132,7 +139,7 @@ SweptRun SweepRequest::run(const std::vector<std::string>& of_keys) const {
   otherwise("output.figures", "off");
   otherwise("output.checkpoint", "0");  // a run that is cut short is run again
   if (table) otherwise("output.fields", "off");
-  return {read_scene(file, settings), of_keys};
+  return {scene_of(read_settings(file, settings)), of_keys};
 }
 
 SweepRequest read_sweep_request(const fs::path& scene_file, const std::vector<Setting>& on_command_line) {
@@ -147,7 +154,7 @@ SweepRequest read_sweep_request(const fs::path& scene_file, const std::vector<Se
     if (values.size() > 1) several.emplace_back(s, std::move(values));
     else request.common.push_back(s);
   }
-  const Scene scene = read_scene(scene_file, first);
+  const Scene scene = scene_of(read_settings(scene_file, first));
   const Values values(scene.settings);
   const bool together = values.toggle("sweep.zip");
   if (const auto file = values.text("sweep.settings")) {

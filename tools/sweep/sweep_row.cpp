@@ -51,6 +51,9 @@ std::string fingerprint_of(const Scene& scene) {
   std::error_code none;
   if (scene.from_file())
     lines.push_back(fmt::format("{}", fs::last_write_time(scene.initial_file, none).time_since_epoch().count()));
+  if (const Setting* mesh = scene.settings.find("lattice.mesh"))  // which may be a file
+    if (const auto file = scene.settings.file().parent_path() / mesh->value; fs::is_regular_file(file, none))
+      lines.push_back(fmt::format("{}", fs::last_write_time(file, none).time_since_epoch().count()));
   std::sort(lines.begin() + 1, lines.end());
   // FNV-1a: h ← (h ⊕ byte) · 1099511628211
   std::uint64_t hash = 14695981039346656037u;

@@ -168,6 +168,24 @@ TEST_CASE("a mesh that has changed is not gone on with, and what is solved at on
   CHECK(contains(still.err, "there is no checkpoint to resume from"));
 }
 
+TEST_CASE("a sweep of scenes on a mesh is tabulated, and bad values are refused before it begins") {
+  const Folder folder;
+  const std::string scene =
+      "sphere --lattice.mesh=icosahedron:1 --run.until=2 --sweep.number=energy_error_max --out out";
+  const Ran ran = delf_program(folder, "sweep " + scene + " --lattice.courant=0.1,0.2");
+  CAPTURE(ran.out, ran.err);
+  REQUIRE(ran.code == 0);
+  const auto json = nlohmann::json::parse(read(folder / "out/sweep.json"));
+  CHECK(json["number"] == "energy_error_max");
+  std::vector<double> errors;
+  for (const char* courant : {"0.1", "0.2"})
+    errors.push_back(nlohmann::json::parse(
+        read(folder / ("out/runs/lattice.courant=" + std::string(courant)) / "summary.json"))["energy_error_max"]);
+  CHECK(errors[0] < errors[1]);
+  CHECK(lines(read(folder / "out/sweep.csv")).size() == 3);
+  CHECK(delf_program(folder, "sweep " + scene + " --lattice.courant=0.1,-1").code == 2);
+}
+
 TEST_CASE("a static kink has the energies of Peierls and Nabarro, between sites and on one") {
   const Folder folder;
   REQUIRE(delf_program(folder, "run static-kink --output.figures=off --out out").code == 0);
@@ -382,7 +400,7 @@ TEST_CASE("a scene on a mesh with an error is refused in one line") {
   refused("run sphere --lattice.mesh=icosahedron:99", "99 must be a whole number from 0 to 9");
   refused("run sphere --lattice.sites=10", "not applicable to lattice.space = complex");
   refused("run sphere '--theory.density=0.5*phi_t^2 - phi_x^4'", "is not quadratic in phi_x");
-  refused("sweep sphere --lattice.courant=0.3,0.4", "works with run, plan, verify and convergence");
+  refused("stability sphere", "works with run, resume, plan, verify, sweep and convergence");
   refused("convergence sphere --lattice.time_steps=0.1,0.2", "are not refined");
   refused("run sphere --lattice.time_steps=0.1,-1", "steps must be above 0");
   refused("run sphere --lattice.step_control=2", "has no effect without lattice.time_steps = reversible");

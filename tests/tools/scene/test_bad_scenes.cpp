@@ -55,7 +55,7 @@ TEST_CASE("what overflows, does not fit, or comes twice is named") {
       {"run soliton-bounce --mesh.monitor=0", "--mesh.monitor = 0: must be positive"},
       {"run wave-packet --initial.width=100", "does not fit on a circle of length 80; choose a width of at most 20"},
       {"run kink --out one --out two", "--out two: is a second one, after --out one"},
-      {"stability static-kink", "lattice.space = complex: works with run, plan, verify and convergence"},
+      {"stability static-kink", "lattice.space = complex: works with run, resume, plan, verify, sweep and convergence"},
       {"run cr.ini", "cr.ini: its lines end in CR alone"},
   }));
   std::string scene = small_scene();
@@ -149,7 +149,8 @@ TEST_CASE("a file that is no scene is refused in one line") {
   check_refused(delf_program(folder, "run colision"),
                 {"colision: no such file or shipped scene; did you mean collision?"});
   check_refused(delf_program(folder, "run collision.ini"), {"did you mean collision?"});
-  check_refused(delf_program(folder, "run qwertyuiop"), {"known: asynchronous, beam, born-infeld, boussinesq, breather"});
+  check_refused(delf_program(folder, "run qwertyuiop"),
+                {"known: asynchronous, beam, born-infeld, boussinesq, breather"});
   check_refused(delf_program(folder, "run ''"), {"no such file"});
 }
 
