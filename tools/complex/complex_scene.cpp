@@ -25,15 +25,16 @@ constexpr double usual_records = 100;
 constexpr std::string_view reversible = "reversible";  // of lattice.time_steps: chosen by the field
 
 /// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
-const std::set<std::string, std::less<>> read_keys{
-    "theory.name",          "theory.fibre",      "lattice.space",      "lattice.mesh",
-    "lattice.time",         "lattice.courant",   "lattice.time_step",  "lattice.time_steps",
-    "lattice.step_control", "boundary.mesh",     "scheme.tolerance",   "scheme.max_iterations",
-    "initial.state",        "run.until",         "run.steps",          "run.seed",
-    "output.every",         "output.checkpoint", "output.fields",     "output.figures",     "output.format",
-    "output.titles",        "verify.variations", "verify.moments",     "verify.tolerance",
-    "verify.fault",         "scheme.method",     "convergence.levels", "convergence.order",
-    "convergence.agreement"};
+const std::set<std::string, std::less<>> read_keys{"theory.name",        "theory.fibre",       "lattice.space",
+                                                   "lattice.mesh",       "lattice.time",       "lattice.courant",
+                                                   "lattice.time_step",  "lattice.time_steps", "lattice.step_control",
+                                                   "boundary.mesh",      "scheme.tolerance",   "scheme.max_iterations",
+                                                   "initial.state",      "run.until",          "run.steps",
+                                                   "run.seed",           "output.every",       "output.checkpoint",
+                                                   "output.fields",      "output.figures",     "output.format",
+                                                   "output.titles",      "verify.variations",  "verify.moments",
+                                                   "verify.tolerance",   "verify.fault",       "scheme.method",
+                                                   "convergence.levels", "convergence.order",  "convergence.agreement"};
 
 /// Keys of time, which lattice.time = none has none of.
 const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "lattice.time_step", "lattice.time_steps",
