@@ -94,15 +94,18 @@ TEST_CASE("a wave on a mesh runs, is planned and verified through the program") 
 
 TEST_CASE("steps that the field chooses run, end by time, and run again and back to the same") {
   const Folder folder;
-  const std::string scene = "sphere --lattice.mesh=icosahedron:1 --lattice.time_steps=reversible --run.until=4 ";
-  REQUIRE(delf_program(folder, "run " + scene + "--output.figures=off --out out").code == 0);
+  const std::string scene = "sphere --lattice.mesh=icosahedron:1 --lattice.time_steps=reversible ";
+  REQUIRE(delf_program(folder, "run " + scene + "--run.until=4 --output.figures=off --out out").code == 0);
   const auto json = summary(folder);
   CHECK(json["time"].get<double>() >= 4);
   CHECK(json["time"].get<double>() < 4 + json["time_step_max"].get<double>());
   CHECK(json["time_step_max"] > 1.3 * json["time_step_min"].get<double>());
   REQUIRE(delf_program(folder, "run out/scene.ini --output.figures=off --out again").code == 0);
   CHECK(read(folder / "again/series.csv") == read(folder / "out/series.csv"));
-  const Ran verified = delf_program(folder, "verify " + scene + "--out v");
+  REQUIRE(delf_program(folder, "run " + scene + "--run.until=2 --output.figures=off --out short").code == 0);
+  REQUIRE(delf_program(folder, "resume short --run.until=4").code == 0);
+  CHECK(nlohmann::json::parse(read(folder / "short/summary.json"))["time"] == json["time"]);
+  const Ran verified = delf_program(folder, "verify " + scene + "--run.until=4 --out v");
   CAPTURE(verified.out, verified.err);
   CHECK(verified.code == 0);
   for (const char* part : {"time reversal", "form of the first step", "change of the energy", "not symplectic"})
