@@ -131,7 +131,7 @@ fs::path find_initial_file(const Settings& settings, const Values& values) {
       if (found.string().find_first_of("#\n") == std::string::npos) return found;
       throw settings.error("initial.file", "a path in a scene holds neither # nor line breaks; rename it");
     }
-  throw settings.error("initial.file", "no such file, neither beside the scene nor here; check the path");
+  throw settings.error("initial.file", "no such file, neither beside the scene nor here; check the path (# begins a comment)");
 }
 
 std::optional<StartRule> read_start(const Settings& settings, const Values& values, const Problem& problem) {
