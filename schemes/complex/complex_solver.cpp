@@ -120,16 +120,15 @@ class ComplexSolver::Level {
         E = residual(y);
         // Armijo's rule on |E|, until rounding is all that is left of it
         if (E.norm() <= (1 - 1e-4 * share) * size || share < 1e-6 || relative(y, change) <= rounding) break;
-        if (share == 1 && size <= rounding_of_residual(before, y)) {
-          report.undetermined = relative(y, change);
-          put(before, y);
-          return report;
-        }
         // Along a valley, as a kink's place is one, |E| rises by its curvature, and yet the next correction is shorter:
         // the natural monotonicity test, Deuflhard, Newton Methods for Nonlinear Problems (2004), section 3.3.
         if (correction(E).norm() <= (1 - share / 2) * change.norm()) break;
       }
       report.shortest = std::min(report.shortest, share);
+      if (!direct_ && E.norm() > size / 2 && relative(y, change) > rounding && is_rounding(before, y, E, size)) {
+        report.undetermined = relative(y, change);
+        return report;
+      }
       size = E.norm();
       const double last = report.iterations == 1 ? 1.0 : report.correction;
       report.correction = relative(y, share * change);
@@ -230,10 +229,18 @@ class ComplexSolver::Level {
     return single_ ? Vector(E.cwiseQuotient(diagonal_)) : Vector(solver_.solve(E));
   }
 
-  /// What |E| cannot be less than, since values have 53 bits: 8 ε |Σ_j |∂E_i/∂y_j| |y_j||. If Newton's method stalls below
-  /// it, the matrix is nearly singular: a static kink on a fine lattice may stand anywhere.
-  double rounding_of_residual(const std::vector<double>& unknowns, std::span<double> y) const {
-    put(unknowns, y);
+  /// Whether a step from `before`, with |E| = size, to y has come to where |E| is rounding: from a thousand times that, a
+  /// step of Newton's method would end at it, unless the matrix is nearly singular. A static kink on a fine lattice may
+  /// stand anywhere. Then y is the better one of both.
+  bool is_rounding(const std::vector<double>& before, std::span<double> y, const Vector& E, double size) const {
+    const double after = E.norm(), least = std::min(size, after);
+    const std::vector<double> better = after <= size ? values(y) : before;
+    if (!(least <= 1e3 * rounding_of_residual(y))) return false;
+    put(better, y);
+    return true;
+  }
+  /// What |E| cannot be less than, since values have 53 bits: 8 ε |Σ_j |∂E_i/∂y_j| |y_j||.
+  double rounding_of_residual(std::span<const double> y) const {
     constexpr double few = 8 * std::numeric_limits<double>::epsilon();
     Vector sum =
         matrix_.cwiseAbs() * Eigen::Map<const Vector>(y.data(), static_cast<Eigen::Index>(y.size())).cwiseAbs();
