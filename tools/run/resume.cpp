@@ -100,6 +100,8 @@ ExitCode resume(const fs::path& folder, const std::vector<Setting>& on_command_l
   Settings settings = read_settings(folder / "scene.ini", on_command_line);
   if (is_on_mesh(settings)) {
     ComplexScene mesh = read_complex_scene(std::move(settings));
+    // Where the field chooses the steps their number is a guess, and the time tells whether the run is over.
+    if (mesh.until) mesh.scene.steps = std::max(mesh.scene.steps, head.row + 1);
     take_over(mesh.scene);
     return run(mesh, folder, std::move(resumed));
   }
