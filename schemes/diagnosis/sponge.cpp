@@ -9,6 +9,7 @@
 #include "schemes/diagnosis/findings.hpp"
 #include "schemes/diagnosis/least_squares.hpp"
 #include "schemes/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/sampled_rows.hpp"
 
 namespace delf {
 namespace {
@@ -23,23 +24,15 @@ constexpr Quotient quotients[] = {{"(y₊ − y₋)/2h", 0, 2}, {"(y − y₋)/h
 /// γ of each site by E = hkm γ φ_t: the friction that makes its equations hold in all rows; nothing if none does, or few
 /// sites need any.
 std::optional<std::vector<double>> friction(const Evidence& e, const std::vector<int>& sites, const Quotient& by) {
-  constexpr std::int64_t most = 40;
-  const std::int64_t count = std::min(most, e.rows - 2);
   const auto S = sites.size();
-  std::vector<Eigen::VectorXd> target(S, Eigen::VectorXd(count)), step(target);
-  double largest = 0;
-  std::vector<LatticeSystem::Value> E;
-  for (std::int64_t n = 0; n < count; ++n) {
-    const std::int64_t j = 1 + (e.rows - 3) * n / std::max<std::int64_t>(count - 1, 1);
-    const std::vector<std::vector<double>> rows{e.row(j - 1), e.row(j), e.row(j + 1)};
-    largest = std::max(largest, largest_of(rows));
-    e.system.equations(e.system.window(j - 1, rows, e.turn), j, E);
+  std::vector<Eigen::VectorXd> target(S, Eigen::VectorXd(sampled_rows(e))), step(target);
+  const double largest = look_at_sampled_rows(e, e.turn, [&](std::int64_t n, const auto& rows, const auto& E) {
     for (std::size_t s = 0; s < S; ++s) {
       const auto i = static_cast<std::size_t>(sites[s]);
       target[s][n] = E[i].sum;
       step[s][n] = rows[static_cast<std::size_t>(by.to)][i] - rows[static_cast<std::size_t>(by.from)][i];
     }
-  }
+  });
   const double allowed = 4 * e.tolerance * scale_of_terms(e.system, largest), h = e.system.time_step();
   std::vector<double> gamma;
   int explained = 0;

@@ -8,6 +8,7 @@
 
 #include "schemes/diagnosis/least_squares.hpp"
 #include "schemes/diagnosis/own_equations.hpp"
+#include "schemes/diagnosis/sampled_rows.hpp"
 
 namespace delf {
 
@@ -22,23 +23,16 @@ std::string wall_law(const Evidence& e, bool left) {
     slope = c.value;
   }
   if (slope == 0) return {};
-  constexpr std::int64_t most = 40;
-  const std::int64_t count = std::min(most, e.rows - 2);
+  const std::int64_t count = sampled_rows(e);
   Eigen::VectorXd target(count);
   std::vector<Eigen::VectorXd> columns(2, Eigen::VectorXd(count));
   const double k = system.lattice().space_step(), h = system.time_step();
-  double largest = 0;
-  std::vector<LatticeSystem::Value> E;
-  for (std::int64_t n = 0; n < count; ++n) {
-    const std::int64_t j = 1 + (e.rows - 3) * n / std::max<std::int64_t>(count - 1, 1);
-    const std::vector<std::vector<double>> rows{e.row(j - 1), e.row(j), e.row(j + 1)};
-    largest = std::max(largest, largest_of(rows));
+  const double largest = look_at_sampled_rows(e, 0, [&](std::int64_t n, const auto& rows, const auto& E) {
     const auto at = [&](std::size_t row, int i) { return rows[row][static_cast<std::size_t>(i)]; };
-    system.equations(system.window(j - 1, rows, 0), j, E);
     const double ghost = at(1, beyond) - E[static_cast<std::size_t>(end)].sum / slope;
     target[n] = (at(1, inside) - ghost) / (2 * k);
     columns[0][n] = at(1, end), columns[1][n] = (at(2, end) - at(0, end)) / (2 * h);
-  }
+  });
   const double allowed = 100 * e.tolerance * scale_of_terms(system, largest) / std::abs(slope) / (2 * k);
   const auto text = [](double value) { return fmt::format("{:.6g}", value); };
   // The simplest that holds.

@@ -47,6 +47,17 @@ struct MeshMonitor {
     const T square = size * size;
     return square * (1.0 + steep * rise / (square + (beta * beta) * rise));
   }
+  /// G = F(right) − F(left) of the cells on both sides of a site, from the d fields and X at three sites.
+  template <class T>
+  T change(std::span<const T> left, std::span<const T> centre, std::span<const T> right) const {
+    return (*this)(centre, right) - (*this)(left, centre);
+  }
+  /// The same of sites one after the other.
+  template <class T>
+  T change(std::span<const T> q) const {
+    const std::size_t n = q.size() / 3;
+    return change(q.subspan(0, n), q.subspan(n, n), q.subspan(2 * n, n));
+  }
 };
 
 /// Neighbouring cells have the same share, G = F(right) − F(left) = 0, with a multiplier λ at their common site: −λG, as in
@@ -68,7 +79,7 @@ struct Equidistribution {
   T operator()(std::span<const T> y, const Cell&) const {
     const std::size_t n = static_cast<std::size_t>(d) + 1;
     const auto left = y.subspan(0, n), centre = y.subspan(n, n), right = y.subspan(2 * n + 1, n);
-    return -(y[2 * n] * (monitor(centre, right) - monitor(left, centre)));
+    return -(y[2 * n] * monitor.change(left, centre, right));
   }
 };
 
@@ -91,8 +102,7 @@ struct EquidistributionRate {
     q.resize(3 * n);
     for (std::size_t i = 0; i < 3 * n; ++i) q[i].value = y[i], q[i].d[0] = y[3 * n + i];
     const std::span<const Along> all(q);
-    const Along G = monitor(all.subspan(n, n), all.subspan(2 * n, n)) - monitor(all.subspan(0, n), all.subspan(n, n));
-    return -(y[6 * n] * G.d[0]);
+    return -(y[6 * n] * monitor.change(all).d[0]);
   }
 };
 
@@ -118,9 +128,7 @@ struct DelayedEquidistribution {
   template <class T>
   T operator()(std::span<const T> y, const Cell& cell) const {
     const std::size_t n = static_cast<std::size_t>(d) + 1;
-    const auto G = [&](std::span<const T> q) -> T {
-      return monitor(q.subspan(n, n), q.subspan(2 * n, n)) - monitor(q.subspan(0, n), q.subspan(n, n));
-    };
+    const auto G = [&](std::span<const T> q) -> T { return monitor.change(q); };
     const auto lower = y.subspan(0, 3 * n), upper = y.subspan(3 * n, 3 * n);
     T drive(0.0);
     if (at_mean) {

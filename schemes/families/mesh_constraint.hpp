@@ -28,7 +28,7 @@ class MeshConstraint final : public MappedFamily {
   const Facts& facts() const { return facts_; }
   /// G of the site in the middle of three, from (φ, X) at each.
   double G(std::span<const double> left, std::span<const double> centre, std::span<const double> right) const {
-    return facts_.monitor(centre, right) - facts_.monitor(left, centre);
+    return facts_.monitor.change(left, centre, right);
   }
 
   /// How far the fields of a row, y[i·stride + a], are from having no mesh, as a part of the length: cells with

@@ -23,7 +23,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 class StartOfMesh {
  public:
   StartOfMesh(const Lattice& lattice, int d, const Profile& profile)
-      : N_(lattice.sites()), d_(d), profile_(profile), point_(static_cast<std::size_t>(d)) {}
+      : N_(lattice.sites()), profile_(profile), point_(static_cast<std::size_t>(d)) {}
 
   /// G at the sites between the walls; its derivatives by their X, and what it gains by φ_t at sites that stand still.
   void evaluate(const MeshMonitor& monitor, const Vector& X, Vector& G, Sparse& by_X, Vector& by_t) {
@@ -43,10 +43,7 @@ class StartOfMesh {
         }
         q.push_back(moves ? Number::variable(X[at], l) : Number(X[at]));
       }
-      const std::size_t n = static_cast<std::size_t>(d_) + 1;
-      const std::span<const Number> all(q);
-      const Number g =
-          monitor(all.subspan(n, n), all.subspan(2 * n, n)) - monitor(all.subspan(0, n), all.subspan(n, n));
+      const Number g = monitor.change(std::span<const Number>(q));
       G[i - 1] = g.value, by_t[i - 1] = g.d[3];
       for (int l = 0; l < 3; ++l)
         if (const int at = i - 1 + l; at > 0 && at + 1 < N_)
@@ -81,7 +78,7 @@ class StartOfMesh {
   }
 
  private:
-  int N_, d_;
+  int N_;
   const Profile& profile_;
   std::vector<FieldPoint> point_;
 };

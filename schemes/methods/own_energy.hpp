@@ -46,7 +46,6 @@ double newest_own_energy(const OwnEnergy&, const Simulation&);
 std::optional<OwnEnergy> quadratic_invariant(const LatticeSystem&, int winding);
 inline constexpr const char* quadratic_invariant_formula =
     "E = v'(B - 2A)v/8h - m'(B + 2A)m/2h with v = y+ - y, m = (y + y+)/2, A y+ + B y + A'y- the linear equations of "
-    "the "
-    "scheme itself; kept to round-off";
+    "the scheme itself; kept to round-off";
 
 }  // namespace delf

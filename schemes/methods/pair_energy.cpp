@@ -19,8 +19,7 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr const char* formula =
     "H(q, p) = p'p/2km - k sum l(q, 0, D), on the pairs of the scheme's own order, p of its own Legendre transform: "
-    "kept "
-    "to the order of the steps";
+    "kept to the order of the steps";
 
 /// hk Σ ℓ(φ, 0, φ_x) of one row, over the points of the table of space, at walls too.
 class RowAction {
