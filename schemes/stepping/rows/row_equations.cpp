@@ -325,7 +325,9 @@ void RowEquations::right_side(const RowTable& table, std::int64_t n, int a, Taki
         .evaluate(table.data(), layout_.at(from + half), layout_.at(to), 2 * lanes, w);
 }
 
-void RowEquations::wall_sites(const RowTable& table, std::int64_t n, Taking taking, double* const* w) const {
+void RowEquations::right_sides(const RowTable& table, std::int64_t n, Taking taking, int from, int to,
+                               double* const* w) const {
+  for (int a = 0; a < d_; ++a) right_side(table, n, a, taking, from, to, w[a]);
   for (const SiteEquation& special : equations_.exceptional) {
     const double E = value_at(special, table, n, &taking, nullptr);
     for (int slot : layout_.slots_of(special.site)) w[special.component][slot] = -E;

@@ -79,7 +79,9 @@ class RowEquations {
   };
   /// The right side of component a, times the solver's scale, for the packs from … to, into w.
   void right_side(const RowTable&, std::int64_t n, int a, Taking, int from, int to, double* w) const;
-  /// The same as a sum of rows, for all packs; null for bricks, whose packs take turns.
+  /// Of all components, w[a], and at walls.
+  void right_sides(const RowTable&, std::int64_t n, Taking, int from, int to, double* const* w) const;
+  /// Of a component as a sum of rows, for all packs; null for bricks, whose packs take turns.
   const RowSum* right_side(int a, Taking taking) const { return bricks_ ? nullptr : &sum_of(a, 0, taking); }
   /// The prediction of number 0 of a source row's ring.
   const RowSum& prediction(const SourceRow& row, int predicted_from) const {
@@ -89,9 +91,8 @@ class RowEquations {
   double weight_of(const SourceRow&) const;
   /// The step reads rows n and v_n alone, and the source terms at row n + 1 nothing before row n.
   bool reads_newest_alone() const;
-  /// Replaces it near walls, where the equations are others.
+  /// Near them the equations are others.
   bool has_walls() const { return !equations_.exceptional.empty(); }
-  void wall_sites(const RowTable&, std::int64_t n, Taking, double* const* w) const;
 
   /// g_c of a group of a family for the packs from … to, of the anchors `back` rows before the newest: out[c], where
   /// pack v stands at layout.at(v).

@@ -12,11 +12,12 @@
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
-#include "schemes/stepping/contraction.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/newton.hpp"
+#include "schemes/stepping/rows/kept_rows.hpp"
 #include "schemes/stepping/rows/predictor.hpp"
 #include "schemes/stepping/rows/row_team.hpp"
+#include "schemes/stepping/rows/step_tolerance.hpp"
 #include "schemes/stepping/rows/wrapped_differences.hpp"
 #include "schemes/stepping/slab_stepper.hpp"
 
@@ -51,27 +52,21 @@ struct RowStepper::Impl {
   const RowLayout layout;
   RowTable table;
   RowEquations equations;
+  KeptRows kept;
   Predictor predictor;
   std::vector<std::unique_ptr<Sweeps>> sweeps;  ///< of each component; none: the solver takes whole rows
-  std::optional<Contraction> contraction;
+  std::optional<StepTolerance> tolerance;  ///< if equations iterate
   std::optional<RowTeam> team;
-  std::vector<double> gains, changes;  ///< of each source row: what a change of 1 changes y by, at most; largest |δ|
-  double gain = 0;                     ///< the same for source terms whose weights in an equation sum to 1
-  RowBuffer work;                      ///< right sides, which solutions take the place of
-  int strip = 0, lag = 0;              ///< packs; and how many the update stays behind right sides
+  std::vector<double> changes;  ///< of each source row: the largest |δ|
+  RowBuffer work;               ///< right sides, which solutions take the place of
+  int strip = 0, lag = 0;       ///< packs; and how many the update stays behind right sides
   bool has_local = false, forms_directly = false, solves_whole = true, sweeps_along = false, goes_in_place = false;
 
-  std::int64_t n = -1;        ///< newest row
-  std::int64_t started = -1;  ///< newest row of the start: the increment to the row before it is not known
-  int known = 0;              ///< newest rows that are there
   int past_sources = 0;       ///< rows of source terms that are there before row n + 1
   int source_rows_there = 0;  ///< the same as predictions count them
   int iterations = 0;
-  Continued continued = Continued::no;  ///< of the last step
-  double largest = 0, largest_before = 0, span = 0, contracts_by = -1;
-  // Steps in place are written over the newest row; the row before the first of them is kept.
-  std::vector<double*> spare;
-  std::int64_t kept_row = -1;
+  Continued continued = Continued::no;     ///< of the last step
+  double largest = 0, largest_before = 0;  ///< |y| of row n, and of the row before
 
   Impl(const LatticeSystem& s, const SolvePlan& p, const StepOptions& o)
       : system(s),
@@ -82,13 +77,13 @@ struct RowStepper::Impl {
         most_rows(Predictor::rows_for(o.seed_order, s.lattice().sites())),
         layout(s.lattice(), std::max(1, s.width()), s.placement() == Placement::brick_wall ? 2 : 1),
         equations(s, p, layout, table, history, most_rows),
+        kept(s, layout, equations, table, history, o.turn),
         predictor(equations, layout, most_rows) {
     if (d > static_cast<int>(most_components)) throw NoConvergence("rows of so many components go slab by slab");
     choose_strips();
     if (!equations.iterates()) return;
-    contraction.emplace(system, plan);
-    find_gains();
-    changes.assign(gains.size(), 0.0);
+    tolerance.emplace(system, plan, equations, layout, table, options);
+    changes.assign(tolerance->gains().size(), 0.0);
   }
 
   void choose_strips() {
@@ -125,6 +120,8 @@ struct RowStepper::Impl {
     goes_in_place = false;
   }
 
+  std::int64_t n() const { return kept.newest(); }
+
   int longest_strip() const { return strip == long_strip ? 2 * strip : strip; }
 
   // ---- One pass over the row, strip by strip.
@@ -147,7 +144,7 @@ struct RowStepper::Impl {
     const SourceRow& source = equations.sources()[first];
     for (int c = 0; c < source.outputs; ++c)
       out[static_cast<std::size_t>(c)] = rows[equations.sources()[first + static_cast<std::size_t>(c)].ring.row(back)];
-    equations.evaluate(rows, n, source, back, from, to, out.data());
+    equations.evaluate(rows, n(), source, back, from, to, out.data());
   }
 
   /// The same in whole rows, with their halos.
@@ -216,8 +213,8 @@ struct RowStepper::Impl {
         const int end = std::min(to, begin + short_strip);
         Pointers out;
         for (int c = 0; c < source.outputs; ++c) out[static_cast<std::size_t>(c)] = scratch[c] - layout.at(begin);
-        equations.evaluate(rows, n, source, 0, begin, end, out.data());
-        const int own = source.stride == 2 ? begin + static_cast<int>((begin + n + source.newest) & 1) : begin;
+        equations.evaluate(rows, n(), source, 0, begin, end, out.data());
+        const int own = source.stride == 2 ? begin + static_cast<int>((begin + n() + source.newest) & 1) : begin;
         for (int c = 0; c < source.outputs; ++c) {
           const std::size_t s = first + static_cast<std::size_t>(c);
           const SourceRow& one = equations.sources()[s];
@@ -235,12 +232,6 @@ struct RowStepper::Impl {
   RowEquations::Taking taking(Kind kind) const {
     if (kind == Kind::correction) return {0, true};
     return {equations.iterates() && source_rows_there > 0 ? predictor.order() : 0, false};
-  }
-
-  /// Right sides of some packs, at `w`.
-  void right_sides(const RowTable& rows, Kind kind, int from, int to, double* const* w) const {
-    for (int a = 0; a < d; ++a) equations.right_side(rows, n, a, taking(kind), from, to, w[a]);
-    if (equations.has_walls()) equations.wall_sites(rows, n, taking(kind), w);
   }
 
   /// The strips of the packs from … to, of which those of a thread are one part. `compares`: source terms are evaluated at
@@ -267,7 +258,7 @@ struct RowStepper::Impl {
       if (there.last > compared.last) compare(rows, kind, compared.last, there.last);
       compared = {std::min(there.first, compared.first), std::max(there.last, compared.last)};
     };
-    const bool is_direct = forms_directly && spare.empty();
+    const bool is_direct = forms_directly && !kept.in_place();
     const auto finish = [&](PackRange packs) {
       if (packs.first >= packs.last) return;
       for (int a = 0; a < d; ++a) {
@@ -283,7 +274,7 @@ struct RowStepper::Impl {
       const PackRange last = sweeps[0]->warm_up();
       window(last.first);
       if (kind == Kind::step) find_sources(rows, local, last.first, last.last);
-      right_sides(rows, kind, last.first, last.last, w.data());
+      equations.right_sides(rows, n(), taking(kind), last.first, last.last, w.data());
     } else {
       window(from);
     }
@@ -298,9 +289,9 @@ struct RowStepper::Impl {
       end = to - end < 2 * strip && strip == long_strip ? to : std::min(to, end + strip);
       if (kind == Kind::step) find_sources(rows, local, strip_begin, end);
       const bool forms_on_the_way = is_direct || (sweeps_along && equations.right_side(0, {}));
-      if (!forms_on_the_way) right_sides(rows, kind, strip_begin, end, w.data());
+      if (!forms_on_the_way) equations.right_sides(rows, n(), taking(kind), strip_begin, end, w.data());
       if (sweeps.empty()) {
-        equations.solver(n).solve(w.data());
+        equations.solver(n()).solve(w.data());
         for (int a = 0; a < d; ++a) layout.copy_overlaps(w[static_cast<std::size_t>(a)]);
         finish({from, to});
         break;
@@ -396,7 +387,7 @@ struct RowStepper::Impl {
     }
     if (!equations.iterates()) return;
     if (source_rows_there == 0) start_from_straight_line();
-    else if (predictor.is_due(n)) choose_order();
+    else if (predictor.is_due(n())) choose_order();
   }
   /// Where no past source terms are there: those at y_n + v_n.
   void start_from_straight_line() {
@@ -412,88 +403,11 @@ struct RowStepper::Impl {
       if (equations.sources()[s].component == 0 && equations.sources()[s].reads_unknown) evaluate_rows(s);
   }
   void choose_order() {
-    find_span();
-    predictor.choose(table, n, source_rows_there, gains, contraction_now(), share_of_tolerance() * allowed(largest),
-                     system.time_step());
+    tolerance->see_span(table);
+    predictor.choose(table, n(), source_rows_there, tolerance->gains(), tolerance->contraction_now(largest),
+                     tolerance->enough(largest, largest), system.time_step());
   }
-  void find_span() {
-    span = 0;
-    for (int a = 0; a < d; ++a) {
-      const double* const y = table[equations.y().row(1, a)];
-      const double some = y[layout.slot(0)];
-      Pack above(0.0), below(0.0);
-      for (int p = 0; p < layout.packs(); ++p) {
-        const Pack difference = Pack::load(y + layout.at(p)) - some;
-        above = max_or_nan(difference, above), below = max_or_nan(-difference, below);
-      }
-      span = std::max(span, max_or_nan(above) + max_or_nan(below));
-    }
-  }
-
-  /// What the tolerance allows: relative to what the field spans, for where it has drifted to says nothing, but not
-  /// below what rounding leaves at its size.
-  double allowed(double size) const {
-    const double spanned = span > 0 ? std::min(span, size) : size;
-    return std::max(options.tolerance * spanned, 4 * round_off * size);
-  }
-  /// What is left to a prediction has the same sign step after step, and moves the energy: over 5000 collisions (N = 255,
-  /// h = k/8, tolerance 6e-8) by 1e-4 of it where all of the tolerance was, within what the exact root does with this
-  /// share. The smallest tolerances ask for all that rounding allows: what is left then no longer shrinks.
-  double share_of_tolerance() {
-    constexpr double left_to_predictions = 0.01;
-    return options.tolerance >= smallest_estimated ? left_to_predictions : std::min(contraction_now(), 1.0) / 64;
-  }
-  /// By which one more iteration's change would be less.
-  double contraction_now() {
-    if (contracts_by < 0 || contraction->is_outgrown(largest))
-      contracts_by = contraction->next_change(largest, 1, gain);
-    return contracts_by;
-  }
-
-  bool is_stiff() {
-    if (!equations.iterates()) return false;
-    if (contraction->is_outgrown(largest)) contracts_by = -1;
-    return contraction->is_stiff(largest);
-  }
-
-  /// How y answers to a change of 1 in a source term: exact on a circle, where one impulse shows it. In the middle of
-  /// an interval it is near enough: the tolerance is tested by it, and the change itself is what ends an iteration.
-  void find_gains() {
-    gain = 0;
-    for (const SourceRow& source : equations.sources()) {
-      gains.push_back(0);
-      if (!source.reads_unknown) continue;
-      double* const delta = table[source.change];
-      // Two sites in the middle: a source term at a wall, or between bricks, is read by no equation.
-      for (const SourceRow& other : equations.sources())
-        if (other.reads_unknown) std::fill_n(table[other.change], layout.doubles(), 0.0);
-      for (const int site : {layout.sites() / 2 - 1, layout.sites() / 2}) {
-        std::fill_n(delta, layout.doubles(), 0.0);
-        for (const int slot : layout.slots_of(site)) delta[slot] = 1;
-        layout.fill_halo(delta);
-        Pointers w;
-        RowBuffer memory(layout, d);
-        for (int a = 0; a < d; ++a) w[static_cast<std::size_t>(a)] = memory.row(a);
-        right_sides(table, Kind::correction, 0, layout.packs(), w.data());
-        equations.solver(n).solve(w.data());
-        std::vector<double> sites(static_cast<std::size_t>(layout.sites()));
-        for (int a = 0; a < d; ++a) {
-          layout.gather(w[static_cast<std::size_t>(a)], sites);
-          double sum = 0;
-          for (const double x : sites) sum += std::abs(x);
-          gains.back() = std::max(gains.back(), sum);
-        }
-      }
-      gain = std::max(gain, gains.back() / equations.weight_of(source));
-      std::fill_n(delta, layout.doubles(), 0.0);
-    }
-  }
-  /// What the changes of source terms would change y by, at most.
-  double effect_of_changes() const {
-    double effect = 0;
-    for (std::size_t s = 0; s < gains.size(); ++s) effect += gains[s] * changes[s];
-    return effect;
-  }
+  bool is_stiff() { return tolerance && tolerance->is_stiff(largest); }
 
   /// The new row, beside the old one or over it. False if it could not be solved for; `continued` then says why.
   bool solve_step() {
@@ -505,9 +419,9 @@ struct RowStepper::Impl {
     double value = max_or_nan(found);
     if (overflowed(value)) return set_largest(value);
     if (!iterates) return set_largest(value);
-    const double by = contraction_now(),
-                 enough = share_of_tolerance() * allowed(std::max({value, largest, largest_before}));
-    double effect = effect_of_changes();
+    const double by = tolerance->contraction_now(largest),
+                 enough = tolerance->enough(std::max({value, largest, largest_before}), largest);
+    double effect = tolerance->effect_of(changes);
     for (iterations = 1; !(effect <= enough);) {
       if (!(effect < 1e100)) return give_up(Continued::slow);
       if (iterations >= options.max_iterations) return give_up(Continued::out_of_iterations);
@@ -520,7 +434,7 @@ struct RowStepper::Impl {
       if (is_last) break;
       ++iterations;
       const double before = effect;
-      effect = effect_of_changes();
+      effect = tolerance->effect_of(changes);
       // Changes that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
       if (iterations >= 3 && effect > 0.5 * before) {
         if (effect <= 64 * round_off * std::max({value, largest, largest_before})) break;
@@ -554,17 +468,17 @@ struct RowStepper::Impl {
 
   /// Where the fixed point does not contract: the root followed from a small time step by full Newton steps.
   void follow_root() {
-    const Window past = window(history);
+    const Window past = kept.window(history);
     const NewtonResult result = solve_slab(system, plan, past, options.tolerance, options.max_iterations);
     iterations += result.iterations;
     if (!result.converged)
       throw NoConvergence(fmt::format(
           "step {}, t = {:.6g}: the implicit equations were not solved: {}, and the root could not be followed from a "
           "small time step by full Newton steps; {}",
-          n + 1, static_cast<double>(n + 1) * system.time_step(), in_words(continued),
+          n() + 1, static_cast<double>(n() + 1) * system.time_step(), in_words(continued),
           remedy_for(options.max_iterations)));
-    set_row(0, result.row);
-    find_increment(0);
+    kept.set(0, result.row);
+    kept.find_increment(0);
     evaluate_unknown();
     double value = 0;
     for (double x : result.row) value = std::max(value, std::abs(x));
@@ -572,8 +486,8 @@ struct RowStepper::Impl {
   }
 
   void step_beside() {
-    leave_place();
-    known = std::min(known, history);  // the oldest is written over
+    kept.leave_place();
+    kept.forget_oldest();
     const bool stiff = is_stiff();
     if (stiff) begin_step(), iterations = 0, continued = Continued::stiff;
     if (stiff || !solve_step()) follow_root();
@@ -581,11 +495,9 @@ struct RowStepper::Impl {
       largest = largest_before;
       report_not_finite();
     }
-    if (options.fibre == Fibre::circle) check_wrapped_differences(system, layout, wrapped_rows(), n + 1);
-    table.turn(equations.y()), table.turn(equations.v());
+    if (options.fibre == Fibre::circle) check_wrapped_differences(system, layout, kept.all(), n() + 1);
+    kept.turn();
     turn_sources();
-    ++n;
-    known = std::min(known + 1, history + 1);
   }
   void turn_sources() {
     for (const SourceRow& source : equations.sources())
@@ -603,104 +515,34 @@ struct RowStepper::Impl {
 
   /// A step that takes the place of the newest row.
   bool step_in_place() {
-    if (spare.empty()) {
-      go_in_place();
-      kept_row = n - 1;
-    }
+    if (!kept.in_place()) kept.go_in_place();
     if (!solve_step() || overflowed(largest)) return false;
+    kept.turn_in_place();
     turn_sources();
-    ++n;
-    known = 1;
     return true;
-  }
-  void go_in_place() {
-    for (const auto& ring : {equations.y(), equations.v()})
-      for (int a = 0; a < d; ++a) {
-        spare.push_back(table[ring.row(0, a)]);
-        table[ring.row(0, a)] = table[ring.row(1, a)];
-      }
-  }
-  void leave_place() {
-    if (spare.empty()) return;
-    std::size_t next = 0;
-    for (const auto& ring : {equations.y(), equations.v()})
-      for (int a = 0; a < d; ++a) table[ring.row(0, a)] = spare[next++];
-    spare.clear();
-    known = 1;
   }
   /// Back to the row before the first step in place, and from there on beside each other.
   void step_again(std::int64_t last) {
-    leave_place();
-    table.turn_back(equations.y()), table.turn_back(equations.v());
-    n = kept_row;
-    known = 1;
+    kept.go_back_to_kept();
     find_past_sources();
-    largest = largest_before = row_largest(1);
-    while (n < last) step_beside();
+    largest = largest_before = kept.largest(1);
+    while (n() < last) step_beside();
   }
 
   /// A step whose row nobody asks for is in place, as long as there is a row to go back to.
   void step(bool looked_at) {
-    const bool may_be_in_place = !looked_at && goes_in_place && (!spare.empty() || (known >= 2 && n > started)) &&
+    const bool may_be_in_place = !looked_at && goes_in_place && (kept.in_place() || (kept.known() >= 2 && n() > kept.start_row())) &&
                                  !(equations.iterates() && source_rows_there == 0) && !is_stiff();
     if (!may_be_in_place) step_beside();
-    else if (!step_in_place()) step_again(n + 1);
+    else if (!step_in_place()) step_again(n() + 1);
   }
 
   // ---- Rows.
 
-  void set_row(int back, const std::vector<double>& values) {
-    std::vector<double> one(static_cast<std::size_t>(layout.sites()));
-    for (int a = 0; a < d; ++a) {
-      for (std::size_t i = 0; i < one.size(); ++i)
-        one[i] = values[i * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)];
-      layout.scatter(one, table[equations.y().row(back, a)], options.turn);
-    }
-  }
-  void find_increment(int back) {
-    for (int a = 0; a < d; ++a) {
-      double* const v = table[equations.v().row(back, a)];
-      const double *y = table[equations.y().row(back, a)], *before = table[equations.y().row(back + 1, a)];
-      for (std::size_t i = 0; i < layout.doubles(); ++i) v[i] = y[i] - before[i];
-    }
-  }
-  std::vector<double> row(int back) const {
-    std::vector<double> values(static_cast<std::size_t>(layout.sites() * d)),
-        one(static_cast<std::size_t>(layout.sites()));
-    for (int a = 0; a < d; ++a) {
-      layout.gather(table[equations.y().row(back, a)], one);
-      for (std::size_t i = 0; i < one.size(); ++i)
-        values[i * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)] = one[i];
-    }
-    return values;
-  }
-  /// The number in its ring of the row so many before the unknown one: the oldest stands where the next is made.
-  int number(int back) const { return back % (history + 1); }
-  double row_largest(int back) const {
-    double most = 0;
-    for (const double x : row(back)) most = std::max(most, std::abs(x));
-    return most;
-  }
-  delf::Window window(int rows) const {
-    delf::Window result{&system.lattice(), d, options.turn, n - rows + 1, {}};
-    for (int back = rows; back >= 1; --back) result.rows.push_back(row(number(back)));
-    return result;
-  }
-  std::vector<const double*> wrapped_rows() const {
-    std::vector<const double*> rows;
-    for (int back = 0; back <= history; ++back)
-      for (int a = 0; a < d; ++a) rows.push_back(table[equations.y().row(back, a)]);
-    return rows;
-  }
-
   void start(const std::vector<std::vector<double>>& rows) {
-    leave_place();
-    started = n = static_cast<std::int64_t>(rows.size()) - 1;
-    known = std::min(static_cast<int>(rows.size()), history);
-    for (int back = 1; back <= known; ++back) set_row(back, rows[rows.size() - static_cast<std::size_t>(back)]);
-    for (int back = 1; back < known; ++back) find_increment(back);
-    largest = row_largest(1), largest_before = row_largest(2);
-    span = 0, contracts_by = -1;
+    kept.start(rows);
+    largest = kept.largest(1), largest_before = kept.largest(2);
+    if (tolerance) tolerance->restart();
     find_past_sources();
   }
   /// Source terms before the unknown row's, as far as equations read them.
@@ -716,34 +558,22 @@ struct RowStepper::Impl {
     predictor.restart();
   }
 
-  /// Rows with their halos, as they stand in their rings.
   void visit(SavedState& state) {
-    bool in_place = !spare.empty();
-    state("in place", in_place);
-    if (in_place && spare.empty()) go_in_place();
-    if (!in_place) leave_place();
-    const auto visit_row = [&](std::string_view name, int number) {
-      state.numbers(name, table[number], layout.doubles());
-    };
-    for (const auto& [name, ring] : {std::pair{"y", equations.y()}, {"increment", equations.v()}})
-      for (int back = 0; back < ring.held; ++back)
-        for (int a = 0; a < d; ++a) visit_row(name, ring.row(back, a));
+    kept.visit(state);
     for (const SourceRow& source : equations.sources()) {
       for (int back = 0; back < source.ring.held && !source.is_local; ++back)
-        visit_row("source terms", source.ring.row(back));
-      if (source.change >= 0) visit_row("changes of source terms", source.change);
+        state.numbers("source terms", table[source.ring.row(back)], layout.doubles());
+      if (source.change >= 0) state.numbers("changes of source terms", table[source.change], layout.doubles());
     }
-    state("newest row", n), state("newest row of the start", started), state("rows known", known);
     state("rows of source terms", past_sources), state("rows to predict from", source_rows_there);
     state("iterations", iterations), state("continued", continued);
-    state("largest", largest), state("largest before", largest_before), state("span", span);
-    state("contracts by", contracts_by), state("row kept", kept_row);
+    state("largest", largest), state("largest before", largest_before);
     predictor.visit(state);
-    if (contraction) contraction->visit(state);
+    if (tolerance) tolerance->visit(state);
   }
 
   [[noreturn]] void report_not_finite() const {
-    const std::vector<double> bad = row(0), before = row(1);
+    const std::vector<double> bad = kept.values(0), before = kept.values(1);
     const auto fine = [](double x) { return !overflowed(std::abs(x)); };
     // Implicit steps spread an overflow over the whole row: it is where the field was largest.
     const auto where = std::ranges::none_of(bad, fine)
@@ -752,14 +582,7 @@ struct RowStepper::Impl {
     throw NotFinite(
         fmt::format("step {}, t = {:.6g}, site {}: the field is no longer finite: the scheme is unstable here; "
                     "reduce lattice.courant or lattice.time_step, or choose an implicit stencil",
-                    n + 1, static_cast<double>(n + 1) * system.time_step(), where / d));
-  }
-  void require(int rows) const {
-    if (rows > known)
-      throw std::logic_error("delf: rows before the newest were written over by step(false), or not stepped yet");
-  }
-  std::size_t row_bytes() const {
-    return RowBuffer::bytes_of(layout.doubles(), equations.y().held * d + equations.v().held * d);
+                    n() + 1, static_cast<double>(n() + 1) * system.time_step(), where / d));
   }
   std::size_t source_bytes() const {
     std::size_t bytes = 0;
@@ -794,7 +617,7 @@ void RowStepper::start_centred(const std::vector<double>& row0, const std::vecto
   const Window first{&s.system.lattice(), s.d, s.options.turn, 0, {row0}};
   double size = 0;
   for (const double value : row0) size = std::max(size, std::abs(value));
-  const bool stiff = s.contraction && s.contraction->is_stiff(size);
+  const bool stiff = s.tolerance && s.tolerance->is_stiff(size);
   const NewtonResult result =
       solve_centred_start(s.system, s.plan, first, velocity, stiff, s.options.tolerance, s.options.max_iterations);
   start({row0, result.row});
@@ -805,28 +628,28 @@ void RowStepper::step(bool looked_at) {
   impl_->step(looked_at);
 }
 void RowStepper::visit(SavedState& state) { impl_->visit(state); }
-StepState RowStepper::state() const { return {impl_->n, impl_->iterations, impl_->continued}; }
+StepState RowStepper::state() const { return {impl_->n(), impl_->iterations, impl_->continued}; }
 std::vector<double> RowStepper::row(int back) const {
-  impl_->require(back + 1);
-  return impl_->row(impl_->number(back + 1));
+  impl_->kept.require(back + 1);
+  return impl_->kept.values(impl_->kept.number(back + 1));
 }
 double RowStepper::residual() const {
   Impl& s = *impl_;
-  if (s.n < s.history) return 0;
-  if (s.known < 2) return std::numeric_limits<double>::quiet_NaN();
+  if (s.n() < s.history) return 0;
+  if (s.kept.known() < 2) return std::numeric_limits<double>::quiet_NaN();
   RowTable rows = s.table;
   rows.turn_back(s.equations.y()), rows.turn_back(s.equations.v());
   for (const SourceRow& source : s.equations.sources())
     if (!source.is_local) rows.turn_back(source.ring);
-  return s.equations.residual(std::move(rows), s.n - 1);
+  return s.equations.residual(std::move(rows), s.n() - 1);
 }
 Window RowStepper::window(int rows) const {
-  impl_->require(rows);
-  return impl_->window(rows);
+  impl_->kept.require(rows);
+  return impl_->kept.window(rows);
 }
 void RowStepper::newest_pair(const double** rows) const {
   const Impl& s = *impl_;
-  s.require(2);
+  s.kept.require(2);
   for (int a = 0; a < s.d; ++a) {
     rows[a] = s.table[s.equations.y().row(2, a)];
     rows[s.d + a] = s.table[s.equations.y().row(1, a)];
@@ -837,7 +660,7 @@ void RowStepper::newest_pair(const double** rows) const {
 
 StepReport RowStepper::report(bool residual) const {
   const Impl& s = *impl_;
-  const std::size_t rows = s.row_bytes(), sources = s.source_bytes(), matrix = s.equations.matrix_bytes();
+  const std::size_t rows = s.kept.bytes(), sources = s.source_bytes(), matrix = s.equations.matrix_bytes();
   const std::size_t work = s.equations.work_bytes() + s.work.bytes() + s.layout.bytes();
   const bool comes = residual && s.equations.work_bytes() < s.equations.residual_bytes();
   const std::size_t to_come = comes ? s.equations.residual_bytes() : 0;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/stepping/rows/step_tolerance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace delf {
+namespace {
+
+constexpr double round_off = std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+/// How y answers to a change of 1 in a source term: exact on a circle, where one impulse shows it. In the middle of an
+/// interval it is near enough: the tolerance is tested by it, and the change itself is what ends an iteration.
+StepTolerance::StepTolerance(const LatticeSystem& system, const SolvePlan& plan, const RowEquations& equations,
+                             const RowLayout& layout, RowTable& table, const StepOptions& options)
+    : equations_(equations),
+      layout_(layout),
+      d_(system.components()),
+      tolerance_(options.tolerance),
+      contraction_(system, plan) {
+  constexpr std::int64_t first_step = -1;
+  for (const SourceRow& source : equations.sources()) {
+    gains_.push_back(0);
+    if (!source.reads_unknown) continue;
+    double* const delta = table[source.change];
+    // Two sites in the middle: a source term at a wall, or between bricks, is read by no equation.
+    for (const SourceRow& other : equations.sources())
+      if (other.reads_unknown) std::fill_n(table[other.change], layout.doubles(), 0.0);
+    for (const int site : {layout.sites() / 2 - 1, layout.sites() / 2}) {
+      std::fill_n(delta, layout.doubles(), 0.0);
+      for (const int slot : layout.slots_of(site)) delta[slot] = 1;
+      layout.fill_halo(delta);
+      RowBuffer memory(layout, d_);
+      std::vector<double*> w;
+      for (int a = 0; a < d_; ++a) w.push_back(memory.row(a));
+      equations.right_sides(table, first_step, {0, true}, 0, layout.packs(), w.data());
+      equations.solver(first_step).solve(w.data());
+      std::vector<double> sites(static_cast<std::size_t>(layout.sites()));
+      for (int a = 0; a < d_; ++a) {
+        layout.gather(w[static_cast<std::size_t>(a)], sites);
+        double sum = 0;
+        for (const double x : sites) sum += std::abs(x);
+        gains_.back() = std::max(gains_.back(), sum);
+      }
+    }
+    gain_ = std::max(gain_, gains_.back() / equations.weight_of(source));
+    std::fill_n(delta, layout.doubles(), 0.0);
+  }
+}
+
+double StepTolerance::effect_of(const std::vector<double>& changes) const {
+  double effect = 0;
+  for (std::size_t s = 0; s < gains_.size(); ++s) effect += gains_[s] * changes[s];
+  return effect;
+}
+
+void StepTolerance::see_span(const RowTable& table) {
+  span_ = 0;
+  for (int a = 0; a < d_; ++a) {
+    const double* const y = table[equations_.y().row(1, a)];
+    const double some = y[layout_.slot(0)];
+    Pack above(0.0), below(0.0);
+    for (int p = 0; p < layout_.packs(); ++p) {
+      const Pack difference = Pack::load(y + layout_.at(p)) - some;
+      above = max_or_nan(difference, above), below = max_or_nan(-difference, below);
+    }
+    span_ = std::max(span_, max_or_nan(above) + max_or_nan(below));
+  }
+}
+
+/// What the tolerance allows: relative to what the field spans, for where it has drifted to says nothing, but not below
+/// what rounding leaves at its size.
+double StepTolerance::allowed(double size) const {
+  const double spanned = span_ > 0 ? std::min(span_, size) : size;
+  return std::max(tolerance_ * spanned, 4 * round_off * size);
+}
+
+/// What is left to a prediction has the same sign step after step, and moves the energy: over 5000 collisions (N = 255,
+/// h = k/8, tolerance 6e-8) by 1e-4 of it where all of the tolerance was, within what the exact root does with this share.
+/// The smallest tolerances ask for all that rounding allows: what is left then no longer shrinks.
+double StepTolerance::share(double largest) {
+  constexpr double left_to_predictions = 0.01;
+  return tolerance_ >= smallest_estimated ? left_to_predictions : std::min(contraction_now(largest), 1.0) / 64;
+}
+
+double StepTolerance::contraction_now(double largest) {
+  if (contracts_by_ < 0 || contraction_.is_outgrown(largest))
+    contracts_by_ = contraction_.next_change(largest, 1, gain_);
+  return contracts_by_;
+}
+
+bool StepTolerance::is_stiff(double largest) {
+  if (contraction_.is_outgrown(largest)) contracts_by_ = -1;
+  return contraction_.is_stiff(largest);
+}
+
+void StepTolerance::visit(SavedState& state) {
+  state("span", span_), state("contracts by", contracts_by_);
+  contraction_.visit(state);
+}
+
+}  // namespace delf
