@@ -57,6 +57,7 @@ Names mesh_walls() { return {"fixed", "natural"}; }
 Names faults() { return verify_faults(); }
 Names sweep_keeps() { return {"folders", "table"}; }
 Names stability_fault_names() { return stability_faults(); }
+Names stability_wave_names() { return stability_waves(); }
 Names starts() {
   Names names;
   for (const StartRule rule : all_start_rules) names.emplace_back(to_string(rule));
@@ -224,6 +225,9 @@ std::vector<Key> general_keys() {
       Key{"convergence.agreement", real, "0.2", "", "by how much the order may be off", "", positive},
 
       Key{"stability.schemes", KeyType::text, "", "eight, one of each sort", "schemes, separated by commas, or all"},
+      Key{"stability.waves", choice, "", "own where the density has second derivatives, else klein-gordon",
+          "waves that limits are of: klein-gordon, at several mh; own, those of the scene's theory about 0, at its k",
+          "", any, stability_wave_names()},
       Key{"stability.mass_steps", KeyType::text, "", "0.5, 1, 2.3", "values of mh at which limits are found"},
       Key{"stability.most_courant", real, "3", "",
           "Courant numbers are looked at up to this; on a point, wh up to 8 unless it is given", "", positive},

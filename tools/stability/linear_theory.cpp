@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "tools/stability/linear_theory.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "schemes/stepping/evolution.hpp"
 #include "schemes/stability/dispersion.hpp"
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/stability/stable_set.hpp"
+#include "schemes/stepping/evolution.hpp"
 
 namespace delf {
 
@@ -21,8 +23,8 @@ LatticeSystem system_of(const Problem& problem) { return Simulation(problem).evo
 
 }  // namespace
 
-LinearTheory linear_theory(const Problem& scheme, double mass_step, double most, int samples) {
-  const auto make = [&](double courant) { return system_of(linear_problem(scheme, mass_step, courant, sites)); };
+LinearTheory linear_theory(const LinearWaves& waves, double most, int samples) {
+  const auto make = [&](double courant) { return system_of(waves.on_circle(courant, sites)); };
   StableSearch search;
   search.samples = samples;
   LinearTheory theory;
@@ -33,8 +35,7 @@ LinearTheory linear_theory(const Problem& scheme, double mass_step, double most,
   return theory;
 }
 
-WaveGrowth::WaveGrowth(const Problem& scheme, double mass_step, double courant)
-    : symbol_(system_of(linear_problem(scheme, mass_step, courant, sites))) {
+WaveGrowth::WaveGrowth(const LinearWaves& waves, double courant) : symbol_(system_of(waves.on_circle(courant, sites))) {
   const StabilityVerdict v = linear_stability(symbol_);
   worst_ = {v.worst_theta, v.amplification};
 }
@@ -70,7 +71,7 @@ std::vector<FrequencyPoint> frequencies(const Problem& scheme, double courant, d
   const double mass_step = mass_space_step * courant;
   std::vector<FrequencyPoint> points;
   for (const DispersionPoint& p :
-       dispersion(Symbol(system_of(linear_problem(scheme, mass_step, courant, sites))), mass_step, count))
+       dispersion(Symbol(system_of(LinearWaves{scheme, mass_step}.on_circle(courant, sites))), mass_step, count))
     points.push_back({p.wave_number, p.numerical / courant, p.exact / courant});
   return points;
 }
@@ -90,15 +91,22 @@ bool LinearTheory::is_clear(double courant, double relative) const {
   });
 }
 
-Problem linear_problem(const Problem& scheme, double mass_step, double courant, int sites) {
+Problem LinearWaves::on_circle(double courant, int sites) const {
   Problem p = scheme;
-  p.theory = "klein-gordon";
   p.circle_valued = false;
   p.winding = 0;
-  p.parameters["theory.mass"] = mass_step;
+  const double k = mass_step ? 1 / courant : scheme.lattice.space_step();
+  p.time_step = courant * k;
+  p.lattice = Lattice::circle(sites, sites * k);
+  if (!mass_step) return p;
+  p.theory = "klein-gordon";
+  p.parameters["theory.mass"] = *mass_step;
   p.time_step = 1;
-  p.lattice = Lattice::circle(sites, sites / courant);
   return p;
+}
+
+std::string LinearWaves::in_words() const {
+  return mass_step ? fmt::format("mh = {:g}", *mass_step) : fmt::format("k = {:.4g}", scheme.lattice.space_step());
 }
 
 }  // namespace delf

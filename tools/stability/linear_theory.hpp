@@ -2,6 +2,7 @@
 #pragma once
 #include <cmath>
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,13 +37,21 @@ struct LinearTheory {
 /// theory.mass, or 1 if the problem has none.
 inline double mass_of(const Problem& p) { return p.parameters.maybe<double>("theory.mass").value_or(1); }
 
-/// A scheme on a circle of `sites` with h = 1, k = 1/courant and m = mass_step, so that mh stays as the Courant number
-/// changes and the theory klein-gordon.
-Problem linear_problem(const Problem& scheme, double mass_step, double courant, int sites);
+/// The small waves that a scheme is tried on, by its Courant number.
+struct LinearWaves {
+  Problem scheme;
+  std::optional<double> mass_step;  ///< mh of klein-gordon; none: those of its own theory about φ = 0
+
+  /// On a circle of `sites`. Of klein-gordon with h = 1, k = 1/courant and m = mass_step, so that mh stays as the Courant
+  /// number changes; of its own theory at the scheme's own k.
+  Problem on_circle(double courant, int sites) const;
+  /// "mh = 0.5" or "k = 0.1".
+  std::string in_words() const;
+};
 
 /// The stable Courant numbers in (0, most], from `samples` of them, and the ghosts in the middle of the first
 /// interval. Throws BadInput for a scheme that cannot be built, or has no symbol.
-LinearTheory linear_theory(const Problem& scheme, double mass_step, double most, int samples = 120);
+LinearTheory linear_theory(const LinearWaves&, double most, int samples = 120);
 
 /// The wave that grows most at one Courant number: its θ, and |z|.
 struct WorstWave {
@@ -55,7 +64,7 @@ struct WorstWave {
 /// Throws as linear_theory.
 class WaveGrowth {
  public:
-  WaveGrowth(const Problem& scheme, double mass_step, double courant);
+  WaveGrowth(const LinearWaves&, double courant);
 
   const WorstWave& of_all() const { return worst_; }
   WorstWave on_circle(int sites) const;

@@ -56,10 +56,9 @@ struct Look {
 // long as it takes.
 class Runs {
  public:
-  Runs(const Problem& scheme, double mass_step, const LimitRequest& request)
-      : scheme_(scheme), mass_step_(mass_step), request_(request) {
+  Runs(const LinearWaves& waves, const LimitRequest& request) : waves_(waves), request_(request) {
     try {  // bricks close on an even number of sites only
-      Simulation(linear_problem(scheme, mass_step, 0.5, request.sites - 1));
+      Simulation(waves.on_circle(0.5, request.sites - 1));
     } catch (const BadInput&) {
       odd_ = false;
     }
@@ -75,11 +74,11 @@ class Runs {
 
  private:
   ObservedGrowth grown(int sites, double courant, int steps) const {
-    return observe_growth(linear_problem(scheme_, mass_step_, courant, sites), steps, request_.seed);
+    return observe_growth(waves_.on_circle(courant, sites), steps, request_.seed);
   }
 
   void look(double courant, Look& look) const {
-    const WaveGrowth waves(scheme_, mass_step_, courant / request_.waves_factor);
+    const WaveGrowth waves(waves_, courant / request_.waves_factor);
     const bool some_grow = waves.of_all().amplification > 1;
     run(courant, request_.sites, request_.steps, some_grow ? waves.on_circle(request_.sites) : WorstWave{}, look);
     if (odd_ && look.seen.stable())
@@ -111,8 +110,7 @@ class Runs {
       look.seen = seen, look.sites = sites, look.steps = steps, look.growth = wave.rate();
   }
 
-  const Problem& scheme_;
-  double mass_step_;
+  const LinearWaves& waves_;
   const LimitRequest& request_;
   std::map<double, Look> done_;
   bool odd_ = true;
@@ -190,8 +188,8 @@ void compare_limits(Runs& runs, Limit& limit, const LimitRequest& request) {
   if (std::abs(observed - theory) <= request.agreement * std::max(observed, theory)) return;
   limit.limit_unresolved = unresolved_between(runs, limit, request);
   if (!limit.limit_unresolved)
-    limit.disagreements.push_back(fmt::format("{}, mh = {:g}: theory's limit is {}, and runs find {}", limit.scheme,
-                                              limit.mass_step, told(limit.theory), told(limit.observed)));
+    limit.disagreements.push_back(fmt::format("{}, {}: theory's limit is {}, and runs find {}", limit.scheme,
+                                              limit.waves, told(limit.theory), told(limit.observed)));
 }
 
 void compare(Runs& runs, Limit& limit, const Place& place) {
@@ -202,14 +200,20 @@ void compare(Runs& runs, Limit& limit, const Place& place) {
     limit.probes.push_back(
         {place.courant, stable, look.seen.kind, look.sites, look.steps, look.growth, !look.unresolved});
   if (look.seen.kind == Growth::refused) return;
-  const auto where = [&] {
-    return fmt::format("{}, mh = {:g}, h/k = {:.6g}", limit.scheme, limit.mass_step, place.courant);
-  };
+  const auto where = [&] { return fmt::format("{}, {}, h/k = {:.6g}", limit.scheme, limit.waves, place.courant); };
   if (place.clear && look.seen.stable() != stable && !look.unresolved)
     limit.disagreements.push_back(fmt::format("{}: {} by theory, {} when run, {} sites, {} steps", where(),
                                               stable ? "stable" : "unstable", to_string(look.seen.kind), look.sites,
                                               look.steps));
   else if (!look.contradiction.empty()) limit.disagreements.push_back(where() + ", " + look.contradiction);
+}
+
+Limit unknown_limit(const std::string& name, const LinearWaves& waves) {
+  Limit limit;
+  limit.scheme = name;
+  limit.mass_step = waves.mass_step;
+  limit.waves = waves.in_words();
+  return limit;
 }
 
 /// From random rows; where rows are not enough (a composition), from the first and the rates that lead to the second.
@@ -272,29 +276,28 @@ ObservedGrowth observe_growth(const Problem& problem, int steps, std::uint64_t s
 
 double LimitRequest::least_growth() const { return steps_for(1) / (work * steps); }
 
-Limit find_limit(const std::string& name, const Problem& scheme, double mass_step, const LimitRequest& request) {
+Limit find_limit(const std::string& name, const LinearWaves& waves, const LimitRequest& request) {
   LinearTheory theory;
   try {
-    theory = linear_theory(scheme, mass_step, request.most, request.samples);
+    theory = linear_theory(waves, request.most, request.samples);
+    if (theory.stable.empty())
+      if (const WorstWave worst = WaveGrowth(waves, 0.5 * request.most).of_all(); std::isinf(worst.amplification))
+        throw BadInput("", fmt::format("on a circle no step determines the waves of theta = {:.4g}", worst.theta));
   } catch (const BadInput& error) {
-    Limit limit;
-    limit.scheme = name;
-    limit.mass_step = mass_step;
+    Limit limit = unknown_limit(name, waves);
     limit.left_out = error.what();
     return limit;
   }
   scale(theory, request.theory_factor);
-  return compare_with_runs(name, scheme, mass_step, theory, request);
+  return compare_with_runs(name, waves, theory, request);
 }
 
-Limit compare_with_runs(const std::string& name, const Problem& scheme, double mass_step, const LinearTheory& intervals,
+Limit compare_with_runs(const std::string& name, const LinearWaves& waves, const LinearTheory& intervals,
                         const LimitRequest& request) {
-  Limit limit;
-  limit.scheme = name;
-  limit.mass_step = mass_step;
+  Limit limit = unknown_limit(name, waves);
   limit.symbol = intervals;
   limit.theory = intervals.first_limit(request.most);
-  Runs runs(scheme, mass_step, request);
+  Runs runs(waves, request);
   double below = 0;
   bool found = false;
   for (const Place& place : places(limit.symbol, request)) {

@@ -44,12 +44,13 @@ struct Unresolved {
   double steps = 0;              ///< that it would take there; infinite: that circle has no wave that grows
 };
 
-/// The stability limit of a scheme at one mh, by theory and by running.
+/// The stability limit of a scheme for some waves, by theory and by running.
 struct Limit {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
   std::string scheme;
-  double mass_step = 0;
+  std::optional<double> mass_step;              ///< mh of klein-gordon; none: of its own theory
+  std::string waves;                            ///< LinearWaves::in_words()
   double theory = unknown, observed = unknown;  ///< Courant numbers; infinite: none up to the most examined
   LinearTheory symbol;
   std::vector<Probe> probes;               ///< runs that were compared with theory
@@ -82,10 +83,10 @@ struct LimitRequest {
 /// interval of theory. Runs are on N and N − 1 sites. Where theory has a growing wave that they do not show, a further
 /// run is on the circle that suits this wave best, for as many steps as its |z| requires, up to `work`. Each run is
 /// compared with theory for the waves of its own circle. Disagreements are reported, not thrown.
-Limit find_limit(const std::string& name, const Problem& scheme, double mass_step, const LimitRequest&);
+Limit find_limit(const std::string& name, const LinearWaves&, const LimitRequest&);
 
 /// The same, compared with given intervals.
-Limit compare_with_runs(const std::string& name, const Problem& scheme, double mass_step, const LinearTheory& intervals,
+Limit compare_with_runs(const std::string& name, const LinearWaves&, const LinearTheory& intervals,
                         const LimitRequest&);
 
 }  // namespace delf

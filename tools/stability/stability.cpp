@@ -6,12 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "lattice/error.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/theories/field_theory.hpp"
-#include "schemes/theories/theory_registry.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
@@ -47,6 +46,7 @@ std::string growth_under_constraint(Problem problem) {
 StabilityFindings find_stability(const StabilityRequest& request, const Problem& base) {
   const auto begin = std::chrono::steady_clock::now();
   StabilityFindings f;
+  f.own_waves = request.own_waves;
   f.most_courant = request.limit.most;
   f.agreement = request.limit.agreement;
   f.least_growth = request.limit.least_growth();
@@ -61,21 +61,23 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
       corner.state.seed = request.limit.seed;
       all.push_back(std::move(corner));
     }
+  std::vector<std::optional<double>> mass_steps(request.mass_steps.begin(), request.mass_steps.end());
+  if (request.own_waves) mass_steps = {std::nullopt};
   const auto schemes = static_cast<std::int64_t>(request.schemes.size());
   constexpr std::int64_t map_parts = 8;  // a map takes as long as so many limits
-  Progress progress(schemes * static_cast<std::int64_t>(request.mass_steps.size()) +
-                    (request.map ? schemes * map_parts : 0) + static_cast<std::int64_t>(all.size()));
+  Progress progress(schemes * static_cast<std::int64_t>(mass_steps.size()) + (request.map ? schemes * map_parts : 0) +
+                    static_cast<std::int64_t>(all.size()));
   std::int64_t done = 0;
   const auto advance = [&](std::int64_t parts) { progress.at(done += parts); };
 
   for (const NamedScheme& scheme : request.schemes)
-    for (const double mass_step : request.mass_steps) {
+    for (const auto mass_step : mass_steps) {
       if (Interrupt::asked()) break;
-      f.limits.push_back(find_limit(scheme.name, scheme.problem, mass_step, request.limit));
+      f.limits.push_back(find_limit(scheme.name, {scheme.problem, mass_step}, request.limit));
       advance(1);
     }
   for (const NamedScheme& scheme : request.schemes) {
-    if (Interrupt::asked()) break;
+    if (Interrupt::asked() || request.own_waves) break;
     try {
       f.dispersion.push_back(make_dispersion_curve(scheme));
     } catch (const BadInput&) {  // reported with the limits
@@ -101,10 +103,6 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
 
 ExitCode stability(const Scene& scene, const fs::path& folder) {
   if (scene.problem.lattice.space() == Space::point) return point_stability(scene, folder);
-  if (make_theory(find_theory(scene.problem.theory), scene.problem.parameters)->density().slots() > 3)
-    throw BadInput("theory.density",
-                   "theory.density: limits are those of waves without second derivatives in the density, and this one has "
-                   "some; `delf plan` says which waves of the scheme grow at its steps");
   const Interrupt interrupt;
   const StabilityRequest request = read_stability_request(scene);
   const StabilityFindings findings = find_stability(request, scene.problem);
@@ -114,13 +112,14 @@ ExitCode stability(const Scene& scene, const fs::path& folder) {
   std::string missing;
   if (scene.figures) {
     try {
-      missing = draw_stability(findings, scene.name, scene.figure_form, folder);
+      if (!request.own_waves) missing = draw_stability(findings, scene.name, scene.figure_form, folder);
     } catch (const std::exception& error) {  // a failed figure does not fail the command
       missing = error.what();
     }
   }
   fmt::print("{}", stability_report(scene, findings));
-  fmt::print("{}: stability.json{}\n", folder.string(), scene.figures && missing.empty() ? " figures" : "");
+  fmt::print("{}: stability.json{}\n", folder.string(),
+             scene.figures && missing.empty() && !request.own_waves ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
   if (findings.status == "interrupted") return ExitCode::interrupted;
   return findings.passed() ? ExitCode::done : ExitCode::check_failed;

@@ -37,6 +37,7 @@ struct ConstraintFinding {
 
 /// The results of `delf stability`.
 struct StabilityFindings {
+  bool own_waves = false;  ///< of the scene's theory, about φ = 0
   std::vector<Limit> limits;
   std::vector<ConstraintFinding> constraints;
   std::vector<CornerFinding> corners;
@@ -53,7 +54,8 @@ struct StabilityFindings {
   std::int64_t disagreements() const;
   std::int64_t unresolved() const;   ///< Courant numbers of limits
   std::int64_t must_not_be() const;  ///< stress cases with a forbidden verdict
-  bool passed() const { return status == "done" && disagreements() == 0 && must_not_be() == 0; }
+  bool nothing_compared() const;
+  bool passed() const { return !nothing_compared() && status == "done" && disagreements() == 0 && must_not_be() == 0; }
 };
 
 /// stability.json; what is not a finite number is null.

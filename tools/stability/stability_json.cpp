@@ -31,7 +31,8 @@ Json json_of(const Limit& l) {
                           {"sites", u.sites},
                           {"steps_needed", number_or_null(u.steps)}});
   return {{"scheme", l.scheme},
-          {"mass_step", l.mass_step},
+          {"waves", l.waves},
+          {"mass_step", l.mass_step ? Json(*l.mass_step) : Json()},
           {"courant_theory", number_or_null(l.theory)},
           {"courant_observed", number_or_null(l.observed)},
           {"agrees", l.left_out.empty() && !(l.agrees() && l.limit_unresolved) ? Json(l.agrees()) : Json()},

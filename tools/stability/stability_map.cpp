@@ -27,15 +27,16 @@ StabilityMap make_stability_map(const NamedScheme& scheme, double most, std::uin
   map.mass_steps = masses(rows);
   for (const double mass : map.mass_steps)
     for (const double courant : map.courants)
-      map.grows.push_back(Interrupt::asked()
-                              ? Growth::refused
-                              : observe_growth(linear_problem(scheme.problem, mass, courant, sites), steps, seed).kind);
+      map.grows.push_back(
+          Interrupt::asked()
+              ? Growth::refused
+              : observe_growth(LinearWaves{scheme.problem, mass}.on_circle(courant, sites), steps, seed).kind);
   for (const double mass : masses(fine)) {
     if (Interrupt::asked()) break;
     map.edge_masses.push_back(mass);
     auto& ends = map.edges.emplace_back();
     try {
-      for (const CourantInterval& i : linear_theory(scheme.problem, mass, most, samples).stable) {
+      for (const CourantInterval& i : linear_theory({scheme.problem, mass}, most, samples).stable) {
         if (i.from > 0) ends.push_back(i.from);
         if (i.to < most * (1 - 1e-9)) ends.push_back(i.to);
       }

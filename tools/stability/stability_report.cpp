@@ -44,7 +44,7 @@ std::string limits(const StabilityFindings& f) {
   if (f.limits.empty()) return {};
   std::vector<std::vector<std::string>> rows;
   for (const Limit& l : f.limits)
-    rows.push_back({l.scheme, fmt::format("{:g}", l.mass_step), courant(l, l.theory, f.most_courant),
+    rows.push_back({l.scheme, l.waves.substr(l.waves.rfind(' ') + 1), courant(l, l.theory, f.most_courant),
                     courant(l, l.observed, f.most_courant),
                     !l.agrees()           ? "FAILED"
                     : !l.left_out.empty() ? "left out"
@@ -59,7 +59,7 @@ std::string limits(const StabilityFindings& f) {
         "  tell (on {} sites it needs |z| - 1 > {:.2g}). This is neither for nor against theory.\n",
         f.limit_sites, std::expm1(f.least_growth));
   return fmt::format("\n{}", text_table({{"stability limit of"},
-                                         {"mh", true},
+                                         {f.own_waves ? "k" : "mh", true},
                                          {"h/k, theory", true},
                                          {"by running", true},
                                          {"verdict"},
@@ -162,6 +162,7 @@ std::string conclusion(const StabilityFindings& f) {
                   f.unresolved() > 0 ? fmt::format(" ({} h/k unresolved)", f.unresolved()) : "", f.corners.size(),
                   refused, wrong, duration_in_words(f.seconds));
   if (f.status != "done") return fmt::format("not finished ({}): {}\n", f.status, counts);
+  if (f.nothing_compared()) return fmt::format("FAILED: nothing could be compared; {}\n", counts);
   if (f.passed()) return fmt::format("passed: {}\n", counts);
   return fmt::format("FAILED: {} disagreements with theory, {} stress cases with a forbidden verdict; {}\n",
                      f.disagreements(), f.must_not_be(), counts);
@@ -173,6 +174,10 @@ std::int64_t StabilityFindings::disagreements() const {
   std::int64_t all = 0;
   for (const Limit& l : limits) all += static_cast<std::int64_t>(l.disagreements.size());
   return all;
+}
+
+bool StabilityFindings::nothing_compared() const {
+  return corners.empty() && std::ranges::none_of(limits, [](const Limit& l) { return l.left_out.empty(); });
 }
 
 std::int64_t StabilityFindings::unresolved() const {
@@ -187,11 +192,13 @@ std::int64_t StabilityFindings::must_not_be() const {
 
 std::string stability_report(const Scene& scene, const StabilityFindings& f) {
   return fmt::format(
-             "{}: stability of phi_tt - phi_xx + m^2 phi = 0, and stress cases; seed {}\n\n"
-             "  A scheme is stable up to the h/k of its line, at that mh: by the roots of its symbol, and by steps "
+             "{}: stability of {}; seed {}\n\n"
+             "  A scheme is stable up to the h/k of its line, at that {}: by the roots of its symbol, and by steps "
              "from noise.\n"
              "  ok: both agree. Ghosts are waves that grow slowly or not at all, and are no part of the solution.\n",
-             scene.name, f.seed) +
+             scene.name,
+             f.own_waves ? "small waves of its own theory about 0" : "phi_tt - phi_xx + m^2 phi = 0, and stress cases",
+             f.seed, f.own_waves ? "k" : "mh") +
          limits(f) + constraints(f) + corner_table(f) + failures(f) + "\n" + conclusion(f);
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 
 #include "jets/tables/named_tables.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "schemes/unknown_name.hpp"
 #include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
@@ -27,6 +29,21 @@ std::vector<double> positive_numbers(const Scene& scene, const char* key, const 
     numbers.push_back(x);
   }
   return numbers;
+}
+
+bool has_own_waves(const Scene& scene) {
+  if (scene.settings.find("stability.waves")) return Values(scene.settings).choice("stability.waves") == "own";
+  return make_theory(find_theory(scene.problem.theory), scene.problem.parameters)->density().slots() > 3;
+}
+
+/// The scene's own scheme, and others that are asked for.
+std::vector<NamedScheme> with_own_scheme(const std::vector<std::string>& asked, const Problem& base) {
+  std::vector<NamedScheme> schemes;
+  if (!asked.empty()) schemes = chosen_schemes(asked, base);
+  const std::string own = scheme_label(base);
+  if (std::ranges::find(schemes, own, &NamedScheme::name) == schemes.end())
+    schemes.insert(schemes.begin(), {own, base});
+  return schemes;
 }
 
 }  // namespace
@@ -72,6 +89,11 @@ std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& asked, c
   return chosen;
 }
 
+const std::vector<std::string>& stability_waves() {
+  static const std::vector<std::string> all{"klein-gordon", "own"};
+  return all;
+}
+
 const std::vector<std::string>& stability_faults() {
   static const std::vector<std::string> all{"none", "limit"};
   return all;
@@ -82,7 +104,9 @@ StabilityRequest read_stability_request(const Scene& scene) {
   const auto list = [&](const char* key) { return names_in_list(values.text(key).value_or("")); };
   StabilityRequest request;
   try {
-    request.schemes = chosen_schemes(list("stability.schemes"), scene.problem);
+    request.own_waves = has_own_waves(scene);
+    request.schemes = request.own_waves ? with_own_scheme(list("stability.schemes"), scene.problem)
+                                        : chosen_schemes(list("stability.schemes"), scene.problem);
   } catch (const BadInput& bad) {
     throw scene.settings.located(bad);
   }
@@ -104,6 +128,7 @@ StabilityRequest read_stability_request(const Scene& scene) {
   if (values.choice("stability.fault") == "limit") request.limit.theory_factor = 1.05;
   request.budget = values.real("stability.budget");
   request.map = values.toggle("stability.map");
+  if (request.own_waves) request.corners.clear(), request.map = false;
   return request;
 }
 

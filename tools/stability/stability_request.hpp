@@ -12,6 +12,7 @@ namespace delf {
 /// A request to `delf stability`.
 struct StabilityRequest {
   std::vector<NamedScheme> schemes;
+  bool own_waves = false;  ///< limits are those of the scene's own theory: no maps, dispersion and stress cases then
   std::vector<double> mass_steps{0.5, 1, 2.3};  ///< mh at which limits are found
   LimitRequest limit;
   std::vector<std::string> corners;  ///< groups
@@ -24,6 +25,8 @@ std::vector<std::string> names_in_list(const std::string& text);
 /// The schemes of those names, "all", or if there is no name the usual ones. Throws BadInput (stability.schemes).
 std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& names, const Problem& base);
 
+/// What stability.waves may be.
+const std::vector<std::string>& stability_waves();
 /// Faults that can be planted.
 const std::vector<std::string>& stability_faults();
 

@@ -170,5 +170,10 @@ TEST_CASE("plans name the wave (-1)^j of KdV, and wide stencils ask for clamped 
   CHECK(contains(kdv.out, "(-1)^j is a wave of the scheme (1 root), and none of the theory"));
   CHECK_FALSE(contains(boussinesq.out, "(-1)^j is"));
   check_refused(delf_program(folder, "run boussinesq --boundary.left=fixed"), {"boundary.left = clamped"});
-  check_refused(delf_program(folder, "stability beam"), {"second derivatives"});
+  const Ran limits = delf_program(folder, "stability beam --stability.schemes=nine-tuple --stability.steps=300");
+  CHECK(limits.code == 0);
+  CHECK(contains(limits.out, "2 limits compared"));
+  const Ran none = delf_program(folder, "stability kdv");
+  CHECK(none.code == 1);
+  CHECK(contains(none.out, "no step determines the waves of theta = 0"));
 }
