@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lattice/lattice.hpp"
+#include "schemes/state.hpp"
 #include "tools/figures/figure_form.hpp"
 #include "tools/figures/film.hpp"
 #include "tools/run/trace.hpp"
@@ -33,6 +34,7 @@ struct FigureSource {
   std::string energy = {};  ///< one line: what the energy is
   DrawnSection section = {};
   FigureForm form = {};
+  const State* exact = nullptr;  ///< that waveforms are compared with, as long as it says that it can be
 };
 
 /// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into

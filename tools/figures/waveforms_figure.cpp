@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "tools/figures/figure_style.hpp"
@@ -40,6 +41,26 @@ double mean(std::span<const double> row) {
   return std::accumulate(row.begin(), row.end(), 0.0) / static_cast<double>(row.size());
 }
 
+constexpr auto exact_colour = "#cccccc";
+
+/// A component of the exact solution at a time, less some turns, as lines of a table; empty after the time until which it
+/// can be compared with.
+std::string exact_curve(const FigureSource& source, double t, std::size_t component, double turns,
+                        std::vector<double>& shown) {
+  if (!source.exact || t > source.exact->exact_until()) return {};
+  constexpr int points = 600;
+  const double unit = source.angle ? 2 * std::numbers::pi : 1;
+  std::vector<FieldPoint> here(static_cast<std::size_t>(source.exact->components()));
+  std::string table;
+  for (int n = 0; n <= points; ++n) {
+    const double x = source.lattice.length() * n / points;
+    source.exact->at(t, x, here);
+    shown.push_back(here[component].phi / unit - turns);
+    table += fmt::format("{} {}\n", x, shown.back());
+  }
+  return table + "\n\n";
+}
+
 }  // namespace
 
 std::string waveforms_figure(const FigureSource& source, const std::filesystem::path& scratch) {
@@ -49,7 +70,8 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   const int panels = static_cast<int>(frames.size());
 
   // An angle grows or falls as solitons pass: multiples of 2π are subtracted from the whole row, never site by site.
-  std::string table;
+  std::string table, exact;
+  int exact_curves = 0;
   std::vector<double> shown;
   std::vector<std::vector<double>> curves;  // of each component, in all panels
   bool turned = false;
@@ -71,9 +93,12 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
         table += fmt::format("{} {}\n", nodes[i], shown.back());
       }
       table += "\n\n";
+      const std::string curve = exact_curve(source, source.film.time(f), which, turns, shown);
+      exact += curve, exact_curves += !curve.empty();
     }
   }
   write_text_file(scratch / "waveforms", table);
+  if (exact_curves > 0) write_text_file(scratch / "exact", exact);
 
   const ColourScale scale = colour_scale(shown);
   const double room = 0.06 * (scale.most - scale.least);
@@ -81,7 +106,8 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   std::string body =
       figure_title(
           fmt::format("{}: waveforms", source.scene),
-          fmt::format("{}, {}{}", source.theory, source.scheme, turned ? "; multiples of 2π are subtracted" : "")) +
+          fmt::format("{}, {}{}{}", source.theory, source.scheme, turned ? "; multiples of 2π are subtracted" : "",
+                      exact_curves > 0 ? "; grey: exact" : "")) +
       fmt::format(
           "set multiplot layout {},{} margins screen 0.105,0.97,0.125,(top-0.035) spacing screen 0.03,0.085\n"
           "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xtics {}\n",
@@ -102,8 +128,11 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
       body += key_of_curves(
           components.size(), [&](std::size_t c) { return source.names.drawn()[components[c]]; }, curves);
     const int first = p * static_cast<int>(components.size());
+    body += "plot ";
+    for (int c = 0; c < static_cast<int>(components.size()) && first + c < exact_curves; ++c)
+      body += fmt::format("'exact' index {} using 1:2 with lines lw 4 lc rgb '{}', ", first + c, exact_colour);
     for (std::size_t c = 0; c < components.size(); ++c)
-      body += fmt::format("{} 'waveforms' index {} using 1:2 with {} lw 1.6 lc rgb '{}'", c == 0 ? "plot" : ",",
+      body += fmt::format("{} 'waveforms' index {} using 1:2 with {} lw 1.6 lc rgb '{}'", c == 0 ? "" : ",",
                           first + static_cast<int>(c), source.names.drawn_mesh() ? "linespoints pt 7 ps 0.4" : "lines",
                           component_colour(c));
     body += "\nunset label\n";

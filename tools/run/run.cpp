@@ -43,15 +43,15 @@ std::string energy_in_words(const Problem& problem) {
 }
 
 // Figures of the rows that the recorder kept. A run does not fail if a figure cannot be drawn.
-std::string drawn(const Scene& scene, int winding, const RowNames& names, const Recorder& recorder,
+std::string drawn(const Scene& scene, const InitialRows& initial, const RowNames& names, const Recorder& recorder,
                   DrawnSection section, const fs::path& folder) {
   if (!recorder.film()) return {};
   const std::string& theory = scene.problem.theory;
   const bool angle = scene.problem.circle_valued || find_theory(theory).angle;
   try {
-    return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, winding,
-                         *recorder.film(), recorder.energy_errors(), scene.times, names, energy_in_words(scene.problem),
-                         std::move(section), scene.figure_form},
+    return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice,
+                         initial.winding(), *recorder.film(), recorder.energy_errors(), scene.times, names,
+                         energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact()},
                         folder);
   } catch (const std::exception& error) {
     return error.what();
@@ -163,7 +163,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   }
   attempt([&] { write_text_file(folder / "summary.json", summary_json(scene, outcome)); });
   if (outcome.status != "system-failure")  // last: all files are whole
-    missing = drawn(scene, outcome.winding, names, recorder, std::move(section), folder);
+    missing = drawn(scene, initial, names, recorder, std::move(section), folder);
 
   if (outcome.status != "system-failure") {
     fmt::print("{}", report(scene, outcome));

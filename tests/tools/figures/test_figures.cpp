@@ -42,6 +42,15 @@ TEST_CASE("the figure of the energy error says which energy that is") {
   CHECK(contains(svg, "order 2"));
 }
 
+TEST_CASE("waveforms are drawn over the exact solution, as long as there is one") {
+  if (!has_gnuplot()) return;
+  const Folder folder;
+  REQUIRE(delf_program(folder, "run soliton-bounce --run.until=0.2 --out exact").code == 0);
+  CHECK(contains(read(folder / "exact/figures/waveforms.svg"), "grey: exact"));
+  REQUIRE(delf_program(folder, "run collision --run.until=1 --out unknown").code == 0);
+  CHECK_FALSE(contains(read(folder / "unknown/figures/waveforms.svg"), "grey: exact"));
+}
+
 TEST_CASE("without gnuplot a run succeeds, and says which package is missing") {
   const Folder folder;
   const Ran ran = delf_program(folder, "run kink --run.until=1 --out here", "PATH=/nowhere");
