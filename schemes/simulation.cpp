@@ -19,6 +19,8 @@
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/plan_report.hpp"
+#include "schemes/stepping/saved_state.hpp"
+#include "schemes/stepping/step_density.hpp"
 #include "schemes/system/conserved.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/system/slab_extent.hpp"
@@ -50,7 +52,7 @@ Evolution make_evolution(SchemeParts parts, const Problem& p) {
           std::move(parts.families),
           p.time_step,
           {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
-           2 * std::numbers::pi * p.winding, p.threads, std::move(parts.processor)},
+           2 * std::numbers::pi * p.winding, p.threads, std::move(parts.processor), p.step_control.has_value()},
           std::move(parts.components)};
 }
 
@@ -71,6 +73,7 @@ struct Simulation::Impl {
   int winding;
   bool has_multipliers;  ///< it has constraints
   int field_lag;         ///< rows from the newest row of fields up to the newest slab
+  std::optional<StepDensity> chosen_steps;  ///< where rows choose them
   std::vector<std::string> conserved_names;
 
   Impl(const Problem& p, std::unique_ptr<FieldTheory> t, SchemeParts parts)
@@ -87,6 +90,7 @@ struct Simulation::Impl {
         field_lag(has_multipliers ? slab_extent(system, evolution.plan()).field_lag : 0) {
     if (!method.energy && system.fields() != theory->components())
       throw std::logic_error("scheme.method = " + method.name + ": has other fields than the theory, and no energy");
+    if (p.step_control) take_step_control();
     // Stencils of more than two rows would need rows that are no longer held.
     for (const LinearSymmetry& s : symmetries)
       if (system.height() <= 1) conserved_names.push_back(s.name);
@@ -99,7 +103,57 @@ struct Simulation::Impl {
       if (system.component(static_cast<int>(at) % system.components()).role == role) values.push_back(row[at]);
     return values;
   }
-  RowsInTime newest_rows() const { return {*theory, system, stepper.window(2), stepper.newest(), problem.time_step}; }
+  void take_step_control() {
+    const SlabExtent extent = slab_extent(system, evolution.plan());
+    if (!method.row_density || system.height() != 1 || extent.field_lag != 0 || extent.above != 0)
+      throw BadInput("lattice.time_steps",
+                     fmt::format("lattice.time_steps = reversible: scheme.method = {} has steps of one length; use "
+                                 "scheme.method = r-adaptive, or leave it out",
+                                 method.name));
+    chosen_steps.emplace(problem.time_step);
+    system.times()->begin(problem.time_step);
+  }
+  /// What row 0 and its momenta, or the newest row, ask of the steps.
+  RowDensity row_density(const std::vector<double>& row0, std::span<const double> momenta) const {
+    return method.row_density(
+        {*theory, system, system.window(0, {row0}, 2 * std::numbers::pi * winding), 0, problem.time_step}, momenta,
+        *problem.step_control);
+  }
+  RowDensity row_density() const {
+    const RowsInTime rows = newest_rows();
+    return method.row_density(rows, half_equations(system, rows.rows, rows.newest, Side::below), *problem.step_control);
+  }
+  void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta,
+                      std::optional<double> density) {
+    if (chosen_steps)
+      system.times()->begin(density ? chosen_steps->go_on_from(*density)
+                                    : chosen_steps->first(row_density(row0, momenta)));
+    stepper.start_legendre(row0, momenta);
+  }
+  void step_by(double h, bool looked_at) {
+    system.times()->add(h);
+    try {
+      with_reasons([&] { stepper.step(looked_at); });
+    } catch (...) {
+      system.times()->drop();
+      throw;
+    }
+  }
+  void step(bool looked_at) {
+    if (!chosen_steps) return with_reasons([&] { stepper.step(looked_at); });
+    const StepDensity before = *chosen_steps;
+    try {
+      step_by(chosen_steps->next(row_density()), looked_at);
+    } catch (...) {
+      chosen_steps = before;
+      throw;
+    }
+  }
+
+  RowsInTime newest_rows() const {
+    const std::int64_t newest = stepper.newest();
+    return {*theory, system, stepper.window(2), newest, system.times()->step(newest - 1)};
+  }
   EnergyMomentum energy_momentum() const {
     if (method.energy) return method.energy(newest_rows());
     const double h = problem.time_step;
@@ -312,7 +366,13 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 
 int Simulation::starting_rows() const { return impl_->stepper.starting_rows(); }
 
-void Simulation::start(const std::vector<std::vector<double>>& given) {
+void Simulation::start(const std::vector<std::vector<double>>& given, std::optional<double> density) {
+  if (impl_->chosen_steps) {
+    if (!density || given.size() != 2)
+      throw BadInput("initial.start",
+                     "initial.start: steps that the rows choose begin from row 0 and its rates; use legendre");
+    impl_->system.times()->begin(impl_->chosen_steps->go_on_from(*density));
+  }
   for (const auto& row : given) impl_->stepper.require_row(row.size());
   std::vector<std::vector<double>> rows = given;
   for (auto& row : rows) impl_->hold_walls(row, false);
@@ -321,6 +381,7 @@ void Simulation::start(const std::vector<std::vector<double>>& given) {
 }
 
 void Simulation::start_centred(std::span<const double> row0, std::span<const double> velocity) {
+  if (impl_->chosen_steps) throw BadInput("initial.start", "initial.start = centred: takes steps of one length; use legendre");
   std::vector<std::vector<double>> rows{{row0.begin(), row0.end()}};
   if (impl_->problem.circle_valued) rows = impl_->lifted(rows);
   impl_->check_mirrors(rows[0]);
@@ -328,13 +389,23 @@ void Simulation::start_centred(std::span<const double> row0, std::span<const dou
 }
 
 void Simulation::step(bool looked_at) {
-  impl_->with_reasons([&] { impl_->stepper.step(looked_at); });
+  impl_->step(looked_at);
 }
+void Simulation::step_by(double time_step) { impl_->step_by(time_step, true); }
 void Simulation::steps(int count) {
-  impl_->with_reasons([&] { impl_->stepper.steps(count); });
+  if (!impl_->chosen_steps) return impl_->with_reasons([&] { impl_->stepper.steps(count); });
+  for (; count > 0; --count) impl_->step(false);
 }
-void Simulation::visit(SavedState& state) { impl_->stepper.visit(state); }
+void Simulation::visit(SavedState& state) {
+  impl_->stepper.visit(state);
+  if (impl_->chosen_steps) impl_->system.times()->visit(state), impl_->chosen_steps->visit(state);
+}
 std::int64_t Simulation::newest() const { return impl_->stepper.newest(); }
+double Simulation::time(std::int64_t row) const { return impl_->system.times()->time(row); }
+std::optional<double> Simulation::step_density() const {
+  return impl_->chosen_steps ? std::optional(impl_->chosen_steps->value()) : std::nullopt;
+}
+RowDensity Simulation::row_density() const { return impl_->row_density(); }
 
 void Simulation::start_legendre(std::span<const double> fields, std::span<const double> rates) {
   const LatticeSystem& system = impl_->system;
@@ -373,12 +444,13 @@ void Simulation::start_legendre(std::span<const double> fields, std::span<const 
   if (!any)
     throw BadInput("initial.start", "initial.start = legendre: for schemes of elements, and scheme.method = " +
                                         impl_->method.name + " has none; use exact or centred");
-  impl_->stepper.start_legendre(row0, momenta);
+  impl_->start_legendre(row0, momenta, {});
 }
 
-void Simulation::start_momenta(std::span<const double> row0, std::span<const double> momenta) {
+void Simulation::start_momenta(std::span<const double> row0, std::span<const double> momenta,
+                               std::optional<double> density) {
   for (const std::size_t values : {row0.size(), momenta.size()}) impl_->stepper.require_row(values);
-  impl_->stepper.start_legendre({row0.begin(), row0.end()}, {momenta.begin(), momenta.end()});
+  impl_->start_legendre({row0.begin(), row0.end()}, {momenta.begin(), momenta.end()}, density);
 }
 
 void Simulation::copy_row(int back, std::span<double> out, Role role) const {

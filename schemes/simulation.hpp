@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ namespace delf {
 class Evolution;
 class SavedState;
 class FieldTheory;
+struct RowDensity;
 
 /// What a scene states, in the engine's words.
 struct Problem {
@@ -32,6 +34,7 @@ struct Problem {
   int seed_order = 8;                            ///< scheme.seed_order
   int max_iterations = 50;                       ///< scheme.max_iterations
   int threads = 1;                               ///< run.threads: that explicit steps are shared by
+  std::optional<double> step_control = {};       ///< s of steps that the rows choose; time_step is ε then
 };
 
 /// The problem with the fallbacks of all parameters that its theory and its method read. Throws BadInput for unknown
@@ -72,7 +75,8 @@ class Simulation {
   /// How many rows a start needs: 2 for every scheme of Marsden–Patrick–Shkoller.
   int starting_rows() const;
   /// Rows 0, 1, …, starting_rows() − 1, of all components; the multipliers' entries are not read.
-  void start(const std::vector<std::vector<double>>& rows);
+  /// `density` of the rows that a run back repeats, where steps are reversible.
+  void start(const std::vector<std::vector<double>>& rows, std::optional<double> density = {});
   /// Row 0 and φ_t there: row 1 solves the field equation at row 0 with y₋₁ = y₁ − 2hφ_t.
   void start_centred(std::span<const double> row0, std::span<const double> velocity);
 
@@ -81,14 +85,18 @@ class Simulation {
   void start_legendre(std::span<const double> row0, std::span<const double> velocity);
 
   /// The same with the momenta at row 0 themselves, of all components [i·C + c]; those of multipliers and inner nodes are
-  /// not read. For schemes that start_legendre() is for.
-  void start_momenta(std::span<const double> row0, std::span<const double> momenta);
+  /// not read. For schemes that start_legendre() is for. `density` of the rows that a run back repeats, where steps are
+  /// reversible.
+  void start_momenta(std::span<const double> row0, std::span<const double> momenta,
+                     std::optional<double> density = {});
 
   /// One step. Throws NoConvergence or NotFinite; the rows held are then still the last good ones. Throws
   /// std::logic_error before a start.
   /// A row that is not to be `looked_at` costs an explicit step, or one through long rows, less memory traffic: the row
   /// before it is written over, and residual() and monitors() are not to be had.
   void step(bool looked_at = true);
+  /// One step of this length, where steps are reversible: it leaves their density alone.
+  void step_by(double time_step);
   /// The same as so many step(false), for less where rows outgrow the cache.
   void steps(int count);
 
@@ -98,6 +106,11 @@ class Simulation {
 
   /// Index of the newest row.
   std::int64_t newest() const;
+  /// t of the newest rows, and beyond them as if the last step went on.
+  double time(std::int64_t row) const;
+  /// Of reversible steps: ρ of the last one, and what the newest row asks for (schemes/stepping/step_density.hpp).
+  std::optional<double> step_density() const;
+  RowDensity row_density() const;
   /// The components of one role of the row `back` rows before the newest, back < starting_rows(): out[i·count + a].
   /// Multipliers and inner nodes are those that were found together with the row.
   void copy_row(int back, std::span<double> out, Role = Role::field) const;

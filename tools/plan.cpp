@@ -118,7 +118,10 @@ ExitCode plan(const Scene& scene, bool latex) {
       return ExitCode::done;
     }
     fmt::print("{}: {}, {}, {} steps to t = {:.6g}\n", scene.name, scene.problem.theory, scheme_in_words(scene.problem),
-               scene.steps, static_cast<double>(scene.steps) * scene.problem.time_step);
+               scene.steps, scene.end());
+    if (scene.problem.step_control)
+      fmt::print("  steps      h = {:.6g}/sqrt(1 + {:.6g}^2 <phi_x^2>), reversible; about so many, or more\n",
+                 scene.problem.time_step, *scene.problem.step_control);
     fmt::print(
         "  (A slab is what is solved together, row j and its inner nodes; stencils are sites (row, site) from the "
         "first one.\n"

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
-#include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 
 ReversibleSteps::ReversibleSteps(const CellSpace& space, double longest, double strength)
-    : space_(space), still_(space), longest_(longest), strength_(strength) {
+    : space_(space), still_(space), density_(longest), strength_(strength) {
   for (const double A : space.masses) area_ += A;
   const BatchDensity& density = *space.density;
   const int d = density.components();
@@ -30,7 +29,7 @@ ReversibleSteps::ReversibleSteps(const CellSpace& space, double longest, double 
     for (int b = 0; b < d; ++b) inverse_mass_.push_back(inverse(a, b));
 }
 
-ReversibleSteps::Row ReversibleSteps::look(std::span<const double> values, std::vector<double> rates, double share) {
+RowDensity ReversibleSteps::look(std::span<const double> values, std::vector<double> rates, double share) {
   const ComplexSystem& system = still_.system();
   std::vector<double> force(values.size(), 0.0);
   system.each_residual(system.all_stencils(), values, [&](ComplexSystem::Stencils batch, const double* r) {
@@ -56,33 +55,19 @@ ReversibleSteps::Row ReversibleSteps::look(std::span<const double> values, std::
   return {std::sqrt(of_path), s2 * product / area_ / of_path};
 }
 
-ReversibleSteps::Row ReversibleSteps::look(const SpaceEvolution& evolution) {
+RowDensity ReversibleSteps::look(const SpaceEvolution& evolution) {
   const double below = evolution.last_step();
   std::vector<double> rates(evolution.row().begin(), evolution.row().end());
   for (std::size_t n = 0; n < rates.size(); ++n) rates[n] = (rates[n] - evolution.row(1)[n]) / below;
   return look(evolution.row(), std::move(rates), 0.5 * below);
 }
 
-double ReversibleSteps::step() const {
-  const double h = longest_ / density_;
-  if (!(density_ > 0) || !std::isnormal(h))
-    throw NotFinite("the density of rows in time is not positive; use a shorter time step or a weaker step control");
-  return h;
-}
-
 double ReversibleSteps::first(std::span<const double> values, std::span<const double> rates) {
-  const Row row = look(values, {rates.begin(), rates.end()}, 0);
-  density_ = row.density + 0.5 * longest_ * row.slope;
-  return step();
+  return density_.first(look(values, {rates.begin(), rates.end()}, 0));
 }
 
-double ReversibleSteps::next(const SpaceEvolution& evolution) {
-  density_ += longest_ * look(evolution).slope;
-  return step();
-}
+double ReversibleSteps::next(const SpaceEvolution& evolution) { return density_.next(look(evolution)); }
 
-void ReversibleSteps::visit(SavedState& state) { state("density of rows", density_); }
-
-double ReversibleSteps::plain(const SpaceEvolution& evolution) { return longest_ / look(evolution).density; }
+double ReversibleSteps::plain(const SpaceEvolution& evolution) { return density_.plain(look(evolution)); }
 
 }  // namespace delf

@@ -65,4 +65,9 @@ EnergyMomentum element_energy(const RowsInTime& rows) {
                               half_equations(rows.system, rows.rows, rows.newest, Side::below));
 }
 
+std::vector<double> element_rates(const RowsInTime& rows, std::span<const double> momenta) {
+  const auto& family = dynamic_cast<const JetFamily&>(*rows.system.families().front());
+  return semi_discrete_rates(family, rows.system, rows.rows, rows.newest, momenta);
+}
+
 }  // namespace delf

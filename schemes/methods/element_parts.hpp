@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "jets/tables/stencil_table.hpp"
@@ -22,5 +23,7 @@ SchemeParts element_parts(const FieldTheory&, const StencilTable& element, const
 /// The energy of such a scheme at the newest row: H of the momenta there and of the rows, summed over space. And the
 /// momentum −Σ φ_x ∂ℓ/∂φ_t, at the same points.
 EnergyMomentum element_energy(const RowsInTime&);
+/// The rates that have these momenta at the newest row, [i·C + c].
+std::vector<double> element_rates(const RowsInTime&, std::span<const double> momenta);
 
 }  // namespace delf

@@ -21,6 +21,7 @@ struct EnergyMomentum;
 struct FieldPoint;
 struct NamedScheme;
 struct Problem;
+struct RowDensity;
 
 /// What a scheme is made of: stencil families over one lattice, and the components that they read.
 struct SchemeParts {
@@ -45,7 +46,7 @@ struct RowsInTime {
   const LatticeSystem& system;
   Window rows;          ///< the newest two; for a dataset of a row below, that row and all above it
   std::int64_t newest;  ///< index of the newest
-  double time_step;
+  double time_step;     ///< of the step below it
 };
 
 /// A quantity that series.csv has a column for.
@@ -96,6 +97,9 @@ struct MethodEntry {
   EnergyMomentum (*energy)(const RowsInTime&) = nullptr;
   std::vector<Monitor> monitors = {};
   std::vector<Dataset> datasets = {};
+  /// Of the newest row and its momenta, [i·C + c]: what steps of lattice.time_steps = reversible are in proportion to, of a
+  /// strength s; null: its steps are all the same. For elements in time of one step, that start from momenta.
+  RowDensity (*row_density)(const RowsInTime&, std::span<const double> momenta, double strength) = nullptr;
   /// Of sites that move: where they start for a field of row 0, (φ, φ_t, φ_x) at any x; null: where the lattice has them.
   MovingSites (*place_sites)(const Problem&, int components,
                              const std::function<void(double x, std::span<FieldPoint>)>&) = nullptr;

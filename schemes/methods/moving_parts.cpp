@@ -309,6 +309,22 @@ void bind_delayed(const RowsInTime& rows, const MeshConstraint& constraint, doub
   }
 }
 
+/// What binds the velocities at the newest row.
+Bonds bonds_of(const RowsInTime& rows) {
+  Bonds bonds{.slaved = rows.system.component(rows.theory.components()).role == Role::slaved};
+  const auto& constraint = dynamic_cast<const MeshConstraint&>(*rows.system.families().front());
+  if (const double delay = constraint.facts().delay; delay > 0) bind_delayed(rows, constraint, delay, bonds);
+  else bind(rows, constraint, bonds);
+  return bonds;
+}
+
+/// The density, or a part of it, on a row of the moving cells.
+JetFamily family_of_row(const FieldTheory& theory, Reparametrised::Part part, int points) {
+  StencilTable table = linear_elements(points);
+  table.lower_side = table.points;
+  return {table, std::make_shared<const Reparametrised>(theory.shared_density(), part)};
+}
+
 }  // namespace
 
 SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) {
@@ -356,19 +372,17 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
 }
 
 EnergyMomentum moving_energy(const RowsInTime& rows) {
-  const LatticeSystem& system = rows.system;
-  const int d = rows.theory.components();
-  Bonds bonds{.slaved = system.component(d).role == Role::slaved};
-  const auto& constraint = dynamic_cast<const MeshConstraint&>(*system.families().front());
-  if (const double delay = constraint.facts().delay; delay > 0) bind_delayed(rows, constraint, delay, bonds);
-  else bind(rows, constraint, bonds);
-  const auto density =
-      std::make_shared<const Reparametrised>(rows.theory.shared_density(), Reparametrised::Part::whole);
-  StencilTable table = linear_elements(10);
-  table.lower_side = table.points;
-  const JetFamily row(table, density);
-  return semi_discrete_energy(row, system, rows.rows, rows.newest,
-                              half_equations(system, rows.rows, rows.newest, Side::below), bonds);
+  return semi_discrete_energy(family_of_row(rows.theory, Reparametrised::Part::whole, 10), rows.system, rows.rows,
+                              rows.newest, half_equations(rows.system, rows.rows, rows.newest, Side::below),
+                              bonds_of(rows));
+}
+
+std::vector<double> moving_rates(const RowsInTime& rows, std::span<const double> momenta) {
+  // The potential has no part in momenta, and two points are exact for the rest.
+  const JetFamily row = Reparametrised::has_parts(rows.theory.density())
+                            ? family_of_row(rows.theory, Reparametrised::Part::quadratic, 2)
+                            : family_of_row(rows.theory, Reparametrised::Part::whole, 10);
+  return semi_discrete_rates(row, rows.system, rows.rows, rows.newest, momenta, bonds_of(rows));
 }
 
 }  // namespace delf

@@ -38,6 +38,8 @@ SchemeParts moving_parts(const FieldTheory&, const MovingScheme&);
 /// At a row, from the momenta of φ: energy and momentum of the field, with the velocities (φ_t, X_t) that have those
 /// momenta and keep the constraint.
 EnergyMomentum moving_energy(const RowsInTime&);
+/// Those velocities, of any momenta of φ at the newest row, [i·C + c].
+std::vector<double> moving_rates(const RowsInTime&, std::span<const double> momenta);
 
 /// The field at a point x of row 0.
 using Profile = std::function<void(double x, std::span<FieldPoint>)>;

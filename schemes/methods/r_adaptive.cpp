@@ -24,6 +24,7 @@
 #include "schemes/methods/element_parts.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/moving_parts.hpp"
+#include "schemes/methods/slope_steps.hpp"
 #include "schemes/methods/time_element_keys.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/energy.hpp"
@@ -172,6 +173,11 @@ EnergyMomentum energy(const RowsInTime& rows) {
   return rows.system.moves() ? moving_energy(rows) : element_energy(rows);
 }
 
+RowDensity row_density(const RowsInTime& rows, std::span<const double> momenta, double strength) {
+  return density_of_slopes(rows, rows.system.moves() ? moving_rates(rows, momenta) : element_rates(rows, momenta),
+                           strength);
+}
+
 /// δ, the narrowest cell of the newest row: it limits the step of what is explicit.
 double narrowest_cell(const RowsInTime& rows) {
   const LatticeSystem& system = rows.system;
@@ -277,6 +283,7 @@ const MethodEntry r_adaptive_method{
                                   "lattice.time_step or mesh.alpha, or let scheme.strategy = control and scheme.time = "
                                   "gauss2 have no such limit"},
                  {.name = "multiplier_max", .value = largest_multiplier}},
+    .row_density = row_density,
     .place_sites = place_sites};
 
 }  // namespace delf

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "jets/simd/scratch_rows.hpp"
@@ -31,7 +32,7 @@ class LowerSide {
         d_(density_.components()),
         m_(density_.variables()),
         k_(system.lattice().space_step()),
-        t_(static_cast<double>(row) * system.time_step()) {
+        t_(system.times()->time(row)) {
     const StencilTable& table = family.table();
     const Lattice& lattice = system.lattice();
     std::vector<Site> vertices;
@@ -175,15 +176,22 @@ struct BoundRows {
 
 }  // namespace
 
-EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem& system, const Window& window,
-                                    std::int64_t row, std::span<const double> p, const Bonds& bonds) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  const LowerSide side(family, system, window, row);
+namespace {
+
+/// Of the unknowns.
+Vector on_unknowns(const LowerSide& side, std::span<const double> p) {
+  Vector own(static_cast<Eigen::Index>(side.places().size()));
+  for (Eigen::Index i = 0; i < own.size(); ++i) own[i] = p[at(side.places()[static_cast<std::size_t>(i)])];
+  return own;
+}
+
+/// The velocities v that have the momenta p and keep the bonds; nothing where there are none.
+std::optional<Vector> velocities(const LowerSide& side, const BatchDensity& density, const Vector& wanted,
+                                 const Bonds& bonds) {
   const BoundRows bound(side.places(), bonds);
   const auto n = static_cast<Eigen::Index>(side.places().size()), m = bound.J.rows();
-  Vector wanted(n), v = Vector::Zero(n), force = Vector::Zero(m);
-  for (Eigen::Index i = 0; i < n; ++i) wanted[i] = p[at(side.places()[static_cast<std::size_t>(i)])];
-  const bool varies = family.density().nonlinearity() == Nonlinearity::all;
+  Vector v = Vector::Zero(n), force = Vector::Zero(m);
+  const bool varies = density.nonlinearity() == Nonlinearity::all;
   Sparse mass;
   Eigen::SparseLU<Sparse> lu;
   double before = std::numeric_limits<double>::infinity();
@@ -192,17 +200,39 @@ EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem
     Vector gap(n + m);
     gap << wanted - side.momenta(v, factor ? &mass : nullptr) - bound.forces * force, bound.rates - bound.J * v;
     if (factor) lu.compute(m == 0 ? mass : bound.beside(mass));
-    if (lu.info() != Eigen::Success) return {none, none};
+    if (lu.info() != Eigen::Success) return std::nullopt;
     const Vector change = lu.solve(gap);
-    if (!change.allFinite()) return {none, none};
+    if (!change.allFinite()) return std::nullopt;
     v += change.head(n), force += change.tail(m);
     const double size = change.head(n).lpNorm<Eigen::Infinity>(), scale = v.lpNorm<Eigen::Infinity>();
     // corrections that no longer shrink are rounding, if they are small
-    if (size <= 4 * epsilon * scale || (size > 0.25 * before && size <= 512 * epsilon * scale))
-      return side.energy(m == 0 ? wanted : side.momenta(v, nullptr), v);
+    if (size <= 4 * epsilon * scale || (size > 0.25 * before && size <= 512 * epsilon * scale)) return v;
     before = size;
   }
-  return {none, none};
+  return std::nullopt;
+}
+
+}  // namespace
+
+EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem& system, const Window& window,
+                                    std::int64_t row, std::span<const double> p, const Bonds& bonds) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const LowerSide side(family, system, window, row);
+  const Vector wanted = on_unknowns(side, p);
+  const auto v = velocities(side, family.density(), wanted, bonds);
+  if (!v) return {none, none};
+  return side.energy(bonds.entries.empty() ? wanted : side.momenta(*v, nullptr), *v);
+}
+
+std::vector<double> semi_discrete_rates(const JetFamily& family, const LatticeSystem& system, const Window& window,
+                                        std::int64_t row, std::span<const double> p, const Bonds& bonds) {
+  const LowerSide side(family, system, window, row);
+  std::vector<double> rates(p.size(), 0.0);
+  const auto v = velocities(side, family.density(), on_unknowns(side, p), bonds);
+  if (!v) std::ranges::fill(rates, std::numeric_limits<double>::quiet_NaN());
+  else
+    for (Eigen::Index i = 0; i < v->size(); ++i) rates[at(side.places()[static_cast<std::size_t>(i)])] = (*v)[i];
+  return rates;
 }
 
 }  // namespace delf

@@ -29,5 +29,8 @@ struct Bonds {
 /// −∂Gᵀ/∂y μ, or, for `slaved`, any force on the value that each is the equation of.
 EnergyMomentum semi_discrete_energy(const JetFamily&, const LatticeSystem&, const Window&, std::int64_t row,
                                     std::span<const double> p, const Bonds& = {});
+/// Those velocities v, [i·C + c]; 0 where there are none, and not a number where none were found.
+std::vector<double> semi_discrete_rates(const JetFamily&, const LatticeSystem&, const Window&, std::int64_t row,
+                                        std::span<const double> p, const Bonds& = {});
 
 }  // namespace delf

@@ -238,9 +238,19 @@ bool SlabStepper::solve_slab_of_start(const std::vector<double>* momenta) {
   return true;
 }
 
+double SlabStepper::weight_of_past(std::int64_t row, int m, int points) const {
+  const RowTimes& times = *system_.times();
+  double weight = 1;
+  for (int l = 1; l <= points; ++l)
+    if (l != m) weight *= (times.time(row) - times.time(row - l)) / (times.time(row - m) - times.time(row - l));
+  return weight;
+}
+
 /// The polynomial through the values that the last slabs gave, `most_points` of them or as many as there are:
 ///
-///     y_J = Σ_{m=1}^{p} (−1)^{m+1} C(p, m) y_{J−m}
+///     y_J = Σ_{m=1}^{p} w_m y_{J−m},    w_m = Π_{l≠m} (t_J − t_{J−l})/(t_{J−m} − t_{J−l}),
+///
+/// and (−1)^{m+1} C(p, m) where rows are as far apart.
 void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
   // What has no equation keeps its value: fixed walls.
   const std::size_t size = predicted_.size();
@@ -257,10 +267,13 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
     const SectionView rows = ring_->view();
     const int newest_row = rows.index(J + unknowns.time);
     double weight = points;
+    const bool uniform = system_.times()->uniform();
+    if (!uniform) weight = weight_of_past(J + unknowns.time, 1, points);
     const double* past = rows.beside(newest_row, -1);
     for (std::size_t at = 0; at < size; ++at) predicted_[at] = weight * past[at];
     for (int m = 2; m <= points; ++m) {
-      weight *= -static_cast<double>(points - m + 1) / m;
+      weight = uniform ? weight * -static_cast<double>(points - m + 1) / m
+                       : weight_of_past(J + unknowns.time, m, points);
       past = rows.beside(newest_row, -m);
       for (std::size_t at = 0; at < size; ++at) predicted_[at] += weight * past[at];
     }
@@ -292,7 +305,7 @@ void SlabStepper::fail(std::int64_t J, const char* why) const {
     remedy = fmt::format("in the row before, {}; reduce lattice.time_step or mesh.alpha, or raise lattice.sites",
                          narrowest_cell(ring_->row(J - 1 - lag_)));
   throw NoConvergence(fmt::format("step {}, t = {:.6g}: the equations of the slab were not solved: {}; {}", J,
-                                  static_cast<double>(J) * system_.time_step(), why, remedy));
+                                  system_.times()->time(J), why, remedy));
 }
 
 /// The first of two neighbouring sites that have passed each other in a row, where a component is the position of the
@@ -411,7 +424,7 @@ bool SlabStepper::iterate(Parity& p, std::int64_t J) {
 
 /// Where the constant part has failed it is tried again after one step, then three, seven and so on up to 63.
 bool SlabStepper::may_iterate(const Parity& p) {
-  if (!p.has_constant) return false;
+  if (!p.has_constant || !system_.times()->uniform()) return false;
   if (waiting_ == 0) return true;
   --waiting_;
   return false;
@@ -505,7 +518,7 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
   if (!crossed.empty())
     throw MeshCrossing(
         fmt::format("step {}, t = {:.6g}: {}; in the row before, {}; reduce lattice.time_step or mesh.alpha", J,
-                    static_cast<double>(J) * system_.time_step(), crossed, narrowest_cell(ring_->row(J - 1 - lag_))));
+                    system_.times()->time(J), crossed, narrowest_cell(ring_->row(J - 1 - lag_))));
   if (options_.fibre == Fibre::circle) check_increments(J);
   ++known_;
   largest_[1] = std::exchange(largest_[0], largest_of(ring_->row(J - lag_)));
@@ -522,7 +535,7 @@ void SlabStepper::check_increments(std::int64_t J) const {
           fmt::format("step {}, t = {:.6g}: on the fibre S1 an increment within an element is above 0.9 pi, "
                       "where it cannot be told from its complement; reduce lattice.time_step, or use "
                       "theory.fibre = R",
-                      J, static_cast<double>(J) * system_.time_step()));
+                      J, system_.times()->time(J)));
   }
 }
 

@@ -68,6 +68,7 @@ class SlabStepper final : public StepMethod {
   std::vector<Unknowns> list_unknowns(const Assembly&) const;
   bool factor_constant(Parity&);
   void predict(const Parity&, std::int64_t J, int most_points);
+  double weight_of_past(std::int64_t row, int m, int points) const;
   void predict_without_past(const Unknowns&, std::int64_t J);
   double largest_of(const double* row) const;
   Change take_change(const Parity&, std::int64_t J);

@@ -25,6 +25,7 @@ struct StepOptions {
   int threads = 1;  ///< that explicit steps are shared by; the bits are the same for any number
   Processor processor =
       {};  ///< rows are those of a kernel: it gives the first, and is undone on copies that are observed
+  bool steps_vary = false;  ///< steps have lengths of their own (LatticeSystem::times): slab by slab alone
 };
 
 /// Rounding allows no smaller one: Stepper takes this in its place.

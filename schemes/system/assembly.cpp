@@ -78,7 +78,7 @@ Assembly::Parts Assembly::across(const LatticeSystem& system, int parity, double
 }
 
 Assembly::Assembly(const LatticeSystem& system, Parts parts)
-    : time_step_(system.time_step()),
+    : times_(system.times()),
       space_step_(system.lattice().space_step()),
       components_(system.components()),
       parts_(std::move(parts)) {
@@ -215,13 +215,15 @@ void Assembly::take_constant_parts() {
 }
 
 void Assembly::set_time_step(double h) {
-  time_step_ = h;
+  own_step_ = h;
   take_constant_parts();
 }
 
-/// h, k, t and x of a stencil
+/// h, k, t and x of a stencil: h is the step above its anchor's row
 Cell Assembly::cell(const Batch& b, std::int64_t J, double x) const {
-  return {time_step_, space_step_, static_cast<double>(J + b.row) * time_step_, x};
+  const std::int64_t row = J + b.row;
+  if (own_step_) return {*own_step_, space_step_, static_cast<double>(row) * *own_step_, x};
+  return {times_->step(row), space_step_, times_->time(row), x};
 }
 
 Pack Assembly::gathered(const Batch& b, SectionView section, std::int64_t J, int i, int s) const {
@@ -257,7 +259,7 @@ void Assembly::add_residual(const Batch& b, SectionView section, std::int64_t J,
   if (equations == 0) return;
   strips(b, section, J, equations, [&](const StencilBatch& strip, int first, Pack* r) {
     const int packs = strip.count / lanes;
-    if (b.linear) {
+    if (b.linear && steady()) {
       for (int e = 0; e < equations; ++e) std::fill_n(r + e * packs, packs, Pack(b.at_zero[at(e)]));
       for (const auto& [e, m, value] : b.terms)
         for (int p = 0; p < packs; ++p) r[e * packs + p] += Pack(value) * y_[at(m * packs + p)];
@@ -306,8 +308,9 @@ void Assembly::residual_from(const std::vector<double>& known, SectionView secti
 void Assembly::jacobian(SectionView section, std::int64_t J, std::vector<double>& values,
                         const std::vector<double>* momenta) const {
   values = fixed_;
+  if (!steady()) values.assign(fixed_.size(), 0.0);
   for (const Batch& b : batches_) {
-    if (b.linear || below_start(b, J, momenta != nullptr)) continue;
+    if ((b.linear && steady()) || below_start(b, J, momenta != nullptr)) continue;
     const int pairs = static_cast<int>(b.equations.size() * b.unknowns.size());
     if (pairs == 0) continue;
     strips(b, section, J, pairs, [&](const StencilBatch& strip, int first, Pack* derivatives) {

@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -114,7 +115,7 @@ class Assembly {
   /// Which of them are not zero at three seeded random sections: others cancel between stencils.
   std::vector<char> present() const;
 
-  /// h, if it is not the system's own.
+  /// h of all rows, if it is not what the system's rows have.
   void set_time_step(double h);
 
   /// E and Σ|terms| of every equation. With `momenta` (site·C + component), slab 1 from row 0 alone: the stencils below
@@ -198,6 +199,8 @@ class Assembly {
 
   bool below_start(const Batch& b, std::int64_t J, bool legendre) const { return legendre && J + b.lowest_row < 0; }
   Cell cell(const Batch& b, std::int64_t J, double x) const;
+  /// All steps are as long as those that the constant parts were taken with.
+  bool steady() const { return own_step_ || times_->uniform(); }
   /// Calls use(stencils, number of the first, room for `numbers` of each) for a batch, strip by strip.
   template <class Use>
   void strips(const Batch&, SectionView, std::int64_t J, int numbers, const Use& use) const;
@@ -206,7 +209,9 @@ class Assembly {
   void add_constant(const Batch&, const Numbers& J, Numbers& values) const;
   void each(bool jacobian, SectionView y, std::int64_t J, const Visit&) const;
 
-  double time_step_, space_step_;
+  std::shared_ptr<const RowTimes> times_;
+  std::optional<double> own_step_;
+  double space_step_;
   int components_;
   Parts parts_;
   std::vector<Batch> batches_;

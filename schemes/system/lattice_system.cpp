@@ -42,7 +42,11 @@ double Window::operator()(std::int64_t row, int i, int a) const {
 
 LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families,
                              double time_step, std::vector<Component> components)
-    : lattice_(lattice), families_(std::move(families)), time_step_(time_step), names_(std::move(components)) {
+    : lattice_(lattice),
+      families_(std::move(families)),
+      time_step_(time_step),
+      times_(std::make_shared<RowTimes>(time_step)),
+      names_(std::move(components)) {
   int read = 0;
   for (const auto& family : families_) {
     for (const VertexValue& value : family->values()) read = std::max(read, value.component + 1);

@@ -13,6 +13,7 @@
 #include "lattice/lattice.hpp"
 #include "lattice/matrix_entry.hpp"
 #include "schemes/families/stencil_family.hpp"
+#include "schemes/system/row_times.hpp"
 
 namespace delf {
 
@@ -96,6 +97,9 @@ class LatticeSystem {
     return lattice_.is_fixed(column) && names_[static_cast<std::size_t>(component)].at.space == 0;
   }
   double time_step() const { return time_step_; }
+  /// Of the rows: uniform, unless a run gives its steps lengths of their own. Copies of a system share them.
+  const std::shared_ptr<RowTimes>& times() const { return times_; }
+  void share_times(const LatticeSystem& other) { times_ = other.times_; }
   int width() const { return width_; }  ///< the largest space offset between two sites of one equation
   int height() const { return height_; }  ///< the same in time
   Placement placement() const { return placement_; }
@@ -144,6 +148,7 @@ class LatticeSystem {
   Lattice lattice_;
   std::vector<std::shared_ptr<const StencilFamily>> families_;
   double time_step_;
+  std::shared_ptr<RowTimes> times_;
   std::vector<Component> names_;
   int width_ = 0, height_ = 0;
   Placement placement_ = Placement::every_site;

@@ -44,8 +44,8 @@ std::vector<double> half_equations(const LatticeSystem& system, const Window& wi
         y.push_back(window(anchor + v.time, i + v.space, family->values()[static_cast<std::size_t>(m)].component));
       }
       r.resize(y.size());
-      const double h = system.time_step();
-      family->residual({h, lattice.space_step(), static_cast<double>(anchor) * h, lattice.position(i)}, y, r);
+      family->residual(
+          {system.times()->step(anchor), lattice.space_step(), system.times()->time(anchor), lattice.position(i)}, y, r);
       for (int m = 0; m < family->size(); ++m) {
         const Site v = family->site(m);
         if (anchor + v.time != row || !family->is_varied(m)) continue;

@@ -91,6 +91,7 @@ constexpr std::int64_t first_row = 2;
 /// The whole state of a scheme: two rows of fields, or, of elements in time, a row and its momenta.
 struct Ends {
   Row first, second;
+  std::optional<double> density = {};  ///< of reversible steps: of the last one
 };
 struct TurningPoint {
   std::int64_t steps;
@@ -108,7 +109,7 @@ class Motion {
   Ends read(const Simulation& simulation) const {
     if (by_momenta_) {
       const LatticeSystem& system = simulation.evolution().system();
-      Ends ends{simulation.evolution().stepper().row(0), simulation.momenta()};
+      Ends ends{simulation.evolution().stepper().row(0), simulation.momenta(), simulation.step_density()};
       for (std::size_t n = 0; n < ends.first.size(); ++n) {
         if (!is_of_row(system, n)) ends.first[n] = ends.second[n] = 0;
         if (is_held(system, n)) ends.second[n] = 0;  // the wall's own
@@ -117,7 +118,7 @@ class Motion {
     }
     const auto size = static_cast<std::size_t>(simulation.evolution().system().lattice().sites()) *
                       static_cast<std::size_t>(simulation.count(Role::field));
-    Ends ends{Row(size), Row(size)};
+    Ends ends{Row(size), Row(size), simulation.step_density()};
     simulation.copy_row(1, ends.first);
     simulation.copy_row(0, ends.second);
     return ends;
@@ -134,9 +135,9 @@ class Motion {
     if (by_momenta_ && constrained_) return largest_difference({a.first}, {b.first});
     return largest_difference({a.first, a.second}, {b.first, b.second});
   }
-  /// From two rows; elements from the first, moved by their difference: any motion will do.
+  /// From two rows; elements, and steps that rows choose, from the first, moved by their difference: any motion will do.
   void begin(Simulation& simulation, const Rows& rows) const {
-    if (!by_momenta_) return simulation.start(rows);
+    if (!by_momenta_ && !simulation.step_density()) return simulation.start(rows);
     Row velocity(rows[0].size());
     const double h = simulation.evolution().system().time_step();
     for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = (rows[1][n] - rows[0][n]) / h;
@@ -146,10 +147,10 @@ class Motion {
   void go(Simulation& simulation, const Ends& from, std::int64_t steps) const {
     std::int64_t made = 0;
     if (by_momenta_) {
-      simulation.start_momenta(in_all_nodes(simulation.evolution().system(), from.first), from.second);
+      simulation.start_momenta(in_all_nodes(simulation.evolution().system(), from.first), from.second, from.density);
       made = simulation.newest();
     } else {
-      simulation.start({all_components(simulation, from.first), all_components(simulation, from.second)});
+      simulation.start({all_components(simulation, from.first), all_components(simulation, from.second)}, from.density);
     }
     for (; made < steps; ++made) simulation.step();
   }

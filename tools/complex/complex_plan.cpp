@@ -72,9 +72,9 @@ ExitCode plan(const ComplexScene& c) {
     } else {
       const SpaceEvolution evolution(space, c.time_step(0));
       fmt::print("  steps      {} of {}\n", c.scene.steps,
-                 c.step_control
+                 c.step_control()
                      ? fmt::format("h = {:.6g}/sqrt(1 + {:.6g}^2 <phi_t^2>), reversible; about so many, or more",
-                                   c.scene.problem.time_step, *c.step_control)
+                                   c.scene.problem.time_step, *c.step_control())
                  : c.time_steps.empty() ? fmt::format("h = {:.6g}", c.scene.problem.time_step)
                                         : fmt::format("{} lengths in turn", c.time_steps.size()));
       fmt::print("  stencils   a row has {} of motion, {} of sites, {} of cells\n", space.sites(), space.sites(),

@@ -193,15 +193,11 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
     if (c.is_one_problem()) return c;
 
-    if (values.text("lattice.time_steps") == reversible) {
-      if (c.time == MeshTime::cells)
-        throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
-      c.step_control = values.real("lattice.step_control");
-    } else if (values.given("lattice.step_control")) {
-      throw settings.error("lattice.step_control", "has no effect without lattice.time_steps = reversible; remove it");
-    }
+    p.step_control = read_step_control(settings, values);
+    if (p.step_control && c.time == MeshTime::cells)
+      throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
     for (const char* other : {"lattice.courant", "lattice.time_step"})
-      if (values.given("lattice.time_steps") && !c.step_control && values.given(other))
+      if (values.given("lattice.time_steps") && !p.step_control && values.given(other))
         settings.keep_one_of("lattice.time_steps", other, {});
     c.time_steps = read_time_steps(settings, values);
     if (!c.time_steps.empty()) {
@@ -221,8 +217,8 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     } else {
       const double until = values.real("run.until");
       if (until / p.time_step > 1e12) throw settings.error("run.until", "is too many steps; use less");
-      if (c.step_control) {
-        c.until = until;
+      if (p.step_control) {
+        scene.until = until;
         scene.steps = static_cast<std::int64_t>(std::ceil(until / p.time_step));
       } else if (c.time_steps.empty()) scene.steps = std::llround(until / p.time_step);
       else
@@ -318,7 +314,7 @@ std::string resolved_text(const ComplexScene& c) {
            if (!given) return {};
            if (key.name == "lattice.mesh" && !c.mesh_file.empty()) return c.mesh_file.string();
            if (key.name == "lattice.time_steps")
-             return c.step_control ? given->value : fmt::format("{}", fmt::join(c.time_steps, ", "));
+             return c.scene.problem.step_control ? given->value : fmt::format("{}", fmt::join(c.time_steps, ", "));
            return given->value;
          });
 }

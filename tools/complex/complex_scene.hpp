@@ -35,9 +35,7 @@ struct ComplexScene {
   std::filesystem::path mesh_file;              ///< empty: generated
   MeshTime time = MeshTime::rows;
   std::vector<double> time_steps;      ///< of rows, over and over; empty: all scene.problem.time_step
-  std::optional<double> step_control;  ///< s of steps that the field chooses: ReversibleSteps, with time_step for ε
-  std::optional<double> until;  ///< of these: the last row is the first that is as late; `scene.steps` is a guess then
-  double courant = 0;           ///< of cells: h_K over the shortest edge of the cell
+  double courant = 0;                  ///< of cells: h_K over the shortest edge of the cell
 
   struct Field {
     std::string name;
@@ -49,8 +47,8 @@ struct ComplexScene {
     return time_steps.empty() ? scene.problem.time_step
                               : time_steps[static_cast<std::size_t>(step) % time_steps.size()];
   }
-  /// Whether row n, at time t, is the last.
-  bool is_over(std::int64_t n, double t) const { return until ? t >= *until * (1 - 1e-12) : n >= scene.steps; }
+  /// Steps that the field chooses: ReversibleSteps of this strength, with time_step for ε.
+  const std::optional<double>& step_control() const { return scene.problem.step_control; }
   /// Solved at once: there are no steps.
   bool is_one_problem() const { return time == MeshTime::none || time == MeshTime::sites; }
   int sites() const;

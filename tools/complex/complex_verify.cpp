@@ -63,7 +63,7 @@ class MeshVerification {
     if (order_.samples > 0) verdict_.checks.push_back(order_);
     if (reversal_.samples > 0) verdict_.checks.push_back(reversal_);
     if (first_step_.samples > 0) verdict_.checks.push_back(first_step_);
-    if (scene_.step_control)
+    if (scene_.step_control())
       verdict_.left_out.push_back(
           "symplecticity: the forms here are of steps as given; with steps chosen by the field the map of rows is "
           "reversible, not symplectic, and its energy is what is measured");
@@ -238,7 +238,7 @@ class MeshVerification {
       times.push_back(t);
     };
     keep(start, 0), keep(evolution.row(), evolution.time());
-    const bool own_steps = !scene_.time_steps.empty() || scene_.step_control;
+    const bool own_steps = !scene_.time_steps.empty() || scene_.step_control();
     const double energy = evolution.energy();
     int moment = 0;
     while (evolution.newest() < steps && !Interrupt::asked()) {
@@ -285,12 +285,13 @@ class MeshVerification {
 
   // Where the field chooses the steps only a run tells how many there are.
   std::int64_t rows_of_run() const {
-    if (!scene_.until) return scene_.scene.steps;
+    if (!scene_.scene.until) return scene_.scene.steps;
     SpaceEvolution evolution(*scene_.space, scene_.time_step(0),
                              {scene_.scene.problem.tolerance, scene_.scene.problem.max_iterations});
     RowSteps row_steps(scene_);
     row_steps.start(evolution);
-    while (!scene_.is_over(evolution.newest(), evolution.time()) && !Interrupt::asked()) row_steps.step(evolution);
+    while (!scene_.scene.is_over(evolution.newest(), evolution.time()) && !Interrupt::asked())
+      row_steps.step(evolution);
     return evolution.newest();
   }
 

@@ -43,7 +43,7 @@ std::optional<End> last_row(const ComplexScene& c) {
     SpaceEvolution evolution(*c.space, c.time_step(0), {c.scene.problem.tolerance, c.scene.problem.max_iterations});
     RowSteps row_steps(c);
     row_steps.start(evolution);
-    while (!c.is_over(evolution.newest(), evolution.time()) && !Interrupt::asked()) row_steps.step(evolution);
+    while (!c.scene.is_over(evolution.newest(), evolution.time()) && !Interrupt::asked()) row_steps.step(evolution);
     end.values.assign(evolution.row().begin(), evolution.row().end());
     end.time = evolution.time();
   }
@@ -73,7 +73,7 @@ ConvergenceTable converge(const ComplexScene& scene, int levels) {
   if (!scene.time_steps.empty())
     throw scene.scene.settings.error("lattice.time_steps",
                                      "are not refined; give lattice.courant or lattice.time_step");
-  if (scene.step_control && !(scene.has_solution() && scene.until))
+  if (scene.step_control() && !(scene.has_solution() && scene.scene.until))
     throw scene.scene.settings.error("lattice.time_steps",
                                      "reversible steps end at times of their own; give run.until, and exact.FIELD to "
                                      "compare with");

@@ -42,7 +42,7 @@ class AllSites final : public MeshEvolution {
     state("shortest step", shortest_), state("longest step", longest_);
   }
   void describe(MeshOutcome& o) const override {
-    if (!c_.time_steps.empty() || c_.step_control) o.shortest = shortest_, o.longest = longest_;
+    if (!c_.time_steps.empty() || c_.step_control()) o.shortest = shortest_, o.longest = longest_;
     o.solve = evolution_.plan().describe() + (evolution_.is_direct() ? " (explicit)" : "");
     o.solve_kind = evolution_.is_direct() ? "explicit" : "sparse";
     o.bytes = evolution_.bytes();

@@ -92,10 +92,10 @@ void MeshStepping::step_until(std::int64_t row, Progress& progress) {
 }
 
 // Steps that the field chooses end by time, and their number is a guess.
-bool MeshStepping::is_over() const { return c_.is_over(evolution_.newest(), evolution_.time()); }
+bool MeshStepping::is_over() const { return c_.scene.is_over(evolution_.newest(), evolution_.time()); }
 
 std::int64_t MeshStepping::last_row() const {
-  return c_.until && c_.scene.steps > 0 ? evolution_.newest() : std::min(evolution_.newest(), c_.scene.steps);
+  return c_.scene.until && c_.scene.steps > 0 ? evolution_.newest() : std::min(evolution_.newest(), c_.scene.steps);
 }
 
 bool MeshStepping::to_be_recorded(std::int64_t row) const {
@@ -104,7 +104,7 @@ bool MeshStepping::to_be_recorded(std::int64_t row) const {
 
 std::int64_t MeshStepping::next_record() const {
   const std::int64_t every = c_.scene.every,
-                     steps = c_.until ? std::numeric_limits<std::int64_t>::max() : c_.scene.steps;
+                     steps = c_.scene.until ? std::numeric_limits<std::int64_t>::max() : c_.scene.steps;
   return every == 0 ? steps : std::min(steps, (evolution_.newest() / every + 1) * every);
 }
 

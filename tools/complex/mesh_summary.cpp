@@ -79,7 +79,7 @@ std::string report(const ComplexScene& c, const MeshOutcome& o) {
   if (!c.is_one_problem())
     line("steps", fmt::format("{} to t = {:.6g}{}", o.steps, o.time,
                               o.longest > 0 ? fmt::format(", {:.4g} to {:.4g} long{}", o.shortest, o.longest,
-                                                          c.step_control ? ", chosen by the field" : "")
+                                                          c.step_control() ? ", chosen by the field" : "")
                                             : ""));
   if (o.steps_taken > 0)
     line("speed", fmt::format("{} for the steps, {}", duration_in_words(o.seconds),

@@ -11,8 +11,7 @@ namespace delf {
 
 /// The result of a run on a mesh.
 struct MeshOutcome : Outcome {
-  std::int64_t updates = 0;          ///< of asynchronous cells
-  double shortest = 0, longest = 0;  ///< step of rows with steps of their own
+  std::int64_t updates = 0;  ///< of asynchronous cells
 };
 
 /// summary.json, with the names of any other run; what a mesh does not have is null.

@@ -7,7 +7,7 @@
 namespace delf {
 
 RowSteps::RowSteps(const ComplexScene& scene) : scene_(scene) {
-  if (scene.step_control) reversible_.emplace(*scene.space, scene.scene.problem.time_step, *scene.step_control);
+  if (scene.step_control()) reversible_.emplace(*scene.space, scene.scene.problem.time_step, *scene.step_control());
 }
 
 void RowSteps::start(SpaceEvolution& evolution) {

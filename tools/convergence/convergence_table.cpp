@@ -22,8 +22,11 @@ double ConvergenceTable::order() const {
 
 ConvergenceTable converge(const Scene& scene, int levels) {
   ConvergenceTable table;
-  const double until = static_cast<double>(scene.steps) * scene.problem.time_step;
-  table.exact = has_exact(scene, until);
+  table.exact = has_exact(scene, scene.end());
+  if (scene.problem.step_control && !(table.exact && scene.until))
+    throw scene.settings.error("lattice.time_steps",
+                               "reversible steps end at times of their own; give run.until, and a state whose solution "
+                               "is known");
   std::vector<double> before;  // the last row of the level before
   PlacedRow placed_before;
   for (int level = 0; level < levels; ++level) {
@@ -53,8 +56,8 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     if (table.exact) {
       const FieldError error =
           end.placed.positions.empty()
-              ? field_error(end.row, ComparedSolution::exact(fine, until).at(lattice, until), lattice.space_step())
-              : field_error(end.placed, *make_state(fine.initial, lattice), until);
+              ? field_error(end.row, ComparedSolution::exact(fine, end.time).at(lattice, end.time), lattice.space_step())
+              : field_error(end.placed, *make_state(fine.initial, lattice), end.time);
       now.linf = error.linf, now.l2 = error.l2;
     } else if (level > 0) {
       ConvergenceLevel& coarse = table.levels.back();

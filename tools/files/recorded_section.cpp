@@ -54,7 +54,8 @@ RecordedSection::RecordedSection(const std::filesystem::path& path, const Lattic
                             counted(here, "site"), there, here));
   for (const Role role : all_roles)
     if (count[static_cast<std::size_t>(role)] > 0) check_shape(system, role);
-  check_times(time_step);
+  if (system.times()->uniform()) check_times(time_step);
+  else system.times()->set(own_times());
   check_space(system);
 }
 
@@ -81,6 +82,20 @@ void RecordedSection::check_shape(const LatticeSystem& system, Role role) const 
   if (here == 0)
     throw wrong(fmt::format("has no dataset /{}, which the scheme needs; write {}", to_string(role), needed));
   throw wrong(fmt::format("/{} is {} x {} x {}; write {}", to_string(role), frames, sites, here, needed));
+}
+
+// Of rows that chose their steps.
+std::vector<double> RecordedSection::own_times() const {
+  std::vector<double> times;
+  for (int frame = 0; frame < rows(); ++frame) {
+    const auto now = fields_ ? fields_->time(frame) : std::nullopt;
+    if (!now) throw wrong("has no dataset /time; steps that rows choose need the time of each frame there");
+    if (!times.empty() && !(*now > times.back()))
+      throw wrong(fmt::format("frames {} and {} are not one after the other in /time", frame - 1, frame));
+    times.push_back(*now);
+  }
+  if (times.size() < 2) throw wrong("has one frame; record more");
+  return times;
 }
 
 void RecordedSection::check_times(double time_step) const {

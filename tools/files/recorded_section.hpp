@@ -46,6 +46,7 @@ class RecordedSection {
   void check_shape(const LatticeSystem&, Role) const;
   FieldsReader::Shape shape(Role) const;
   void check_times(double time_step) const;
+  std::vector<double> own_times() const;
   void check_space(const LatticeSystem&) const;
   void check_finite(const std::vector<double>& values, Role, int frame) const;
   /// The columns of this role that frame j + back has, into a row.

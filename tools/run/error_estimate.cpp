@@ -61,6 +61,9 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const s
   if (outcome.status == "interrupted") return interrupted();
   try {
     if (outcome.status != "done") throw BadInput("", "the run did not end well");
+    if (scene.problem.step_control)
+      throw BadInput("output.estimate",
+                     "output.estimate: reversible steps end at times of their own; use delf convergence");
     const QuietEnd half = run_quietly(refined(scene, 2));
     if (!half.finished) return interrupted();
     if (!half.placed.positions.empty())

@@ -7,6 +7,7 @@ namespace delf {
 
 void Outcome::visit(SavedState& saved) {
   saved("steps taken", steps_taken), saved("records", records), saved("seconds", seconds);
+  saved("shortest step", shortest), saved("longest step", longest);
   saved("most iterations", iterations_max), saved("largest residual", residual_max);
   for (const Continued why : {Continued::stiff, Continued::slow, Continued::out_of_iterations}) {
     const auto found = continued.find(why);

@@ -41,6 +41,7 @@ struct Outcome {
   std::int64_t records = 0;
   double time = 0;
   double seconds = 0;  ///< of the steps alone
+  double shortest = 0, longest = 0;  ///< step, where steps have lengths of their own
   double iterations_mean = 0, residual_max = 0;
   int iterations_max = 0;
   bool iterates = false;                        ///< a step is not one solve

@@ -50,30 +50,32 @@ QuietEnd run_quietly(const Scene& scene) {
   const bool two = simulation.starting_rows() > 1;
   std::optional<double> energy_initial;
   const auto see = [&](std::int64_t row) {
-    if (row > scene.steps) return;
+    if (!scene.until && row > scene.steps) return;
     const int back = static_cast<int>(simulation.newest() - row);
     simulation.observe(back, end.row);  // as run records it: the rows of a kernel with the processor undone
     if (measures.empty()) return;
     const double energy = simulation.monitors().energy;
     if (!energy_initial) energy_initial = energy;
     if (two) simulation.observe(back == 0 ? 1 : 0, other);
-    measures.see({static_cast<double>(row) * scene.problem.time_step, end.row,
+    measures.see({simulation.time(row), end.row,
                   two ? std::span<const double>(other) : std::span<const double>(),
                   (energy - *energy_initial) / std::abs(*energy_initial)});
   };
   const auto recorded = [&](std::int64_t row) {
-    return row == scene.steps || (scene.every > 0 && row % scene.every == 0);
+    return (scene.until && scene.is_over(row, simulation.time(row))) || row == scene.steps || (scene.every > 0 && row % scene.every == 0);
   };
   for (std::int64_t row = 0; row <= simulation.newest(); ++row)
     if (recorded(row)) see(row);
   const auto begin = std::chrono::steady_clock::now();
-  while (simulation.newest() < scene.steps && !Interrupt::asked()) {
+  const auto is_over = [&] { return scene.is_over(simulation.newest(), simulation.time(simulation.newest())); };
+  while (!is_over() && !Interrupt::asked()) {
     const std::int64_t row = simulation.newest() + 1;
-    simulation.step(recorded(row));
+    simulation.step(scene.until || recorded(row));
     if (recorded(row)) see(row);
   }
   end.seconds = seconds_since(begin);
-  end.finished = simulation.newest() >= scene.steps;
+  end.finished = is_over();
+  end.time = simulation.time(scene.until ? simulation.newest() : scene.steps);
   if (simulation.evolution().system().moves() && end.finished) end.placed = placed_row(simulation);
   end.measures = measures.results();
   return end;

@@ -19,6 +19,7 @@ struct QuietEnd {
   std::vector<double> row;  ///< of the fields, [i·d + a]
   PlacedRow placed;         ///< the same where sites move; else empty
   std::vector<NamedNumber> measures;
+  double time = 0;        ///< of that row
   double seconds = 0;     ///< of the steps alone
   bool finished = false;  ///< not if interrupted
 };

@@ -28,7 +28,10 @@ std::string report(const Scene& scene, const Outcome& o) {
   line("state", o.state);
   line("scheme", scheme_in_words(p) + (point ? "" : fmt::format(", h = {:.6g}", p.time_step)));
   line("solve", o.solve);
-  line("steps", fmt::format("{} to t = {:.6g}", o.steps, o.time));
+  line("steps",
+       fmt::format(
+           "{} to t = {:.6g}{}", o.steps, o.time,
+           o.longest > 0 ? fmt::format(", {:.4g} to {:.4g} long, chosen by the field", o.shortest, o.longest) : ""));
   if (o.steps_taken > 0)
     line("speed", fmt::format("{} for the steps, {}", duration_in_words(o.seconds),
                               cost_in_words(o.ns_per_site_step(p.lattice.sites()))));

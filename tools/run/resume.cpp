@@ -98,14 +98,15 @@ ExitCode resume(const fs::path& folder, const std::vector<Setting>& on_command_l
                          scene.steps));
   };
   Settings settings = read_settings(folder / "scene.ini", on_command_line);
+  // Where the field chooses the steps their number is a guess, and the time tells whether the run is over.
   if (is_on_mesh(settings)) {
     ComplexScene mesh = read_complex_scene(std::move(settings));
-    // Where the field chooses the steps their number is a guess, and the time tells whether the run is over.
-    if (mesh.until) mesh.scene.steps = std::max(mesh.scene.steps, head.row + 1);
+    if (mesh.scene.until) mesh.scene.steps = std::max(mesh.scene.steps, head.row + 1);
     take_over(mesh.scene);
     return run(mesh, folder, std::move(resumed));
   }
   Scene scene = read_scene(std::move(settings));
+  if (scene.until) scene.steps = std::max(scene.steps, head.row + 1);
   take_over(scene);
   return run(scene, folder, std::move(resumed));
 }

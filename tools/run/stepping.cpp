@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
@@ -129,6 +130,7 @@ void Stepping::start() {
   }
   started_ = true;
   newest_ = simulation_.newest();
+  note_length();
   const auto monitors = this->monitors();
   outcome_.energy_initial = monitors.energy;
   outcome_.momentum_initial = monitors.momentum;
@@ -183,7 +185,7 @@ void Stepping::run(Recorder& recorder, Checkpoints& checkpoints) {
     record_and_step();
   } catch (const Unsolved& unsolved) {
     outcome_.status = status_of(unsolved);
-    outcome_.break_time = static_cast<double>(newest_) * scene_.problem.time_step;
+    outcome_.break_time = simulation_.time(newest_);
     outcome_.failure = fmt::format("{} (row {} is the last good one that was recorded)", unsolved.what(), recorded_);
   } catch (const SystemFailure&) {
     close_outcome();
@@ -194,17 +196,17 @@ void Stepping::run(Recorder& recorder, Checkpoints& checkpoints) {
 }
 
 void Stepping::record_and_step() {
-  for (std::int64_t row = recorded_ + 1; started_ && row <= std::min(newest_, scene_.steps); ++row)
+  for (std::int64_t row = recorded_ + 1; started_ && row <= last_in_reach(); ++row)
     if (to_be_recorded(row)) record(row);
-  if (started_ && newest_ >= scene_.steps) save();
+  if (started_ && is_over()) save();
   try {
     Progress progress(scene_.steps);
-    while (started_ && newest_ < scene_.steps && !Interrupt::asked()) {
+    while (started_ && !is_over() && !Interrupt::asked()) {
       step_until(next_record(), progress);
-      if (newest_ == scene_.steps) save();
+      if (is_over()) save();
       if (to_be_recorded(newest_)) record(newest_);
     }
-    if (started_ && newest_ < scene_.steps) {
+    if (started_ && !is_over()) {
       outcome_.status = "interrupted";
       if (saved_ < newest_ - 1) save();
     }
@@ -213,19 +215,24 @@ void Stepping::record_and_step() {
   } catch (const NumericalFailure& error) {
     fail(error);
   }
-  if (const std::int64_t last = std::min(newest_, scene_.steps); recorded_ != last) record(last);
+  if (const std::int64_t last = last_in_reach(); recorded_ != last) record(last);
 }
+
+bool Stepping::is_over() const { return scene_.is_over(newest_, simulation_.time(newest_)); }
+
+// Where rows choose the steps their number is a guess.
+std::int64_t Stepping::last_in_reach() const { return scene_.until ? newest_ : std::min(newest_, scene_.steps); }
 
 // The rows held are still the last good ones; of steps that were taken together some may be good.
 void Stepping::fail(const NumericalFailure& error) {
   if (started_) newest_ = simulation_.newest();
   outcome_.status = status_of(error);
-  outcome_.break_time = static_cast<double>(newest_ + 1) * scene_.problem.time_step;
+  outcome_.break_time = simulation_.time(newest_ + 1);
   const std::string what = error.what();
   const std::string where = what.starts_with("step ")
                                 ? ""
                                 : fmt::format("step {}, t = {:.6g}: ", newest_ + 1,
-                                              static_cast<double>(newest_ + 1) * scene_.problem.time_step);
+                                              simulation_.time(newest_ + 1));
   outcome_.failure = fmt::format("{}{} (row {} is the last good one, and is saved)", where, what, newest_);
 }
 
@@ -233,11 +240,11 @@ void Stepping::step_until(std::int64_t row, Progress& progress) {
   const Stopwatch watch(outcome_.seconds);
   const FlushDenormals for_all_steps;  // each would set and restore it
   bool looked_at = true;               // as the row that an interruption leaves must be: it is recorded
-  while (newest_ < row && !(looked_at && Interrupt::asked())) {
+  while (newest_ < row && !(looked_at && (Interrupt::asked() || (scene_.until && is_over())))) {
     if (Interrupt::asked() || checkpoints_->due(newest_)) save();
     if (rows_due_.at(newest_)) recorder_->flush(false), rows_due_.restart();
     const std::int64_t unseen = Interrupt::asked() ? 0 : row - 1 - newest_;
-    looked_at = unseen == 0 || section_;
+    looked_at = unseen == 0 || section_ || scene_.until;  // any row may be the last
     simulation_.step(looked_at);
     ++newest_;
     count_step();
@@ -246,8 +253,18 @@ void Stepping::step_until(std::int64_t row, Progress& progress) {
   }
 }
 
+/// Of the newest step, where each has its own.
+void Stepping::note_length() {
+  const RowTimes& times = *simulation_.evolution().system().times();
+  if (times.uniform()) return;
+  const double h = times.step(newest_ - 1);
+  outcome_.longest = std::max(outcome_.longest, h);
+  outcome_.shortest = outcome_.shortest == 0 ? h : std::min(outcome_.shortest, h);
+}
+
 void Stepping::count_step() {
   ++outcome_.steps_taken;
+  note_length();
   last_iterations_ = simulation_.iterations();
   iterations_ += last_iterations_;
   outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);
@@ -256,17 +273,18 @@ void Stepping::count_step() {
 }
 
 bool Stepping::to_be_recorded(std::int64_t row) const {
-  return row == scene_.steps || (scene_.every > 0 && row % scene_.every == 0);
+  return (is_over() && row == last_in_reach()) || (scene_.every > 0 && row % scene_.every == 0);
 }
 
 std::int64_t Stepping::next_record() const {
-  return scene_.every == 0 ? scene_.steps : std::min(scene_.steps, (newest_ / scene_.every + 1) * scene_.every);
+  const std::int64_t steps = scene_.until ? std::numeric_limits<std::int64_t>::max() : scene_.steps;
+  return scene_.every == 0 ? steps : std::min(steps, (newest_ / scene_.every + 1) * scene_.every);
 }
 
 void Stepping::record(std::int64_t row) {
   Record record;
   record.row = row;
-  record.time = static_cast<double>(row) * scene_.problem.time_step;
+  record.time = simulation_.time(row);
   std::vector<double> of_method;
   if (!started_) {
     const auto sites = static_cast<std::size_t>(scene_.problem.lattice.sites());
@@ -312,7 +330,7 @@ void Stepping::judge(double residual) const {
   throw Unsolved(
       fmt::format("step {}, t = {:.6g}: the residual of the field equations is {:.2g} of their terms: the "
                   "field is too large, or too steep, for double precision; reduce lattice.time_step",
-                  newest_, static_cast<double>(newest_) * scene_.problem.time_step, residual));
+                  newest_, simulation_.time(newest_), residual));
 }
 
 /// Near a vacuum all terms are rounding, and their sum has no scale.
@@ -381,7 +399,7 @@ void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
 void Stepping::close_outcome() {
   if (section_) section_->finish();
   outcome_.steps = std::max<std::int64_t>(0, recorded_);
-  outcome_.time = static_cast<double>(outcome_.steps) * scene_.problem.time_step;
+  outcome_.time = simulation_.time(outcome_.steps);
   if (outcome_.steps_taken > 0) outcome_.iterations_mean = iterations_ / static_cast<double>(outcome_.steps_taken);
   outcome_.energy_error_max = recorder_->largest_energy_error();
   measure_error();

@@ -38,6 +38,7 @@ class Stepping {
   void record_and_step();
   void step_until(std::int64_t row, Progress&);
   void count_step();
+  void note_length();
   void save();
   void record(std::int64_t row);
   void judge(double residual) const;
@@ -46,6 +47,8 @@ class Stepping {
   void fail(const NumericalFailure&);
   bool to_be_recorded(std::int64_t row) const;
   std::int64_t next_record() const;
+  bool is_over() const;
+  std::int64_t last_in_reach() const;
   void close_outcome();
   void measure_error();
   std::vector<double> phase_point(int back) const;

@@ -26,6 +26,7 @@ std::string summary_json(const Scene& scene, const Outcome& o) {
   json["sites"] = p.lattice.sites();
   json["space_step"] = p.lattice.space_step();
   json["time_step"] = p.time_step;
+  if (o.longest > 0) json["time_step_min"] = o.shortest, json["time_step_max"] = o.longest;
   json["winding"] = o.winding;
   json["state"] = o.state;
   json["start"] = to_string(o.start);

@@ -62,7 +62,7 @@ double range_of(const State& state, const Lattice& lattice, double end) {
 Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulation& simulation)
     : scene_(scene), initial_(initial), simulation_(simulation) {
   if (initial.state()) width_ = width_of(scene.initial, scene.problem.lattice);
-  const double end = static_cast<double>(scene.steps) * scene.problem.time_step;
+  const double end = scene.end();
   if (!initial.exact() || !std::isfinite(width_) || end > initial.exact()->exact_until()) return;
   // The last stretch of time in which the solution's pulse moves by some cells: it is slower than light.
   const Lattice& lattice = scene.problem.lattice;
@@ -95,7 +95,7 @@ double Warnings::exact_centre(double time) const {
 
 void Warnings::see(double time, std::span<const double> fields, std::span<const double> monitors) {
   growth_.resize(monitors.size());
-  const double end = static_cast<double>(scene_.steps) * scene_.problem.time_step;
+  const double end = scene_.end();
   for (std::size_t m = 0; m < monitors.size(); ++m) {
     Growth& g = growth_[m];
     const bool early = time <= end / 10;

@@ -126,12 +126,12 @@ std::vector<Key> general_keys() {
           "step",
           "", any, mesh_times()},
       Key{"lattice.time_steps", KeyType::text, "", "none",
-          "on a mesh: steps of the rows, over and over, 0.1, 0.05, or a file of them, in place of lattice.time_step; "
-          "or "
-          "reversible: chosen by the field, lattice.time_step at most"},
+          "reversible: steps that the field chooses, lattice.time_step at most, on a mesh and with r-adaptive; or on a "
+          "mesh steps of the rows, over and over, 0.1, 0.05, or a file of them, in place of lattice.time_step"},
       Key{"lattice.step_control", real, "1", "",
-          "s of reversible steps: lattice.time_step / sqrt(1 + s^2 <phi_t^2>), with the mean over the mesh", "",
-          positive},
+          "s of reversible steps: lattice.time_step / sqrt(1 + s^2 <phi_t^2>), with the mean over the mesh; of "
+          "r-adaptive <phi_x^2> over the cells: s = mesh.alpha has steps in proportion to them",
+          "", positive},
 
       Key{"scheme.method", choice, "multisymplectic", "", "the scheme; see `delf list schemes`", "", any,
           method_names()},

@@ -15,7 +15,7 @@ std::string resolved(const Scene& scene, const Key& key, StartRule start) {
   // keys that a run does not read
   for (const char* section : {"verify.", "workprecision.", "stability.", "sweep.", "convergence."})
     if (key.name.starts_with(section) && !scene.settings.find(key.name)) return {};
-  if (key.name == "lattice.courant" || key.name == "run.until") return {};
+  if (key.name == "lattice.courant" || key.name == (scene.until ? "run.steps" : "run.until")) return {};
   if (key.name == "lattice.stencil") return scene.problem.stencil;  // of an alias, the name that it stands for
   if (key.name == "lattice.time_step") return fmt::format("{}", scene.problem.time_step);
   if (key.name == "run.steps") return fmt::format("{}", scene.steps);
@@ -38,7 +38,7 @@ std::string resolved_text(const Scene& scene, StartRule in_force, const std::str
       "{}{} understood it: `delf run scene.ini` gives the same rows to the bit.\n"
       "#\n# {}\n# space step {}, Courant number {:.6g}, time of the last row {:.10g}\n",
       resolved_scene_begins, DELF_VERSION, state_in_words, p.lattice.space_step(), p.time_step / p.lattice.space_step(),
-      static_cast<double>(scene.steps) * p.time_step);
+      scene.end());
   return text + sections_of(scene.settings, [&](const Key& key) { return resolved(scene, key, in_force); });
 }
 

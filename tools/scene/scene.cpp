@@ -95,6 +95,7 @@ Problem read_problem(const Settings& settings, const Values& values) {
   if (!std::isnormal(p.time_step))
     throw settings.error(by_courant ? "lattice.courant" : "lattice.time_step",
                          "the time step is outside the range of double precision; use another");
+  p.step_control = read_step_control(settings, values);
   read_parameters(values, p);
   return p;
 }
@@ -203,6 +204,13 @@ std::string why_not_read(const Scene& scene, std::string_view key) {
 
 }  // namespace
 
+std::optional<double> read_step_control(const Settings& settings, const Values& values) {
+  if (values.text("lattice.time_steps") == "reversible") return values.real("lattice.step_control");
+  if (values.given("lattice.step_control"))
+    throw settings.error("lattice.step_control", "has no effect without lattice.time_steps = reversible; remove it");
+  return std::nullopt;
+}
+
 FigureForm read_figure_form(const Settings& settings, const Values& values) {
   FigureForm form;
   form.titles = values.toggle("output.titles");
@@ -247,6 +255,7 @@ Scene read_scene(Settings given) {
   if (scene.from_file()) take_first_row(scene, scene.initial_file, scene.initial_frame);
   scene.start = read_start(settings, values, scene.problem);
   scene.steps = read_steps(settings, values, scene.problem.time_step);
+  if (scene.problem.step_control && !values.given("run.steps")) scene.until = values.real("run.until");
   const auto every_default = std::llround(static_cast<double>(scene.steps) / usual_records);
   scene.every = values.maybe_integer("output.every").value_or(std::max(1LL, every_default));
   scene.figures = values.toggle("output.figures");
@@ -281,7 +290,8 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
   if ((key == "lattice.sites" || key == "lattice.length") && point) return "a point has neither length nor sites";
   if ((key == "output.format" || key == "output.titles") && !scene.figures) return "output.figures = off is in force";
   if (key == "output.section" && !point) return "sections are of mechanics, lattice.space = point";
-  if (key == "lattice.mesh" || key == "lattice.time" || key == "lattice.time_steps" || key == "lattice.step_control" ||
+  const bool of_steps = key == "lattice.time_steps" || key == "lattice.step_control";
+  if (key == "lattice.mesh" || key == "lattice.time" || (of_steps && !scene.problem.step_control) ||
       key == "boundary.mesh")
     return "only lattice.space = complex has a mesh";
   if (key == "boundary.winding" && point) return "a point has no winding";

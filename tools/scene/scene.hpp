@@ -31,6 +31,7 @@ struct Scene {
   int initial_frame = 0;
   std::optional<StartRule> start;  ///< if the scene gives it
   std::int64_t steps = 0;          ///< after row 0
+  std::optional<double> until;     ///< of steps that rows choose: see is_over(); `steps` is a guess then
   std::int64_t every = 1;          ///< 0: the last row only
   bool figures = true, fields = true;
   FigureForm figure_form;
@@ -39,8 +40,14 @@ struct Scene {
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread
 
   bool from_file() const { return !initial_file.empty(); }
+  /// Whether row n, at time t, is the last: the first that is as late as `until`, or else the last of `steps`.
+  bool is_over(std::int64_t n, double t) const { return until ? t >= *until * (1 - 1e-12) : n >= steps; }
+  /// The time that the run is to end at.
+  double end() const { return until ? *until : static_cast<double>(steps) * problem.time_step; }
 };
 
+/// lattice.time_steps = reversible: its s, lattice.step_control. Throws BadScene for that key where steps are others.
+std::optional<double> read_step_control(const Settings&, const Values&);
 /// output.format and output.titles. Throws BadScene.
 FigureForm read_figure_form(const Settings&, const Values&);
 

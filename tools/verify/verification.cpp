@@ -14,6 +14,8 @@
 #include "jets/expressions/generator.hpp"
 #include "schemes/diagnosis/diagnosis.hpp"
 #include "schemes/diagnosis/unwrap.hpp"
+#include "schemes/methods/method_registry.hpp"
+#include "schemes/stepping/energy.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/verify/derivatives.hpp"
 #include "schemes/verify/flux_check.hpp"
@@ -56,8 +58,10 @@ int first_with_terms(const StencilFamily& family, const LatticeSystem& system) {
 std::unique_ptr<LatticeSystem> with_wrong_sign(const LatticeSystem& right) {
   std::vector<std::shared_ptr<const StencilFamily>> families(right.families().begin(), right.families().end());
   families[0] = std::make_shared<WrongSign>(families[0], first_with_terms(*families[0], right));
-  return std::make_unique<LatticeSystem>(right.lattice(), std::move(families), right.time_step(),
-                                         right.all_components());
+  auto wrong = std::make_unique<LatticeSystem>(right.lattice(), std::move(families), right.time_step(),
+                                               right.all_components());
+  wrong->share_times(right);
+  return wrong;
 }
 
 void add_generator(const Scene& scene, const VerifyRequest& request, const LatticeSystem& system,
@@ -101,6 +105,15 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
     throw scene.settings.error("scheme.method",
                                "recorded rows of a kernel have its processor undone, and only the kernel's own rows "
                                "solve its equations; leave --fields out");
+  if (scene.problem.step_control) {
+    if (!nearby.empty())
+      throw scene.settings.error("lattice.time_steps",
+                                 "solutions that chose other steps are none of the same equations; leave --nearby out");
+    system_.times()->keep_all();
+    leave_out(
+        "symplecticity: the forms here are of steps as given; with steps chosen by the field the map of rows is "
+        "reversible, not symplectic, and its energy is what is measured");
+  }
   if (fields) open_files(*fields, nearby);
 
   moment_rows_ = FormCheck::rows_wanted(system_, plan_, request.regions);
@@ -161,8 +174,22 @@ void Verification::require_interiors() const {
                                                                 request.name.substr(request.name.find(' ') + 1)));
 }
 
+// Where rows choose the steps only a run tells how many there are.
+std::int64_t Verification::steps_of_run() const {
+  if (!scene_.until) return scene_.steps;
+  Simulation simulation = build(scene_, winding_);
+  try {
+    initial_->start(simulation);
+    while (!scene_.is_over(simulation.newest(), simulation.time(simulation.newest())) && !Interrupt::asked())
+      simulation.step();
+  } catch (const NumericalFailure&) {  // which the rows that are checked will meet again
+    return simulation.newest() + 1;
+  }
+  return simulation.newest();
+}
+
 void Verification::choose_moments() {
-  if (!fields_) rows_ = std::max<std::int64_t>(scene_.steps + 1, moment_rows_);
+  if (!fields_) rows_ = std::max<std::int64_t>(steps_of_run() + 1, moment_rows_);
   const std::int64_t reach = equations_ ? equations_->reach() : 1;
   if (rows_ < 2 * reach + 1)
     throw BadScene(fmt::format(
@@ -190,6 +217,7 @@ void Verification::choose_moments() {
   const FieldTheory& theory = simulation_.theory();
   if (request_.wants("balance")) {
     if (system_.moves()) leave_out("balance of energy and momentum: the sites move");
+    else if (scene_.problem.step_control) leave_out("balance of energy and momentum: steps have lengths of their own");
     else {
       balance_.emplace(theory, system_.lattice(), scene_.problem.time_step, turn_);
       balance_rows_ = std::clamp<std::int64_t>(most_updates / 4 / system_.lattice().sites(), 3, rows_);
@@ -322,10 +350,26 @@ void Verification::take(std::vector<double> row) {
 
 // Of the last two rows.
 void Verification::look_at_energy(std::int64_t j) {
+  if (scene_.problem.step_control && j > 0) measure_energy(j);
   if (!energy_ || j < 1 || held_.rows.size() < 2) return;
   verdict_.energy.time.push_back(static_cast<double>(j) * scene_.problem.time_step);
   verdict_.energy.value.push_back(
       energy_->value({simulation_.theory(), system_, window(j - 1, j), j, scene_.problem.time_step}));
+}
+
+// Where steps differ the energy is what there is to be kept.
+void Verification::measure_energy(std::int64_t j) {
+  const auto energy = find_method(scene_.problem.method).energy;
+  if (!energy) return;
+  const LatticeSystem& right = simulation_.evolution().system();  // a planted fault hides what its families are
+  const EnergyMomentum now = energy({simulation_.theory(), right, window(j - 1, j), j, right.times()->step(j - 1)});
+  if (j == 1) first_energy_ = now.energy;
+  if (!energy_change_)
+    energy_change_ = {.name = "change of the energy", .region = "row 1", .normaliser = std::abs(first_energy_)};
+  ++energy_change_->count;
+  const double change = std::abs(now.energy - first_energy_) / std::abs(first_energy_);
+  if (!(change <= energy_change_->value))
+    energy_change_->value = change, energy_change_->region = fmt::format("row {}, relative to row 1", j);
 }
 
 // The first two rows are data, and the wall keeps what the second has.
@@ -483,6 +527,7 @@ void Verification::collect() {
     verdict_.measured.push_back(measured_energy("energy of the rows' own: " + energy.name, energy.value,
                                                 scene_.problem.time_step,
                                                 "largest |E - E first| beside that; " + energy.meaning));
+  if (energy_change_) verdict_.measured.push_back(*energy_change_);
   if (balance_) {  // without an order
     for (Measured& m : balance_->results()) verdict_.measured.push_back(std::move(m));
   }

@@ -49,11 +49,13 @@ class Verification {
   void open_nearby(const std::string& fields, const std::vector<std::string>& nearby);
   void require_interiors() const;
   void choose_moments();
+  std::int64_t steps_of_run() const;
   void pass_over_rows();
   void take(std::vector<double> row);
   void look_at_moment();
   void look_at_nearby(const Window&);
   void look_at_energy(std::int64_t row);
+  void measure_energy(std::int64_t row);
   void look_at_walls(std::int64_t row, const std::vector<double>& values);
   void diagnose_rows();
   std::vector<LinearSymmetry> symmetries();
@@ -85,6 +87,8 @@ class Verification {
   std::optional<StressBalance> balance_;
   std::optional<ResidualBins> bins_, severity_;
   std::optional<OwnEnergy> energy_;
+  std::optional<Measured> energy_change_;  ///< where rows choose the steps
+  double first_energy_ = 0;
   FailedEquations failed_;
   std::optional<ForceShare> share_;  ///< of rows of a file
   std::optional<Check> walls_;       ///< of rows of a file: fixed walls keep their values

@@ -73,6 +73,10 @@ WorkPrecisionRequest read_workprecision_request(const Scene& scene) {
   request.budget = values.real("workprecision.budget");
   request.peers = values.toggle("workprecision.peers");
   request.seed = scene.initial.seed;
+  if (scene.problem.step_control)
+    throw scene.settings.error(
+        "lattice.time_steps",
+        "reversible steps end at times of their own, and schemes are compared at one; leave it out");
   request.until = values.given("run.until") && !values.given("run.steps")
                       ? values.real("run.until")
                       : static_cast<double>(scene.steps) * scene.problem.time_step;

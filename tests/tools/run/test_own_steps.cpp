@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
+
+using namespace delf::testing;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string own = "--lattice.time_steps=reversible ";
+const std::string bounce = "soliton-bounce --lattice.sites=17 --output.figures=off --scheme.time=trapezoid " + own;
+
+Json summary(const Folder& folder, const std::string& out) {
+  return Json::parse(read(folder / (out + "/summary.json")));
+}
+
+}  // namespace
+
+TEST_CASE("steps that the rows of a moving mesh choose run, end by time, and run again to the same bits") {
+  const Folder folder;
+  const std::string keys = bounce + "--lattice.time_step=0.05 --output.every=7 ";
+  const Ran ran = delf_program(folder, "run " + keys + "--run.until=2 --out out");
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK(contains(ran.out, "long, chosen by the field"));
+  const Json json = summary(folder, "out");
+  CHECK(json["time"].get<double>() >= 2);
+  CHECK(json["time"].get<double>() < 2 + json["time_step_max"].get<double>());
+  CHECK(json["time_step_max"] < 0.05);
+  CHECK(json["steps"].get<int>() > 2 / json["time_step_max"].get<double>());
+  // times of series.csv: of every seventh row, and of the last
+  const auto rows = lines(read(folder / "out/series.csv"));
+  REQUIRE(rows.size() > 4);
+  CHECK(rows[2].starts_with("7,"));
+  CHECK(std::stod(rows[2].substr(2)) < 7 * 0.05);
+  CHECK(std::stod(rows.back().substr(rows.back().find(',') + 1)) == json["time"].get<double>());
+
+  REQUIRE(delf_program(folder, "run out/scene.ini --out again").code == 0);
+  CHECK(read(folder / "again/series.csv") == read(folder / "out/series.csv"));
+  REQUIRE(delf_program(folder, "run " + keys + "--run.until=1 --out short").code == 0);
+  REQUIRE(delf_program(folder, "resume short --run.until=2").code == 0);
+  CHECK(read(folder / "short/series.csv").find(rows.back()) != std::string::npos);
+  CHECK(summary(folder, "short")["time_step_min"] == json["time_step_min"]);
+  REQUIRE(delf_program(folder, "run " + keys + "--run.steps=9 --out nine").code == 0);
+  CHECK(summary(folder, "nine")["steps"] == 9);
+}
+
+TEST_CASE("rows whose steps were chosen are verified as they are, computed or recorded, and go back") {
+  const Folder folder;
+  const std::string keys = bounce + "--lattice.time_step=0.05 --run.until=1 ";
+  const Ran verified = delf_program(folder, "verify " + keys + "--out v");
+  CAPTURE(verified.out, verified.err);
+  CHECK(verified.code == 0);
+  for (const char* part : {"time reversal", "form formula", "not symplectic"}) CHECK(contains(verified.out, part));
+  for (const char* fault : {"field", "sign", "variation"})
+    CHECK(delf_program(folder, "verify " + keys + "--out w --verify.fault=" + fault).code == 1);
+  REQUIRE(delf_program(folder, "run " + keys + "--output.every=1 --out out").code == 0);
+  CHECK(delf_program(folder, "verify " + keys + "--fields out/fields.h5 --out of").code == 0);
+  CHECK(delf_program(folder,
+                     "verify soliton-bounce --lattice.sites=17 --scheme.time=trapezoid --lattice.time_step=0.05 "
+                     "--fields out/fields.h5 --out uniform")
+            .code == 2);
+}
+
+TEST_CASE("where steps cannot be chosen, the key says so") {
+  const Folder folder;
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    const Ran ran = delf_program(folder, arguments);
+    CAPTURE(ran.err);
+    CHECK(ran.code == 2);
+    CHECK(contains(ran.err, why));
+  };
+  refused("run kink " + own, "scheme.method = multisymplectic has steps of one length; use scheme.method = r-adaptive");
+  refused("run soliton-bounce --lattice.step_control=2", "has no effect without lattice.time_steps = reversible");
+  refused("run soliton-bounce " + own + "--initial.start=exact", "use legendre");
+}
