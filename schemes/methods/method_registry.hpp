@@ -96,6 +96,8 @@ struct MethodEntry {
   /// The energy and momentum of the newest two rows; null: the theory's, on the jets of the symmetric rectangle.
   EnergyMomentum (*energy)(const RowsInTime&) = nullptr;
   std::vector<Monitor> monitors = {};
+  /// What the newest row says of the longest stable step, in words; empty where nothing limits it.
+  std::string (*limit)(const RowsInTime&) = nullptr;
   std::vector<Dataset> datasets = {};
   /// Of the newest row and its momenta, [i·C + c]: what steps of lattice.time_steps = reversible are in proportion to, of a
   /// strength s; null: its steps are all the same. For elements in time of one step, that start from momenta.

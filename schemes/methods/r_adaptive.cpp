@@ -210,6 +210,14 @@ double step_over_limit(const RowsInTime& rows) {
   if (!constraint || std::isinf(constraint->facts().stable_step)) return unknown;
   return rows.time_step / (constraint->facts().stable_step * narrowest_cell(rows));
 }
+/// "h below 0.0764, 0.816 of the narrowest cell, which is 0.0936 wide, by linear theory"
+std::string limit(const RowsInTime& rows) {
+  const MeshConstraint* constraint = constraint_of(rows);
+  if (!constraint || std::isinf(constraint->facts().stable_step)) return {};
+  const double of_width = constraint->facts().stable_step, cell = narrowest_cell(rows);
+  return fmt::format("h below {:.3g}, {:.3g} of the narrowest cell, which is {:.3g} wide, by linear theory",
+                     of_width * cell, of_width, cell);
+}
 /// The largest |λ| that was found with the newest row; 0 without multipliers.
 double largest_multiplier(const RowsInTime& rows) {
   double most = 0;
@@ -283,6 +291,7 @@ const MethodEntry r_adaptive_method{
                                   "lattice.time_step or mesh.alpha, or let scheme.strategy = control and scheme.time = "
                                   "gauss2 have no such limit"},
                  {.name = "multiplier_max", .value = largest_multiplier}},
+    .limit = limit,
     .row_density = row_density,
     .place_sites = place_sites};
 

@@ -6,6 +6,7 @@
 namespace delf {
 
 void Outcome::visit(SavedState& saved) {
+  saved("limit", limit);
   saved("steps taken", steps_taken), saved("records", records), saved("seconds", seconds);
   saved("shortest step", shortest), saved("longest step", longest);
   saved("most iterations", iterations_max), saved("largest residual", residual_max);

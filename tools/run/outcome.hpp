@@ -31,6 +31,7 @@ struct Outcome {
   std::string failure;          ///< in words, if it failed
   double break_time = unknown;  ///< of the step that the numerics failed in
   std::string state, solve, solve_kind;
+  std::string limit;    ///< of the step, at the start, in words; empty: none is known
   std::string threads;  ///< in words, if the scene asks for more than one
   StartRule start = StartRule::exact;
   int winding = 0;

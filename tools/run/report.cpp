@@ -28,6 +28,7 @@ std::string report(const Scene& scene, const Outcome& o) {
   line("state", o.state);
   line("scheme", scheme_in_words(p) + (point ? "" : fmt::format(", h = {:.6g}", p.time_step)));
   line("solve", o.solve);
+  if (!o.limit.empty()) line("limit", o.limit + ", at the start");
   line("steps",
        fmt::format(
            "{} to t = {:.6g}{}", o.steps, o.time,

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -56,6 +57,15 @@ std::string drawn(const Scene& scene, const InitialRows& initial, const RowNames
   } catch (const std::exception& error) {
     return error.what();
   }
+}
+
+// Of the step, where the first rows tell.
+std::string limit_of(const Scene& scene, const Simulation& simulation) {
+  const auto limit = find_method(scene.problem.method).limit;
+  const Stepper& stepper = simulation.evolution().stepper();
+  if (!limit || simulation.newest() < 1) return {};
+  return limit({simulation.theory(), simulation.evolution().system(), stepper.window(2), stepper.newest(),
+                scene.problem.time_step});
 }
 
 void say_what_is_there(const fs::path& folder) {
@@ -114,6 +124,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     stepping.visit(*resumed.state);
   } else {
     stepping.start();
+    outcome.limit = limit_of(scene, simulation);
   }
 
   const Interrupt interrupt;  // before, nothing is lost when a signal ends the program at once

@@ -77,3 +77,14 @@ TEST_CASE("where steps cannot be chosen, the key says so") {
   refused("run soliton-bounce --lattice.step_control=2", "has no effect without lattice.time_steps = reversible");
   refused("run soliton-bounce " + own + "--initial.start=exact", "use legendre");
 }
+
+TEST_CASE("the report of a moving mesh begins with the limit of its step") {
+  const Folder folder;
+  const std::string few = "run soliton-bounce --run.steps=3 --output.figures=off --out out ";
+  CHECK(contains(delf_program(folder, few).out,
+                 "limit      h below 0.0764, 0.816 of the narrowest cell, which is 0.0936"));
+  CHECK(contains(delf_program(folder, few + "--scheme.time=trapezoid").out, "0.577 of the narrowest cell"));
+  for (const char* unlimited : {"--scheme.time=midpoint", "--scheme.strategy=uniform"})
+    CHECK_FALSE(contains(delf_program(folder, few + unlimited).out, "  limit "));
+  CHECK_FALSE(contains(delf_program(folder, "run kink --run.steps=3 --output.figures=off --out kink").out, "  limit "));
+}
