@@ -271,9 +271,9 @@ const std::vector<Command>& table() {
        "and the time of each, with the scene's measures. Errors are those of the last row against the exact solution, "
        "or\n"
        "without one differences from the next line. Into DIR (results/NAME of the scene, if not given) go\n"
-       "convergence.json and convergence.csv. Exit code 1 if the last two lines miss the order of the scheme, where it "
-       "is\n"
-       "known, or have another than convergence.order. On a mesh its sides are halved, and the order is that of L2.\n\n"
+       "convergence.json, convergence.csv and, with output.figures, figures/convergence: the errors against N, and the\n"
+       "slope of the order. Exit code 1 if the last two lines miss the order of the scheme, where it is known, or have\n"
+       "another than convergence.order. On a mesh its sides are halved, and the order is that of L2.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_convergence, "convergence"},
       {"workprecision", "delf workprecision SCENE [--out DIR] [--KEY=VALUE ...]",

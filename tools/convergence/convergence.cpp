@@ -11,8 +11,10 @@
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "tools/complex/mesh_convergence.hpp"
+#include "tools/convergence/convergence_figure.hpp"
 #include "tools/convergence/convergence_table.hpp"
 #include "tools/engine.hpp"
+#include "tools/figures/drawing.hpp"
 #include "tools/run/in_words.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
@@ -37,6 +39,27 @@ struct Request {
     return !of_scheme || !std::isfinite(measured) || measured >= *of_scheme - agreement;
   }
 };
+
+// Of the lines beside the errors: what is asked for, or the scheme's, or the whole numbers around what was found.
+std::vector<double> drawn_orders(const Request& request, double measured) {
+  if (request.order) return {*request.order};
+  if (request.of_scheme) return {static_cast<double>(*request.of_scheme)};
+  if (!std::isfinite(measured)) return {};
+  const double below = std::max(1.0, std::floor(measured));
+  return {below, below + 1};
+}
+
+// What is missing, in one line. A figure that cannot be drawn does not fail the command.
+std::string drawn(const Scene& scene, const std::string& label, const ConvergenceTable& table,
+                  const std::vector<double>& orders, const fs::path& folder) {
+  remove_figures({convergence_figure}, folder);
+  if (!scene.figures) return {};
+  try {
+    return draw_convergence(scene, label, table, orders, folder);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
 
 // What the method declares.
 std::optional<int> order_of_scheme(const Problem& asked) {
@@ -137,7 +160,12 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
   else if (request.of_scheme && std::isfinite(order))
     fmt::print("  order      {:.3f}, and the scheme's is {}: {}\n", order, *request.of_scheme,
                passed ? "passed" : "MISSED; begin with smaller steps, unless the solution is not smooth");
-  fmt::print("{}: convergence.json convergence.csv\n", folder.string());
+  const std::string missing = drawn(scene, label, table, drawn_orders(request, order), folder);
+  std::error_code none;
+  const fs::path figure =
+      folder / "figures" / fmt::format("{}.{}", convergence_figure, scene.figure_form.formats.front());
+  fmt::print("{}: convergence.json convergence.csv{}\n", folder.string(), fs::exists(figure, none) ? " figures" : "");
+  if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
   if (table.status == "interrupted") return ExitCode::interrupted;
   if (failed) throw NumericalFailure(table.ended);
   return passed ? ExitCode::done : ExitCode::check_failed;

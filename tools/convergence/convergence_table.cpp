@@ -78,6 +78,7 @@ ConvergenceTable converge(const Scene& scene, int levels) {
 }
 
 void find_orders(ConvergenceTable& table, double ConvergenceLevel::*norm) {
+  table.norm = norm;
   for (std::size_t i = 0; i + 1 < table.levels.size(); ++i) {
     const double rounding = 1e-12 * table.levels[i + 1].size;  // no order comes of it
     const double a = table.levels[i].*norm, b = table.levels[i + 1].*norm;

@@ -23,6 +23,7 @@ struct ConvergenceLevel {
 struct ConvergenceTable {
   bool exact = false;  ///< errors against the exact solution; else differences between one level and the next
   std::vector<ConvergenceLevel> levels;
+  double ConvergenceLevel::*norm = &ConvergenceLevel::linf;  ///< that the orders are of
   std::string ended;            ///< why there are fewer than asked for; empty if there are as many
   std::string status = "done";  ///< or interrupted, or of the level that failed: not-finite, no-convergence, …
 

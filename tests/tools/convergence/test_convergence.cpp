@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/catch.hpp"
+#include "tests/tools/figures/has_gnuplot.hpp"
 #include "tests/tools/program.hpp"
 
 using namespace delf::testing;
@@ -11,7 +13,7 @@ using Json = nlohmann::json;
 namespace {
 
 Json convergence_of(const Folder& folder, const std::string& arguments, int code) {
-  const Ran ran = delf_program(folder, "convergence " + arguments + " --out out");
+  const Ran ran = delf_program(folder, "convergence " + arguments + " --output.figures=off --out out");
   INFO(ran.err << ran.out);
   REQUIRE(ran.code == code);
   return Json::parse(read(folder / "out/convergence.json"));
@@ -165,4 +167,30 @@ TEST_CASE("a bouncing soliton has the error of an independent program to 1 %, an
     CHECK(summary["error_linf"].get<double>() == Approx(c.error).epsilon(0.01));
     if (c.break_time > 0) CHECK(summary["break_time"].get<double>() == Approx(c.break_time).margin(0.02));
   }
+}
+
+TEST_CASE("errors against N are drawn with the slope of the order, on lattices, points, meshes and moving meshes") {
+  if (!has_gnuplot()) return;
+  const Folder folder;
+  for (const std::string scene : {"breather --lattice.sites=51 --run.until=1", "pendulum --run.until=1",
+                                  "sphere --lattice.mesh=icosahedron:1 --run.until=0.6",
+                                  "soliton-bounce --lattice.sites=9 --lattice.time_step=0.05 --run.until=0.1"}) {
+    CAPTURE(scene);
+    const std::string command = "convergence " + scene + " --convergence.levels=3 --output.format=svg --out out";
+    const Ran ran = delf_program(folder, command);
+    CAPTURE(ran.out, ran.err);
+    CHECK((ran.code == 0 || ran.code == 1));
+    CHECK(contains(ran.out, "convergence.csv figures"));
+    const std::string svg = read(folder / "out/figures/convergence.svg");
+    CHECK(contains(svg, "order "));
+    CHECK(contains(svg, "maximum norm"));
+    // none is asked for: that of the earlier run goes
+    CHECK_FALSE(contains(delf_program(folder, command + " --output.figures=off").out, " figures"));
+    CHECK_FALSE(std::filesystem::exists(folder / "out/figures/convergence.svg"));
+  }
+  // without gnuplot the table is there, and one line says what is not
+  const Ran without =
+      delf_program(folder, "convergence pendulum --run.until=1 --convergence.levels=3 --out out", "PATH=/nowhere");
+  CHECK(without.code == 0);
+  CHECK(contains(without.err, "no figures: "));
 }
