@@ -109,9 +109,19 @@ ComplexPlan make_plan(const Complex& complex, const Touching& touching) {
     plan.levels = std::max(plan.levels, level[at(block[at(u)])] + 1);
   }
   if (!by_block.empty()) plan.first.push_back(static_cast<Index>(by_block.size()));
-  for (int b = 0; b < plan.blocks(); ++b)
+  std::vector<int> width(at(plan.levels), 0);
+  for (int b = 0; b < plan.blocks(); ++b) {
     plan.largest = std::max(plan.largest, plan.first[at(b) + 1] - plan.first[at(b)]);
+    plan.widest = std::max(plan.widest, ++width[at(plan.level[at(b)])]);
+  }
   return plan;
+}
+
+std::vector<Index> ComplexPlan::level_of_sites(int sites) const {
+  std::vector<Index> of_site(at(sites), -1);
+  for (int b = 0; b < blocks(); ++b)
+    for (Index n = first[at(b)]; n < first[at(b) + 1]; ++n) of_site[at(unknowns[at(n)])] = level[at(b)];
+  return of_site;
 }
 
 std::string ComplexPlan::describe() const {

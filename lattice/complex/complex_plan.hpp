@@ -20,7 +20,10 @@ struct ComplexPlan {
   std::vector<std::int32_t> level;     ///< of each block; blocks are sorted by it
   int levels = 0;
   int largest = 0;  ///< unknowns of a block
+  int widest = 0;   ///< blocks of a level
 
+  /// Of each of so many sites the level that finds its value; −1 where that is data.
+  std::vector<std::int32_t> level_of_sites(int sites) const;
   int blocks() const { return static_cast<int>(first.size()) - 1; }
   /// "2 levels, 162 unknowns, each in a block of its own" or "one block of 961 unknowns"
   std::string describe() const;

@@ -10,24 +10,31 @@
 
 namespace delf {
 
-/// Solves a complex level by level. What is proved linear is assembled once, as a sparse matrix of the level's equations.
-/// If all other terms are linear in the unknowns of the level, the level is one solve: divisions where every unknown is a block of
-/// its own, a sparse factorisation otherwise. Else Newton's method with a sparse matrix and a line search, from the values
-/// that stand there.
+class ThreadTeam;
+
+/// Solves a complex level by level, and a wide level in parts: some blocks each, which threads share. What is proved linear
+/// is assembled once, as a sparse matrix of the part's equations. If all other terms are linear in the unknowns of the part,
+/// it is one solve: divisions where every unknown is a block of its own, a sparse factorisation otherwise. Else Newton's
+/// method with a sparse matrix and a line search, from the values that stand there. Parts are the same for any number of
+/// threads, and so is every bit.
 class ComplexSolver {
  public:
   struct Options {
     double tolerance = 1e-14;  ///< the last correction, relative to the largest value
     int max_iterations = 50;
+    int threads = 1;  ///< that parts of a level are shared by
   };
   struct Report {
-    int iterations = 0;     ///< the most of a level
+    int iterations = 0;     ///< the most of a part
     double correction = 0;  ///< the last one, relative
     double shortest = 1;    ///< the shortest step of a line search
     /// Where the equations hold to rounding and the matrix is nearly singular: how far, relative to the values, a correction
     /// would go that gains nothing. 0 otherwise.
     double undetermined = 0;
+
+    void add(const Report&);
   };
+  static constexpr int unknowns_of_a_part = 256;  ///< at least, of a level in several parts
 
   /// Throws BadInput if the complex is ill-posed.
   ComplexSolver(const ComplexSystem&, Options);
@@ -39,18 +46,28 @@ class ComplexSolver {
   const ComplexPlan& plan() const { return plan_; }
   /// No level is iterated.
   bool is_direct() const;
+  /// Levels in several parts.
+  int shared_levels() const;
   /// To be called when measures or time steps of the system have changed.
   void refresh();
   /// Throws NoConvergence or NotFinite; y is then what it was before the level that failed.
   Report solve(std::span<double> y) const;
 
  private:
-  class Level;
+  class Part;
+  struct Places;
+  /// Calls one(part, share) for each of these parts, where shares go on side by side. Throws what the first part threw, when all
+  /// are done.
+  template <class Do>
+  void for_each(std::size_t first, std::size_t last, const Do& one) const;
+
   const ComplexSystem& system_;
   Options options_;
   Touching touching_;
   ComplexPlan plan_;
-  std::vector<std::unique_ptr<Level>> levels_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::size_t> level_;  ///< the first part of each, and the end
+  std::unique_ptr<ThreadTeam> team_;
 };
 
 }  // namespace delf

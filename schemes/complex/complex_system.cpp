@@ -42,7 +42,8 @@ std::vector<std::int32_t> ComplexSystem::all_stencils() const {
 
 template <class Evaluate>
 void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power, const Evaluate& evaluate,
-                         const Visit& visit) const {
+                         const Visit& visit, std::span<const std::int32_t> places) const {
+  std::size_t begin = 0;  // of a stencil, in places
   constexpr int most = PlacedFamily::most;
   std::array<std::int32_t, most> tables;
   std::array<double, most> measures, steps;
@@ -57,7 +58,9 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
     for (std::size_t s = 0; s < batch.size(); ++s) {
       const auto stencil = at(batch[s]);
       tables[s] = tables_[stencil], measures[s] = measures_[stencil], steps[s] = time_steps_[stencil];
-      for (int i = 0; i < of.size(); ++i) values[i][s] = y[node(batch[s], i)];
+      for (int i = 0; i < of.size(); ++i)
+        values[i][s] = y[places.empty() ? node(batch[s], i) : at(places[begin + at(i)])];
+      begin += at(of.size());
     }
     evaluate(of, PlacedBatch{static_cast<int>(batch.size()), tables.data(), measures.data(), steps.data(), values[0]},
              numbers[0]);
@@ -74,13 +77,15 @@ void ComplexSystem::each_energy(Stencils s, std::span<const double> y, const Vis
   each(
       s, y, 0, [](const auto& family, const auto& batch, double* out) { family.energy(batch, out); }, visit);
 }
-void ComplexSystem::each_residual(Stencils s, std::span<const double> y, const Visit& visit) const {
+void ComplexSystem::each_residual(Stencils s, std::span<const double> y, const Visit& visit,
+                                  std::span<const std::int32_t> places) const {
   each(
-      s, y, 1, [](const auto& family, const auto& batch, double* out) { family.residual(batch, out); }, visit);
+      s, y, 1, [](const auto& family, const auto& batch, double* out) { family.residual(batch, out); }, visit, places);
 }
-void ComplexSystem::each_jacobian(Stencils s, std::span<const double> y, const Visit& visit) const {
+void ComplexSystem::each_jacobian(Stencils s, std::span<const double> y, const Visit& visit,
+                                  std::span<const std::int32_t> places) const {
   each(
-      s, y, 2, [](const auto& family, const auto& batch, double* out) { family.jacobian(batch, out); }, visit);
+      s, y, 2, [](const auto& family, const auto& batch, double* out) { family.jacobian(batch, out); }, visit, places);
 }
 
 std::vector<Balance> ComplexSystem::residual(std::span<const double> y) const {

@@ -45,13 +45,16 @@ class ComplexSystem {
   const PlacedFamily& family_of(int stencil) const { return family(complex_.shape_number(stencil)); }
   std::size_t bytes() const;
 
-  /// All stencils, or those of a list, in batches: visit(stencils of the batch, its numbers[i·most + s]).
+  /// All stencils, or those of a list, in batches: visit(stencils of the batch, its numbers[i·most + s]). With `places`, y
+  /// holds some nodes alone, and these are where it has each value of each stencil.
   using Stencils = std::span<const std::int32_t>;
   using Visit = std::function<void(Stencils, const double*)>;
   void each_lagrangian(Stencils, std::span<const double> y, const Visit&) const;
   void each_energy(Stencils, std::span<const double> y, const Visit&) const;
-  void each_residual(Stencils, std::span<const double> y, const Visit&) const;
-  void each_jacobian(Stencils, std::span<const double> y, const Visit&) const;
+  void each_residual(Stencils, std::span<const double> y, const Visit&,
+                     std::span<const std::int32_t> places = {}) const;
+  void each_jacobian(Stencils, std::span<const double> y, const Visit&,
+                     std::span<const std::int32_t> places = {}) const;
   std::vector<std::int32_t> all_stencils() const;
 
   /// The node that value i of a stencil is.
@@ -65,7 +68,8 @@ class ComplexSystem {
 
  private:
   template <class Evaluate>
-  void each(Stencils, std::span<const double> y, int power, const Evaluate&, const Visit&) const;
+  void each(Stencils, std::span<const double> y, int power, const Evaluate&, const Visit&,
+            std::span<const std::int32_t> places = {}) const;
 
   int components_;
   Complex complex_;

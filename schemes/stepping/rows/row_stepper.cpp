@@ -16,10 +16,10 @@
 #include "schemes/stepping/newton.hpp"
 #include "schemes/stepping/rows/kept_rows.hpp"
 #include "schemes/stepping/rows/predictor.hpp"
-#include "schemes/stepping/rows/row_team.hpp"
 #include "schemes/stepping/rows/step_tolerance.hpp"
 #include "schemes/stepping/rows/wrapped_differences.hpp"
 #include "schemes/stepping/slab_stepper.hpp"
+#include "schemes/stepping/thread_team.hpp"
 
 namespace delf {
 namespace {
@@ -56,7 +56,7 @@ struct RowStepper::Impl {
   Predictor predictor;
   std::vector<std::unique_ptr<Sweeps>> sweeps;  ///< of each component; none: the solver takes whole rows
   std::optional<StepTolerance> tolerance;  ///< if equations iterate
-  std::optional<RowTeam> team;
+  std::optional<ThreadTeam> team;
   std::vector<double> changes;  ///< of each source row: the largest |δ|
   RowBuffer work;               ///< right sides, which solutions take the place of
   int strip = 0, lag = 0;       ///< packs; and how many the update stays behind right sides

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "jets/tables/named_tables.hpp"
 #include "schemes/complex/complex_form.hpp"
@@ -11,6 +10,7 @@
 #include "schemes/complex/lattice_complex.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/stencil_lists.hpp"
 #include "tests/schemes/support.hpp"
 
 namespace {
@@ -21,44 +21,6 @@ using namespace delf::testing;
 std::string fault_of(const StencilList& list) {
   const auto fault = find_fault(list);
   return fault ? std::to_string(fault->line) + ": " + fault->what : "none";
-}
-
-/// Rows of a lattice, site after site, as a list.
-StencilList list_of(const Lattice& lattice, const SolvePlan& plan, const NamedTable& named,
-                    const std::shared_ptr<const BatchDensity>& density, double h, int rows) {
-  const LatticeComplex whole(lattice, plan, named.table, density, h, rows);
-  const Complex& complex = whole.system.complex();
-  StencilList list;
-  list.circumference = lattice.is_circle() ? lattice.length() : 0;
-  for (int s = 0; s < complex.sites(); ++s) list.sites.push_back({complex.position(s), complex.role(s)});
-  for (int s = 0; s < complex.stencils(); ++s)
-    list.stencils.push_back({named.name, {complex.vertices(s).begin(), complex.vertices(s).end()}});
-  return list;
-}
-
-/// Strips of rectangles and of triangles one above the other, on lines that are bent unless `amount` is 0: 2·N cells a
-/// row. Two rows are data and the walls too.
-StencilList mixed(int sites, int rows, double amount) {
-  StencilList list;
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < sites; ++i) {
-      const double bend = std::sin(1.0 * i) * std::sin(0.7 * j);
-      list.sites.push_back({{0.1 * j + 0.02 * amount * bend, 0.25 * (i + 0.1 * amount * bend), 0, 0},
-                            i == 0 || i == sites - 1 ? SiteRole::given
-                            : j == 0                 ? SiteRole::given
-                            : j == 1                 ? SiteRole::initial
-                            : j == rows - 1          ? SiteRole::final
-                                                     : SiteRole::free});
-    }
-  for (int j = 0; j + 1 < rows; ++j)
-    for (int i = 0; i + 1 < sites; ++i) {
-      const int a = j * sites + i, b = a + 1, c = a + sites, d = c + 1;
-      if (j % 2 == 0) list.stencils.push_back({"rectangle", {a, c, d, b}});
-      else if (i % 2 == 0)
-        list.stencils.push_back({"triangle", {a, c, d}, 0.5}), list.stencils.push_back({"triangle", {b, a, d}, 0.5});
-      else list.stencils.push_back({"triangle", {a, c, b}, 0.5}), list.stencils.push_back({"triangle", {b, c, d}, 0.5});
-    }
-  return list;
 }
 
 TEST_CASE("a lattice written as a list of stencils has the lattice's plan and rows on every shape") {
@@ -78,7 +40,7 @@ TEST_CASE("a lattice written as a list of stencils has the lattice's plan and ro
     evolution.stepper().start(rows);
     const int count = plan.history + steps;
     const LatticeComplex whole(lattice, plan, named.table, theory->shared_density(), h, count);
-    StencilList list = list_of(lattice, plan, named, theory->shared_density(), h, count);
+    const StencilList list = list_of(whole.system.complex(), named.name, lattice.length());
     // rows outside, which no equation reads, may be of no stencil
     REQUIRE((fault_of(list) == "none" || whole.outer > 0));
     const ComplexSystem system = spacetime_complex(list, theory->shared_density());
@@ -106,7 +68,7 @@ TEST_CASE("mixed shapes with jets from their coordinates are exact on affine fie
   const auto sine_gordon = theory_named(problem);
   problem.theory = "wave";
   const auto wave = theory_named(problem);
-  const StencilList list = mixed(13, 8, 1);
+  const StencilList list = bent_rows(13, 8);
   REQUIRE(fault_of(list) == "none");
 
   SECTION("an affine field solves the wave equation") {
@@ -175,7 +137,7 @@ TEST_CASE("motion, sites and gradients of a list are those of rows over a mesh")
 }
 
 TEST_CASE("faults of a list of stencils are named with their line") {
-  StencilList good = mixed(5, 4, 0);
+  StencilList good = bent_rows(5, 4, 0);
   for (std::size_t n = 0; n < good.stencils.size(); ++n) good.stencils[n].line = 100 + static_cast<int>(n);
   for (std::size_t n = 0; n < good.sites.size(); ++n) good.sites[n].line = static_cast<int>(n);
   REQUIRE(fault_of(good) == "none");
@@ -186,14 +148,14 @@ TEST_CASE("faults of a list of stencils are named with their line") {
   };
   CHECK_THAT(with([](auto& l) { std::ranges::reverse(l.stencils[1].sites); }),
              Catch::StartsWith("101: stencil 1 (rectangle) is listed the wrong way round"));
-  CHECK_THAT(with([](auto& l) { l.stencils.push_back(l.stencils[5]); }),
-             Catch::Contains("is stencil 5 again (line 105)"));
+  CHECK_THAT(with([](auto& l) { l.stencils.push_back(l.stencils[8]); }),
+             Catch::Contains("is stencil 8 again (line 108)"));
   CHECK_THAT(with([](auto& l) {
-               l.stencils.push_back(l.stencils[5]);
+               l.stencils.push_back(l.stencils[8]);
                auto& sites = l.stencils.back().sites;
                std::ranges::rotate(sites, sites.begin() + 1);
              }),
-             Catch::Contains("is stencil 5 again"));
+             Catch::Contains("is stencil 8 again"));
   CHECK_THAT(with([](auto& l) { l.stencils[2].sites.pop_back(); }), Catch::Contains("has 3 sites and needs 4"));
   CHECK_THAT(with([](auto& l) { l.stencils[2].sites[0] = 99; }), Catch::Contains("names site 99, and there are sites"));
   CHECK_THAT(with([](auto& l) { l.sites[7].position = l.sites[8].position; }),

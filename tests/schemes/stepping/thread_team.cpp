@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/stepping/rows/row_team.hpp"
+#include "schemes/stepping/thread_team.hpp"
 
 #include <array>
 #include <atomic>
@@ -15,7 +15,7 @@ using namespace delf;
 
 TEST_CASE("a team does every part once, the first in the calling thread, and returns when all are done") {
   for (int threads : {1, 2, 3, 5}) {
-    RowTeam team(threads);
+    ThreadTeam team(threads);
     CHECK(team.size() == threads);
     for (int parts = 1; parts <= threads; ++parts) {
       CAPTURE(threads, parts);
@@ -37,7 +37,7 @@ TEST_CASE("a team does every part once, the first in the calling thread, and ret
 }
 
 TEST_CASE("parts work at the same time, and see what was written before the round") {
-  RowTeam team(3);
+  ThreadTeam team(3);
   for (int round = 0; round < 20; ++round) {
     std::atomic<int> begun{0};
     int written = round;
@@ -52,8 +52,8 @@ TEST_CASE("parts work at the same time, and see what was written before the roun
 }
 
 TEST_CASE("a team that has gone to sleep wakes up, and one that never worked ends") {
-  RowTeam idle(4);
-  RowTeam team(2);
+  ThreadTeam idle(4);
+  ThreadTeam team(2);
   for (int round = 0; round < 3; ++round) {
     std::this_thread::sleep_for(std::chrono::milliseconds(30));
     std::atomic<int> done{0};
@@ -67,7 +67,7 @@ TEST_CASE("a team that has gone to sleep wakes up, and one that never worked end
 
 TEST_CASE("a thread that does not run holds up nobody: the calling thread does its part") {
   // It takes microseconds to wake up; until then both parts are done.
-  RowTeam team(2);
+  ThreadTeam team(2);
   int by_caller = 0;
   for (int round = 0; round < 20; ++round) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -80,7 +80,7 @@ TEST_CASE("a thread that does not run holds up nobody: the calling thread does i
 
 TEST_CASE("parts of other threads treat denormal numbers as the calling thread does under its guard") {
   const FlushDenormals guard;
-  RowTeam team(3);
+  ThreadTeam team(3);
   std::array<double, 3> halves{};
   volatile double small = std::numeric_limits<double>::min();
   team.run(3, [&](int part) { halves[static_cast<std::size_t>(part)] = small / 2; });
@@ -91,7 +91,7 @@ TEST_CASE("parts of other threads treat denormal numbers as the calling thread d
 TEST_CASE("the count of parts can fail: a team of one does not do two") {
   // what the first case would see if parts were left out
   std::vector<int> times(2, 0);
-  RowTeam team(2);
+  ThreadTeam team(2);
   team.run(1, [&](int part) { ++times[static_cast<std::size_t>(part)]; });
   CHECK(times == std::vector<int>{1, 0});
 }

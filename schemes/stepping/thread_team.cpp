@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/stepping/rows/row_team.hpp"
+#include "schemes/stepping/thread_team.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -30,18 +30,18 @@ void await_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
 
 }  // namespace
 
-RowTeam::RowTeam(int threads) : begun_(static_cast<std::size_t>(threads)) {
+ThreadTeam::ThreadTeam(int threads) : begun_(static_cast<std::size_t>(threads)) {
   for (int which = 1; which < threads; ++which) workers_.emplace_back([this, which] { work(which); });
 }
 
-RowTeam::~RowTeam() {
+ThreadTeam::~ThreadTeam() {
   over_ = true;
   ++round_;
   round_.notify_all();
   for (std::thread& worker : workers_) worker.join();
 }
 
-void RowTeam::run(int parts, const std::function<void(int)>& part) {
+void ThreadTeam::run(int parts, const std::function<void(int)>& part) {
   if (parts == 1) return part(0);
   const std::uint32_t round = round_.load(std::memory_order_relaxed) + 1;
   part_ = &part;
@@ -57,7 +57,7 @@ void RowTeam::run(int parts, const std::function<void(int)>& part) {
   for (std::uint32_t left; (left = unfinished_.load(std::memory_order_acquire)) != 0;) await_change(unfinished_, left);
 }
 
-void RowTeam::do_parts(int first, std::uint32_t round) {
+void ThreadTeam::do_parts(int first, std::uint32_t round) {
   for (int n = 0; n < size(); ++n) {
     const int which = (first + n) % size();
     if (!begin(which, round)) continue;
@@ -67,13 +67,13 @@ void RowTeam::do_parts(int first, std::uint32_t round) {
 }
 
 /// One thread alone can begin a part in a round, and none in a round that is over: all its parts have been begun then.
-bool RowTeam::begin(int part, std::uint32_t round) {
+bool ThreadTeam::begin(int part, std::uint32_t round) {
   std::atomic<std::uint32_t>& begun = begun_[static_cast<std::size_t>(part)];
   std::uint32_t last = begun.load(std::memory_order_relaxed);
   return last == round - 1 && begun.compare_exchange_strong(last, round, std::memory_order_acq_rel);
 }
 
-void RowTeam::work(int which) {
+void ThreadTeam::work(int which) {
   const FlushDenormals guard;
   for (std::uint32_t seen = 0;;) {
     await_change(round_, seen);

@@ -8,16 +8,16 @@
 
 namespace delf {
 
-/// Threads that work on parts of the same rows, step after step. Between two steps they wait a moment awake, then
-/// asleep. A thread that has done its own part takes parts that nobody has begun: where other programs keep a thread
-/// from running, the others do its work instead of waiting for it.
-class RowTeam {
+/// Threads that work on parts of the same rows, or of the same level, step after step. Between two steps they wait a
+/// moment awake, then asleep. A thread that has done its own part takes parts that nobody has begun: where other programs
+/// keep a thread from running, the others do its work instead of waiting for it.
+class ThreadTeam {
  public:
   /// The calling thread is one of the `threads`.
-  explicit RowTeam(int threads);
-  ~RowTeam();
-  RowTeam(const RowTeam&) = delete;
-  RowTeam& operator=(const RowTeam&) = delete;
+  explicit ThreadTeam(int threads);
+  ~ThreadTeam();
+  ThreadTeam(const ThreadTeam&) = delete;
+  ThreadTeam& operator=(const ThreadTeam&) = delete;
 
   int size() const { return static_cast<int>(workers_.size()) + 1; }
   /// Calls part(0) … part(parts − 1), each once, at the same time as far as threads are awake, parts ≤ size(), part(0)
