@@ -294,9 +294,10 @@ def kilobytes(count):
 
 
 def steps(scene, option):
-    """The option, or none for a scene without time."""
+    """The option, or none for a scene without steps."""
     path = pathlib.Path(__file__).parent / "scenes" / (scene.split()[0] + ".ini")
-    return [] if path.exists() and "time = none" in path.read_text() else [option]
+    is_timeless = path.exists() and re.search(r"^(time = none|mesh = refined:)", path.read_text(), re.MULTILINE)
+    return [] if is_timeless else [option]
 
 
 def run_words(scene, *more):

@@ -41,7 +41,7 @@ ComplexSolver::ComplexSolver(const ComplexSystem& system, Options options)
   for (int begin = 0, end = 0; begin < plan_.blocks(); begin = end) {
     while (end < plan_.blocks() && plan_.level[at(end)] == plan_.level[at(begin)]) ++end;
     const int unknowns = plan_.first[at(end)] - plan_.first[at(begin)];
-    std::vector<int> cuts = cuts_of(plan_, begin, end, std::max(1, unknowns / unknowns_of_a_part));
+    std::vector<int> cuts = cuts_of(plan_, begin, end, std::max(1, unknowns / options.unknowns));
     // Stencils on two parts are evaluated twice: where the blocks of a level have no order that keeps neighbours together,
     // the level stays whole.
     std::int64_t once = 0, all = 0;

@@ -23,6 +23,8 @@ class ComplexSolver {
     double tolerance = 1e-14;  ///< the last correction, relative to the largest value
     int max_iterations = 50;
     int threads = 1;  ///< that parts of a level are shared by
+    /// Of a part at least, where a level has several: a level of 2000 is about as long as it takes to wake a thread twice.
+    int unknowns = 1024;
   };
   struct Report {
     int iterations = 0;     ///< the most of a part
@@ -34,7 +36,6 @@ class ComplexSolver {
 
     void add(const Report&);
   };
-  static constexpr int unknowns_of_a_part = 256;  ///< at least, of a level in several parts
 
   /// Throws BadInput if the complex is ill-posed.
   ComplexSolver(const ComplexSystem&, Options);

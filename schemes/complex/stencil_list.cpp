@@ -175,6 +175,26 @@ std::vector<Complex::Position> StencilList::positions(const Entry& e) const {
   return all;
 }
 
+std::vector<int> StencilList::outline(const Entry& e) const {
+  const auto x_of = [&](int s) { return sites[at(s)].position[1]; };
+  const auto [least, most] = std::ranges::minmax(e.sites, {}, x_of);
+  if (circumference > 0 && x_of(most) - x_of(least) > circumference / 2) return {};
+  const StencilTable* const table = stencil_shape(e.shape)->table;
+  if (!table) return e.sites;
+  const std::vector<delf::Site>& shape = table->pattern.vertices;
+  double t = 0, x = 0;
+  for (const delf::Site& v : shape)
+    t += v.time / static_cast<double>(shape.size()), x += v.space / static_cast<double>(shape.size());
+  std::vector<std::pair<double, int>> around;  // by angle
+  for (std::size_t l = 0; l < shape.size(); ++l)
+    if (const double up = shape[l].time - t, along = shape[l].space - x; std::hypot(up, along) > rounding)
+      around.emplace_back(std::atan2(up, along), e.sites[l]);
+  std::ranges::sort(around);
+  std::vector<int> outline;
+  for (const auto& [angle, site] : around) outline.push_back(site);
+  return outline;
+}
+
 std::optional<StencilShapeKind> stencil_shape(std::string_view name) {
   for (const Part& part : parts)
     if (name == part.name) return StencilShapeKind{nullptr, part.least, part.most};

@@ -33,6 +33,9 @@ struct StencilList {
   int coordinates() const;
   /// Of a stencil's sites; on a circle each is the nearest to the first.
   std::vector<Complex::Position> positions(const Entry&) const;
+  /// The sites around a stencil, in the order of the lattice's shape, without one in its middle; none if it lies across the seam
+  /// of a circle. Of motion, site and gradient all, as listed.
+  std::vector<int> outline(const Entry&) const;
 };
 
 /// What a stencil of a list may be.

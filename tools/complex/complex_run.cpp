@@ -20,10 +20,12 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-void run_static(const ComplexScene& c, MeshRecorder& recorder, MeshOutcome& o) {
+/// Returns the level of each site.
+std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, MeshOutcome& o) {
   StaticField field(c);
   o.solve = field.solver().plan().describe();
   o.solve_kind = field.solver().plan().largest == 1 ? "explicit" : "sparse";
+  o.threads = threads_in_words(field.solver(), c.scene.problem.threads);
   o.bytes = field.system().bytes();
   const auto begin = Clock::now();
   const ComplexSolver::Report solved = field.solve();
@@ -34,15 +36,19 @@ void run_static(const ComplexScene& c, MeshRecorder& recorder, MeshOutcome& o) {
         fmt::format("the equations hold to rounding, and hardly change in one direction: along it the values are known "
                     "to {:.2g} of themselves only",
                     solved.undetermined));
+  std::vector<SlabEnergy> slabs;
+  if (c.stencils) slabs = slab_energies(*c.stencils, c.theory->shared_density(), field.values());
   recorder.record(
-      {0, 0, field.values(), c.stencils ? Outcome::unknown : field.energy(), solved.iterations, field.residual()});
+      {0, 0, field.values(), c.stencils ? Outcome::unknown : field.energy(), solved.iterations, field.residual()},
+      slabs);
   measure_error(c, field.values(), 0, o);
+  return field.solver().plan().level_of_sites(c.sites());
 }
 
 // A failed figure does not fail the run.
-std::string drawn(const ComplexScene& c, const MeshFilm& film, const fs::path& folder) {
+std::string drawn(const ComplexScene& c, const MeshFilm& film, std::span<const int> levels, const fs::path& folder) {
   try {
-    return draw_mesh(c, film, folder);
+    return draw_mesh(c, film, levels, folder);
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -82,9 +88,10 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
   Checkpoints checkpoints(folder, {DELF_VERSION, instruction_set(), resolved, c.scene.name, c.scene.warnings},
                           c.scene.checkpoint);
   std::exception_ptr failure;
+  std::vector<int> levels;
   try {
     if (stepping) stepping->run(recorder, checkpoints);
-    else run_static(c, recorder, o);
+    else levels = run_static(c, recorder, o);
   } catch (const NumericalFailure& error) {
     o.status = status_of(error), o.failure = error.what();
     failure = std::current_exception();
@@ -100,7 +107,7 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
         "coarse; reduce {}",
         o.energy_error_max, c.scene.settings.find("lattice.courant") ? "lattice.courant" : "lattice.time_step"));
   write_text_file(folder / "summary.json", summary_json(c, o));
-  const std::string missing = c.scene.figures ? drawn(c, recorder.film(), folder) : std::string();
+  const std::string missing = c.scene.figures ? drawn(c, recorder.film(), levels, folder) : std::string();
   fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}{}\n", report(c, o), "files", folder.string(),
              c.scene.fields ? has_xdmf(c) ? " fields.h5 fields.xdmf" : " fields.h5" : "",
              c.scene.figures && missing.empty() ? " figures" : "");

@@ -47,6 +47,7 @@ void refuse_unread(const Settings& settings, const TheoryEntry& theory, const Pa
   for (const Parameter& p : parameters_of(theory, parameters)) known.insert(p.key);
   for (const Component& field : fields)
     known.insert({"exact." + field.name, "initial." + field.name, "initial." + field.name + "_t"});
+  if (spacetime) known.insert("run.threads");
   for (const Setting& s : settings.all()) {
     if (s.key.starts_with("sweep.")) continue;  // of the command
     if (!known.contains(s.key))
@@ -156,7 +157,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     c.theory = make_theory(entry, parameters);
     if (!values.given("lattice.mesh"))
       throw settings.error("lattice.mesh", "must be given with lattice.space = complex: a file, or icosahedron:4");
-    auto mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file);
+    auto mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file, halvings);
     if (const auto* list = std::get_if<StencilList>(&mesh)) c.stencils = std::make_unique<const StencilList>(*list);
     refuse_unread(settings, entry, parameters, c.theory->fields(), values.choice("lattice.time") == "none",
                   c.stencils != nullptr);
@@ -183,6 +184,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
       throw settings.error("theory.fibre", "S1 on a mesh is for one field with lattice.time = rows; use R");
     p.tolerance = values.real("scheme.tolerance");
     p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
+    p.threads = static_cast<int>(values.integer("run.threads"));
     p.lattice = Lattice::circle(std::max(2, c.sites()), edge * std::max(2, c.sites()));
     p.stencil = c.mesh_in_words();
     read_fields(c, values, parameters);

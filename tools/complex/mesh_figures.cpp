@@ -28,29 +28,6 @@ std::string title(const ComplexScene& c, const std::string& what) {
                                   c.mesh_in_words()));
 }
 
-/// Stencils in the plane of x and t as triangles: the sites of each in order around their middle, cut from the first.
-/// Those across the seam of a circle are left out.
-Mesh spacetime_mesh(const StencilList& list) {
-  Mesh mesh{.points = {}, .vertices = {}};
-  for (const auto& site : list.sites) mesh.points.push_back({site.position[1], site.position[0], 0});
-  for (const StencilList::Entry& e : list.stencils) {
-    double x = 0, t = 0, least = INFINITY, most = -INFINITY;
-    for (const int s : e.sites) {
-      const Mesh::Point& p = mesh.points[static_cast<std::size_t>(s)];
-      x += p[0] / static_cast<double>(e.sites.size()), t += p[1] / static_cast<double>(e.sites.size());
-      least = std::min(least, p[0]), most = std::max(most, p[0]);
-    }
-    if (e.sites.size() < 3 || (list.circumference > 0 && most - least > list.circumference / 2)) continue;
-    std::vector<int> around = e.sites;
-    std::ranges::sort(around, {}, [&](int s) {
-      const Mesh::Point& p = mesh.points[static_cast<std::size_t>(s)];
-      return std::atan2(p[1] - t, p[0] - x);
-    });
-    for (std::size_t l = 1; l + 1 < around.size(); ++l) mesh.add_cell(std::array{around[0], around[l], around[l + 1]});
-  }
-  return mesh;
-}
-
 double value_at(const ComplexScene& c, const MeshFilm::Frame& frame, std::size_t point) {
   return frame.values[point * c.fields.size()];
 }
@@ -80,7 +57,13 @@ std::string curves(const ComplexScene& c, const MeshFilm& film, const fs::path& 
              c.fields.front().name, plot);
 }
 
-// One facet of gnuplot's surfaces for each cell; the third corner of a triangle stands twice.
+// A facet of gnuplot's surfaces; the third corner of a triangle stands twice.
+void add_facet(std::string& table, std::span<const int> corners, const auto& corner) {
+  corner(corners[0]), corner(corners[1]), table += "\n";
+  corner(corners.back()), corner(corners[2]), table += "\n\n";
+}
+
+// One facet for each cell.
 std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, const fs::path& scratch) {
   if (mesh.cells() > most_cells) return {};
   const bool flat = mesh.coordinates() < 3;
@@ -105,8 +88,7 @@ std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, 
     };
     for (int cell = 0; cell < mesh.cells(); ++cell) {
       const auto corners = mesh.cell(cell);
-      corner(corners[0]), corner(corners[1]), table += "\n";
-      corner(corners.back()), corner(corners[2]), table += "\n\n";
+      add_facet(table, corners, corner);
     }
     const std::string file = fmt::format("map{}", f);
     write_text_file(scratch / file, table);
@@ -117,6 +99,49 @@ std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, 
     body += fmt::format("splot '{}' using {} with pm3d\n", file, flat ? "1:2:3" : "1:2:3:4");
   }
   return body + "unset multiplot\n";
+}
+
+// The stencils of a finite complex over x and t, in the colour of their sites' values, or of the last of their sites' levels.
+std::string spacetime(const ComplexScene& c, std::span<const double> values, std::span<const int> levels,
+                      const fs::path& scratch) {
+  if (c.cells() > most_cells) return {};
+  const StencilList& list = *c.stencils;
+  constexpr int most_with_edges = 3000;
+  std::string table;
+  std::vector<double> shown(values.begin(), values.end());
+  for (const StencilList::Entry& e : list.stencils) {
+    const std::vector<int> around = list.outline(e);
+    if (around.size() < 3) continue;
+    int level = -1;
+    if (values.empty())
+      for (const int s : around) level = std::max(level, levels[static_cast<std::size_t>(s)]);
+    const auto corner = [&](int s) {
+      const auto& at = list.sites[static_cast<std::size_t>(s)].position;
+      table += fmt::format("{} {} {}\n", at[1], at[0],
+                           values.empty() ? level : values[static_cast<std::size_t>(s) * c.fields.size()]);
+    };
+    if (values.empty()) shown.push_back(level);
+    if (around.size() <= 4) add_facet(table, around, corner);
+    else  // larger ones as triangles
+      for (std::size_t l = 1; l + 1 < around.size(); ++l)
+        add_facet(table, std::array{around[0], around[l], around[l + 1]}, corner);
+  }
+  if (table.empty()) return {};
+  const std::string name = values.empty() ? "levels" : "field";
+  write_text_file(scratch / name, table);
+  const ColourScale scale =
+      values.empty() ? ColourScale{0, std::max(1.0, *std::ranges::max_element(shown)), false} : colour_scale(shown);
+  return gnuplot_colours(scale) +
+         title(c, values.empty() ? "levels of the plan, in their order" : c.fields.front().name + " on its stencils") +
+         fmt::format(
+             "set pm3d map corners2color {}\n{}unset key\nunset grid\nset lmargin at screen 0.105\n"
+             "set rmargin at screen 0.86\nset bmargin at screen 0.12\nset tmargin at screen top\nset xlabel 'space x'\n"
+             "set ylabel 'time t'\nset xrange [*:*] noextend\nset cbtics {} scale 0.3\n"
+             "set colorbox user origin screen 0.885,0.12 size screen 0.022,0.7 noborder\nsplot '{}' using 1:2:3 with "
+             "pm3d\n",
+             values.empty() ? "c1" : "mean",
+             c.cells() <= most_with_edges ? "set pm3d border lc rgb '#ffffff' lw 0.3\n" : "",
+             nice_step(scale.most - scale.least, 8), name);
 }
 
 // A line from end to end of a segment at each time when it acts.
@@ -172,23 +197,34 @@ void MeshFilm::visit(SavedState& state) {
     add(steps[f], times[f], std::span(values).subspan(f * size, size));
 }
 
-std::string draw_mesh(const ComplexScene& c, const MeshFilm& film, const fs::path& folder) {
+std::string draw_mesh(const ComplexScene& c, const MeshFilm& film, std::span<const int> levels,
+                      const fs::path& folder) {
   if (film.frames().empty()) return {};
-  if (c.stencils && c.coordinates() > 2) return "a complex of t, x and y has no figure in the plane";
-  const Mesh mesh = c.stencils ? spacetime_mesh(*c.stencils) : c.space->mesh;
-  const bool line = !c.stencils && mesh.coordinates() == 1;
+  const auto of_many = [&] {
+    return fmt::format("the {} has more than {} cells{}", c.stencils ? "complex" : "mesh", most_cells,
+                       has_xdmf(c) ? "; open fields.xdmf in ParaView" : "");
+  };
+  if (c.stencils) {
+    if (c.coordinates() > 2)
+      return fmt::format("a complex of {} coordinates has no figure in the plane{}", c.coordinates(),
+                         has_xdmf(c) ? "; open fields.xdmf in ParaView" : "");
+    if (c.cells() > most_cells) return of_many();
+    return draw({{"field", [&](const fs::path& to) { return spacetime(c, film.frames().front().values, {}, to); }},
+                 {"levels", [&](const fs::path& to) { return spacetime(c, {}, levels, to); }}},
+                c.scene.figure_form, folder);
+  }
+  const Mesh& mesh = c.space->mesh;
+  const bool line = mesh.coordinates() == 1;
   std::vector<Drawing> drawings{{"field", [&](const fs::path& scratch) {
                                    return line ? curves(c, film, scratch) : maps(c, mesh, film, scratch);
                                  }}};
   if (c.time == MeshTime::cells && line)
     drawings.push_back({"updates", [&](const fs::path& scratch) { return updates(c, scratch); }});
   const std::string missing = draw(drawings, c.scene.figure_form, folder);
-  if (missing.empty() && !line && mesh.cells() > most_cells)
-    return fmt::format("the mesh has more than {} cells{}", most_cells,
-                       has_xdmf(c) ? "; open fields.xdmf in ParaView" : "");
+  if (missing.empty() && !line && mesh.cells() > most_cells) return of_many();
   return missing;
 }
 
-std::vector<std::string> mesh_figure_names() { return {"field", "updates"}; }
+std::vector<std::string> mesh_figure_names() { return {"field", "levels", "updates"}; }
 
 }  // namespace delf

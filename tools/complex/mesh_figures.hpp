@@ -34,9 +34,11 @@ class MeshFilm {
 };
 
 /// Draws into `folder`/figures: `field`, the first field at these times (curves over an interval, maps of triangles in the
-/// plane and in space), and `updates`, in which order asynchronous cells of an interval act. Returns what is missing, in
-/// one line, or an empty string.
-std::string draw_mesh(const ComplexScene&, const MeshFilm&, const std::filesystem::path& folder);
+/// plane and in space), or over the stencils of a finite complex in x and t; `levels`, which of these are solved one after
+/// the other, by the levels of the sites; and `updates`, in which order asynchronous cells of an interval act. Returns what
+/// is missing, in one line, or an empty string.
+std::string draw_mesh(const ComplexScene&, const MeshFilm&, std::span<const int> levels,
+                      const std::filesystem::path& folder);
 /// Their names, without ending.
 std::vector<std::string> mesh_figure_names();
 

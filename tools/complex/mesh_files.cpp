@@ -2,6 +2,7 @@
 #include "tools/complex/mesh_files.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <ranges>
@@ -21,7 +22,7 @@ RowNames names_of(const ComplexScene& scene) {
 
 }  // namespace
 
-bool has_xdmf(const ComplexScene& scene) { return scene.space && scene.space->mesh.coordinates() > 1; }
+bool has_xdmf(const ComplexScene& scene) { return scene.coordinates() == 2 || scene.coordinates() == 3; }
 
 MeshFiles::MeshFiles(const ComplexScene& scene, const std::filesystem::path& folder, std::int64_t frames,
                      bool node_times, const WrittenPart& kept)
@@ -57,11 +58,12 @@ void MeshFiles::close() {
 }
 
 std::string MeshFiles::xdmf() const {
-  const Mesh& mesh = scene_.space->mesh;
-  const int n = scene_.space->sites(), cells = mesh.cells(), d = static_cast<int>(scene_.fields.size());
-  // Cells of one kind are read from the file; of two kinds they are listed here, each behind XDMF's number of its kind.
-  const bool uniform = std::ranges::all_of(std::views::iota(0, cells),
-                                           [&](int c) { return static_cast<int>(mesh.cell(c).size()) == corners_; });
+  const int n = scene_.sites(), cells = scene_.cells(), d = static_cast<int>(scene_.fields.size());
+  // Cells of one kind are read from the file; others are listed here, each behind XDMF's number of its kind: those of two
+  // kinds, and stencils, of which a cell is the outline.
+  const bool uniform = scene_.space && std::ranges::all_of(std::views::iota(0, cells), [&](int c) {
+                         return static_cast<int>(scene_.space->mesh.cell(c).size()) == corners_;
+                       });
   std::string topology;
   if (uniform) {
     topology = fmt::format(
@@ -73,17 +75,26 @@ std::string MeshFiles::xdmf() const {
         cells, corners_ == 2 ? " NodesPerElement=\"2\"" : "", cells, corners_);
   } else {
     std::string list;
-    for (int c = 0; c < cells; ++c) {
-      list += mesh.cell(c).size() == 3 ? "4" : "5";
-      for (const auto p : mesh.cell(c)) list += fmt::format(" {}", p);
-      list += "\n";
-    }
+    int listed = 0;
+    std::size_t numbers = 0;
+    const auto add = [&](std::span<const std::int32_t> corners) {
+      if (corners.empty()) return;  // across the seam of a circle
+      const std::string kind = corners.size() == 3 ? "4"
+                               : corners.size() == 4
+                                   ? "5"
+                                   : fmt::format("{} {}", std::min<std::size_t>(corners.size(), 3), corners.size());
+      list += fmt::format("{} {}\n", kind, fmt::join(corners, " "));
+      ++listed, numbers += corners.size() + (kind.size() > 1 ? 2 : 1);
+    };
+    for (int c = 0; c < cells; ++c)
+      if (scene_.space) add(scene_.space->mesh.cell(c));
+      else add(scene_.stencils->outline(scene_.stencils->stencils[static_cast<std::size_t>(c)]));
     topology = fmt::format(
         "<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\"><DataItem Dimensions=\"{}\" NumberType=\"Int\" "
         "Format=\"XML\">\n{}</DataItem></Topology>",
-        cells, mesh.vertices.size() + static_cast<std::size_t>(cells), list);
+        listed, numbers, list);
   }
-  const int coordinates = mesh.coordinates();
+  const int coordinates = scene_.coordinates();
   std::string text =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"rows\" GridType=\"Collection\" "
       "CollectionType=\"Temporal\">\n";

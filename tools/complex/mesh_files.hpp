@@ -11,7 +11,7 @@ namespace delf {
 
 class SavedState;
 
-/// Whether there is a fields.xdmf: XDMF needs cells of space, and two coordinates at least.
+/// Whether there is a fields.xdmf: XDMF takes two or three coordinates, of space, or t, x and y of a finite complex.
 bool has_xdmf(const ComplexScene&);
 
 /// fields.h5 of a scene on a mesh, and fields.xdmf beside it, which ParaView opens.

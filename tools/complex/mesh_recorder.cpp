@@ -20,14 +20,23 @@ MeshRecorder::MeshRecorder(const ComplexScene& c, const std::filesystem::path& f
   else series_.emplace(series, std::vector<std::string>{});
 }
 
-void MeshRecorder::record(const MeshRow& r) {
+void MeshRecorder::record(const MeshRow& r, std::span<const SlabEnergy> slabs) {
   Outcome& o = outcome_;
   if (!c_.stencils && !std::isfinite(r.energy))
     throw NotFinite(
         fmt::format("row {}, t = {:.6g}: the energy is not finite; use smaller fields or steps", r.row, r.time));
   if (c_.stencils && !std::ranges::all_of(r.values, [](double y) { return std::isfinite(y); }))
     throw NotFinite("a value is not finite; use smaller data, or a finer complex");
-  if (o.records++ == 0) o.energy_initial = r.energy;
+  if (o.records++ == 0) o.energy_initial = slabs.empty() ? r.energy : slabs.front().energy;
+  if (slabs.empty()) note(r);
+  MeshRow line = r;
+  for (const SlabEnergy& slab : slabs) ++line.row, line.time = slab.time, line.energy = slab.energy, note(line);
+  if (files_) files_->append(r.time, r.values, r.node_times);
+  if (c_.scene.figures) film_.add(r.row, r.time, r.values);
+}
+
+void MeshRecorder::note(const MeshRow& r) {
+  Outcome& o = outcome_;
   o.energy_final = r.energy;
   const double error =
       o.energy_initial == 0 ? Outcome::unknown : std::abs(r.energy - o.energy_initial) / std::abs(o.energy_initial);
@@ -35,8 +44,6 @@ void MeshRecorder::record(const MeshRow& r) {
   if (std::isfinite(r.residual)) o.residual_max = std::max(o.residual_max, r.residual);
   else if (c_.time == MeshTime::cells) o.residual_max = r.residual;  // of asynchronous steps it is not measured
   series_->append({r.row, r.time, r.energy, error, Outcome::unknown, Outcome::unknown, r.iterations, r.residual, {}});
-  if (files_) files_->append(r.time, r.values, r.node_times);
-  if (c_.scene.figures) film_.add(r.row, r.time, r.values);
 }
 
 Recorder::Written MeshRecorder::flush(bool sync) {

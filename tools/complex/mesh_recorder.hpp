@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "schemes/complex/slab_energy.hpp"
 #include "tools/complex/mesh_evolution.hpp"
 #include "tools/complex/mesh_figures.hpp"
 #include "tools/complex/mesh_files.hpp"
@@ -19,7 +20,8 @@ class MeshRecorder {
   MeshRecorder(const ComplexScene&, const std::filesystem::path& folder, MeshOutcome&,
                const std::optional<Recorder::Written>& kept = {});
 
-  void record(const MeshRow&);
+  /// Of rows of a finite complex series.csv has a line for each slab in place of the row's.
+  void record(const MeshRow&, std::span<const SlabEnergy> slabs = {});
   /// Writes all buffered rows, and with `sync` waits until they are on the disk.
   Recorder::Written flush(bool sync);
   /// What is kept for figures and fields.xdmf.
@@ -28,6 +30,8 @@ class MeshRecorder {
   const MeshFilm& film() const { return film_; }
 
  private:
+  void note(const MeshRow&);
+
   const ComplexScene& c_;
   MeshOutcome& outcome_;
   MeshFilm film_;

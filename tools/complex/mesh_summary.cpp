@@ -18,6 +18,16 @@ double area_of(const CellSpace& space) {
   return area;
 }
 
+std::string threads_in_words(const ComplexSolver& solver, int asked) {
+  if (asked == 1) return {};
+  const int shared = solver.shared_levels(), levels = solver.plan().levels;
+  const std::string why = fmt::format("a level is shared by parts of {} unknowns or more, in blocks of their own",
+                                      ComplexSolver::Options{}.unknowns);
+  if (shared == 0) return fmt::format("1 of {}: {}", asked, why);
+  return shared == levels ? fmt::to_string(asked)
+                          : fmt::format("{} on {} of {} levels: {}", asked, shared, levels, why);
+}
+
 std::string summary_json(const ComplexScene& c, const MeshOutcome& o) {
   const Scene& scene = c.scene;
   nlohmann::ordered_json json;
@@ -76,6 +86,7 @@ std::string report(const ComplexScene& c, const MeshOutcome& o) {
   };
   line("state", o.state);
   line("solve", o.solve);
+  if (!o.threads.empty()) line("threads", o.threads);
   if (!c.is_one_problem())
     line("steps", fmt::format("{} to t = {:.6g}{}", o.steps, o.time,
                               o.longest > 0 ? fmt::format(", {:.4g} to {:.4g} long{}", o.shortest, o.longest,

@@ -22,6 +22,9 @@ std::string report(const ComplexScene&, const MeshOutcome&);
 /// From the solution, if there is one: the largest error, and √(Σ A_i e_i²); of sites without masses √(Σ e²/sites).
 void measure_error(const ComplexScene&, std::span<const double> values, double t, Outcome&);
 
+/// How many levels of a complex threads share, and why not more; empty if one is asked for.
+std::string threads_in_words(const ComplexSolver&, int asked);
+
 /// Σ_i A_i.
 double area_of(const CellSpace&);
 

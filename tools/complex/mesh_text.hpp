@@ -26,12 +26,13 @@ struct MeshError : std::runtime_error {
 /// and passed over. Throws MeshError for what cannot be read and for every fault of find_fault().
 Mesh parse_mesh(std::string_view text);
 
-/// What lattice.mesh names: a generator icosahedron:LEVEL, graded:LENGTH,POINTS,RATIO, rectangle:WIDTH,HEIGHT,NX,NY or
-/// quadrilaterals:WIDTH,HEIGHT,NX,NY, else a file, beside `folder` or here: a mesh, or a finite complex if it begins with
-/// the line `complex` (see parse_stencils()). `file` receives its path, empty for a generator. Throws BadInput
-/// "lattice.mesh".
+/// What lattice.mesh names: a generator icosahedron:LEVEL, graded:LENGTH,POINTS,RATIO, rectangle:WIDTH,HEIGHT,NX,NY,
+/// quadrilaterals:WIDTH,HEIGHT,NX,NY or refined:LENGTH,DURATION,NX,NT, else a file, beside `folder` or here: a mesh, or a
+/// finite complex if it begins with the line `complex` (see parse_stencils()). `file` receives its path, empty for a
+/// generator. A generated complex is made with its cells and steps halved so often; for meshes see finer_mesh(). Throws
+/// BadInput "lattice.mesh".
 std::variant<Mesh, StencilList> named_mesh(const std::string& name, const std::filesystem::path& folder,
-                                           std::filesystem::path& file);
+                                           std::filesystem::path& file, int halvings = 0);
 /// The mesh of that name with its sides halved so often: icosahedra of the next levels, and others cut (see refined()).
 Mesh finer_mesh(const std::string& name, Mesh, int halvings);
 

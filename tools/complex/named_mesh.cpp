@@ -9,6 +9,7 @@
 #include "lattice/complex/mesh_refinement.hpp"
 #include "lattice/error.hpp"
 #include "lattice/text_parts.hpp"
+#include "schemes/complex/refined_piece.hpp"
 #include "tools/complex/mesh_text.hpp"
 #include "tools/complex/stencil_text.hpp"
 
@@ -47,8 +48,8 @@ std::variant<Mesh, StencilList> read_file(const std::string& name, const fs::pat
     if (file.empty() && fs::is_regular_file(path, none)) file = fs::absolute(path).lexically_normal();
   if (file.empty())
     refuse(name,
-           "is neither a file, beside the scene or here, nor icosahedron:, graded:, rectangle: or quadrilaterals:; "
-           "check the path");
+           "is neither a file, beside the scene or here, nor icosahedron:, graded:, rectangle:, "
+           "quadrilaterals: or refined:; check the path");
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   try {
@@ -62,12 +63,20 @@ std::variant<Mesh, StencilList> read_file(const std::string& name, const fs::pat
 
 }  // namespace
 
-std::variant<Mesh, StencilList> named_mesh(const std::string& name, const fs::path& folder, fs::path& file) {
+std::variant<Mesh, StencilList> named_mesh(const std::string& name, const fs::path& folder, fs::path& file,
+                                           int halvings) {
   constexpr int most = 3000;
   file.clear();
   Mesh mesh;
   if (name.starts_with("icosahedron:"))
     return icosahedral_sphere(whole(name, numbers(name, "icosahedron:LEVEL")[0], 0, 9));
+  if (name.starts_with("refined:")) {
+    const auto n = numbers(name, "refined:LENGTH,DURATION,NX,NT");
+    const double scale = std::ldexp(1.0, halvings);
+    const int cells = whole(name, scale * n[2], 9, most), steps = whole(name, scale * n[3], 2, most);
+    if (cells % 3 != 0) refuse(name, fmt::format("{} cells have no middle third; use a multiple of 3", cells));
+    return refined_piece(positive(name, n[0]), positive(name, n[1]), cells, steps);
+  }
   if (name.starts_with("graded:")) {
     const auto n = numbers(name, "graded:LENGTH,POINTS,RATIO");
     mesh = graded_interval(positive(name, n[0]), whole(name, n[1], 3, 10'000'000), positive(name, n[2]));

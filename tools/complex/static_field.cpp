@@ -16,7 +16,8 @@ ComplexSystem system_of(const ComplexScene& scene) {
 
 StaticField::StaticField(const ComplexScene& scene)
     : system_(system_of(scene)),
-      solver_(system_, {scene.scene.problem.tolerance, scene.scene.problem.max_iterations}),
+      solver_(system_,
+              {scene.scene.problem.tolerance, scene.scene.problem.max_iterations, scene.scene.problem.threads}),
       y_(scene.values()) {
   const std::size_t d = scene.fields.size();
   const Complex& complex = system_.complex();

@@ -74,8 +74,9 @@ std::string number(const char* format, double value) {
 
 std::string report(const Scene& scene, const std::string& label, const ConvergenceTable& table) {
   std::string text = fmt::format("{}: {} at steps halved in time and space; errors are {}\n", scene.name, label,
-                                 table.exact ? "those of the last row, against the exact solution"
-                                             : "differences from the last row of the next line");
+                                 table.all_sites ? "those of all sites, against the exact solution"
+                                 : table.exact   ? "those of the last row, against the exact solution"
+                                                 : "differences from the last row of the next line");
   text += fmt::format("  {:>7} {:>10} {:>10} {:>10} {:>10} {:>7} {:>9}", "N", "k", "h", "max error", "L2 error",
                       "order", "time");
   if (!table.levels.empty())
@@ -182,7 +183,7 @@ ExitCode convergence(const Scene& scene, const fs::path& folder) {
 ExitCode convergence(const ComplexScene& mesh, const fs::path& folder) {
   constexpr int order = 2;  // of steps in rows, of P1 and Q1
   // Of asynchronous steps order 2 is known on one mesh alone (see Lew et al.): none is asked for.
-  return converge_in(folder, mesh.scene, mesh, "mesh of " + mesh.mesh_in_words(),
+  return converge_in(folder, mesh.scene, mesh, (mesh.space ? "mesh of " : "") + mesh.mesh_in_words(),
                      mesh.time == MeshTime::cells ? std::nullopt : std::optional(order));
 }
 

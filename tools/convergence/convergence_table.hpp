@@ -21,7 +21,8 @@ struct ConvergenceLevel {
 };
 
 struct ConvergenceTable {
-  bool exact = false;  ///< errors against the exact solution; else differences between one level and the next
+  bool exact = false;      ///< errors against the exact solution; else differences between one level and the next
+  bool all_sites = false;  ///< errors are those of all sites of a finite complex, not of the last row
   std::vector<ConvergenceLevel> levels;
   double ConvergenceLevel::*norm = &ConvergenceLevel::linf;  ///< that the orders are of
   std::string ended;            ///< why there are fewer than asked for; empty if there are as many

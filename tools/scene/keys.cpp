@@ -119,7 +119,7 @@ std::vector<Key> general_keys() {
       Key{"lattice.mesh", KeyType::text, "", "must be given with space = complex",
           "a mesh file (text, Gmsh MSH 2.2 or 4.1), a file of sites and stencils in spacetime, or icosahedron:LEVEL, "
           "graded:LENGTH,POINTS,RATIO, "
-          "rectangle:WIDTH,HEIGHT,NX,NY, quadrilaterals:WIDTH,HEIGHT,NX,NY"},
+          "rectangle:WIDTH,HEIGHT,NX,NY, quadrilaterals:WIDTH,HEIGHT,NX,NY, or of spacetime refined:LENGTH,DURATION,NX,NT"},
       Key{"lattice.time", choice, "rows", "",
           "on a mesh: all sites row by row, none (data all round: an elliptic problem), or each of its cells by its "
           "own "
@@ -160,8 +160,9 @@ std::vector<Key> general_keys() {
       Key{"run.steps", integer, "", "this or run.until", "steps after row 0", "", count},
       Key{"run.seed", integer, "1", "", "seed of whatever is random", "", count},
       Key{"run.threads", integer, "1", "",
-          "threads that long rows of explicit schemes are shared by; the bits are the same for any number", "",
-          threads},
+          "threads that long rows of explicit schemes, and wide levels of a finite complex, are shared by; the bits are "
+          "the same for any number",
+          "", threads},
 
       Key{"output.every", integer, "", "about 400 records",
           "record rows 0, every, 2 every, ... and the last; 0: the last", "", count},

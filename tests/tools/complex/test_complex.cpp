@@ -7,6 +7,7 @@
 
 #include "lattice/error.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/stencil_lists.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/complex/mesh_text.hpp"
 #include "tools/complex/stencil_text.hpp"
@@ -274,27 +275,9 @@ TEST_CASE("rows of a mesh are verified from a file, and a moved point or an edit
 
 namespace {
 
-/// Rows of bent cells over 0 ≤ x ≤ 3, rectangles and pairs of triangles in turn, as a file has them. Walls and two rows are
-/// data.
+/// As a file has them.
 std::string bent_cells(int sites, int rows, const std::string& fault = "") {
-  StencilList list;
-  const double k = 3.0 / (sites - 1), h = 0.4 * k;
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < sites; ++i) {
-      const double bend = 0.05 * std::sin(2 * k * i) * std::sin(3 * h * j);
-      const bool wall = i == 0 || i == sites - 1;
-      list.sites.push_back({{h * j + (wall ? 0 : bend), k * i + (wall ? 0 : bend), 0, 0},
-                            wall || j == 0  ? SiteRole::given
-                            : j == 1        ? SiteRole::initial
-                            : j == rows - 1 ? SiteRole::final
-                                            : SiteRole::free});
-    }
-  for (int j = 0; j + 1 < rows; ++j)
-    for (int i = 0; i + 1 < sites; ++i) {
-      const int a = j * sites + i, b = a + 1, c = a + sites, d = c + 1;
-      if (j % 4 < 2) list.stencils.push_back({"rectangle", {a, c, d, b}});
-      else list.stencils.push_back({"triangle", {a, c, b}, 0.5}), list.stencils.push_back({"triangle", {b, c, d}, 0.5});
-    }
+  StencilList list = bent_rows(sites, rows);
   const auto middle = static_cast<std::size_t>(2 * sites + 3);
   if (fault == "flipped") std::swap(list.stencils[3].sites[1], list.stencils[3].sites[3]);
   if (fault == "doubled") list.stencils.push_back(list.stencils[4]);
@@ -348,6 +331,88 @@ TEST_CASE("a finite complex of mixed shapes runs, is planned and verified, and i
   folder.write("bad.mesh", "complex\nstencil triangel 0 1 2\n");
   CHECK(contains(delf_program(folder, "run kink.ini --lattice.mesh=bad.mesh").err, "bad.mesh:2: \"triangel\" is no"));
   CHECK(contains(delf_program(folder, "run kink.ini --run.until=3").err, "where sites have times of their own"));
+}
+
+TEST_CASE(
+    "a kink in a locally refined piece of spacetime converges with order 2, and has figures and cells for ParaView") {
+  const Folder folder;
+  const Ran run = delf_program(folder, "run refined-kink --output.format=svg --out out");
+  CAPTURE(run.out, run.err);
+  REQUIRE(run.code == 0);
+  CHECK(summary(folder)["warnings"].empty());
+  CHECK(summary(folder)["residual_max"] < 1e-13);
+  CHECK(summary(folder)["energy_final"].is_null());  // columns of sites have steps of their own
+  CHECK(std::filesystem::exists(folder / "out/figures/field.svg") ==
+        std::filesystem::exists(folder / "out/figures/levels.svg"));
+  CHECK(delf_program(folder, "verify refined-kink --out v").code == 0);
+
+  // rectangles, and three triangles beside each at the edges of the middle third
+  const std::string xdmf = read(folder / "out/fields.xdmf");
+  CHECK(contains(xdmf, "TopologyType=\"Mixed\" NumberOfElements=\"3040\"><DataItem Dimensions=\"14960\""));
+  CHECK(contains(xdmf, "GeometryType=\"XY\"><DataItem Dimensions=\"3009 2\""));
+  int triangles = 0, rectangles = 0;
+  for (const std::string& line : lines(xdmf)) triangles += line.starts_with("4 "), rectangles += line.starts_with("5 ");
+  CHECK(triangles == 240);
+  CHECK(rectangles == 2800);
+  CHECK(4 * triangles + 5 * rectangles == 14960);
+
+  const std::string levels =
+      "convergence refined-kink --lattice.mesh=refined:18,5,36,20 --out c --convergence.levels=3 ";
+  const Ran right = delf_program(folder, levels + "--convergence.order=2");
+  CAPTURE(right.out);
+  CHECK(right.code == 0);
+  CHECK(contains(right.out, "those of all sites"));
+  CHECK(delf_program(folder, levels + "--convergence.order=1.5").code == 1);
+  CHECK(delf_program(folder, levels + "--convergence.order=2.5").code == 1);
+}
+
+TEST_CASE("threads share wide levels of a finite complex, and the plan says which") {
+  const Folder folder;
+  // rows of leapfrog on a circle, and of (5.10), where a row is one block
+  const auto rows = [](const std::string& shape) {
+    constexpr int sites = 2100, count = 4;
+    StencilList list;
+    list.circumference = 210;
+    for (int j = 0; j < count; ++j)
+      for (int i = 0; i < sites; ++i)
+        list.sites.push_back({{0.04 * j, 0.1 * i, 0, 0},
+                              j == 0           ? SiteRole::given
+                              : j == 1         ? SiteRole::initial
+                              : j == count - 1 ? SiteRole::final
+                                               : SiteRole::free});
+    for (int s = 0; s < sites * (count - 1); ++s) {
+      const int next = s % sites == sites - 1 ? s + 1 - sites : s + 1;
+      if (shape == "rectangle") list.stencils.push_back({shape, {s, s + sites, next + sites, next}});
+      else list.stencils.push_back({shape, {s, s + sites, next + sites}});
+    }
+    return stencil_text(list);
+  };
+  folder.write("explicit.mesh", rows("triangle-vertex")), folder.write("implicit.mesh", rows("rectangle"));
+  folder.write("pulse.ini",
+               "[theory]\nname = sine-gordon\n[lattice]\nspace = complex\nmesh = explicit.mesh\n"
+               "[initial]\nphi = 3*exp(-(x - 30)^2)\n[output]\nfigures = off\nfields = off\n");
+  const Ran plan = delf_program(folder, "plan pulse.ini --run.threads=2");
+  CHECK(contains(plan.out, "2 levels, 4200 unknowns, each in a block of its own"));
+  CHECK(contains(plan.out, "levels     2100 blocks a level, 2100 in the widest"));
+  CHECK(contains(plan.out, "threads    2\n"));
+  CHECK_FALSE(contains(delf_program(folder, "plan pulse.ini").out, "threads"));
+  CHECK(contains(delf_program(folder, "plan pulse.ini --lattice.mesh=implicit.mesh --run.threads=2").out,
+                 "threads    1 of 2: a level is shared by parts of 1024 unknowns or more"));
+  const auto series = [&](const std::string& more) {
+    REQUIRE(delf_program(folder, "run pulse.ini --out out " + more).code == 0);
+    return read(folder / "out/series.csv");
+  };
+  const std::string one = series("--run.threads=1");
+  CHECK(series("--run.threads=3") == one);
+  CHECK(series("--initial.phi='3*exp(-(x - 30.01)^2)'") != one);
+  CHECK(delf_program(folder, "run sphere --run.threads=2").code == 2);
+  // the pulse moves apart: one slab of energy after each row but the first
+  CHECK(lines(one).size() == 4);
+  CHECK(summary(folder)["energy_error_max"].get<double>() < 1e-3);
+  CHECK(contains(delf_program(folder, "convergence pulse.ini --out c").err, "is a finite complex of a file"));
+  CHECK(contains(delf_program(folder, "convergence pulse.ini --lattice.mesh=refined:60,1,36,20 --out c").err,
+                 "compared with a solution alone"));
+  CHECK(contains(delf_program(folder, "plan pulse.ini --lattice.mesh=refined:60,1,35,20").err, "multiple of 3"));
 }
 
 TEST_CASE("waves on spheres and graded intervals converge with order 2, and a missed order fails") {

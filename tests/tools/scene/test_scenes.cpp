@@ -79,6 +79,7 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
                                           "phi6-kink",
                                           "phi6-moving-mesh",
                                           "r-adaptive",
+                                          "refined-kink",
                                           "sine-gordon-text",
                                           "sinh-gordon",
                                           "solar-system",
