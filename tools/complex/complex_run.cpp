@@ -10,7 +10,9 @@
 #include "tools/complex/static_field.hpp"
 #include "tools/files/folder_lock.hpp"
 #include "tools/run/earlier_run.hpp"
+#include "tools/run/failures_of_run.hpp"
 #include "tools/run/interrupt.hpp"
+#include "tools/run/room_for_summary.hpp"
 #include "tools/run/seconds_since.hpp"
 #include "tools/scene/text_file.hpp"
 
@@ -78,6 +80,7 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
   make_results_folder(folder);
   const FolderLock lock(folder);
   if (!resumed.state) remove_earlier_run(folder);
+  const RoomForSummary room(folder);
   MeshRecorder recorder(c, folder, o, kept);
   if (resumed.state) {
     recorder.visit(*resumed.state);
@@ -87,32 +90,37 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
   write_text_file(folder / "scene.ini", resolved);
   Checkpoints checkpoints(folder, {DELF_VERSION, instruction_set(), resolved, c.scene.name, c.scene.warnings},
                           c.scene.checkpoint);
-  std::exception_ptr failure;
+  FailuresOfRun failures(o);
   std::vector<int> levels;
-  try {
-    if (stepping) stepping->run(recorder, checkpoints);
-    else levels = run_static(c, recorder, o);
-  } catch (const NumericalFailure& error) {
-    o.status = status_of(error), o.failure = error.what();
-    failure = std::current_exception();
-  } catch (const BadInput& bad) {
-    throw c.scene.settings.located(bad);
-  }
+  failures.attempt([&] {
+    try {
+      if (stepping) stepping->run(recorder, checkpoints);
+      else levels = run_static(c, recorder, o);
+    } catch (const NumericalFailure& error) {
+      o.status = status_of(error), o.failure = error.what();
+      throw;
+    } catch (const BadInput& bad) {
+      throw c.scene.settings.located(bad);
+    }
+  });
+  if (failures.first() && o.status == "done")
+    std::rethrow_exception(failures.first());  // bad input: there are no results
   if (evolution) evolution->describe(o);
-  recorder.close();
+  failures.attempt([&] { recorder.close(); });
   constexpr double most_drift = 0.1;
   if (!c.is_one_problem() && o.energy_error_max > most_drift)
     o.warnings.push_back(fmt::format(
         "the energy is off by {:.3g} of itself: these steps are too long, or the mesh too "
         "coarse; reduce {}",
         o.energy_error_max, c.scene.settings.find("lattice.courant") ? "lattice.courant" : "lattice.time_step"));
-  write_text_file(folder / "summary.json", summary_json(c, o));
+  failures.attempt([&] { write_text_file(folder / "summary.json", summary_json(c, o)); });
+  if (o.status == "system-failure") std::rethrow_exception(failures.first());
   const std::string missing = c.scene.figures ? drawn(c, recorder.film(), levels, folder) : std::string();
   fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}{}\n", report(c, o), "files", folder.string(),
              c.scene.fields ? has_xdmf(c) ? " fields.h5 fields.xdmf" : " fields.h5" : "",
              c.scene.figures && missing.empty() ? " figures" : "");
   if (!missing.empty()) std::fputs(fmt::format("delf: no figures: {}\n", missing).c_str(), stderr);
-  if (failure) std::rethrow_exception(failure);
+  if (failures.first()) std::rethrow_exception(failures.first());
   return o.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
 }
 

@@ -17,9 +17,11 @@
 #include "tools/run/checkpoints.hpp"
 #include "tools/run/earlier_run.hpp"
 #include "tools/run/error_estimate.hpp"
+#include "tools/run/failures_of_run.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/recorder.hpp"
+#include "tools/run/room_for_summary.hpp"
 #include "tools/run/stepping.hpp"
 #include "tools/scene/initial_rows.hpp"
 #include "tools/scene/text_file.hpp"
@@ -82,25 +84,6 @@ void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
         "lattice.stencil", fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
 }
 
-// Room for the summary, whatever else fills the disk: write_text_file() takes it.
-class RoomForSummary {
- public:
-  explicit RoomForSummary(const fs::path& folder) : part_(folder / "summary.json.part") {
-    TextFile room(part_);
-    room.write(std::string(1 << 14, ' '));
-    room.close();
-  }
-  ~RoomForSummary() {
-    std::error_code none;
-    fs::remove(part_, none);
-  }
-  RoomForSummary(const RoomForSummary&) = delete;
-  RoomForSummary& operator=(const RoomForSummary&) = delete;
-
- private:
-  fs::path part_;
-};
-
 ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resumed) {
   const InitialRows initial(scene);
   Outcome outcome;
@@ -145,34 +128,22 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   Checkpoints checkpoints(folder, {DELF_VERSION, instruction_set(), resolved, scene.name, scene.warnings},
                           scene.checkpoint);
 
-  std::exception_ptr failure;
-  const auto attempt = [&](auto&& part) {
-    try {
-      part();
-    } catch (const std::exception& error) {
-      if (failure) return;
-      failure = std::current_exception();
-      if (outcome.status == "done" && exit_code(error) == ExitCode::system_failed) {
-        outcome.status = "system-failure";
-        outcome.failure = error.what();
-      }
-    }
-  };
-  attempt([&] { stepping.run(recorder, checkpoints); });
+  FailuresOfRun failures(outcome);
+  failures.attempt([&] { stepping.run(recorder, checkpoints); });
   if (Values(scene.settings).toggle("output.estimate"))
-    attempt([&] {
+    failures.attempt([&] {
       outcome.error_estimate = estimate_error(scene, outcome, stepping.last_row());
       if (outcome.error_estimate->interrupted) outcome.status = "interrupted";  // what was asked for is not all there
     });
   outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
-  attempt([&] { recorder.close(); });
+  failures.attempt([&] { recorder.close(); });
   std::string missing;
   DrawnSection section;
   if (const Section* points = stepping.section()) {
     section = {points->table(), points->title(), points->drawn_columns()};
-    attempt([&] { write_text_file(folder / "section.csv", section.table); });
+    failures.attempt([&] { write_text_file(folder / "section.csv", section.table); });
   }
-  attempt([&] { write_text_file(folder / "summary.json", summary_json(scene, outcome)); });
+  failures.attempt([&] { write_text_file(folder / "summary.json", summary_json(scene, outcome)); });
   if (outcome.status != "system-failure")  // last: all files are whole
     missing = drawn(scene, initial, names, recorder, std::move(section), folder);
 
@@ -181,7 +152,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     say_what_is_there(folder);
   }
   if (!missing.empty()) std::fputs(fmt::format("delf: no figures: {}\n", missing).c_str(), stderr);
-  if (failure) std::rethrow_exception(failure);
+  if (failures.first()) std::rethrow_exception(failures.first());
   return outcome.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/catch.hpp"
@@ -176,6 +177,25 @@ TEST_CASE("a full disk ends with exit code 4 and one line, and what fitted stays
   if (blocks == 3000) {
     CHECK(status(folder, "full") == "system-failure");
     CHECK(FieldsReader(folder / "full/fields.h5").frames() > 100);
+  }
+}
+
+TEST_CASE("a full disk during a run on a mesh ends with exit code 4, one line and a summary of what fitted") {
+  const Folder folder;
+  const int blocks = GENERATE(1, 16, 200);
+  const Ran ran = delf_program(
+      folder,
+      "run sphere --lattice.mesh=icosahedron:2 --run.steps=400 --output.every=1 --output.figures=off --out full",
+      "ulimit -f " + std::to_string(blocks) + "; ASAN_OPTIONS=detect_leaks=0");
+  INFO(ran.err);
+  CHECK(ran.code == 4);
+  CHECK(ran.out.empty());
+  CHECK(lines(ran.err).size() == 1);
+  CHECK(contains(ran.err, "full/"));
+  CHECK_FALSE(std::filesystem::exists(folder / "full/summary.json.part"));
+  if (blocks == 200) {
+    CHECK(status(folder, "full") == "system-failure");
+    CHECK(lines(read(folder / "full/series.csv")).size() > 10);
   }
 }
 
