@@ -61,8 +61,7 @@ ComplexSolver::ComplexSolver(const ComplexSystem& system, Options options)
   parts_.resize(ranges.size());
   if (options.threads > 1 && shared_levels() > 0) team_ = std::make_unique<ThreadTeam>(options.threads);
   for_each(0, ranges.size(), [&](std::size_t p, std::size_t) {
-    parts_[p] = std::make_unique<Part>(system_, touching_, plan_, places, ranges[p].first, ranges[p].last);
-    parts_[p]->refresh();
+    parts_[p] = std::make_unique<LevelPart>(system_, touching_, plan_, places, ranges[p].first, ranges[p].last);
   });
 }
 
@@ -79,8 +78,8 @@ int ComplexSolver::shared_levels() const {
   return count;
 }
 
-void ComplexSolver::refresh() {
-  for_each(0, parts_.size(), [&](std::size_t p, std::size_t) { parts_[p]->refresh(); });
+void ComplexSolver::rescale() {
+  for_each(0, parts_.size(), [&](std::size_t p, std::size_t) { parts_[p]->rescale(); });
 }
 
 template <class Do>

@@ -14,9 +14,9 @@ class ThreadTeam;
 
 /// Solves a complex level by level, and a wide level in parts: some blocks each, which threads share. What is proved linear
 /// is assembled once, as a sparse matrix of the part's equations. If all other terms are linear in the unknowns of the part,
-/// it is one solve: divisions where every unknown is a block of its own, a sparse factorisation otherwise. Else Newton's
-/// method with a sparse matrix and a line search, from the values that stand there. Parts are the same for any number of
-/// threads, and so is every bit.
+/// it is one solve: divisions where every unknown is a block of its own, dense matrices of small blocks, a sparse
+/// factorisation otherwise. Else Newton's method with such a matrix and a line search, from the values that stand there.
+/// Parts are the same for any number of threads, and so is every bit.
 class ComplexSolver {
  public:
   struct Options {
@@ -49,13 +49,13 @@ class ComplexSolver {
   bool is_direct() const;
   /// Levels in several parts.
   int shared_levels() const;
-  /// To be called when measures or time steps of the system have changed.
-  void refresh();
+  /// To be called when measures or time steps of the system's parts have changed.
+  void rescale();
   /// Throws NoConvergence or NotFinite; y is then what it was before the level that failed.
   Report solve(std::span<double> y) const;
 
  private:
-  class Part;
+  class LevelPart;
   struct Places;
   /// Calls one(part, share) for each of these parts, where shares go on side by side. Throws what the first part threw, when all
   /// are done.
@@ -66,7 +66,7 @@ class ComplexSolver {
   Options options_;
   Touching touching_;
   ComplexPlan plan_;
-  std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::unique_ptr<LevelPart>> parts_;
   std::vector<std::size_t> level_;  ///< the first part of each, and the end
   std::unique_ptr<ThreadTeam> team_;
 };

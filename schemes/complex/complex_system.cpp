@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 #include "jets/simd/scratch_rows.hpp"
 
@@ -16,12 +17,26 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 int ComplexSystem::add_family(PlacedFamily family) {
-  complex_.add_shape(family.shape());
+  complex_.add_shape(family.shape(components_));
   families_.push_back(std::move(family));
   return static_cast<int>(families_.size()) - 1;
 }
 
-int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step) {
+int ComplexSystem::add_part() {
+  parts_.emplace_back();
+  return parts() - 1;
+}
+
+double ComplexSystem::factor(int part, int power) const {
+  const auto [measure, time_step] = parts_[at(part)];
+  return measure / std::pow(time_step, power);
+}
+
+int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step,
+                               int part) {
+  if (part != 0 && !this->family(family).time_power())
+    throw std::logic_error("weights of phi_t beside others in a part of a complex");
+  part_of_.push_back(part);
   tables_.push_back(table);
   measures_.push_back(measure);
   time_steps_.push_back(time_step);
@@ -30,7 +45,7 @@ int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table
 
 std::size_t ComplexSystem::bytes() const {
   std::size_t sum = at(complex_.sites()) * 33;
-  for (int s = 0; s < complex_.stencils(); ++s) sum += 32 + 4 * complex_.vertices(s).size();
+  for (int s = 0; s < complex_.stencils(); ++s) sum += 36 + 4 * complex_.vertices(s).size();
   return sum;
 }
 
@@ -42,24 +57,29 @@ std::vector<std::int32_t> ComplexSystem::all_stencils() const {
 
 template <class Evaluate>
 void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power, const Evaluate& evaluate,
-                         const Visit& visit, std::span<const std::int32_t> places) const {
+                         const Visit& visit, const StencilReading& reading) const {
   std::size_t begin = 0;  // of a stencil, in places
   constexpr int most = PlacedFamily::most;
   std::array<std::int32_t, most> tables;
   std::array<double, most> measures, steps;
   for (std::size_t first = 0; first < stencils.size();) {
     const int shape = complex_.shape_number(stencils[first]);
+    const int number = part_of(stencils[first]);
     const PlacedFamily& of = family(shape);
+    const Part part = reading.unscaled ? Part{} : parts_[at(number)];
     std::size_t end = first;
-    while (end < stencils.size() && end - first < most && complex_.shape_number(stencils[end]) == shape) ++end;
+    while (end < stencils.size() && end - first < most && complex_.shape_number(stencils[end]) == shape &&
+           part_of(stencils[end]) == number)
+      ++end;
     const Stencils batch = stencils.subspan(first, end - first);
     const ScratchRows values(of.size(), most);
     const ScratchRows numbers(power == 0 ? 1 : power == 1 ? of.size() : of.size() * of.size(), most);
     for (std::size_t s = 0; s < batch.size(); ++s) {
       const auto stencil = at(batch[s]);
-      tables[s] = tables_[stencil], measures[s] = measures_[stencil], steps[s] = time_steps_[stencil];
+      tables[s] = tables_[stencil];
+      measures[s] = part.measure * measures_[stencil], steps[s] = part.time_step * time_steps_[stencil];
       for (int i = 0; i < of.size(); ++i)
-        values[i][s] = y[places.empty() ? node(batch[s], i) : at(places[begin + at(i)])];
+        values[i][s] = y[reading.places.empty() ? node(batch[s], i) : at(reading.places[begin + at(i)])];
       begin += at(of.size());
     }
     evaluate(of, PlacedBatch{static_cast<int>(batch.size()), tables.data(), measures.data(), steps.data(), values[0]},
@@ -71,21 +91,21 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
 
 void ComplexSystem::each_lagrangian(Stencils s, std::span<const double> y, const Visit& visit) const {
   each(
-      s, y, 0, [](const auto& family, const auto& batch, double* out) { family.lagrangian(batch, out); }, visit);
+      s, y, 0, [](const auto& family, const auto& batch, double* out) { family.lagrangian(batch, out); }, visit, {});
 }
 void ComplexSystem::each_energy(Stencils s, std::span<const double> y, const Visit& visit) const {
   each(
-      s, y, 0, [](const auto& family, const auto& batch, double* out) { family.energy(batch, out); }, visit);
+      s, y, 0, [](const auto& family, const auto& batch, double* out) { family.energy(batch, out); }, visit, {});
 }
 void ComplexSystem::each_residual(Stencils s, std::span<const double> y, const Visit& visit,
-                                  std::span<const std::int32_t> places) const {
+                                  const StencilReading& reading) const {
   each(
-      s, y, 1, [](const auto& family, const auto& batch, double* out) { family.residual(batch, out); }, visit, places);
+      s, y, 1, [](const auto& family, const auto& batch, double* out) { family.residual(batch, out); }, visit, reading);
 }
 void ComplexSystem::each_jacobian(Stencils s, std::span<const double> y, const Visit& visit,
-                                  std::span<const std::int32_t> places) const {
+                                  const StencilReading& reading) const {
   each(
-      s, y, 2, [](const auto& family, const auto& batch, double* out) { family.jacobian(batch, out); }, visit, places);
+      s, y, 2, [](const auto& family, const auto& batch, double* out) { family.jacobian(batch, out); }, visit, reading);
 }
 
 std::vector<Balance> ComplexSystem::residual(std::span<const double> y) const {

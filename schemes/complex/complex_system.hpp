@@ -10,6 +10,12 @@
 
 namespace delf {
 
+/// How a ComplexSystem reads stencils.
+struct StencilReading {
+  std::span<const std::int32_t> places = {};  ///< not empty: y holds some nodes alone, and here each value of each stencil
+  bool unscaled = false;                      ///< as if the measures and time steps of all parts were 1
+};
+
 /// The field equations of a complex of stencils,
 ///
 ///     E(site) = Σ_{l: Δˡ = site} rˡ(y_Δ),    y[site·d + a],                     Marsden–Patrick–Shkoller (5.2)
@@ -28,12 +34,14 @@ class ComplexSystem {
   int add_table(int family, std::span<const TablePoint> points) {
     return families_[static_cast<std::size_t>(family)].add_table(points);
   }
-  int add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step = 1);
-  /// Other measures and time steps, for rows with steps of their own.
-  void set_measure(int stencil, double measure, double time_step) {
-    measures_[static_cast<std::size_t>(stencil)] = measure;
-    time_steps_[static_cast<std::size_t>(stencil)] = time_step;
+  /// A part is a set of stencils whose measures and time steps change together: those of a stencil are its own times those
+  /// of its part. Part 0 keeps both at 1. Of the other parts either all weights of a family are of φ_t, or none.
+  int add_part();
+  void set_part(int part, double measure, double time_step) {
+    parts_[static_cast<std::size_t>(part)] = {measure, time_step};
   }
+  int add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step = 1,
+                  int part = 0);
 
   const Complex& complex() const { return complex_; }
   int components() const { return components_; }
@@ -43,18 +51,20 @@ class ComplexSystem {
   const PlacedFamily& family(int number) const { return families_[static_cast<std::size_t>(number)]; }
   int families() const { return static_cast<int>(families_.size()); }
   const PlacedFamily& family_of(int stencil) const { return family(complex_.shape_number(stencil)); }
+  int parts() const { return static_cast<int>(parts_.size()); }
+  int part_of(int stencil) const { return part_of_[static_cast<std::size_t>(stencil)]; }
+  /// What multiplies ∂L/∂y of a part's stencils: |Δ|/hᵖ, and ∂²L/∂y∂y if p is twice as much.
+  double factor(int part, int power) const;
   std::size_t bytes() const;
 
-  /// All stencils, or those of a list, in batches: visit(stencils of the batch, its numbers[i·most + s]). With `places`, y
-  /// holds some nodes alone, and these are where it has each value of each stencil.
+  /// All stencils, or those of a list, in batches of one family and one part: visit(stencils of the batch, its
+  /// numbers[i·most + s]).
   using Stencils = std::span<const std::int32_t>;
   using Visit = std::function<void(Stencils, const double*)>;
   void each_lagrangian(Stencils, std::span<const double> y, const Visit&) const;
   void each_energy(Stencils, std::span<const double> y, const Visit&) const;
-  void each_residual(Stencils, std::span<const double> y, const Visit&,
-                     std::span<const std::int32_t> places = {}) const;
-  void each_jacobian(Stencils, std::span<const double> y, const Visit&,
-                     std::span<const std::int32_t> places = {}) const;
+  void each_residual(Stencils, std::span<const double> y, const Visit&, const StencilReading& = {}) const;
+  void each_jacobian(Stencils, std::span<const double> y, const Visit&, const StencilReading& = {}) const;
   std::vector<std::int32_t> all_stencils() const;
 
   /// The node that value i of a stencil is.
@@ -68,13 +78,16 @@ class ComplexSystem {
 
  private:
   template <class Evaluate>
-  void each(Stencils, std::span<const double> y, int power, const Evaluate&, const Visit&,
-            std::span<const std::int32_t> places = {}) const;
+  void each(Stencils, std::span<const double> y, int power, const Evaluate&, const Visit&, const StencilReading&) const;
 
+  struct Part {
+    double measure = 1, time_step = 1;
+  };
   int components_;
   Complex complex_;
   std::vector<PlacedFamily> families_;  ///< its number is the number of its shape
-  std::vector<std::int32_t> tables_;    ///< of each stencil
+  std::vector<Part> parts_ = std::vector<Part>(1);
+  std::vector<std::int32_t> tables_, part_of_;  ///< of each stencil
   std::vector<double> measures_, time_steps_;
 };
 

@@ -74,10 +74,8 @@ Balance form_of_first_step(const CellSpace& space, std::span<const double> times
     system.each_jacobian(
         system.all_stencils(), y.subspan(begin, system.nodes()), [&](ComplexSystem::Stencils batch, const double* J) {
           const auto size = static_cast<std::size_t>(system.family_of(batch[0]).size());
-          if (system.family_of(batch[0]).vertices() != 2) return;
+          if (system.family_of(batch[0]).time_power() != 1) return;
           for (std::size_t s = 0; s < batch.size(); ++s) {
-            const auto vertices = system.complex().vertices(batch[s]);
-            if (vertices[0] + space.sites() != vertices[1]) return;  // a cell of an interval
             std::vector<double> local(size * size), V(size), W(size);
             for (std::size_t k = 0; k < size * size; ++k)
               local[k] = J[k * static_cast<std::size_t>(PlacedFamily::most) + s];

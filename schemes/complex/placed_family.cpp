@@ -55,25 +55,40 @@ PlacedFamily::PlacedFamily(std::shared_ptr<const BatchDensity> density, int vert
   if (density_->is_placed())
     throw BadInput("theory.name",
                    "theory.name: a density of t and x needs a regular lattice; choose lattice.space = circle");
-  shape_ = {vertices, std::vector<char>(at(vertices * vertices), 0)};
-  varying_.assign(at(vertices * vertices), 0);
+  coupled_.assign(at(size() * size()), 0);
+  varying_ = coupled_;
+  bool with_rates = false, with_others = false;
   for (const TablePoint& p : form) {
     Point point{stride_++, {}};
     for (int slot = 0; slot < density_->slots(); ++slot)
-      for (const TablePoint::Entry& e : p.slots[at(slot)]) point.entries.push_back({slot, e.vertex, stride_++});
+      for (const TablePoint::Entry& e : p.slots[at(slot)]) {
+        point.entries.push_back({slot, e.vertex, stride_++});
+        (slot_powers[at(slot)].time == 1 ? with_rates : with_others) = true;
+      }
     for (const Entry& u : point.entries)
       for (const Entry& v : point.entries)
         for (int a = 0; a < d_; ++a)
           for (int b = 0; b < d_; ++b) {
             const int i = u.slot * d_ + a, m = v.slot * d_ + b;
             if (density_->is_zero(i, m)) continue;
-            shape_.couples[at(u.vertex * vertices + v.vertex)] = 1;
+            const std::size_t entry = at((u.vertex * d_ + a) * size() + v.vertex * d_ + b);
+            coupled_[entry] = 1;
             if (density_->is_constant(i, m)) continue;
-            varying_[at(u.vertex * vertices + v.vertex)] = 1;
+            varying_[entry] = 1;
             linear_ = false;
           }
     points_.push_back(std::move(point));
   }
+  if (with_rates) time_power_ = with_others ? std::nullopt : std::optional(1);
+}
+
+ComplexShape PlacedFamily::shape(int values_of_site) const {
+  const int sites = size() / values_of_site;
+  ComplexShape shape{sites, std::vector<char>(at(sites * sites), 0)};
+  for (int i = 0; i < size(); ++i)
+    for (int m = 0; m < size(); ++m)
+      if (coupled_[at(i * size() + m)] != 0) shape.couples[at(i / values_of_site * sites + m / values_of_site)] = 1;
+  return shape;
 }
 
 int PlacedFamily::add_table(std::span<const TablePoint> points) {

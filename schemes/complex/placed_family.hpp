@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,12 +41,15 @@ class PlacedFamily {
   const BatchDensity& density() const { return *density_; }
   int vertices() const { return vertices_; }
   int size() const { return vertices_ * d_; }
-  /// Which vertices feel each other.
-  const ComplexShape& shape() const { return shape_; }
+  /// Which values feel each other, where a site of the complex holds so many of them.
+  ComplexShape shape(int values_of_site) const;
   /// ∂r/∂y is proved to be the same at all y: the equations of these stencils are linear.
   bool is_linear() const { return linear_; }
-  /// ∂r/∂y of vertex m in the equation of vertex l is not proved to be the same at all y.
-  bool is_varying(int l, int m) const { return varying_[static_cast<std::size_t>(l * vertices_ + m)] != 0; }
+  /// ∂r/∂y of value m in the equation of value i is not proved to be the same at all y.
+  bool is_varying(int i, int m) const { return varying_[static_cast<std::size_t>(i * size() + m)] != 0; }
+  /// p, where r ∝ |Δ|/hᵖ and ∂r/∂y ∝ |Δ|/h²ᵖ in the time step h: 1 where jets have φ_t alone, 0 where they do not have
+  /// it, and nothing where they have other slots too.
+  std::optional<int> time_power() const { return time_power_; }
 
   void lagrangian(const PlacedBatch&, double* L) const;
   /// r[i·most + s] = ∂L/∂yⁱ
@@ -68,9 +72,9 @@ class PlacedFamily {
   std::shared_ptr<const BatchDensity> density_;
   int vertices_, d_, stride_ = 0;
   std::vector<Point> points_;
-  std::vector<double> numbers_;  ///< table by table
-  ComplexShape shape_;
-  std::vector<char> varying_;  ///< [l·vertices + m]
+  std::vector<double> numbers_;          ///< table by table
+  std::vector<char> coupled_, varying_;  ///< [i·size + m]
+  std::optional<int> time_power_ = 0;
   bool linear_ = true;
 };
 

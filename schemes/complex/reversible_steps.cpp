@@ -5,11 +5,23 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
+#include "schemes/complex/assembled_equations.hpp"
 
 namespace delf {
 
+namespace {
+
+/// The equations of all nodes of a row, without unknowns.
+std::unique_ptr<const AssembledEquations> all_equations(const ComplexSystem& system) {
+  return std::make_unique<const AssembledEquations>(
+      system, system.all_stencils(), static_cast<int>(system.nodes()),
+      [](std::size_t node) { return static_cast<int>(node); }, [](std::size_t) { return -1; });
+}
+
+}  // namespace
+
 ReversibleSteps::ReversibleSteps(const CellSpace& space, double longest, double strength)
-    : space_(space), still_(space), density_(longest), strength_(strength) {
+    : space_(space), still_(space), force_(all_equations(still_.system())), density_(longest), strength_(strength) {
   for (const double A : space.masses) area_ += A;
   const BatchDensity& density = *space.density;
   const int d = density.components();
@@ -30,14 +42,9 @@ ReversibleSteps::ReversibleSteps(const CellSpace& space, double longest, double 
 }
 
 RowDensity ReversibleSteps::look(std::span<const double> values, std::vector<double> rates, double share) {
-  const ComplexSystem& system = still_.system();
-  std::vector<double> force(values.size(), 0.0);
-  system.each_residual(system.all_stencils(), values, [&](ComplexSystem::Stencils batch, const double* r) {
-    const int size = system.family_of(batch[0]).size();
-    for (std::size_t s = 0; s < batch.size(); ++s)
-      for (int i = 0; i < size; ++i)
-        force[system.node(batch[s], i)] += r[static_cast<std::size_t>(i * PlacedFamily::most) + s];
-  });
+  AssembledEquations::Vector y;
+  force_->read(values, y);
+  const AssembledEquations::Vector force = force_->residual(y);
   const auto d = static_cast<std::size_t>(space_.density->components());
   double square = 0, product = 0;  // Σ A φ_t², Σ A φ_t·φ_tt
   for (std::size_t i = 0; i < space_.masses.size(); ++i) {
@@ -45,7 +52,7 @@ RowDensity ReversibleSteps::look(std::span<const double> values, std::vector<dou
     for (std::size_t a = 0; a < d; ++a) {
       double acceleration = 0;  // φ_tt = (∂²T)⁻¹ ∂V/∂φ
       for (std::size_t b = 0; b < d; ++b)
-        acceleration += inverse_mass_[a * d + b] * force[i * d + b] / space_.masses[i];
+        acceleration += inverse_mass_[a * d + b] * force[static_cast<Eigen::Index>(i * d + b)] / space_.masses[i];
       const double rate = rates[i * d + a] + share * acceleration;
       square += space_.masses[i] * rate * rate;
       product += space_.masses[i] * rate * acceleration;
@@ -67,6 +74,8 @@ double ReversibleSteps::first(std::span<const double> values, std::span<const do
 }
 
 double ReversibleSteps::next(const SpaceEvolution& evolution) { return density_.next(look(evolution)); }
+
+ReversibleSteps::~ReversibleSteps() = default;
 
 double ReversibleSteps::plain(const SpaceEvolution& evolution) { return density_.plain(look(evolution)); }
 

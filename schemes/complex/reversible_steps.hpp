@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "schemes/complex/space_rows.hpp"
 #include "schemes/stepping/step_density.hpp"
 
 namespace delf {
+
+class AssembledEquations;
 
 /// Steps that the field chooses and that a run back chooses again (StepDensity), h ≈ ε σ with
 ///
@@ -18,6 +21,9 @@ class ReversibleSteps {
  public:
   /// ε and s. Throws BadInput where φ_tt does not follow from φ alone: T must be quadratic in φ_t.
   ReversibleSteps(const CellSpace&, double longest, double strength);
+  ~ReversibleSteps();
+  ReversibleSteps(const ReversibleSteps&) = delete;
+  ReversibleSteps& operator=(const ReversibleSteps&) = delete;
 
   /// h_½, and h_{n+½} behind the newest row. Throw NotFinite if the steps are too long for the field.
   double first(std::span<const double> values, std::span<const double> rates);
@@ -34,6 +40,7 @@ class ReversibleSteps {
 
   const CellSpace& space_;
   SpaceRows still_;  ///< one row, whose residual is A ∂V/∂φ
+  std::unique_ptr<const AssembledEquations> force_;
   StepDensity density_;
   double strength_, area_ = 0;
   std::vector<double> inverse_mass_;  ///< (∂²T/∂φ_t∂φ_t)⁻¹, [a·d + b]

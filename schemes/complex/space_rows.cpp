@@ -27,17 +27,19 @@ CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, b
     for (const auto p : boundary_points(mesh)) fixed[static_cast<std::size_t>(p)] = 1;
 }
 
-SpaceRows::SpaceRows(const CellSpace& space) : space_(space), system_(space.density->components()) { add_row(1); }
+SpaceRows::SpaceRows(const CellSpace& space) : space_(space), system_(space.density->components()) { add_row(0); }
 
 SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
     : space_(space), system_(space.density->components()) {
   for (std::size_t j = 0; j < times.size(); ++j) {
-    add_row(1);
+    add_row(system_.add_part());
     if (j == 0) continue;
     if (j == 1) motion_ = system_.add_family(space.tables.motion());
-    first_of_motion_.push_back(system_.complex().stencils());
+    part_of_motion_.push_back(system_.add_part());
     const int n = space.sites(), above = static_cast<int>(j) * n;
-    for (int i = 0; i < n; ++i) system_.add_stencil(motion_, std::array{above - n + i, above + i}, 0, 1);
+    for (int i = 0; i < n; ++i)
+      system_.add_stencil(motion_, std::array{above - n + i, above + i}, 0, space.masses[at(i)], 1,
+                          part_of_motion_.back());
   }
   set_times(times);
   const int n = space.sites(), last = rows_ - 1;
@@ -50,7 +52,7 @@ SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
                                                 : SiteRole::free);
 }
 
-void SpaceRows::add_row(double measure) {
+void SpaceRows::add_row(int part) {
   const int n = space_.sites(), first = rows_ * n;
   for (int i = 0; i < n; ++i) {
     const Mesh::Point& p = space_.mesh.points[at(i)];
@@ -66,25 +68,14 @@ void SpaceRows::add_row(double measure) {
       gradient_tables_.push_back(system_.add_table(families[corners], space_.tables.gradient_table(space_.mesh, c)));
     }
   }
-  first_of_row_.push_back(system_.complex().stencils());
-  for (int i = 0; i < n; ++i) system_.add_stencil(site_, std::array{first + i}, 0, measure * space_.masses[at(i)]);
+  part_of_row_.push_back(part);
+  for (int i = 0; i < n; ++i) system_.add_stencil(site_, std::array{first + i}, 0, space_.masses[at(i)], 1, part);
   for (int c = 0; c < space_.mesh.cells(); ++c) {
     std::array<int, 4> sites{};
     const auto corners = space_.mesh.cell(c);
     for (std::size_t l = 0; l < corners.size(); ++l) sites[l] = first + corners[l];
-    system_.add_stencil(gradient_[at(c)], {sites.data(), corners.size()}, gradient_tables_[at(c)], measure);
+    system_.add_stencil(gradient_[at(c)], {sites.data(), corners.size()}, gradient_tables_[at(c)], 1, 1, part);
   }
-}
-
-void SpaceRows::set_row_measure(int row, double measure) {
-  int stencil = first_of_row_[at(row)];
-  for (const double A : space_.masses) system_.set_measure(stencil++, measure * A, 1);
-  for (int c = 0; c < space_.mesh.cells(); ++c) system_.set_measure(stencil++, measure, 1);
-}
-
-void SpaceRows::set_motion(int row, double measure, double time_step) {
-  int stencil = first_of_motion_[at(row)];
-  for (const double A : space_.masses) system_.set_measure(stencil++, measure * A, time_step);
 }
 
 void SpaceRows::set_times(std::span<const double> times) {
@@ -128,7 +119,7 @@ void SpaceEvolution::set_steps(const std::array<double, 3>& now) {
   rows_.set_motion(0, below, below);
   rows_.set_motion(1, above, above);
   rows_.set_row_measure(1, row_measure);
-  solver_->refresh();
+  solver_->rescale();
   steps_ = now;
 }
 
@@ -215,8 +206,7 @@ std::optional<double> SpaceEvolution::largest_step() const {
                             column = system.node(batch[s], static_cast<int>(m));
           if (row < n || row >= 2 * n || column < n || column >= 2 * n || space_.fixed[(row - n) / d]) continue;
           const double value = J[(i * size + m) * static_cast<std::size_t>(PlacedFamily::most) + s];
-          if (system.family_of(batch[s]).vertices() == 2 &&
-              system.complex().vertices(batch[s])[0] + space_.sites() == system.complex().vertices(batch[s])[1])
+          if (system.family_of(batch[s]).time_power() == 1)
             mass[row - n] += 0.5 * value * steps_[1];  // two motions meet at a site, each M/h
           else stiffness.push_back({row - n, column - n, -value / steps_[2]});
         }

@@ -43,14 +43,18 @@ class SpaceRows {
 
   const ComplexSystem& system() const { return system_; }
   int rows() const { return rows_; }
-  /// Other times: the last change of measures.
-  void set_times(std::span<const double> times);
   /// Of the stencils in a row.
-  void set_row_measure(int row, double measure);
-  void set_motion(int row, double measure, double time_step);
+  void set_row_measure(int row, double measure) {
+    system_.set_part(part_of_row_[static_cast<std::size_t>(row)], measure, 1);
+  }
+  /// Of the stencils that join a row and the next one.
+  void set_motion(int row, double measure, double time_step) {
+    system_.set_part(part_of_motion_[static_cast<std::size_t>(row)], measure, time_step);
+  }
 
  private:
-  void add_row(double measure);
+  void add_row(int part);
+  void set_times(std::span<const double> times);
 
   const CellSpace& space_;
   ComplexSystem system_;
@@ -58,7 +62,7 @@ class SpaceRows {
   int site_ = 0, site_table_ = 0, motion_ = 0;
   std::vector<int> gradient_;         ///< family by number of corners
   std::vector<int> gradient_tables_;  ///< by cell
-  std::vector<int> first_of_row_, first_of_motion_;
+  std::vector<int> part_of_row_, part_of_motion_;
 };
 
 /// Steps a field on an irregular space, row by row, each a complex of three rows whose plan is found once.
