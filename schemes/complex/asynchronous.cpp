@@ -162,6 +162,18 @@ double AsynchronousEvolution::energy(double t) const {
   return kinetic + potential;
 }
 
+Balance AsynchronousEvolution::momentum(const LinearSymmetry& symmetry) const {
+  Balance balance;
+  const auto d = at(d_);
+  for (std::size_t n = 0; n < y_.size(); ++n) {
+    const std::size_t a = n % d;
+    double xi = symmetry.shift[a];
+    for (std::size_t b = 0; b < d; ++b) xi += symmetry.matrix[a * d + b] * y_[n - a + b];
+    balance.add(momenta_[n] * xi);
+  }
+  return balance;
+}
+
 std::size_t AsynchronousEvolution::bytes() const {
   return 8 * (2 * y_.size() + times_.size()) + steps_.size() * (8 + 8 + 4 + 16) + at(space_.mesh.cells()) * 12 * 8;
 }

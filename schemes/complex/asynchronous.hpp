@@ -43,6 +43,8 @@ class AsynchronousEvolution {
   const std::vector<double>& node_times() const { return times_; }
   /// Σ_i A_i T + Σ_K V_K at a time; the impulses of cells are spread over their steps, so that it is of second order.
   double energy(double t) const;
+  /// Σ_i p_i · ξ(φ_i), which free motion and every cell keep where ξ is a symmetry of the density.
+  Balance momentum(const LinearSymmetry&) const;
   std::size_t bytes() const;
 
   /// From now on the sites and stencils are kept.

@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <random>
 
 #include "lattice/error.hpp"
+#include "schemes/complex/complex_noether.hpp"
 #include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
@@ -36,6 +38,7 @@ SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
     if (j == 0) continue;
     if (j == 1) motion_ = system_.add_family(space.tables.motion());
     part_of_motion_.push_back(system_.add_part());
+    first_of_motion_.push_back(system_.complex().stencils());
     const int n = space.sites(), above = static_cast<int>(j) * n;
     for (int i = 0; i < n; ++i)
       system_.add_stencil(motion_, std::array{above - n + i, above + i}, 0, space.masses[at(i)], 1,
@@ -76,6 +79,12 @@ void SpaceRows::add_row(int part) {
     for (std::size_t l = 0; l < corners.size(); ++l) sites[l] = first + corners[l];
     system_.add_stencil(gradient_[at(c)], {sites.data(), corners.size()}, gradient_tables_[at(c)], 1, 1, part);
   }
+}
+
+std::vector<std::int32_t> SpaceRows::motion(int row) const {
+  std::vector<std::int32_t> stencils(at(space_.sites()));
+  std::iota(stencils.begin(), stencils.end(), first_of_motion_[at(row)]);
+  return stencils;
 }
 
 void SpaceRows::set_times(std::span<const double> times) {
@@ -176,6 +185,12 @@ double SpaceEvolution::energy() const {
   // ℓ(0, 0, 0) is in motion and gradients too, where it is no energy.
   const std::vector<double> zero(system.nodes(), 0.0);
   return sum({y_.data() + y_.size() / 3, system.nodes()}, false) - sum(zero, true);
+}
+
+Balance SpaceEvolution::momentum(const LinearSymmetry& symmetry) const {
+  energy_rows_.set_motion(0, before_, before_);
+  const std::size_t n = y_.size() / 3;
+  return momentum_across(energy_rows_.system(), energy_rows_.motion(0), {y_.data() + n, 2 * n}, symmetry);
 }
 
 double SpaceEvolution::residual() const { return largest_residual(rows_.system(), y_); }

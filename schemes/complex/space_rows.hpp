@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "jets/symmetry.hpp"
 #include "lattice/complex/mesh.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/space_tables.hpp"
@@ -43,6 +44,8 @@ class SpaceRows {
 
   const ComplexSystem& system() const { return system_; }
   int rows() const { return rows_; }
+  /// The stencils that join a row and the next one.
+  std::vector<std::int32_t> motion(int row) const;
   /// Of the stencils in a row.
   void set_row_measure(int row, double measure) {
     system_.set_part(part_of_row_[static_cast<std::size_t>(row)], measure, 1);
@@ -62,7 +65,7 @@ class SpaceRows {
   int site_ = 0, site_table_ = 0, motion_ = 0;
   std::vector<int> gradient_;         ///< family by number of corners
   std::vector<int> gradient_tables_;  ///< by cell
-  std::vector<int> part_of_row_, part_of_motion_;
+  std::vector<int> part_of_row_, part_of_motion_, first_of_motion_;
 };
 
 /// Steps a field on an irregular space, row by row, each a complex of three rows whose plan is found once.
@@ -97,6 +100,9 @@ class SpaceEvolution {
 
   /// Σ_i A_i [φ_t ∂T/∂φ_t − T] − ½[V(row) + V(row before)], at the half step between the last two rows.
   double energy() const;
+  /// Σ_i A_i ∂T/∂φ_t · ξ(φ_i) between the last two rows, which natural boundaries and closed surfaces keep where ξ is a
+  /// symmetry of the density: its sum, and that of its absolute terms.
+  Balance momentum(const LinearSymmetry&) const;
   /// Of the equations behind the newest row: see largest_residual().
   double residual() const;
   /// The longest step that a linear wave can take, 2/ω of the fastest mode about φ = 0; none if nothing oscillates.

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/complex/complex_noether.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace delf {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr auto most = static_cast<std::size_t>(PlacedFamily::most);
+
+/// use(stencil, its r or its J, ξ) for some stencils.
+template <class Use>
+auto with_generator(const ComplexSystem& system, std::span<const double> y, const LinearSymmetry& symmetry,
+                    const Use& use) {
+  return [&system, &symmetry, y, use](ComplexSystem::Stencils batch, const double* out) {
+    const PlacedFamily& family = system.family_of(batch[0]);
+    std::vector<double> local(at(family.size())), xi;
+    for (std::size_t s = 0; s < batch.size(); ++s) {
+      for (int i = 0; i < family.size(); ++i) local[at(i)] = y[system.node(batch[s], i)];
+      generator(family, symmetry, local, xi);
+      use(batch[s], family, out + s, xi);
+    }
+  };
+}
+
+}  // namespace
+
+void generator(const PlacedFamily& family, const LinearSymmetry& symmetry, std::span<const double> y,
+               std::vector<double>& xi) {
+  const std::size_t d = symmetry.shift.size(), of_vertex = at(family.density().components());
+  xi.assign(y.size(), 0.0);
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const std::size_t a = i % of_vertex;
+    if (a >= d) continue;       // a multiplier
+    xi[i] = symmetry.shift[a];  // ξ_a = Σ_b A_ab y_b + b_a
+    for (std::size_t b = 0; b < d; ++b) xi[i] += symmetry.matrix[a * d + b] * y[i - a + b];
+  }
+}
+
+Balance momentum_across(const ComplexSystem& system, ComplexSystem::Stencils motion, std::span<const double> y,
+                        const LinearSymmetry& symmetry) {
+  Balance balance;
+  system.each_residual(motion, y,
+                       with_generator(system, y, symmetry,
+                                      [&](int, const PlacedFamily&, const double* r, const std::vector<double>& xi) {
+                                        for (std::size_t i = xi.size() / 2; i < xi.size(); ++i)
+                                          balance.add(r[i * most] * xi[i]);
+                                      }));
+  return balance;
+}
+
+ComplexNoether::ComplexNoether(std::vector<LinearSymmetry> symmetries, double tolerance, bool forced, bool wrong_sign)
+    : symmetries_(std::move(symmetries)), tolerance_(tolerance), forced_(forced), wrong_sign_(wrong_sign) {
+  for (const LinearSymmetry& symmetry : symmetries_) {
+    invariant_.push_back({.name = "symmetry of L, " + symmetry.name, .region = {}, .tolerance = tolerance});
+    sums_.push_back({.name = "Noether, " + symmetry.name, .region = {}, .tolerance = tolerance});
+  }
+}
+
+/// Σ_l ∂L/∂yˡ · ξ(yˡ) of a stencil at random values, the worst of some. Where a density is not defined around 0 (a
+/// logarithm of φ), it may be around 1.
+Balance ComplexNoether::invariance(const ComplexSystem& system, const LinearSymmetry& symmetry, int family,
+                                   std::mt19937_64& random) const {
+  constexpr std::size_t samples = 20;
+  std::vector<std::int32_t> all, stencils;
+  for (int s = 0; s < system.complex().stencils(); ++s)
+    if (system.complex().shape_number(s) == family) all.push_back(s);
+  for (std::size_t n = 0; n < samples && !all.empty(); ++n) stencils.push_back(all[random() % all.size()]);
+  std::sort(stencils.begin(), stencils.end());
+  std::uniform_real_distribution<double> uniform(-2, 2);
+  std::vector<double> y(system.nodes());
+  Balance worst;
+  for (const auto& [centre, size] : {std::pair{0.0, 1.0}, {1.0, 0.1}, {1.0, 0.001}}) {
+    for (double& value : y) value = centre + size * uniform(random);
+    worst = {};
+    bool finite = true;
+    system.each_residual(
+        stencils, y,
+        with_generator(system, y, symmetry,
+                       [&](int, const PlacedFamily& of, const double* r, const std::vector<double>& xi) {
+                         Balance balance;
+                         for (std::size_t i = 0; i < xi.size(); ++i)
+                           balance.add((wrong_sign_ && of.size() > 1 && i == 0 ? -r[0] : r[i * most]) * xi[i]);
+                         finite = finite && std::isfinite(balance.absolute);
+                         if (worst.count == 0 || worse(balance.relative(), worst.relative())) worst = balance;
+                       }));
+    if (finite) break;
+  }
+  return worst;
+}
+
+Balance ComplexNoether::sum(const ComplexSystem& system, const ComplexRegion& region, std::span<const double> y,
+                            const LinearSymmetry& symmetry) const {
+  Balance balance;
+  const auto d = at(system.components());
+  system.each_residual(
+      region.stencils(), y,
+      with_generator(system, y, symmetry,
+                     [&](int stencil, const PlacedFamily& of, const double* r, const std::vector<double>& xi) {
+                       for (std::size_t i = 0; i < xi.size(); ++i)
+                         if (std::ranges::binary_search(
+                                 region.boundary(), static_cast<int>(system.node(stencil, static_cast<int>(i)) / d)))
+                           balance.add((wrong_sign_ && of.size() > 1 && i == 0 ? -r[0] : r[i * most]) * xi[i]);
+                     }));
+  return balance;
+}
+
+/// ε Σ |∂²L/∂yˡ∂yᵐ yᵐ ξˡ|: what is left of differences of given values.
+double ComplexNoether::rounding(const ComplexSystem& system, const ComplexRegion& region, std::span<const double> y,
+                                const LinearSymmetry& symmetry) const {
+  double products = 0;
+  const auto d = at(system.components());
+  system.each_jacobian(
+      region.stencils(), y,
+      with_generator(
+          system, y, symmetry, [&](int stencil, const PlacedFamily&, const double* J, const std::vector<double>& xi) {
+            const std::size_t n = xi.size();
+            for (std::size_t i = 0; i < n; ++i) {
+              const std::size_t node = system.node(stencil, static_cast<int>(i));
+              if (!std::ranges::binary_search(region.boundary(), static_cast<int>(node / d))) continue;
+              for (std::size_t m = 0; m < n; ++m)
+                products += std::abs(J[(i * n + m) * most] * y[system.node(stencil, static_cast<int>(m))] * xi[i]);
+            }
+          }));
+  return std::numeric_limits<double>::epsilon() * products;
+}
+
+void ComplexNoether::look_at(const ComplexSystem& system, const ComplexRegion& region, std::span<const double> y,
+                             const std::string& where, std::mt19937_64& random) {
+  for (std::size_t n = 0; n < symmetries_.size(); ++n) {
+    Check& invariant = invariant_[n];
+    if (invariant.samples == 0) {
+      for (int family = 0; family < system.families(); ++family)
+        invariant.take(invariance(system, symmetries_[n], family, random), "random values of each kind of stencil");
+      if (!invariant.passed())
+        invariant.failure = fmt::format(
+            "{} is not a symmetry: along it the Lagrangian changes by {:.2g} of its terms. Noether's theorem owes "
+            "nothing for it{}.",
+            symmetries_[n].name, invariant.value, forced_ ? ", and the sums below were asked for all the same" : "");
+    }
+    if (!invariant.passed() && !forced_) continue;
+    Balance balance = sum(system, region, y, symmetries_[n]);
+    // The rounding of given values is allowed for: |sum| ≤ tolerance · absolute + rounding.
+    if (balance.relative() > tolerance_) balance.absolute += rounding(system, region, y, symmetries_[n]) / tolerance_;
+    Check& check = sums_[n];
+    if (!check.take(balance, where)) continue;
+    check.failure =
+        fmt::format("What flows into {} is not what flows out: {:.2g} of the momenta of {} is left. {}", where,
+                    check.value, symmetries_[n].name,
+                    invariant.passed() ? "The Lagrangian has this symmetry, so the field equations do not hold there."
+                                       : "The Lagrangian does not have this symmetry.");
+  }
+}
+
+std::vector<Check> ComplexNoether::checks() const {
+  std::vector<Check> result;
+  for (std::size_t n = 0; n < symmetries_.size(); ++n) {
+    if (invariant_[n].samples > 0) result.push_back(invariant_[n]);
+    if (sums_[n].samples > 0) result.push_back(sums_[n]);
+  }
+  return result;
+}
+
+}  // namespace delf

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "jets/symmetry.hpp"
+#include "schemes/complex/complex_form.hpp"
+#include "schemes/verify/check.hpp"
+
+namespace delf {
+
+/// Noether's theorem on a complex, for symmetries ξ of the fields: they act at every site alike, and not on multipliers.
+/// Where the field equations hold in int U,
+///
+///     Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} ∂L/∂yˡ · ξ(yˡ) = 0                    Marsden–Patrick–Shkoller (5.7)
+///
+/// Each ξ is first tried on single stencils at random values: Noether's theorem owes nothing for one that changes L.
+class ComplexNoether {
+ public:
+  /// `forced`: the sums are taken even for what is no symmetry. `wrong_sign`: see ComplexForm.
+  ComplexNoether(std::vector<LinearSymmetry>, double tolerance, bool forced, bool wrong_sign = false);
+
+  void look_at(const ComplexSystem&, const ComplexRegion&, std::span<const double> y, const std::string& where,
+               std::mt19937_64&);
+  std::vector<Check> checks() const;
+
+ private:
+  Balance invariance(const ComplexSystem&, const LinearSymmetry&, int family, std::mt19937_64&) const;
+  Balance sum(const ComplexSystem&, const ComplexRegion&, std::span<const double> y, const LinearSymmetry&) const;
+  double rounding(const ComplexSystem&, const ComplexRegion&, std::span<const double> y, const LinearSymmetry&) const;
+
+  std::vector<LinearSymmetry> symmetries_;
+  std::vector<Check> invariant_, sums_;
+  double tolerance_;
+  bool forced_, wrong_sign_;
+};
+
+/// ξ at the values of a stencil of the family, with y as in PlacedBatch.
+void generator(const PlacedFamily&, const LinearSymmetry&, std::span<const double> y, std::vector<double>& xi);
+
+/// What flows across a cut between two rows: Σ ∂L/∂y · ξ over the upper site of stencils of motion; and Σ |terms|.
+Balance momentum_across(const ComplexSystem&, ComplexSystem::Stencils motion, std::span<const double> y,
+                        const LinearSymmetry&);
+
+}  // namespace delf
