@@ -19,6 +19,9 @@ constexpr auto most = static_cast<std::size_t>(PlacedFamily::most);
 
 AsynchronousEvolution::AsynchronousEvolution(const CellSpace& space, std::vector<double> steps)
     : space_(space), d_(space.density->components()), steps_(std::move(steps)), done_(steps_.size(), 0) {
+  if (space.constraint)
+    throw BadInput("theory.name",
+                   "theory.name: cells with steps of their own have no constraints; choose lattice.time = rows");
   Eigen::MatrixXd mass(d_, d_);
   const int variables = space.density->variables();
   for (int a = 0; a < d_; ++a)

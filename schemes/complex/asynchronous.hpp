@@ -20,7 +20,7 @@ namespace delf {
 /// window is asked for.
 class AsynchronousEvolution {
  public:
-  /// `steps` are the h_K. Throws BadInput "theory.name" if T is not quadratic.
+  /// `steps` are the h_K. Throws BadInput "theory.name" if T is not quadratic, or if there is a constraint.
   AsynchronousEvolution(const CellSpace&, std::vector<double> steps);
 
   /// φ and φ_t at t = 0.

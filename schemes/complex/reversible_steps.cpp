@@ -22,6 +22,9 @@ std::unique_ptr<const AssembledEquations> all_equations(const ComplexSystem& sys
 
 ReversibleSteps::ReversibleSteps(const CellSpace& space, double longest, double strength)
     : space_(space), still_(space), force_(all_equations(still_.system())), density_(longest), strength_(strength) {
+  if (space.constraint)
+    throw BadInput("lattice.time_steps",
+                   "lattice.time_steps: reversible steps are for theories without a constraint; give a list of steps");
   for (const double A : space.masses) area_ += A;
   const BatchDensity& density = *space.density;
   const int d = density.components();

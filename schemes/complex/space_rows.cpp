@@ -19,9 +19,11 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, bool fixed_boundary)
+CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, bool fixed_boundary,
+                     std::shared_ptr<const StencilFamily> constraint_)
     : mesh(std::move(mesh_)),
       density(std::move(density_)),
+      constraint(constraint_ ? std::make_shared<const ConstraintDensity>(std::move(constraint_)) : nullptr),
       tables(density),
       masses(lumped_masses(mesh)),
       fixed(mesh.points.size(), 0) {
@@ -29,35 +31,65 @@ CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, b
     for (const auto p : boundary_points(mesh)) fixed[static_cast<std::size_t>(p)] = 1;
 }
 
-SpaceRows::SpaceRows(const CellSpace& space) : space_(space), system_(space.density->components()) { add_row(0); }
+double CellSpace::largest_constraint(std::span<const double> values) const {
+  double most = 0;
+  constraint->each(values, [&](std::size_t, double G, std::span<const double>) {
+    if (!(std::abs(G) <= most)) most = std::abs(G);
+  });
+  return most;
+}
+
+SpaceRows::SpaceRows(const CellSpace& space)
+    : space_(space),
+      per_point_(space.constraint ? space.fields() : 1),
+      per_row_(space.sites() * (space.constraint ? per_point_ + 1 : 1)),
+      is_still_(true),
+      system_(space.constraint ? 1 : space.fields()) {
+  add_row(0);
+}
 
 SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
-    : space_(space), system_(space.density->components()) {
+    : space_(space),
+      per_point_(space.constraint ? space.fields() : 1),
+      per_row_(space.sites() * (space.constraint ? per_point_ + 1 : 1)),
+      system_(space.constraint ? 1 : space.fields()) {
+  const int n = space.sites();
   for (std::size_t j = 0; j < times.size(); ++j) {
     add_row(system_.add_part());
     if (j == 0) continue;
     if (j == 1) motion_ = system_.add_family(space.tables.motion());
     part_of_motion_.push_back(system_.add_part());
     first_of_motion_.push_back(system_.complex().stencils());
-    const int n = space.sites(), above = static_cast<int>(j) * n;
-    for (int i = 0; i < n; ++i)
-      system_.add_stencil(motion_, std::array{above - n + i, above + i}, 0, space.masses[at(i)], 1,
+    for (std::int32_t i = 0; i < n; ++i)
+      system_.add_stencil(motion_, sites_of({rows_ - 2, rows_ - 1}, {&i, 1}), 0, space.masses[at(i)], 1,
                           part_of_motion_.back());
   }
   set_times(times);
-  const int n = space.sites(), last = rows_ - 1;
+  const int fields = n * per_point_, last = rows_ - 1;
   for (int j = 0; j < rows_; ++j)
-    for (int i = 0; i < n; ++i)
-      if (!space.fixed[at(i)])
-        system_.set_role(j * n + i, j == 0      ? SiteRole::given
-                                    : j == last ? SiteRole::final
-                                    : j == 1    ? SiteRole::initial
-                                                : SiteRole::free);
+    for (int s = 0; s < per_row_; ++s) {
+      const bool multiplier = s >= fields;
+      if (space.fixed[at(multiplier ? s - fields : s / per_point_)]) continue;
+      // λ of the last row is in no equation, and G there is one for its fields; G of row 1 is in the data.
+      system_.set_role(j * per_row_ + s, j == 0      ? SiteRole::given
+                                         : j == last ? multiplier ? SiteRole::initial : SiteRole::final
+                                         : j == 1    ? multiplier ? SiteRole::final : SiteRole::initial
+                                                     : SiteRole::free);
+    }
+}
+
+std::span<const int> SpaceRows::sites_of(std::initializer_list<int> rows, std::span<const std::int32_t> points) {
+  sites_.clear();
+  for (const int row : rows)
+    for (const auto p : points)
+      for (int a = 0; a < per_point_; ++a) sites_.push_back(row * per_row_ + p * per_point_ + a);
+  return sites_;
 }
 
 void SpaceRows::add_row(int part) {
-  const int n = space_.sites(), first = rows_ * n;
-  for (int i = 0; i < n; ++i) {
+  const int n = space_.sites(), row = rows_;
+  for (int s = 0; s < per_row_; ++s) {
+    const int i = s < n * per_point_ ? s / per_point_ : s - n * per_point_;
     const Mesh::Point& p = space_.mesh.points[at(i)];
     system_.add_site({0, p[0], p[1], p[2]}, space_.fixed[at(i)] ? SiteRole::given : SiteRole::free);
   }
@@ -70,21 +102,55 @@ void SpaceRows::add_row(int part) {
       gradient_.push_back(families[corners]);
       gradient_tables_.push_back(system_.add_table(families[corners], space_.tables.gradient_table(space_.mesh, c)));
     }
+    if (space_.constraint) {
+      const std::vector<TablePoint> table = space_.tables.site_table();
+      constraint_ = system_.add_family(PlacedFamily(space_.constraint, 1, table));
+      system_.add_table(constraint_, table);
+    }
   }
   part_of_row_.push_back(part);
-  for (int i = 0; i < n; ++i) system_.add_stencil(site_, std::array{first + i}, 0, space_.masses[at(i)], 1, part);
-  for (int c = 0; c < space_.mesh.cells(); ++c) {
-    std::array<int, 4> sites{};
-    const auto corners = space_.mesh.cell(c);
-    for (std::size_t l = 0; l < corners.size(); ++l) sites[l] = first + corners[l];
-    system_.add_stencil(gradient_[at(c)], {sites.data(), corners.size()}, gradient_tables_[at(c)], 1, 1, part);
+  for (std::int32_t i = 0; i < n; ++i)
+    system_.add_stencil(site_, sites_of({row}, {&i, 1}), 0, space_.masses[at(i)], 1, part);
+  for (int c = 0; c < space_.mesh.cells(); ++c)
+    system_.add_stencil(gradient_[at(c)], sites_of({row}, space_.mesh.cell(c)), gradient_tables_[at(c)], 1, 1, part);
+  for (std::int32_t i = 0; i < n && space_.constraint; ++i) {
+    if (space_.fixed[at(i)]) continue;
+    sites_of({row}, {&i, 1});
+    sites_.push_back(row * per_row_ + n * per_point_ + i);
+    system_.add_stencil(constraint_, sites_, 0, weight_of_constraint(i), 1, part);
   }
 }
+
+double SpaceRows::weight_of_constraint(int point) const { return is_still_ ? 1 : space_.masses[at(point)]; }
 
 std::vector<std::int32_t> SpaceRows::motion(int row) const {
   std::vector<std::int32_t> stencils(at(space_.sites()));
   std::iota(stencils.begin(), stencils.end(), first_of_motion_[at(row)]);
   return stencils;
+}
+
+std::vector<double> SpaceRows::with_multipliers(std::span<const double> fields) const {
+  if (!space_.constraint) return {fields.begin(), fields.end()};
+  const std::size_t of_fields = space_.fields_of_row(), of_row = space_.values_of_row(), d = at(space_.fields());
+  std::vector<double> y(system_.nodes(), 0.0);
+  for (int j = 0; j < rows_; ++j)
+    std::ranges::copy(fields.subspan(at(j) * of_fields, of_fields), y.begin() + j * per_row_);
+  const std::vector<Balance> E = system_.residual(y);
+  for (int j = 0; j < rows_; ++j)
+    space_.constraint->each(
+        fields.subspan(at(j) * of_fields, of_fields), [&](std::size_t i, double, std::span<const double> slopes) {
+          const std::size_t row = at(j) * of_row;
+          if (!system_.complex().has_equation(static_cast<int>(row + i * d))) return;
+          // E + |Δ| λ ∂G/∂φ = 0 along ∂G/∂φ
+          double product = 0, square = 0;
+          for (std::size_t a = 0; a < d; ++a) {
+            product += E[row + i * d + a].sum * slopes[a];
+            square += slopes[a] * slopes[a];
+          }
+          const double measure = weight_of_constraint(static_cast<int>(i)) * system_.factor(part_of_row_[at(j)], 0);
+          if (square > 0) y[row + of_fields + i] = -product / square / measure;
+        });
+  return y;
 }
 
 void SpaceRows::set_times(std::span<const double> times) {
@@ -95,7 +161,7 @@ void SpaceRows::set_times(std::span<const double> times) {
     if (j + 1 < rows_) set_motion(j, above, above);
   }
   for (int j = 0; j < rows_; ++j)
-    for (int i = 0; i < space_.sites(); ++i) system_.set_time(j * space_.sites() + i, times[at(j)]);
+    for (int s = 0; s < per_row_; ++s) system_.set_time(j * per_row_ + s, times[at(j)]);
 }
 
 namespace {
@@ -115,8 +181,7 @@ SpaceEvolution::SpaceEvolution(const CellSpace& space, double time_step, Complex
       y_(rows_.system().nodes(), 0.0) {}
 
 std::span<const double> SpaceEvolution::row(int back) const {
-  const std::size_t n = y_.size() / 3;
-  return {y_.data() + static_cast<std::size_t>(2 - back) * n, n};
+  return {y_.data() + at(2 - back) * space_.values_of_row(), space_.fields_of_row()};
 }
 
 std::size_t SpaceEvolution::bytes() const {
@@ -134,22 +199,24 @@ void SpaceEvolution::set_steps(const std::array<double, 3>& now) {
 
 void SpaceEvolution::take(double below, double above, double row_measure) {
   if (const std::array now{below, above, row_measure}; now != steps_) set_steps(now);
-  const std::size_t n = y_.size() / 3;
+  const std::size_t n = space_.values_of_row();
   std::copy(y_.begin() + static_cast<std::ptrdiff_t>(n), y_.end(), y_.begin());
+  for (std::size_t i = 0; i < space_.fields_of_row() && space_.constraint; ++i)  // where Newton's method begins
+    y_[2 * n + i] = y_[n + i] + above / below * (y_[n + i] - y_[i]);
   report_ = solver_->solve(y_);
   if (!std::isfinite(y_[2 * n])) throw NotFinite("the field is not finite; use a shorter time step");
 }
 
 void SpaceEvolution::start(std::span<const double> values, std::span<const double> rates,
                            std::optional<double> time_step) {
-  const std::size_t n = y_.size() / 3;
+  const std::size_t n = space_.values_of_row(), fields = space_.fields_of_row();
   const double h = time_step.value_or(h_);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < fields; ++i) {
     y_[n + i] = values[i] - h * rates[i];  // so that the motion below row 0 is the rate; the rows move down in take()
     y_[2 * n + i] = values[i];
   }
-  for (std::size_t i = 0; i < n; ++i)
-    if (space_.fixed[i / at(space_.density->components())]) y_[n + i] = values[i];
+  for (std::size_t i = 0; i < fields; ++i)
+    if (space_.fixed[i / at(space_.fields())]) y_[n + i] = values[i];
   take(h, h, 0.5 * h);
   newest_ = 1, time_ = h, before_ = h;
 }
@@ -189,8 +256,8 @@ double SpaceEvolution::energy() const {
 
 Balance SpaceEvolution::momentum(const LinearSymmetry& symmetry) const {
   energy_rows_.set_motion(0, before_, before_);
-  const std::size_t n = y_.size() / 3;
-  return momentum_across(energy_rows_.system(), energy_rows_.motion(0), {y_.data() + n, 2 * n}, symmetry);
+  const std::span<const double> rows{y_.data() + space_.values_of_row(), 2 * space_.values_of_row()};
+  return momentum_across(energy_rows_.system(), energy_rows_.motion(0), rows, symmetry);
 }
 
 double SpaceEvolution::residual() const { return largest_residual(rows_.system(), y_); }
@@ -203,8 +270,8 @@ void SpaceEvolution::turn_back() {
 std::optional<double> SpaceEvolution::largest_step() const {
   // y″ = −K y/M: the largest eigenvalue of M⁻¹K by the power method on the linearised equations at 0.
   const ComplexSystem& system = rows_.system();
-  const auto d = at(space_.density->components());
-  const std::size_t n = y_.size() / 3;
+  const auto d = at(space_.fields());
+  const std::size_t n = space_.values_of_row(), fields = space_.fields_of_row();
   struct Entry {
     std::size_t i, m;
     double value;
@@ -219,7 +286,8 @@ std::optional<double> SpaceEvolution::largest_step() const {
         for (std::size_t m = 0; m < size; ++m) {
           const std::size_t row = system.node(batch[s], static_cast<int>(i)),
                             column = system.node(batch[s], static_cast<int>(m));
-          if (row < n || row >= 2 * n || column < n || column >= 2 * n || space_.fixed[(row - n) / d]) continue;
+          if (row < n || row >= n + fields || column < n || column >= n + fields || space_.fixed[(row - n) / d])
+            continue;
           const double value = J[(i * size + m) * static_cast<std::size_t>(PlacedFamily::most) + s];
           if (system.family_of(batch[s]).time_power() == 1)
             mass[row - n] += 0.5 * value * steps_[1];  // two motions meet at a site, each M/h
@@ -228,14 +296,14 @@ std::optional<double> SpaceEvolution::largest_step() const {
   });
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
-  std::vector<double> v(n), w(n);
+  std::vector<double> v(fields), w(fields);
   for (double& x : v) x = normal(random);
   double eigenvalue = 0;
   for (int iteration = 0; iteration < 200; ++iteration) {
     std::fill(w.begin(), w.end(), 0.0);
     for (const Entry& e : stiffness) w[e.i] += e.value * v[e.m];
     double norm = 0, product = 0;
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < fields; ++i) {
       w[i] = mass[i] == 0 ? 0 : w[i] / mass[i];
       product += w[i] * v[i], norm += v[i] * v[i];
     }
@@ -243,7 +311,7 @@ std::optional<double> SpaceEvolution::largest_step() const {
     double size = 0;
     for (const double x : w) size += x * x;
     if (!(size > 0)) return std::nullopt;
-    for (std::size_t i = 0; i < n; ++i) v[i] = w[i] / std::sqrt(size);
+    for (std::size_t i = 0; i < fields; ++i) v[i] = w[i] / std::sqrt(size);
   }
   return eigenvalue > 0 ? std::optional(2 / std::sqrt(eigenvalue)) : std::nullopt;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,6 +11,7 @@
 #include "jets/symmetry.hpp"
 #include "lattice/complex/mesh.hpp"
 #include "schemes/complex/complex_solver.hpp"
+#include "schemes/complex/constraint_density.hpp"
 #include "schemes/complex/space_tables.hpp"
 
 namespace delf {
@@ -17,13 +20,22 @@ class SavedState;
 
 /// A mesh of space and a density on it, with what rows of any steps have in common.
 struct CellSpace {
-  /// Throws BadInput for a density that has no form on cells.
-  CellSpace(Mesh, std::shared_ptr<const BatchDensity>, bool fixed_boundary);
+  /// `constraint`: of d + 1 values at a vertex, as a theory declares it. Throws BadInput for a density that has no form on
+  /// cells.
+  CellSpace(Mesh, std::shared_ptr<const BatchDensity>, bool fixed_boundary,
+            std::shared_ptr<const StencilFamily> constraint = nullptr);
 
   int sites() const { return static_cast<int>(mesh.points.size()); }
+  int fields() const { return density->components(); }
+  /// Values of a row: the fields, point by point; and behind them the multipliers, where there is a constraint.
+  std::size_t fields_of_row() const { return mesh.points.size() * static_cast<std::size_t>(fields()); }
+  std::size_t values_of_row() const { return fields_of_row() + (constraint ? mesh.points.size() : 0); }
+  /// The largest |G(φ)| of some fields.
+  double largest_constraint(std::span<const double> fields) const;
 
   Mesh mesh;
   std::shared_ptr<const BatchDensity> density;
+  std::shared_ptr<const ConstraintDensity> constraint;  ///< null: none
   SpaceTables tables;
   std::vector<double> masses;  ///< A_i
   std::vector<char> fixed;     ///< [i]: a point of the boundary that keeps its value
@@ -36,6 +48,10 @@ struct CellSpace {
 ///
 /// where the first and the last row have half a step. Rows 0 and 1 are data, and equations hold from row 1 to the last but
 /// one.
+///
+/// With a constraint V has A_i λ_i G(y_i) besides. Then every value is a site of the complex of its own, since equations of
+/// one point are not matched with its own unknowns: G(y^{j+1}) = 0 and the equations of y^j determine y^{j+1} and λ^j
+/// together. This is SHAKE on a mesh (Ryckaert, Ciccotti, Berendsen, J. Comput. Phys. 23, 327, 1977).
 class SpaceRows {
  public:
   SpaceRows(const CellSpace&, std::span<const double> times);
@@ -46,6 +62,9 @@ class SpaceRows {
   int rows() const { return rows_; }
   /// The stencils that join a row and the next one.
   std::vector<std::int32_t> motion(int row) const;
+  /// Rows of fields alone with the multipliers that fit their equations best, 0 where none holds: the component of E along
+  /// ∂G/∂φ is zero.
+  std::vector<double> with_multipliers(std::span<const double> fields) const;
   /// Of the stencils in a row.
   void set_row_measure(int row, double measure) {
     system_.set_part(part_of_row_[static_cast<std::size_t>(row)], measure, 1);
@@ -57,12 +76,19 @@ class SpaceRows {
 
  private:
   void add_row(int part);
+  /// A_i; or 1 without time, where the line search weighs G against forces, which do not shrink with the mesh.
+  double weight_of_constraint(int point) const;
+  /// The sites of the complex that hold the fields of some points, one after the other.
+  std::span<const int> sites_of(std::initializer_list<int> rows, std::span<const std::int32_t> points);
   void set_times(std::span<const double> times);
 
   const CellSpace& space_;
+  int per_point_, per_row_;  ///< sites of the complex: of the fields of a point, and of a row
+  bool is_still_ = false;    ///< without time
   ComplexSystem system_;
   int rows_ = 0;
-  int site_ = 0, site_table_ = 0, motion_ = 0;
+  int site_ = 0, constraint_ = 0, motion_ = 0;
+  std::vector<int> sites_;
   std::vector<int> gradient_;         ///< family by number of corners
   std::vector<int> gradient_tables_;  ///< by cell
   std::vector<int> part_of_row_, part_of_motion_, first_of_motion_;
@@ -91,7 +117,7 @@ class SpaceEvolution {
   double time_step() const { return h_; }
   /// Between the last two rows.
   double last_step() const { return before_; }
-  /// The newest row, or the one `back` rows before: 0 or 1.
+  /// The fields of the newest row, or of the one `back` rows before: 0 or 1.
   std::span<const double> row(int back = 0) const;
   const ComplexPlan& plan() const { return solver_->plan(); }
   bool is_direct() const { return solver_->is_direct(); }
