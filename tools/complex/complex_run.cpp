@@ -41,7 +41,11 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, MeshO
   std::vector<SlabEnergy> slabs;
   if (c.stencils) slabs = slab_energies(*c.stencils, c.theory->shared_density(), field.values());
   recorder.record(
-      {0, 0, field.values(), c.stencils ? Outcome::unknown : field.energy(), solved.iterations, field.residual()},
+      {.values = field.values(),
+       .energy = c.stencils ? Outcome::unknown : field.energy(),
+       .iterations = solved.iterations,
+       .residual = field.residual(),
+       .constraint = c.theory->constraint() ? c.space->largest_constraint(field.values()) : Outcome::unknown},
       slabs);
   measure_error(c, field.values(), 0, o);
   return field.solver().plan().level_of_sites(c.sites());

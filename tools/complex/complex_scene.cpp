@@ -25,16 +25,15 @@ constexpr double usual_records = 100;
 constexpr std::string_view reversible = "reversible";  // of lattice.time_steps: chosen by the field
 
 /// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
-const std::set<std::string, std::less<>> read_keys{"theory.name",        "theory.fibre",       "lattice.space",
-                                                   "lattice.mesh",       "lattice.time",       "lattice.courant",
-                                                   "lattice.time_step",  "lattice.time_steps", "lattice.step_control",
-                                                   "boundary.mesh",      "scheme.tolerance",   "scheme.max_iterations",
-                                                   "initial.state",      "run.until",          "run.steps",
-                                                   "run.seed",           "output.every",       "output.checkpoint",
-                                                   "output.fields",      "output.figures",     "output.format",
-                                                   "output.titles",      "verify.variations",  "verify.moments",
-                                                   "verify.tolerance",   "verify.fault",       "scheme.method",
-                                                   "convergence.levels", "convergence.order",  "convergence.agreement"};
+const std::set<std::string, std::less<>> read_keys{
+    "theory.name",          "theory.fibre",       "lattice.space",     "lattice.mesh",
+    "lattice.time",         "lattice.courant",    "lattice.time_step", "lattice.time_steps",
+    "lattice.step_control", "boundary.mesh",      "scheme.tolerance",  "scheme.max_iterations",
+    "initial.state",        "run.until",          "run.steps",         "run.seed",
+    "output.every",         "output.checkpoint",  "output.fields",     "output.figures",
+    "output.format",        "output.titles",      "verify.variations", "verify.moments",
+    "verify.tolerance",     "verify.fault",       "verify.generator",  "verify.force",
+    "scheme.method",        "convergence.levels", "convergence.order", "convergence.agreement"};
 
 /// Keys of time, which lattice.time = none has none of.
 const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "lattice.time_step", "lattice.time_steps",
@@ -135,6 +134,24 @@ void read_fields(ComplexScene& c, const Values& values, const ParameterValues& p
     throw settings.error("initial.state", "is of one coordinate; on a mesh give formulas, initial.phi or exact.phi");
 }
 
+/// Data are on G = 0: rows 0, or the fixed boundary where there is no time.
+void require_constraint(const ComplexScene& c) {
+  const std::vector<double> values = c.values();
+  const std::string& name = c.fields.front().name;
+  c.space->constraint->each(values, [&](std::size_t i, double G, std::span<const double> slopes) {
+    if (c.time == MeshTime::none && !c.space->fixed[i]) return;
+    double terms = 0;  // Σ |∂G/∂φ φ|
+    for (std::size_t a = 0; a < slopes.size(); ++a) terms += std::abs(slopes[a] * values[i * slopes.size() + a]);
+    constexpr double rounding = 1e-12;
+    if (!(std::abs(G) <= rounding * std::max(1.0, terms)))
+      throw c.scene.settings.error(
+          (c.fields.front().exact ? "exact." : "initial.") + name,
+          fmt::format("breaks the constraint at point {} of the mesh, where it is {:.3g} and not 0; give fields that "
+                      "keep it",
+                      i, G));
+  });
+}
+
 }  // namespace
 
 bool is_on_mesh(const Settings& settings) {
@@ -161,9 +178,6 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     if (const auto* list = std::get_if<StencilList>(&mesh)) c.stencils = std::make_unique<const StencilList>(*list);
     refuse_unread(settings, entry, parameters, c.theory->fields(), values.choice("lattice.time") == "none",
                   c.stencils != nullptr);
-    if (c.theory->constraint())
-      throw BadInput("theory.name", "theory.name = " + p.theory +
-                                        ": constraints need a regular lattice; choose lattice.space = circle");
     p.method = values.choice("scheme.method");
     if (p.method != find_key("scheme.method")->fallback)
       throw settings.error("scheme.method", "needs a regular lattice; leave it out on a mesh");
@@ -172,13 +186,17 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
       edge = shortest_edge(std::get<Mesh>(mesh));
       c.space = std::make_unique<CellSpace>(
           finer_mesh(*values.text("lattice.mesh"), std::get<Mesh>(std::move(mesh)), halvings),
-          c.theory->shared_density(), values.choice("boundary.mesh") == "fixed");
+          c.theory->shared_density(), values.choice("boundary.mesh") == "fixed", c.theory->constraint());
     }
     const std::string time = values.choice("lattice.time");
     c.time = c.stencils        ? MeshTime::sites
              : time == "none"  ? MeshTime::none
              : time == "cells" ? MeshTime::cells
                                : MeshTime::rows;
+    if (c.theory->constraint() && c.time != MeshTime::rows && c.time != MeshTime::none)
+      throw BadInput("theory.name", "theory.name = " + p.theory +
+                                        ": a constraint on a mesh is for lattice.time = rows or none; choose one of "
+                                        "these");
     p.circle_valued = values.choice("theory.fibre") == "S1";
     if (p.circle_valued && (c.time != MeshTime::rows || c.theory->fields().size() > 1))
       throw settings.error("theory.fibre", "S1 on a mesh is for one field with lattice.time = rows; use R");
@@ -188,6 +206,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     p.lattice = Lattice::circle(std::max(2, c.sites()), edge * std::max(2, c.sites()));
     p.stencil = c.mesh_in_words();
     read_fields(c, values, parameters);
+    if (c.theory->constraint()) require_constraint(c);
     scene.fields = values.toggle("output.fields");
     scene.figures = values.toggle("output.figures");
     scene.figure_form = read_figure_form(settings, values);
@@ -198,6 +217,9 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     p.step_control = read_step_control(settings, values);
     if (p.step_control && c.time == MeshTime::cells)
       throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
+    if (p.step_control && c.theory->constraint())
+      throw settings.error("lattice.time_steps",
+                           "reversible steps are for theories without a constraint; give a list of steps");
     for (const char* other : {"lattice.courant", "lattice.time_step"})
       if (values.given("lattice.time_steps") && !p.step_control && values.given(other))
         settings.keep_one_of("lattice.time_steps", other, {});

@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <random>
 
+#include "jets/expressions/generator.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_form.hpp"
+#include "schemes/complex/complex_noether.hpp"
 #include "schemes/complex/first_and_last_step.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/row_steps.hpp"
@@ -43,6 +45,8 @@ class MeshVerification {
            .tolerance = tolerance});
     reversal_ = {
         .name = "time reversal", .region = {}, .tolerance = std::max(tolerance, 100 * scene.scene.problem.tolerance)};
+    constraint_ = {.name = "constraint", .region = {}, .tolerance = equations_.tolerance};
+    noether_.emplace(symmetries(values), equations_.tolerance, values.toggle("verify.force"), fault_ == "sign");
     first_step_ = {.name = "form of the first step, the last as long", .region = {}, .tolerance = tolerance};
     order_ = {.name = "order of the updates, planned", .region = {}, .tolerance = 0};
     verdict_.seed = scene.scene.initial.seed;
@@ -58,11 +62,18 @@ class MeshVerification {
     else look_at_rows();
     verdict_.seconds = seconds_since(begin);
     verdict_.checks = {equations_};
+    if (constraint_.samples > 0) verdict_.checks.push_back(constraint_);
     for (const Check& check : forms_) verdict_.checks.push_back(check);
     verdict_.checks.push_back(local_);
+    for (Check& check : noether_->checks()) verdict_.checks.push_back(std::move(check));
     if (order_.samples > 0) verdict_.checks.push_back(order_);
     if (reversal_.samples > 0) verdict_.checks.push_back(reversal_);
     if (first_step_.samples > 0) verdict_.checks.push_back(first_step_);
+    if (noether_->checks().empty())
+      verdict_.left_out.push_back(
+          "Noether: the theory declares no symmetry of its fields; try one by verify.generator");
+    if (scene_.theory->constraint() && !scene_.time_steps.empty())
+      verdict_.left_out.push_back("form of the first step: not for theories with a constraint");
     if (scene_.step_control())
       verdict_.left_out.push_back(
           "symplecticity: the forms here are of steps as given; with steps chosen by the field the map of rows is "
@@ -77,6 +88,20 @@ class MeshVerification {
  private:
   static constexpr std::array<int, 5> sizes{1, 3, 9, 27, 60};
   static constexpr int window = 5;
+
+  std::vector<LinearSymmetry> symmetries(const Values& values) {
+    std::vector<LinearSymmetry> all = scene_.theory->symmetries();
+    if (const auto* density = dynamic_cast<const SymbolicDensity*>(&scene_.theory->density()))
+      for (const LinearSymmetry& symmetry : density->up_to_divergence())
+        verdict_.left_out.push_back(fmt::format(
+            "Noether, {}: the density has it up to a divergence, and its stencils on a mesh have not", symmetry.name));
+    if (const auto text = values.text("verify.generator"); text && !text->empty()) {
+      ExpressionNames names{{}, {}};
+      for (const auto& field : scene_.fields) names.fields.push_back(field.name);
+      all.push_back(generator_of(*text, names, "generator (" + *text + ")", "verify.generator"));
+    }
+    return all;
+  }
 
   void look_at(const ComplexSystem& system, std::vector<double> y, const std::string& where) {
     const Complex& complex = system.complex();
@@ -103,6 +128,7 @@ class MeshVerification {
         if (local_.take(form.local_identity(V[v], V[v + 1]), region) && !local_.passed())
           local_.failure = "∂²L/∂y∂y of a stencil is not symmetric";
       }
+      noether_->look_at(system, form.region(), y, region, random_);
       verdict_.points.push_back({fmt::format("{} sites", sizes[n]),
                                  static_cast<std::int64_t>(form.region().stencils().size()), forms_[n].value, true});
     }
@@ -132,9 +158,28 @@ class MeshVerification {
       if (!system.complex().has_equation(site)) continue;
       const double own = scene_.time == MeshTime::cells ? E[n].absolute : scale;
       if (equations_.take({E[n].sum, own, E[n].count}, where))
-        equations_.region = fmt::format("{}, {}", system.complex().name(site), where), worst_site_ = equations_.region;
+        equations_.region = fmt::format("{}, {}", name_of(system, site), where), worst_site_ = equations_.region;
     }
     if (!equations_.passed()) equations_.failure = "the values around " + worst_site_ + " are not those of a solution";
+  }
+
+  // Where every value is a site of its own, their numbers say nothing.
+  std::string name_of(const ComplexSystem& system, int site) const {
+    const std::string name = system.complex().name(site);
+    return scene_.theory->constraint() ? "the point" + name.substr(name.find(" at ")) : name;
+  }
+
+  // Relative to Σ |∂G/∂φ φ|: the terms of G cancel within one stencil.
+  void look_at_constraint(std::span<const double> fields, const std::string& where) {
+    if (!scene_.theory->constraint()) return;
+    const auto d = scene_.fields.size();
+    scene_.space->constraint->each(fields, [&](std::size_t n, double G, std::span<const double> slopes) {
+      Balance balance{G, 0, 1};
+      for (std::size_t a = 0; a < d; ++a) balance.absolute += std::abs(slopes[a] * fields[n * d + a]);
+      const std::size_t sites = scene_.space->mesh.points.size();
+      if (constraint_.take(balance, fmt::format("point {}, {}", n % sites, where)) && !constraint_.passed())
+        constraint_.failure = "the fields leave the surface of the constraint at " + constraint_.region;
+    });
   }
 
   /// Every row but the first and the last has an equation; windows overlap by two rows.
@@ -154,7 +199,11 @@ class MeshVerification {
     const int frames = file.frames();
     if (scene_.is_one_problem()) {
       const StaticField field(scene_);
-      return look_at(field.system(), file.row(frames - 1), fmt::format("frame {}", frames - 1));
+      const std::vector<double> row = file.row(frames - 1);
+      const std::string where = fmt::format("frame {}", frames - 1);
+      if (scene_.stencils) return look_at(field.system(), row, where);
+      look_at_constraint(row, where);
+      return look_at(field.system(), SpaceRows(*scene_.space).with_multipliers(row), where);
     }
     if (frames < 3) throw refuse(fmt::format("has {} frames, and an equation takes three; record more rows", frames));
     for (int first = 0, last = 0; last < frames - 1 && !Interrupt::asked(); first = last - 1) {
@@ -170,10 +219,16 @@ class MeshVerification {
           throw refuse(fmt::format("frame {} is not later than the one before it; sort the frames", f));
         times.push_back(*time);
       }
-      const SpaceRows window_rows(*scene_.space, times);
-      look_at(window_rows.system(), rows, fmt::format("frames {} to {}", first, last));
+      look_at_window(times, rows, fmt::format("frames {} to {}", first, last));
     }
     if (Interrupt::asked()) verdict_.status = "interrupted";
+  }
+
+  /// Multipliers are those that fit the rows best.
+  void look_at_window(std::span<const double> times, std::span<const double> rows, const std::string& where) {
+    const SpaceRows window_rows(*scene_.space, times);
+    look_at_constraint(rows, where);
+    look_at(window_rows.system(), window_rows.with_multipliers(rows), where);
   }
 
   /// Rows of one mesh say nothing of another.
@@ -195,7 +250,8 @@ class MeshVerification {
   void look_at_field() {
     StaticField field(scene_);
     field.solve();
-    look_at(field.system(), field.values(), "all of space");
+    if (scene_.theory->constraint()) look_at_constraint(field.values(), "all of space");
+    look_at(field.system(), field.unknowns_and_data(), "all of space");
   }
 
   // Windows of some updates a site, with the order that the planner finds for them.
@@ -248,10 +304,9 @@ class MeshVerification {
           std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_);  // the last row of the next window
       if (evolution.newest() > next - window) keep(evolution.row(), evolution.time());
       if (evolution.newest() < next) continue;
-      const SpaceRows window_rows(*scene_.space, times);
-      look_at(window_rows.system(), rows,
-              fmt::format("rows {} to {}", evolution.newest() - window + 1, evolution.newest()));
-      if (own_steps) look_at_first_step(times, rows, fmt::format("rows from {}", evolution.newest() - window + 1));
+      look_at_window(times, rows, fmt::format("rows {} to {}", evolution.newest() - window + 1, evolution.newest()));
+      if (own_steps && !scene_.theory->constraint())
+        look_at_first_step(times, rows, fmt::format("rows from {}", evolution.newest() - window + 1));
       while (moment < moments_ &&
              std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_) <= evolution.newest())
         ++moment;
@@ -321,7 +376,8 @@ class MeshVerification {
   int variations_, moments_;
   std::string fault_, worst_site_;
   std::mt19937_64 random_;
-  Check equations_, local_, reversal_, order_, first_step_;
+  Check equations_, constraint_, local_, reversal_, order_, first_step_;
+  std::optional<ComplexNoether> noether_;
   std::optional<Measured> energy_;
   std::vector<Check> forms_;
   Verdict verdict_;

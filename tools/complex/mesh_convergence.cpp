@@ -33,7 +33,7 @@ std::optional<End> last_row(const ComplexScene& c) {
   if (c.is_one_problem()) {
     StaticField field(c);
     field.solve();
-    end.values = field.values();
+    end.values.assign(field.values().begin(), field.values().end());
   } else if (c.time == MeshTime::cells) {
     AsynchronousEvolution evolution(*c.space, cell_steps(c));
     evolution.start(c.values(), c.rates());

@@ -33,8 +33,16 @@ class AllSites final : public MeshEvolution {
   bool iterates() const override { return !evolution_.is_direct(); }
   int iterations() const override { return evolution_.report().iterations; }
   MeshRow row(std::int64_t row) override {
-    if (row < evolution_.newest()) return {row, 0, evolution_.row(1), evolution_.energy(), 0, 0};
-    return {row, evolution_.time(), evolution_.row(), evolution_.energy(), iterations(), evolution_.residual()};
+    const bool newest = row >= evolution_.newest();
+    MeshRow now{row,
+                newest ? evolution_.time() : 0,
+                evolution_.row(newest ? 0 : 1),
+                evolution_.energy(),
+                newest ? iterations() : 0,
+                newest ? evolution_.residual() : 0};
+    for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(evolution_.momentum(symmetry));
+    if (c_.space->constraint) now.constraint = c_.space->largest_constraint(now.values);
+    return now;
   }
   void visit(SavedState& state) override {
     evolution_.visit(state);
@@ -77,7 +85,9 @@ class OwnSteps final : public MeshEvolution {
   int iterations() const override { return 0; }
   MeshRow row(std::int64_t row) override {
     values_ = evolution_.values(time());
-    return {row, time(), values_, evolution_.energy(time()), 0, Outcome::unknown, evolution_.node_times()};
+    MeshRow now{row, time(), values_, evolution_.energy(time()), 0, Outcome::unknown, evolution_.node_times()};
+    for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(evolution_.momentum(symmetry));
+    return now;
   }
   void visit(SavedState& state) override {
     state("newest row", newest_);

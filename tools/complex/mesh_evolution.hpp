@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
+#include "schemes/verify/check.hpp"
 #include "tools/complex/complex_scene.hpp"
 #include "tools/complex/mesh_summary.hpp"
 
@@ -20,6 +22,8 @@ struct MeshRow {
   int iterations = 0;
   double residual = 0;
   std::span<const double> node_times = {};  ///< of asynchronous cells
+  std::vector<Balance> momenta = {};        ///< of the theory's symmetries: what a cut behind the row holds
+  double constraint = Outcome::unknown;     ///< the largest |G|
 };
 
 /// How a field goes on over a mesh, row after row: with all sites at once, or with cells that take their own steps between

@@ -7,6 +7,17 @@
 #include <cmath>
 
 namespace delf {
+namespace {
+
+std::vector<std::string> further_columns(const ComplexScene& c) {
+  std::vector<std::string> names;
+  if (c.theory->constraint()) names.emplace_back("constraint");
+  if (!c.is_one_problem())
+    for (const LinearSymmetry& s : c.theory->symmetries()) names.push_back(s.name);
+  return names;
+}
+
+}  // namespace
 
 MeshRecorder::MeshRecorder(const ComplexScene& c, const std::filesystem::path& folder, MeshOutcome& outcome,
                            const std::optional<Recorder::Written>& kept)
@@ -17,7 +28,7 @@ MeshRecorder::MeshRecorder(const ComplexScene& c, const std::filesystem::path& f
   if (c.scene.fields)
     files_.emplace(c, folder, expected, c.time == MeshTime::cells, kept ? kept->fields : WrittenPart{});
   if (kept) series_.emplace(series, kept->series);
-  else series_.emplace(series, std::vector<std::string>{});
+  else series_.emplace(series, further_columns(c));
 }
 
 void MeshRecorder::record(const MeshRow& r, std::span<const SlabEnergy> slabs) {
@@ -43,7 +54,16 @@ void MeshRecorder::note(const MeshRow& r) {
   if (!(error <= o.energy_error_max)) o.energy_error_max = error;
   if (std::isfinite(r.residual)) o.residual_max = std::max(o.residual_max, r.residual);
   else if (c_.time == MeshTime::cells) o.residual_max = r.residual;  // of asynchronous steps it is not measured
-  series_->append({r.row, r.time, r.energy, error, Outcome::unknown, Outcome::unknown, r.iterations, r.residual, {}});
+  Record record{r.row, r.time, r.energy, error, Outcome::unknown, Outcome::unknown, r.iterations, r.residual, {}};
+  if (c_.theory->constraint()) {
+    record.further.push_back(r.constraint);
+    if (!(r.constraint <= o.constraint_max)) o.constraint_max = r.constraint;
+  }
+  for (std::size_t n = 0; n < r.momenta.size(); ++n) {
+    o.conserved[n].take(r.momenta[n].sum, r.momenta[n].absolute);
+    record.further.push_back(r.momenta[n].sum);
+  }
+  series_->append(record);
 }
 
 Recorder::Written MeshRecorder::flush(bool sync) {

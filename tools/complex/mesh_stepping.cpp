@@ -24,7 +24,10 @@ Checksum checksum_of(const ComplexScene& c) {
 }  // namespace
 
 MeshStepping::MeshStepping(const ComplexScene& c, MeshEvolution& evolution, MeshOutcome& outcome)
-    : c_(c), evolution_(evolution), outcome_(outcome) {}
+    : c_(c), evolution_(evolution), outcome_(outcome) {
+  for (const LinearSymmetry& s : c.theory->symmetries())
+    outcome.conserved.push_back({s.name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+}
 
 void MeshStepping::visit(SavedState& state) {
   started_ = true;  // there are no checkpoints before

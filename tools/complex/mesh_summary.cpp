@@ -71,6 +71,11 @@ std::string summary_json(const ComplexScene& c, const MeshOutcome& o) {
   json["energy_initial"] = o.energy_initial;
   json["energy_final"] = o.energy_final;
   json["energy_error_max"] = o.energy_error_max;
+  json["constraint_max"] = o.constraint_max;
+  auto& conserved = json["conserved"] = nlohmann::ordered_json::array();
+  for (const Conserved& sum : o.conserved)
+    conserved.push_back(
+        {{"name", sum.name}, {"initial", sum.initial}, {"final", sum.final}, {"error_max", sum.error_max}});
   json["error_linf"] = o.error_linf;
   json["error_l2"] = o.error_l2;
   json["warnings"] = scene.warnings;
@@ -108,6 +113,9 @@ std::string report(const ComplexScene& c, const MeshOutcome& o) {
                                std::isfinite(o.energy_error_max)
                                    ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
                                    : ""));
+  for (const Conserved& sum : o.conserved)
+    line("conserved", fmt::format("{} = {:.10g}; error {:.3g} at most", sum.name, sum.final, sum.error_max));
+  if (std::isfinite(o.constraint_max)) line("constraint", fmt::format("{:.3g} at most", o.constraint_max));
   if (std::isfinite(o.error_linf))
     line("error",
          fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));

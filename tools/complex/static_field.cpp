@@ -21,12 +21,15 @@ StaticField::StaticField(const ComplexScene& scene)
       y_(scene.values()) {
   const std::size_t d = scene.fields.size();
   const Complex& complex = system_.complex();
-  for (int i = 0; i < complex.sites(); ++i)
-    for (std::size_t a = 0; a < d; ++a)
-      if (const auto& f = scene.fields[a]; complex.is_unknown(i) && f.exact) {
-        const auto& [t, x, y, z] = complex.position(i);
-        y_[static_cast<std::size_t>(i) * d + a] = f.value ? (*f.value)(t, {x, y, z}) : 0.0;
-      }
+  fields_ = y_.size();
+  y_.resize(system_.nodes(), 0.0);
+  for (std::size_t n = 0; n < fields_; ++n) {
+    const auto site = static_cast<int>(n / static_cast<std::size_t>(system_.components()));
+    if (const auto& f = scene.fields[n % d]; complex.is_unknown(site) && f.exact) {
+      const auto& [t, x, y, z] = complex.position(site);
+      y_[n] = f.value ? (*f.value)(t, {x, y, z}) : 0.0;
+    }
+  }
 }
 
 double StaticField::energy() const {

@@ -14,7 +14,9 @@ class StaticField {
 
   const ComplexSystem& system() const { return system_; }
   const ComplexSolver& solver() const { return solver_; }
-  const std::vector<double>& values() const { return y_; }
+  /// The fields; behind them y has multipliers, where there is a constraint.
+  std::span<const double> values() const { return {y_.data(), fields_}; }
+  const std::vector<double>& unknowns_and_data() const { return y_; }
   ComplexSolver::Report solve() { return solver_.solve(y_); }
   /// −S on a mesh: the energy of a static field.
   double energy() const;
@@ -25,6 +27,7 @@ class StaticField {
   ComplexSystem system_;
   ComplexSolver solver_;
   std::vector<double> y_;
+  std::size_t fields_;
 };
 
 }  // namespace delf

@@ -1,9 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "tools/run/outcome.hpp"
 
+#include <cmath>
+
 #include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
+
+void Conserved::take(double J, double terms) {
+  final = J;
+  if (std::isnan(J)) return;
+  if (std::isnan(initial)) initial = J;
+  const double error = std::abs(J - initial) / (terms > 0 ? terms : 1);
+  if (!(error <= error_max)) error_max = error;
+}
 
 void Outcome::visit(SavedState& saved) {
   saved("limit", limit);

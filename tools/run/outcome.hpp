@@ -20,7 +20,10 @@ class SavedState;
 struct Conserved {
   std::string name;
   double initial, final;
-  double error_max;  ///< the largest |J - J_0|, relative to |J_0| unless that is 0
+  double error_max;  ///< the largest |J − J_0|, relative to Σ |terms of J|: the sum itself may be zero
+
+  /// At a further row; what is not a number, as at row 0 of a start from that row alone, tells nothing.
+  void take(double J, double terms);
 };
 
 /// The result of a run: everything in summary.json and in the report on stdout.

@@ -384,15 +384,8 @@ void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
     if (std::isnan(extremes[m]) || (declared[m].least ? value < extremes[m] : value > extremes[m])) extremes[m] = value;
   }
   for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
-    Conserved& c = outcome_.conserved[j];
-    c.final = monitors.conserved[j];
-    record.further.push_back(c.final);
-    if (std::isnan(c.final)) continue;  // at row 0 of a start from that row alone
-    if (std::isnan(c.initial)) c.initial = c.final;
-    // relative to the sum of the absolute values of the terms: the sum itself may be zero
-    const double scale = monitors.conserved_scale[j];
-    const double error = std::abs(c.final - c.initial) / (scale > 0 ? scale : 1);
-    if (!(error <= c.error_max)) c.error_max = error;
+    outcome_.conserved[j].take(monitors.conserved[j], monitors.conserved_scale[j]);
+    record.further.push_back(monitors.conserved[j]);
   }
 }
 
