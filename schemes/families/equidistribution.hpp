@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "jets/expressions/evaluate.hpp"
-#include "jets/numbers/dual.hpp"
 #include "jets/stencil_lagrangian.hpp"
 #include "lattice/shapes/six_tuple.hpp"
 
@@ -80,29 +79,6 @@ struct Equidistribution {
     const std::size_t n = static_cast<std::size_t>(d) + 1;
     const auto left = y.subspan(0, n), centre = y.subspan(n, n), right = y.subspan(2 * n + 1, n);
     return -(y[2 * n] * monitor.change(left, centre, right));
-  }
-};
-
-/// Its rate along a motion q̇, −μ Dg(q)·q̇: values q = (φ, X) at the three sites, then q̇, then μ.
-struct EquidistributionRate {
-  int d = 1;
-  MeshMonitor monitor = {};
-
-  StencilPattern pattern() const { return StencilPattern({{0, 0}}); }
-  std::vector<VertexValue> values() const {
-    std::vector<VertexValue> list;
-    for (int c = 0; c <= 6 * (d + 1); ++c) list.push_back({0, c});
-    return list;
-  }
-  template <class T>
-  T operator()(std::span<const T> y, const Cell&) const {
-    using Along = Dual<T, 1>;
-    const std::size_t n = static_cast<std::size_t>(d) + 1;
-    thread_local std::vector<Along> q;  // made anew it costs as much as what it is for
-    q.resize(3 * n);
-    for (std::size_t i = 0; i < 3 * n; ++i) q[i].value = y[i], q[i].d[0] = y[3 * n + i];
-    const std::span<const Along> all(q);
-    return -(y[6 * n] * monitor.change(all).d[0]);
   }
 };
 

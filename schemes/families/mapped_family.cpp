@@ -13,9 +13,22 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// y += w x, `count` numbers.
-void add(double* y, double w, const double* x, int count) {
-  for (int i = 0; i < count; i += lanes) (Pack::load(y + i) + w * Pack::load(x + i)).store(y + i);
+/// y = Σ w x, `count` numbers; x = row(value).
+template <class Row>
+void sum(std::span<const MappedFamily::Entry> terms, const Row& row, int count, double* y) {
+  // Some packs at once: sums do not wait for each other, and terms are looked up less often.
+  const auto packs = [&]<int at_once>(int i) {
+    Pack all[at_once];
+    for (Pack& a : all) a = Pack(0.0);
+    for (const auto& [value, weight] : terms) {
+      const double* const x = row(value) + i;
+      for (int p = 0; p < at_once; ++p) all[p] += weight * Pack::load(x + p * lanes);
+    }
+    for (int p = 0; p < at_once; ++p) all[p].store(y + i + p * lanes);
+  };
+  int i = 0;
+  for (; i + 4 * lanes <= count; i += 4 * lanes) packs.template operator()<4>(i);
+  for (; i < count; i += lanes) packs.template operator()<1>(i);
 }
 
 /// Every site that a map names, in order, and the values there.
@@ -55,6 +68,9 @@ MappedFamily::MappedFamily(std::shared_ptr<const StencilFamily> family, const Ma
   };
   fill(map.reads, reads_);
   fill(map.tests.empty() ? map.reads : map.tests, tests_);
+  map_.resize(at(family_->size()));
+  for (int i = 0; i < size(); ++i)
+    for (const auto& [value, weight] : reads_[at(i)]) map_[at(value)].push_back({i, weight});
   for (const auto& entries : tests_) varied_.push_back(!entries.empty());
   if (!map.cell) return;
   cell_time_ = map.time;
@@ -75,10 +91,8 @@ int MappedFamily::number_of(const Part& p) const {
 /// The family's values of a batch, and the numbers of its values that some own ones meet.
 struct MappedFamily::Mapped {
   Mapped(const MappedFamily& of, const StencilBatch& batch) : y(of.family_->size(), batch.count) {
-    for (int b = 0; b < of.family_->size(); ++b) std::fill_n(y[b], batch.count, 0.0);
-    for (int i = 0; i < of.size(); ++i)
-      for (const auto& [value, weight] : of.reads_[at(i)])
-        add(y[value], weight, batch.y + static_cast<std::ptrdiff_t>(i) * batch.count, batch.count);
+    const auto own = [&](int i) { return batch.y + static_cast<std::ptrdiff_t>(i) * batch.count; };
+    for (int b = 0; b < of.family_->size(); ++b) sum(of.map_[at(b)], own, batch.count, y[b]);
     inner = {batch.cell, batch.count, batch.x, y[0]};
   }
   /// The numbers met, ascending; `place` is where each stands among them.
@@ -100,13 +114,11 @@ void MappedFamily::residual(const StencilBatch& batch, std::span<const int> equa
   thread_local std::vector<int> rows, place;
   const Mapped mapped(*this, batch);
   Mapped::meet(tests_, equations, rows, place, family_->size());
-  std::fill_n(r, equations.size() * at(batch.count), 0.0);
-  if (rows.empty()) return;
   const ScratchRows inner(static_cast<int>(rows.size()), batch.count);
-  family_->residual(mapped.inner, rows, inner[0]);
+  if (!rows.empty()) family_->residual(mapped.inner, rows, inner[0]);
   for (std::size_t e = 0; e < equations.size(); ++e)
-    for (const auto& [value, weight] : tests_[at(equations[e])])
-      add(r + e * at(batch.count), weight, inner[place[at(value)]], batch.count);
+    sum(tests_[at(equations[e])], [&](int value) { return inner[place[at(value)]]; }, batch.count,
+        r + e * at(batch.count));
 }
 
 void MappedFamily::jacobian(const StencilBatch& batch, std::span<const int> equations, std::span<const int> unknowns,
@@ -115,17 +127,18 @@ void MappedFamily::jacobian(const StencilBatch& batch, std::span<const int> equa
   const Mapped mapped(*this, batch);
   Mapped::meet(tests_, equations, rows, row_place, family_->size());
   Mapped::meet(reads_, unknowns, columns, column_place, family_->size());
-  std::fill_n(J, equations.size() * unknowns.size() * at(batch.count), 0.0);
-  if (rows.empty() || columns.empty()) return;
-  const int width = static_cast<int>(columns.size());
-  const ScratchRows inner(static_cast<int>(rows.size()) * width, batch.count);
-  family_->jacobian(mapped.inner, rows, columns, inner[0]);
+  const int R = static_cast<int>(rows.size()), C = static_cast<int>(columns.size());
+  const int U = static_cast<int>(unknowns.size());
+  const ScratchRows inner(R * C, batch.count), by_own(R * U, batch.count);
+  if (R > 0 && C > 0) family_->jacobian(mapped.inner, rows, columns, inner[0]);
+  for (int r = 0; r < R; ++r)
+    for (int u = 0; u < U; ++u)
+      sum(reads_[at(unknowns[at(u)])], [&](int value) { return inner[r * C + column_place[at(value)]]; }, batch.count,
+          by_own[r * U + u]);
   for (std::size_t e = 0; e < equations.size(); ++e)
-    for (std::size_t u = 0; u < unknowns.size(); ++u)
-      for (const auto& [row, left] : tests_[at(equations[e])])
-        for (const auto& [column, right] : reads_[at(unknowns[u])])
-          add(J + (e * unknowns.size() + u) * at(batch.count), left * right,
-              inner[row_place[at(row)] * width + column_place[at(column)]], batch.count);
+    for (int u = 0; u < U; ++u)
+      sum(tests_[at(equations[e])], [&](int value) { return by_own[row_place[at(value)] * U + u]; }, batch.count,
+          J + (e * unknowns.size() + at(u)) * at(batch.count));
 }
 
 bool MappedFamily::lagrangian(const StencilBatch& batch, double* L) const {

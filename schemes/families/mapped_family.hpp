@@ -63,8 +63,8 @@ class MappedFamily : public StencilFamily {
   int number_of(const Part&) const;
 
   std::shared_ptr<const StencilFamily> family_;
-  std::vector<std::vector<Entry>> reads_,
-      tests_;  ///< of each own value: columns of M, rows of N, by the family's values
+  std::vector<std::vector<Entry>> map_;            ///< rows of M, by own values
+  std::vector<std::vector<Entry>> reads_, tests_;  ///< columns of M and rows of N, by the family's values
   std::vector<Entry> cell_;
   double cell_time_ = 0;
 };

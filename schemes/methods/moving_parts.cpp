@@ -19,6 +19,7 @@
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/mapped_family.hpp"
 #include "schemes/families/mesh_constraint.hpp"
+#include "schemes/families/rate_family.hpp"
 #include "schemes/stepping/semi_discrete.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -235,16 +236,16 @@ double stable_step(const FieldTheory& theory, const MovingScheme& scheme) {
 /// determines.
 void add_rate(SchemeParts& parts, int d, const MeshMonitor& monitor, const Layout& layout, int point,
               std::pair<int, double> component, bool slaved) {
+  const MappedFamily::Sum own{{{0, 0}, component.first, component.second}};
   MappedFamily::Map map;
   for (const bool rate : {false, true})
-    for (int space = -1; space <= 1; ++space)
+    for (int space = -1; space <= 1; ++space) {
       for (int c = 0; c <= d; ++c) map.reads.push_back(layout.value(point, c, space, rate));
-  map.reads.emplace_back();
-  const MappedFamily::Sum own{{{0, 0}, component.first, component.second}};
-  if (slaved) map.tests.resize(map.reads.size()), map.tests.back() = own;
-  else map.reads.back() = own;
+      if (space == 0) map.reads.push_back(slaved || rate ? MappedFamily::Sum{} : own);
+    }
+  if (slaved) map.tests.resize(map.reads.size()), map.tests[at(2 * (d + 1))] = own;
   parts.families.push_back(std::make_shared<const MappedFamily>(
-      std::make_shared<const LagrangianFamily<EquidistributionRate>>(EquidistributionRate{d, monitor}), map));
+      std::make_shared<const RateFamily<Equidistribution>>(Equidistribution{d, monitor}), map));
 }
 
 /// The node whose function is zero at every point of time, so that its slopes alone are felt: a bubble.

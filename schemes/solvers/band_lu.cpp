@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <utility>
+
+#include "jets/simd/pack_gather.hpp"
 
 namespace delf {
 namespace {
@@ -14,12 +15,6 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The largest multiple of a pack's width that is not above i ≥ 0.
 int whole_packs(int i) { return i / lanes * lanes; }
-
-Pack unaligned(const double* p) {
-  Pack a;
-  std::memcpy(&a, p, sizeof a);
-  return a;
-}
 
 // Loops of a length known when they are compiled, for the widths that are common; 0 stands for any.
 
@@ -50,7 +45,7 @@ template <int... lower>
 constexpr std::array<Eliminate, sizeof...(lower)> eliminations(std::integer_sequence<int, lower...>) {
   return {eliminate<lower>...};
 }
-constexpr auto common = eliminations(std::make_integer_sequence<int, 16>{});
+constexpr auto common = eliminations(std::make_integer_sequence<int, 24>{});
 
 }  // namespace
 
@@ -99,7 +94,8 @@ void BandLU::solve(double* x) const {
     const int count = std::min(upper_, n_ - 1 - k);
     Pack old(0.0);
     int j = count;
-    for (; j >= 3 + lanes; j -= lanes) old += unaligned(u + j - lanes + 1) * unaligned(x + k + j - lanes + 1);
+    for (; j >= 3 + lanes; j -= lanes)
+      old += load_unaligned(u + j - lanes + 1) * load_unaligned(x + k + j - lanes + 1);
     double s = x[k] - sum(old);
     for (; j > 3; --j) s -= u[j] * x[k + j];
     if (count > 2) s -= u[3] * x3;

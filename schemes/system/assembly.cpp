@@ -39,6 +39,59 @@ class NodeNumbers {
 
 }  // namespace
 
+/// The rows that batches read, component by component: neighbouring stencils read neighbouring numbers.
+class Assembly::Columns {
+ public:
+  enum class Of { all, known, unknown };  ///< batches: those without an unknown, those with one
+  /// The lowest and the highest row that they read.
+  static std::pair<int, int> rows(const std::vector<Batch>& batches, Of which) {
+    std::pair<int, int> all{0, -1};
+    for (const Batch& b : batches) {
+      if (which != Of::all && b.unknowns.empty() != (which == Of::known)) continue;
+      const auto [low, high] = std::ranges::minmax(b.rows);
+      const bool first = all.second < all.first;
+      all = {first ? low : std::min(all.first, low), first ? high : std::max(all.second, high)};
+    }
+    return all;
+  }
+  Columns(const Assembly& assembly, SectionView section, std::int64_t J, Of which)
+      : Columns(assembly, section, J, which, assembly.columns_) {}
+  Columns(const Assembly& assembly, SectionView section, std::int64_t J, Of which, Numbers& room)
+      : section_(section), J_(section.index(J)), components_(assembly.components_) {
+    if (components_ == 1) return;
+    const auto [low, high] = rows(assembly.batches_, which);
+    low_ = low;
+    sites_ = section.row_size() / at(components_);
+    room.resize(at(high - low + 1) * section.row_size());
+    double* to = room.data();
+    columns_ = to;
+    for (int row = low; row <= high; ++row) {
+      const double* const from = section.beside(J_, row);
+      for (int c = 0; c < components_; ++c)
+        for (std::size_t i = 0; i < sites_; ++i) *to++ = from[i * at(components_) + at(c)];
+    }
+  }
+  const double* operator()(int row, int c) const {
+    return components_ == 1 ? section_.beside(J_, row) : columns_ + at((row - low_) * components_ + c) * sites_;
+  }
+  /// Value i of a pack of stencils from the s-th on.
+  [[gnu::always_inline]] Pack operator()(const Batch& b, int i, int s) const {
+    const double* const column = (*this)(b.rows[at(i)], b.family->values()[at(i)].component);
+    return of(column, b, b.read(i, s));
+  }
+  [[gnu::always_inline]] static Pack of(const double* column, const Batch& b, int read) {
+    const int* const place = b.place.data() + read;
+    if (b.side_by_side[at(read / lanes)] != 0) return load_unaligned(column + *place);
+    return b.stencils == 1 ? Pack(column[*place]) : delf::gather(column, place);
+  }
+
+ private:
+  SectionView section_;
+  int J_, components_, low_ = 0;
+  std::size_t sites_ = 0;
+  const double* columns_ = nullptr;
+};
+
 SectionRing::SectionRing(const Window& window, std::int64_t first, std::int64_t last)
     : SectionRing(static_cast<int>(last - first + 1), window.rows.front().size()) {
   for (std::int64_t r = first; r <= last; ++r)
@@ -137,7 +190,7 @@ void Assembly::list_reads(const LatticeSystem& system) {
     Batch& b = batches_[n];
     largest = std::max(largest, b.size);
     const std::size_t reads = at(b.size) * at(b.padded);
-    b.place.resize(reads), b.equation.resize(reads), unknown[n].resize(reads);
+    b.place.resize(reads), b.side_by_side.resize(reads / at(lanes)), b.equation.resize(reads), unknown[n].resize(reads);
     if (parts_.turn != 0) b.gained.resize(reads);
     for (int i = 0; i < b.size; ++i) {
       const Site vertex = b.family->site(i);
@@ -148,12 +201,17 @@ void Assembly::list_reads(const LatticeSystem& system) {
         const int x = b.sites[at(s)] + vertex.space, home = lattice.home(x);
         const std::size_t read = at(b.read(i, s));
         const int equation = s < b.stencils && b.family->is_varied(i) ? equation_at(row, home, c) : -1;
-        b.place[read] = place({{row, home, vertex.node}, c});
+        b.place[read] = place(Site{row, home, vertex.node});
         b.equation[read] = equation < 0 ? size() : equation;
         unknown[n][read] = unknown_at(row, home, c);
         if (parts_.turn != 0) b.gained[read] = turn * ((x - home) / lattice.sites());
         is_equation = is_equation || equation >= 0;
         is_unknown = is_unknown || unknown[n][read] >= 0;
+      }
+      for (int s = 0; s < b.padded; s += lanes) {
+        const auto first = b.place.begin() + b.read(i, s);
+        b.side_by_side[at(b.read(i, s) / lanes)] =
+            std::adjacent_find(first, first + lanes, [](int p, int q) { return q != p + 1; }) == first + lanes;
       }
       if (is_equation) b.equations.push_back(i);
       if (is_unknown) b.unknowns.push_back(i);
@@ -166,6 +224,11 @@ void Assembly::list_reads(const LatticeSystem& system) {
     out_.reserve(std::max(numbers, at(largest_strip / lanes)));
   }
   y_.reserve(at(largest * most_together / lanes));
+  if (components_ == 1) return;
+  const auto [low, high] = Columns::rows(batches_, Columns::Of::all);
+  int sites = 0;
+  for (const Batch& b : batches_) sites = std::max(sites, std::ranges::max(b.place) + 1);
+  columns_.reserve(at((high - low + 1) * sites * components_));
 }
 
 /// The entries of the Jacobian, each once, and which of them each stencil gives a share of.
@@ -226,24 +289,18 @@ Cell Assembly::cell(const Batch& b, std::int64_t J, double x) const {
   return {times_->step(row), space_step_, times_->time(row), x};
 }
 
-Pack Assembly::gathered(const Batch& b, SectionView section, std::int64_t J, int i, int s) const {
-  return delf::gather(section.row(J + b.rows[at(i)]), b.place.data() + b.read(i, s));
-}
-
 template <class Use>
-void Assembly::strips(const Batch& b, SectionView section, std::int64_t J, int numbers, const Use& use) const {
+void Assembly::strips(const Batch& b, const Columns& columns, std::int64_t J, int numbers, const Use& use) const {
   // A strip's numbers stay in the cache of first level.
-  const int at_J = section.index(J);
   const int most = std::clamp(largest_strip / std::max(numbers, 1) / lanes * lanes, lanes, most_together);
   for (int first = 0; first < b.padded; first += most) {
     const int count = std::min(most, b.padded - first);
     y_.resize(at(b.size * count / lanes)), out_.resize(at(numbers * count / lanes));
     Pack* y = y_.data();
     for (int i = 0; i < b.size; ++i) {
-      const double* const row = section.beside(at_J, b.rows[at(i)]);
+      const double* const column = columns(b.rows[at(i)], b.family->values()[at(i)].component);
       for (int s = first; s < first + count; s += lanes, ++y) {
-        const int* const place = b.place.data() + b.read(i, s);
-        Pack read = b.stencils == 1 ? Pack(row[*place]) : delf::gather(row, place);
+        Pack read = Columns::of(column, b, b.read(i, s));
         if (!b.gained.empty())
           for (int l = 0; l < lanes; ++l) read.v[l] += b.gained[at(b.read(i, s + l))];
         *y = read;
@@ -254,10 +311,11 @@ void Assembly::strips(const Batch& b, SectionView section, std::int64_t J, int n
   }
 }
 
-void Assembly::add_residual(const Batch& b, SectionView section, std::int64_t J, double* E, double* absolute) const {
+void Assembly::add_residual(const Batch& b, const Columns& columns, std::int64_t J, double* E,
+                            double* absolute) const {
   const int equations = static_cast<int>(b.equations.size());
   if (equations == 0) return;
-  strips(b, section, J, equations, [&](const StencilBatch& strip, int first, Pack* r) {
+  strips(b, columns, J, equations, [&](const StencilBatch& strip, int first, Pack* r) {
     const int packs = strip.count / lanes;
     if (b.linear && steady()) {
       for (int e = 0; e < equations; ++e) std::fill_n(r + e * packs, packs, Pack(b.at_zero[at(e)]));
@@ -285,35 +343,39 @@ void Assembly::residual(SectionView section, std::int64_t J, std::vector<double>
   if (momenta)
     for (int n = 0; n < size(); ++n)
       if (J + equation(n).site.time == 0) E[at(n)] = (*momenta)[at(place(equation(n)))];
+  const Columns columns(*this, section, J, Columns::Of::all);
   for (const Batch& b : batches_)
     if (!below_start(b, J, momenta != nullptr))
-      add_residual(b, section, J, E.data(), absolute ? absolute->data() : nullptr);
+      add_residual(b, columns, J, E.data(), absolute ? absolute->data() : nullptr);
   E.resize(at(size()));
   if (absolute) absolute->resize(E.size());
 }
 
 void Assembly::known(SectionView section, std::int64_t J, std::vector<double>& E) const {
   E.assign(at(size()) + 1, 0.0);
+  const Columns columns(*this, section, J, Columns::Of::known);
   for (const Batch& b : batches_)
-    if (b.unknowns.empty()) add_residual(b, section, J, E.data(), nullptr);
+    if (b.unknowns.empty()) add_residual(b, columns, J, E.data(), nullptr);
 }
 
 void Assembly::residual_from(const std::vector<double>& known, SectionView section, std::int64_t J,
                              std::vector<double>& E) const {
   E = known;
+  const Columns columns(*this, section, J, Columns::Of::unknown);
   for (const Batch& b : batches_)
-    if (!b.unknowns.empty()) add_residual(b, section, J, E.data(), nullptr);
+    if (!b.unknowns.empty()) add_residual(b, columns, J, E.data(), nullptr);
 }
 
 void Assembly::jacobian(SectionView section, std::int64_t J, std::vector<double>& values,
                         const std::vector<double>* momenta) const {
   values = fixed_;
   if (!steady()) values.assign(fixed_.size(), 0.0);
+  const Columns columns(*this, section, J, Columns::Of::unknown);
   for (const Batch& b : batches_) {
     if ((b.linear && steady()) || below_start(b, J, momenta != nullptr)) continue;
     const int pairs = static_cast<int>(b.equations.size() * b.unknowns.size());
     if (pairs == 0) continue;
-    strips(b, section, J, pairs, [&](const StencilBatch& strip, int first, Pack* derivatives) {
+    strips(b, columns, J, pairs, [&](const StencilBatch& strip, int first, Pack* derivatives) {
       b.family->jacobian(strip, b.equations, b.unknowns, numbers_of(derivatives));
       for (int n = 0; n < pairs; ++n)
         for (int s = 0; s < strip.count; s += lanes)
@@ -349,12 +411,16 @@ bool Assembly::constant_jacobian(std::vector<double>& values) const {
 void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V, std::vector<double>& values) const {
   values.assign(places_.size() + 1, 0.0);
   for (Variation& v : V) v.E.assign(at(size()) + 1, 0.0), v.absolute.assign(v.E.size(), 0.0);
+  const Columns columns(*this, y, J, Columns::Of::all);
+  std::vector<Numbers> room(V.size());
+  std::vector<Columns> of_V;
+  for (std::size_t v = 0; v < V.size(); ++v) of_V.emplace_back(*this, V[v].V, J, Columns::Of::all, room[v]);
   std::vector<int> all;
   for (const Batch& b : batches_) {
     all.resize(at(b.size));
     std::iota(all.begin(), all.end(), 0);
     const int pairs = static_cast<int>(b.equations.size()) * b.size;
-    strips(b, y, J, pairs, [&](const StencilBatch& strip, int first, Pack* derivatives) {
+    strips(b, columns, J, pairs, [&](const StencilBatch& strip, int first, Pack* derivatives) {
       b.family->jacobian(strip, b.equations, all, numbers_of(derivatives));
       const int packs = strip.count / lanes;
       const int* entry = b.entry.data() + first;
@@ -363,18 +429,18 @@ void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V,
           for (int p = 0; p < packs; ++p)
             scatter_add(derivatives[(static_cast<int>(e) * b.size + b.unknowns[u]) * packs + p], values.data(),
                         entry + p * lanes, b.stencils - first - p * lanes);
-      for (Variation& v : V)
+      for (std::size_t v = 0; v < V.size(); ++v)
         for (std::size_t e = 0; e < b.equations.size(); ++e)
           for (int p = 0; p < packs; ++p) {
             const int s = first + p * lanes;
             Pack sum(0.0), absolute(0.0);
             for (int m = 0; m < b.size; ++m) {
-              const Pack term = derivatives[(static_cast<int>(e) * b.size + m) * packs + p] * gathered(b, v.V, J, m, s);
+              const Pack term = derivatives[(static_cast<int>(e) * b.size + m) * packs + p] * of_V[v](b, m, s);
               sum += term, absolute += abs(term);
             }
             const int* const equation = b.equation.data() + b.read(b.equations[e], s);
-            scatter_add(sum, v.E.data(), equation, b.stencils - s);
-            scatter_add(absolute, v.absolute.data(), equation, b.stencils - s);
+            scatter_add(sum, V[v].E.data(), equation, b.stencils - s);
+            scatter_add(absolute, V[v].absolute.data(), equation, b.stencils - s);
           }
     });
   }
@@ -385,16 +451,17 @@ void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V,
 void Assembly::each(bool jacobian, SectionView section, std::int64_t J, const Visit& visit) const {
   std::vector<int> all, places;
   Numbers y, derivatives;
+  const Columns columns(*this, section, J, Columns::Of::all);
   for (const Batch& b : batches_) {
     all.resize(at(b.size)), places.resize(at(b.size)), y.resize(at(b.size));
     std::iota(all.begin(), all.end(), 0);
     derivatives.resize(jacobian ? at(b.size * b.size) : at(b.size));
-    strips(b, section, J, static_cast<int>(derivatives.size()), [&](const StencilBatch& strip, int first, Pack* out) {
+    strips(b, columns, J, static_cast<int>(derivatives.size()), [&](const StencilBatch& strip, int first, Pack* out) {
       if (jacobian) b.family->jacobian(strip, all, all, numbers_of(out));
       else b.family->residual(strip, all, numbers_of(out));
       for (int s = 0; s < std::min(strip.count, b.stencils - first); ++s) {
         for (int i = 0; i < b.size; ++i) {
-          places[at(i)] = b.place[at(b.read(i, first + s))];
+          places[at(i)] = b.place[at(b.read(i, first + s))] * components_ + b.family->values()[at(i)].component;
           y[at(i)] = strip.y[i * strip.count + s];
         }
         for (std::size_t n = 0; n < derivatives.size(); ++n)
@@ -414,7 +481,7 @@ std::vector<char> Assembly::present() const {
   const int depth = parts_.past + parts_.future + 1;
   int row_size = 0;
   for (const Batch& b : batches_)
-    for (const int place : b.place) row_size = std::max(row_size, place + 1);
+    for (const int place : b.place) row_size = std::max(row_size, (place + 1) * components_);
   SectionRing ring(depth, at(row_size));
   std::mt19937_64 engine(20251121);
   std::vector<char> found(places_.size(), false);
@@ -440,10 +507,10 @@ int Assembly::stencils() const {
 
 std::size_t Assembly::bytes() const {
   std::size_t total = places_.size() * sizeof(Place) + fixed_.size() * sizeof(double) +
-                      (y_.capacity() + out_.capacity()) * sizeof(Pack) +
+                      (y_.capacity() + out_.capacity()) * sizeof(Pack) + columns_.capacity() * sizeof(double) +
                       (parts_.equations.size() + parts_.unknowns.size()) * sizeof(Node);
   for (const Batch& b : batches_)
-    total += sizeof(Batch) + b.x.size() * sizeof(Pack) + b.gained.size() * sizeof(double) +
+    total += sizeof(Batch) + b.x.size() * sizeof(Pack) + b.gained.size() * sizeof(double) + b.side_by_side.size() +
              (b.sites.size() + b.rows.size() + b.place.size() + b.equation.size() + b.entry.size()) * sizeof(int);
   return total;
 }

@@ -33,6 +33,7 @@ class SectionView {
     while (i >= depth_) i -= depth_;
     return at(i);
   }
+  std::size_t row_size() const { return row_size_; }
 
  private:
   const double* at(int i) const { return values_ + static_cast<std::size_t>(i) * row_size_; }
@@ -100,9 +101,7 @@ class Assembly {
   const Node& unknown(int n) const { return parts_.unknowns[static_cast<std::size_t>(n)]; }
   const Node& equation(int n) const { return parts_.equations[static_cast<std::size_t>(n)]; }
   /// Of a node, in its row.
-  int place(const Node& node) const {
-    return (parts_.place ? parts_.place(node.site) : node.site.space) * components_ + node.component;
-  }
+  int place(const Node& node) const { return place(node.site) * components_ + node.component; }
   double& value(SectionRing& ring, std::int64_t J, int n) const {
     return ring.row(J + unknown(n).site.time)[place(unknown(n))];
   }
@@ -179,7 +178,8 @@ class Assembly {
     std::vector<int> sites = {};  ///< of the anchors
     Packs x = {};
     std::vector<int> rows = {};                      ///< of value i, from J
-    std::vector<int> place = {};                     ///< in the row
+    std::vector<int> place = {};                     ///< of the site, in the row
+    std::vector<char> side_by_side = {};             ///< [read/lanes]: a pack of stencils reads neighbouring places
     Numbers gained = {};                             ///< for having gone round the circle; empty if nothing
     std::vector<int> equation = {};                  ///< that the residual belongs to, or size()
     std::vector<int> equations = {}, unknowns = {};  ///< values that are one, of some stencil
@@ -192,6 +192,7 @@ class Assembly {
     int read(int i, int s) const { return i * padded + s; }
   };
 
+  int place(Site site) const { return parts_.place ? parts_.place(site) : site.space; }
   void list_stencils(const LatticeSystem&);
   void list_reads(const LatticeSystem&);
   void list_places(const std::vector<std::vector<int>>& unknown);
@@ -201,11 +202,11 @@ class Assembly {
   Cell cell(const Batch& b, std::int64_t J, double x) const;
   /// All steps are as long as those that the constant parts were taken with.
   bool steady() const { return own_step_ || times_->uniform(); }
+  class Columns;
   /// Calls use(stencils, number of the first, room for `numbers` of each) for a batch, strip by strip.
   template <class Use>
-  void strips(const Batch&, SectionView, std::int64_t J, int numbers, const Use& use) const;
-  Pack gathered(const Batch&, SectionView, std::int64_t J, int i, int s) const;
-  void add_residual(const Batch&, SectionView, std::int64_t J, double* E, double* absolute) const;
+  void strips(const Batch&, const Columns&, std::int64_t J, int numbers, const Use& use) const;
+  void add_residual(const Batch&, const Columns&, std::int64_t J, double* E, double* absolute) const;
   void add_constant(const Batch&, const Numbers& J, Numbers& values) const;
   void each(bool jacobian, SectionView y, std::int64_t J, const Visit&) const;
 
@@ -217,7 +218,8 @@ class Assembly {
   std::vector<Batch> batches_;
   std::vector<Place> places_;
   Numbers fixed_;          ///< the values of places() that linear batches give
-  mutable Packs y_, out_;  ///< of a strip
+  mutable Packs y_, out_;    ///< of a strip
+  mutable Numbers columns_;  ///< room for Columns
 };
 
 }  // namespace delf
