@@ -48,7 +48,7 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, MeshO
        .constraint = c.theory->constraint() ? c.space->largest_constraint(field.values()) : Outcome::unknown},
       slabs);
   measure_error(c, field.values(), 0, o);
-  return field.solver().plan().level_of_sites(c.sites());
+  return c.stencils ? field.solver().plan().level_of_sites(c.sites()) : std::vector<int>();
 }
 
 // A failed figure does not fail the run.
