@@ -152,7 +152,7 @@ def lettered(left_out):
     common = [what for what in left_out[0] if all(what in others for others in left_out)]
     further = list(dict.fromkeys(what for others in left_out for what in others if what not in common))
     cells = [" ".join(letter(n) for n, what in enumerate(further) if what in others) or "–" for others in left_out]
-    line = f"Left out by all: {'; '.join(common)}."
+    line = f"Left out by all: {'; '.join(common) or 'nothing'}."
     if further:
         line += " Left out besides: " + "; ".join(f"({letter(n)}) {what}" for n, what in enumerate(further)) + "."
     return cells, line

@@ -14,7 +14,7 @@ namespace {
 /// Blocks of a level do not depend on each other.
 std::string levels_in_words(const ComplexPlan& plan) {
   if (plan.levels == 0) return "none";
-  return fmt::format("{:.6g} blocks a level, {} in the widest", static_cast<double>(plan.blocks()) / plan.levels,
+  return fmt::format("{:.4g} blocks a level, {} in the widest", static_cast<double>(plan.blocks()) / plan.levels,
                      plan.widest);
 }
 
@@ -35,13 +35,13 @@ ExitCode plan_sites(const ComplexScene& c) {
     fmt::print("  levels     {}\n", levels_in_words(plan));
     if (const std::string threads = threads_in_words(field.solver(), c.scene.problem.threads); !threads.empty())
       fmt::print("  threads    {}\n", threads);
-    fmt::print("  memory     {} bytes: the field {} B, sites and stencils {} B\n", bytes + 8 * field.values().size(),
-               8 * field.values().size(), bytes);
+    fmt::print("  memory     {} bytes: rows of the field {} B, sites and stencils {} B\n",
+               bytes + 8 * field.values().size(), 8 * field.values().size(), bytes);
   } catch (const BadInput& bad) {
     throw c.scene.settings.located(bad);
   }
   fmt::print(
-      "  left out   symbol, lattice norms: not applicable to a finite complex; an energy, but of sites that lie in "
+      "  left out   symbol, lattice norms: not applicable to a finite complex; energies, unless its sites lie in "
       "rows\n");
   return ExitCode::done;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 
 #include "schemes/stepping/saved_state.hpp"
 #include "tools/run/interrupt.hpp"
@@ -60,11 +59,11 @@ void MeshStepping::run(MeshRecorder& recorder, Checkpoints& checkpoints) {
   if (!started_) evolution_.start();
   started_ = true;
   if (is_over()) save();
-  for (std::int64_t row = recorded_ + 1; row <= last_row(); ++row)
+  for (std::int64_t row = recorded_ + 1; row <= c_.scene.last_row(evolution_.newest()); ++row)
     if (to_be_recorded(row)) record(row);
   Progress progress(c_.scene.steps);
   while (!is_over() && !Interrupt::asked()) {
-    step_until(next_record(), progress);
+    step_until(c_.scene.next_record(evolution_.newest()), progress);
     if (is_over()) save();
     if (to_be_recorded(evolution_.newest())) record(evolution_.newest());
   }
@@ -72,7 +71,7 @@ void MeshStepping::run(MeshRecorder& recorder, Checkpoints& checkpoints) {
     outcome_.status = "interrupted";
     if (saved_ != evolution_.newest()) save();
   }
-  if (recorded_ != last_row()) record(last_row());
+  if (recorded_ != c_.scene.last_row(evolution_.newest())) record(c_.scene.last_row(evolution_.newest()));
   if (evolution_.iterates() && outcome_.steps_taken > 0)
     outcome_.iterations_mean = iterations_ / static_cast<double>(outcome_.steps_taken);
   measure_error(c_, evolution_.row(recorded_).values, outcome_.time, outcome_);
@@ -97,18 +96,8 @@ void MeshStepping::step_until(std::int64_t row, Progress& progress) {
 // Steps that the field chooses end by time, and their number is a guess.
 bool MeshStepping::is_over() const { return c_.scene.is_over(evolution_.newest(), evolution_.time()); }
 
-std::int64_t MeshStepping::last_row() const {
-  return c_.scene.until && c_.scene.steps > 0 ? evolution_.newest() : std::min(evolution_.newest(), c_.scene.steps);
-}
-
 bool MeshStepping::to_be_recorded(std::int64_t row) const {
-  return (is_over() && row == last_row()) || (c_.scene.every > 0 && row % c_.scene.every == 0);
-}
-
-std::int64_t MeshStepping::next_record() const {
-  const std::int64_t every = c_.scene.every,
-                     steps = c_.scene.until ? std::numeric_limits<std::int64_t>::max() : c_.scene.steps;
-  return every == 0 ? steps : std::min(steps, (evolution_.newest() / every + 1) * every);
+  return c_.scene.is_recorded(row, evolution_.newest(), evolution_.time());
 }
 
 void MeshStepping::record(std::int64_t row) {

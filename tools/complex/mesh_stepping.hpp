@@ -25,9 +25,7 @@ class MeshStepping {
   void save();
   void record(std::int64_t row);
   bool is_over() const;
-  std::int64_t last_row() const;
   bool to_be_recorded(std::int64_t row) const;
-  std::int64_t next_record() const;
 
   const ComplexScene& c_;
   MeshEvolution& evolution_;

@@ -62,7 +62,7 @@ QuietEnd run_quietly(const Scene& scene) {
                   (energy - *energy_initial) / std::abs(*energy_initial)});
   };
   const auto recorded = [&](std::int64_t row) {
-    return (scene.until && scene.is_over(row, simulation.time(row))) || row == scene.steps || (scene.every > 0 && row % scene.every == 0);
+    return scene.is_recorded(row, simulation.newest(), simulation.time(simulation.newest()));
   };
   for (std::int64_t row = 0; row <= simulation.newest(); ++row)
     if (recorded(row)) see(row);
@@ -70,7 +70,7 @@ QuietEnd run_quietly(const Scene& scene) {
   const auto is_over = [&] { return scene.is_over(simulation.newest(), simulation.time(simulation.newest())); };
   while (!is_over() && !Interrupt::asked()) {
     const std::int64_t row = simulation.newest() + 1;
-    simulation.step(scene.until || recorded(row));
+    simulation.step(scene.until || scene.next_record(row - 1) == row);
     if (recorded(row)) see(row);
   }
   end.seconds = seconds_since(begin);

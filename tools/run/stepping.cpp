@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
@@ -196,13 +195,13 @@ void Stepping::run(Recorder& recorder, Checkpoints& checkpoints) {
 }
 
 void Stepping::record_and_step() {
-  for (std::int64_t row = recorded_ + 1; started_ && row <= last_in_reach(); ++row)
+  for (std::int64_t row = recorded_ + 1; started_ && row <= scene_.last_row(newest_); ++row)
     if (to_be_recorded(row)) record(row);
   if (started_ && is_over()) save();
   try {
     Progress progress(scene_.steps);
     while (started_ && !is_over() && !Interrupt::asked()) {
-      step_until(next_record(), progress);
+      step_until(scene_.next_record(newest_), progress);
       if (is_over()) save();
       if (to_be_recorded(newest_)) record(newest_);
     }
@@ -215,13 +214,10 @@ void Stepping::record_and_step() {
   } catch (const NumericalFailure& error) {
     fail(error);
   }
-  if (const std::int64_t last = last_in_reach(); recorded_ != last) record(last);
+  if (const std::int64_t last = scene_.last_row(newest_); recorded_ != last) record(last);
 }
 
 bool Stepping::is_over() const { return scene_.is_over(newest_, simulation_.time(newest_)); }
-
-// Where rows choose the steps their number is a guess.
-std::int64_t Stepping::last_in_reach() const { return scene_.until ? newest_ : std::min(newest_, scene_.steps); }
 
 // The rows held are still the last good ones; of steps that were taken together some may be good.
 void Stepping::fail(const NumericalFailure& error) {
@@ -273,12 +269,7 @@ void Stepping::count_step() {
 }
 
 bool Stepping::to_be_recorded(std::int64_t row) const {
-  return (is_over() && row == last_in_reach()) || (scene_.every > 0 && row % scene_.every == 0);
-}
-
-std::int64_t Stepping::next_record() const {
-  const std::int64_t steps = scene_.until ? std::numeric_limits<std::int64_t>::max() : scene_.steps;
-  return scene_.every == 0 ? steps : std::min(steps, (newest_ / scene_.every + 1) * scene_.every);
+  return scene_.is_recorded(row, newest_, simulation_.time(newest_));
 }
 
 void Stepping::record(std::int64_t row) {

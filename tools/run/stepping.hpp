@@ -46,9 +46,7 @@ class Stepping {
   void measure(const Record&, int back);
   void fail(const NumericalFailure&);
   bool to_be_recorded(std::int64_t row) const;
-  std::int64_t next_record() const;
   bool is_over() const;
-  std::int64_t last_in_reach() const;
   void close_outcome();
   void measure_error();
   std::vector<double> phase_point(int back) const;

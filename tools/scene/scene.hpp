@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +44,16 @@ struct Scene {
   bool from_file() const { return !initial_file.empty(); }
   /// Whether row n, at time t, is the last: the first that is as late as `until`, or else the last of `steps`.
   bool is_over(std::int64_t n, double t) const { return until ? t >= *until * (1 - 1e-12) : n >= steps; }
+  /// The last row of a run that has come to row n, which may be one beyond the steps asked for.
+  std::int64_t last_row(std::int64_t n) const { return until && steps > 0 ? n : std::min(n, steps); }
+  /// Whether a row is recorded by a run that has come to row n at time t; and the next one after n, if none ends it before.
+  bool is_recorded(std::int64_t row, std::int64_t n, double t) const {
+    return (is_over(n, t) && row == last_row(n)) || (every > 0 && row % every == 0);
+  }
+  std::int64_t next_record(std::int64_t n) const {
+    const std::int64_t last = until ? std::numeric_limits<std::int64_t>::max() : steps;
+    return every == 0 ? last : std::min(last, (n / every + 1) * every);
+  }
   /// The time that the run is to end at.
   double end() const { return until ? *until : static_cast<double>(steps) * problem.time_step; }
 };

@@ -90,6 +90,7 @@ TEST_CASE("the scenes are shipped, each with its equation and the commands that 
                                           "spherical-pendulum",
                                           "static-kink",
                                           "toda-chain",
+                                          "turning-soliton",
                                           "two-soliton-bounce",
                                           "wall-reflection",
                                           "wave-map",
