@@ -68,10 +68,19 @@ Settings settings_of(const Arguments& arguments) {
   return settings;
 }
 
+void say_warnings(const Scene& scene) {
+  for (const std::string& warning : scene.warnings) std::fputs((warning + "\n").c_str(), stderr);
+}
+
 Scene scene_of(Settings settings) {
   Scene scene = read_scene(std::move(settings));
-  for (const std::string& warning : scene.warnings) std::fputs((warning + "\n").c_str(), stderr);
+  say_warnings(scene);
   return scene;
+}
+ComplexScene complex_scene_of(Settings settings) {
+  ComplexScene c = read_complex_scene(std::move(settings));
+  say_warnings(c.scene);
+  return c;
 }
 Scene scene_of(const Arguments& arguments) { return scene_of(settings_of(arguments)); }
 
@@ -86,7 +95,7 @@ void refuse(const Arguments& arguments, bool keys) {
 ExitCode carry_out_run(const Arguments& arguments) {
   Settings settings = settings_of(arguments);
   if (is_on_mesh(settings)) {
-    const ComplexScene mesh = read_complex_scene(std::move(settings));
+    const ComplexScene mesh = complex_scene_of(std::move(settings));
     return run(mesh, arguments.out.value_or("results/" + mesh.scene.name));
   }
   const Scene scene = scene_of(std::move(settings));
@@ -107,20 +116,20 @@ ExitCode carry_out_plan(const Arguments& arguments) {
   if (is_on_mesh(settings)) {
     if (arguments.latex)
       throw BadScene("command line: --latex: is for lattices, and this scene is on a mesh; leave it out");
-    return plan(read_complex_scene(std::move(settings)));
+    return plan(complex_scene_of(std::move(settings)));
   }
   return plan(scene_of(std::move(settings)), arguments.latex);
 }
 
 ExitCode carry_out_verify(const Arguments& arguments) {
   Settings settings = settings_of(arguments);
+  if (std::error_code none; arguments.fields && !std::filesystem::exists(file_of_rows(*arguments.fields), none))
+    throw BadScene(fmt::format("command line: --fields {}: no such file; check the path", *arguments.fields));
   if (is_on_mesh(settings)) {
-    const ComplexScene mesh = read_complex_scene(std::move(settings));
+    const ComplexScene mesh = complex_scene_of(std::move(settings));
     return verify(mesh, arguments.out.value_or("results/" + mesh.scene.name), arguments.fields);
   }
   if (arguments.fields) {  // a scene of rows needs no start, and no end
-    if (std::error_code none; !std::filesystem::exists(file_of_rows(*arguments.fields), none))
-      throw BadScene(fmt::format("command line: --fields {}: no such file; check the path", *arguments.fields));
     if (!settings.find("initial.state")) {
       settings.imply("initial.state", "file", "theory.name");
       settings.imply("initial.file", std::filesystem::absolute(file_of_rows(*arguments.fields)).string(),
@@ -139,7 +148,7 @@ ExitCode carry_out_sweep(const Arguments& arguments) {
 ExitCode carry_out_convergence(const Arguments& arguments) {
   Settings settings = settings_of(arguments);
   if (is_on_mesh(settings)) {
-    const ComplexScene mesh = read_complex_scene(std::move(settings));
+    const ComplexScene mesh = complex_scene_of(std::move(settings));
     return convergence(mesh, arguments.out.value_or("results/" + mesh.scene.name));
   }
   const Scene scene = scene_of(std::move(settings));

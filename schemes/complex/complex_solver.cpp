@@ -105,8 +105,11 @@ void ComplexSolver::for_each(std::size_t first, std::size_t last, const Do& one)
 ComplexSolver::Report ComplexSolver::solve(std::span<double> y) const {
   std::vector<Report> of_share(at(std::max(1, options_.threads)));
   for (std::size_t l = 0; l + 1 < level_.size(); ++l) {
-    for_each(level_[l], level_[l + 1],
-             [&](std::size_t p, std::size_t share) { of_share[share].add(parts_[p]->find(y, options_)); });
+    if (options_.is_to_end && options_.is_to_end()) of_share.front().ended = true;
+    else
+      for_each(level_[l], level_[l + 1],
+               [&](std::size_t p, std::size_t share) { of_share[share].add(parts_[p]->find(y, options_)); });
+    if (std::ranges::any_of(of_share, &Report::ended)) break;
     for_each(level_[l], level_[l + 1], [&](std::size_t p, std::size_t) { parts_[p]->write(y); });
   }
   for (const Report& one : of_share) of_share.front().add(one);
@@ -118,6 +121,7 @@ void ComplexSolver::Report::add(const Report& one) {
   correction = std::max(correction, one.correction);
   shortest = std::min(shortest, one.shortest);
   undetermined = std::max(undetermined, one.undetermined);
+  ended = ended || one.ended;
 }
 
 }  // namespace delf

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -25,6 +26,7 @@ class ComplexSolver {
     int threads = 1;  ///< that parts of a level are shared by
     /// Of a part at least, where a level has several: a level of 2000 is about as long as it takes to wake a thread twice.
     int unknowns = 1024;
+    std::function<bool()> is_to_end = {};  ///< asked between levels and iterations, by any thread
   };
   struct Report {
     int iterations = 0;     ///< the most of a part
@@ -33,6 +35,7 @@ class ComplexSolver {
     /// Where the equations hold to rounding and the matrix is nearly singular: how far, relative to the values, a correction
     /// would go that gains nothing. 0 otherwise.
     double undetermined = 0;
+    bool ended = false;  ///< is_to_end said so: levels that were not solved have the values that they had
 
     void add(const Report&);
   };

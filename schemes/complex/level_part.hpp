@@ -75,6 +75,10 @@ class ComplexSolver::LevelPart {
     Vector E = equations_->residual(y_), change;
     double size = E.norm();
     for (report.iterations = 1;; ++report.iterations) {
+      if (options.is_to_end && options.is_to_end()) {
+        report.ended = true;
+        return report;
+      }
       if (!direct) linearise();
       change = correction(E);
       if (!change.allFinite()) throw NotFinite("a value is not finite; use a shorter step, or another start");
@@ -126,7 +130,11 @@ class ComplexSolver::LevelPart {
   /// What is solved for directly.
   void refresh() {
     if (!is_direct()) return;
-    if (largest_ > 1) return take(equations_->of_unknowns());
+    if (largest_ > 1) {
+      take(equations_->of_unknowns());
+      if (!is_small()) require(!is_singular_to_rounding(equations_->of_unknowns()));
+      return;
+    }
     diagonal_ = equations_->of_unknowns().diagonal();
     require(diagonal_.size() == 0 || diagonal_.cwiseAbs().minCoeff() > 0);
   }
@@ -153,7 +161,19 @@ class ComplexSolver::LevelPart {
 
   static void require(bool regular) {
     if (!regular)
-      throw NoConvergence("a block of the complex is singular: its matching is structural only; give other data");
+      throw NoConvergence(
+          "a block of the complex is singular: its equations leave some of its values free, as those of a natural "
+          "boundary leave a constant; give other data");
+  }
+
+  /// Whether A x = r, for some r of size 1, has an x as large as only rounding in A makes it.
+  bool is_singular_to_rounding(const Matrix& A) const {
+    constexpr double most = 1e14;
+    Vector r(A.rows());
+    for (Eigen::Index i = 0; i < r.size(); ++i) r[i] = std::cos(static_cast<double>(i) * static_cast<double>(i));
+    double largest = 0;
+    for (Eigen::Index e = 0; e < A.nonZeros(); ++e) largest = std::max(largest, std::abs(A.valuePtr()[e]));
+    return !(Vector(solver_.solve(r)).lpNorm<Eigen::Infinity>() * largest < most);
   }
 
   /// The Jacobian at y.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/complex/space_rows.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -203,7 +205,14 @@ void SpaceEvolution::take(double below, double above, double row_measure) {
   std::copy(y_.begin() + static_cast<std::ptrdiff_t>(n), y_.end(), y_.begin());
   for (std::size_t i = 0; i < space_.fields_of_row() && space_.constraint; ++i)  // where Newton's method begins
     y_[2 * n + i] = y_[n + i] + above / below * (y_[n + i] - y_[i]);
-  report_ = solver_->solve(y_);
+  try {
+    report_ = solver_->solve(y_);
+  } catch (const NoConvergence&) {
+    throw NoConvergence(fmt::format(
+        "step {}, t = {:.6g}: the equations of the row were not solved: its step is too long for the field; "
+        "reduce lattice.courant or lattice.time_step",
+        newest_ + 1, time_ + above));
+  }
   if (!std::isfinite(y_[2 * n])) throw NotFinite("the field is not finite; use a shorter time step");
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 
@@ -22,6 +24,22 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
+/// Steps too long for the stencils make waves that grow from level to level, and every equation holds.
+void warn_of_growth(const ComplexScene& c, const StaticField& field, MeshOutcome& o) {
+  constexpr double much = 100;
+  const auto d = c.fields.size();
+  double given = 0, found = 0;
+  for (std::size_t n = 0; n < field.values().size(); ++n) {
+    double& largest = field.system().complex().is_unknown(static_cast<int>(n / d)) ? found : given;
+    largest = std::max(largest, std::abs(field.values()[n]));
+  }
+  if (found > much * given)
+    o.warnings.push_back(fmt::format(
+        "the field grows to {:.3g}, from data of {:.3g}: the steps in time are too long for the stencils, or the data "
+        "are not those of a solution; use shorter steps",
+        found, given));
+}
+
 /// Returns the level of each site.
 std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, MeshOutcome& o) {
   StaticField field(c);
@@ -33,6 +51,8 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, MeshO
   const ComplexSolver::Report solved = field.solve();
   o.seconds = seconds_since(begin);
   o.iterations_mean = o.iterations_max = solved.iterations;
+  if (solved.ended) o.status = "interrupted";
+  if (c.stencils && !solved.ended) warn_of_growth(c, field, o);
   if (solved.undetermined > 0)
     o.warnings.push_back(
         fmt::format("the equations hold to rounding, and hardly change in one direction: along it the values are known "

@@ -127,6 +127,11 @@ void read_fields(ComplexScene& c, const Values& values, const ParameterValues& p
     if (!c.fields.back().value && !c.fields.back().exact)
       throw settings.error("initial." + name, "must be given on a mesh, as a formula of x, y and z; or exact." + name +
                                                   " as one of t too");
+    if (c.fields.back().exact && !c.is_one_problem())
+      for (const std::string& key : {"initial." + name, "initial." + name + "_t"})
+        if (const Setting* s = settings.find(key))
+          c.scene.warnings.push_back(fmt::format("{}: {}{} = {}: warning: no effect, as exact.{} gives the start too",
+                                                 settings.place(key), s->line == 0 ? "--" : "", key, s->value, name));
     if (c.fields.front().exact.has_value() != c.fields.back().exact.has_value())
       throw settings.error("exact." + name, "must be given for all fields or for none; complete it");
   }

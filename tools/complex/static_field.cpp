@@ -2,6 +2,7 @@
 #include "tools/complex/static_field.hpp"
 
 #include "schemes/complex/spacetime_complex.hpp"
+#include "tools/run/interrupt.hpp"
 
 namespace delf {
 
@@ -16,8 +17,10 @@ ComplexSystem system_of(const ComplexScene& scene) {
 
 StaticField::StaticField(const ComplexScene& scene)
     : system_(system_of(scene)),
-      solver_(system_,
-              {scene.scene.problem.tolerance, scene.scene.problem.max_iterations, scene.scene.problem.threads}),
+      solver_(system_, {.tolerance = scene.scene.problem.tolerance,
+                        .max_iterations = scene.scene.problem.max_iterations,
+                        .threads = scene.scene.problem.threads,
+                        .is_to_end = Interrupt::asked}),
       y_(scene.values()) {
   const std::size_t d = scene.fields.size();
   const Complex& complex = system_.complex();

@@ -73,7 +73,7 @@ std::string number(const char* format, double value) {
 }
 
 std::string report(const Scene& scene, const std::string& label, const ConvergenceTable& table) {
-  std::string text = fmt::format("{}: {} at steps halved in time and space; errors are {}\n", scene.name, label,
+  std::string text = fmt::format("{}: {} at halved steps; errors are {}\n", scene.name, label,
                                  table.all_sites ? "those of all sites, against the exact solution"
                                  : table.exact   ? "those of the last row, against the exact solution"
                                                  : "differences from the last row of the next line");

@@ -64,8 +64,7 @@ std::string figure(const Scene& scene, const std::string& label, const Convergen
   for (const ConvergenceLevel* level : levels)
     tics += fmt::format("{}'{:.6g}' {}", tics.empty() ? "" : ", ", place(*level), place(*level));
   const double decades = std::log10(most / least);
-  return figure_title(scene.name + ": errors at steps halved in time and space",
-                      fmt::format("{}, {}", scene.problem.theory, label)) +
+  return figure_title(scene.name + ": errors at halved steps", fmt::format("{}, {}", scene.problem.theory, label)) +
          fmt::format(
              "set lmargin at screen 0.13\nset rmargin at screen 0.965\n"
              "set bmargin at screen 0.12\nset tmargin at screen top\n"

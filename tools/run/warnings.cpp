@@ -201,8 +201,10 @@ Warnings::Found Warnings::energy_band(const Trace& energy_errors) const {
   if (intervals.empty()) return {};
   const double early = intervals.back().end / 10;
   Range band;
+  int seen = 0;
   for (const auto& interval : intervals)
-    if (interval.end <= early || &interval == intervals.data()) band.add(interval.least), band.add(interval.most);
+    if (interval.end <= early) band.add(interval.least), band.add(interval.most), ++seen;
+  if (seen < 2) return {};  // one row has no band
   const double middle = (band.least + band.most) / 2, width = band.width();
   const double allowed = std::max(std::clamp(5 * width, one_percent, 2.5 * one_percent), 2 * width);
   for (const auto& interval : intervals)

@@ -95,6 +95,10 @@ Problem read_problem(const Settings& settings, const Values& values) {
   if (!std::isnormal(p.time_step))
     throw settings.error(by_courant ? "lattice.courant" : "lattice.time_step",
                          "the time step is outside the range of double precision; use another");
+  if (const auto own = values.text("lattice.time_steps");
+      values.given("lattice.time_steps") && own != "reversible" && own != "none")
+    throw settings.error("lattice.time_steps",
+                         "must be reversible, or none; steps in a list or a file are for lattice.space = complex");
   p.step_control = read_step_control(settings, values);
   read_parameters(values, p);
   return p;
@@ -214,7 +218,9 @@ std::optional<double> read_step_control(const Settings& settings, const Values& 
 FigureForm read_figure_form(const Settings& settings, const Values& values) {
   FigureForm form;
   form.titles = values.toggle("output.titles");
-  form.formats = parts_of(values.text("output.format").value_or(""), ',');
+  form.formats.clear();
+  for (std::string& format : parts_of(values.text("output.format").value_or(""), ','))
+    if (std::ranges::find(form.formats, format) == form.formats.end()) form.formats.push_back(std::move(format));
   for (const std::string& format : form.formats)
     if (std::ranges::find(figure_formats, format) == figure_formats.end())
       throw settings.error("output.format", fmt::format("{} is none of {}", format.empty() ? "nothing" : format,

@@ -103,6 +103,8 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
 
 ExitCode stability(const Scene& scene, const fs::path& folder) {
   if (scene.problem.lattice.space() == Space::point) return point_stability(scene, folder);
+  if (scene.problem.step_control)
+    throw scene.settings.error("lattice.time_steps", "limits are of equal steps; leave it out");
   const Interrupt interrupt;
   const StabilityRequest request = read_stability_request(scene);
   const StabilityFindings findings = find_stability(request, scene.problem);

@@ -602,3 +602,28 @@ TEST_CASE("wave maps and harmonic maps keep their constraint on meshes through t
   refused("wave.ini --exact.phi1=1", "exact.phi1 = 1: breaks the constraint at point 0 of the mesh");
   CHECK(delf_program(folder, "run still.ini --initial.phi3=0 --out no").code == 3);
 }
+
+TEST_CASE("what leaves values of a mesh or a complex free, or makes them grow, is no silent result") {
+  const Folder folder;
+  // a natural boundary leaves a constant
+  const Ran singular = delf_program(
+      folder,
+      "run static-kink --theory.name=wave --boundary.mesh=natural --initial.phi=x --out out --output.figures=off");
+  CHECK(singular.code == 3);
+  CHECK(contains(singular.err, "leave some of its values free"));
+  const Ran grown =
+      delf_program(folder, "run refined-kink --lattice.mesh=refined:18,4,300,9 --out out --output.figures=off");
+  CHECK(grown.code == 0);
+  CHECK(contains(grown.out, "the field grows to"));
+  CHECK_FALSE(contains(delf_program(folder, "run refined-kink --out out --output.figures=off").out, "grows to"));
+  // a start that nothing reads
+  CHECK(contains(delf_program(folder, "run asynchronous --initial.phi=0 --run.steps=1 --out out").err,
+                 "no effect, as exact.phi gives the start too"));
+  const Ran missing = delf_program(folder, "verify sphere --fields nowhere.h5");
+  CHECK(missing.code == 2);
+  CHECK(contains(missing.err, "--fields nowhere.h5: no such file"));
+  folder.write("text.h5", "no rows");
+  const Ran text = delf_program(folder, "verify sphere --fields text.h5");
+  CHECK(text.code == 2);
+  CHECK(contains(text.err, "--fields: text.h5: is not an HDF5 file"));
+}

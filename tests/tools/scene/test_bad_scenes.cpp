@@ -55,6 +55,8 @@ TEST_CASE("what overflows, does not fit, or comes twice is named") {
       {"run soliton-bounce --mesh.monitor=0", "--mesh.monitor = 0: must be positive"},
       {"run wave-packet --initial.width=100", "does not fit on a circle of length 80; choose a width of at most 20"},
       {"run kink --out one --out two", "--out two: is a second one, after --out one"},
+      {"run soliton-bounce --lattice.time_steps=reversibel", "lattice.time_steps = reversibel: must be reversible"},
+      {"stability soliton-bounce --lattice.time_steps=reversible", "limits are of equal steps"},
       {"stability static-kink", "lattice.space = complex: works with run, resume, plan, verify, sweep and convergence"},
       {"run cr.ini", "cr.ini: its lines end in CR alone"},
   }));
