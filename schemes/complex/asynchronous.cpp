@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
+#include "schemes/complex/complex_noether.hpp"
 #include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
@@ -168,12 +169,8 @@ double AsynchronousEvolution::energy(double t) const {
 Balance AsynchronousEvolution::momentum(const LinearSymmetry& symmetry) const {
   Balance balance;
   const auto d = at(d_);
-  for (std::size_t n = 0; n < y_.size(); ++n) {
-    const std::size_t a = n % d;
-    double xi = symmetry.shift[a];
-    for (std::size_t b = 0; b < d; ++b) xi += symmetry.matrix[a * d + b] * y_[n - a + b];
-    balance.add(momenta_[n] * xi);
-  }
+  for (std::size_t n = 0; n < y_.size(); ++n)
+    balance.add(momenta_[n] * generator_at(symmetry, n % d, y_.data() + n - n % d));
   return balance;
 }
 

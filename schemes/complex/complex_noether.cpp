@@ -36,9 +36,7 @@ void generator(const PlacedFamily& family, const LinearSymmetry& symmetry, std::
   xi.assign(y.size(), 0.0);
   for (std::size_t i = 0; i < y.size(); ++i) {
     const std::size_t a = i % of_vertex;
-    if (a >= d) continue;       // a multiplier
-    xi[i] = symmetry.shift[a];  // ξ_a = Σ_b A_ab y_b + b_a
-    for (std::size_t b = 0; b < d; ++b) xi[i] += symmetry.matrix[a * d + b] * y[i - a + b];
+    if (a < d) xi[i] = generator_at(symmetry, a, y.data() + i - a);  // and 0 of a multiplier
   }
 }
 

@@ -37,6 +37,13 @@ class ComplexNoether {
   bool forced_, wrong_sign_;
 };
 
+/// ξ_a(φ) = Σ_b A_ab φ_b + b_a at the d values of one site.
+inline double generator_at(const LinearSymmetry& symmetry, std::size_t a, const double* phi) {
+  const std::size_t d = symmetry.shift.size();
+  double xi = symmetry.shift[a];
+  for (std::size_t b = 0; b < d; ++b) xi += symmetry.matrix[a * d + b] * phi[b];
+  return xi;
+}
 /// ξ at the values of a stencil of the family, with y as in PlacedBatch.
 void generator(const PlacedFamily&, const LinearSymmetry&, std::span<const double> y, std::vector<double>& xi);
 

@@ -16,6 +16,7 @@
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/mesh_text.hpp"
+#include "tools/scene/key_warning.hpp"
 #include "tools/scene/values.hpp"
 
 namespace delf {
@@ -130,8 +131,7 @@ void read_fields(ComplexScene& c, const Values& values, const ParameterValues& p
     if (c.fields.back().exact && !c.is_one_problem())
       for (const std::string& key : {"initial." + name, "initial." + name + "_t"})
         if (const Setting* s = settings.find(key))
-          c.scene.warnings.push_back(fmt::format("{}: {}{} = {}: warning: no effect, as exact.{} gives the start too",
-                                                 settings.place(key), s->line == 0 ? "--" : "", key, s->value, name));
+          c.scene.warnings.push_back(key_warning(settings, *s, "no effect, as exact." + name + " gives the start too"));
     if (c.fields.front().exact.has_value() != c.fields.back().exact.has_value())
       throw settings.error("exact." + name, "must be given for all fields or for none; complete it");
   }

@@ -18,6 +18,7 @@
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/scene/brick_rows.hpp"
+#include "tools/scene/key_warning.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/values.hpp"
 
@@ -271,8 +272,7 @@ Scene read_scene(Settings given) {
   scene.times = values.times("output.times");
   scene.section = values.text("output.section").value_or("");
   const auto warn = [&](const Setting& s, const std::string& why) {
-    scene.warnings.push_back(
-        fmt::format("{}: {}{} = {}: warning: {}", settings.place(s.key), s.line == 0 ? "--" : "", s.key, s.value, why));
+    scene.warnings.push_back(key_warning(settings, s, why));
   };
   for (const Key& key : settings.all_keys())
     if (const Setting* s = settings.find(key.name))
