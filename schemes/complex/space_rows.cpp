@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <random>
@@ -207,13 +208,24 @@ void SpaceEvolution::take(double below, double above, double row_measure) {
     y_[2 * n + i] = y_[n + i] + above / below * (y_[n + i] - y_[i]);
   try {
     report_ = solver_->solve(y_);
+    if (!std::isfinite(y_[2 * n])) throw NotFinite("the field is not finite; use a shorter time step");
   } catch (const NoConvergence&) {
+    put_back();
     throw NoConvergence(fmt::format(
         "step {}, t = {:.6g}: the equations of the row were not solved: its step is too long for the field; "
         "reduce lattice.courant or lattice.time_step",
         newest_ + 1, time_ + above));
+  } catch (const NotFinite&) {
+    put_back();
+    throw;
   }
-  if (!std::isfinite(y_[2 * n])) throw NotFinite("the field is not finite; use a shorter time step");
+}
+
+/// The last good rows, without the one before them.
+void SpaceEvolution::put_back() {
+  const auto n = static_cast<std::ptrdiff_t>(space_.values_of_row());
+  std::copy_backward(y_.begin(), y_.begin() + 2 * n, y_.end());
+  std::fill(y_.begin(), y_.begin() + n, std::numeric_limits<double>::quiet_NaN());
 }
 
 void SpaceEvolution::start(std::span<const double> values, std::span<const double> rates,
@@ -269,7 +281,9 @@ Balance SpaceEvolution::momentum(const LinearSymmetry& symmetry) const {
   return momentum_across(energy_rows_.system(), energy_rows_.motion(0), rows, symmetry);
 }
 
-double SpaceEvolution::residual() const { return largest_residual(rows_.system(), y_); }
+double SpaceEvolution::residual() const {
+  return std::isfinite(y_[0]) ? largest_residual(rows_.system(), y_) : y_[0];  // put_back() leaves no equation
+}
 
 void SpaceEvolution::turn_back() {
   const auto n = static_cast<std::ptrdiff_t>(y_.size() / 3);

@@ -103,7 +103,7 @@ class SpaceEvolution {
   /// The first step may have a length of its own, as any other.
   void start(std::span<const double> values, std::span<const double> rates,
              std::optional<double> time_step = std::nullopt);
-  /// One step, of another length if it is given.
+  /// One step, of another length if it is given. Throws NumericalFailure; the last two rows are then as before.
   void step(std::optional<double> time_step = std::nullopt);
 
   /// Saves or restores what further steps depend on; what is restored needs no start.
@@ -129,7 +129,7 @@ class SpaceEvolution {
   /// Σ_i A_i ∂T/∂φ_t · ξ(φ_i) between the last two rows, which natural boundaries and closed surfaces keep where ξ is a
   /// symmetry of the density: its sum, and that of its absolute terms.
   Balance momentum(const LinearSymmetry&) const;
-  /// Of the equations behind the newest row: see largest_residual().
+  /// Of the equations behind the newest row: see largest_residual(). Not a number after a step that failed.
   double residual() const;
   /// The longest step that a linear wave can take, 2/ω of the fastest mode about φ = 0; none if nothing oscillates.
   std::optional<double> largest_step() const;
@@ -137,6 +137,7 @@ class SpaceEvolution {
  private:
   void set_steps(const std::array<double, 3>& now);
   void take(double below, double above, double row_measure);
+  void put_back();
 
   const CellSpace& space_;
   double h_, before_, time_ = 0;

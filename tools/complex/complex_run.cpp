@@ -48,7 +48,13 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, MeshO
   o.threads = threads_in_words(field.solver(), c.scene.problem.threads);
   o.bytes = field.system().bytes();
   const auto begin = Clock::now();
-  const ComplexSolver::Report solved = field.solve();
+  ComplexSolver::Report solved;
+  try {
+    solved = field.solve();
+  } catch (const NumericalFailure& error) {
+    o.status = status_of(error), o.failure = error.what();
+    throw;
+  }
   o.seconds = seconds_since(begin);
   o.iterations_mean = o.iterations_max = solved.iterations;
   if (solved.ended) o.status = "interrupted";
@@ -87,7 +93,7 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
   o.state = c.state_in_words();
   std::unique_ptr<MeshEvolution> evolution;
   std::optional<MeshStepping> stepping;
-  std::optional<Recorder::Written> kept;
+  std::optional<RunFiles::Written> kept;
   try {
     if (!c.is_one_problem()) {
       evolution = make_mesh_evolution(c);
@@ -96,6 +102,8 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
     if (resumed.state) {
       (*resumed.state)("written", kept.emplace());
       stepping->visit(*resumed.state);
+    } else if (stepping) {
+      stepping->start();
     }
   } catch (const BadInput& bad) {
     throw c.scene.settings.located(bad);
@@ -120,9 +128,6 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
     try {
       if (stepping) stepping->run(recorder, checkpoints);
       else levels = run_static(c, recorder, o);
-    } catch (const NumericalFailure& error) {
-      o.status = status_of(error), o.failure = error.what();
-      throw;
     } catch (const BadInput& bad) {
       throw c.scene.settings.located(bad);
     }

@@ -20,26 +20,23 @@ class AllSites final : public MeshEvolution {
         evolution_(*c.space, c.time_step(0), {c.scene.problem.tolerance, c.scene.problem.max_iterations}),
         steps_(c) {}
 
-  void start() override {
-    steps_.start(evolution_);
-    note_step();
-  }
+  void start() override { steps_.start(evolution_); }
   std::int64_t newest() const override { return evolution_.newest(); }
   double time() const override { return evolution_.time(); }
-  void step() override {
-    steps_.step(evolution_);
-    note_step();
+  double last_step() const override { return evolution_.last_step(); }
+  std::optional<double> own_length() const override {
+    return c_.time_steps.empty() && !c_.step_control() ? std::nullopt : std::optional(evolution_.last_step());
   }
-  bool iterates() const override { return !evolution_.is_direct(); }
-  int iterations() const override { return evolution_.report().iterations; }
+  void step() override { steps_.step(evolution_); }
+  int iterations() const override { return evolution_.is_direct() ? 0 : evolution_.report().iterations; }
   MeshRow row(std::int64_t row) override {
     const bool newest = row >= evolution_.newest();
     MeshRow now{row,
                 newest ? evolution_.time() : 0,
                 evolution_.row(newest ? 0 : 1),
                 evolution_.energy(),
-                newest ? iterations() : 0,
-                newest ? evolution_.residual() : 0};
+                newest ? evolution_.report().iterations : 0,
+                newest && row > 0 ? evolution_.residual() : 0};
     for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(evolution_.momentum(symmetry));
     if (c_.space->constraint) now.constraint = c_.space->largest_constraint(now.values);
     return now;
@@ -47,10 +44,8 @@ class AllSites final : public MeshEvolution {
   void visit(SavedState& state) override {
     evolution_.visit(state);
     steps_.visit(state);
-    state("shortest step", shortest_), state("longest step", longest_);
   }
   void describe(MeshOutcome& o) const override {
-    if (!c_.time_steps.empty() || c_.step_control()) o.shortest = shortest_, o.longest = longest_;
     o.solve = evolution_.plan().describe() + (evolution_.is_direct() ? " (explicit)" : "");
     o.solve_kind = evolution_.is_direct() ? "explicit" : "sparse";
     o.bytes = evolution_.bytes();
@@ -60,16 +55,9 @@ class AllSites final : public MeshEvolution {
   }
 
  private:
-  void note_step() {
-    const double h = evolution_.last_step();
-    longest_ = std::max(longest_, h);
-    shortest_ = shortest_ == 0 ? h : std::min(shortest_, h);
-  }
-
   const ComplexScene& c_;
   SpaceEvolution evolution_;
   RowSteps steps_;
-  double shortest_ = 0, longest_ = 0;
 };
 
 /// Row n is at n h, with h = scene.problem.time_step.
@@ -80,9 +68,8 @@ class OwnSteps final : public MeshEvolution {
   void start() override { evolution_.start(c_.values(), c_.rates()); }
   std::int64_t newest() const override { return newest_; }
   double time() const override { return static_cast<double>(newest_) * c_.scene.problem.time_step; }
-  void step() override { ++newest_, evolution_.advance(time()); }
-  bool iterates() const override { return false; }
-  int iterations() const override { return 0; }
+  double last_step() const override { return c_.scene.problem.time_step; }
+  void step() override { evolution_.advance(static_cast<double>(newest_ + 1) * last_step()), ++newest_; }
   MeshRow row(std::int64_t row) override {
     values_ = evolution_.values(time());
     MeshRow now{row, time(), values_, evolution_.energy(time()), 0, Outcome::unknown, evolution_.node_times()};

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,12 +35,14 @@ class MeshEvolution {
   /// The first rows.
   virtual void start() = 0;
   virtual std::int64_t newest() const = 0;
-  virtual double time() const = 0;  ///< of the newest row
+  virtual double time() const = 0;       ///< of the newest row
+  virtual double last_step() const = 0;  ///< between the last two rows
+  /// Where steps have lengths of their own, that of the last.
+  virtual std::optional<double> own_length() const { return {}; }
   /// To the next row.
   virtual void step() = 0;
-  /// Whether steps are solved by Newton's method, and how many iterations the last one took.
-  virtual bool iterates() const = 0;
-  virtual int iterations() const = 0;
+  /// Of Newton's method in the last step; 0 if it is one solve.
+  virtual int iterations() const { return 0; }
   /// The newest row; or row 0 where that is held still.
   virtual MeshRow row(std::int64_t) = 0;
   /// Saves or restores what the rest of the run depends on; what is restored needs no start.

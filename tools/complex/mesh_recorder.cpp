@@ -20,7 +20,7 @@ std::vector<std::string> further_columns(const ComplexScene& c) {
 }  // namespace
 
 MeshRecorder::MeshRecorder(const ComplexScene& c, const std::filesystem::path& folder, MeshOutcome& outcome,
-                           const std::optional<Recorder::Written>& kept)
+                           const std::optional<Written>& kept)
     : c_(c), outcome_(outcome), film_(c) {
   const std::filesystem::path series = folder / "series.csv";
   if (kept) require_part(series, kept->series);
@@ -66,8 +66,8 @@ void MeshRecorder::note(const MeshRow& r) {
   series_->append(record);
 }
 
-Recorder::Written MeshRecorder::flush(bool sync) {
-  Recorder::Written written;
+RunFiles::Written MeshRecorder::flush(bool sync) {
+  Written written;
   if (files_) written.fields = files_->flush(sync);
   written.series = series_->flush(sync);
   return written;

@@ -8,24 +8,22 @@
 #include "tools/complex/mesh_figures.hpp"
 #include "tools/complex/mesh_files.hpp"
 #include "tools/files/series_file.hpp"
-#include "tools/run/recorder.hpp"
+#include "tools/run/run_files.hpp"
 
 namespace delf {
 
 /// Where the recorded rows of a mesh go: series.csv; fields.h5 and the film for figures, if the scene wants them; and what
 /// the outcome says of energies and residuals.
-class MeshRecorder {
+class MeshRecorder final : public RunFiles {
  public:
   /// With `kept`, the files of an earlier run are gone on with from there: see Recorder.
   MeshRecorder(const ComplexScene&, const std::filesystem::path& folder, MeshOutcome&,
-               const std::optional<Recorder::Written>& kept = {});
+               const std::optional<Written>& kept = {});
 
   /// Of rows of a finite complex series.csv has a line for each slab in place of the row's.
   void record(const MeshRow&, std::span<const SlabEnergy> slabs = {});
-  /// Writes all buffered rows, and with `sync` waits until they are on the disk.
-  Recorder::Written flush(bool sync);
-  /// What is kept for figures and fields.xdmf.
-  void visit(SavedState&);
+  Written flush(bool sync) override;
+  void visit(SavedState&) override;
   void close();
   const MeshFilm& film() const { return film_; }
 

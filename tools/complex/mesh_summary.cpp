@@ -37,6 +37,8 @@ std::string summary_json(const ComplexScene& c, const MeshOutcome& o) {
   json["scene"] = scene.name;
   json["status"] = o.status;
   json["failure"] = o.failure.empty() ? null : nlohmann::ordered_json(o.failure);
+  json["break_time"] = o.break_time;
+  json["break_reason"] = std::isnan(o.break_time) ? null : nlohmann::ordered_json(o.status);
   json["theory"] = scene.problem.theory;
   json["fibre"] = scene.problem.circle_valued ? "S1" : "R";
   json["stencil"] = c.mesh_in_words();

@@ -48,7 +48,7 @@ std::vector<double> Recorder::drawn(const RecordedRow& row) const {
   return all;
 }
 
-Recorder::Written Recorder::flush(bool sync) {
+RunFiles::Written Recorder::flush(bool sync) {
   Written written;
   if (fields_) written.fields = fields_->flush(sync);
   written.series = series_->flush(sync);

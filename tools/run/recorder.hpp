@@ -10,6 +10,7 @@
 #include "tools/files/fields_file.hpp"
 #include "tools/files/series_file.hpp"
 #include "tools/run/record.hpp"
+#include "tools/run/run_files.hpp"
 #include "tools/run/trace.hpp"
 #include "tools/scene/row_names.hpp"
 #include "tools/scene/scene.hpp"
@@ -17,22 +18,16 @@
 namespace delf {
 
 /// Where the recorded rows of a run go: series.csv; fields.h5 and the film for figures, if the scene wants them.
-class Recorder {
+class Recorder final : public RunFiles {
  public:
-  /// What of the files has reached the disk.
-  struct Written {
-    WrittenPart series, fields;
-  };
   /// With `kept`, the files of an earlier run are gone on with from there. Throws BadScene, and changes no file, where they
   /// do not hold that much, or other values.
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&, const std::optional<Written>& kept = {});
 
   void append(const Record&, const RecordedRow&, const RecordedDatasets&);
-  /// Writes all buffered rows, and with `sync` waits until they are on the disk.
-  Written flush(bool sync);
-  /// What is kept for figures and the summary.
-  void visit(SavedState&);
+  Written flush(bool sync) override;
+  void visit(SavedState&) override;
   /// Writes all buffered rows. A failure does not prevent the other files; the first one is then thrown.
   void close();
 

@@ -101,7 +101,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   const std::optional<OwnEnergy> own = own_energy(simulation, problem);
   if (own) names.further.emplace_back("energy_own");
   Stepping stepping(scene, initial, simulation, names, own, outcome);
-  std::optional<Recorder::Written> kept;
+  std::optional<RunFiles::Written> kept;
   if (resumed.state) {
     (*resumed.state)("written", kept.emplace());
     stepping.visit(*resumed.state);

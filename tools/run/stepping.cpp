@@ -4,35 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/momenta.hpp"
-#include "tools/run/interrupt.hpp"
 #include "tools/run/placed_row.hpp"
-#include "tools/run/progress.hpp"
-#include "tools/run/seconds_since.hpp"
 
 namespace delf {
 
 namespace {
-
-// Adds the seconds of its life to a total, also when an exception ends it.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& total) : total_(total) {}
-  ~Stopwatch() { total_ += seconds_since(begin_); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  using Clock = std::chrono::steady_clock;
-  double& total_;
-  Clock::time_point begin_ = Clock::now();
-};
 
 // Whether threads share the strips of a step: explicit ones, whose matrix is one number.
 bool is_shared(const Simulation& simulation) {
@@ -40,11 +21,6 @@ bool is_shared(const Simulation& simulation) {
   const LatticeSystem& system = simulation.evolution().system();
   return stepper.layout() && !stepper.iterates() && stepper.matrix_free() && system.lattice().is_circle();
 }
-
-// A row that does not solve its equations.
-struct Unsolved : NoConvergence {
-  using NoConvergence::NoConvergence;
-};
 
 constexpr auto momentum_dataset = "momentum";
 
@@ -92,7 +68,8 @@ std::string threads_in_words(const Simulation& simulation, int asked) {
 
 Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,
                    const std::optional<OwnEnergy>& own, Outcome& outcome)
-    : scene_(scene),
+    : RowLoop(scene, outcome),
+      scene_(scene),
       initial_(initial),
       simulation_(simulation),
       outcome_(outcome),
@@ -121,15 +98,8 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
   outcome.threads = threads_in_words(simulation, scene.problem.threads);
 }
 
-void Stepping::start() {
-  try {
-    initial_.start(simulation_);
-  } catch (const NumericalFailure& error) {
-    return fail(error);
-  }
-  started_ = true;
-  newest_ = simulation_.newest();
-  note_length();
+void Stepping::make_first_rows() {
+  initial_.start(simulation_);
   const auto monitors = this->monitors();
   outcome_.energy_initial = monitors.energy;
   outcome_.momentum_initial = monitors.momentum;
@@ -138,8 +108,8 @@ void Stepping::start() {
     outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0};
   }
   if (!names_.of[Role::multiplier].empty()) outcome_.constraint_max = 0;
-  for (std::int64_t row = 0; section_ && row <= newest_; ++row)
-    section_->see(phase_point(static_cast<int>(newest_ - row)));
+  for (std::int64_t row = 0; section_ && row <= newest_row(); ++row)
+    section_->see(phase_point(static_cast<int>(newest_row() - row)));
 }
 
 /// (q, p) of the row `back` rows before the newest: the momenta that the method records, or those of its equations.
@@ -154,122 +124,30 @@ std::vector<double> Stepping::phase_point(int back) const {
   return point;
 }
 
-void Stepping::visit(SavedState& state) {
-  started_ = true;  // there are no checkpoints before
-  state("newest", newest_), state("recorded", recorded_);
-  state("iterations", iterations_), state("iterations of the last step", last_iterations_);
+void Stepping::visit_rows(SavedState& state) {
+  state("iterations of the last step", last_iterations_);
   simulation_.visit(state);
-  outcome_.visit(state);
   warnings_.visit(state);
   measures_.visit(state);
   if (section_) section_->visit(state);
 }
 
-/// A checkpoint of the newest row, before this is recorded as the last one: a run that is resumed may go on from it.
-void Stepping::save() {
-  saved_ = newest_;
-  if (!checkpoints_->wanted()) return;
-  Recorder::Written written = recorder_->flush(true);
-  checkpoints_->write(newest_, [&](SavedState& state) {
-    state("written", written);
-    visit(state);
-    recorder_->visit(state);
-  });
-}
-
 void Stepping::run(Recorder& recorder, Checkpoints& checkpoints) {
   recorder_ = &recorder;
-  checkpoints_ = &checkpoints;
-  try {
-    record_and_step();
-  } catch (const Unsolved& unsolved) {
-    outcome_.status = status_of(unsolved);
-    outcome_.break_time = simulation_.time(newest_);
-    outcome_.failure = fmt::format("{} (row {} is the last good one that was recorded)", unsolved.what(), recorded_);
-  } catch (const SystemFailure&) {
-    close_outcome();
-    throw;
-  }
-  close_outcome();
-  if (!outcome_.failure.empty()) throw NumericalFailure(outcome_.failure);
+  RowLoop::run(recorder, checkpoints);
 }
 
-void Stepping::record_and_step() {
-  for (std::int64_t row = recorded_ + 1; started_ && row <= scene_.last_row(newest_); ++row)
-    if (to_be_recorded(row)) record(row);
-  if (started_ && is_over()) save();
-  try {
-    Progress progress(scene_.steps);
-    while (started_ && !is_over() && !Interrupt::asked()) {
-      step_until(scene_.next_record(newest_), progress);
-      if (is_over()) save();
-      if (to_be_recorded(newest_)) record(newest_);
-    }
-    if (started_ && !is_over()) {
-      outcome_.status = "interrupted";
-      if (saved_ < newest_ - 1) save();
-    }
-  } catch (const Unsolved&) {
-    throw;
-  } catch (const NumericalFailure& error) {
-    fail(error);
-  }
-  if (const std::int64_t last = scene_.last_row(newest_); recorded_ != last) record(last);
-}
-
-bool Stepping::is_over() const { return scene_.is_over(newest_, simulation_.time(newest_)); }
-
-// The rows held are still the last good ones; of steps that were taken together some may be good.
-void Stepping::fail(const NumericalFailure& error) {
-  if (started_) newest_ = simulation_.newest();
-  outcome_.status = status_of(error);
-  outcome_.break_time = simulation_.time(newest_ + 1);
-  const std::string what = error.what();
-  const std::string where = what.starts_with("step ")
-                                ? ""
-                                : fmt::format("step {}, t = {:.6g}: ", newest_ + 1,
-                                              simulation_.time(newest_ + 1));
-  outcome_.failure = fmt::format("{}{} (row {} is the last good one, and is saved)", where, what, newest_);
-}
-
-void Stepping::step_until(std::int64_t row, Progress& progress) {
-  const Stopwatch watch(outcome_.seconds);
-  const FlushDenormals for_all_steps;  // each would set and restore it
-  bool looked_at = true;               // as the row that an interruption leaves must be: it is recorded
-  while (newest_ < row && !(looked_at && (Interrupt::asked() || (scene_.until && is_over())))) {
-    if (Interrupt::asked() || checkpoints_->due(newest_)) save();
-    if (rows_due_.at(newest_)) recorder_->flush(false), rows_due_.restart();
-    const std::int64_t unseen = Interrupt::asked() ? 0 : row - 1 - newest_;
-    looked_at = unseen == 0 || section_ || scene_.until;  // any row may be the last
-    simulation_.step(looked_at);
-    ++newest_;
-    count_step();
-    if (section_) section_->see(phase_point(0));
-    progress.at(newest_);
-  }
-}
-
-/// Of the newest step, where each has its own.
-void Stepping::note_length() {
+std::optional<double> Stepping::own_length() const {
   const RowTimes& times = *simulation_.evolution().system().times();
-  if (times.uniform()) return;
-  const double h = times.step(newest_ - 1);
-  outcome_.longest = std::max(outcome_.longest, h);
-  outcome_.shortest = outcome_.shortest == 0 ? h : std::min(outcome_.shortest, h);
+  return times.uniform() ? std::nullopt : std::optional(times.step(newest() - 1));
 }
 
-void Stepping::count_step() {
-  ++outcome_.steps_taken;
-  note_length();
+void Stepping::step(bool looked_at) {
+  simulation_.step(looked_at);
   last_iterations_ = simulation_.iterations();
-  iterations_ += last_iterations_;
-  outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);
   if (const Continued why = simulation_.evolution().stepper().continued(); why != Continued::no)
     ++outcome_.continued[why];
-}
-
-bool Stepping::to_be_recorded(std::int64_t row) const {
-  return scene_.is_recorded(row, newest_, simulation_.time(newest_));
+  if (section_) section_->see(phase_point(0));
 }
 
 void Stepping::record(std::int64_t row) {
@@ -277,7 +155,7 @@ void Stepping::record(std::int64_t row) {
   record.row = row;
   record.time = simulation_.time(row);
   std::vector<double> of_method;
-  if (!started_) {
+  if (!started()) {
     const auto sites = static_cast<std::size_t>(scene_.problem.lattice.sites());
     row_[Role::field] = initial_.row0();
     record.energy = record.energy_error = record.momentum = record.charge = Outcome::unknown;
@@ -285,8 +163,8 @@ void Stepping::record(std::int64_t row) {
     for (std::size_t d = 0; d < datasets_.size(); ++d)
       datasets_[d].assign(sites * names_.datasets[d].components.size(), Outcome::unknown);
   } else {
-    const int back = static_cast<int>(newest_ - row);
-    record.residual = row == newest_ ? simulation_.residual() : 0;  // the starting rows solve no equation
+    const int back = static_cast<int>(newest() - row);
+    record.residual = row == newest() ? simulation_.residual() : 0;  // the starting rows solve no equation
     judge(record.residual);
     simulation_.observe(back, row_[Role::field]);
     for (const Role role : all_roles)
@@ -302,10 +180,9 @@ void Stepping::record(std::int64_t row) {
     record.iterations = last_iterations_;
     if (!(record.residual <= outcome_.residual_max)) outcome_.residual_max = record.residual;
   }
-  recorded_ = row;
-  if (started_) {
+  if (started()) {
     warnings_.see(record.time, row_[Role::field], of_method);
-    measure(record, static_cast<int>(newest_ - row));
+    measure(record, static_cast<int>(newest() - row));
   }
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
@@ -318,10 +195,10 @@ void Stepping::record(std::int64_t row) {
 void Stepping::judge(double residual) const {
   constexpr double most = 1e-6;  // of the sum of the absolute terms; a loose tolerance asks for more
   if (!(residual > std::max(most, 1e3 * scene_.problem.tolerance)) || !varies()) return;
-  throw Unsolved(
+  throw NoConvergence(
       fmt::format("step {}, t = {:.6g}: the residual of the field equations is {:.2g} of their terms: the "
                   "field is too large, or too steep, for double precision; reduce lattice.time_step",
-                  newest_, simulation_.time(newest_), residual));
+                  newest(), simulation_.time(newest()), residual));
 }
 
 /// Near a vacuum all terms are rounding, and their sum has no scale.
@@ -380,20 +257,17 @@ void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
   }
 }
 
-void Stepping::close_outcome() {
+void Stepping::finish() {
   if (section_) section_->finish();
-  outcome_.steps = std::max<std::int64_t>(0, recorded_);
-  outcome_.time = simulation_.time(outcome_.steps);
-  if (outcome_.steps_taken > 0) outcome_.iterations_mean = iterations_ / static_cast<double>(outcome_.steps_taken);
   outcome_.energy_error_max = recorder_->largest_energy_error();
   measure_error();
   outcome_.measures = measures_.results();
-  if (started_) outcome_.warnings = warnings_.of(outcome_, recorder_->energy_errors(), row_[Role::field]);
+  if (started()) outcome_.warnings = warnings_.of(outcome_, recorder_->energy_errors(), row_[Role::field]);
 }
 
 void Stepping::measure_error() {
   const State* exact = initial_.exact();
-  if (!exact || recorded_ < 0 || outcome_.time > exact->exact_until()) return;
+  if (!exact || recorded() < 0 || outcome_.time > exact->exact_until()) return;
   // row_ is the last one still
   const FieldError error = error_of(row_, names_, *exact, outcome_.time, scene_.problem.lattice);
   outcome_.error_linf = error.linf;

@@ -2,10 +2,8 @@
 #pragma once
 #include "schemes/methods/own_energy.hpp"
 #include "tools/measure/measures.hpp"
-#include "tools/run/checkpoints.hpp"
-#include "tools/run/outcome.hpp"
-#include "tools/run/progress.hpp"
 #include "tools/run/recorder.hpp"
+#include "tools/run/row_loop.hpp"
 #include "tools/run/section.hpp"
 #include "tools/run/warnings.hpp"
 #include "tools/scene/initial_rows.hpp"
@@ -15,19 +13,13 @@ namespace delf {
 /// "2", or how many of the requested threads share a step, and why not more; empty if one is requested.
 std::string threads_in_words(const Simulation&, int asked);
 
-/// Steps a simulation through its scene, and records: rows 0, every, 2·every, … and the last one, whichever becomes the
-/// last. The outcome receives the cost and the results, also when steps fail.
-class Stepping {
+/// The rows of a simulation, as its scene wants them.
+class Stepping final : public RowLoop {
  public:
   /// `own`: the energy of the scheme's own rows, if it has one: the last of names.further and of the conserved sums.
   Stepping(const Scene&, const InitialRows&, Simulation&, const RowNames&, const std::optional<OwnEnergy>& own,
            Outcome&);
 
-  /// Gives the simulation its first rows. Throws BadScene; a numerical failure is reported by run().
-  void start();
-  /// Saves or restores all that the rest of the run depends on; what is restored needs no start.
-  void visit(SavedState&);
-  /// Until the end, or an interruption, with checkpoints on the way and at the end. Throws NumericalFailure, with the step, after recording the last good row.
   void run(Recorder&, Checkpoints&);
   /// The points of output.section; null without it.
   const Section* section() const { return section_ ? &*section_ : nullptr; }
@@ -35,19 +27,20 @@ class Stepping {
   const std::vector<double>& last_row() const { return row_[Role::field]; }
 
  private:
-  void record_and_step();
-  void step_until(std::int64_t row, Progress&);
-  void count_step();
-  void note_length();
-  void save();
-  void record(std::int64_t row);
+  void make_first_rows() override;
+  std::int64_t newest_row() const override { return simulation_.newest(); }
+  double time(std::int64_t row) const override { return simulation_.time(row); }
+  std::optional<double> own_length() const override;
+  void step(bool looked_at) override;
+  bool looks_at_all() const override { return section_.has_value(); }
+  int iterations() const override { return last_iterations_; }
+  void record(std::int64_t row) override;
+  void visit_rows(SavedState&) override;
+  void finish() override;
+
   void judge(double residual) const;
   bool varies() const;
   void measure(const Record&, int back);
-  void fail(const NumericalFailure&);
-  bool to_be_recorded(std::int64_t row) const;
-  bool is_over() const;
-  void close_outcome();
   void measure_error();
   std::vector<double> phase_point(int back) const;
   void monitor(const Simulation::Monitors&, Record&);
@@ -58,9 +51,6 @@ class Stepping {
   Simulation& simulation_;
   Outcome& outcome_;
   Recorder* recorder_ = nullptr;
-  Checkpoints* checkpoints_ = nullptr;
-  Due rows_due_{10};         ///< recorded rows reach the disk after so many seconds
-  std::int64_t saved_ = -1;  ///< row of the last checkpoint
   const RowNames& names_;
   const std::optional<OwnEnergy>& own_energy_;
   Warnings warnings_;
@@ -68,9 +58,6 @@ class Stepping {
   RecordedRow row_;
   RecordedDatasets datasets_;
   std::optional<Section> section_;
-  bool started_ = false;
-  std::int64_t newest_ = 0, recorded_ = -1;
-  double iterations_ = 0;
   int last_iterations_ = 0;
 };
 

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "tools/run/checkpoints.hpp"
+#include "tools/run/outcome.hpp"
+#include "tools/run/progress.hpp"
+#include "tools/run/run_files.hpp"
+
+namespace delf {
+
+/// Steps a field through its scene, on a lattice or on a mesh, and records rows 0, every, 2·every, … and the last one,
+/// whichever becomes the last. Checkpoints are written on the way and at the end. When a step fails, the last good row is
+/// recorded; the outcome says the rest.
+class RowLoop {
+ public:
+  virtual ~RowLoop() = default;
+
+  /// The first rows. Throws BadScene; a numerical failure is what run() ends with.
+  void start();
+  /// Saves or restores all that the rest of the run depends on; what is restored needs no start.
+  void visit(SavedState&);
+  /// Until the end, an interruption or a failure. Throws NumericalFailure, with the step, after the last good row is
+  /// recorded.
+  void run(RunFiles&, Checkpoints&);
+
+ protected:
+  RowLoop(const Scene&, Outcome&);
+
+  /// Whether there are rows to step from.
+  bool started() const { return started_; }
+  std::int64_t newest() const { return newest_; }
+  std::int64_t recorded() const { return recorded_; }
+
+ private:
+  virtual void make_first_rows() = 0;
+  /// The newest row that solves its equations.
+  virtual std::int64_t newest_row() const = 0;
+  /// Of the newest rows, and where a further step leads.
+  virtual double time(std::int64_t row) const = 0;
+  /// Where steps have lengths of their own, that of the newest.
+  virtual std::optional<double> own_length() const = 0;
+  /// A row that is not looked at is neither recorded nor the last.
+  virtual void step(bool looked_at) = 0;
+  virtual bool looks_at_all() const { return false; }
+  /// Of the newest step; 0 if it is one solve.
+  virtual int iterations() const = 0;
+  /// A row that was made is recorded; or throws NumericalFailure, if it is no result.
+  virtual void record(std::int64_t row) = 0;
+  virtual void visit_rows(SavedState&) = 0;
+  /// The results, after the last row, however the run ends.
+  virtual void finish() = 0;
+
+  void record_and_step();
+  void step_until(std::int64_t row, Progress&);
+  void note_length();
+  void save();
+  void put(std::int64_t row);
+  void fail(const NumericalFailure&);
+  bool is_due(std::int64_t row) const;
+  bool is_over() const;
+  void close();
+
+  const Scene& scene_;
+  Outcome& outcome_;
+  RunFiles* files_ = nullptr;
+  Checkpoints* checkpoints_ = nullptr;
+  Due rows_due_{10};         ///< recorded rows reach the disk after so many seconds
+  std::int64_t saved_ = -1;  ///< row of the last checkpoint
+  bool started_ = false;
+  std::int64_t newest_ = 0, recorded_ = -1;
+  double iterations_ = 0;
+};
+
+}  // namespace delf
