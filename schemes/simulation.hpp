@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "jets/symmetry.hpp"
-#include "lattice/lattice.hpp"
-#include "schemes/parameter.hpp"
+#include "schemes/problem.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
@@ -19,41 +18,6 @@ class Evolution;
 class SavedState;
 class FieldTheory;
 struct RowDensity;
-
-/// What a scene states, in the engine's words.
-struct Problem {
-  std::string theory = "sine-gordon";
-  bool circle_valued = false;                    ///< theory.fibre = S1
-  Lattice lattice = Lattice::circle(255, 40);
-  int winding = 0;                               ///< φ(x + L) = φ(x) + 2π·winding
-  std::string stencil = "rectangle-symmetric";
-  std::string method = "multisymplectic";
-  ParameterValues parameters;                    ///< of the theory and of the method; the others have their fallbacks
-  double time_step = 0;
-  double tolerance = 1e-14;                      ///< scheme.tolerance
-  int seed_order = 8;                            ///< scheme.seed_order
-  int max_iterations = 50;                       ///< scheme.max_iterations
-  int threads = 1;                               ///< run.threads: that explicit steps are shared by
-  std::optional<double> step_control = {};       ///< s of steps that the rows choose; time_step is ε then
-};
-
-/// The problem with the fallbacks of all parameters that its theory and its method read. Throws BadInput for unknown
-/// names and for values out of range.
-Problem completed(Problem);
-/// The scheme in reports, as its method declares it.
-std::string scheme_label(const Problem&);
-
-/// A scheme as a scene would name it: `problem` is what was asked for, with the keys that this scheme is made of.
-struct NamedScheme {
-  std::string name;
-  Problem problem;
-  int nodes = 1;  ///< in a cell of space
-  int rank = 0;   ///< as a reference solution: the highest is taken; 0: never
-  bool tuned = false;  ///< its keys tell it of the solution: comparisons have a column of its own for it
-};
-/// Every scheme of every method, for the lattice, the theory and the other keys of `base`; what cannot be built for them
-/// says so when it is built.
-std::vector<NamedScheme> named_schemes(const Problem& base);
 
 /// A scheme on a lattice, stepping. Rows are in the order of sites, row[i·C + c], values as they are (not reduced modulo
 /// 2π). Of the C components the first are the fields at the vertices; nodes inside cells and multipliers follow.
@@ -167,19 +131,5 @@ class Simulation {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-struct TheoryInfo {
-  std::string name, formula;
-  std::vector<std::string> parameters;   ///< keys that it reads, such as "theory.mass"
-  int components = 1;                    ///< 0: its parameters say it
-};
-const std::vector<TheoryInfo>& theories();
-
-struct NamedFormula {
-  std::string name, formula;
-};
-/// Stencils with their jets, for `delf list stencils`; and methods, for `delf list schemes`.
-const std::vector<NamedFormula>& stencils();
-const std::vector<NamedFormula>& methods();
 
 }  // namespace delf

@@ -6,15 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "jets/fibre.hpp"
 #include "jets/simd/pack_gather.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
+#include "schemes/stepping/first_slab.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/newton.hpp"
 #include "schemes/stepping/saved_state.hpp"
@@ -50,9 +48,7 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
     parities_.push_back({std::move(equations), std::move(solver), std::move(unknowns)});
     parities_.back().has_constant = factor_constant(parities_.back());
   }
-  for (const auto& family : system.families())
-    if (const auto* mapped = dynamic_cast<const MappedFamily*>(family.get()); mapped && !mapped->cell().empty())
-      stages_.push_back(mapped);
+  if (system.moves()) mesh_.emplace(system);
   predicted_.resize(row);
   // Made now, so that memory that is short is told at the start.
   for (std::vector<double>* numbers : {&E_, &known_E_, &change_}) numbers->reserve(unknowns() + 1);
@@ -105,7 +101,7 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (std::ranges::any_of(rows[r], [](double x) { return overflowed(std::abs(x)); }))
       throw NotFinite(fmt::format("row {} of the start is not finite", r));
-    if (const auto i = crossing(rows[r].data()))
+    if (const auto i = mesh_ ? mesh_->crossing(rows[r].data()) : std::nullopt)
       throw BadInput("initial.file", fmt::format("sites {} and {} of the mesh are not in order in row {}; give rows in "
                                                  "which the positions grow",
                                                  *i, *i + 1, r));
@@ -146,88 +142,11 @@ void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vec
   by_momenta_ = true;
 }
 
-namespace {
-
-/// A value of row 0 that a start gives.
-bool is_data(const LatticeSystem& system, const Node& value) {
-  const Role role = system.component(value.component).role;
-  return value.site.time == 0 && (role == Role::field || role == Role::trace);
-}
-
-/// What an equation reads. Equations of one component are alike, but near walls.
-class Reads {
- public:
-  explicit Reads(const LatticeSystem& system) : system_(system) {}
-
-  std::vector<Node> of(const Node& equation) {
-    const Lattice& lattice = system_.lattice();
-    const int i = equation.site.space, far = 2 * system_.width() + 1;
-    const bool circle = lattice.is_circle();
-    const auto [found, fresh] =
-        known_.try_emplace({equation.component, (equation.site.time + i) % 2, circle ? far : std::min(i, far),
-                            circle ? far : std::min(lattice.sites() - 1 - i, far)});
-    if (fresh) found->second = system_.linearised(equation.site, equation.component);
-    std::vector<Node> nodes;
-    for (const Coefficient& c : found->second) {
-      Site site = equation.site + c.offset;
-      site.space = lattice.home(site.space), site.node = 0;  // components tell nodes apart
-      nodes.push_back({site, c.component});
-    }
-    return nodes;
-  }
-
- private:
-  const LatticeSystem& system_;
-  std::map<std::tuple<int, int, int, int>, std::vector<Coefficient>> known_;
-};
-
-/// Leaves out the equations that contain what lies before row 0, or what is found there by other equations than these,
-/// and the unknowns that they are solved for.
-void leave_out_earlier_rows(const LatticeSystem& system, Assembly::Parts& parts) {
-  const auto key = [](const Node& n) { return std::tuple{n.site.time, n.site.space, n.component}; };
-  std::set<std::tuple<int, int, int>> found;
-  for (const Node& unknown : parts.unknowns) found.insert(key(unknown));
-  Reads reads(system);
-  std::vector<std::vector<Node>> read;
-  for (const Node& equation : parts.equations) read.push_back(reads.of(equation));
-  std::vector<char> kept(parts.equations.size(), 1);
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t n = 0; n < kept.size(); ++n) {
-      const auto is_known = [&](const Node& value) { return is_data(system, value) || found.contains(key(value)); };
-      if (kept[n] == 0 || std::ranges::all_of(read[n], is_known)) continue;
-      kept[n] = 0, changed = true;
-      found.erase(key(parts.unknowns[n]));
-    }
-  }
-  std::size_t left = 0;
-  for (std::size_t n = 0; n < kept.size(); ++n)
-    if (kept[n] != 0) parts.equations[left] = parts.equations[n], parts.unknowns[left++] = parts.unknowns[n];
-  parts.equations.resize(left), parts.unknowns.resize(left);
-}
-
-}  // namespace
-
-/// What slab 0 finds besides row 0 itself: a plan may solve for a multiplier, or for the nodes of the cell above, as soon
-/// as the row is there. Nothing for fields alone, whose equations at row 0 belong to slab 1. Whether there was anything.
+/// Whether slab 0 finds anything besides row 0 itself.
 bool SlabStepper::solve_slab_of_start(const std::vector<double>* momenta) {
-  const Assembly::Parts whole = Assembly::slab(plan_, 0, past_, future_, options_.turn);
-  if (!whole.matched) return false;
-  Assembly::Parts parts = whole;
-  parts.equations.clear(), parts.unknowns.clear();
-  Reads reads(system_);
-  for (std::size_t n = 0; n < whole.equations.size(); ++n) {
-    const Node &equation = whole.equations[n], &unknown = whole.unknowns[n];
-    if (equation.site.time < 0 || unknown.site.time < 0 || is_data(system_, unknown)) continue;
-    // What is slaved to the row before keeps what the start gave.
-    if (momenta && system_.component(unknown.component).role == Role::slaved &&
-        std::ranges::any_of(reads.of(equation), [](const Node& value) { return value.site.time < 0; }))
-      continue;
-    parts.equations.push_back(equation), parts.unknowns.push_back(unknown);
-  }
-  if (!momenta) leave_out_earlier_rows(system_, parts);
+  Assembly::Parts parts = first_slab(system_, Assembly::slab(plan_, 0, past_, future_, options_.turn), momenta);
   if (parts.equations.empty()) return false;
-  Assembly equations(system_, parts);
+  Assembly equations(system_, std::move(parts));
   BlockSolver solver = solver_of(equations);
   std::vector<Unknowns> unknowns = list_unknowns(equations);
   Parity first{std::move(equations), std::move(solver), std::move(unknowns)};
@@ -301,73 +220,11 @@ void SlabStepper::fail(std::int64_t J, const char* why) const {
   std::string remedy = remedy_for(options_.max_iterations);
   if (const auto ghost = ghost_under_constraint(system_))
     remedy = fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint);
-  if (system_.moves() && J > 0)
+  if (mesh_ && J > 0)
     remedy = fmt::format("in the row before, {}; reduce lattice.time_step or mesh.alpha, or raise lattice.sites",
-                         narrowest_cell(ring_->row(J - 1 - lag_)));
+                         mesh_->narrowest_cell(ring_->row(J - 1 - lag_)));
   throw NoConvergence(fmt::format("step {}, t = {:.6g}: the equations of the slab were not solved: {}; {}", J,
                                   system_.times()->time(J), why, remedy));
-}
-
-/// The first of two neighbouring sites that have passed each other in a row, where a component is the position of the
-/// sites: Newton's method is content with a tangled mesh, since the equations do not know which site comes first.
-std::optional<int> SlabStepper::crossing(const double* row) const {
-  for (int c = 0; c < components_; ++c)
-    for (int i = 0; system_.component(c).position && i + 1 < system_.lattice().sites(); ++i)
-      if (!(row[i * components_ + c] < row[(i + 1) * components_ + c])) return i;
-  return std::nullopt;
-}
-
-/// Whether cells have turned over in slab J, in its row or at a stage before it; in words, empty if not.
-std::string SlabStepper::crossing_at(std::int64_t J) const {
-  const std::int64_t row = J - lag_;
-  if (const auto i = crossing(ring_->row(row)))
-    return fmt::format("sites {} and {} of the mesh pass each other", *i, *i + 1);
-  for (const MappedFamily* stage : stages_) {
-    int top = 0;
-    for (const Site& vertex : stage->pattern().vertices) top = std::max(top, vertex.time);
-    for (int i = 0; i + 1 < system_.lattice().sites(); ++i) {
-      double size = 0;
-      for (const auto& [value, weight] : stage->cell()) {
-        const Site site = stage->site(value);
-        const int component = stage->values()[static_cast<std::size_t>(value)].component;
-        size += weight * ring_->row(row - top + site.time)[(i + site.space) * components_ + component];
-      }
-      if (!(size > 0))
-        return fmt::format("sites {} and {} of the mesh pass each other at {:.3g} of the step", i, i + 1,
-                           stage->cell_time());
-    }
-  }
-  return {};
-}
-
-/// The new row leaves the straight line through the two before it by more than the way between these: another root than the
-/// motion's. On a soliton that bounces roots of the motion leave it by up to 0.63 of that way, and others by 1.24 and more.
-bool SlabStepper::leaps(std::int64_t J) const {
-  if (J < 2) return false;
-  const std::int64_t row = J - lag_;
-  const RowTimes& times = *system_.times();
-  const double stride = times.step(row - 1) / times.step(row - 2);
-  const double *const now = ring_->row(row), *const before = ring_->row(row - 1), *const first = ring_->row(row - 2);
-  double way = 0, aside = 0;
-  for (std::size_t at = 0; at < predicted_.size(); ++at) {
-    const Component& c = system_.component(static_cast<int>(at) % components_);
-    if (c.role != Role::field && !c.position) continue;
-    const double line = stride * (before[at] - first[at]);
-    way = std::max(way, std::abs(line));
-    aside = std::max(aside, std::abs(now[at] - before[at] - line));
-  }
-  return aside > way;
-}
-
-/// "sites 5 and 6 are 0.0073 apart, closer than any others"
-std::string SlabStepper::narrowest_cell(const double* row) const {
-  double least = infinity;
-  int where = 0;
-  for (int c = 0; c < components_; ++c)
-    for (int i = 0; system_.component(c).position && i + 1 < system_.lattice().sites(); ++i)
-      if (const double size = row[(i + 1) * components_ + c] - row[i * components_ + c]; size < least)
-        least = size, where = i;
-  return fmt::format("sites {} and {} are {:.2g} apart, closer than any others", where, where + 1, least);
 }
 
 /// y −= change
@@ -496,23 +353,22 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
     waiting_ = solved ? 0 : wait_;
     wait_ = solved ? 1 : std::min(2 * wait_ + 1, 63);
   }
-  const bool moves = system_.moves();
-  std::string crossed = solved && moves ? crossing_at(J) : "";
+  std::string crossed = solved && mesh_ ? mesh_->crossing_at(*ring_, J - lag_) : "";
   if (!solved || !crossed.empty()) {
     const char* why = nullptr;
     bool found = false;
     // Rough sections are predicted better by a few slabs, and a tangled mesh is a root that another predictor may avoid.
     // Traces alternate about their mean: what is extrapolated may lie where the density is not defined.
     for (const int points : {points_, least_points, 1}) {
-      if ((points == least_points && points_ <= least_points) || (points == 1 && !by_values_ && !moves)) continue;
+      if ((points == least_points && points_ <= least_points) || (points == 1 && !by_values_ && !mesh_)) continue;
       if (const char* failed = newton(p, J, points, momenta)) {
         why = failed;
         continue;
       }
-      const std::string tangled = moves ? crossing_at(J) : "";
+      const std::string tangled = mesh_ ? mesh_->crossing_at(*ring_, J - lag_) : "";
       if (crossed.empty()) crossed = tangled;
       if (!tangled.empty()) continue;
-      found = !moves || points == points_ || !leaps(J);
+      found = !mesh_ || points == points_ || J < 2 || !mesh_->leaps(*ring_, J - lag_);
       if (found) break;
       why = "Newton's method finds no root but one that leaps away";
     }
@@ -522,7 +378,7 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
   if (!crossed.empty())
     throw MeshCrossing(
         fmt::format("step {}, t = {:.6g}: {}; in the row before, {}; reduce lattice.time_step or mesh.alpha", J,
-                    system_.times()->time(J), crossed, narrowest_cell(ring_->row(J - 1 - lag_))));
+                    system_.times()->time(J), crossed, mesh_->narrowest_cell(ring_->row(J - 1 - lag_))));
   if (options_.fibre == Fibre::circle) check_increments(J);
   ++known_;
   largest_[1] = std::exchange(largest_[0], largest_of(ring_->row(J - lag_)));

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "lattice/plan/solve_plan.hpp"
-#include "schemes/families/mapped_family.hpp"
+#include "schemes/stepping/mesh_watch.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 #include "schemes/stepping/step_method.hpp"
 
@@ -81,10 +81,6 @@ class SlabStepper final : public StepMethod {
   bool solve_slab_of_start(const std::vector<double>* momenta);
   void check_increments(std::int64_t J) const;
   void solve(std::int64_t J, const std::vector<double>* momenta);
-  std::optional<int> crossing(const double* row) const;
-  std::string crossing_at(std::int64_t J) const;
-  bool leaps(std::int64_t J) const;
-  std::string narrowest_cell(const double* row) const;
   [[noreturn]] void fail(std::int64_t J, const char* why) const;
   std::size_t unknowns() const;  ///< of a slab, the larger one
   std::size_t equation_bytes() const, matrix_bytes() const, matrix_bytes_to_come() const, work_bytes() const,
@@ -94,7 +90,7 @@ class SlabStepper final : public StepMethod {
   const SolvePlan& plan_;
   StepOptions options_;
   int components_, past_ = 0, future_ = 0, lag_ = 0, starting_rows_ = 0;
-  std::vector<const MappedFamily*> stages_;  ///< that have cells of a mesh that moves
+  std::optional<MeshWatch> mesh_;            ///< where it moves
   bool by_values_ = false;                   ///< runs begin with the values of row 0 alone
   int points_;                               ///< slabs that a predictor goes through, if there are as many
   std::vector<int> back_;  ///< of each component: rows that its newest value lies behind the newest field

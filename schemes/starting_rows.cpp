@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/starting_rows.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "jets/fibre.hpp"
+#include "lattice/error.hpp"
+#include "schemes/families/mirror_check.hpp"
+#include "schemes/theories/field_theory.hpp"
+
+namespace delf {
+
+std::vector<std::vector<double>> StartingRows::lifted(std::vector<std::vector<double>> rows) const {
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (std::size_t i = 0; i < rows[r].size(); ++i) {
+      if (r == 0 && i == 0) continue;
+      const double near = r == 0 ? rows[0][i - 1] : rows[r - 1][i];
+      const double difference = wrap(rows[r][i] - near);
+      if (!(std::abs(difference) <= largest_wrapped_difference))
+        throw NotFinite(
+            fmt::format("row {}, site {}: on the fibre S1 the starting values jump by {:.3g}, above 0.9 pi; "
+                        "refine the lattice or use theory.fibre = R",
+                        r, i, difference));
+      rows[r][i] = near + difference;
+    }
+  if (!problem_.lattice.is_circle()) return rows;
+  const double gained = rows[0].back() + wrap(rows[0].front() - rows[0].back()) - rows[0].front();
+  if (const int turns = static_cast<int>(std::lround(gained / (2 * std::numbers::pi))); turns != problem_.winding)
+    throw BadInput("boundary.winding",
+                   fmt::format("boundary.winding = {}: the starting rows wind {} times around the circle; set "
+                               "boundary.winding = {}",
+                               problem_.winding, turns, turns));
+  return rows;
+}
+
+void StartingRows::hold_walls(std::vector<double>& row, bool velocity) const {
+  const int C = system_.components();
+  for (int c = 0; c < C; ++c) {
+    const Component& component = system_.component(c);
+    const bool inner = component.role == Role::inner || component.role == Role::trace;
+    if (!inner && !(velocity && component.role == Role::field)) continue;
+    for (const int i : {0, system_.lattice().sites() - 1})
+      if (system_.is_held(i, c))
+        row[static_cast<std::size_t>(i * C + c)] =
+            velocity ? 0 : row[static_cast<std::size_t>(i * C + system_.field_component(component.field))];
+  }
+}
+
+void StartingRows::check_mirrors(const std::vector<double>& row) const {
+  const int C = system_.components();
+  for (const auto& family : system_.families()) {
+    const Placement at = family->pattern().placement;
+    if (at != Placement::left_mirror && at != Placement::right_mirror) continue;
+    const bool left = at == Placement::left_mirror;
+    const int site = left ? 0 : system_.lattice().sites() - 1;
+    const bool fixed = system_.lattice().is_fixed(site);
+    std::vector<double> wall;
+    for (int a = 0; a < theory_.components(); ++a)
+      wall.push_back(row[static_cast<std::size_t>(site * C + system_.field_component(a))]);
+    if (has_mirror_images(theory_.density(), fixed ? Mirror::odd : Mirror::even, wall)) continue;
+    throw BadInput(
+        left ? "boundary.left" : "boundary.right",
+        fmt::format("boundary.{0} = {1}: beyond this wall wide stencils go on by mirror images, and the "
+                    "density is not even {2}; use lattice.space = circle or scheme.method = multisymplectic",
+                    left ? "left" : "right", fixed ? "fixed" : "natural",
+                    fixed ? fmt::format("about the wall's value {:.6g}", fmt::join(wall, ", ")) : "in phi_x"));
+  }
+}
+
+std::optional<std::vector<double>> StartingRows::momenta(std::span<const double> row0,
+                                                         std::span<const double> velocity) const {
+  const Lattice& lattice = system_.lattice();
+  const int C = system_.components(), N = lattice.sites();
+  const double turn = 2 * std::numbers::pi * problem_.winding;
+  std::vector<double> momenta(row0.size(), 0.0), phi, phi_t, p;
+  bool any = false;
+  for (const auto& family : system_.families()) {
+    for (int cell = 0; cell < N; ++cell) {
+      if (!system_.has_stencil(*family, 0, cell)) continue;
+      std::vector<std::size_t> places;
+      phi.clear(), phi_t.clear();
+      for (int i = 0; i < family->size(); ++i) {
+        const int c = family->values()[static_cast<std::size_t>(i)].component;
+        if (family->site(i).time != 0 || system_.component(c).at.time != 0) continue;
+        if (system_.component(c).role == Role::slaved && !system_.component(c).position) continue;  // a rate
+        const int x = cell + family->site(i).space, home = lattice.home(x);
+        places.push_back(static_cast<std::size_t>(home * C + c));
+        phi.push_back(row0[places.back()] + (x - home) / N * turn);
+        phi_t.push_back(velocity[places.back()]);
+      }
+      p.resize(places.size());
+      // constraints and trace stencils have none
+      if (!family->momentum({problem_.time_step, lattice.space_step(), 0, lattice.position(cell)}, phi, phi_t, p))
+        break;
+      any = true;
+      for (std::size_t n = 0; n < places.size(); ++n)
+        if (system_.component(static_cast<int>(places[n]) % C).role != Role::slaved) momenta[places[n]] += p[n];
+    }
+  }
+  return any ? std::optional(momenta) : std::nullopt;
+}
+
+}  // namespace delf

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "schemes/families/mapped_family.hpp"
+#include "schemes/system/assembly.hpp"
+
+namespace delf {
+
+/// Watches a mesh that moves, where a component is the position of the sites. Newton's method is content with a tangled one,
+/// since the equations do not know which site comes first.
+class MeshWatch {
+ public:
+  explicit MeshWatch(const LatticeSystem&);
+
+  /// The first of two neighbouring sites that have passed each other in a row.
+  std::optional<int> crossing(const double* row) const;
+  /// Whether cells have turned over in a row, or at a stage of the step that led there; in words, empty if not.
+  std::string crossing_at(const SectionRing&, std::int64_t row) const;
+  /// The row leaves the straight line through the two before it by more than the way between these: another root than the
+  /// motion's. On a soliton that bounces roots of the motion leave it by up to 0.63 of that way, and others by 1.24 and
+  /// more.
+  bool leaps(const SectionRing&, std::int64_t row) const;
+  /// "sites 5 and 6 are 0.0073 apart, closer than any others"
+  std::string narrowest_cell(const double* row) const;
+
+ private:
+  const LatticeSystem& system_;
+  std::vector<const MappedFamily*> stages_;  ///< that have cells
+};
+
+}  // namespace delf
