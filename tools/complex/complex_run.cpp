@@ -4,19 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_stepping.hpp"
 #include "tools/complex/static_field.hpp"
-#include "tools/files/folder_lock.hpp"
-#include "tools/run/earlier_run.hpp"
-#include "tools/run/failures_of_run.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/room_for_summary.hpp"
+#include "tools/run/run_folder.hpp"
 #include "tools/run/seconds_since.hpp"
-#include "tools/scene/text_file.hpp"
 
 namespace delf {
 namespace {
@@ -25,7 +19,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 /// Steps too long for the stencils make waves that grow from level to level, and every equation holds.
-void warn_of_growth(const ComplexScene& c, const StaticField& field, MeshOutcome& o) {
+void warn_of_growth(const ComplexScene& c, const StaticField& field, Outcome& o) {
   constexpr double much = 100;
   const auto d = c.fields.size();
   double given = 0, found = 0;
@@ -41,7 +35,7 @@ void warn_of_growth(const ComplexScene& c, const StaticField& field, MeshOutcome
 }
 
 /// Returns the level of each site.
-std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, MeshOutcome& o) {
+std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, Outcome& o) {
   StaticField field(c);
   o.solve = field.solver().plan().describe();
   o.solve_kind = field.solver().plan().largest == 1 ? "explicit" : "sparse";
@@ -77,20 +71,12 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, MeshO
   return c.stencils ? field.solver().plan().level_of_sites(c.sites()) : std::vector<int>();
 }
 
-// A failed figure does not fail the run.
-std::string drawn(const ComplexScene& c, const MeshFilm& film, std::span<const int> levels, const fs::path& folder) {
-  try {
-    return draw_mesh(c, film, levels, folder);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-}
-
 }  // namespace
 
 ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
-  MeshOutcome o;
+  Outcome o;
   o.state = c.state_in_words();
+  o.start = StartRule::legendre;
   std::unique_ptr<MeshEvolution> evolution;
   std::optional<MeshStepping> stepping;
   std::optional<RunFiles::Written> kept;
@@ -108,23 +94,11 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
   } catch (const BadInput& bad) {
     throw c.scene.settings.located(bad);
   }
-  const Interrupt interrupt;
-  make_results_folder(folder);
-  const FolderLock lock(folder);
-  if (!resumed.state) remove_earlier_run(folder);
-  const RoomForSummary room(folder);
+  RunFolder run(folder, resumed, o);
   MeshRecorder recorder(c, folder, o, kept);
-  if (resumed.state) {
-    recorder.visit(*resumed.state);
-    remove_final_results(folder);  // now that the run can go on
-  }
-  const std::string resolved = resolved_text(c);
-  write_text_file(folder / "scene.ini", resolved);
-  Checkpoints checkpoints(folder, {DELF_VERSION, instruction_set(), resolved, c.scene.name, c.scene.warnings},
-                          c.scene.checkpoint);
-  FailuresOfRun failures(o);
+  Checkpoints checkpoints = run.begin(recorder, c.scene, resolved_text(c));
   std::vector<int> levels;
-  failures.attempt([&] {
+  run.attempt([&] {
     try {
       if (stepping) stepping->run(recorder, checkpoints);
       else levels = run_static(c, recorder, o);
@@ -132,25 +106,18 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
       throw c.scene.settings.located(bad);
     }
   });
-  if (failures.first() && o.status == "done")
-    std::rethrow_exception(failures.first());  // bad input: there are no results
+  if (run.failures().first() && o.status == "done")
+    std::rethrow_exception(run.failures().first());  // bad input: there are no results
   if (evolution) evolution->describe(o);
-  failures.attempt([&] { recorder.close(); });
+  run.attempt([&] { recorder.close(); });
   constexpr double most_drift = 0.1;
   if (!c.is_one_problem() && o.energy_error_max > most_drift)
     o.warnings.push_back(fmt::format(
         "the energy is off by {:.3g} of itself: these steps are too long, or the mesh too "
         "coarse; reduce {}",
         o.energy_error_max, c.scene.settings.find("lattice.courant") ? "lattice.courant" : "lattice.time_step"));
-  failures.attempt([&] { write_text_file(folder / "summary.json", summary_json(c, o)); });
-  if (o.status == "system-failure") std::rethrow_exception(failures.first());
-  const std::string missing = c.scene.figures ? drawn(c, recorder.film(), levels, folder) : std::string();
-  fmt::print("{}  {:<10} {}: scene.ini series.csv summary.json{}{}\n", report(c, o), "files", folder.string(),
-             c.scene.fields ? has_xdmf(c) ? " fields.h5 fields.xdmf" : " fields.h5" : "",
-             c.scene.figures && missing.empty() ? " figures" : "");
-  if (!missing.empty()) std::fputs(fmt::format("delf: no figures: {}\n", missing).c_str(), stderr);
-  if (failures.first()) std::rethrow_exception(failures.first());
-  return o.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
+  return run.end(subject_of(c), c.scene,
+                 [&] { return c.scene.figures ? draw_mesh(c, recorder.film(), levels, folder) : std::string(); });
 }
 
 }  // namespace delf

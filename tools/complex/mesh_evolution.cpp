@@ -45,7 +45,7 @@ class AllSites final : public MeshEvolution {
     evolution_.visit(state);
     steps_.visit(state);
   }
-  void describe(MeshOutcome& o) const override {
+  void describe(Outcome& o) const override {
     o.solve = evolution_.plan().describe() + (evolution_.is_direct() ? " (explicit)" : "");
     o.solve_kind = evolution_.is_direct() ? "explicit" : "sparse";
     o.bytes = evolution_.bytes();
@@ -80,7 +80,7 @@ class OwnSteps final : public MeshEvolution {
     state("newest row", newest_);
     evolution_.visit(state);
   }
-  void describe(MeshOutcome& o) const override {
+  void describe(Outcome& o) const override {
     o.solve = "each cell by its own step, in the order of a priority queue (explicit)";
     o.solve_kind = "explicit";
     o.bytes = evolution_.bytes();

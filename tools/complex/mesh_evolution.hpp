@@ -48,7 +48,7 @@ class MeshEvolution {
   /// Saves or restores what the rest of the run depends on; what is restored needs no start.
   virtual void visit(SavedState&) = 0;
   /// How it is solved, and what it costs.
-  virtual void describe(MeshOutcome&) const = 0;
+  virtual void describe(Outcome&) const = 0;
 };
 
 /// Of a scene whose time is rows or cells.

@@ -19,7 +19,7 @@ std::vector<std::string> further_columns(const ComplexScene& c) {
 
 }  // namespace
 
-MeshRecorder::MeshRecorder(const ComplexScene& c, const std::filesystem::path& folder, MeshOutcome& outcome,
+MeshRecorder::MeshRecorder(const ComplexScene& c, const std::filesystem::path& folder, Outcome& outcome,
                            const std::optional<Written>& kept)
     : c_(c), outcome_(outcome), film_(c) {
   const std::filesystem::path series = folder / "series.csv";

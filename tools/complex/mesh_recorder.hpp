@@ -17,7 +17,7 @@ namespace delf {
 class MeshRecorder final : public RunFiles {
  public:
   /// With `kept`, the files of an earlier run are gone on with from there: see Recorder.
-  MeshRecorder(const ComplexScene&, const std::filesystem::path& folder, MeshOutcome&,
+  MeshRecorder(const ComplexScene&, const std::filesystem::path& folder, Outcome&,
                const std::optional<Written>& kept = {});
 
   /// Of rows of a finite complex series.csv has a line for each slab in place of the row's.
@@ -31,7 +31,7 @@ class MeshRecorder final : public RunFiles {
   void note(const MeshRow&);
 
   const ComplexScene& c_;
-  MeshOutcome& outcome_;
+  Outcome& outcome_;
   MeshFilm film_;
   std::optional<SeriesFile> series_;  ///< always there
   std::optional<MeshFiles> files_;

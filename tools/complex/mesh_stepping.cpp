@@ -17,7 +17,7 @@ Checksum checksum_of(const ComplexScene& c) {
 
 }  // namespace
 
-MeshStepping::MeshStepping(const ComplexScene& c, MeshEvolution& evolution, MeshOutcome& outcome)
+MeshStepping::MeshStepping(const ComplexScene& c, MeshEvolution& evolution, Outcome& outcome)
     : RowLoop(c.scene, outcome), c_(c), evolution_(evolution), outcome_(outcome) {
   for (const LinearSymmetry& s : c.theory->symmetries())
     outcome.conserved.push_back({s.name, Outcome::unknown, Outcome::unknown, Outcome::unknown});

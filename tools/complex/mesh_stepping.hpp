@@ -9,7 +9,7 @@ namespace delf {
 /// The rows of a field on a mesh, as its scene wants them.
 class MeshStepping final : public RowLoop {
  public:
-  MeshStepping(const ComplexScene&, MeshEvolution&, MeshOutcome&);
+  MeshStepping(const ComplexScene&, MeshEvolution&, Outcome&);
 
   void run(MeshRecorder&, Checkpoints&);
 
@@ -26,7 +26,7 @@ class MeshStepping final : public RowLoop {
 
   const ComplexScene& c_;
   MeshEvolution& evolution_;
-  MeshOutcome& outcome_;
+  Outcome& outcome_;
   MeshRecorder* recorder_ = nullptr;
 };
 

@@ -9,15 +9,8 @@
 
 namespace delf {
 
-/// The result of a run on a mesh.
-struct MeshOutcome : Outcome {
-  std::int64_t updates = 0;  ///< of asynchronous cells
-};
-
-/// summary.json, with the names of any other run; what a mesh does not have is null.
-std::string summary_json(const ComplexScene&, const MeshOutcome&);
-/// The same for people.
-std::string report(const ComplexScene&, const MeshOutcome&);
+/// A mesh, as summary.json and the report name it.
+Subject subject_of(const ComplexScene&);
 
 /// From the solution, if there is one: the largest error, and √(Σ A_i e_i²); of sites without masses √(Σ e²/sites).
 void measure_error(const ComplexScene&, std::span<const double> values, double t, Outcome&);

@@ -15,7 +15,7 @@ constexpr std::string_view section = "measure.";
 nlohmann::json any_summary(const Scene& scene) {
   Outcome outcome;
   outcome.error_estimate.emplace();  // or its name would not be there
-  return nlohmann::json::parse(summary_json(scene, outcome));
+  return nlohmann::json::parse(summary_json(subject_of(scene.problem), scene, outcome));
 }
 
 }  // namespace

@@ -45,4 +45,12 @@ void remove_earlier_run(const fs::path& folder) {
     fs::remove(folder / name, none);
 }
 
+std::string files_of_run(const fs::path& folder) {
+  std::string names;
+  for (const char* name :
+       {"summary.json", "series.csv", "section.csv", "scene.ini", "fields.h5", "fields.xdmf", "figures"})
+    if (std::error_code none; fs::exists(folder / name, none)) names += std::string(" ") + name;
+  return names;
+}
+
 }  // namespace delf

@@ -43,6 +43,7 @@ struct Outcome {
   std::int64_t steps = 0;        ///< the last row
   std::int64_t steps_taken = 0;  ///< without the starting rows
   std::int64_t records = 0;
+  std::int64_t updates = 0;  ///< of asynchronous cells
   double time = 0;
   double seconds = 0;  ///< of the steps alone
   double shortest = 0, longest = 0;  ///< step, where steps have lengths of their own
@@ -68,10 +69,23 @@ struct Outcome {
   }
 };
 
+/// What a run is of, a lattice or a mesh, as summary.json and the report name it.
+struct Subject {
+  static constexpr double none = Outcome::unknown;
+
+  std::string where;   ///< "a circle of length 40"
+  std::string scheme;  ///< in words; empty: the mesh says it
+  std::string stencil, method, space;
+  int sites = 0;
+  std::optional<int> cells = {};                              ///< of a mesh
+  double length = none, space_step = none, time_step = none;  ///< without time there is no step
+};
+Subject subject_of(const Problem&);
+
 /// summary.json; what is not a number is null.
-std::string summary_json(const Scene&, const Outcome&);
+std::string summary_json(const Subject&, const Scene&, const Outcome&);
 /// The same for people, in a dozen lines.
-std::string report(const Scene&, const Outcome&);
+std::string report(const Subject&, const Scene&, const Outcome&);
 /// "rectangle-symmetric, N = 255, h/k = 0.125"; on a point "midpoint, h = 0.01"
 std::string scheme_in_words(const Problem&);
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <utility>
 
 #include "schemes/methods/method_registry.hpp"
@@ -13,15 +12,10 @@
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
-#include "tools/files/folder_lock.hpp"
-#include "tools/run/checkpoints.hpp"
-#include "tools/run/earlier_run.hpp"
 #include "tools/run/error_estimate.hpp"
-#include "tools/run/failures_of_run.hpp"
-#include "tools/run/interrupt.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/recorder.hpp"
-#include "tools/run/room_for_summary.hpp"
+#include "tools/run/run_folder.hpp"
 #include "tools/run/stepping.hpp"
 #include "tools/scene/initial_rows.hpp"
 #include "tools/scene/text_file.hpp"
@@ -45,20 +39,16 @@ std::string energy_in_words(const Problem& problem) {
   return find_method(problem.method).energy ? "what scheme.method = " + problem.method + " observes" : energy_formula;
 }
 
-// Figures of the rows that the recorder kept. A run does not fail if a figure cannot be drawn.
+// Figures of the rows that the recorder kept.
 std::string drawn(const Scene& scene, const InitialRows& initial, const RowNames& names, const Recorder& recorder,
                   DrawnSection section, const fs::path& folder) {
   if (!recorder.film()) return {};
   const std::string& theory = scene.problem.theory;
   const bool angle = scene.problem.circle_valued || find_theory(theory).angle;
-  try {
-    return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice,
-                         initial.winding(), *recorder.film(), recorder.energy_errors(), scene.times, names,
-                         energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact()},
-                        folder);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
+  return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice,
+                       initial.winding(), *recorder.film(), recorder.energy_errors(), scene.times, names,
+                       energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact()},
+                      folder);
 }
 
 // Of the step, where the first rows tell.
@@ -68,13 +58,6 @@ std::string limit_of(const Scene& scene, const Simulation& simulation) {
   if (!limit || simulation.newest() < 1) return {};
   return limit({simulation.theory(), simulation.evolution().system(), stepper.window(2), stepper.newest(),
                 scene.problem.time_step});
-}
-
-void say_what_is_there(const fs::path& folder) {
-  std::string names;
-  for (const char* name : {"summary.json", "series.csv", "section.csv", "scene.ini", "fields.h5", "figures"})
-    if (std::error_code none; fs::exists(folder / name, none)) names += std::string(" ") + name;
-  fmt::print("  {:<10} {}:{}\n", "files", folder.string(), names);
 }
 
 // A run would end in growing rounding errors.
@@ -110,50 +93,26 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     outcome.limit = limit_of(scene, simulation);
   }
 
-  const Interrupt interrupt;  // before, nothing is lost when a signal ends the program at once
-  make_results_folder(folder);
-  const FolderLock lock(folder);
-  if (!resumed.state) {
-    refuse_own_rows(folder, scene);
-    remove_earlier_run(folder);
-  }
-  const RoomForSummary room(folder);
+  if (!resumed.state) refuse_own_rows(folder, scene);
+  RunFolder run(folder, resumed, outcome);
   const std::string resolved = resolved_text(scene, outcome.start, outcome.state);
   Recorder recorder(scene, folder, resolved, outcome.winding, names, kept);
-  if (resumed.state) {
-    recorder.visit(*resumed.state);
-    remove_final_results(folder);  // now that the run can go on
-  }
-  write_text_file(folder / "scene.ini", resolved);
-  Checkpoints checkpoints(folder, {DELF_VERSION, instruction_set(), resolved, scene.name, scene.warnings},
-                          scene.checkpoint);
-
-  FailuresOfRun failures(outcome);
-  failures.attempt([&] { stepping.run(recorder, checkpoints); });
+  Checkpoints checkpoints = run.begin(recorder, scene, resolved);
+  run.attempt([&] { stepping.run(recorder, checkpoints); });
   if (Values(scene.settings).toggle("output.estimate"))
-    failures.attempt([&] {
+    run.attempt([&] {
       outcome.error_estimate = estimate_error(scene, outcome, stepping.last_row());
       if (outcome.error_estimate->interrupted) outcome.status = "interrupted";  // what was asked for is not all there
     });
   outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
-  failures.attempt([&] { recorder.close(); });
-  std::string missing;
+  run.attempt([&] { recorder.close(); });
   DrawnSection section;
   if (const Section* points = stepping.section()) {
     section = {points->table(), points->title(), points->drawn_columns()};
-    failures.attempt([&] { write_text_file(folder / "section.csv", section.table); });
+    run.attempt([&] { write_text_file(folder / "section.csv", section.table); });
   }
-  failures.attempt([&] { write_text_file(folder / "summary.json", summary_json(scene, outcome)); });
-  if (outcome.status != "system-failure")  // last: all files are whole
-    missing = drawn(scene, initial, names, recorder, std::move(section), folder);
-
-  if (outcome.status != "system-failure") {
-    fmt::print("{}", report(scene, outcome));
-    say_what_is_there(folder);
-  }
-  if (!missing.empty()) std::fputs(fmt::format("delf: no figures: {}\n", missing).c_str(), stderr);
-  if (failures.first()) std::rethrow_exception(failures.first());
-  return outcome.status == "interrupted" ? ExitCode::interrupted : ExitCode::done;
+  return run.end(subject_of(scene.problem), scene,
+                 [&] { return drawn(scene, initial, names, recorder, std::move(section), folder); });
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace delf {
 
-std::string summary_json(const Scene& scene, const Outcome& o) {
+std::string summary_json(const Subject& subject, const Scene& scene, const Outcome& o) {
   const Problem& p = scene.problem;
   nlohmann::ordered_json json;
   json["version"] = DELF_VERSION;
@@ -19,23 +19,28 @@ std::string summary_json(const Scene& scene, const Outcome& o) {
   json["break_reason"] = broken ? nlohmann::ordered_json(o.status) : nlohmann::ordered_json();
   json["theory"] = p.theory;
   json["fibre"] = p.circle_valued ? "S1" : "R";
-  json["stencil"] = p.stencil;
-  json["method"] = p.method;
-  json["space"] = p.lattice.space() == Space::point ? "point" : p.lattice.is_circle() ? "circle" : "interval";
-  json["length"] = p.lattice.length();
-  json["sites"] = p.lattice.sites();
-  json["space_step"] = p.lattice.space_step();
-  json["time_step"] = p.time_step;
+  json["stencil"] = subject.stencil;
+  json["method"] = subject.method;
+  json["space"] = subject.space;
+  json["length"] = subject.length;
+  json["sites"] = subject.sites;
+  if (subject.cells) json["cells"] = *subject.cells;
+  json["space_step"] = subject.space_step;
+  json["time_step"] = subject.time_step;
   if (o.longest > 0) json["time_step_min"] = o.shortest, json["time_step_max"] = o.longest;
   json["winding"] = o.winding;
   json["state"] = o.state;
-  json["start"] = to_string(o.start);
+  json["start"] = std::isnan(subject.time_step) ? nlohmann::ordered_json() : to_string(o.start);
   json["seed"] = scene.initial.seed;
   json["steps"] = o.steps;
   json["time"] = o.time;
   json["records"] = o.records;
   json["seconds"] = o.seconds;
-  json["ns_per_site_step"] = o.ns_per_site_step(p.lattice.sites());
+  json["ns_per_site_step"] = o.ns_per_site_step(subject.sites);
+  if (o.updates > 0) {
+    json["updates"] = o.updates;
+    json["ns_per_update"] = 1e9 * o.seconds / static_cast<double>(o.updates);
+  }
   json["solve"] = o.solve;
   json["solve_kind"] = o.solve_kind;
   json["bytes"] = o.bytes;
