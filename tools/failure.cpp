@@ -19,9 +19,9 @@ const char* status_of(const NumericalFailure& error) {
 std::string error_line(const std::exception& error) {
   std::string line = error.what();
   if (dynamic_cast<const std::bad_alloc*>(&error)) line = "out of memory; ask for fewer sites or records";
-  // one line, but for a quoted text and the caret below it, which are indented
-  for (std::size_t i = 0; i < line.size(); ++i)
-    if (line[i] == '\r' || (line[i] == '\n' && line.compare(i + 1, 2, "  ") != 0)) line[i] = ' ';
+  for (char& c : line)  // one line, and nothing that a terminal obeys
+    if (c == '\r' || c == '\n' || c == '\t') c = ' ';
+    else if ((c >= 0 && c < ' ') || c == 127) c = '?';
   return dynamic_cast<const BadScene*>(&error) ? line : "delf: " + line;
 }
 

@@ -31,7 +31,7 @@ enum class ExitCode {
 ExitCode exit_code(const std::exception&);
 /// Its name in summary.json and verify.json: not-finite, mesh-crossing or no-convergence.
 const char* status_of(const NumericalFailure&);
-/// The one line for stderr, and below it the place in a formula that it is about.
+/// The one line for stderr.
 std::string error_line(const std::exception&);
 
 }  // namespace delf

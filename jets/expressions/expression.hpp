@@ -58,7 +58,7 @@ class SymbolicDensity : public BatchDensity {
 /// defines on a line of its own. Functions: sin, cos, cosm1, tan, exp, log, sqrt, sinh, cosh, tanh, atan, pow. The grammar
 /// is in jets/expressions/parse.hpp. Derivatives are exact, and what is proved of the density is as for compiled ones.
 ///
-/// Throws BadInput for `key` with line, character and a caret for what cannot be read, and for a density that does not
+/// Throws BadInput for `key` with line and character for what cannot be read, and for a density that does not
 /// determine each of its fields. Symmetries are taken as they are, besides the translations that the form proves.
 std::shared_ptr<const SymbolicDensity> expression(std::string_view text, const ExpressionNames& names = {},
                                                   const std::string& key = "theory.density",

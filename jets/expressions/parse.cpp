@@ -56,21 +56,22 @@ class Builder {
 
   Graph& graph() { return graph_; }
 
-  /// "KEY: line 2, character 7: what is wrong", the line, and a caret below the character.
+  /// One line: `KEY: line 2, character 7, at "* phi": what is wrong`, without the line where the text has no other.
   [[noreturn]] void refuse(At where, const std::string& wrong) const {
-    constexpr std::ptrdiff_t before_caret = 60, after_caret = 40;
+    constexpr std::ptrdiff_t most_shown = 40;
     const At begin = text_.data(), end = begin + text_.size();
     where = std::min(where, end);
     At line = where, line_end = std::find(where, end, '\n');
     while (line != begin && line[-1] != '\n') --line;
-    const auto number = std::to_string(std::count(begin, line, '\n') + 1);
-    const auto character = std::to_string(where - line + 1);
-    const At from = where - std::min(where - line, before_caret), to = where + std::min(line_end - where, after_caret);
-    std::string shown(from, to);
-    std::ranges::replace_if(
-        shown, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-    throw BadInput(key_, key_ + ": line " + number + ", character " + character + ": " + wrong + "\n  " + shown +
-                             "\n  " + std::string(static_cast<std::size_t>(where - from), ' ') + "^");
+    const bool one_line = line == begin && line_end == end;
+    const std::string number = one_line ? "" : "line " + std::to_string(std::count(begin, line, '\n') + 1) + ", ";
+    const std::string character = "character " + std::to_string(where - line + 1);
+    std::string place;  // the text from there on; at the end of a line the text before it
+    At last = where + std::min(line_end - where, most_shown);
+    while (last != line_end && (static_cast<unsigned char>(*last) & 0xC0) == 0x80) ++last;  // not within a letter
+    if (where != line_end) place = ", at \"" + shown({where, last}) + "\"";
+    else if (where != line) place = ", after \"" + shown({where - std::min(where - line, most_shown), where}) + "\"";
+    throw BadInput(key_, key_ + ": " + number + character + place + ": " + wrong);
   }
 
   std::string found(At where) const {
@@ -80,7 +81,7 @@ class Builder {
     At stop = where + 1;
     if (is_letter(*where) || is_digit(*where))
       while (stop != end && stop - where < 30 && (is_letter(*stop) || is_digit(*stop))) ++stop;
-    return std::string(1, '"').append(where, stop).append(1, '"');
+    return "\"" + shown({where, stop}) + "\"";
   }
 
   /// A node that came out as a number must be a finite one.
@@ -150,6 +151,13 @@ class Builder {
   }
 
  private:
+  /// What would end the line, or move the cursor, as question marks.
+  static std::string shown(std::string_view part) {
+    std::string text(part);
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
+    return text;
+  }
   static bool is_function(std::string_view name) {
     return name == power_function || find_name(functions, name) != functions.end();
   }
@@ -165,7 +173,8 @@ class Builder {
       refuse(where, "unknown name " + std::string(name.substr(0, 60)) + "; did you mean " + *near + "?");
     std::string list;
     for (std::size_t i = 0; i < std::min<std::size_t>(listed, 20); ++i) list += (i ? ", " : "") + all[i];
-    refuse(where, "unknown name " + std::string(name.substr(0, 60)) + "; known: " + list);
+    refuse(where, "unknown name " + std::string(name.substr(0, 60)) +
+                      (list.empty() ? "; use numbers and pi" : "; known: " + list));
   }
 
   Graph& graph_;

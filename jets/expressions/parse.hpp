@@ -24,8 +24,8 @@ struct Names {
 ///     power      = primary [ "^" { "+" | "-" } power ]
 ///     primary    = number | name | function "(" sum [ "," sum ] ")" | "(" sum ")"
 ///
-/// Throws BadInput for `key` with the line and the character of what is wrong, that line with a caret below it, and what
-/// was expected there. Texts of more than 64 kB, or with brackets more than 200 deep, are refused before they are parsed.
+/// Throws BadInput for `key`, in one line: the line and the character of what is wrong, the text there, and what was
+/// expected. Texts of more than 64 kB, or with brackets more than 200 deep, are refused before they are parsed.
 int parse(Graph&, std::string_view text, const Names&, const std::string& key);
 
 /// Throws BadInput for `key` if the text is no name, or one that means something already.

@@ -49,7 +49,7 @@ TEST_CASE("a generator is an affine change of each field") {
   check_says(read("1"), "has 1 part; give one for each of u, v");
   check_says(read("1,"), "has an empty part");
   check_says(read("0, 0*u"), "changes no field");
-  check_says(read("w, 0"), "line 1, character 1: unknown name w");
+  check_says(read("w, 0"), "theory.symmetry: character 1, at \"w\": unknown name w");
   check_says(read("1, x"), "unknown name x");
 }
 

@@ -19,16 +19,6 @@ const std::string two_fields =
     "fields = u, v\nparameters = m = 1, g = 0.3\n"
     "density = 0.5*(u_t^2 - u_x^2 + v_t^2 - v_x^2) + m^2*(cos(u) + cos(v) - 2) + g*(cos(u - v) - 1)";
 
-/// Exit code 2, and three lines: what is wrong, the text, the caret.
-void check_refused_with_caret(const Ran& ran, const std::string& head, const std::string& caret) {
-  INFO(ran.err);
-  CHECK(ran.code == 2);
-  const auto said = lines(ran.err);
-  REQUIRE(said.size() == 3);
-  CHECK(said[0].starts_with(head));
-  CHECK(said[2] == caret);
-}
-
 }  // namespace
 
 TEST_CASE("every command works on a theory that is given as text") {
@@ -87,21 +77,21 @@ TEST_CASE("a formula winds around a circle as often as it says") {
   CHECK(nlohmann::json::parse(read(folder / "out/summary.json"))["winding"] == 1);
 }
 
-TEST_CASE("bad texts in a scene are refused with line, character and caret") {
+TEST_CASE("bad texts in a scene are refused in one line with the place") {
   const Folder folder;
   const auto run = [&](const std::string& theory, const std::string& initial = "state = noise",
                        const std::string& keys = "") {
     folder.write("bad.ini", scene(theory, initial));
     return delf_program(folder, "run bad.ini " + keys);
   };
-  check_refused_with_caret(run("density = 0.5*phi_t^2 + * 3"),
-                           "bad.ini:2: theory.density: line 1, character 15: expected a number", "                ^");
-  check_refused_with_caret(run("density = 0.5*ph_t^2"), "bad.ini:2: theory.density: line 1, character 5: unknown name",
-                           "      ^");
-  check_refused_with_caret(run("density = 0.5*phi_t^2", "phi = sin(y)"),
-                           "bad.ini:4: initial.phi: line 1, character 5: unknown name y", "      ^");
-  check_refused_with_caret(run("density = 0.5*phi_t^2", "state = noise", "--theory.density='abs(phi)'"),
-                           "command line: theory.density: line 1, character 1: abs is not differentiable", "  ^");
+  check_refused(run("density = 0.5*phi_t^2 + * 3"),
+                {"bad.ini:2: theory.density: character 15, at \"* 3\": expected a number, a name or (, found \"*\""});
+  check_refused(run("density = 0.5*ph_t^2"),
+                {"bad.ini:2: theory.density: character 5, at \"ph_t^2\": unknown name ph_t; did you mean phi_t?"});
+  check_refused(run("density = 0.5*phi_t^2", "phi = sin(y)"),
+                {"bad.ini:4: initial.phi: character 5, at \"y)\": unknown name y"});
+  check_refused(run("density = 0.5*phi_t^2", "state = noise", "--theory.density='abs(phi)'"),
+                {"command line: theory.density: character 1, at \"abs(phi)\": abs is not differentiable"});
   check_refused(run("density = 0.5*phi_x^2"), {"bad.ini:2: theory.density: does not determine the field phi: phi_t"});
   check_refused(run("density = 0.5*u_t^2\nfields = u, v"), {"does not determine the field v"});
   check_refused(run("density = 0.5*phi_t^2\nparameters = m"), {"bad.ini:3: theory.parameters", "is not NAME = NUMBER"});
