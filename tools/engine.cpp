@@ -40,7 +40,7 @@ Simulation build(const Scene& scene, int winding) {
   try {
     return Simulation(problem);
   } catch (const BadInput& bad) {
-    if (bad.key() == "theory.name")
+    if (bad.key() == "theory.name" || bad.key() == "lattice.stencil")  // that no equation is left by rounding
       if (const auto extreme = extreme_number(scene.settings); !extreme.empty())
         throw scene.settings.error(extreme, "the field equations overflow double precision; use a number nearer to 1");
     throw scene.settings.located(bad);

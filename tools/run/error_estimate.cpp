@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
+#include "schemes/system/lattice_system.hpp"
 #include "tools/run/field_error.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/refined_scene.hpp"
@@ -51,6 +52,13 @@ std::vector<std::string> in_words(const ErrorEstimate& e) {
   return lines;
 }
 
+void require_estimable(const Scene& scene, const LatticeSystem& system) {
+  const auto refuse = [&](const char* why) { throw scene.settings.error("output.estimate", why); };
+  if (scene.problem.step_control) refuse("reversible steps end at times of their own; use delf convergence");
+  if (system.moves()) refuse("sites move, and those of other runs lie elsewhere; use delf convergence");
+  if (scene.from_file()) refuse("rows of a file are those of one lattice and step; leave it out");
+}
+
 ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const std::vector<double>& last_row) {
   ErrorEstimate estimate;
   const auto interrupted = [&] {
@@ -61,15 +69,8 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const s
   if (outcome.status == "interrupted") return interrupted();
   try {
     if (outcome.status != "done") throw BadInput("", "the run did not end well");
-    if (scene.problem.step_control)
-      throw BadInput("output.estimate",
-                     "output.estimate: reversible steps end at times of their own; use delf convergence");
     const QuietEnd half = run_quietly(refined(scene, 2));
     if (!half.finished) return interrupted();
-    if (!half.placed.positions.empty())
-      throw BadInput("output.estimate",
-                     "output.estimate: sites move, and those of other runs lie elsewhere; use "
-                     "delf convergence");
     const QuietEnd quarter = run_quietly(refined(scene, 4));
     if (!quarter.finished) return interrupted();
     const std::vector<double> of_half = at_sites_of(scene, half.row, 2),

@@ -67,12 +67,27 @@ void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
         "lattice.stencil", fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
 }
 
+// Steps that the field chooses: a run of these would not end.
+void refuse_tiny_steps(const Scene& scene, const Simulation& simulation) {
+  constexpr double most = 1000;
+  if (!scene.problem.step_control || simulation.newest() < 1) return;
+  const double step = simulation.time(1) - simulation.time(0);
+  if (step * most < scene.problem.time_step)
+    throw scene.settings.error(
+        "lattice.step_control",
+        fmt::format("makes the first step {:.3g}, which is lattice.time_step = {:.3g} over sqrt(1 + s^2 <phi_x^2>); "
+                    "use s of 0.1 to 10, and a shorter lattice.time_step for shorter steps",
+                    step, scene.problem.time_step));
+}
+
 ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resumed) {
   const InitialRows initial(scene);
   Outcome outcome;
   outcome.winding = initial.winding();
   Simulation simulation = build(scene, outcome.winding);
   refuse_ghost(scene, simulation.evolution().system());
+  const bool estimated = Values(scene.settings).toggle("output.estimate");
+  if (estimated) require_estimable(scene, simulation.evolution().system());
   outcome.state = initial.description();
   outcome.start = initial.rule();
   outcome.solve = simulation.solve_summary();
@@ -90,6 +105,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     stepping.visit(*resumed.state);
   } else {
     stepping.start();
+    refuse_tiny_steps(scene, simulation);
     outcome.limit = limit_of(scene, simulation);
   }
 
@@ -99,7 +115,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   Recorder recorder(scene, folder, resolved, outcome.winding, names, kept);
   Checkpoints checkpoints = run.begin(recorder, scene, resolved);
   run.attempt([&] { stepping.run(recorder, checkpoints); });
-  if (Values(scene.settings).toggle("output.estimate"))
+  if (estimated)
     run.attempt([&] {
       outcome.error_estimate = estimate_error(scene, outcome, stepping.last_row());
       if (outcome.error_estimate->interrupted) outcome.status = "interrupted";  // what was asked for is not all there

@@ -81,6 +81,7 @@ constexpr double largest_count = 9007199254740992;  // 2⁵³: every integer bel
 constexpr Limits any{};
 constexpr Limits positive{0, any.high, true};
 constexpr Limits at_most_a_hundredth{0, 0.01, true};
+constexpr Limits at_most_a_million{0, 1e6, true};
 constexpr Limits not_negative{0, any.high};
 constexpr Limits count{0, largest_count};
 constexpr Limits whole{-largest_int, largest_int};
@@ -130,8 +131,8 @@ std::vector<Key> general_keys() {
           "mesh steps of the rows, over and over, 0.1, 0.05, or a file of them, in place of lattice.time_step"},
       Key{"lattice.step_control", real, "1", "",
           "s of reversible steps: lattice.time_step / sqrt(1 + s^2 <phi_t^2>), with the mean over the mesh; of "
-          "r-adaptive <phi_x^2> over the cells: s = mesh.alpha has steps in proportion to them",
-          "", positive},
+          "r-adaptive <phi_x^2> over the cells: s = mesh.alpha has steps in proportion to them; usually 0.1 to 10",
+          "", at_most_a_million},
 
       Key{"scheme.method", choice, "multisymplectic", "", "the scheme; see `delf list schemes`", "", any,
           method_names()},

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 
 using namespace delf::testing;
 using Json = nlohmann::json;
@@ -76,6 +78,33 @@ TEST_CASE("where steps cannot be chosen, the key says so") {
   refused("run kink " + own, "scheme.method = multisymplectic has steps of one length; use scheme.method = r-adaptive");
   refused("run soliton-bounce --lattice.step_control=2", "has no effect without lattice.time_steps = reversible");
   refused("run soliton-bounce " + own + "--initial.start=exact", "use legendre");
+}
+
+TEST_CASE("a strength that makes every step tiny, and a step out of all range, are refused by what they mean") {
+  const Folder folder;
+  const std::string run = "run " + bounce + "--run.steps=3 --out out --lattice.time_step=";
+  check_refused(delf_program(folder, run + "0.05 --lattice.step_control=1e5"),
+                {"--lattice.step_control = 1e5: makes the first step", "use s of 0.1 to 10"});
+  check_refused(delf_program(folder, run + "0.05 --lattice.step_control=1e9"), {"must be at most 1000000"});
+  check_refused(delf_program(folder, run + "0.05 --lattice.step_control=-1"), {"must be above 0"});
+  check_refused(delf_program(folder, run + "0.05 --lattice.step_control=nan"), {"is not a finite number"});
+  check_refused(delf_program(folder, run + "1e200"), {"--lattice.time_step = 1e200", "overflow double precision"});
+  CHECK_FALSE(std::filesystem::exists(folder / "out"));
+  // too long a step breaks, and leaves row 0
+  const Ran broken = delf_program(folder, run + "10");
+  CHECK(broken.code == 3);
+  CHECK(lines(broken.err).size() == 1);
+  CHECK(summary(folder, "out")["records"] == 1);
+  CHECK(lines(read(folder / "out/series.csv")).size() == 2);
+}
+
+TEST_CASE("an estimate of the error is refused before the run where other runs have other rows") {
+  const Folder folder;
+  const std::string estimate = "--output.estimate=on --run.until=0.2 --out out";
+  check_refused(delf_program(folder, "run " + bounce + estimate),
+                {"--output.estimate = on: reversible steps end at times of their own", "delf convergence"});
+  check_refused(delf_program(folder, "run soliton-bounce " + estimate), {"sites move"});
+  CHECK_FALSE(std::filesystem::exists(folder / "out"));
 }
 
 TEST_CASE("the report of a moving mesh begins with the limit of its step") {
