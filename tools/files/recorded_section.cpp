@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "tools/files/plain_rows.hpp"
+#include "tools/scene/recorded_scene.hpp"
 
 namespace delf {
 
@@ -24,6 +25,7 @@ std::unique_ptr<RowsFile> opened(const std::filesystem::path& path, const std::s
   if (!std::filesystem::exists(path)) name = name.substr(0, name.rfind(":/"));
   if (!std::filesystem::exists(name))
     throw BadScene(place + ": no such file; name the fields.h5 of a run, or a file of the same layout");
+  if (std::filesystem::is_directory(path)) throw BadScene(place + ": is a directory; name the file in it");
   if (path.extension() == ".gz") throw BadScene(place + ": is compressed; unpack it by gunzip");
   try {
     if (auto plain = open_plain_rows(path, system.lattice().sites(), system.fields())) return plain;
@@ -84,8 +86,20 @@ void RecordedSection::check_shape(const LatticeSystem& system, Role role) const 
   throw wrong(fmt::format("/{} is {} x {} x {}; write {}", to_string(role), frames, sites, here, needed));
 }
 
+/// A key of the scene in the file; empty if there is none.
+std::string RecordedSection::recorded(const std::string& key) const {
+  const auto keys = recorded_keys(scene());
+  const auto found = keys.find(key);
+  return found == keys.end() ? std::string() : found->second;
+}
+
 // Of rows that chose their steps.
 std::vector<double> RecordedSection::own_times() const {
+  if (const std::string every = recorded("output.every"); !every.empty() && every != "1")
+    throw wrong(
+        fmt::format("was recorded with output.every = {}, and the equations read all rows; record every row "
+                    "(output.every = 1)",
+                    every));
   std::vector<double> times;
   for (int frame = 0; frame < rows(); ++frame) {
     const auto now = fields_ ? fields_->time(frame) : std::nullopt;
@@ -100,6 +114,10 @@ std::vector<double> RecordedSection::own_times() const {
 
 void RecordedSection::check_times(double time_step) const {
   constexpr const char* layout = "write the time of each frame there";
+  if (recorded("lattice.time_steps") == "reversible")
+    throw wrong(
+        "was made with lattice.time_steps = reversible, and its steps are not equal; use "
+        "--lattice.time_steps=reversible");
   std::optional<double> before;
   for (int frame = 0; frame < rows(); ++frame) {
     std::optional<double> now;

@@ -45,6 +45,7 @@ class RecordedSection {
   BadScene wrong(const std::string& what) const;
   void check_shape(const LatticeSystem&, Role) const;
   FieldsReader::Shape shape(Role) const;
+  std::string recorded(const std::string& key) const;
   void check_times(double time_step) const;
   std::vector<double> own_times() const;
   void check_space(const LatticeSystem&) const;

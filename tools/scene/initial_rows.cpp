@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "schemes/moving_start.hpp"
+#include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "tools/files/fields_reader.hpp"
 
 namespace delf {
 
@@ -85,19 +87,36 @@ std::vector<double> InitialRows::values(Writer write, double time, const Lattice
   return out;
 }
 
+/// What is slaved in a row of the file: [i·components + c]; empty where the file has not all of it.
+std::vector<double> InitialRows::slaved_in_file(const Simulation& simulation, int row) const {
+  const auto* fields = dynamic_cast<const FieldsReader*>(file_.get());
+  if (!fields || simulation.count(Role::slaved) == 0) return {};
+  const FieldsReader::Shape& shape = fields->shape(Role::slaved);
+  const int frame = scene_.initial_frame + row;
+  if (shape.components != simulation.count(Role::slaved) || shape.sites != file_->sites() || frame >= shape.frames)
+    return {};
+  return fields->values(Role::slaved, frame);
+}
+
 std::vector<double> InitialRows::section(const Simulation& simulation, Writer write, int row, bool with_times) const {
   const auto& components = simulation.components();
   const auto d = components.size(), fields = static_cast<std::size_t>(simulation.count(Role::field));
   const auto sites = static_cast<std::size_t>(scene_.problem.lattice.sites());
   const double h = scene_.problem.time_step, k = scene_.problem.lattice.space_step();
   std::vector<double> out(sites * d), at_node;
+  const std::vector<double> slaved = slaved_in_file(simulation, row);
+  const std::size_t all_slaved = slaved.size() / sites;
+  std::size_t which_slaved = 0;
   NodePosition node{};
   for (std::size_t c = 0; c < d; ++c) {
     if (components[c].role == Role::multiplier) continue;
     if (components[c].role == Role::slaved) {
-      // sites that move start from where those of the lattice are, at rest
-      if (components[c].position && write == &State::values)
+      // sites that move start from where the file has them, or else those of the lattice are, at rest
+      if (all_slaved > 0)
+        for (std::size_t i = 0; i < sites; ++i) out[i * d + c] = slaved[i * all_slaved + which_slaved];
+      else if (components[c].position && write == &State::values)
         for (std::size_t i = 0; i < sites; ++i) out[i * d + c] = scene_.problem.lattice.position(static_cast<int>(i));
+      ++which_slaved;
       continue;
     }
     const auto a = static_cast<std::size_t>(components[c].field);
@@ -130,6 +149,30 @@ void InitialRows::start_momenta(Simulation& simulation) const {
   simulation.start_momenta(row0, momenta);
 }
 
+/// Between row `j` of the run and the row before it; nothing if the file has no times.
+std::optional<double> InitialRows::step_in_file(int j) const {
+  const auto before = file_->time(scene_.initial_frame + j - 1), after = file_->time(scene_.initial_frame + j);
+  return before && after ? std::optional(*after - *before) : std::nullopt;
+}
+
+/// The file has the first step, and steps go on from it: ρ_½ = ε/h_½.
+void InitialRows::start_by_own_step(Simulation& simulation, const std::vector<std::vector<double>>& rows) const {
+  constexpr double far = 1.5;  // ρ_½ is half a step away from what row 1 asks for
+  const auto step = step_in_file(1);
+  if (!step || !(*step > 0))
+    throw BadInput("initial.file",
+                   "has no times, which steps that the field chooses begin with; give a fields.h5 of delf");
+  const double longest = scene_.problem.time_step;
+  simulation.start(rows, longest / *step);
+  const double chosen = longest / simulation.row_density().density;
+  if (*step < far * chosen && chosen < far * *step) return;
+  throw BadInput("initial.frame",
+                 fmt::format("frames {} and {} of the file are {:.6g} apart, and the field there chooses steps of "
+                             "{:.6g}; use lattice.time_step and lattice.step_control of the file, and record it with "
+                             "output.every = 1",
+                             scene_.initial_frame, scene_.initial_frame + 1, *step, chosen));
+}
+
 void InitialRows::start(Simulation& simulation) const {
   check(simulation);
   const double h = scene_.problem.time_step;
@@ -154,16 +197,18 @@ void InitialRows::start(Simulation& simulation) const {
       return simulation.start_legendre(section(simulation, &State::values, 0, false),
                                        section(simulation, &State::velocities, 0, false));
     std::vector<std::vector<double>> rows;
-    for (int j = 0; j < simulation.starting_rows(); ++j) {
-      rows.push_back(section(simulation, j));
-      if (!file_ || j == 0) continue;
-      const int frame = scene_.initial_frame + j;
-      const auto before = file_->time(frame - 1), after = file_->time(frame);
-      if (before && after && !(std::abs(*after - *before - h) <= 1e-9 * h + 1e-15 * std::abs(*after)))
-        throw BadInput("initial.frame", fmt::format("frames {} and {} of the file are {:.10g} apart, and the time step "
-                                                    "is {:.10g}; record with output.every = 1, and use the same step",
-                                                    frame - 1, frame, *after - *before, h));
-    }
+    for (int j = 0; j < simulation.starting_rows(); ++j) rows.push_back(section(simulation, j));
+    if (file_ && scene_.problem.step_control) return start_by_own_step(simulation, rows);
+    for (int j = 1; file_ && j < simulation.starting_rows(); ++j)
+      if (const auto step = step_in_file(j);
+          step && !(std::abs(*step - h) <= 1e-9 * h + 1e-15 * std::abs(*file_->time(scene_.initial_frame + j))))
+        throw BadInput("initial.frame",
+                       fmt::format("frames {} and {} of the file are {:.12g} apart, and the time step is {:.10g}; use "
+                                   "lattice.time_step = {:.12g}, {}or record with output.every = 1",
+                                   scene_.initial_frame + j - 1, scene_.initial_frame + j, *step, h, *step,
+                                   find_method(scene_.problem.method).row_density
+                                       ? "lattice.time_steps = reversible if the field chose the steps of the file, "
+                                       : ""));
     simulation.start(rows);
   } catch (const BadInput& bad) {
     throw scene_.settings.located(bad);

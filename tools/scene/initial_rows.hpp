@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
@@ -34,6 +35,9 @@ class InitialRows {
   /// A row of all components from what the state gives at their nodes; time fractions count only `with_times`.
   std::vector<double> section(const Simulation&, Writer, int row, bool with_times) const;
   std::vector<double> section(const Simulation&, int row) const;
+  std::vector<double> slaved_in_file(const Simulation&, int row) const;
+  std::optional<double> step_in_file(int row) const;
+  void start_by_own_step(Simulation&, const std::vector<std::vector<double>>& rows) const;
   /// Row 0 and the momenta there, of a file that has them.
   void start_momenta(Simulation&) const;
   std::vector<double> values(Writer, double time, const Lattice&) const;

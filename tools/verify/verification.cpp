@@ -16,6 +16,7 @@
 #include "schemes/diagnosis/unwrap.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/energy.hpp"
+#include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/verify/derivatives.hpp"
 #include "schemes/verify/flux_check.hpp"
@@ -162,6 +163,26 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
         "command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
         "directions; further pairs are the same at other sizes");
   rows_ = fields_->rows() - std::ranges::max(behind);
+  require_every_row(fields);
+}
+
+// Where the field chose the steps, the first two frames are as far apart as row 0 asks for, or a few times as far. Rows
+// of delf say how they were recorded.
+void Verification::require_every_row(const std::string& fields) const {
+  const auto density = find_method(scene_.problem.method).row_density;
+  if (!scene_.problem.step_control || !density || !fields_->scene().empty()) return;
+  const std::vector<double> row = fields_->row(0), at_rest(row.size());
+  const double longest = scene_.problem.time_step, apart = system_.times()->step(0);
+  const double chosen = longest / density({simulation_.theory(), system_, system_.window(0, {row}, turn_), 0, longest},
+                                          at_rest, *scene_.problem.step_control)
+                                      .density;
+  const auto steps = std::lround(apart / chosen);
+  if (steps < 2) return;
+  throw BadScene(
+      fmt::format("command line: --fields {}: frames 0 and 1 are {:.6g} apart, and the field there chooses steps of "
+                  "{:.6g}: of {} rows one was recorded, and the equations read all. Record every row (output.every = "
+                  "1); or use lattice.time_step = {:.6g}, if steps were as long",
+                  fields, apart, chosen, steps, longest * apart / chosen));
 }
 
 // A requested region without an equation would be taken for verified.

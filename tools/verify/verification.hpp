@@ -46,6 +46,7 @@ class Verification {
 
  private:
   void open_files(const std::string& fields, const std::vector<std::string>& nearby);
+  void require_every_row(const std::string& fields) const;
   void open_nearby(const std::string& fields, const std::vector<std::string>& nearby);
   void require_interiors() const;
   void choose_moments();

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/python.hpp"
 #include "tests/tools/refused.hpp"
+#include "tools/files/fields_reader.hpp"
 
 using namespace delf::testing;
 using Json = nlohmann::json;
@@ -78,6 +82,60 @@ TEST_CASE("where steps cannot be chosen, the key says so") {
   refused("run kink " + own, "scheme.method = multisymplectic has steps of one length; use scheme.method = r-adaptive");
   refused("run soliton-bounce --lattice.step_control=2", "has no effect without lattice.time_steps = reversible");
   refused("run soliton-bounce " + own + "--initial.start=exact", "use legendre");
+}
+
+TEST_CASE("rows whose steps were chosen are refused where some were recorded, or steps are to be equal") {
+  const Folder folder;
+  const std::string keys = bounce + "--lattice.time_step=0.05 ";
+  REQUIRE(delf_program(folder, "run " + keys + "--run.until=0.5 --output.every=3 --out out").code == 0);
+  const std::string fields = "--fields out/fields.h5 --out v";
+  check_refused(delf_program(folder, "verify " + keys + fields),
+                {"--fields out/fields.h5: was recorded with output.every = 3", "record every row (output.every = 1)"});
+  check_refused(delf_program(folder,
+                             "verify soliton-bounce --lattice.sites=17 --scheme.time=trapezoid "
+                             "--lattice.time_step=0.05 " +
+                                 fields),
+                {"was made with lattice.time_steps = reversible", "use --lattice.time_steps=reversible"});
+  // rows that do not say how they were recorded
+  const Ran without = shell(folder, python(folder) +
+                                        " - <<'END'\n"
+                                        "import h5py\n"
+                                        "del h5py.File('out/fields.h5', 'r+').attrs['scene']\n"
+                                        "END");
+  REQUIRE(without.code == 0);
+  check_refused(delf_program(folder, "verify " + keys + fields), {"of 3 rows one was recorded"});
+}
+
+TEST_CASE("a run goes on from rows whose steps were chosen, by steps that the field chooses") {
+  const Folder folder;
+  // positions are fields of the one, and slaved to the fields in the other
+  const auto strategy = GENERATE(as<std::string>(), "multiplier", "control");
+  const std::string keys = "--scheme.strategy=" + strategy;
+  REQUIRE(delf_program(folder,
+                       "run " + bounce + "--lattice.time_step=0.05 --output.every=1 --run.steps=30 --out whole " + keys)
+              .code == 0);
+  folder.write("next.ini",
+               "[theory]\nname = sine-gordon\n[lattice]\nspace = interval\nlength = 25\nsites = 17\ntime_step = 0.05\n"
+               "[scheme]\nmethod = r-adaptive\ntime = trapezoid\n[mesh]\nalpha = 2.5\n"
+               "[initial]\nstate = file\nfile = whole/fields.h5\nframe = 12\n[run]\nsteps = 18\n"
+               "[output]\nevery = 1\nfigures = off\n");
+  const Ran rest = delf_program(folder, "run next.ini --out rest " + own + keys);
+  INFO(rest.err);
+  REQUIRE(rest.code == 0);
+  const delf::FieldsReader a(folder / "whole/fields.h5"), b(folder / "rest/fields.h5");
+  const auto there = a.row(30), here = b.row(18);
+  REQUIRE(there.size() == here.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < here.size(); ++i) largest = std::max(largest, std::abs(here[i] - there[i]));
+  CHECK(largest < 1e-9);
+  CHECK(*b.time(18) == Approx(*a.time(30) - *a.time(12)).epsilon(1e-10));
+
+  check_refused(delf_program(folder, "run next.ini --out no --lattice.step_control=5 " + own + keys),
+                {"next.ini:16: initial.frame = 12: frames 12 and 13 of the file are",
+                 "and the field there chooses steps", "use lattice.time_step and lattice.step_control of the file"});
+  check_refused(delf_program(folder, "run next.ini --out no " + keys),
+                {"next.ini:16: initial.frame = 12: frames 12 and 13 of the file are",
+                 "the time step is 0.05; use lattice.time_step = 0.0", "lattice.time_steps = reversible if"});
 }
 
 TEST_CASE("a strength that makes every step tiny, and a step out of all range, are refused by what they mean") {
