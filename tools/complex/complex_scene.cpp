@@ -6,17 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
 
-#include "jets/expressions/expression.hpp"
-#include "lattice/text_parts.hpp"
 #include "schemes/complex/circle_fibre.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/mesh_text.hpp"
 #include "tools/scene/key_warning.hpp"
+#include "tools/scene/steps_in_turn.hpp"
 #include "tools/scene/values.hpp"
 
 namespace delf {
@@ -75,31 +73,7 @@ ParameterValues read_parameters(const Values& values, const TheoryEntry& theory)
 std::vector<double> read_time_steps(const Settings& settings, const Values& values) {
   const auto text = values.text("lattice.time_steps");
   if (!text || *text == reversible) return {};
-  std::string list = *text;
-  std::error_code none;
-  for (const auto& path : {settings.file().parent_path() / *text, std::filesystem::path(*text)})
-    if (std::filesystem::is_regular_file(path, none)) {
-      std::ifstream in(path);
-      list.clear();
-      for (std::string line; std::getline(in, line);) {
-        const std::string content = trimmed(line.substr(0, line.find('#')));
-        if (!content.empty()) list += (list.empty() ? "" : ",") + content;
-      }
-      break;
-    }
-  std::vector<double> steps;
-  for (const std::string& part : parts_of(list)) {
-    try {
-      steps.push_back(number_of(part, "lattice.time_steps"));
-    } catch (const BadInput&) {
-      throw settings.error(
-          "lattice.time_steps",
-          fmt::format("\"{}\" is no number; give steps like 0.1, 0.05, or a file of them", part.substr(0, 40)));
-    }
-    if (!std::isnormal(steps.back()) || steps.back() < 0)
-      throw settings.error("lattice.time_steps", "steps must be above 0");
-  }
-  return steps;
+  return steps_in_turn(settings, *text);
 }
 
 /// Of a formula: the theory's parameters by their names.
