@@ -30,7 +30,8 @@ bool is_stable(const BatchDensity& density, double vacuum) {
   return true;
 }
 
-// ∂ℓ/∂φᵃ = 0 at the field 0.
+}  // namespace
+
 bool zero_is_a_solution(const BatchDensity& density) {
   const int d = density.components();
   const ScratchRows phi(d, lanes), slope(d, lanes);
@@ -40,8 +41,6 @@ bool zero_is_a_solution(const BatchDensity& density) {
     if (slope[a][0] != 0) return false;
   return true;
 }
-
-}  // namespace
 
 std::optional<double> stable_vacuum(const Scene& scene, const Simulation& simulation) {
   const BatchDensity& density = simulation.theory().density();

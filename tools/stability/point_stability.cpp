@@ -33,10 +33,10 @@ std::vector<NamedScheme> schemes_of(const Scene& scene, const std::vector<std::s
   }
   for (const std::string& given : asked) {
     const std::string name = stencil_name(given, true);
-    const std::size_t before = chosen.size();
+    bool any = false;
     for (const NamedScheme& scheme : all)
-      if (scheme.name == name || scheme.name.starts_with(name + " ")) chosen.push_back(scheme);
-    if (chosen.size() > before) continue;
+      if (scheme.name == name || scheme.name.starts_with(name + " ")) add_once(chosen, scheme), any = true;
+    if (any) continue;
     std::vector<std::string> names;
     for (const NamedScheme& scheme : all) names.push_back(scheme.name);
     throw scene.settings.error("stability.schemes",
@@ -48,7 +48,7 @@ std::vector<NamedScheme> schemes_of(const Scene& scene, const std::vector<std::s
 PointRequest request_of(const Scene& scene) {
   const Values values(scene.settings);
   PointRequest request;
-  request.schemes = schemes_of(scene, names_in_list(values.text("stability.schemes").value_or("")));
+  request.schemes = schemes_of(scene, listed_names(scene, "stability.schemes"));
   if (scene.settings.find("stability.most_courant")) request.most = values.real("stability.most_courant");
   request.agreement = values.real("stability.agreement");
   request.steps = static_cast<int>(values.integer("stability.steps"));
@@ -134,8 +134,9 @@ ExitCode point_stability(const Scene& scene, const std::filesystem::path& folder
   std::string left_out;
   int count_left_out = 0;
   for (const NamedScheme& scheme : request.schemes) {
-    if (Interrupt::asked()) return ExitCode::interrupted;
+    if (Interrupt::asked()) break;
     PointFinding found = find_point_limit(scheme, request);
+    if (Interrupt::asked()) break;  // it is half done
     if (found.left_out.empty()) findings.push_back(std::move(found));
     else left_out += "  " + shortened(found.scheme + ": " + found.left_out, 118) + "\n", ++count_left_out;
   }
@@ -150,6 +151,11 @@ ExitCode point_stability(const Scene& scene, const std::filesystem::path& folder
              text_table(columns, rows, 120));
   if (scene.settings.find("stability.schemes") && count_left_out > 0) fmt::print("\nleft out\n{}", left_out);
   else if (count_left_out > 0) fmt::print("\nleft out: {} schemes that are not of mechanics\n", count_left_out);
+  if (Interrupt::asked()) {
+    fmt::print("\nnot finished (interrupted): {} of {} schemes\n{}: stability.json methods.md\n",
+               findings.size() + static_cast<std::size_t>(count_left_out), request.schemes.size(), folder.string());
+    return ExitCode::interrupted;
+  }
   const auto failed = std::ranges::count(findings, false, &PointFinding::agrees);
   fmt::print("\n{} of {} limits agree\n{}: stability.json methods.md\n",
              findings.size() - static_cast<std::size_t>(failed), findings.size(), folder.string());

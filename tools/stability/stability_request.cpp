@@ -11,6 +11,7 @@
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "schemes/unknown_name.hpp"
+#include "tools/run/vacuum_symbol.hpp"
 #include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/stability/corner_list.hpp"
@@ -31,9 +32,9 @@ std::vector<double> positive_numbers(const Scene& scene, const char* key, const 
   return numbers;
 }
 
-bool has_own_waves(const Scene& scene) {
+bool has_own_waves(const Scene& scene, const BatchDensity& density) {
   if (scene.settings.find("stability.waves")) return Values(scene.settings).choice("stability.waves") == "own";
-  return make_theory(find_theory(scene.problem.theory), scene.problem.parameters)->density().slots() > 3;
+  return density.slots() > 3;
 }
 
 /// The scene's own scheme, and others that are asked for.
@@ -47,6 +48,10 @@ std::vector<NamedScheme> with_own_scheme(const std::vector<std::string>& asked, 
 }
 
 }  // namespace
+
+void add_once(std::vector<NamedScheme>& schemes, const NamedScheme& scheme) {
+  if (std::ranges::find(schemes, scheme.name, &NamedScheme::name) == schemes.end()) schemes.push_back(scheme);
+}
 
 std::vector<std::string> names_in_list(const std::string& text) {
   std::vector<std::string> names;
@@ -66,6 +71,13 @@ std::vector<std::string> names_in_list(const std::string& text) {
   return names;
 }
 
+std::vector<std::string> listed_names(const Scene& scene, const char* key) {
+  const auto text = Values(scene.settings).text(key);
+  std::vector<std::string> names = names_in_list(text.value_or(""));
+  if (text && names.empty()) throw scene.settings.error(key, "names nothing; write what you mean, separated by commas");
+  return names;
+}
+
 std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& asked, const Problem& base) {
   const std::vector<NamedScheme> all = named_schemes(base);
   if (asked.size() == 1 && asked.front() == "all") return all;
@@ -78,7 +90,7 @@ std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& asked, c
     const std::string name = stencil_name(given, base.lattice.space() == Space::point);
     const auto scheme = std::ranges::find(all, name, &NamedScheme::name);
     if (scheme != all.end()) {
-      chosen.push_back(*scheme);
+      add_once(chosen, *scheme);
       continue;
     }
     std::vector<std::string> names = stencil_names_and_aliases();
@@ -101,10 +113,15 @@ const std::vector<std::string>& stability_faults() {
 
 StabilityRequest read_stability_request(const Scene& scene) {
   const Values values(scene.settings);
-  const auto list = [&](const char* key) { return names_in_list(values.text(key).value_or("")); };
+  const auto list = [&](const char* key) { return listed_names(scene, key); };
   StabilityRequest request;
   try {
-    request.own_waves = has_own_waves(scene);
+    const auto theory = make_theory(find_theory(scene.problem.theory), scene.problem.parameters);
+    request.own_waves = has_own_waves(scene, theory->density());
+    if (request.own_waves && !theory->density().is_placed() && !zero_is_a_solution(theory->density()))
+      throw scene.settings.error("stability.waves",
+                                 "own waves are those about the field 0, which does not solve the field equations of "
+                                 "this theory; use stability.waves = klein-gordon");
     request.schemes = request.own_waves ? with_own_scheme(list("stability.schemes"), scene.problem)
                                         : chosen_schemes(list("stability.schemes"), scene.problem);
   } catch (const BadInput& bad) {

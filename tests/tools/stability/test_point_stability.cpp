@@ -7,6 +7,7 @@
 #include "tests/tools/program.hpp"
 #include "tests/tools/refused.hpp"
 #include "tools/stability/point_limits.hpp"
+#include "tools/stability/stability_request.hpp"
 
 using namespace delf;
 using namespace delf::testing;
@@ -77,6 +78,31 @@ TEST_CASE("the table of mechanics is written, a planted limit is found, and unkn
   REQUIRE(json["point_limits"].size() == 3);
   CHECK(std::abs(json["point_limits"][1]["theory"].get<double>() - 2) < 1e-4);
   CHECK(delf_program(folder, run + "--stability.fault=limit --out fault").code == 1);
+  check_refused(delf_program(folder, "stability pendulum --stability.schemes=,"),
+                {"stability.schemes = ,: names nothing"});
+  check_refused(delf_program(folder, "stability kink --stability.corners=,"), {"stability.corners = ,: names nothing"});
   check_refused(delf_program(folder, "stability pendulum --stability.schemes=lobato3"),
                 {"stability.schemes", "lobato3"});
+}
+
+TEST_CASE("a scheme that is named again is listed once") {
+  const Folder folder;
+  const Ran ran = delf_program(folder,
+                               "stability pendulum --stability.steps=100 --out out "
+                               "--stability.schemes='trapezoidal, midpoint, midpoint, trapezoidal'");
+  CHECK(ran.code == 0);
+  CHECK(contains(ran.out, "2 of 2 limits agree"));
+  const Problem base;
+  CHECK(chosen_schemes({"triangle", "guo", "triangle"}, base).size() == 2);
+}
+
+TEST_CASE("an interrupted table of mechanics is written as far as it is") {
+  const Folder folder;
+  const Ran ran = shell(folder, "'" DELF_PROGRAM
+                                "' stability pendulum --stability.steps=100000 --out cut & "
+                                "p=$!; sleep 0.8; kill -INT $p; wait $p");
+  INFO(ran.err << ran.out);
+  CHECK(ran.code == 130);
+  CHECK(contains(ran.out, "not finished (interrupted): "));
+  CHECK(nlohmann::json::parse(read(folder / "cut/stability.json")).contains("point_limits"));
 }

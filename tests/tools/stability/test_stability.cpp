@@ -10,6 +10,7 @@
 #include "lattice/error.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/stability/corner_list.hpp"
 #include "tools/stability/linear_theory.hpp"
@@ -66,6 +67,14 @@ Problem coarse() {
 }
 
 }  // namespace
+
+TEST_CASE("own waves are refused where there is no field 0 to be waves about") {
+  const testing::Folder folder;
+  testing::check_refused(
+      testing::delf_program(folder, "stability liouville --stability.waves=own --out out"),
+      {"--stability.waves = own: own waves are those about the field 0, which does not solve the field equations",
+       "use stability.waves = klein-gordon"});
+}
 
 TEST_CASE("limits found by the symbol are those that are known, to 1e-6") {
   // (5.8): r² + m²h²/36 ≤ 1; leapfrog: r² + m²h²/4 ≤ 1; (5.15): r² ≤ 1 + m²h²/4; the others always
