@@ -121,12 +121,15 @@ ExitCode run_program(const std::vector<std::string>& words) {
   open_standard_streams();
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads no more is reported like a full disk, and ends no run
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is reported like a full disk, and does not kill the program
+  const SystemFailure no_output("standard output cannot be written to");
   try {
     code = carry_out(words);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw SystemFailure("standard output cannot be written to");
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw no_output;
   } catch (const std::exception& error) {
     std::fflush(stdout);
-    std::fputs((error_line(error) + "\n").c_str(), stderr);
+    // a long text fails where it is printed, in the words of fmt
+    const bool of_output = std::ferror(stdout) && dynamic_cast<const std::system_error*>(&error);
+    std::fputs((error_line(of_output ? no_output : error) + "\n").c_str(), stderr);
     code = exit_code(error);
   }
   return code;

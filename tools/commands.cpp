@@ -35,12 +35,13 @@ namespace {
 std::string only_word(const Arguments& arguments, const char* otherwise) {
   if (arguments.words.size() > 2)
     throw BadScene(fmt::format("command line: {}: one word too many; give one thing at a time", arguments.words[2]));
-  if (arguments.words.size() < 2 && otherwise == nullptr)
+  const bool none = arguments.words.size() < 2 || arguments.words[1].empty();
+  if (none && otherwise == nullptr)
     throw BadScene(
         fmt::format("command line: {} what? Name a scene file or a shipped scene, such as `delf {} "
                     "collision`",
                     arguments.words[0], arguments.words[0]));
-  return arguments.words.size() < 2 ? otherwise : arguments.words[1];
+  return none ? otherwise : arguments.words[1];
 }
 
 std::filesystem::path file_of(const Arguments& arguments) {

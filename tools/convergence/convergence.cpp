@@ -154,7 +154,9 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
   write_text_file(folder / "convergence.csv", csv_of(table));
   fmt::print("{}", report(scene, label, table));
   if (!table.ended.empty()) fmt::print("  ended      {}\n", table.ended);
-  if (!std::isfinite(order)) fmt::print("  order      not known: fewer than two errors above rounding\n");
+  if (table.status == "interrupted")
+    fmt::print("  not finished (interrupted): {} of {} lines\n", table.levels.size(), request.levels);
+  else if (!std::isfinite(order)) fmt::print("  order      not known: fewer than two errors above rounding\n");
   if (request.order)
     fmt::print("  order      {}, {} expected: {}\n", number("{:.3f}", order), *request.order,
                passed ? "passed" : "FAILED");
@@ -175,6 +177,9 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
 }  // namespace
 
 ExitCode convergence(const Scene& scene, const fs::path& folder) {
+  if (scene.steps == 0)
+    throw scene.settings.error(Values(scene.settings).given("run.steps") ? "run.steps" : "run.until",
+                               "nothing is stepped, so nothing converges; use more");
   return with_memory_for(scene, [&] {
     return converge_in(folder, scene, scene, scheme_label(scene.problem), order_of_scheme(scene.problem));
   });

@@ -63,7 +63,8 @@ void CheckpointWriter::fail() const {
 CheckpointReader::CheckpointReader(const fs::path& path) : file_(std::fopen(path.c_str(), "rb"), std::fclose) {
   std::error_code error;
   const auto size = file_ ? fs::file_size(path, error) : 0;
-  if (!file_ || error) throw BadInput("", fmt::format("cannot be read ({})", std::strerror(errno)));
+  if (!file_ || error)
+    throw BadInput("", fmt::format("cannot be read ({})", error ? error.message() : std::strerror(errno)));
   std::string head(magic.size(), '\0');
   if (size < magic.size() + sizeof(Sum) || std::fread(head.data(), head.size(), 1, file_.get()) != 1 || head != magic)
     throw BadInput("", "is no checkpoint, or a damaged one");

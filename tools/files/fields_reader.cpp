@@ -2,6 +2,7 @@
 #include "tools/files/fields_reader.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,7 @@ void FieldsReader::read_all() const {
 
 void FieldsReader::open(const std::filesystem::path& path) {
   file_ = open_to_read(path);
+  if (!file_ && access(path.c_str(), R_OK) != 0) throw bad_file("cannot be read; check its permissions");
   if (!file_) throw bad_file("is not an HDF5 file that can be read; name the fields.h5 of a run");
   time_ = open_dataset(file_, "time");
   if (time_ && !was_written(time_, true)) throw bad_file("/time was never written; write the time of each frame there");

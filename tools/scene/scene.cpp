@@ -133,6 +133,8 @@ fs::path find_initial_file(const Settings& settings, const Values& values) {
   std::error_code none;
   for (const fs::path& path : {settings.file().parent_path() / *name, fs::path(*name)})
     if (fs::exists(path, none)) {
+      if (fs::is_directory(path, none))
+        throw settings.error("initial.file", "is a directory; name the file in it, such as fields.h5");
       const fs::path found = fs::absolute(path).lexically_normal();
       if (found.string().find_first_of("#\n") == std::string::npos) return found;
       throw settings.error("initial.file", "a path in a scene holds neither # nor line breaks; rename it");

@@ -104,7 +104,11 @@ ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_lin
                                request.number, suggestion(request.number, pool.known_numbers())));
   draw_and_report(request, outcome, form, folder);
   if (outcome.status == "interrupted") return ExitCode::interrupted;
-  return outcome.done() == 0 ? ExitCode::numerics_failed : ExitCode::done;
+  if (outcome.done() > 0) return ExitCode::done;
+  if (std::ranges::all_of(outcome.rows, [](const SweepRow& row) { return row.status == "bad-input"; }))
+    throw BadScene(fmt::format("{}: none of its runs could begin: the table above has what is wrong with each",
+                               scene.string()));
+  throw NumericalFailure("none of the runs ended well: the table above says why");
 }
 
 }  // namespace delf

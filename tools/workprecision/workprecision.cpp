@@ -57,7 +57,11 @@ ExitCode workprecision_in(const fs::path& folder, const Scene& scene) {
              drawn ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
   if (outcome.status == "interrupted") return ExitCode::interrupted;
-  return outcome.runs.empty() ? ExitCode::numerics_failed : ExitCode::done;
+  if (outcome.runs.empty())
+    throw NumericalFailure(
+        "no run could be timed, for the reasons above; lower lattice.courant, or choose others of "
+        "workprecision.schemes");
+  return ExitCode::done;
 }
 
 }  // namespace

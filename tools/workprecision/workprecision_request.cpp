@@ -55,6 +55,8 @@ WorkPrecisionRequest read_workprecision_request(const Scene& scene) {
   const Values values(scene.settings);
   WorkPrecisionRequest request;
   request.schemes = names_in(values.text("workprecision.schemes").value_or(""));
+  if (request.schemes.empty() && values.given("workprecision.schemes"))
+    throw scene.settings.error("workprecision.schemes", "names no scheme; write names separated by commas, or all");
   if (request.schemes == std::vector<std::string>{"all"}) request.schemes.clear();
   for (const double n : numbers(scene, "workprecision.sites")) {
     constexpr double most = 1e9;

@@ -6,6 +6,7 @@
 #include "tests/catch.hpp"
 #include "tests/tools/figures/has_gnuplot.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 
 using namespace delf::testing;
 using Json = nlohmann::json;
@@ -132,6 +133,21 @@ TEST_CASE("a convergence that cannot be measured is refused in one line") {
   CHECK(ran.code == 2);
   CHECK(contains(ran.err, "convergence.levels"));
   CHECK(lines(ran.err).size() == 1);
+  check_refused(delf_program(folder, "convergence breather --run.until=0 --out out"),
+                {"--run.until = 0: nothing is stepped, so nothing converges; use more"});
+}
+
+TEST_CASE("an interrupted convergence says so, and no order") {
+  const Folder folder;
+  const Ran ran =
+      shell(folder, "'" DELF_PROGRAM
+                    "' convergence kink --lattice.sites=2000 --run.until=1e5 --output.figures=off --out cut & "
+                    "p=$!; sleep 0.8; kill -INT $p; wait $p");
+  INFO(ran.err << ran.out);
+  CHECK(ran.code == 130);
+  CHECK(contains(ran.out, "not finished (interrupted): 0 of"));
+  CHECK_FALSE(contains(ran.out, "above rounding"));
+  CHECK(Json::parse(read(folder / "cut/convergence.json"))["status"] == "interrupted");
 }
 
 TEST_CASE("rows of a mesh that moves are compared at its sites") {

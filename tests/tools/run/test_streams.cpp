@@ -31,6 +31,15 @@ TEST_CASE("standard streams that are closed or full lose nothing that a run writ
   CHECK(contains(read(folder / "out/summary.json"), "\"status\": \"done\""));
 }
 
+TEST_CASE("a full standard output is named as such, however much is printed") {
+  const Folder folder;
+  for (const char* arguments : {"list > /dev/full", "help run > /dev/full", "--version > /dev/full"}) {
+    const Ran ran = delf_program(folder, arguments);
+    CHECK(ran.code == 4);
+    CHECK(ran.err == "delf: standard output cannot be written to\n");
+  }
+}
+
 TEST_CASE("a gnuplot that fails, leaves no file, or hangs costs a run its figures and no more") {
   const Folder folder;
   fs::create_directory(folder / "bin");

@@ -153,7 +153,7 @@ TEST_CASE("a file that is no scene is refused in one line") {
   check_refused(delf_program(folder, "run collision.ini"), {"did you mean collision?"});
   check_refused(delf_program(folder, "run qwertyuiop"),
                 {"known: asynchronous, beam, born-infeld, boussinesq, breather"});
-  check_refused(delf_program(folder, "run ''"), {"no such file"});
+  check_refused(delf_program(folder, "run ''"), {"command line: run what? Name a scene"});
 }
 
 TEST_CASE("a choice that the library refuses is reported with its line of the scene") {

@@ -96,6 +96,7 @@ TEST_CASE("a file that cannot give the rows is refused, and says why") {
   refused("", "needs initial.file");
   refused("--initial.file=nowhere.h5", "no such file");
   refused("--initial.file=text.h5", "is not an HDF5 file");
+  refused("--initial.file=rows", "is a directory; name the file in it");
   refused("--initial.file=rows/fields.h5 --initial.frame=5", "frame 6 is needed, and the file has 6");
   refused("--initial.file=rows/fields.h5 --lattice.sites=65", "has 64 sites");
   refused("--initial.file=rows/fields.h5 --lattice.courant=0.25", "apart");

@@ -249,10 +249,12 @@ TEST_CASE("equal settings are run once, and each has the row") {
   CHECK(lines(read(folder / "out/sweep.rows")).size() == 2);
 }
 
-TEST_CASE("a run that is refused with a caret has the line above it as its failure") {
+TEST_CASE("a run whose formula is refused has the refusal as its failure") {
   const Folder folder;
   const std::string scene = folder.write("kink.ini", scene_with_kink() + "wrong = speeed(1)\n");
-  delf_program(folder, "sweep '" + scene + "' --initial.speed=0.1,0.2 --sweep.keep=table --out out");
+  const Ran ran = delf_program(folder, "sweep '" + scene + "' --initial.speed=0.1,0.2 --sweep.keep=table --out out");
+  CHECK(ran.code == 2);
+  CHECK(contains(ran.err, "none of its runs could begin"));
   const Json run = sweep_of(folder)["runs"][0];
   CHECK(run["status"] == "bad-input");
   CHECK(contains(run["failure"].get<std::string>(), "measure.wrong"));

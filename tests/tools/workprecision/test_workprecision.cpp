@@ -149,6 +149,11 @@ TEST_CASE("a scheme that cannot be built or run is left out with its reason, and
   REQUIRE(unstable["left_out"].size() == 1);
   CHECK(contains(unstable["left_out"][0]["reason"].get<std::string>(), "finite"));
   CHECK(unstable["runs"].empty());
+  const Ran none = delf_program(
+      folder, "workprecision small.ini --workprecision.schemes=hexagon --workprecision.sites=63 --out out");
+  CHECK(none.code == 3);
+  CHECK(lines(none.err).size() == 1);
+  CHECK(contains(none.err, "no run could be timed, for the reasons above"));
 }
 
 TEST_CASE("without an exact solution runs are compared with a finer one, and come nearer to it") {
@@ -215,6 +220,7 @@ TEST_CASE("keys of workprecision that say nothing are refused in one line") {
     CHECK_FALSE(std::filesystem::exists(folder / "refused"));
   };
   refused("small.ini --workprecision.schemes=triangle-vertx", "triangle-vertx is no scheme here; did you mean");
+  refused("small.ini --workprecision.schemes=,", "names no scheme; write names separated by commas, or all");
   refused("small.ini --workprecision.sites=64,1", "1 is no number of sites");
   refused("small.ini --workprecision.sites=64,x", "\"x\" is no positive number");
   refused("small.ini --workprecision.courants=-1", "\"-1\" is no positive number");
