@@ -79,14 +79,16 @@ class AssembledEquations {
 
   void assemble();
 
-  /// use(value, r), or use(value, value, ∂r/∂y), for values with an equation; values are numbers in `rows`.
+  /// use(value, r), or use(value, value, ∂r/∂y), for values with an equation; values are numbers in `rows`. Derivatives that
+  /// are 0 at this y and need not be at others are among them: a matrix has one pattern at every y.
   template <class Use>
   void each(const Stencils& stencils, const Vector& y, const Use& use, bool unscaled = false) const {
     constexpr auto most = static_cast<std::size_t>(PlacedFamily::most);
     constexpr bool of_residual = std::is_invocable_v<Use, std::size_t, double>;
     std::size_t begin = 0;  // of the batch, in values of stencils
     const auto visit = [&](ComplexSystem::Stencils batch, const double* out) {
-      const auto size = static_cast<std::size_t>(system_.family_of(batch[0]).size());
+      const PlacedFamily& family = system_.family_of(batch[0]);
+      const auto size = static_cast<std::size_t>(family.size());
       for (std::size_t s = 0; s < batch.size(); ++s)
         for (std::size_t i = 0; i < size; ++i) {
           const std::size_t value = begin + s * size + i;
@@ -94,7 +96,8 @@ class AssembledEquations {
           if constexpr (of_residual) use(value, out[i * most + s]);
           else
             for (std::size_t m = 0; m < size; ++m)
-              if (const double entry = out[(i * size + m) * most + s]; entry != 0)
+              if (const double entry = out[(i * size + m) * most + s];
+                  entry != 0 || family.is_varying(static_cast<int>(i), static_cast<int>(m)))
                 use(value, begin + s * size + m, entry);
         }
       begin += batch.size() * size;

@@ -3,15 +3,16 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "lattice/error.hpp"
 #include "schemes/complex/assembled_equations.hpp"
 #include "schemes/complex/complex_solver.hpp"
+#include "schemes/complex/sitewise_lu.hpp"
 
 namespace delf {
 
@@ -54,6 +55,7 @@ class ComplexSolver::LevelPart {
       block_of_.insert(block_of_.end(), at(size), b - first_block);
     }
     first_.push_back(static_cast<int>(unknowns_.size()));
+    if (!is_small()) make_solver(system, plan, first, last);
     refresh();
   }
 
@@ -125,6 +127,22 @@ class ComplexSolver::LevelPart {
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, small_block, small_block>;
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+  /// Values of a point of spacetime may be sites of their own: a place is where they lie.
+  void make_solver(const ComplexSystem& system, const ComplexPlan& plan, std::int32_t first, std::int32_t last) {
+    std::map<Complex::Position, int> number;
+    const auto places = [&](const std::vector<std::int32_t>& sites) {
+      std::vector<int> list;
+      for (std::int32_t n = first; n < last; ++n) {
+        const Complex::Position& position = system.complex().position(sites[at(n)]);
+        const int place = number.try_emplace(position, static_cast<int>(number.size())).first->second;
+        list.insert(list.end(), at(system.components()), place);
+      }
+      return list;
+    };
+    std::vector<int> of_equations = places(plan.equations), of_unknowns = places(plan.unknowns);
+    solver_.emplace(std::move(of_equations), std::move(of_unknowns), static_cast<int>(number.size()));
+  }
+
   bool is_small() const { return largest_ <= small_block; }
 
   /// What is solved for directly.
@@ -173,7 +191,7 @@ class ComplexSolver::LevelPart {
     for (Eigen::Index i = 0; i < r.size(); ++i) r[i] = std::cos(static_cast<double>(i) * static_cast<double>(i));
     double largest = 0;
     for (Eigen::Index e = 0; e < A.nonZeros(); ++e) largest = std::max(largest, std::abs(A.valuePtr()[e]));
-    return !(Vector(solver_.solve(r)).lpNorm<Eigen::Infinity>() * largest < most);
+    return !(solver_->solve(r).lpNorm<Eigen::Infinity>() * largest < most);
   }
 
   /// The Jacobian at y.
@@ -205,15 +223,10 @@ class ComplexSolver::LevelPart {
     return blocks_[begin_[b] + at((i - first_[b]) * (first_[b + 1] - first_[b]) + m - first_[b])];
   }
 
-  void factor(const Matrix& A) {
-    if (!analysed_) solver_.analyzePattern(A);
-    analysed_ = true;
-    solver_.factorize(A);
-    require(solver_.info() == Eigen::Success);
-  }
+  void factor(const Matrix& A) { require(solver_->factorize(A)); }
 
   Vector correction(const Vector& E) const {
-    if (!is_small()) return solver_.solve(E);
+    if (!is_small()) return solver_->solve(E);
     Vector change(E.size());
     for (std::size_t b = 0; b + 1 < first_.size(); ++b) {
       const int size = first_[b + 1] - first_[b];
@@ -270,8 +283,7 @@ class ComplexSolver::LevelPart {
   std::size_t entries_ = 0;
   std::vector<double> blocks_;
   Vector diagonal_, sources_;
-  bool analysed_ = false;
-  Eigen::SparseLU<Matrix> solver_;
+  std::optional<SitewiseLU> solver_;  ///< of blocks that are not small
 };
 
 }  // namespace delf

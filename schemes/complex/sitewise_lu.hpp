@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace delf {
+
+/// A sparse LU factorisation whose unknowns are eliminated place by place. The order of places is one of least degree of
+/// the graph of places, two of which are neighbours where an equation of one has an unknown of the other; unknowns of a
+/// place stay together, in their order. What is found at a place is regular by itself, even where it has a multiplier, whose
+/// diagonal is 0: an order of single unknowns that does not know it fills the factors.
+class SitewiseLU {
+ public:
+  using Matrix = Eigen::SparseMatrix<double>;
+  using Vector = Eigen::VectorXd;
+
+  /// The place of each equation and of each unknown, from 0 to places − 1.
+  SitewiseLU(std::vector<int> of_equations, std::vector<int> of_unknowns, int places)
+      : of_equations_(std::move(of_equations)), of_unknowns_(std::move(of_unknowns)), places_(places) {}
+
+  /// Whether it went well. All matrices have the pattern of the first.
+  bool factorize(const Matrix& A) {
+    if (order_.size() == 0) {
+      find_order(A);
+      lu_.analyzePattern(A * order_);
+    }
+    lu_.factorize(A * order_);
+    return lu_.info() == Eigen::Success;
+  }
+  Vector solve(const Vector& E) const { return order_ * Vector(lu_.solve(E)); }
+
+ private:
+  using Order = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>;
+  static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+
+  void find_order(const Matrix& A) {
+    std::vector<Eigen::Triplet<double>> neighbours;
+    for (Eigen::Index u = 0; u < A.outerSize(); ++u)
+      for (Matrix::InnerIterator e(A, u); e; ++e)
+        neighbours.emplace_back(of_equations_[at(e.row())], of_unknowns_[at(u)], 1.0);
+    Matrix graph(places_, places_);
+    graph.setFromTriplets(neighbours.begin(), neighbours.end());
+    Order of_places;  // places in the order of their elimination
+    Eigen::AMDOrdering<int>()(graph, of_places);
+    std::vector<int> turn(at(places_)), unknowns(of_unknowns_.size());
+    for (int n = 0; n < places_; ++n) turn[at(of_places.indices()[n])] = n;
+    std::iota(unknowns.begin(), unknowns.end(), 0);
+    std::ranges::stable_sort(unknowns, {}, [&](int u) { return turn[at(of_unknowns_[at(u)])]; });
+    order_ = Order(Eigen::Map<const Eigen::VectorXi>(unknowns.data(), A.cols()));
+  }
+
+  std::vector<int> of_equations_, of_unknowns_;
+  int places_;
+  Order order_;
+  Eigen::SparseLU<Matrix, Eigen::NaturalOrdering<int>> lu_;
+};
+
+}  // namespace delf
