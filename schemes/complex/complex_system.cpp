@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -90,12 +91,10 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
 }
 
 void ComplexSystem::each_lagrangian(Stencils s, std::span<const double> y, const Visit& visit) const {
-  each(
-      s, y, 0, [](const auto& family, const auto& batch, double* out) { family.lagrangian(batch, out); }, visit, {});
+  each(s, y, 0, [](const auto& family, const auto& batch, double* out) { family.lagrangian(batch, out); }, visit, {});
 }
 void ComplexSystem::each_energy(Stencils s, std::span<const double> y, const Visit& visit) const {
-  each(
-      s, y, 0, [](const auto& family, const auto& batch, double* out) { family.energy(batch, out); }, visit, {});
+  each(s, y, 0, [](const auto& family, const auto& batch, double* out) { family.energy(batch, out); }, visit, {});
 }
 void ComplexSystem::each_residual(Stencils s, std::span<const double> y, const Visit& visit,
                                   const StencilReading& reading) const {
@@ -118,14 +117,40 @@ std::vector<Balance> ComplexSystem::residual(std::span<const double> y) const {
   return E;
 }
 
+std::vector<double> ComplexSystem::sizes(std::span<const double> y) const {
+  std::vector<double> size(nodes(), 0.0);
+  each_jacobian(all_stencils(), y, [&](Stencils batch, const double* J) {
+    const int count = family_of(batch[0]).size();
+    for (std::size_t s = 0; s < batch.size(); ++s)
+      for (int i = 0; i < count; ++i)
+        for (int m = 0; m < count; ++m)
+          size[node(batch[s], i)] += std::abs(J[at((i * count + m) * PlacedFamily::most) + s] * y[node(batch[s], m)]);
+  });
+  return size;
+}
+
+double scale_of_equations(const ComplexSystem& system, std::span<const Balance> E, std::span<const double> y) {
+  constexpr double few = 8 * std::numeric_limits<double>::epsilon(), suspicious = 1e-3;
+  const auto d = at(system.components());
+  const auto has_equation = [&](std::size_t n) { return system.complex().has_equation(static_cast<int>(n / d)); };
+  double sum = 0, absolute = 0, size = 0;
+  for (std::size_t n = 0; n < E.size(); ++n)
+    if (has_equation(n)) sum = std::max(sum, std::abs(E[n].sum)), absolute = std::max(absolute, E[n].absolute);
+  if (sum <= suspicious * absolute) return absolute;
+  const std::vector<double> sizes = system.sizes(y);
+  for (std::size_t n = 0; n < E.size(); ++n)
+    if (has_equation(n)) size = std::max(size, sizes[n]);
+  return absolute <= few * size ? size : absolute;
+}
+
 double largest_residual(const ComplexSystem& system, std::span<const double> y) {
   const std::vector<Balance> E = system.residual(y);
+  const double scale = scale_of_equations(system, E, y);
   const auto d = at(system.components());
-  double sum = 0, absolute = 0;
+  double sum = 0;
   for (std::size_t n = 0; n < E.size(); ++n)
-    if (system.complex().has_equation(static_cast<int>(n / d)))
-      sum = std::max(sum, std::abs(E[n].sum)), absolute = std::max(absolute, E[n].absolute);
-  return absolute == 0 ? 0 : sum / absolute;
+    if (system.complex().has_equation(static_cast<int>(n / d))) sum = std::max(sum, std::abs(E[n].sum));
+  return scale == 0 ? 0 : sum / scale;
 }
 
 }  // namespace delf

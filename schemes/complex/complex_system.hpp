@@ -12,8 +12,9 @@ namespace delf {
 
 /// How a ComplexSystem reads stencils.
 struct StencilReading {
-  std::span<const std::int32_t> places = {};  ///< not empty: y holds some nodes alone, and here each value of each stencil
-  bool unscaled = false;                      ///< as if the measures and time steps of all parts were 1
+  std::span<const std::int32_t> places =
+      {};                 ///< not empty: y holds some nodes alone, and here each value of each stencil
+  bool unscaled = false;  ///< as if the measures and time steps of all parts were 1
 };
 
 /// The field equations of a complex of stencils,
@@ -75,6 +76,8 @@ class ComplexSystem {
   }
   /// E at every node, whether or not it holds there.
   std::vector<Balance> residual(std::span<const double> y) const;
+  /// Σ |∂E/∂y y| at every node: what the terms of E have cancelled within stencils too.
+  std::vector<double> sizes(std::span<const double> y) const;
 
  private:
   template <class Evaluate>
@@ -91,7 +94,10 @@ class ComplexSystem {
   std::vector<double> measures_, time_steps_;
 };
 
-/// The largest |E| where an equation holds, relative to the largest sum of absolute terms: a vacuum has no scale of its own.
+/// What |E| is relative to: the largest sum of absolute terms where an equation holds, since a vacuum has no scale of its own.
+/// Where all terms are rounding, as the differences of a constant field, the largest Σ |∂E/∂y y|.
+double scale_of_equations(const ComplexSystem&, std::span<const Balance> E, std::span<const double> y);
+/// The largest |E| where an equation holds, relative to this scale.
 double largest_residual(const ComplexSystem&, std::span<const double> y);
 
 }  // namespace delf

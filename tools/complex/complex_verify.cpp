@@ -141,19 +141,10 @@ class MeshVerification {
     const auto d = static_cast<std::size_t>(system.components());
     if (scene_.time == MeshTime::cells) {
       // The times of a site may lie close together: the terms are those of y itself, Σ |∂E/∂y y|, not of its quotients.
-      for (Balance& balance : E) balance.absolute = 0;
-      system.each_jacobian(system.all_stencils(), y, [&](ComplexSystem::Stencils batch, const double* J) {
-        const int size = system.family_of(batch[0]).size();
-        for (std::size_t s = 0; s < batch.size(); ++s)
-          for (int i = 0; i < size; ++i)
-            for (int m = 0; m < size; ++m)
-              E[system.node(batch[s], i)].absolute += std::abs(
-                  J[static_cast<std::size_t>((i * size + m) * PlacedFamily::most) + s] * y[system.node(batch[s], m)]);
-      });
+      const std::vector<double> terms = system.sizes(y);
+      for (std::size_t n = 0; n < E.size(); ++n) E[n].absolute = terms[n];
     }
-    double scale = 0;
-    for (std::size_t n = 0; n < E.size(); ++n)
-      if (system.complex().has_equation(static_cast<int>(n / d))) scale = std::max(scale, E[n].absolute);
+    const double scale = scale_of_equations(system, E, y);
     for (std::size_t n = 0; n < E.size(); ++n) {
       const auto site = static_cast<int>(n / d);
       if (!system.complex().has_equation(site)) continue;
