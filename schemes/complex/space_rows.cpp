@@ -132,12 +132,22 @@ std::vector<std::int32_t> SpaceRows::motion(int row) const {
   return stencils;
 }
 
+std::vector<double> SpaceRows::with_multipliers(std::span<const double> fields,
+                                                std::span<const double> multipliers) const {
+  const std::size_t of_fields = space_.fields_of_row(), sites = at(space_.sites());
+  std::vector<double> y(system_.nodes(), 0.0);
+  for (int j = 0; j < rows_; ++j) {
+    std::ranges::copy(fields.subspan(at(j) * of_fields, of_fields), y.begin() + j * per_row_);
+    std::ranges::copy(multipliers.subspan(at(j) * sites, sites),
+                      y.begin() + j * per_row_ + static_cast<std::ptrdiff_t>(of_fields));
+  }
+  return y;
+}
+
 std::vector<double> SpaceRows::with_multipliers(std::span<const double> fields) const {
   if (!space_.constraint) return {fields.begin(), fields.end()};
   const std::size_t of_fields = space_.fields_of_row(), of_row = space_.values_of_row(), d = at(space_.fields());
-  std::vector<double> y(system_.nodes(), 0.0);
-  for (int j = 0; j < rows_; ++j)
-    std::ranges::copy(fields.subspan(at(j) * of_fields, of_fields), y.begin() + j * per_row_);
+  std::vector<double> y = with_multipliers(fields, std::vector<double>(at(rows_) * at(space_.sites()), 0.0));
   const std::vector<Balance> E = system_.residual(y);
   for (int j = 0; j < rows_; ++j)
     space_.constraint->each(
@@ -185,6 +195,11 @@ SpaceEvolution::SpaceEvolution(const CellSpace& space, double time_step, Complex
 
 std::span<const double> SpaceEvolution::row(int back) const {
   return {y_.data() + at(2 - back) * space_.values_of_row(), space_.fields_of_row()};
+}
+
+std::span<const double> SpaceEvolution::multipliers() const {
+  const std::size_t of_row = space_.values_of_row(), fields = space_.fields_of_row();
+  return std::span(y_).subspan(of_row + fields, of_row - fields);
 }
 
 std::size_t SpaceEvolution::bytes() const {

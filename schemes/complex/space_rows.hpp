@@ -65,6 +65,8 @@ class SpaceRows {
   /// Rows of fields alone with the multipliers that fit their equations best, 0 where none holds: the component of E along
   /// ∂G/∂φ is zero.
   std::vector<double> with_multipliers(std::span<const double> fields) const;
+  /// The same with these, [row·sites + i].
+  std::vector<double> with_multipliers(std::span<const double> fields, std::span<const double> multipliers) const;
   /// Of the stencils in a row.
   void set_row_measure(int row, double measure) {
     system_.set_part(part_of_row_[static_cast<std::size_t>(row)], measure, 1);
@@ -119,6 +121,8 @@ class SpaceEvolution {
   double last_step() const { return before_; }
   /// The fields of the newest row, or of the one `back` rows before: 0 or 1.
   std::span<const double> row(int back = 0) const;
+  /// λ of the row before the newest, which were found with the newest; none without a constraint.
+  std::span<const double> multipliers() const;
   const ComplexPlan& plan() const { return solver_->plan(); }
   bool is_direct() const { return solver_->is_direct(); }
   const ComplexSolver::Report& report() const { return report_; }

@@ -65,7 +65,8 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, Outco
        .energy = c.stencils ? Outcome::unknown : field.energy(),
        .iterations = solved.iterations,
        .residual = field.residual(),
-       .constraint = c.theory->constraint() ? c.space->largest_constraint(field.values()) : Outcome::unknown},
+       .constraint = c.theory->constraint() ? c.space->largest_constraint(field.values()) : Outcome::unknown,
+       .multipliers = field.multipliers()},
       slabs);
   measure_error(c, field.values(), 0, o);
   return c.stencils ? field.solver().plan().level_of_sites(c.sites()) : std::vector<int>();

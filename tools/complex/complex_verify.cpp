@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -194,8 +195,7 @@ class MeshVerification {
       const std::vector<double> row = file.row(frames - 1);
       const std::string where = fmt::format("frame {}", frames - 1);
       if (scene_.stencils) return look_at(field.system(), row, where);
-      look_at_constraint(row, where);
-      return look_at(field.system(), SpaceRows(*scene_.space).with_multipliers(row), where);
+      return look_at_rows_of(SpaceRows(*scene_.space), row, multipliers_of(file, name, frames - 1, 1), where);
     }
     if (frames < 3) throw refuse(fmt::format("has {} frames, and an equation takes three; record more rows", frames));
     for (int first = 0, last = 0; last < frames - 1 && !Interrupt::asked(); first = last - 1) {
@@ -211,16 +211,41 @@ class MeshVerification {
           throw refuse(fmt::format("frame {} is not later than the one before it; sort the frames", f));
         times.push_back(*time);
       }
-      look_at_window(times, rows, fmt::format("frames {} to {}", first, last));
+      // Frame f + 1 has those of row f, which they were found with; the last row of a window has none.
+      std::vector<double> multipliers = multipliers_of(file, name, first + 1, last - first);
+      if (!multipliers.empty()) multipliers.resize(multipliers.size() + scene_.space->mesh.points.size(), 0.0);
+      look_at_rows_of(SpaceRows(*scene_.space, times), rows, multipliers, fmt::format("frames {} to {}", first, last));
     }
     if (Interrupt::asked()) verdict_.status = "interrupted";
   }
 
-  /// Multipliers are those that fit the rows best.
-  void look_at_window(std::span<const double> times, std::span<const double> rows, const std::string& where) {
-    const SpaceRows window_rows(*scene_.space, times);
+  /// Of as many frames, one after the other; empty where the file, or the theory, has none.
+  std::vector<double> multipliers_of(const FieldsReader& file, const std::string& name, int first, int count) const {
+    const auto [frames, sites, components] = file.shape(Role::multiplier);
+    if (!scene_.theory->constraint() || frames == 0) return {};
+    if (frames != file.frames() || sites != scene_.sites() || components != 1)
+      throw BadScene(
+          fmt::format("command line: --fields: {}: /multiplier is {} x {} x {}; write frames x sites x components = {} "
+                      "x {} x 1, or leave it out",
+                      name, frames, sites, components, file.frames(), scene_.sites()));
+    std::vector<double> all;
+    for (int f = first; f < first + count; ++f) {
+      const std::vector<double> one = file.values(Role::multiplier, f);
+      if (!std::ranges::all_of(one, [](double value) { return std::isfinite(value); }))
+        throw BadScene(
+            fmt::format("command line: --fields: {}: frame {}: /multiplier is not finite; correct it", name, f));
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return all;
+  }
+
+  /// Without multipliers they are those that fit the rows best.
+  void look_at_rows_of(const SpaceRows& window_rows, std::span<const double> rows, std::span<const double> multipliers,
+                       const std::string& where) {
     look_at_constraint(rows, where);
-    look_at(window_rows.system(), window_rows.with_multipliers(rows), where);
+    look_at(window_rows.system(),
+            multipliers.empty() ? window_rows.with_multipliers(rows) : window_rows.with_multipliers(rows, multipliers),
+            where);
   }
 
   /// Rows of one mesh say nothing of another.
@@ -299,7 +324,8 @@ class MeshVerification {
           std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_);  // the last row of the next window
       if (evolution.newest() > next - window) keep(evolution.row(), evolution.time());
       if (evolution.newest() < next) continue;
-      look_at_window(times, rows, fmt::format("rows {} to {}", evolution.newest() - window + 1, evolution.newest()));
+      look_at_rows_of(SpaceRows(*scene_.space, times), rows, {},
+                      fmt::format("rows {} to {}", evolution.newest() - window + 1, evolution.newest()));
       if (own_steps && !scene_.theory->constraint())
         look_at_first_step(times, rows, fmt::format("rows from {}", evolution.newest() - window + 1));
       while (moment < moments_ &&

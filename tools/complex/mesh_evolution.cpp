@@ -39,6 +39,7 @@ class AllSites final : public MeshEvolution {
                 newest && row > 0 ? evolution_.residual() : 0};
     for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(evolution_.momentum(symmetry));
     if (c_.space->constraint) now.constraint = c_.space->largest_constraint(now.values);
+    if (newest) now.multipliers = evolution_.multipliers();
     return now;
   }
   void visit(SavedState& state) override {

@@ -25,6 +25,8 @@ struct MeshRow {
   std::span<const double> node_times = {};  ///< of asynchronous cells
   std::vector<Balance> momenta = {};        ///< of the theory's symmetries: what a cut behind the row holds
   double constraint = Outcome::unknown;     ///< the largest |G|
+  /// Those found with the row: of the row before, or of a field at rest its own. Empty: none yet, or no constraint.
+  std::span<const double> multipliers = {};
 };
 
 /// How a field goes on over a mesh, row after row: with all sites at once, or with cells that take their own steps between

@@ -17,6 +17,7 @@ RowNames names_of(const ComplexScene& scene) {
   RowNames names;
   names.of[Role::field].clear();
   for (const auto& field : scene.fields) names.of[Role::field].push_back(field.name);
+  if (scene.theory->constraint()) names.of[Role::multiplier] = {"lambda"};
   return names;
 }
 
@@ -43,9 +44,12 @@ MeshFiles::MeshFiles(const ComplexScene& scene, const std::filesystem::path& fol
                                    names_of(scene), MeshOfFile{scene.coordinates(), cells, corners_, node_times}, kept);
 }
 
-void MeshFiles::append(double time, std::span<const double> values, std::span<const double> node_times) {
+void MeshFiles::append(double time, std::span<const double> values, std::span<const double> multipliers,
+                       std::span<const double> node_times) {
   RecordedRow row;
   row[Role::field].assign(values.begin(), values.end());
+  row[Role::multiplier].assign(multipliers.begin(), multipliers.end());
+  if (scene_.theory->constraint()) row[Role::multiplier].resize(static_cast<std::size_t>(scene_.sites()), 0.0);
   file_->append(time, row, {}, node_times);
   times_.push_back(time);
 }

@@ -19,7 +19,9 @@ class MeshFiles {
  public:
   MeshFiles(const ComplexScene&, const std::filesystem::path& folder, std::int64_t frames, bool node_times = false,
             const WrittenPart& kept = {});
-  void append(double time, std::span<const double> values, std::span<const double> node_times = {});
+  /// Without multipliers, where the theory has some, they are 0.
+  void append(double time, std::span<const double> values, std::span<const double> multipliers = {},
+              std::span<const double> node_times = {});
   /// See FieldsFile.
   const WrittenPart& flush(bool sync) { return file_->flush(sync); }
   void visit(SavedState&);

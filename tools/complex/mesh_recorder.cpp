@@ -42,7 +42,7 @@ void MeshRecorder::record(const MeshRow& r, std::span<const SlabEnergy> slabs) {
   if (slabs.empty()) note(r);
   MeshRow line = r;
   for (const SlabEnergy& slab : slabs) ++line.row, line.time = slab.time, line.energy = slab.energy, note(line);
-  if (files_) files_->append(r.time, r.values, r.node_times);
+  if (files_) files_->append(r.time, r.values, r.multipliers, r.node_times);
   if (c_.scene.figures) film_.add(r.row, r.time, r.values);
 }
 

@@ -16,6 +16,7 @@ class StaticField {
   const ComplexSolver& solver() const { return solver_; }
   /// The fields; behind them y has multipliers, where there is a constraint.
   std::span<const double> values() const { return {y_.data(), fields_}; }
+  std::span<const double> multipliers() const { return std::span(y_).subspan(fields_); }
   const std::vector<double>& unknowns_and_data() const { return y_; }
   ComplexSolver::Report solve() { return solver_.solve(y_); }
   /// −S on a mesh: the energy of a static field.

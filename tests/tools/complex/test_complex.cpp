@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -11,11 +12,24 @@
 #include "tests/tools/program.hpp"
 #include "tools/complex/mesh_text.hpp"
 #include "tools/complex/stencil_text.hpp"
+#include "tools/files/fields_reader.hpp"
 
 using namespace delf;
 using namespace delf::testing;
 
 namespace {
+
+void scale_multipliers(const std::filesystem::path& path, double factor) {
+  std::vector<double> values;
+  {
+    const FieldsReader file(path);
+    for (int frame = 0; frame < file.frames(); ++frame)
+      for (const double value : file.values(Role::multiplier, frame)) values.push_back(factor * value);
+  }
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+  const Hdf5Handle dataset(H5Dopen2(file, "multiplier", H5P_DEFAULT), H5Dclose);
+  REQUIRE(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+}
 
 nlohmann::json summary(const Folder& folder) { return nlohmann::json::parse(read(folder / "out/summary.json")); }
 
@@ -594,6 +608,27 @@ TEST_CASE("wave maps and harmonic maps keep their constraint on meshes through t
   REQUIRE(delf_program(folder, "run wave.ini --out half --run.until=0.5").code == 0);
   REQUIRE(delf_program(folder, "resume half --run.until=1").code == 0);
   CHECK(lines(read(folder / "half/series.csv")).back() == lines(read(folder / "out/series.csv")).back());
+
+  // Multipliers are recorded with the row that they were found with, and a verification reads them.
+  for (const std::string scene : {"wave.ini", "still.ini"}) {
+    CAPTURE(scene);
+    REQUIRE(
+        delf_program(folder, "run " + scene + (scene == "wave.ini" ? " --output.every=1" : "") + " --out out").code ==
+        0);
+    if (scene == "wave.ini") {
+      const FieldsReader file(folder / "out/fields.h5");
+      CHECK(file.shape(Role::multiplier).components == 1);
+      CHECK(std::ranges::all_of(file.values(Role::multiplier, 0), [](double value) { return value == 0; }));
+      CHECK(std::ranges::none_of(file.values(Role::multiplier, 2), [](double value) { return value == 0; }));
+    }
+    const std::string verify = "verify " + scene + " --fields out/fields.h5 --out v";
+    CHECK(delf_program(folder, verify).code == 0);
+    scale_multipliers(folder / "out/fields.h5", 1.001);
+    const Ran edited = delf_program(folder, verify);
+    CAPTURE(edited.out, edited.err);
+    CHECK(edited.code == 1);
+    CHECK(contains(edited.out, "FAILED: field equations"));
+  }
 
   const auto refused = [&](const std::string& arguments, const char* why) {
     const Ran ran = delf_program(folder, "run " + arguments + " --out no");
