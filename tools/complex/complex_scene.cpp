@@ -96,18 +96,22 @@ void read_fields(ComplexScene& c, const Values& values, const ParameterValues& p
       throw settings.error(key, "reads t, and is of t = 0; give a solution of t as exact." + key.substr(8));
     return read;
   };
-  for (const Component& field : c.theory->fields()) {
-    const std::string& name = field.name;
+  std::vector<std::string> names;
+  for (const Component& field : c.theory->fields()) names.push_back(field.name);
+  const std::string of_all = names.size() > 1 ? fmt::format(" (the fields are {})", fmt::join(names, ", ")) : "";
+  for (const std::string& name : names) {
     c.fields.push_back({name, formula("initial." + name), formula("initial." + name + "_t"), formula("exact." + name)});
     if (!c.fields.back().value && !c.fields.back().exact)
       throw settings.error("initial." + name, "must be given on a mesh, as a formula of x, y and z; or exact." + name +
-                                                  " as one of t too");
+                                                  " as one of t too" + of_all);
     if (c.fields.back().exact && !c.is_one_problem())
       for (const std::string& key : {"initial." + name, "initial." + name + "_t"})
         if (const Setting* s = settings.find(key))
           c.scene.warnings.push_back(key_warning(settings, *s, "no effect, as exact." + name + " gives the start too"));
     if (c.fields.front().exact.has_value() != c.fields.back().exact.has_value())
-      throw settings.error("exact." + name, "must be given for all fields or for none; complete it");
+      throw settings.error("exact." + name, fmt::format("must be given for all of the fields {} or for none of them; "
+                                                        "complete it",
+                                                        fmt::join(names, ", ")));
   }
   if (values.given("initial.state") && !find_state(values.choice("initial.state")).further)
     throw settings.error("initial.state", "is of one coordinate; on a mesh give formulas, initial.phi or exact.phi");

@@ -2,6 +2,7 @@
 #include "tools/scene/settings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/program_options.hpp>
@@ -43,6 +44,12 @@ boost::program_options::parsed_options parsed(const std::string& text) {
 }
 
 std::string unknown_key(const std::string& key, std::span<const Key> known) {
+  if (constexpr std::string_view of_field = "exact."; key.starts_with(of_field)) {
+    std::vector<std::string> names;
+    for (const Key& k : known)
+      if (std::string_view(k.name).starts_with(of_field)) names.emplace_back(k.name);
+    if (!names.empty()) return fmt::format("unknown key; the fields of the theory have {}", fmt::join(names, ", "));
+  }
   const std::string meant = nearest_key(key, known);
   return meant.empty() ? "unknown key; `delf help run` lists all keys"
                        : fmt::format("unknown key; did you mean {}?", meant);

@@ -500,6 +500,22 @@ TEST_CASE("a scene on a mesh with an error is refused in one line") {
   refused("run sphere --lattice.time_steps=reversible '--theory.density=0.5*phi_t^2 + phi_t^4 - phi_x^2'",
           "need a density quadratic in phi_t");
   refused("run sphere --initial.speed=0.3", "has no effect on a mesh");
+  refused("run sphere --exact.u=x", "--exact.u: unknown key; the fields of the theory have exact.phi");
+  const std::string rest = "phi3 = 0\nphi1 = 1\n[run]\nsteps = 2\n";
+  folder.write("map.ini",
+               "[theory]\nname = wave-map\n[lattice]\nspace = complex\nmesh = icosahedron:1\ncourant = 0.3\n"
+               "[initial]\nphi2 = 0\n" +
+                   rest);
+  folder.write("short.ini",
+               "[theory]\nname = wave-map\n[lattice]\nspace = complex\nmesh = icosahedron:1\n"
+               "courant = 0.3\n[initial]\n" +
+                   rest);
+  refused("run map.ini --exact.u=1", "unknown key; the fields of the theory have exact.phi1, exact.phi2, exact.phi3");
+  refused("run map.ini --exact.phi1=1", "must be given for all of the fields phi1, phi2, phi3 or for none of them");
+  refused("run short.ini",
+          "initial.phi2: must be given on a mesh, as a formula of x, y and z; or exact.phi2 as one of t too (the "
+          "fields are "
+          "phi1, phi2, phi3)");
   refused("run sphere --initial.phi=x*t", "reads t");
   refused("run static-kink --run.until=3", "has no effect with lattice.time = none");
   refused("plan sphere --latex", "is for lattices");
