@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <random>
 
-#include "jets/expressions/generator.hpp"
+#include "jets/expressions/expression.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_noether.hpp"
@@ -21,6 +21,7 @@
 #include "tools/scene/text_file.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/verify/verdict.hpp"
+#include "tools/verify/verify_request.hpp"
 
 namespace delf {
 namespace {
@@ -97,11 +98,9 @@ class MeshVerification {
       for (const LinearSymmetry& symmetry : density->up_to_divergence())
         verdict_.left_out.push_back(fmt::format(
             "Noether, {}: the density has it up to a divergence, and its stencils on a mesh have not", symmetry.name));
-    if (const auto text = values.text("verify.generator"); text && !text->empty()) {
-      ExpressionNames names{{}, {}};
-      for (const auto& field : scene_.fields) names.fields.push_back(field.name);
-      all.push_back(generator_of(*text, names, "generator (" + *text + ")", "verify.generator"));
-    }
+    std::vector<std::string> names;
+    for (const auto& field : scene_.fields) names.push_back(field.name);
+    add_generator(scene_.scene, values.text("verify.generator").value_or(""), names, all);
     return all;
   }
 

@@ -11,7 +11,7 @@
 #include <set>
 #include <span>
 
-#include "jets/expressions/generator.hpp"
+#include "jets/expressions/expression.hpp"
 #include "schemes/diagnosis/diagnosis.hpp"
 #include "schemes/diagnosis/unwrap.hpp"
 #include "schemes/methods/method_registry.hpp"
@@ -59,21 +59,10 @@ int first_with_terms(const StencilFamily& family, const LatticeSystem& system) {
 std::unique_ptr<LatticeSystem> with_wrong_sign(const LatticeSystem& right) {
   std::vector<std::shared_ptr<const StencilFamily>> families(right.families().begin(), right.families().end());
   families[0] = std::make_shared<WrongSign>(families[0], first_with_terms(*families[0], right));
-  auto wrong = std::make_unique<LatticeSystem>(right.lattice(), std::move(families), right.time_step(),
-                                               right.all_components());
+  auto wrong =
+      std::make_unique<LatticeSystem>(right.lattice(), std::move(families), right.time_step(), right.all_components());
   wrong->share_times(right);
   return wrong;
-}
-
-void add_generator(const Scene& scene, const VerifyRequest& request, const LatticeSystem& system,
-                   std::vector<LinearSymmetry>& all) {
-  if (request.generator.empty()) return;
-  try {
-    all.push_back(generator_of(request.generator, {field_names(system), {}}, "generator (" + request.generator + ")",
-                               "verify.generator"));
-  } catch (const BadInput& bad) {
-    throw scene.settings.located(bad);
-  }
 }
 
 }  // namespace
@@ -81,7 +70,7 @@ void add_generator(const Scene& scene, const VerifyRequest& request, const Latti
 std::vector<LinearSymmetry> requested_symmetries(const Scene& scene, const VerifyRequest& request,
                                                  const FieldTheory& theory, const LatticeSystem& system) {
   std::vector<LinearSymmetry> all = theory.symmetries();
-  add_generator(scene, request, system, all);
+  add_generator(scene, request.generator, field_names(system), all);
   return all;
 }
 
@@ -265,7 +254,7 @@ std::vector<LinearSymmetry> Verification::symmetries() {
             fmt::format("Noether, {}: the density has it up to a divergence, and the Lagrangian of the scheme has not",
                         symmetry.name));
     }
-  add_generator(scene_, request_, system_, all);
+  add_generator(scene_, request_.generator, field_names(system_), all);
   if (!is_variational(system_)) all.clear();
   return all;
 }

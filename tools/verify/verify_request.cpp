@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "jets/expressions/generator.hpp"
 #include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/verify/region_text.hpp"
@@ -79,6 +80,16 @@ VerifyRequest read_verify_request(const Scene& scene) {
   request.unwrap = values.toggle("verify.unwrap");
   request.fault = values.choice("verify.fault");
   return request;
+}
+
+void add_generator(const Scene& scene, const std::string& text, const std::vector<std::string>& fields,
+                   std::vector<LinearSymmetry>& all) {
+  if (text.empty()) return;
+  try {
+    all.push_back(generator_of(text, {fields, {}}, "generator (" + text + ")", "verify.generator"));
+  } catch (const BadInput& bad) {
+    throw scene.settings.located(bad);
+  }
 }
 
 }  // namespace delf

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "jets/symmetry.hpp"
 #include "schemes/verify/drawn_region.hpp"
 #include "tools/scene/scene.hpp"
 
@@ -34,5 +35,9 @@ const std::vector<std::string>& verify_faults();
 
 /// Throws BadScene.
 VerifyRequest read_verify_request(const Scene&);
+
+/// Behind other symmetries that of verify.generator, as text for fields of these names; none if it is empty. Throws BadScene.
+void add_generator(const Scene&, const std::string& text, const std::vector<std::string>& fields,
+                   std::vector<LinearSymmetry>& all);
 
 }  // namespace delf
