@@ -5,14 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <random>
 
-#include "jets/expressions/expression.hpp"
 #include "schemes/complex/asynchronous.hpp"
-#include "schemes/complex/complex_form.hpp"
-#include "schemes/complex/complex_noether.hpp"
 #include "schemes/complex/first_and_last_step.hpp"
 #include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_checks.hpp"
 #include "tools/complex/row_steps.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/files/fields_reader.hpp"
@@ -21,34 +18,18 @@
 #include "tools/scene/text_file.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/verify/verdict.hpp"
-#include "tools/verify/verify_request.hpp"
 
 namespace delf {
 namespace {
 
-/// The checks of rows, or of a static field: windows of consecutive rows are complexes of their own.
+/// Which rows are checked, or a static field: windows of consecutive rows are complexes of their own.
 class MeshVerification {
  public:
   MeshVerification(const ComplexScene& scene, const Values& values)
-      : scene_(scene),
-        variations_(static_cast<int>(values.integer("verify.variations"))),
-        moments_(static_cast<int>(values.integer("verify.moments"))),
-        fault_(values.choice("verify.fault")),
-        random_(scene.scene.initial.seed) {
+      : scene_(scene), checks_(scene, values), moments_(static_cast<int>(values.integer("verify.moments"))) {
     const double tolerance = values.real("verify.tolerance");
-    equations_ = {
-        .name = "field equations", .region = {}, .tolerance = std::max(tolerance, 10 * scene.scene.problem.tolerance)};
-    local_ = {.name = "local identity of the forms", .region = {}, .tolerance = tolerance};
-    for (const int centres : sizes)
-      forms_.push_back(
-          {.name = fmt::format("form formula, {}",
-                               centres == 1 ? "around a site" : fmt::format("{} connected sites", centres)),
-           .region = {},
-           .tolerance = tolerance});
     reversal_ = {
         .name = "time reversal", .region = {}, .tolerance = std::max(tolerance, 100 * scene.scene.problem.tolerance)};
-    constraint_ = {.name = "constraint", .region = {}, .tolerance = equations_.tolerance};
-    noether_.emplace(symmetries(values), equations_.tolerance, values.toggle("verify.force"), fault_ == "sign");
     first_step_ = {.name = "form of the first step, the last as long", .region = {}, .tolerance = tolerance};
     order_ = {.name = "order of the updates, planned", .region = {}, .tolerance = 0};
     verdict_.seed = scene.scene.initial.seed;
@@ -63,18 +44,10 @@ class MeshVerification {
     else if (scene_.time == MeshTime::cells) look_at_cells();
     else look_at_rows();
     verdict_.seconds = seconds_since(begin);
-    verdict_.checks = {equations_};
-    if (constraint_.samples > 0) verdict_.checks.push_back(constraint_);
-    for (const Check& check : forms_) verdict_.checks.push_back(check);
-    verdict_.checks.push_back(local_);
-    const std::vector<Check> noether = noether_->checks();
-    verdict_.checks.insert(verdict_.checks.end(), noether.begin(), noether.end());
+    checks_.add_to(verdict_);
     if (order_.samples > 0) verdict_.checks.push_back(order_);
     if (reversal_.samples > 0) verdict_.checks.push_back(reversal_);
     if (first_step_.samples > 0) verdict_.checks.push_back(first_step_);
-    if (noether.empty())
-      verdict_.left_out.push_back(
-          "Noether: the theory declares no symmetry of its fields; try one by verify.generator");
     if (scene_.theory->constraint() && !scene_.time_steps.empty())
       verdict_.left_out.push_back("form of the first step: not for theories with a constraint");
     if (scene_.step_control())
@@ -89,90 +62,7 @@ class MeshVerification {
   }
 
  private:
-  static constexpr std::array<int, 5> sizes{1, 3, 9, 27, 60};
   static constexpr int window = 5;
-
-  std::vector<LinearSymmetry> symmetries(const Values& values) {
-    std::vector<LinearSymmetry> all = scene_.theory->symmetries();
-    if (const auto* density = dynamic_cast<const SymbolicDensity*>(&scene_.theory->density()))
-      for (const LinearSymmetry& symmetry : density->up_to_divergence())
-        verdict_.left_out.push_back(fmt::format(
-            "Noether, {}: the density has it up to a divergence, and its stencils on a mesh have not", symmetry.name));
-    std::vector<std::string> names;
-    for (const auto& field : scene_.fields) names.push_back(field.name);
-    add_generator(scene_.scene, values.text("verify.generator").value_or(""), names, all);
-    return all;
-  }
-
-  void look_at(const ComplexSystem& system, std::vector<double> y, const std::string& where) {
-    const Complex& complex = system.complex();
-    const Touching touching(complex);
-    if (fault_ == "field") {
-      const std::vector<int> one = draw_centres(complex, touching, 1, random_);
-      y[static_cast<std::size_t>(one.front() * system.components())] += 1e-3;
-    }
-    look_at_equations(system, y, where);
-    verdict_.stencils += complex.stencils();
-    for (std::size_t n = 0; n < sizes.size(); ++n) {
-      const ComplexForm form(
-          system, ComplexRegion::around(complex, touching, draw_centres(complex, touching, sizes[n], random_)), y,
-          fault_ == "sign");
-      auto V = form.first_variations(2 * variations_, random_);
-      if (fault_ == "variation")
-        if (const auto node = form.coupling_node()) V[0][*node] += 1e-2;
-      const std::string region = fmt::format("{} sites, {} stencils, {}", form.region().sites().size(),
-                                             form.region().stencils().size(), where);
-      for (std::size_t v = 0; v + 1 < V.size(); v += 2) {
-        if (forms_[n].take(form.form_formula(V[v], V[v + 1]), region) && !forms_[n].passed())
-          forms_[n].failure = form.linearised(V[v]) > 1e-9 ? "V does not solve the linearised equations"
-                                                           : "the stencils' equations are no derivatives of one action";
-        if (local_.take(form.local_identity(V[v], V[v + 1]), region) && !local_.passed())
-          local_.failure = "∂²L/∂y∂y of a stencil is not symmetric";
-      }
-      noether_->look_at(system, form.region(), y, region, random_);
-      verdict_.points.push_back({fmt::format("{} sites", sizes[n]),
-                                 static_cast<std::int64_t>(form.region().stencils().size()), forms_[n].value, true});
-    }
-  }
-
-  // Relative to the largest terms of the window: a vacuum has no scale of its own.
-  void look_at_equations(const ComplexSystem& system, std::span<const double> y, const std::string& where) {
-    std::vector<Balance> E = system.residual(y);
-    const auto d = static_cast<std::size_t>(system.components());
-    if (scene_.time == MeshTime::cells) {
-      // The times of a site may lie close together: the terms are those of y itself, Σ |∂E/∂y y|, not of its quotients.
-      const std::vector<double> terms = system.sizes(y);
-      for (std::size_t n = 0; n < E.size(); ++n) E[n].absolute = terms[n];
-    }
-    const double scale = scale_of_equations(system, E, y);
-    for (std::size_t n = 0; n < E.size(); ++n) {
-      const auto site = static_cast<int>(n / d);
-      if (!system.complex().has_equation(site)) continue;
-      const double own = scene_.time == MeshTime::cells ? E[n].absolute : scale;
-      if (equations_.take({E[n].sum, own, E[n].count}, where))
-        equations_.region = fmt::format("{}, {}", name_of(system, site), where), worst_site_ = equations_.region;
-    }
-    if (!equations_.passed()) equations_.failure = "the values around " + worst_site_ + " are not those of a solution";
-  }
-
-  // Where every value is a site of its own, their numbers say nothing.
-  std::string name_of(const ComplexSystem& system, int site) const {
-    const std::string name = system.complex().name(site);
-    return scene_.theory->constraint() ? "the point" + name.substr(name.find(" at ")) : name;
-  }
-
-  // Relative to Σ |∂G/∂φ φ|: the terms of G cancel within one stencil.
-  void look_at_constraint(std::span<const double> fields, const std::string& where) {
-    if (!scene_.theory->constraint()) return;
-    const auto d = scene_.fields.size();
-    scene_.space->constraint->each(fields, [&](std::size_t n, double G, std::span<const double> slopes) {
-      Balance balance{G, 0, 1};
-      for (std::size_t a = 0; a < d; ++a) balance.absolute += std::abs(slopes[a] * fields[n * d + a]);
-      const std::size_t sites = scene_.space->mesh.points.size();
-      if (constraint_.take(balance, fmt::format("point {}, {}", n % sites, where)) && !constraint_.passed())
-        constraint_.failure = "the fields leave the surface of the constraint at " + constraint_.region;
-    });
-  }
 
   /// Every row but the first and the last has an equation; windows overlap by two rows.
   void look_at_file(const std::string& name) {
@@ -193,7 +83,7 @@ class MeshVerification {
       const StaticField field(scene_);
       const std::vector<double> row = file.row(frames - 1);
       const std::string where = fmt::format("frame {}", frames - 1);
-      if (scene_.stencils) return look_at(field.system(), row, where);
+      if (scene_.stencils) return checks_.look_at(field.system(), row, where);
       return look_at_rows_of(SpaceRows(*scene_.space), row, multipliers_of(file, name, frames - 1, 1), where);
     }
     if (frames < 3) throw refuse(fmt::format("has {} frames, and an equation takes three; record more rows", frames));
@@ -241,10 +131,11 @@ class MeshVerification {
   /// Without multipliers they are those that fit the rows best.
   void look_at_rows_of(const SpaceRows& window_rows, std::span<const double> rows, std::span<const double> multipliers,
                        const std::string& where) {
-    look_at_constraint(rows, where);
-    look_at(window_rows.system(),
-            multipliers.empty() ? window_rows.with_multipliers(rows) : window_rows.with_multipliers(rows, multipliers),
-            where);
+    checks_.look_at_constraint(rows, where);
+    checks_.look_at(
+        window_rows.system(),
+        multipliers.empty() ? window_rows.with_multipliers(rows) : window_rows.with_multipliers(rows, multipliers),
+        where);
   }
 
   /// Rows of one mesh say nothing of another.
@@ -269,8 +160,8 @@ class MeshVerification {
       verdict_.status = "interrupted";
       return;
     }
-    if (scene_.theory->constraint()) look_at_constraint(field.values(), "all of space");
-    look_at(field.system(), field.unknowns_and_data(), "all of space");
+    if (scene_.theory->constraint()) checks_.look_at_constraint(field.values(), "all of space");
+    checks_.look_at(field.system(), field.unknowns_and_data(), "all of space");
   }
 
   // Windows of some updates a site, with the order that the planner finds for them.
@@ -283,9 +174,9 @@ class MeshVerification {
       evolution.open_window();
       evolution.update(6 * scene_.space->mesh.cells());
       const auto made = evolution.window();
-      look_at(made.system, made.values,
-              fmt::format("updates {} to {}", evolution.updates() - 6 * scene_.space->mesh.cells() + 1,
-                          evolution.updates()));
+      checks_.look_at(made.system, made.values,
+                      fmt::format("updates {} to {}", evolution.updates() - 6 * scene_.space->mesh.cells() + 1,
+                                  evolution.updates()));
       // Each time of a site is determined by its time before, and by nothing that comes later.
       const Complex& complex = made.system.complex();
       const ComplexPlan plan = make_plan(complex, Touching(complex));
@@ -341,8 +232,10 @@ class MeshVerification {
     times.back() = times[times.size() - 2] + (times[1] - times[0]);
     const SpaceRows same(*scene_.space, times);
     ComplexSolver(same.system()).solve(rows);
-    for (int v = 0; v < variations_; ++v)
-      if (first_step_.take(form_of_first_step(*scene_.space, times, rows, random_, fault_ == "variation"), where) &&
+    for (int v = 0; v < checks_.variations(); ++v)
+      if (first_step_.take(
+              form_of_first_step(*scene_.space, times, rows, checks_.random(), checks_.fault() == "variation"),
+              where) &&
           !first_step_.passed())
         first_step_.failure = "the 2-form of the last two rows is not that of the first two";
   }
@@ -393,13 +286,10 @@ class MeshVerification {
   }
 
   const ComplexScene& scene_;
-  int variations_, moments_;
-  std::string fault_, worst_site_;
-  std::mt19937_64 random_;
-  Check equations_, constraint_, local_, reversal_, order_, first_step_;
-  std::optional<ComplexNoether> noether_;
+  MeshChecks checks_;
+  int moments_;
+  Check reversal_, order_, first_step_;
   std::optional<Measured> energy_;
-  std::vector<Check> forms_;
   Verdict verdict_;
 };
 
