@@ -31,10 +31,12 @@ LatticeComplex::LatticeComplex(const Lattice& lattice, const SolvePlan& plan, co
     for (int i = 0; i < sites; ++i)
       system.add_site({j * time_step, lattice.position(i), 0, 0}, lattice.is_fixed(i) ? SiteRole::given : role);
   }
-  // |Δ| = measure · h k, and the weights of φ_x per length
+  // |Δ| = measure · h k, and the weights of φ_x per length, of φ_xx per its square
   std::vector<TablePoint> points = table.points;
   for (TablePoint& p : points)
-    for (TablePoint::Entry& e : p.slots[static_cast<std::size_t>(JetSlot::phi_x)]) e.weight /= lattice.space_step();
+    for (std::size_t slot = 0; slot < p.slots.size(); ++slot)
+      for (TablePoint::Entry& e : p.slots[slot])
+        for (int n = 0; n < slot_powers[slot].space; ++n) e.weight /= lattice.space_step();
   const int family = system.add_family(PlacedFamily(std::move(density), table.pattern.size(), points));
   const int number = system.add_table(family, points);
   const Stencils stencils(lattice, {table.pattern});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
@@ -39,8 +40,9 @@ struct PlacedFamily::Strip {
   }
   double number(int n, int s) const { return family.numbers_[at(batch.tables[s]) * at(family.stride_) + at(n)]; }
   double weight(const Entry& e, int s) const {
-    const double w = number(e.number, s);
-    return slot_powers[at(e.slot)].time == 1 ? w / batch.time_steps[s] : w;
+    double w = number(e.number, s);
+    for (int p = 0; p < slot_powers[at(e.slot)].time; ++p) w /= batch.time_steps[s];
+    return w;
   }
   double measure(const Point& point, int s) const { return batch.measures[s] * number(point.number, s); }
 
@@ -57,13 +59,13 @@ PlacedFamily::PlacedFamily(std::shared_ptr<const BatchDensity> density, int vert
                    "theory.name: a density of t and x needs a regular lattice; choose lattice.space = circle");
   coupled_.assign(at(size() * size()), 0);
   varying_ = coupled_;
-  bool with_rates = false, with_others = false;
+  std::set<int> powers;  // of the time step
   for (const TablePoint& p : form) {
     Point point{stride_++, {}};
     for (int slot = 0; slot < density_->slots(); ++slot)
       for (const TablePoint::Entry& e : p.slots[at(slot)]) {
         point.entries.push_back({slot, e.vertex, stride_++});
-        (slot_powers[at(slot)].time == 1 ? with_rates : with_others) = true;
+        powers.insert(slot_powers[at(slot)].time);
       }
     for (const Entry& u : point.entries)
       for (const Entry& v : point.entries)
@@ -79,7 +81,7 @@ PlacedFamily::PlacedFamily(std::shared_ptr<const BatchDensity> density, int vert
           }
     points_.push_back(std::move(point));
   }
-  if (with_rates) time_power_ = with_others ? std::nullopt : std::optional(1);
+  if (!powers.empty()) time_power_ = powers.size() == 1 ? std::optional(*powers.begin()) : std::nullopt;
 }
 
 ComplexShape PlacedFamily::shape(int values_of_site) const {

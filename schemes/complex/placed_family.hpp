@@ -26,7 +26,8 @@ struct PlacedBatch {
 ///
 ///     L_Δ = |Δ| Σ_q w_q ℓ(j_q),    j_q = M_q y_Δ,    |Δ|, w_q and M_q of the stencil's own table
 ///
-/// Weights of φ_t are divided by the stencil's time step; those of φ_x are of the coordinates themselves. A gradient of two
+/// Weights are divided by the power of the stencil's time step that the slot has: φ_t once, φ_tt twice. Those of φ_x are of
+/// the coordinates themselves. A gradient of two
 /// components is two points, whose φ_x are its components: see schemes/complex/space_tables.hpp. Value l·d + a is component
 /// a at vertex l.
 class PlacedFamily {
@@ -48,7 +49,7 @@ class PlacedFamily {
   /// ∂r/∂y of value m in the equation of value i is not proved to be the same at all y.
   bool is_varying(int i, int m) const { return varying_[static_cast<std::size_t>(i * size() + m)] != 0; }
   /// p, where r ∝ |Δ|/hᵖ and ∂r/∂y ∝ |Δ|/h²ᵖ in the time step h: 1 where jets have φ_t alone, 0 where they do not have
-  /// it, and nothing where they have other slots too.
+  /// it, and nothing where slots differ in it.
   std::optional<int> time_power() const { return time_power_; }
 
   void lagrangian(const PlacedBatch&, double* L) const;

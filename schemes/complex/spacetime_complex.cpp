@@ -26,14 +26,10 @@ class Families {
 
  private:
   void add_table(const StencilList::Entry& e, const StencilTable& table) {
-    if (density_->slots() > 3)
-      throw BadInput("theory.name",
-                     "theory.name: a density with second derivatives needs a regular lattice; choose lattice.space = "
-                     "circle");
     const std::vector<TablePoint> points = placed_points(table, list_.positions(e));
     std::vector<int> form;
     for (const TablePoint& p : points)
-      for (std::size_t slot = 0; slot < 3; ++slot) {
+      for (std::size_t slot = 0; slot < at(density_->slots()); ++slot) {
         for (const auto& entry : p.slots[slot]) form.push_back(entry.vertex);
         form.push_back(-1);
       }
@@ -71,11 +67,11 @@ class Families {
     }
   }
 
-  static bool same(const std::vector<TablePoint>& a, const std::vector<TablePoint>& b) {
+  bool same(const std::vector<TablePoint>& a, const std::vector<TablePoint>& b) const {
     if (a.size() != b.size()) return false;
     for (std::size_t q = 0; q < a.size(); ++q) {
       if (a[q].weight != b[q].weight) return false;
-      for (std::size_t slot = 0; slot < 3; ++slot)
+      for (std::size_t slot = 0; slot < at(density_->slots()); ++slot)
         for (std::size_t n = 0; n < a[q].slots[slot].size(); ++n)
           if (a[q].slots[slot][n].weight != b[q].slots[slot][n].weight) return false;
     }
@@ -97,6 +93,10 @@ class Families {
 }  // namespace
 
 ComplexSystem spacetime_complex(const StencilList& list, const std::shared_ptr<const BatchDensity>& density) {
+  if (const auto fault = find_fault(list, *density))
+    throw BadInput(
+        "lattice.mesh",
+        "lattice.mesh: " + (fault->line > 0 ? "line " + std::to_string(fault->line) + ": " : "") + fault->what);
   ComplexSystem system(density->components());
   for (const StencilList::Site& s : list.sites) system.add_site(s.position, s.role);
   Families families(system, list, density);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/complex/stencil_list.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <boost/container_hash/hash.hpp>
@@ -24,23 +25,80 @@ struct Part {
 };
 constexpr std::array<Part, 3> parts{{{"motion", 2, 2}, {"site", 1, 1}, {"gradient", 2, 4}}};
 
-/// a + b, or 0 if that is what rounding has left of them.
-double sum_of(double a, double b) { return std::abs(a + b) <= rounding * (std::abs(a) + std::abs(b)) ? 0 : a + b; }
+/// The sum of some terms, or 0 if that is what rounding has left of them.
+struct Terms {
+  double sum = 0, absolute = 0;
+  void add(double term) { sum += term, absolute += std::abs(term); }
+  bool is_zero(double relative = rounding) const { return std::abs(sum) <= relative * absolute; }
+  double value() const { return is_zero() ? 0 : sum; }
+};
+double sum_of(double a, double b) {
+  Terms terms;
+  terms.add(a), terms.add(b);
+  return terms.value();
+}
 
 /// A jet slot of a coordinate, its weights applied to the coordinates of the sites.
 double applied(const std::vector<TablePoint::Entry>& weights, std::span<const Complex::Position> sites, std::size_t c) {
-  double sum = 0, absolute = 0;
-  for (const auto& e : weights) {
-    const double term = e.weight * sites[at(e.vertex)][c];
-    sum += term, absolute += std::abs(term);
-  }
-  return std::abs(sum) <= rounding * absolute ? 0 : sum;
+  Terms terms;
+  for (const auto& e : weights) terms.add(e.weight * sites[at(e.vertex)][c]);
+  return terms.value();
 }
 
 std::vector<double> dense(const std::vector<TablePoint::Entry>& entries, std::size_t sites) {
   std::vector<double> weights(sites, 0.0);
   for (const auto& e : entries) weights[at(e.vertex)] = e.weight;
   return weights;
+}
+
+constexpr std::array<JetSlot, 3> second_order{JetSlot::phi_tt, JetSlot::phi_tx, JetSlot::phi_xx};
+
+/// The second derivatives of a point whose first ones are by_t and by_x: see placed_points().
+void set_second_derivatives(TablePoint& point, const TablePoint& q, std::span<const Complex::Position> sites,
+                            const std::vector<double>& by_t, const std::vector<double>& by_x) {
+  constexpr double determined = 1e-9;
+  const std::size_t n = sites.size();
+  std::vector<JetSlot> there;
+  std::vector<std::vector<double>> rests;  // q_r
+  for (const JetSlot r : second_order) {
+    if (q[r].empty()) continue;
+    const double t_r = applied(q[r], sites, 0), x_r = applied(q[r], sites, 1);
+    std::vector<double> rest = dense(q[r], n);
+    for (std::size_t l = 0; l < n; ++l) {
+      Terms terms;
+      terms.add(rest[l]), terms.add(-t_r * by_t[l]), terms.add(-x_r * by_x[l]);
+      rest[l] = terms.value();
+    }
+    there.push_back(r), rests.push_back(std::move(rest));
+  }
+  if (there.empty()) return;
+  const auto count = static_cast<Eigen::Index>(there.size());
+  Eigen::MatrixXd B(count, count);
+  for (Eigen::Index r = 0; r < count; ++r) {
+    Eigen::Index column = 0;
+    for (const JetSlot s : second_order) {
+      Terms terms;
+      for (std::size_t l = 0; l < n; ++l) {
+        const double t = sites[l][0] - sites[0][0], x = sites[l][1] - sites[0][1];
+        const double monomial = s == JetSlot::phi_tt ? 0.5 * t * t : s == JetSlot::phi_tx ? t * x : 0.5 * x * x;
+        terms.add(rests[at(static_cast<int>(r))][l] * monomial);
+      }
+      if (std::ranges::find(there, s) != there.end()) B(r, column++) = terms.value();
+      else if (!terms.is_zero(determined)) return;
+    }
+  }
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(B);
+  if (!lu.isInvertible()) return;
+  const Eigen::MatrixXd inverse = lu.inverse();
+  for (Eigen::Index s = 0; s < count; ++s) {
+    std::vector<double> weights(n);
+    for (std::size_t l = 0; l < n; ++l) {
+      Terms terms;
+      for (Eigen::Index r = 0; r < count; ++r) terms.add(inverse(s, r) * rests[at(static_cast<int>(r))][l]);
+      weights[l] = terms.value();
+    }
+    point.set(there[at(static_cast<int>(s))], weights);
+  }
 }
 
 /// A number that stencils of one shape and one set of sites share if they are the same function of the values there.
@@ -229,11 +287,43 @@ std::vector<TablePoint> placed_points(const StencilTable& table, std::span<const
     }
     point.set(JetSlot::phi_t, by_t);
     point.set(JetSlot::phi_x, by_x);
+    set_second_derivatives(point, q, sites, by_t, by_x);
     points.push_back(std::move(point));
   }
   return points;
 }
 
 std::optional<MeshFault> find_fault(const StencilList& list) { return Faults(list).find(); }
+
+std::optional<MeshFault> find_fault(const StencilList& list, const BatchDensity& density) {
+  std::vector<JetSlot> read;
+  for (const JetSlot slot : second_order)
+    for (int a = 0; a < density.components() && density.slots() > 3; ++a)
+      if (density.depends_on(static_cast<int>(slot) * density.components() + a)) {
+        read.push_back(slot);
+        break;
+      }
+  if (read.empty()) return std::nullopt;
+  for (std::size_t n = 0; n < list.stencils.size(); ++n) {
+    const StencilList::Entry& e = list.stencils[n];
+    const StencilTable* const table = stencil_shape(e.shape)->table;
+    if (!table) continue;  // SpaceTables refuse the density
+    const std::vector<TablePoint> points = placed_points(*table, list.positions(e));
+    for (const JetSlot slot : read) {
+      const auto lacks = [&](const TablePoint& p) { return p[slot].empty(); };
+      if (std::ranges::none_of(points, lacks)) continue;
+      const std::string what = "stencil " + std::to_string(n) + " (" + e.shape + ") ",
+                        name = slot_names[at(static_cast<int>(slot))];
+      if (std::ranges::any_of(table->points, lacks))
+        return MeshFault{e.line, what + "has no " + name + ", which the density reads; use a " +
+                                     (slot == JetSlot::phi_tt ? "" : "six-tuple or a ") + "nine-tuple"};
+      return MeshFault{e.line, what + "does not determine " + name +
+                                   (e.shape == "six-tuple" ? ": each of its rows must lie at one time; move its sites, "
+                                                             "or use a nine-tuple"
+                                                           : " from where its sites lie; move them")};
+    }
+  }
+  return std::nullopt;
+}
 
 }  // namespace delf

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "jets/batch_density.hpp"
 #include "jets/tables/stencil_table.hpp"
 #include "lattice/complex/complex.hpp"
 #include "lattice/complex/mesh.hpp"
@@ -59,12 +60,21 @@ std::vector<std::string> stencil_shape_names();
 ///
 ///     φ_τ = t_τ φ_t + x_τ φ_x,    φ_ξ = t_ξ φ_t + x_ξ φ_x,    w = w_q (t_τ x_ξ − x_τ t_ξ),
 ///
-/// so that affine fields have exact jets, and equal steps those of the lattice. Weights that are rounding errors are left
-/// out: what cancels must couple nothing. Of a stencil listed the wrong way round a w is negative.
+/// so that affine fields have exact jets, and equal steps those of the lattice. Second derivatives of the table, less what
+/// the map's own make of an affine field, are combined so that quadratic fields have exact ones: on the monomials m of
+/// ½t², tx and ½x²
+///
+///     q_r = φ_r − t_r φ_t − x_r φ_x,    B_rs = q_r[m_s],    φ_s = Σ_r (B⁻¹)_sr q_r,    r of ττ, τξ, ξξ, s of tt, tx, xx.
+///
+/// A table without φ_ττ, such as the six-tuple's, determines φ_tx and φ_xx where q_r[½t²] = 0: where its rows lie at one time
+/// each. Where it does not, the slots are left empty. Weights that are rounding errors are left out: what cancels must
+/// couple nothing. Of a stencil listed the wrong way round a w is negative.
 std::vector<TablePoint> placed_points(const StencilTable&, std::span<const Complex::Position>);
 
 /// The first fault: a stencil with too few sites or too many, listed the wrong way round, degenerate, or there twice; a
 /// site that no stencil has, or that lies where another does; a share that is missing or not above 0.
 std::optional<MeshFault> find_fault(const StencilList&);
+/// The first stencil of a table that lacks a second derivative which the density reads.
+std::optional<MeshFault> find_fault(const StencilList&, const BatchDensity&);
 
 }  // namespace delf

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cmath>
+#include <functional>
+#include <string>
 
 #include "lattice/complex/complex.hpp"
 #include "schemes/complex/stencil_list.hpp"
@@ -37,6 +39,25 @@ inline StencilList bent_rows(int sites, int rows, double amount = 0.05) {
       const int a = j * sites + i, b = a + 1, c = a + sites, d = c + 1;
       if (j % 4 < 2) list.stencils.push_back({"rectangle", {a, c, d, b}});
       else list.stencils.push_back({"triangle", {a, c, b}, 0.5}), list.stencils.push_back({"triangle", {b, c, d}, 0.5});
+    }
+  return list;
+}
+
+/// Six-tuples on rows of sites x(i), i from 0 to sites − 1, around a circle.
+inline StencilList beam_rows(int sites, int rows, double length, double h, const std::function<double(int)>& x) {
+  StencilList list;
+  list.circumference = length;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < sites; ++i)
+      list.sites.push_back({{h * j, x(i), 0, 0},
+                            j == 0          ? SiteRole::given
+                            : j == 1        ? SiteRole::initial
+                            : j == rows - 1 ? SiteRole::final
+                                            : SiteRole::free});
+  for (int j = 0; j + 1 < rows; ++j)
+    for (int i = 0; i < sites; ++i) {
+      const int a = j * sites + (i + sites - 1) % sites, b = j * sites + i, c = j * sites + (i + 1) % sites;
+      list.stencils.push_back({"six-tuple", {a, b, c, c + sites, b + sites, a + sites}});
     }
   return list;
 }

@@ -389,6 +389,36 @@ TEST_CASE(
   CHECK(delf_program(folder, levels + "--convergence.order=2.5").code == 1);
 }
 
+TEST_CASE(
+    "a beam on a complex of unequal six-tuples runs and is verified, faults are found, and other shapes refused") {
+  const Folder folder;
+  const double turn = 2 * std::acos(-1.0);
+  StencilList list = beam_rows(16, 5, turn, 0.05, [&](int i) { return turn * i / 16 + 0.2 * std::sin(turn * i / 16); });
+  folder.write("beam.mesh", stencil_text(list));
+  list.stencils[3] = {"triangle", {2, 18, 3}};
+  folder.write("other.mesh", stencil_text(list));
+  folder.write("beam.ini",
+               "[theory]\ndensity = 0.5*phi_t^2 - 0.5*phi_xx^2 + 0.1*cos(phi)\n[lattice]\nspace = complex\n"
+               "mesh = beam.mesh\n[initial]\nphi = cos(x - t)\n[output]\nfigures = off\n");
+  const Ran ran = delf_program(folder, "run beam.ini --out out");
+  CAPTURE(ran.out, ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK(summary(folder)["residual_max"].get<double>() < 1e-12);
+  const Ran right = delf_program(folder, "verify beam.ini --out v");
+  CAPTURE(right.out);
+  CHECK(right.code == 0);
+  for (const char* fault : {"field", "variation", "sign"})
+    CHECK(delf_program(folder, std::string("verify beam.ini --out v --verify.fault=") + fault).code == 1);
+  for (const char* command : {"run --out no", "plan", "verify --out no"}) {
+    const Ran refused = delf_program(folder, std::string(command) + " beam.ini --lattice.mesh=other.mesh");
+    CAPTURE(command, refused.err);
+    CHECK(refused.code == 2);
+    CHECK(lines(refused.err).size() == 1);
+    CHECK(
+        contains(refused.err, "line 86: stencil 3 (triangle) has no phi_xx, which the density reads; use a six-tuple"));
+  }
+}
+
 TEST_CASE("threads share wide levels of a finite complex, and the plan says which") {
   const Folder folder;
   // rows of leapfrog on a circle, and of (5.10), where a row is one block
