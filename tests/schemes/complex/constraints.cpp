@@ -183,7 +183,7 @@ TEST_CASE("a harmonic map of a square into the sphere converges with order 2") {
   CHECK(std::log2(error(16) / error(48)) == Approx(2 * std::log2(3.0)).margin(0.15));
 }
 
-TEST_CASE("a constant map into the sphere has the residual 0, though all its terms are rounding; another has not") {
+TEST_CASE("a constant map into the sphere has the residual 0, though all its terms are rounding, and another has not") {
   const CellSpace space = sphere_valued(rectangle_mesh(1, 1, 6, 6, false), true);
   const SpaceRows rows(space);
   std::vector<double> y(rows.system().nodes(), 0.0);

@@ -152,7 +152,7 @@ TEST_CASE("a beam on six-tuples of unequal spacing converges with order 2, and n
   }
 }
 
-TEST_CASE("second-order densities on bent nine-tuples keep the form formula; stencils without a derivative are named") {
+TEST_CASE("second-order densities on bent nine-tuples keep the form formula, and stencils without a derivative are named") {
   const auto density = TheoryOf<SecondInTime>(SecondInTime{}).shared_density();
   StencilList list = bent_rows(13, 8);
   list.stencils.clear();
