@@ -43,8 +43,15 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, Outco
   o.bytes = field.system().bytes();
   const auto begin = Clock::now();
   ComplexSolver::Report solved;
+  double residual = 0;
   try {
     solved = field.solve();
+    residual = field.residual();
+    if (!solved.ended && !is_solution(residual, c.scene.problem.tolerance))
+      throw NoConvergence(
+          fmt::format("Newton's method ended where the residual of the equations is {:.2g} of their terms; "
+                      "begin with a field nearer to the solution",
+                      residual));
   } catch (const NumericalFailure& error) {
     o.status = status_of(error), o.failure = error.what();
     throw;
@@ -64,7 +71,7 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, Outco
       {.values = field.values(),
        .energy = c.stencils ? Outcome::unknown : field.energy(),
        .iterations = solved.iterations,
-       .residual = field.residual(),
+       .residual = residual,
        .constraint = c.theory->constraint() ? c.space->largest_constraint(field.values()) : Outcome::unknown,
        .multipliers = field.multipliers()},
       slabs);

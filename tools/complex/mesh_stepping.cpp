@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tools/complex/mesh_stepping.hpp"
 
+#include <fmt/format.h>
+
 #include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
@@ -44,7 +46,15 @@ double MeshStepping::time(std::int64_t row) const {
   return evolution_.time() + static_cast<double>(row - evolution_.newest()) * evolution_.last_step();
 }
 
-void MeshStepping::record(std::int64_t row) { recorder_->record(evolution_.row(row)); }
+void MeshStepping::record(std::int64_t row) {
+  const MeshRow now = evolution_.row(row);
+  if (!is_solution(now.residual, c_.scene.problem.tolerance))
+    throw NoConvergence(
+        fmt::format("step {}, t = {:.6g}: the residual of the field equations is {:.2g} of their terms; "
+                    "reduce lattice.courant or lattice.time_step",
+                    row, now.time, now.residual));
+  recorder_->record(now);
+}
 
 // A newest row that is not recorded is no result.
 void MeshStepping::finish() {

@@ -37,6 +37,11 @@ struct Unrecorded {
 
 }  // namespace
 
+bool is_solution(double residual, double tolerance) {
+  constexpr double most = 1e-6;  // of the sum of the absolute terms; a loose tolerance asks for more
+  return !(residual > std::max(most, 1e3 * tolerance));
+}
+
 RowLoop::RowLoop(const Scene& scene, Outcome& outcome) : scene_(scene), outcome_(outcome) {}
 
 void RowLoop::start() {

@@ -10,6 +10,10 @@
 
 namespace delf {
 
+/// Whether a row solves its equations, whose residual is relative to their terms; otherwise rounding or an overflow has
+/// taken it, and it is no result.
+bool is_solution(double residual, double tolerance);
+
 /// Steps a field through its scene, on a lattice or on a mesh, and records rows 0, every, 2·every, … and the last one,
 /// whichever becomes the last. Checkpoints are written on the way and at the end. When a step fails, the last good row is
 /// recorded; the outcome says the rest.

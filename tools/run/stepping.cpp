@@ -191,10 +191,9 @@ void Stepping::record(std::int64_t row) {
   ++outcome_.records;
 }
 
-/// A row that does not solve its equations is no result: rounding or an overflow has taken it. It is not recorded.
+/// A row that does not solve its equations is not recorded.
 void Stepping::judge(double residual) const {
-  constexpr double most = 1e-6;  // of the sum of the absolute terms; a loose tolerance asks for more
-  if (!(residual > std::max(most, 1e3 * scene_.problem.tolerance)) || !varies()) return;
+  if (is_solution(residual, scene_.problem.tolerance) || !varies()) return;
   throw NoConvergence(
       fmt::format("step {}, t = {:.6g}: the residual of the field equations is {:.2g} of their terms: the "
                   "field is too large, or too steep, for double precision; reduce lattice.time_step",
