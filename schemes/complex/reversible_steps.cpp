@@ -44,7 +44,7 @@ ReversibleSteps::ReversibleSteps(const CellSpace& space, double longest, double 
     for (int b = 0; b < d; ++b) inverse_mass_.push_back(inverse(a, b));
 }
 
-RowDensity ReversibleSteps::look(std::span<const double> values, std::vector<double> rates, double share) {
+RowDensity ReversibleSteps::look(std::span<const double> values, std::vector<double> rates, double share) const {
   AssembledEquations::Vector y;
   force_->read(values, y);
   const AssembledEquations::Vector force = force_->residual(y);
@@ -65,7 +65,7 @@ RowDensity ReversibleSteps::look(std::span<const double> values, std::vector<dou
   return {std::sqrt(of_path), s2 * product / area_ / of_path};
 }
 
-RowDensity ReversibleSteps::look(const SpaceEvolution& evolution) {
+RowDensity ReversibleSteps::look(const SpaceEvolution& evolution) const {
   const double below = evolution.last_step();
   std::vector<double> rates(evolution.row().begin(), evolution.row().end());
   for (std::size_t n = 0; n < rates.size(); ++n) rates[n] = (rates[n] - evolution.row(1)[n]) / below;
@@ -80,6 +80,6 @@ double ReversibleSteps::next(const SpaceEvolution& evolution) { return density_.
 
 ReversibleSteps::~ReversibleSteps() = default;
 
-double ReversibleSteps::plain(const SpaceEvolution& evolution) { return density_.plain(look(evolution)); }
+double ReversibleSteps::plain(const SpaceEvolution& evolution) const { return density_.plain(look(evolution)); }
 
 }  // namespace delf

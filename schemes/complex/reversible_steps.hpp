@@ -29,14 +29,14 @@ class ReversibleSteps {
   double first(std::span<const double> values, std::span<const double> rates);
   double next(const SpaceEvolution&);
   /// ε σ of the newest row: the plain step, which is not reversible.
-  double plain(const SpaceEvolution&);
+  double plain(const SpaceEvolution&) const;
   /// Saves or restores the density of rows.
   void visit(SavedState& state) { density_.visit(state); }
 
  private:
   /// `share` of the step below the row is still missing in `rates`.
-  RowDensity look(std::span<const double> values, std::vector<double> rates, double share);
-  RowDensity look(const SpaceEvolution&);
+  RowDensity look(std::span<const double> values, std::vector<double> rates, double share) const;
+  RowDensity look(const SpaceEvolution&) const;
 
   const CellSpace& space_;
   SpaceRows still_;  ///< one row, whose residual is A ∂V/∂φ

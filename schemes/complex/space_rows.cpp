@@ -179,7 +179,7 @@ void SpaceRows::set_times(std::span<const double> times) {
 
 namespace {
 
-constexpr std::array<double, 3> three_rows(double h) { return {0, h, 2 * h}; }
+constexpr std::array<double, 3> three_rows{0, 1, 2};  // until start() says how long a step is
 
 }  // namespace
 
@@ -187,10 +187,10 @@ SpaceEvolution::SpaceEvolution(const CellSpace& space, double time_step, Complex
     : space_(space),
       h_(time_step),
       before_(time_step),
-      rows_(space, three_rows(time_step)),
-      energy_rows_(space, std::array{0.0, time_step}),
+      rows_(space, three_rows),
+      energy_rows_(space, std::array{0.0, 1.0}),
       solver_(std::make_unique<ComplexSolver>(rows_.system(), options)),
-      steps_{time_step, time_step, time_step},
+      steps_{1, 1, 1},
       y_(rows_.system().nodes(), 0.0) {}
 
 std::span<const double> SpaceEvolution::row(int back) const {
@@ -216,12 +216,12 @@ void SpaceEvolution::set_steps(const std::array<double, 3>& now) {
 }
 
 void SpaceEvolution::take(double below, double above, double row_measure) {
-  if (const std::array now{below, above, row_measure}; now != steps_) set_steps(now);
   const std::size_t n = space_.values_of_row();
   std::copy(y_.begin() + static_cast<std::ptrdiff_t>(n), y_.end(), y_.begin());
   for (std::size_t i = 0; i < space_.fields_of_row() && space_.constraint; ++i)  // where Newton's method begins
     y_[2 * n + i] = y_[n + i] + above / below * (y_[n + i] - y_[i]);
   try {
+    if (const std::array now{below, above, row_measure}; now != steps_) set_steps(now);
     report_ = solver_->solve(y_);
     if (!std::isfinite(y_[2 * n])) throw NotFinite("the field is not finite; use a shorter time step");
   } catch (const NoConvergence&) {
@@ -276,6 +276,21 @@ void SpaceEvolution::visit(SavedState& state) {
 double SpaceEvolution::energy() const {
   energy_rows_.set_motion(0, 1, before_);
   for (const int row : {0, 1}) energy_rows_.set_row_measure(row, 0.5);
+  return energy_of({y_.data() + y_.size() / 3, energy_rows_.system().nodes()});
+}
+
+double SpaceEvolution::energy(std::span<const double> values, std::span<const double> rates) const {
+  energy_rows_.set_motion(0, 1, 1);
+  for (const int row : {0, 1}) energy_rows_.set_row_measure(row, row == 0 ? 1 : 0);
+  std::vector<double> y(energy_rows_.system().nodes(), 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    y[i] = values[i];
+    y[space_.values_of_row() + i] = values[i] + (space_.fixed[i / at(space_.fields())] ? 0 : rates[i]);
+  }
+  return energy_of(y);
+}
+
+double SpaceEvolution::energy_of(std::span<const double> rows) const {
   const ComplexSystem& system = energy_rows_.system();
   const auto sum = [&](std::span<const double> y, bool without_sites) {
     double total = 0;
@@ -287,7 +302,7 @@ double SpaceEvolution::energy() const {
   };
   // ℓ(0, 0, 0) is in motion and gradients too, where it is no energy.
   const std::vector<double> zero(system.nodes(), 0.0);
-  return sum({y_.data() + y_.size() / 3, system.nodes()}, false) - sum(zero, true);
+  return sum(rows, false) - sum(zero, true);
 }
 
 Balance SpaceEvolution::momentum(const LinearSymmetry& symmetry) const {

@@ -130,6 +130,8 @@ class SpaceEvolution {
 
   /// Σ_i A_i [φ_t ∂T/∂φ_t − T] − ½[V(row) + V(row before)], at the half step between the last two rows.
   double energy() const;
+  /// The same of one row with such rates, all at one time.
+  double energy(std::span<const double> values, std::span<const double> rates) const;
   /// Σ_i A_i ∂T/∂φ_t · ξ(φ_i) between the last two rows, which natural boundaries and closed surfaces keep where ξ is a
   /// symmetry of the density: its sum, and that of its absolute terms.
   Balance momentum(const LinearSymmetry&) const;
@@ -142,6 +144,8 @@ class SpaceEvolution {
   void set_steps(const std::array<double, 3>& now);
   void take(double below, double above, double row_measure);
   void put_back();
+  /// Of two rows, with the measures that energy_rows_ has.
+  double energy_of(std::span<const double> y) const;
 
   const CellSpace& space_;
   double h_, before_, time_ = 0;

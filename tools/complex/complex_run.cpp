@@ -9,6 +9,7 @@
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_stepping.hpp"
 #include "tools/complex/static_field.hpp"
+#include "tools/run/energy_warnings.hpp"
 #include "tools/run/run_folder.hpp"
 #include "tools/run/seconds_since.hpp"
 
@@ -20,18 +21,16 @@ using Clock = std::chrono::steady_clock;
 
 /// Steps too long for the stencils make waves that grow from level to level, and every equation holds.
 void warn_of_growth(const ComplexScene& c, const StaticField& field, Outcome& o) {
-  constexpr double much = 100;
   const auto d = c.fields.size();
   double given = 0, found = 0;
   for (std::size_t n = 0; n < field.values().size(); ++n) {
     double& largest = field.system().complex().is_unknown(static_cast<int>(n / d)) ? found : given;
     largest = std::max(largest, std::abs(field.values()[n]));
   }
-  if (found > much * given)
-    o.warnings.push_back(fmt::format(
-        "the field grows to {:.3g}, from data of {:.3g}: the steps in time are too long for the stencils, or the data "
-        "are not those of a solution; use shorter steps",
-        found, given));
+  if (const Found grown = field_beyond_data(found, given,
+                                            "the steps in time are too long for the stencils, or the data are not "
+                                            "those of a solution; use shorter steps"))
+    o.warnings.push_back(*grown);
 }
 
 /// Returns the level of each site.
@@ -118,12 +117,6 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
     std::rethrow_exception(run.failures().first());  // bad input: there are no results
   if (evolution) evolution->describe(o);
   run.attempt([&] { recorder.close(); });
-  constexpr double most_drift = 0.1;
-  if (!c.is_one_problem() && o.energy_error_max > most_drift)
-    o.warnings.push_back(fmt::format(
-        "the energy is off by {:.3g} of itself: these steps are too long, or the mesh too "
-        "coarse; reduce {}",
-        o.energy_error_max, c.scene.settings.find("lattice.courant") ? "lattice.courant" : "lattice.time_step"));
   return run.end(subject_of(c), c.scene,
                  [&] { return c.scene.figures ? draw_mesh(c, recorder.film(), levels, folder) : std::string(); });
 }

@@ -27,6 +27,11 @@ class AllSites final : public MeshEvolution {
   std::optional<double> own_length() const override {
     return c_.time_steps.empty() && !c_.step_control() ? std::nullopt : std::optional(evolution_.last_step());
   }
+  std::optional<double> first_lengths() const override { return steps_.first_lengths(evolution_); }
+  double energy_of_start() const override {
+    // rates are projected onto the surface of a constraint, where there is one
+    return c_.space->constraint ? Outcome::unknown : evolution_.energy(c_.values(), c_.rates());
+  }
   void step() override { steps_.step(evolution_); }
   int iterations() const override { return evolution_.is_direct() ? 0 : evolution_.report().iterations; }
   MeshRow row(std::int64_t row) override {

@@ -41,6 +41,10 @@ class MeshEvolution {
   virtual double last_step() const = 0;  ///< between the last two rows
   /// Where steps have lengths of their own, that of the last.
   virtual std::optional<double> own_length() const { return {}; }
+  /// Where the field chooses them, the shortest of those that the start tells.
+  virtual std::optional<double> first_lengths() const { return {}; }
+  /// Of the given values and rates, where that is not the energy of row 0 by definition; else not a number.
+  virtual double energy_of_start() const { return Outcome::unknown; }
   /// To the next row.
   virtual void step() = 0;
   /// Of Newton's method in the last step; 0 if it is one solve.

@@ -38,7 +38,8 @@ void MeshRecorder::record(const MeshRow& r, std::span<const SlabEnergy> slabs) {
         fmt::format("row {}, t = {:.6g}: the energy is not finite; use smaller fields or steps", r.row, r.time));
   if (c_.stencils && !std::ranges::all_of(r.values, [](double y) { return std::isfinite(y); }))
     throw NotFinite("a value is not finite; use smaller data, or a finer complex");
-  if (o.records++ == 0) o.energy_initial = slabs.empty() ? r.energy : slabs.front().energy;
+  ++o.records;
+  if (std::isnan(o.energy_initial)) o.energy_initial = slabs.empty() ? r.energy : slabs.front().energy;
   if (slabs.empty()) note(r);
   MeshRow line = r;
   for (const SlabEnergy& slab : slabs) ++line.row, line.time = slab.time, line.energy = slab.energy, note(line);
@@ -50,8 +51,9 @@ void MeshRecorder::note(const MeshRow& r) {
   Outcome& o = outcome_;
   o.energy_final = r.energy;
   const double error =
-      o.energy_initial == 0 ? Outcome::unknown : std::abs(r.energy - o.energy_initial) / std::abs(o.energy_initial);
-  if (!(error <= o.energy_error_max)) o.energy_error_max = error;
+      o.energy_initial == 0 ? Outcome::unknown : (r.energy - o.energy_initial) / std::abs(o.energy_initial);
+  if (std::isfinite(error)) energy_errors_.append(r.time, error);
+  if (!(std::abs(error) <= o.energy_error_max)) o.energy_error_max = std::abs(error);
   if (std::isfinite(r.residual)) o.residual_max = std::max(o.residual_max, r.residual);
   else if (c_.time == MeshTime::cells) o.residual_max = r.residual;  // of asynchronous steps it is not measured
   Record record{r.row, r.time, r.energy, error, Outcome::unknown, Outcome::unknown, r.iterations, r.residual, {}};
@@ -75,6 +77,7 @@ RunFiles::Written MeshRecorder::flush(bool sync) {
 
 void MeshRecorder::visit(SavedState& state) {
   if (files_) files_->visit(state);
+  energy_errors_.visit(state);
   film_.visit(state);
 }
 

@@ -9,6 +9,7 @@
 #include "tools/complex/mesh_files.hpp"
 #include "tools/files/series_file.hpp"
 #include "tools/run/run_files.hpp"
+#include "tools/run/trace.hpp"
 
 namespace delf {
 
@@ -26,6 +27,7 @@ class MeshRecorder final : public RunFiles {
   void visit(SavedState&) override;
   void close();
   const MeshFilm& film() const { return film_; }
+  const Trace& energy_errors() const { return energy_errors_; }
 
  private:
   void note(const MeshRow&);
@@ -33,6 +35,7 @@ class MeshRecorder final : public RunFiles {
   const ComplexScene& c_;
   Outcome& outcome_;
   MeshFilm film_;
+  Trace energy_errors_;
   std::optional<SeriesFile> series_;  ///< always there
   std::optional<MeshFiles> files_;
 };

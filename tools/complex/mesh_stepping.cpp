@@ -3,7 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "schemes/stepping/saved_state.hpp"
+#include "tools/complex/mesh_warnings.hpp"
+#include "tools/run/tiny_steps.hpp"
 
 namespace delf {
 namespace {
@@ -23,6 +28,16 @@ MeshStepping::MeshStepping(const ComplexScene& c, MeshEvolution& evolution, Outc
     : RowLoop(c.scene, outcome), c_(c), evolution_(evolution), outcome_(outcome) {
   for (const LinearSymmetry& s : c.theory->symmetries())
     outcome.conserved.push_back({s.name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+}
+
+/// What the run is measured by is of row 0, recorded or not.
+void MeshStepping::make_first_rows() {
+  evolution_.start();
+  if (const auto shortest = evolution_.first_lengths()) refuse_tiny_steps(c_.scene, *shortest, "<phi_t^2>");
+  const MeshRow first = evolution_.row(0);
+  outcome_.energy_initial = first.energy;
+  for (std::size_t n = 0; n < first.momenta.size(); ++n)
+    outcome_.conserved[n].take(first.momenta[n].sum, first.momenta[n].absolute);
 }
 
 void MeshStepping::visit_rows(SavedState& state) {
@@ -58,8 +73,13 @@ void MeshStepping::record(std::int64_t row) {
 
 // A newest row that is not recorded is no result.
 void MeshStepping::finish() {
-  if (recorded() == c_.scene.last_row(newest()))
-    measure_error(c_, evolution_.row(recorded()).values, outcome_.time, outcome_);
+  if (recorded() != c_.scene.last_row(newest())) return;
+  const std::span<const double> last = evolution_.row(recorded()).values;
+  measure_error(c_, last, outcome_.time, outcome_);
+  if (started())
+    std::ranges::move(
+        warnings_of_rows(c_, outcome_, evolution_.energy_of_start(), recorder_->energy_errors(), last),
+        std::back_inserter(outcome_.warnings));
 }
 
 }  // namespace delf

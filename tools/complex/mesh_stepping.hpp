@@ -14,7 +14,7 @@ class MeshStepping final : public RowLoop {
   void run(MeshRecorder&, Checkpoints&);
 
  private:
-  void make_first_rows() override { evolution_.start(); }
+  void make_first_rows() override;
   std::int64_t newest_row() const override { return evolution_.newest(); }
   double time(std::int64_t row) const override;
   std::optional<double> own_length() const override { return evolution_.own_length(); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tools/complex/row_steps.hpp"
 
+#include <algorithm>
+
 #include "schemes/complex/circle_fibre.hpp"
 #include "schemes/stepping/saved_state.hpp"
 
@@ -21,6 +23,11 @@ void RowSteps::step(SpaceEvolution& evolution) {
   evolution.step(reversible_ ? reversible_->next(evolution) : scene_.time_step(next_));
   next_ += direction_;
   check(evolution);
+}
+
+std::optional<double> RowSteps::first_lengths(const SpaceEvolution& evolution) const {
+  if (!reversible_) return {};
+  return std::min(evolution.last_step(), reversible_->plain(evolution));
 }
 
 void RowSteps::check(const SpaceEvolution& evolution) const {

@@ -15,6 +15,8 @@ class RowSteps {
   /// Rows 0 and 1.
   void start(SpaceEvolution&);
   void step(SpaceEvolution&);
+  /// Where the field chooses: the shorter of the first step and what the row behind it asks for.
+  std::optional<double> first_lengths(const SpaceEvolution&) const;
   /// Further steps go back by the lengths of those that were taken.
   void turn_back(SpaceEvolution&);
   void visit(SavedState&);

@@ -17,6 +17,7 @@
 #include "tools/run/recorder.hpp"
 #include "tools/run/run_folder.hpp"
 #include "tools/run/stepping.hpp"
+#include "tools/run/tiny_steps.hpp"
 #include "tools/scene/initial_rows.hpp"
 #include "tools/scene/text_file.hpp"
 #include "tools/scene/values.hpp"
@@ -67,19 +68,6 @@ void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
         "lattice.stencil", fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
 }
 
-// Steps that the field chooses: a run of these would not end.
-void refuse_tiny_steps(const Scene& scene, const Simulation& simulation) {
-  constexpr double most = 1000;
-  if (!scene.problem.step_control || simulation.newest() < 1) return;
-  const double step = simulation.time(1) - simulation.time(0);
-  if (step * most < scene.problem.time_step)
-    throw scene.settings.error(
-        "lattice.step_control",
-        fmt::format("makes the first step {:.3g}, which is lattice.time_step = {:.3g} over sqrt(1 + s^2 <phi_x^2>); "
-                    "use s of 0.1 to 10, and a shorter lattice.time_step for shorter steps",
-                    step, scene.problem.time_step));
-}
-
 ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resumed) {
   const InitialRows initial(scene);
   Outcome outcome;
@@ -105,7 +93,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     stepping.visit(*resumed.state);
   } else {
     stepping.start();
-    refuse_tiny_steps(scene, simulation);
+    if (simulation.newest() > 0) refuse_tiny_steps(scene, simulation.time(1) - simulation.time(0), "<phi_x^2>");
     outcome.limit = limit_of(scene, simulation);
   }
 

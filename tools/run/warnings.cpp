@@ -15,6 +15,7 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "tools/run/energy_warnings.hpp"
 #include "tools/run/exact_energy.hpp"
 #include "tools/run/solution_error.hpp"
 #include "tools/run/vacuum_symbol.hpp"
@@ -119,14 +120,15 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
   std::vector<std::string> all;
   for (Found& found :
        std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row), energy(outcome),
-                          energy_band(energy_errors), error(outcome), pinned(outcome, last_row)})
+                          energy_off_band(energy_errors, "reduce lattice.time_step, or run less far"), error(outcome),
+                          pinned(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
   std::ranges::move(grown(), std::back_inserter(all));
   std::ranges::move(continued(outcome), std::back_inserter(all));
   return all;
 }
 
-Warnings::Found Warnings::narrow_pulse() const {
+Found Warnings::narrow_pulse() const {
   const State* state = initial_.state();
   const double two_cells = 2 * scene_.problem.lattice.space_step() / nodes_in_cell();
   if (!state || !(width_ < two_cells) || scene_.problem.lattice.space() == Space::point) return {};
@@ -135,7 +137,7 @@ Warnings::Found Warnings::narrow_pulse() const {
                      two_cells, finer());
 }
 
-Warnings::Found Warnings::linear_limit(const Outcome& outcome) const {
+Found Warnings::linear_limit(const Outcome& outcome) const {
   const auto symbol = symbol_of(scene_, simulation_);
   if (!symbol || outcome.steps == 0) return {};
   // A few wave numbers for the many roots of an element; between them the analysis looks where roots meet.
@@ -153,7 +155,7 @@ Warnings::Found Warnings::linear_limit(const Outcome& outcome) const {
 }
 
 /// A mode that the scheme has and the theory has not, as far as it is there in the last row.
-Warnings::Found Warnings::spurious_mode(std::span<const double> last_row) const {
+Found Warnings::spurious_mode(std::span<const double> last_row) const {
   const Lattice& lattice = scene_.problem.lattice;
   if (!lattice.is_circle() || lattice.sites() % 2 != 0) return {};
   // The amplitude a of (−1)ⁱ a: Σ (−1)ⁱ (y_{i−1} − 2y_i + y_{i+1}) = −4 N a, in which a winding plays no part.
@@ -179,52 +181,22 @@ Warnings::Found Warnings::spurious_mode(std::span<const double> last_row) const 
   return {};
 }
 
-Warnings::Found Warnings::energy(const Outcome& outcome) const {
+Found Warnings::energy(const Outcome& outcome) const {
   const State* state = initial_.state();
   // The energy is taken from vertices alone: of an element it says little.
   if (!state || nodes_in_cell() > 1) return {};
   const auto exact = exact_energy(*state, simulation_.theory().density(), scene_.problem.lattice, width_, 0);
-  if (!exact || *exact == 0) return {};
-  for (const auto& [which, energy] :
-       {std::pair{"row 0", outcome.energy_initial}, {"the last row", outcome.energy_final}})
-    if (std::abs(energy - *exact) > one_percent * std::abs(*exact))
-      return fmt::format("the energy of {} is {:.6g}, and that of the initial state {:.6g}; {}", which, energy, *exact,
-                         finer());
-  return {};
+  if (!exact) return {};
+  return energy_off_start(outcome, *exact, one_percent, finer());
 }
 
-/// The band of the first tenth of the run. Other rows may be off its middle by five widths, though not by more than
-/// 2.5 % of the energy unless that is within two widths: a run may drift from the beginning. One percent is no reason
-/// to warn.
-Warnings::Found Warnings::energy_band(const Trace& energy_errors) const {
-  const auto& intervals = energy_errors.intervals();
-  if (intervals.empty()) return {};
-  const double early = intervals.back().end / 10;
-  Range band;
-  int seen = 0;
-  for (const auto& interval : intervals)
-    if (interval.end <= early) band.add(interval.least), band.add(interval.most), ++seen;
-  if (seen < 2) return {};  // one row has no band
-  const double middle = (band.least + band.most) / 2, width = band.width();
-  const double allowed = std::max(std::clamp(5 * width, one_percent, 2.5 * one_percent), 2 * width);
-  for (const auto& interval : intervals)
-    if (std::max(interval.most - middle, middle - interval.least) > allowed)
-      return fmt::format(
-          "the energy leaves its early band, {:.2g} of itself, by more than {:.2g} at t = {:.6g}; reduce "
-          "lattice.time_step, or run less far",
-          width, allowed - width / 2, interval.begin);
-  return {};
-}
-
-Warnings::Found Warnings::error(const Outcome& outcome) const {
+Found Warnings::error(const Outcome& outcome) const {
   if (!(outcome.error_linf > 0)) return {};
   const double range = range_of(*initial_.exact(), scene_.problem.lattice, outcome.time);
-  if (!(outcome.error_linf > range)) return {};
-  return fmt::format("the error of the last row, {:.3g}, is larger than the range of the solution, {:.3g}; {}",
-                     outcome.error_linf, range, finer());
+  return error_beyond_range(outcome, range, finer());
 }
 
-Warnings::Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row) const {
+Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row) const {
   if (!late_time_ || !(outcome.time > *late_time_)) return {};
   const Lattice& lattice = scene_.problem.lattice;
   const double k = lattice.space_step(), now = centre(last_row);

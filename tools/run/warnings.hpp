@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/run/energy_warnings.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/trace.hpp"
 #include "tools/scene/initial_rows.hpp"
@@ -26,12 +27,10 @@ class Warnings {
   std::vector<std::string> of(const Outcome&, const Trace& energy_errors, std::span<const double> last_row) const;
 
  private:
-  using Found = std::optional<std::string>;
   Found narrow_pulse() const;
   Found linear_limit(const Outcome&) const;
   Found spurious_mode(std::span<const double> last_row) const;
   Found energy(const Outcome&) const;
-  Found energy_band(const Trace& energy_errors) const;
   Found error(const Outcome&) const;
   Found pinned(const Outcome&, std::span<const double> last_row) const;
   std::vector<std::string> grown() const;
