@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace delf {
 namespace {
@@ -62,18 +63,37 @@ class FaultFinder {
     }
     for (std::size_t p = 0; p < uses.size(); ++p) {
       const int line = line_of(mesh_.point_lines, p);
-      if (uses[p] == 0) return MeshFault{line, number("point", p) + " is in no cell; remove it"};
+      if (uses[p] == 0) return MeshFault{line, point(p) + " is in no cell; remove it"};
       if (mesh_.dimension == 1 && uses[p] > 2)
-        return MeshFault{line, number("point", p) + " is the end of more than two segments; make curves of them"};
+        return doubled().value_or(
+            MeshFault{line, point(p) + " is the end of more than two segments; make curves of them"});
     }
-    return mesh_.dimension == 1 ? std::nullopt : of_sides();
+    const auto fault = mesh_.dimension == 1 ? std::nullopt : of_sides();
+    return fault ? doubled().value_or(*fault) : fault;
   }
 
  private:
-  static std::string number(const char* what, std::size_t n) { return std::string(what) + " " + std::to_string(n); }
+  std::string point(std::size_t p) const { return "point " + std::to_string(mesh_.point_number(p)); }
+  std::string cell(std::int32_t c) const { return "cell " + std::to_string(mesh_.cell_number(at(c))); }
   static int line_of(const std::vector<int>& lines, std::size_t n) { return n < lines.size() ? lines[n] : 0; }
   MeshFault fault_of(std::int32_t cell, const std::string& what) const {
-    return {line_of(mesh_.cell_lines, at(cell)), number("cell", at(cell)) + " " + what};
+    return {line_of(mesh_.cell_lines, at(cell)), this->cell(cell) + " " + what};
+  }
+
+  // Two cells of the same points, in any order: what their sides say of them is of no use.
+  std::optional<MeshFault> doubled() const {
+    std::vector<std::pair<std::vector<std::int32_t>, std::int32_t>> cells;
+    for (int c = 0; c < mesh_.cells(); ++c) {
+      const auto corners = mesh_.cell(c);
+      cells.emplace_back(std::vector(corners.begin(), corners.end()), c);
+      std::ranges::sort(cells.back().first);
+    }
+    std::ranges::sort(cells);
+    for (std::size_t n = 1; n < cells.size(); ++n)
+      if (cells[n].first == cells[n - 1].first)
+        return fault_of(cells[n].second, "has the same points as " + cell(cells[n - 1].second) +
+                                             ": it is there twice; remove one of them");
+    return std::nullopt;
   }
 
   std::optional<MeshFault> of_cell(int c) const {
@@ -116,11 +136,11 @@ class FaultFinder {
     for (std::size_t n = 0; n < sides.size();) {
       std::size_t end = n + 1;
       while (end < sides.size() && sides[end].low == sides[n].low && sides[end].high == sides[n].high) ++end;
-      const std::string side =
-          "the side of points " + std::to_string(sides[n].low) + " and " + std::to_string(sides[n].high);
+      const std::string side = "the side of points " + std::to_string(mesh_.point_number(at(sides[n].low))) + " and " +
+                               std::to_string(mesh_.point_number(at(sides[n].high)));
       if (end - n > 2) return fault_of(sides[n + 2].cell, "is the third at " + side + "; a side has two cells at most");
       if (end - n == 2 && sides[n].forward == sides[n + 1].forward)
-        return fault_of(sides[n + 1].cell, "and cell " + std::to_string(sides[n].cell) + " run along " + side +
+        return fault_of(sides[n + 1].cell, "and " + cell(sides[n].cell) + " run along " + side +
                                                " the same way: one is flipped; list its points the other way");
       if (end - n == 1) outer.push_back(sides[n]);
       n = end;
@@ -146,9 +166,8 @@ class FaultFinder {
         const Point to = between(a, mesh_.points[at(*p)]);
         const double share = dot(to, along) / length2;
         if (share > 0 && share < 1 && norm(cross(to, along)) <= slack * std::sqrt(length2))
-          return MeshFault{line_of(mesh_.cell_lines, at(s.cell)), number("point", at(*p)) +
-                                                                      " hangs in the middle of a side of cell " +
-                                                                      std::to_string(s.cell) + "; cut that cell there"};
+          return MeshFault{line_of(mesh_.cell_lines, at(s.cell)), point(at(*p)) + " hangs in the middle of a side of " +
+                                                                      cell(s.cell) + "; cut that cell there"};
       }
     }
     return std::nullopt;

@@ -20,6 +20,15 @@ struct Mesh {
   std::vector<std::int32_t> first{0}, vertices;
   std::vector<int> point_lines = {}, cell_lines = {};  ///< of the file that they were read from; empty if generated
 
+  /// The numbers that the file gives them, as Gmsh does; empty: those from 0.
+  std::vector<std::int64_t> point_tags = {}, cell_tags = {};
+
+  std::int64_t point_number(std::size_t p) const {
+    return p < point_tags.size() ? point_tags[p] : static_cast<std::int64_t>(p);
+  }
+  std::int64_t cell_number(std::size_t c) const {
+    return c < cell_tags.size() ? cell_tags[c] : static_cast<std::int64_t>(c);
+  }
   int cells() const { return static_cast<int>(first.size()) - 1; }
   std::span<const std::int32_t> cell(int c) const {
     const auto i = static_cast<std::size_t>(c);

@@ -25,7 +25,7 @@ int first_too_far(const Mesh& mesh, std::span<const double> values, bool modulo)
 std::vector<double> lifted(const Mesh& mesh, std::vector<double> angles) {
   if (const int p = first_too_far(mesh, angles, true); p >= 0)
     throw NotFinite(
-        "point " + std::to_string(p) +
+        "point " + std::to_string(mesh.point_number(static_cast<std::size_t>(p))) +
         ": on the fibre S1 the starting values jump by more than 0.9 pi within a cell; refine the mesh or use "
         "theory.fibre = R");
   std::vector<std::vector<int>> cells_of(angles.size());
@@ -50,7 +50,8 @@ std::vector<double> lifted(const Mesh& mesh, std::vector<double> angles) {
   if (const int p = first_too_far(mesh, angles, false); p >= 0)
     throw BadInput("theory.fibre",
                    "theory.fibre = S1: the start winds around a hole of the mesh, or is not continuous, at point " +
-                       std::to_string(p) + "; fill the hole, or give another start");
+                       std::to_string(mesh.point_number(static_cast<std::size_t>(p))) +
+                       "; fill the hole, or give another start");
   return angles;
 }
 
@@ -60,7 +61,7 @@ void check_wrapped_differences(const Mesh& mesh, std::span<const double> row, st
     if (!(std::abs(row[i] - before[i]) <= largest_wrapped_difference)) p = static_cast<int>(i);
   if (p >= 0)
     throw NotFinite(
-        "point " + std::to_string(p) +
+        "point " + std::to_string(mesh.point_number(static_cast<std::size_t>(p))) +
         ": on the fibre S1 a difference within a cell or a step is above 0.9 pi, where it cannot be told from "
         "its complement; refine the mesh, take shorter steps, or use theory.fibre = R");
 }

@@ -131,7 +131,7 @@ void require_constraint(const ComplexScene& c) {
           (c.fields.front().exact ? "exact." : "initial.") + name,
           fmt::format("breaks the constraint at point {} of the mesh, where it is {:.3g} and not 0; give fields that "
                       "keep it",
-                      i, G));
+                      c.space->mesh.point_number(i), G));
   });
 }
 

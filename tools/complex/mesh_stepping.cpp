@@ -77,9 +77,8 @@ void MeshStepping::finish() {
   const std::span<const double> last = evolution_.row(recorded()).values;
   measure_error(c_, last, outcome_.time, outcome_);
   if (started())
-    std::ranges::move(
-        warnings_of_rows(c_, outcome_, evolution_.energy_of_start(), recorder_->energy_errors(), last),
-        std::back_inserter(outcome_.warnings));
+    std::ranges::move(warnings_of_rows(c_, outcome_, evolution_.energy_of_start(), recorder_->energy_errors(), last),
+                      std::back_inserter(outcome_.warnings));
 }
 
 }  // namespace delf

@@ -99,6 +99,7 @@ class Gmsh {
     Mesh::Point p{};
     for (double& x : p) x = lines_.read<double>("a coordinate");
     mesh_.points.push_back(p);
+    mesh_.point_tags.push_back(tag);
     mesh_.point_lines.push_back(lines_.number());
   }
   void points_2() {
@@ -125,19 +126,20 @@ class Gmsh {
       }
     }
   }
-  void add_element(int type) {
+  void add_element(std::int64_t tag, int type) {
     const Element* const element = element_of(type);
     if (!element)
       lines_.refuse(fmt::format(
           "an element of type {}; cells are lines, triangles and quadrilaterals of order 1 (1, 2, 3)", type));
     std::array<std::int32_t, 4> corners{};
     for (std::size_t l = 0; l < element->points; ++l) {
-      const auto tag = lines_.read<std::int64_t>("the number of a node");
-      const auto found = number_.find(tag);
-      if (found == number_.end()) lines_.refuse(fmt::format("there is no node {}; correct it", tag));
+      const auto node = lines_.read<std::int64_t>("the number of a node");
+      const auto found = number_.find(node);
+      if (found == number_.end()) lines_.refuse(fmt::format("there is no node {}; correct it", node));
       corners[l] = found->second;
     }
     mesh_.add_cell({corners.data(), element->points});
+    mesh_.cell_tags.push_back(tag);
     mesh_.cell_lines.push_back(lines_.number());
     dimensions_.push_back(element->dimension);
   }
@@ -145,10 +147,10 @@ class Gmsh {
     lines_.need_next("the number of elements");
     for (std::int64_t n = count("elements"); n > 0; --n) {
       lines_.need_next("the last element");
-      lines_.word();
+      const auto tag = lines_.read<std::int64_t>("the number of an element");
       const int type = lines_.read<int>("the type of an element");
       for (std::int64_t tags = count("tags"); tags > 0 && lines_.has_words(); --tags) lines_.word();
-      add_element(type);
+      add_element(tag, type);
     }
   }
   void elements_4() {
@@ -159,8 +161,8 @@ class Gmsh {
       const int type = lines_.read<int>("the type of an element");
       for (std::int64_t n = count("elements"); n > 0; --n) {
         lines_.need_next("the last element");
-        lines_.word();
-        add_element(type);
+        const auto tag = lines_.read<std::int64_t>("the number of an element");
+        add_element(tag, type);
       }
     }
   }
@@ -172,8 +174,10 @@ class Gmsh {
       if (dimensions_[i] != kept.dimension || kept.dimension == 0) continue;
       kept.add_cell(mesh_.cell(c));
       kept.cell_lines.push_back(mesh_.cell_lines[i]);
+      kept.cell_tags.push_back(mesh_.cell_tags[i]);
     }
     kept.points = std::move(mesh_.points), kept.point_lines = std::move(mesh_.point_lines);
+    kept.point_tags = std::move(mesh_.point_tags);
     mesh_ = std::move(kept);
   }
 

@@ -65,6 +65,24 @@ TEST_CASE("meshes are read from text and from Gmsh's two formats") {
   }
 }
 
+TEST_CASE("a fault of a mesh of Gmsh is named by the numbers of the file, and a cell that is there twice as such") {
+  const auto changed = [](std::string text, const std::string& before, const std::string& after) {
+    REQUIRE(contains(text, before));
+    return text.replace(text.find(before), before.size(), after);
+  };
+  CHECK_THAT(fault_of(changed(msh2, "3 2 2 1 1 1 5 9", "41 2 2 1 1 1 9 5")),
+             Catch::StartsWith("19: cell 41 is listed"));
+  CHECK_THAT(fault_of(changed(msh4, "3 1 5 9", "41 1 9 5")), Catch::StartsWith("23: cell 41 is listed"));
+  CHECK_THAT(fault_of(changed(msh2, "1 5 9", "1 2 5")), Catch::StartsWith("13: point 9 is in no cell"));
+  const std::string squares = square + "point 2 0\npoint 2 1\ncell 0 1 2 3\ncell 1 4 5 2\n";
+  CHECK(fault_of(squares + "cell 2 3 0 1\n") ==
+        "9: cell 2 has the same points as cell 0: it is there twice; remove one of them");
+  CHECK(fault_of(square + "cell 0 1 2 3\ncell 0 1 2 3\n") ==
+        "6: cell 1 has the same points as cell 0: it is there twice; remove one of them");
+  CHECK(fault_of("point 0\npoint 1\npoint 2\ncell 0 1\ncell 1 2\ncell 0 1\n") ==
+        "6: cell 2 has the same points as cell 0: it is there twice; remove one of them");
+}
+
 TEST_CASE("a mesh that cannot be read says on which line") {
   CHECK(fault_of("") == "1: the mesh is empty; write lines like point 0 0 and cell 0 1 2");
   CHECK(fault_of(square + "cell 0 2 1\n") == "5: cell 0 is listed clockwise; list its points the other way");
