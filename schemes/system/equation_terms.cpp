@@ -128,11 +128,11 @@ bool goes_by_rows(const LatticeSystem& system, const SolvePlan& plan) {
   return one_row;
 }
 
-AssembledEquations assemble(const LatticeSystem& system, const SolvePlan& plan) {
+SteppedEquations assemble(const LatticeSystem& system, const SolvePlan& plan) {
   const Lattice& lattice = system.lattice();
   const int d = system.components(), N = lattice.sites();
   const bool bricks = system.placement() == Placement::brick_wall;
-  AssembledEquations result;
+  SteppedEquations result;
 
   const auto equation_at = [&](int site, int a, std::vector<UnknownEntry>& unknowns) {
     EquationTerms equation;

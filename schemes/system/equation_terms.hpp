@@ -48,7 +48,7 @@ struct SiteEquation {
 };
 
 /// The system's equations in the form that is stepped: alike for all sites but those near walls.
-struct AssembledEquations {
+struct SteppedEquations {
   std::vector<EquationTerms> bulk;                  ///< for each component
   std::vector<std::vector<UnknownEntry>> unknowns;  ///< of the bulk, for each component
   std::vector<SiteEquation> exceptional;
@@ -58,6 +58,6 @@ struct AssembledEquations {
 /// vertices and is a constant part and source terms. What cannot is stepped slab by slab.
 bool goes_by_rows(const LatticeSystem&, const SolvePlan&);
 
-AssembledEquations assemble(const LatticeSystem&, const SolvePlan&);
+SteppedEquations assemble(const LatticeSystem&, const SolvePlan&);
 
 }  // namespace delf

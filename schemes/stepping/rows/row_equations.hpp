@@ -135,7 +135,7 @@ class RowEquations {
   const RowLayout& layout_;
   int d_, reach_ = 0;
   bool bricks_;
-  AssembledEquations equations_;
+  SteppedEquations equations_;
   RowTable::Ring y_, v_;
   bool iterates_ = false, reads_increments_beside_ = false;
   int measured_ = 0;  ///< in the table: w, and source terms at row n + 1, as residual() finds them

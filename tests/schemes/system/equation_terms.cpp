@@ -15,7 +15,7 @@ constexpr double h = 0.2, k = 0.3;
 /// y_n, v_n, v_{n−1}, … and w, and the equation itself, on random rows that solve nothing; relative to the largest |E|.
 double assembly_defect(const std::string& theory, const std::string& scheme, const Lattice& lattice, int newest_known) {
   const Evolution evolution = evolution_of(problem_of(theory), scheme, lattice, h);
-  const AssembledEquations assembled = assemble(evolution.system(), evolution.plan());
+  const SteppedEquations assembled = assemble(evolution.system(), evolution.plan());
   const int N = lattice.sites();
   Random random(71);
   // Rows n−3 … n+1, with a turn where the theory does not see one.
