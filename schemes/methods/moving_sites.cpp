@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +11,7 @@
 
 #include "lattice/error.hpp"
 #include "schemes/methods/moving_parts.hpp"
+#include "schemes/solvers/sparse_lu.hpp"
 
 namespace delf {
 namespace {
@@ -57,12 +57,11 @@ class StartOfMesh {
     const Eigen::Index n = N_ - 2;
     Vector G(n), by_t(n);
     Sparse by_X(n, n);
-    Eigen::SparseLU<Sparse> lu;
+    SparseLU lu;
     double before = std::numeric_limits<double>::infinity();
     for (int iteration = 0; iteration < 30; ++iteration) {
       evaluate(monitor, X, G, by_X, by_t);
-      lu.compute(by_X);
-      if (lu.info() != Eigen::Success) return std::nullopt;
+      if (!factor(lu, by_X)) return std::nullopt;
       const Vector change = lu.solve(G);
       if (!change.allFinite()) return std::nullopt;
       X.segment(1, n) -= change;
@@ -112,9 +111,10 @@ MovingSites place_moving_sites(const MeshMonitor& monitor, const Lattice& lattic
   Vector G(n), by_t(n), rates = Vector::Zero(N);
   Sparse by_X(n, n);
   placement.evaluate(monitor, X, G, by_X, by_t);
-  Eigen::SparseLU<Sparse> lu(by_X);
-  if (n > 0) rates.segment(1, n) = lu.solve(-by_t);
-  if (!rates.allFinite())
+  SparseLU lu;
+  const bool regular = n == 0 || factor(lu, by_X);
+  if (n > 0 && regular) rates.segment(1, n) = lu.solve(-by_t);
+  if (!regular || !rates.allFinite())
     throw NoConvergence(
         "the rates of the mesh at row 0 were not found: its constraint is singular there; change mesh.alpha");
   return {{X.begin(), X.end()}, {rates.begin(), rates.end()}};

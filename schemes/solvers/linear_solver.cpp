@@ -170,8 +170,7 @@ std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& la
   Eigen::SparseMatrix<double> matrix(size, size);
   matrix.setFromTriplets(triplets.begin(), triplets.end());
   auto lu = std::make_unique<SparseLU>();
-  lu->compute(matrix);
-  if (lu->info() != Eigen::Success) throw NoConvergence("the constant part of the equations is singular");
+  if (!factor(*lu, matrix)) throw NoConvergence("the constant part of the equations is singular");
   return std::make_unique<OrderedSolver<SparseFactors>>(layout, d, SparseFactors{std::move(lu)}, "sparse LU");
 }
 

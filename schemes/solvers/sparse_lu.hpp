@@ -6,7 +6,11 @@
 /// others that factor would take ten seconds more each.
 namespace delf {
 using SparseLU = Eigen::SparseLU<Eigen::SparseMatrix<double>>;
-}
+
+/// False where A is singular. Not lu.compute(A): of a matrix with far fewer entries than columns Eigen 3.4 estimates the
+/// memory as 0, and then asks for it again without end.
+bool factor(SparseLU& lu, const Eigen::SparseMatrix<double>& A);
+}  // namespace delf
 
 extern template class Eigen::internal::SparseLUImpl<double, int>;
 extern template class Eigen::SparseLU<Eigen::SparseMatrix<double>>;

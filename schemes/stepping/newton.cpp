@@ -106,9 +106,8 @@ Newton newton(SlabProblem& problem, Vector y, double absolute_tolerance, int max
       if (values[n] != 0) triplets.emplace_back(equations.places()[n].equation, equations.places()[n].unknown, values[n]);
     J.setFromTriplets(triplets.begin(), triplets.end());
     SparseLU lu;
-    lu.compute(J);
     result.iterations = it;
-    if (lu.info() != Eigen::Success) break;
+    if (!factor(lu, J)) break;
     const Vector change = lu.solve(as_vector(problem.residual(y)));
     if (lu.info() != Eigen::Success || !change.allFinite()) break;
     problem.take(y, as_row(change));

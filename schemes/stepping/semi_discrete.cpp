@@ -2,7 +2,6 @@
 #include "schemes/stepping/semi_discrete.hpp"
 
 #include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "schemes/solvers/sparse_lu.hpp"
 
 namespace delf {
 namespace {
@@ -193,14 +193,13 @@ std::optional<Vector> velocities(const LowerSide& side, const BatchDensity& dens
   Vector v = Vector::Zero(n), force = Vector::Zero(m);
   const bool varies = density.nonlinearity() == Nonlinearity::all;
   Sparse mass;
-  Eigen::SparseLU<Sparse> lu;
+  SparseLU lu;
   double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const bool factor = varies || iteration == 0;
+    const bool fresh = varies || iteration == 0;
     Vector gap(n + m);
-    gap << wanted - side.momenta(v, factor ? &mass : nullptr) - bound.forces * force, bound.rates - bound.J * v;
-    if (factor) lu.compute(m == 0 ? mass : bound.beside(mass));
-    if (lu.info() != Eigen::Success) return std::nullopt;
+    gap << wanted - side.momenta(v, fresh ? &mass : nullptr) - bound.forces * force, bound.rates - bound.J * v;
+    if (fresh && !factor(lu, m == 0 ? mass : bound.beside(mass))) return std::nullopt;
     const Vector change = lu.solve(gap);
     if (!change.allFinite()) return std::nullopt;
     v += change.head(n), force += change.tail(m);
@@ -212,6 +211,15 @@ std::optional<Vector> velocities(const LowerSide& side, const BatchDensity& dens
   return std::nullopt;
 }
 
+/// ℓ = θ(φ)·φ_t − H(φ, φ_x)
+bool is_linear_in_velocities(const BatchDensity& density) {
+  const int d = density.components();
+  for (int a = 0; a < d; ++a)
+    for (int b = 0; b < d; ++b)
+      if (!density.is_zero(d + a, d + b)) return false;
+  return true;
+}
+
 }  // namespace
 
 EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem& system, const Window& window,
@@ -219,6 +227,8 @@ EnergyMomentum semi_discrete_energy(const JetFamily& family, const LatticeSystem
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const LowerSide side(family, system, window, row);
   const Vector wanted = on_unknowns(side, p);
+  // p·v − L(y, v) = H(y) at any v where p = θ(y)
+  if (is_linear_in_velocities(family.density())) return side.energy(wanted, Vector::Zero(wanted.size()));
   const auto v = velocities(side, family.density(), wanted, bonds);
   if (!v) return {none, none};
   return side.energy(bonds.entries.empty() ? wanted : side.momenta(*v, nullptr), *v);

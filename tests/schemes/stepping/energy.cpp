@@ -170,3 +170,30 @@ TEST_CASE("energy and momentum of any density are those of its derivatives, cell
     CHECK(difference_of_ways(SineGordonImpurity{}, N, 0.1) > 1e-9);
   }
 }
+
+// Without a mass matrix there are no velocities to be found: H = p·v − L does not depend on them.
+TEST_CASE("the energy of elements for a density linear in velocities is H of the fields") {
+  const int N = 30;
+  const auto count = static_cast<std::size_t>(N);
+  Problem p;
+  p.theory = "text", p.lattice = Lattice::circle(N, 15), p.time_step = 0.1;
+  p.parameters["theory.fields"] = std::string("a, b");
+  p.parameters["theory.density"] = std::string("b*a_t - 0.5*(a^2 + 2*b^2)");
+  const auto started = [&](const char* method, Row& row) {
+    p.method = method;
+    Simulation simulation(p);
+    const std::size_t components = simulation.components().size();
+    Row row0(count * components, 0.0);
+    for (std::size_t i = 0; i < count; ++i)
+      row0[i * components] = std::sin(0.3 * static_cast<double>(i)), row0[i * components + 1] = 0.4;
+    simulation.start_legendre(row0, Row(row0.size(), 0.0));
+    simulation.copy_row(0, row);
+    return simulation.monitors().energy;
+  };
+  Row row(2 * count);
+  const double energy = started("radau-iia", row), k = p.lattice.space_step();
+  double H = 0;
+  for (std::size_t i = 0; i < count; ++i) H += k * (row[2 * i] * row[2 * i] + 2 * row[2 * i + 1] * row[2 * i + 1]) / 2;
+  CHECK(std::abs(energy - H) < 1e-13 * H);
+  CHECK(std::isfinite(started("spacetime", row)));
+}
