@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "jets/expressions/expression.hpp"
 #include "jets/tables/rectangle_jet.hpp"
+#include "jets/tables/triangle_jet.hpp"
 #include "lattice/error.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/families/lagrangian_family.hpp"
@@ -53,9 +55,10 @@ std::shared_ptr<const StencilFamily> family(L lagrangian) {
 }
 
 /// What the refusal says, or "accepted".
-std::string refusal(std::vector<std::shared_ptr<const StencilFamily>> families, std::vector<Component> components) {
+std::string refusal(std::vector<std::shared_ptr<const StencilFamily>> families, std::vector<Component> components,
+                    const Lattice& lattice = Lattice::circle(20, 10)) {
   try {
-    Evolution(Lattice::circle(20, 10), std::move(families), 0.1, {}, std::move(components));
+    Evolution(lattice, std::move(families), 0.1, {}, std::move(components));
   } catch (const BadInput& bad) {
     return bad.key() + ": " + bad.what();
   }
@@ -83,4 +86,19 @@ TEST_CASE("ill-posed systems are refused, and say by name what is not determined
   const std::string still = refusal({family(OneRow{})}, {phi});
   CAPTURE(still);
   CHECK(holds(still, "no row leads to the next"));
+}
+
+TEST_CASE("a slab whose Jacobian is singular at every state is refused, and says along which wave") {
+  const Component a{"a"}, b{"b"};
+  const auto action = Scheme{triangle, expression("b*a_t - 0.5*(a_x^2 + b_x^2) + 0.5*(a^2 + b^2)^2", {.fields = {"a", "b"}})}
+                          .family();
+  for (const int N : {2, 4, 6, 20, 24, 200}) {
+    CAPTURE(N);
+    const std::string even = refusal({action}, {a, b}, Lattice::circle(N, 10));
+    CAPTURE(even);
+    CHECK(holds(even, "no equation of a step changes with b at sites 0, 1"));
+    CHECK(holds(even, "in the ratio 1 : -1"));
+  }
+  for (const int N : {3, 5, 21, 25}) CHECK(refusal({action}, {a, b}, Lattice::circle(N, 10)) == "accepted");
+  for (const int N : {4, 5, 20}) CHECK(refusal({action}, {a, b}, Lattice::interval(N, 10)) == "accepted");
 }

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/lattice_system.hpp"
+
+namespace delf {
+
+/// Structural rank is not numerical rank: each equation of a slab may have an unknown of its own, and its Jacobian still be
+/// singular at every state, as that of y_i + y_{i+1} = r_i on a circle of an even number of sites. Throws BadInput that
+/// names values that no equation determines, if the Jacobian is singular at random states; `turn` is φ(x + L) − φ(x).
+void require_determined(const LatticeSystem&, const SolvePlan&, double turn);
+
+}  // namespace delf
