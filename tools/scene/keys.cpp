@@ -226,7 +226,7 @@ std::vector<Key> general_keys() {
           "the order that the last two lines must show: exit code 1 if they do not", "", positive},
       Key{"convergence.agreement", real, "0.2", "", "by how much the order may be off", "", positive},
 
-      Key{"stability.schemes", KeyType::text, "", "eight, one of each sort", "schemes, separated by commas, or all"},
+      Key{"stability.schemes", KeyType::text, "", "eight, one of each sort, and the scene's own", "schemes, separated by commas, or all"},
       Key{"stability.waves", choice, "", "own where the density has second derivatives, else klein-gordon",
           "waves that limits are of: klein-gordon, at several mh; own, those of the scene's theory about 0, at its k",
           "", any, stability_wave_names()},

@@ -56,13 +56,8 @@ struct Look {
 // long as it takes.
 class Runs {
  public:
-  Runs(const LinearWaves& waves, const LimitRequest& request) : waves_(waves), request_(request) {
-    try {  // bricks close on an even number of sites only
-      Simulation(waves.on_circle(0.5, request.sites - 1));
-    } catch (const BadInput&) {
-      odd_ = false;
-    }
-  }
+  Runs(const LinearWaves& waves, const LimitRequest& request)
+      : waves_(waves), request_(request), odd_(closes_on(waves, request.sites - 1)) {}
 
   bool has_odd() const { return odd_; }
   Growth on(int sites, double courant) const { return grown(sites, courant, request_.steps).kind; }
@@ -113,7 +108,7 @@ class Runs {
   const LinearWaves& waves_;
   const LimitRequest& request_;
   std::map<double, Look> done_;
-  bool odd_ = true;
+  bool odd_;
 };
 
 double middle(const CourantInterval& i) { return 0.5 * (i.from + i.to); }
@@ -243,6 +238,15 @@ const char* to_string(Growth growth) {
       return "refused";
   }
   return "";
+}
+
+bool closes_on(const LinearWaves& waves, int sites) {
+  try {
+    Simulation(waves.on_circle(0.5, sites));
+    return true;
+  } catch (const BadInput&) {
+    return false;
+  }
 }
 
 ObservedGrowth observe_growth(const Problem& problem, int steps, std::uint64_t seed) {

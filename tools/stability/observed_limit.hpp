@@ -22,6 +22,9 @@ struct ObservedGrowth {
   bool stable() const { return kind == Growth::bounded || kind == Growth::linear; }
 };
 
+/// Whether the waves can be stepped on a circle of so many sites: bricks close on an even number only.
+bool closes_on(const LinearWaves&, int sites);
+
 /// Steps from random rows and compares the largest |φ| of the second and of the fourth quarter of the run.
 ObservedGrowth observe_growth(const Problem&, int steps, std::uint64_t seed);
 

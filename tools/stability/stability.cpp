@@ -47,6 +47,7 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
   const auto begin = std::chrono::steady_clock::now();
   StabilityFindings f;
   f.own_waves = request.own_waves;
+  f.own_left_out = request.own_left_out;
   f.most_courant = request.limit.most;
   f.agreement = request.limit.agreement;
   f.least_growth = request.limit.least_growth();
@@ -108,6 +109,9 @@ ExitCode stability(const Scene& scene, const fs::path& folder) {
   const Interrupt interrupt;
   const StabilityRequest request = read_stability_request(scene);
   const StabilityFindings findings = find_stability(request, scene.problem);
+  if (findings.not_applicable())
+    throw scene.settings.error(request.own_waves ? "stability.waves" : "stability.schemes",
+                               "not applicable, there is no limit to find: " + findings.why_left_out());
   make_results_folder(folder);  // earlier results stay until there are new ones
   write_text_file(folder / "stability.json", stability_json(scene, findings));
   remove_figures(stability_figure_names(findings.maps.size() + maps_in_a_figure), folder);

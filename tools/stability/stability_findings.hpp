@@ -13,6 +13,7 @@ namespace delf {
 /// The growth of noise over Courant number and mh: rows of mh, from the least.
 struct StabilityMap {
   std::string scheme;
+  int sites;  ///< of the circle: odd, so that ghosts of even N stay away, wherever the scheme closes on it
   std::vector<double> courants, mass_steps;
   std::vector<Growth> grows;               ///< mass_steps × courants
   std::vector<double> edge_masses;         ///< finer than the rows
@@ -38,6 +39,7 @@ struct ConstraintFinding {
 /// The results of `delf stability`.
 struct StabilityFindings {
   bool own_waves = false;  ///< of the scene's theory, about φ = 0
+  std::string own_left_out;  ///< the scene's own scheme, and why it has no limits here, or empty
   std::vector<Limit> limits;
   std::vector<ConstraintFinding> constraints;
   std::vector<CornerFinding> corners;
@@ -55,6 +57,8 @@ struct StabilityFindings {
   std::int64_t unresolved() const;   ///< Courant numbers of limits
   std::int64_t must_not_be() const;  ///< stress cases with a forbidden verdict
   bool nothing_compared() const;
+  bool not_applicable() const;       ///< nothing compared, and nothing else found
+  std::string why_left_out() const;  ///< every scheme without a limit, with the reason, in one line
   bool passed() const { return !nothing_compared() && status == "done" && disagreements() == 0 && must_not_be() == 0; }
 };
 

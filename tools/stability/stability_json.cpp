@@ -77,6 +77,7 @@ Json json_of(const StabilityMap& m) {
   for (std::size_t j = 0; j < m.edge_masses.size(); ++j)
     for (const double courant : m.edges[j]) edges.push_back({m.edge_masses[j], courant});
   return {{"scheme", m.scheme},
+          {"sites", m.sites},
           {"courants", m.courants},
           {"mass_steps", m.mass_steps},
           {"observed", rows},
@@ -105,6 +106,7 @@ std::string stability_json(const Scene& scene, const StabilityFindings& f) {
   json["agreement"] = f.agreement;
   json["growth_least"] = f.least_growth;
   json["unresolved"] = f.unresolved();
+  json["own_scheme_left_out"] = text_or_null(f.own_left_out);
   json["limits"] = json_list(f.limits, of_each);
   json["constraint_ghosts"] = json_list(f.constraints, of_each);
   json["corners"] = json_list(f.corners, of_each);

@@ -20,9 +20,10 @@ std::vector<double> masses(int count) {
 }  // namespace
 
 StabilityMap make_stability_map(const NamedScheme& scheme, double most, std::uint64_t seed) {
-  constexpr int columns = 24, rows = 12, fine = 36, sites = 32, steps = 400, samples = 36;
+  constexpr int columns = 24, rows = 12, fine = 36, odd = 33, steps = 400, samples = 36;
   StabilityMap map;
   map.scheme = scheme.name;
+  map.sites = closes_on({scheme.problem, 1}, odd) ? odd : odd - 1;
   for (int i = 0; i < columns; ++i) map.courants.push_back(most * (i + 0.5) / columns);
   map.mass_steps = masses(rows);
   for (const double mass : map.mass_steps)
@@ -30,7 +31,7 @@ StabilityMap make_stability_map(const NamedScheme& scheme, double most, std::uin
       map.grows.push_back(
           Interrupt::asked()
               ? Growth::refused
-              : observe_growth(LinearWaves{scheme.problem, mass}.on_circle(courant, sites), steps, seed).kind);
+              : observe_growth(LinearWaves{scheme.problem, mass}.on_circle(courant, map.sites), steps, seed).kind);
   for (const double mass : masses(fine)) {
     if (Interrupt::asked()) break;
     map.edge_masses.push_back(mass);

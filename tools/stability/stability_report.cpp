@@ -68,6 +68,12 @@ std::string limits(const StabilityFindings& f) {
          unresolved;
 }
 
+std::string own_left_out(const StabilityFindings& f) {
+  std::string text = f.own_left_out.empty() ? "" : "\n";
+  for (const std::string& line : wrapped(f.own_left_out, widest_line - 2)) text += "  " + line + "\n";
+  return text;
+}
+
 std::string constraints(const StabilityFindings& f) {
   if (f.constraints.empty()) return {};
   std::string text = "\nunder the constraint of the scene's theory\n";
@@ -180,6 +186,18 @@ bool StabilityFindings::nothing_compared() const {
   return corners.empty() && std::ranges::none_of(limits, [](const Limit& l) { return l.left_out.empty(); });
 }
 
+bool StabilityFindings::not_applicable() const {
+  return status == "done" && nothing_compared() && constraints.empty();
+}
+
+std::string StabilityFindings::why_left_out() const {
+  std::vector<std::string> reasons;
+  for (const Limit& l : limits)
+    if (const std::string reason = l.scheme + ": " + l.left_out; std::ranges::find(reasons, reason) == reasons.end())
+      reasons.push_back(reason);
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
 std::int64_t StabilityFindings::unresolved() const {
   std::int64_t all = 0;
   for (const Limit& l : limits) all += static_cast<std::int64_t>(l.unresolved.size());
@@ -199,7 +217,7 @@ std::string stability_report(const Scene& scene, const StabilityFindings& f) {
              scene.name,
              f.own_waves ? "small waves of its own theory about 0" : "phi_tt - phi_xx + m^2 phi = 0, and stress cases",
              f.seed, f.own_waves ? "k" : "mh") +
-         limits(f) + constraints(f) + corner_table(f) + failures(f) + "\n" + conclusion(f);
+         limits(f) + own_left_out(f) + constraints(f) + corner_table(f) + failures(f) + "\n" + conclusion(f);
 }
 
 }  // namespace delf

@@ -47,6 +47,25 @@ std::vector<NamedScheme> with_own_scheme(const std::vector<std::string>& asked, 
   return schemes;
 }
 
+bool same_scheme(const Problem& a, const Problem& b) {
+  const Problem x = completed(a), y = completed(b);
+  return x.method == y.method && x.stencil == y.stencil && std::ranges::equal(x.parameters, y.parameters);
+}
+
+/// The scene's own scheme is among those of klein-gordon, or words say why it is not.
+void add_own_scheme(StabilityRequest& request, const Problem& base) {
+  if (std::ranges::any_of(request.schemes, [&](const NamedScheme& s) { return same_scheme(s.problem, base); })) return;
+  const std::string own = scheme_label(base);
+  try {
+    Simulation(LinearWaves{base, 1}.on_circle(0.5, 32));  // of sites that bricks close on
+    add_once(request.schemes, {own, base});
+  } catch (const BadInput& refused) {
+    const std::string reason = refused.what();  // "what is wrong; a remedy", which would be one for a circle
+    request.own_left_out = fmt::format("not applicable to the scene's own scheme ({}): limits are of waves on a circle; {}",
+                                       own, reason.substr(0, reason.rfind("; ")));
+  }
+}
+
 }  // namespace
 
 void add_once(std::vector<NamedScheme>& schemes, const NamedScheme& scheme) {
@@ -124,6 +143,7 @@ StabilityRequest read_stability_request(const Scene& scene) {
                                  "this theory; use stability.waves = klein-gordon");
     request.schemes = request.own_waves ? with_own_scheme(list("stability.schemes"), scene.problem)
                                         : chosen_schemes(list("stability.schemes"), scene.problem);
+    if (!request.own_waves && list("stability.schemes").empty()) add_own_scheme(request, scene.problem);
   } catch (const BadInput& bad) {
     throw scene.settings.located(bad);
   }

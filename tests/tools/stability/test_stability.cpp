@@ -12,11 +12,13 @@
 #include "tests/tools/program.hpp"
 #include "tests/tools/refused.hpp"
 #include "tools/scene/keys.hpp"
+#include "tools/scene/shipped_scenes.hpp"
 #include "tools/stability/corner_list.hpp"
 #include "tools/stability/linear_theory.hpp"
 #include "tools/stability/observed_limit.hpp"
 #include "tools/stability/stability.hpp"
 #include "tools/stability/stability_figures.hpp"
+#include "tools/stability/stability_map.hpp"
 
 using namespace delf;
 using Json = nlohmann::json;
@@ -351,6 +353,59 @@ TEST_CASE("where nothing can be compared, nothing has passed") {
   CHECK(f.passed());
 }
 
+TEST_CASE("a theory without limits on a circle is not applicable: one line, exit code 2, and no results") {
+  const testing::Folder folder;
+  testing::check_refused(testing::delf_program(folder, "stability kdv --out out"),
+                         {"kdv.ini: stability.waves: not applicable, there is no limit to find: six-tuple: on a circle no "
+                          "step determines the waves of theta = 0"});
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
+  // an interrupted search, and one that has found a ghost under a constraint, are results
+  StabilityFindings f;
+  CHECK(f.not_applicable());
+  f.constraints.push_back({"rectangle-symmetric", "grows"});
+  CHECK_FALSE(f.not_applicable());
+  f.constraints.clear(), f.status = "interrupted";
+  CHECK_FALSE(f.not_applicable());
+}
+
+TEST_CASE("the scene's own scheme has limits too, or the report says why not") {
+  const testing::Folder folder;
+  const auto requested = [&](const std::string& scene, const std::vector<Setting>& keys = {}) {
+    return read_stability_request(read_scene(find_scene(scene), keys));
+  };
+  const auto has = [](const StabilityRequest& request, const std::string& name) {
+    return std::ranges::count(request.schemes, name, &NamedScheme::name) == 1;
+  };
+  const StabilityRequest moving = requested("soliton-bounce");
+  CHECK(moving.schemes.size() == 8);
+  CHECK(moving.own_left_out.starts_with("not applicable to the scene's own scheme (r-adaptive, multiplier, lobatto3"));
+  CHECK(moving.own_left_out.ends_with("the mesh moves between two fixed walls"));
+  StabilityFindings f;
+  f.own_left_out = moving.own_left_out;
+  const Scene scene(Settings("test.ini", {}, {}));
+  CHECK(stability_report(scene, f).find("not applicable to the scene's own scheme") != std::string::npos);
+  CHECK(Json::parse(stability_json(scene, f))["own_scheme_left_out"] == moving.own_left_out);
+
+  const StabilityRequest wide = requested("collision", {{"scheme.method", "composition"}});
+  CHECK(wide.own_left_out.empty());
+  CHECK(wide.schemes.size() == 9);
+  CHECK(wide.schemes.back().problem.method == "composition");
+  CHECK(requested("collision").schemes.size() == 8);
+  CHECK(requested("spacetime-element").schemes.size() == 8);  // one of the eight by another name
+  CHECK(has(requested("soliton-bounce", {{"stability.schemes", "triangle"}}), "triangle"));
+  CHECK(requested("soliton-bounce", {{"stability.schemes", "triangle"}}).own_left_out.empty());
+}
+
+TEST_CASE("a map is of an odd circle, without the ghost of even N, where the scheme closes on it") {
+  const StabilityMap odd = make_stability_map({"rectangle-symmetric", scheme("rectangle-symmetric")}, 1, 1);
+  CHECK(odd.sites == 33);
+  CHECK(std::ranges::count(odd.grows, Growth::bounded) == std::ssize(odd.grows));
+  CHECK(observe_growth(noisy("rectangle-symmetric", 0.5, 1, 32), 400, 1).kind == Growth::linear);
+  const StabilityMap bricks = make_stability_map({"hexagon", scheme("hexagon")}, 1, 1);
+  CHECK(bricks.sites == 32);
+  CHECK(std::ranges::count(bricks.grows, Growth::refused) == 0);
+}
+
 TEST_CASE("under the constraint of the scene's theory a staggered wave that grows is named, with its scheme") {
   StabilityRequest request = small_request();
   request.schemes = chosen_schemes({"rectangle-symmetric", "rectangle", "triangle-vertex"}, Problem{});
@@ -400,7 +455,7 @@ TEST_CASE("the map and the dispersion relation are drawn") {
   if (std::system("command -v gnuplot > /dev/null") != 0) return;
   const delf::testing::Folder folder;
   StabilityFindings f;
-  StabilityMap map{"triangle-vertex", {0.5, 1, 1.5}, {0.1, 1}, {}, {0.1}, {{0.999}}};
+  StabilityMap map{"triangle-vertex", 33, {0.5, 1, 1.5}, {0.1, 1}, {}, {0.1}, {{0.999}}};
   map.grows = {Growth::bounded, Growth::bounded, Growth::exponential,
                Growth::linear,  Growth::refused, Growth::exponential};
   f.maps = std::vector<StabilityMap>(maps_in_a_figure + 1, map);
