@@ -27,6 +27,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kept = "fault.bytes";
+constexpr const char* usage =
+    "usage: %s [-runs=N] [-seed=S] [-bits=1] FOLDER...\n"
+    "Reads each file of the folders (tests/fuzz/seeds/NAME), then N random changes of them; a fault stays in "
+    "fault.bytes.\n";
 
 void keep(const std::string& bytes) { std::ofstream(kept, std::ios::binary) << bytes; }
 
@@ -75,6 +79,13 @@ int main(int count, char** arguments) {
       return argument.starts_with(name) && ((value = std::atol(arguments[n] + name.size())), true);
     };
     if (number("-runs=", runs) || number("-seed=", seed) || number("-bits=", bits)) continue;
+    if (!fs::is_directory(argument)) {
+      const bool help = argument == "--help" || argument == "-h";
+      std::FILE* to = help ? stdout : stderr;
+      if (!help) std::fprintf(to, "%s: no folder and no option\n", arguments[n]);
+      std::fprintf(to, usage, fs::path(arguments[0]).filename().c_str());
+      return help ? 0 : 2;
+    }
     for (const auto& entry : fs::directory_iterator(argument)) {
       if (!entry.is_regular_file()) continue;
       std::ifstream in(entry.path(), std::ios::binary);

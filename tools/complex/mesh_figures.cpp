@@ -32,6 +32,14 @@ double value_at(const ComplexScene& c, const MeshFilm::Frame& frame, std::size_t
   return frame.values[point * c.fields.size()];
 }
 
+// The bar of colours beside maps, with what they show above it.
+std::string colour_bar(const std::string& quantity) {
+  return fmt::format(
+      "set colorbox user origin screen 0.885,0.12 size screen 0.022,0.7 noborder\n"
+      "set label 104 '{}' at screen 0.896,0.85 center textcolor rgb '#333333' noenhanced\n",
+      quantity);
+}
+
 // Curves, in the order of positions: a mesh may number its points in any.
 std::string curves(const ComplexScene& c, const MeshFilm& film, const fs::path& scratch) {
   const auto& points = c.space->mesh.points;
@@ -93,7 +101,7 @@ std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, 
     const std::string file = fmt::format("map{}", f);
     write_text_file(scratch / file, table);
     // one scale for all, shown beside them once
-    body += f == 0 ? "set colorbox user origin screen 0.885,0.12 size screen 0.022,0.7 noborder\n" : "unset colorbox\n";
+    body += f == 0 ? colour_bar(c.fields.front().name) : "unset colorbox\nunset label 104\n";
     if (!c.is_one_problem())
       body += fmt::format("set title 't = {:.4g}' offset 0,0.1 textcolor rgb '#333333'\n", film.frames()[f].time);
     body += fmt::format("splot '{}' using {} with pm3d\n", file, flat ? "1:2:3" : "1:2:3:4");
@@ -136,12 +144,13 @@ std::string spacetime(const ComplexScene& c, std::span<const double> values, std
          fmt::format(
              "set pm3d map corners2color {}\n{}unset key\nunset grid\nset lmargin at screen 0.105\n"
              "set rmargin at screen 0.86\nset bmargin at screen 0.12\nset tmargin at screen top\nset xlabel 'space x'\n"
-             "set ylabel 'time t'\nset xrange [*:*] noextend\nset cbtics {} scale 0.3\n"
-             "set colorbox user origin screen 0.885,0.12 size screen 0.022,0.7 noborder\nsplot '{}' using 1:2:3 with "
+             "set ylabel 'time t'\nset xrange [*:*] noextend\nset cbtics {} scale 0.3\n{}"
+             "splot '{}' using 1:2:3 with "
              "pm3d\n",
              values.empty() ? "c1" : "mean",
              c.cells() <= most_with_edges ? "set pm3d border lc rgb '#ffffff' lw 0.3\n" : "",
-             nice_step(scale.most - scale.least, 8), name);
+             nice_step(scale.most - scale.least, 8), colour_bar(values.empty() ? "level" : c.fields.front().name),
+             name);
 }
 
 // A line from end to end of a segment at each time when it acts.

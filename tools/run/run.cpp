@@ -12,6 +12,7 @@
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
+#include "tools/files/text_columns.hpp"
 #include "tools/run/error_estimate.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/run/recorder.hpp"
@@ -36,16 +37,22 @@ void refuse_own_rows(const fs::path& folder, const Scene& scene) {
       throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
 }
 
+// energy_formula on a point.
+constexpr auto energy_of_point =
+    "q_t ∂ℓ/∂q_t − ℓ, midway between the last two rows, q_t = (q⁺ − q)/h, whatever the scheme; order 2 in h";
+
 std::string energy_in_words(const Problem& problem) {
-  return find_method(problem.method).energy ? "what scheme.method = " + problem.method + " observes" : energy_formula;
+  if (find_method(problem.method).energy) return "what scheme.method = " + problem.method + " observes";
+  return problem.lattice.space() == Space::point ? energy_of_point : energy_formula;
 }
 
 // Figures of the rows that the recorder kept.
 std::string drawn(const Scene& scene, const InitialRows& initial, const RowNames& names, const Recorder& recorder,
                   DrawnSection section, const fs::path& folder) {
   if (!recorder.film()) return {};
-  const std::string& theory = scene.problem.theory;
-  const bool angle = scene.problem.circle_valued || find_theory(theory).angle;
+  const auto density = scene.problem.parameters.maybe<std::string>("theory.density");
+  const std::string theory = density && !density->empty() ? "ℓ = " + shortened(*density, 70) : scene.problem.theory;
+  const bool angle = scene.problem.circle_valued || find_theory(scene.problem.theory).angle;
   return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice,
                        initial.winding(), *recorder.film(), recorder.energy_errors(), scene.times, names,
                        energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact()},

@@ -120,7 +120,8 @@ std::vector<Key> general_keys() {
       Key{"lattice.mesh", KeyType::text, "", "must be given with space = complex",
           "a mesh file (text, Gmsh MSH 2.2 or 4.1), a file of sites and stencils in spacetime, or icosahedron:LEVEL, "
           "graded:LENGTH,POINTS,RATIO, "
-          "rectangle:WIDTH,HEIGHT,NX,NY, quadrilaterals:WIDTH,HEIGHT,NX,NY, or of spacetime refined:LENGTH,DURATION,NX,NT"},
+          "rectangle:WIDTH,HEIGHT,NX,NY, quadrilaterals:WIDTH,HEIGHT,NX,NY, or of spacetime "
+          "refined:LENGTH,DURATION,NX,NT"},
       Key{"lattice.time", choice, "rows", "",
           "on a mesh: all sites row by row, none (data all round: an elliptic problem), or each of its cells by its "
           "own "
@@ -161,7 +162,8 @@ std::vector<Key> general_keys() {
       Key{"run.steps", integer, "", "this or run.until", "steps after row 0", "", count},
       Key{"run.seed", integer, "1", "", "seed of whatever is random", "", count},
       Key{"run.threads", integer, "1", "",
-          "threads that long rows of explicit schemes, and wide levels of a finite complex, are shared by; the bits are "
+          "threads that long rows of explicit schemes, and wide levels of a finite complex, are shared by; the bits "
+          "are "
           "the same for any number",
           "", threads},
 
@@ -226,7 +228,8 @@ std::vector<Key> general_keys() {
           "the order that the last two lines must show: exit code 1 if they do not", "", positive},
       Key{"convergence.agreement", real, "0.2", "", "by how much the order may be off", "", positive},
 
-      Key{"stability.schemes", KeyType::text, "", "eight, one of each sort, and the scene's own", "schemes, separated by commas, or all"},
+      Key{"stability.schemes", KeyType::text, "", "eight, one of each sort, and the scene's own",
+          "schemes, separated by commas, or all"},
       Key{"stability.waves", choice, "", "own where the density has second derivatives, else klein-gordon",
           "waves that limits are of: klein-gordon, at several mh; own, those of the scene's theory about 0, at its k",
           "", any, stability_wave_names()},

@@ -70,7 +70,7 @@ struct LimitRequest {
   double most = 3;  ///< Courant numbers up to here
   int sites = 64;   ///< even; N − 1 is run too where the scheme allows it
   int steps = 2000;
-  double work = 200;  ///< sites × steps of a run for a wave known to grow: at most so many times the above
+  double work = 200;         ///< sites × steps of a run for a wave known to grow: at most so many times the above
   double agreement = 0.01;   ///< relative, of limits
   int samples = 120;         ///< of theory, in Courant numbers
   int grid = 24;             ///< Courant numbers to run at, besides those that theory makes interesting

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "tools/scene/scene.hpp"
 #include "tools/stability/corner.hpp"
 #include "tools/stability/observed_limit.hpp"
-#include "tools/scene/scene.hpp"
 
 namespace delf {
 
@@ -38,7 +38,7 @@ struct ConstraintFinding {
 
 /// The results of `delf stability`.
 struct StabilityFindings {
-  bool own_waves = false;  ///< of the scene's theory, about φ = 0
+  bool own_waves = false;    ///< of the scene's theory, about φ = 0
   std::string own_left_out;  ///< the scene's own scheme, and why it has no limits here, or empty
   std::vector<Limit> limits;
   std::vector<ConstraintFinding> constraints;

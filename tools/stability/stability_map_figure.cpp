@@ -61,9 +61,10 @@ std::string stability_map_figure(const StabilityFindings& f, const std::string& 
   if (count == 0) return {};
   const std::size_t columns = count == 1 ? 1 : count <= 4 ? 2 : 3, rows = (count + columns - 1) / columns;
   std::string text =
-      figure_title(scene + ": what noise does, and the limits of linear theory",
-                   "klein-gordon, 400 steps of noise on 33 sites, or N: ghosts of even N, and narrow bands of waves, do "
-                   "not show") +
+      figure_title(
+          scene + ": what noise does, and the limits of linear theory",
+          "klein-gordon, 400 steps of noise on 33 sites, or N: ghosts of even N, and narrow bands of waves, do "
+          "not show") +
       legend() + "set multiplot\nset border 15\n";
   for (std::size_t p = 0; p < count; ++p) {
     const StabilityMap& m = f.maps[first + p];
@@ -93,10 +94,11 @@ std::string stability_map_figure(const StabilityFindings& f, const std::string& 
         "plot 'cells-{}-{}' using 1:2:($1-{}):($1+{}):($2-{}):($2+{}):3 with boxxyerror fs solid noborder lc palette, "
         "'edges-{}-{}' using 1:2 with points pt 7 ps (GPVAL_TERM eq 'svg' ? 0.22 : 0.6) lc rgb '#111111'\n"
         "unset object\nunset label\n",
-        left, left + width - 0.055, top, top - height + 0.075, gnuplot_quoted(m.scheme + (m.sites % 2 == 0 ? fmt::format(",  N = {}", m.sites) : "")), m.courants.front() - dx / 2,
-        m.courants.back() + dx / 2, decades.front() - dy / 2, decades.back() + dy / 2, tics, lowest ? "%h" : "",
-        lowest ? "Courant number h/k" : "", column == 0 ? "mh" : "", palette, part, p, dx / 2, dx / 2, dy / 2, dy / 2,
-        part, p);
+        left, left + width - 0.055, top, top - height + 0.075,
+        gnuplot_quoted(m.scheme + (m.sites % 2 == 0 ? fmt::format(",  N = {}", m.sites) : "")),
+        m.courants.front() - dx / 2, m.courants.back() + dx / 2, decades.front() - dy / 2, decades.back() + dy / 2,
+        tics, lowest ? "%h" : "", lowest ? "Courant number h/k" : "", column == 0 ? "mh" : "", palette, part, p, dx / 2,
+        dx / 2, dy / 2, dy / 2, part, p);
   }
   return text + "unset multiplot\n";
 }

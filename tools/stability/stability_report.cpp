@@ -186,9 +186,7 @@ bool StabilityFindings::nothing_compared() const {
   return corners.empty() && std::ranges::none_of(limits, [](const Limit& l) { return l.left_out.empty(); });
 }
 
-bool StabilityFindings::not_applicable() const {
-  return status == "done" && nothing_compared() && constraints.empty();
-}
+bool StabilityFindings::not_applicable() const { return status == "done" && nothing_compared() && constraints.empty(); }
 
 std::string StabilityFindings::why_left_out() const {
   std::vector<std::string> reasons;

@@ -61,8 +61,9 @@ void add_own_scheme(StabilityRequest& request, const Problem& base) {
     add_once(request.schemes, {own, base});
   } catch (const BadInput& refused) {
     const std::string reason = refused.what();  // "what is wrong; a remedy", which would be one for a circle
-    request.own_left_out = fmt::format("not applicable to the scene's own scheme ({}): limits are of waves on a circle; {}",
-                                       own, reason.substr(0, reason.rfind("; ")));
+    request.own_left_out =
+        fmt::format("not applicable to the scene's own scheme ({}): limits are of waves on a circle; {}", own,
+                    reason.substr(0, reason.rfind("; ")));
   }
 }
 
@@ -153,9 +154,8 @@ StabilityRequest read_stability_request(const Scene& scene) {
   request.corners = list("stability.corners");
   for (const std::string& group : request.corners)
     if (group != "none" && std::ranges::find(corner_groups(), group) == corner_groups().end())
-      throw scene.settings.error("stability.corners",
-                                 fmt::format("{} is no group of stress cases{}", group,
-                                             suggestion(group, corner_groups())));
+      throw scene.settings.error("stability.corners", fmt::format("{} is no group of stress cases{}", group,
+                                                                  suggestion(group, corner_groups())));
   if (request.corners.empty()) request.corners = corner_groups();
   std::erase(request.corners, "none");
   request.limit.most = values.real("stability.most_courant");

@@ -4,15 +4,16 @@
 #include <vector>
 
 #include "schemes/simulation.hpp"
-#include "tools/stability/observed_limit.hpp"
 #include "tools/scene/scene.hpp"
+#include "tools/stability/observed_limit.hpp"
 
 namespace delf {
 
 /// A request to `delf stability`.
 struct StabilityRequest {
   std::vector<NamedScheme> schemes;
-  std::string own_left_out;  ///< in words, where the scene's own scheme can not be among them and no others are asked for
+  std::string
+      own_left_out;        ///< in words, where the scene's own scheme can not be among them and no others are asked for
   bool own_waves = false;  ///< limits are those of the scene's own theory: no maps, dispersion and stress cases then
   std::vector<double> mass_steps{0.5, 1, 2.3};  ///< mh at which limits are found
   LimitRequest limit;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <regex>
+#include <vector>
 
 #include "tools/files/text_columns.hpp"
 #include "tools/run/in_words.hpp"
@@ -78,15 +81,35 @@ std::string left_out(const Verdict& v) {
   return text.empty() ? text : "\n  left out\n" + text;
 }
 
+std::string without_numbers(const std::string& words) {
+  static const std::regex number("-?[0-9]+([.][0-9]+)?(e[-+][0-9]+)?");
+  return std::regex_replace(words, number, "#");
+}
+
+// Failures that differ in numbers alone are explained once, by the first of them.
 std::string failures(const Verdict& v) {
-  std::string text;
+  struct Alike {
+    std::string words, names;
+    bool same = true;  // to the last digit
+  };
+  std::vector<Alike> all;
   for (const Check& c : v.checks) {
     if (c.passed()) continue;
-    text += "\nFAILED: " + shortened(c.name, widest_line - 8) + "\n";
     const std::string words = !c.failure.empty()    ? c.failure
                               : std::isnan(c.value) ? "What was found is not a number."
                                                     : fmt::format("{:.3g} is above {:.2g}.", c.value, c.tolerance);
-    for (const std::string& part : wrapped(words, widest_failure - 2)) text += "  " + part + "\n";
+    const std::string name = "FAILED: " + shortened(c.name, widest_line - 8) + "\n";
+    const auto known =
+        std::ranges::find(all, without_numbers(words), [](const Alike& a) { return without_numbers(a.words); });
+    if (known == all.end()) all.push_back({words, name});
+    else known->names += name, known->same = known->same && known->words == words;
+  }
+  std::string text;
+  for (const Alike& a : all) {
+    text += "\n" + a.names;
+    for (const std::string& part : wrapped(a.words, widest_failure - 2)) text += "  " + part + "\n";
+    if (!a.same)
+      text += "  This is the first; the others fail alike, where the table says. verify.json has each in full.\n";
   }
   return text;
 }

@@ -21,14 +21,16 @@ constexpr auto palette =
 constexpr auto nothing = "#cfcfcf";  // of a site that contributes nothing
 
 // The plot's extent in parts of the figure, which is 3:2.
-constexpr double left = 0.105, right = 0.78, bottom = 0.12, top = 0.855;
+constexpr double right = 0.78, bottom = 0.12, top = 0.855;
 
 /// The extent of the sites, with room about them, and how large they can be drawn.
 struct Frame {
   double x_least = 1e300, x_most = -1e300, t_least = 1e300, t_most = -1e300;
-  int side = 1;                  // nodes side by side in a cell
-  double width = 0, height = 0;  // of a mark, in units of x and t
-  bool dense = false;            // too small for a ring to be told from a disc
+  int side = 1;                          // nodes side by side in a cell
+  double left = 0;                       // beside the numbers of the rows
+  double width = 0, height = 0;          // of a mark, in units of x and t
+  double dot_width = 0, dot_height = 0;  // of the largest round mark, in the same units
+  bool dense = false;                    // too small for a ring to be told from a disc: boundary sites are bars
 
   explicit Frame(const std::vector<DrawnSite>& sites) {
     int nodes = 1;
@@ -40,9 +42,11 @@ struct Frame {
     }
     const double x_room = std::max(0.8, 0.02 * (x_most - x_least)), t_room = std::max(0.8, 0.02 * (t_most - t_least));
     x_least -= x_room, x_most += x_room, t_least -= t_room, t_most += t_room;
+    const auto digits = fmt::formatted_size("{:.0f}", std::max(t_most, 1000.0));
+    left = 0.057 + 0.012 * static_cast<double>(digits);
     set_marks();
   }
-  // Marks are round, unless the sites are so dense one way that these would be hard to see.
+  // Marks are round, but bars on the boundary where the sites are so dense one way that rings would be hard to see.
   void set_marks() {
     constexpr double part = 0.76, widest = 0.028, longest = 10;  // of the distance to the neighbour; of the figure
     const double dx = (right - left) / (x_most - x_least), dt = (top - bottom) / 1.5 / (t_most - t_least);
@@ -51,6 +55,7 @@ struct Frame {
     dense = round < 0.008;
     width = std::min(w, dense ? longest * round : round) / dx;
     height = std::min(h, dense ? longest * round : round) / dt;
+    dot_width = round / dx, dot_height = round / dt;
   }
   // Nodes inside a cell are to the right of its vertex and above it, in rows of a square.
   double x(const DrawnSite& s) const { return s.space + static_cast<double>(s.node % side) / side; }
@@ -83,15 +88,15 @@ struct Layer {
   bool (*holds)(const DrawnSite&);
   double size;  // in parts of a mark
   std::string colour;
-  bool is_hole = false;
+  bool is_hole = false, on_boundary = false;
 };
 
-// Boundary sites are rings, interior ones discs, and what is neither a dot.
+// Boundary sites are rings or bars, interior ones discs, and what is neither a dot.
 std::vector<Layer> layers() {
   const std::string grey = fmt::format("fc rgb '{}'", nothing), by_weight = "fc palette", white = "fc rgb '#ffffff'";
-  return {{"idle-rings", [](const DrawnSite& s) { return s.boundary && !contributes(s); }, 1, grey},
-          {"rings", [](const DrawnSite& s) { return s.boundary && contributes(s); }, 1, by_weight},
-          {"holes", [](const DrawnSite& s) { return s.boundary; }, 0.55, white, true},
+  return {{"idle-rings", [](const DrawnSite& s) { return s.boundary && !contributes(s); }, 1, grey, false, true},
+          {"rings", [](const DrawnSite& s) { return s.boundary && contributes(s); }, 1, by_weight, false, true},
+          {"holes", [](const DrawnSite& s) { return s.boundary; }, 0.55, white, true, true},
           {"idle-discs", [](const DrawnSite& s) { return s.interior && !contributes(s); }, 0.8, grey},
           {"discs", [](const DrawnSite& s) { return s.interior && contributes(s); }, 0.8, by_weight},
           {"idle-dots", [](const DrawnSite& s) { return !s.interior && !s.boundary && !contributes(s); }, 0.3, grey},
@@ -107,15 +112,20 @@ std::string plots(const std::vector<DrawnSite>& sites, const Frame& frame, const
       if (layer.holds(s)) table += fmt::format("{} {} {}\n", frame.x(s), frame.t(s), contributes(s) ? power_of(s) : 0);
     if (table.empty() || (layer.is_hole && frame.dense)) continue;
     write_text_file(scratch / layer.file, table);
-    text += fmt::format("{} '{}' using 1:2:({}):({}):(0){} with ellipses units xy fs solid noborder {}",
-                        text.empty() ? "plot" : ",", layer.file, layer.size * frame.width, layer.size * frame.height,
-                        layer.colour == "fc palette" ? ":3" : "", layer.colour);
+    text += text.empty() ? "plot" : ",";
+    const char* weight = layer.colour == "fc palette" ? ":3" : "";
+    if (frame.dense && layer.on_boundary)
+      text += fmt::format(" '{}' using 1:2:({}):({}){} with boxxyerror fs solid noborder {}", layer.file,
+                          frame.width / 2, frame.height / 2, weight, layer.colour);
+    else
+      text += fmt::format(" '{}' using 1:2:({}):({}):(0){} with ellipses units xy fs solid noborder {}", layer.file,
+                          layer.size * frame.dot_width, layer.size * frame.dot_height, weight, layer.colour);
   }
   return text + "\n";
 }
 
-// What a ring and a disc stand for, above the colours.
-std::string legend() {
+// What a ring or a bar and a disc stand for, above the colours.
+std::string legend(bool dense) {
   const auto circle = [](int number, double y, double radius, const char* colour) {
     return fmt::format("set object {} circle at screen 0.82,{} size screen {} front fs solid noborder fc rgb '{}'\n",
                        number, y, radius, colour);
@@ -123,9 +133,13 @@ std::string legend() {
   const auto words = [](int number, double y, const char* what) {
     return fmt::format("set label {} '{}' at screen 0.84,{} left textcolor rgb '#333333'\n", number, what, y);
   };
-  return circle(1, 0.835, 0.011, "#225ea8") + circle(2, 0.835, 0.006, "#ffffff") + words(105, 0.835, "boundary") +
-         circle(3, 0.785, 0.009, "#225ea8") + words(106, 0.785, "interior") + circle(4, 0.735, 0.009, nothing) +
-         words(107, 0.735, "contributes 0");
+  const std::string bar =
+      "set object 1 rectangle center screen 0.82,0.835 size screen 0.006,0.036 front fs solid noborder fc rgb "
+      "'#225ea8'\n";
+  const double disc = dense ? 0.005 : 0.009;
+  return (dense ? bar : circle(1, 0.835, 0.011, "#225ea8") + circle(2, 0.835, 0.006, "#ffffff")) +
+         words(105, 0.835, "boundary") + circle(3, 0.785, disc, "#225ea8") + words(106, 0.785, "interior") +
+         circle(4, 0.735, disc, nothing) + words(107, 0.735, "contributes 0");
 }
 
 }  // namespace
@@ -145,12 +159,13 @@ std::string worst_region_figure(const VerdictSource& source, const std::filesyst
              "set label 103 'time: row j' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
              "set label 104 '|term| / Σ|terms|' at screen 0.875,0.668 center textcolor rgb '#333333' noenhanced\n"
              "set colorbox user origin screen 0.86,0.12 size screen 0.022,0.495 noborder\n"
-             "set format cb '10^{{%h}}'\nset cbtics {} scale 0.3\nset cbrange [{}:{}]\n"
+             "set format x '%.0f'\nset format y '%.0f'\nset format cb '10^{{%h}}'\nset cbtics {} scale 0.3\nset "
+             "cbrange [{}:{}]\n"
              "set xtics {}\nset ytics {}\nset xrange [{}:{}]\nset yrange [{}:{}]\n",
-             left, right, bottom, top, tics(scale.most - scale.least), scale.least, scale.most,
+             frame.left, right, bottom, top, tics(scale.most - scale.least), scale.least, scale.most,
              tics(frame.x_most - frame.x_least), tics(frame.t_most - frame.t_least), frame.x_least, frame.x_most,
              frame.t_least, frame.t_most) +
-         legend() + plots(worst.sites, frame, scratch);
+         legend(frame.dense) + plots(worst.sites, frame, scratch);
 }
 
 }  // namespace delf

@@ -40,6 +40,22 @@ TEST_CASE("the figure of the energy error says which energy that is") {
   const std::string svg = read(folder / "here/figures/energy.svg");
   CHECK(contains(svg, "symmetric rectangle"));
   CHECK(contains(svg, "order 2"));
+  REQUIRE(delf_program(folder, "run pendulum --run.until=1 --out point").code == 0);
+  const std::string point = read(folder / "point/figures/energy.svg");
+  CHECK_FALSE(contains(point, "rectangle"));
+  CHECK(contains(point, "midway between the last two rows"));
+}
+
+TEST_CASE("figures name what they draw: the field, the density of a text, what colours stand for") {
+  if (!has_gnuplot()) return;
+  const Folder folder;
+  REQUIRE(delf_program(folder, "run kdv --run.until=0.5 --out kdv").code == 0);
+  const std::string waves = read(folder / "kdv/figures/waveforms.svg");
+  CHECK(contains(waves, "kdv: waveforms of φ"));
+  CHECK(contains(waves, "ℓ = 0.5*phi_x*phi_t + phi_x^3"));
+  REQUIRE(delf_program(folder, "run refined-kink --out complex").code == 0);
+  CHECK(contains(read(folder / "complex/figures/levels.svg"), ">level<"));
+  CHECK(contains(read(folder / "complex/figures/field.svg"), ">phi<"));
 }
 
 TEST_CASE("waveforms are drawn over the exact solution, as long as there is one") {

@@ -355,9 +355,10 @@ TEST_CASE("where nothing can be compared, nothing has passed") {
 
 TEST_CASE("a theory without limits on a circle is not applicable: one line, exit code 2, and no results") {
   const testing::Folder folder;
-  testing::check_refused(testing::delf_program(folder, "stability kdv --out out"),
-                         {"kdv.ini: stability.waves: not applicable, there is no limit to find: six-tuple: on a circle no "
-                          "step determines the waves of theta = 0"});
+  testing::check_refused(
+      testing::delf_program(folder, "stability kdv --out out"),
+      {"kdv.ini: stability.waves: not applicable, there is no limit to find: six-tuple: on a circle no "
+       "step determines the waves of theta = 0"});
   CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
   // an interrupted search, and one that has found a ghost under a constraint, are results
   StabilityFindings f;

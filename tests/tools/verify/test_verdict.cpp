@@ -168,3 +168,33 @@ TEST_CASE("the figures of a verdict are drawn as PNG and as SVG, and those witho
   CHECK(std::filesystem::exists(empty / "figures/worst-region.png"));
   CHECK_FALSE(std::filesystem::exists(empty / "figures/time-reversal.png"));
 }
+
+TEST_CASE("a boundary site is a ring, and a bar where sites are too dense for rings") {
+  const Folder folder;
+  Verdict v;
+  const auto drawn = [&] { return worst_region_figure({v, "kdv", ""}, folder.path()); };
+  for (int i = 0; i < 9; ++i) v.worst.sites.push_back({12557, i, 0, false, true, 0.1});
+  const std::string rings = drawn();
+  CHECK(contains(rings, "'holes' using"));
+  CHECK_FALSE(contains(rings, "boxxyerror"));
+  CHECK(contains(rings, "set lmargin at screen 0.117"));  // beside numbers of five digits
+  for (int i = 9; i < 161; ++i) v.worst.sites.push_back({12557, i, 0, false, true, 0.1});
+  const std::string bars = drawn();
+  CHECK_FALSE(contains(bars, "'holes' using"));
+  CHECK(contains(bars, "'rings' using 1:2:"));
+  CHECK(contains(bars, "boxxyerror"));
+  for (DrawnSite& s : v.worst.sites) s.time = 7;
+  CHECK(contains(drawn(), "set lmargin at screen 0.105"));
+}
+
+TEST_CASE("failures that differ in numbers alone are explained once") {
+  Verdict v;
+  v.checks = {{"form formula, slab", "", 1, 1e-13, 1, 1, 1, "At row 12 it is -8.06e-07."},
+              {"equations", "", 1, 1e-13, 1, 1, 1, "Site 3 is wrong."},
+              {"form formula, hole", "", 1, 1e-13, 1, 1, 1, "At row 5090 it is 3."}};
+  const std::string report = verdict_report(scene(), v);
+  CHECK(contains(report,
+                 "FAILED: form formula, slab\nFAILED: form formula, hole\n  At row 12 it is -8.06e-07.\n  This is"));
+  CHECK_FALSE(contains(report, "At row 5090"));
+  CHECK(contains(report, "FAILED: equations\n  Site 3 is wrong.\n\n"));
+}
