@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
 #include "lattice/error.hpp"
-#include "tools/run/interrupt.hpp"
 #include "tools/run/placed_row.hpp"
-#include "tools/run/seconds_since.hpp"
 #include "tools/scene/initial_rows.hpp"
 #include "tools/workprecision/resolution_search.hpp"
 
@@ -23,8 +20,8 @@ std::vector<double> sites_of(const Lattice& lattice) {
 }  // namespace
 
 TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants, std::size_t which,
-                  const Resolution& r, double until, const ComparedSolution& solution) {
-  using Clock = std::chrono::steady_clock;
+                  const Resolution& r, double until, const ComparedSolution& solution, const RunLimit& limit) {
+  const StepClock clock(scene.problem.threads);
   const Lattice lattice = lattice_of(scene, r.sites);
   const Contestant& contestant = contestants[which];
   TriedRun tried{which,
@@ -33,15 +30,16 @@ TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants
                   .peer = contestant.peer,
                   .processed = contestant.processed,
                   .tuned = contestant.tuned,
+                  .own = contestant.own,
                   .sites = r.sites,
                   .space_step = lattice.space_step(),
                   .time_step = r.time_step,
                   .steps = r.steps}};
   WorkPrecisionRun& run = tried.result;
-  const auto begin = Clock::now();
+  const double begin = clock.now();
   tried.racer = contestant.start(r);
   const auto& racer = tried.racer;
-  run.seconds_setup = seconds_since(begin);
+  run.seconds_setup = clock.since(begin);
   if (racer->newest() >= r.steps - 1) throw BadInput("run.until", "too few steps to be timed");
 
   constexpr std::int64_t records = 50;
@@ -49,22 +47,24 @@ TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants
   double largest = 0, seconds = 0, forces = 0;
   int looked_at = 0;
   const auto step_to = [&](std::int64_t row) {
-    const auto from = Clock::now();
-    racer->advance(row - racer->newest());
-    seconds += seconds_since(from);
+    const double from = clock.now();
+    racer->advance(row - racer->newest(), limit);
+    seconds += clock.since(from);
+    if (racer->newest() != row) return false;
     const double error = std::abs(racer->energy() - energy0) / std::abs(energy0);
     if (!(error <= largest)) largest = error;
     forces += racer->forces(), ++looked_at;
+    return true;
   };
   const std::int64_t every = std::max<std::int64_t>(1, r.steps / records);
-  for (std::int64_t row = racer->newest() + every; row < r.steps - 1 && !Interrupt::asked(); row += every) step_to(row);
+  for (std::int64_t row = racer->newest() + every; row < r.steps - 1; row += every)
+    if (!step_to(row)) return tried;
   const auto d = static_cast<std::size_t>(solution.components());
   std::vector<double> before(static_cast<std::size_t>(r.sites) * d), last(before.size());
-  if (racer->newest() < r.steps - 1) step_to(r.steps - 1);
+  if (racer->newest() < r.steps - 1 && !step_to(r.steps - 1)) return tried;
   racer->copy(before);
-  step_to(r.steps);
+  if (!step_to(r.steps)) return tried;
   racer->copy(last);
-  if (racer->newest() != r.steps) return tried;  // Ctrl-C
   run.seconds = run.seconds_min = run.seconds_max = seconds;
   run.energy_error_max = largest;
   run.forces_per_step = forces / looked_at;

@@ -22,14 +22,14 @@ using Clock = std::chrono::steady_clock;
 
 // The last row, or nothing if the scheme cannot give it at this Courant number.
 std::optional<std::vector<double>> last_row(const Contestant& scheme, const Scene& scene, int sites, double courant,
-                                            double until, int d) {
+                                            double until, int d, const RunLimit& limit) {
   const Lattice lattice = lattice_of(scene, sites);
   const double h = lattice.space() == Space::point ? courant * scene.problem.time_step : courant * lattice.space_step();
   const auto steps = std::max<std::int64_t>(4, std::llround(until / h));
   try {
     const auto racer = scheme.start({sites, steps, until / static_cast<double>(steps)});
-    racer->advance(steps - racer->newest());
-    if (racer->newest() != steps) return std::nullopt;  // Ctrl-C
+    racer->advance(steps - racer->newest(), limit);
+    if (racer->newest() != steps) return std::nullopt;
     std::vector<double> row(static_cast<std::size_t>(sites * d));
     racer->copy(row);
     return row;
@@ -39,7 +39,7 @@ std::optional<std::vector<double>> last_row(const Contestant& scheme, const Scen
 }
 
 std::optional<Reference> refined(const Contestant& scheme, const Scene& scene, const WorkPrecisionRequest& request,
-                                 double courant, Clock::time_point until) {
+                                 double courant, Clock::time_point until, const RunLimit& limit) {
   const bool point = scene.problem.lattice.space() == Space::point;
   const double turn = 2 * std::numbers::pi * InitialRows(scene).winding();
   const int d = make_state(scene.initial, scene.problem.lattice)->components();
@@ -50,7 +50,7 @@ std::optional<Reference> refined(const Contestant& scheme, const Scene& scene, c
   std::optional<std::vector<double>> before;
   for (double change = 0, cost = 0; !best || seconds_since(until) + 4 * cost < 0; courant *= point ? 0.5 : 1) {
     const auto begin = Clock::now();
-    auto row = last_row(scheme, scene, sites, courant, request.until, d);
+    auto row = last_row(scheme, scene, sites, courant, request.until, d, limit);
     cost = seconds_since(begin);
     if (!row) break;
     const Lattice fine = lattice_of(scene, sites);
@@ -77,16 +77,26 @@ std::optional<Reference> refined(const Contestant& scheme, const Scene& scene, c
 
 }  // namespace
 
-Reference find_reference(const Scene& scene, const WorkPrecisionRequest& request, Clock::time_point until) {
+std::optional<Reference> find_reference(const Scene& scene, const WorkPrecisionRequest& request,
+                                        Clock::time_point until, const RunLimit& limit) {
   if (scene.from_file())
     throw scene.settings.error("initial.state", "a file has rows of one lattice only; use a state");
-  if (has_exact(scene, request.until)) return {ComparedSolution::exact(scene, request.until), "the exact solution", 0};
+  if (has_exact(scene, request.until))
+    return Reference{ComparedSolution::exact(scene, request.until), "the exact solution", 0};
   std::vector<Contestant> schemes = engine_contestants(scene);
   std::erase_if(schemes, [](const Contestant& c) { return c.rank == 0; });
   std::ranges::stable_sort(schemes, std::greater(), &Contestant::rank);
   for (const Contestant& scheme : schemes)
-    for (const double courant : {0.25, 0.0625})
-      if (auto reference = refined(scheme, scene, request, courant, until)) return *std::move(reference);
+    for (const double courant : {0.25, 0.0625}) {
+      if (auto reference = refined(scheme, scene, request, courant, until, limit)) return reference;
+      if (Interrupt::asked()) return std::nullopt;
+      if (limit.reached())
+        throw scene.settings.error(
+            "workprecision.budget",
+            fmt::format("{} at N = {} and 2N, to compare with, takes too much of it; raise it, or "
+                        "lower lattice.sites or run.until",
+                        scheme.name, scene.problem.lattice.sites()));
+    }
   throw scene.settings.error("initial.state",
                              "no exact solution is known up to run.until, and no scheme gives a fine one to compare "
                              "with; use a shorter run.until or another state");

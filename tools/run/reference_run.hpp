@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "tools/run/solution_error.hpp"
+#include "tools/workprecision/run_limit.hpp"
 
 namespace delf {
 
@@ -15,8 +17,9 @@ struct Reference {
 };
 
 /// The exact solution; without one, the last row of the scheme of highest order, on lattices doubled until the row
-/// changes no more, or the time is used up. The change by the last doubling is its error. Throws BadScene if no scheme
-/// gives a row.
-Reference find_reference(const Scene&, const WorkPrecisionRequest&, std::chrono::steady_clock::time_point until);
+/// changes no more, or `until` has come. The change by the last doubling is its error. Nothing after Ctrl-C. Throws
+/// BadScene if no scheme gives a row, or none before the limit.
+std::optional<Reference> find_reference(const Scene&, const WorkPrecisionRequest&,
+                                        std::chrono::steady_clock::time_point until, const RunLimit&);
 
 }  // namespace delf

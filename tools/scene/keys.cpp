@@ -252,7 +252,7 @@ std::vector<Key> general_keys() {
           "h/k, h/k, ..."},
       Key{"workprecision.accuracies", KeyType::text, "", "1e-2, 1e-3, ..., 1e-10", "errors whose cost is asked for"},
       Key{"workprecision.repeats", integer, "5", "", "how often each run is timed", "", one_or_more},
-      Key{"workprecision.budget", real, "300", "", "what all of it may take, nearly", "seconds", positive},
+      Key{"workprecision.budget", real, "100", "", "what all of it may take, nearly", "seconds", positive},
       Key{"workprecision.peers", toggle, "on", "",
           "other programs in the same run, where they have the scene's equation"},
   };

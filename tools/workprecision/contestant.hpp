@@ -9,6 +9,7 @@
 
 #include "lattice/lattice.hpp"
 #include "tools/scene/scene.hpp"
+#include "tools/workprecision/run_limit.hpp"
 #include "tools/workprecision/workprecision_request.hpp"
 
 namespace delf {
@@ -31,8 +32,9 @@ class Racer {
   virtual void restart() = 0;
   /// Index of its newest row.
   virtual std::int64_t newest() const = 0;
-  /// So many steps more, or fewer if Ctrl-C is pressed. Throws NumericalFailure.
-  virtual void advance(std::int64_t steps) = 0;
+  /// So many steps more, or fewer if the limit is reached: nothing but newest() and restart() is to be called then.
+  /// Throws NumericalFailure.
+  virtual void advance(std::int64_t steps, const RunLimit&) = 0;
   /// The fields of the newest row: out[i·d + a].
   virtual void copy(std::span<double> out) const = 0;
   /// Where its sites are in the newest row; empty: on the lattice.
@@ -51,6 +53,7 @@ struct Contestant {
   bool tuned = false;      ///< a scheme of the engine that is told of the solution
   int nodes = 1;  ///< that a cell has in space: how much coarser its lattices may begin
   int rank = 0;   ///< the more, the sooner it is to be the reference; 0: never
+  bool own = false;  ///< the scheme that the scene itself states
   /// Builds and starts it. Throws BadInput or NumericalFailure.
   std::function<std::unique_ptr<Racer>(const Resolution&)> start;
 };
@@ -59,7 +62,7 @@ struct Contestant {
 /// equation for. They refer to the scene. Throws BadScene for names that there are none of.
 std::vector<Contestant> contestants(const Scene&, const WorkPrecisionRequest&);
 
-/// All schemes of the engine.
+/// All schemes of the engine, the scene's own among them, under a name of its own if it is none of the named ones.
 std::vector<Contestant> engine_contestants(const Scene&);
 /// Programs by other people; empty if the scene has another equation than theirs, or this build has none.
 std::vector<Contestant> peer_contestants(const Scene&);

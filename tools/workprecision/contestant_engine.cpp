@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "lattice/error.hpp"
 #include "schemes/simulation.hpp"
@@ -12,7 +13,6 @@
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
-#include "tools/run/interrupt.hpp"
 #include "tools/run/placed_row.hpp"
 #include "tools/scene/initial_rows.hpp"
 #include "tools/workprecision/contestant.hpp"
@@ -24,20 +24,30 @@ namespace {
 // A scheme of the engine with the scene that it runs.
 class EngineRacer final : public Racer {
  public:
-  explicit EngineRacer(Scene scene) : scene_(std::move(scene)), initial_(scene_), simulation_(build()) {
+  explicit EngineRacer(Scene scene)
+      : scene_(std::move(scene)),
+        initial_(scene_),
+        simulation_(build()),
+        at_once_(std::clamp<std::int64_t>(20000 / scene_.problem.lattice.sites(), 1, most_at_once)) {
     EngineRacer::restart();
   }
   void restart() override { initial_.start(simulation_); }
   std::int64_t newest() const override { return simulation_.newest(); }
-  void advance(std::int64_t steps) override {
-    constexpr std::int64_t between_interrupts = 64;
+  void advance(std::int64_t steps, const RunLimit& limit) override {
+    // steps between two looks at the limit take some 0.1 s at most
+    constexpr double soon = 0.02, late = 0.1;
     const FlushDenormals for_all_steps;
-    while (steps > 1 && !Interrupt::asked()) {
-      const auto count = std::min(steps - 1, between_interrupts);
+    while (steps > 1) {
+      if (limit.reached()) return;
+      const auto count = std::min(steps - 1, at_once_);
+      const auto from = RunLimit::Clock::now();
       simulation_.steps(static_cast<int>(count));
+      const double seconds = seconds_since(from);
+      if (seconds > late) at_once_ = std::max<std::int64_t>(1, count / 2);
+      else if (seconds < soon && count == at_once_) at_once_ = std::min(2 * at_once_, most_at_once);
       steps -= count;
     }
-    if (steps > 0) simulation_.step(true);
+    if (steps > 0 && !limit.reached()) simulation_.step(true);
   }
   void copy(std::span<double> out) const override {
     if (simulation_.evolution().system().moves()) std::ranges::copy(placed_row(simulation_).fields, out.begin());
@@ -73,9 +83,11 @@ class EngineRacer final : public Racer {
                                                     scene_.problem.time_step / scene_.problem.lattice.space_step()));
   }
 
+  static constexpr std::int64_t most_at_once = 64;
   Scene scene_;
   InitialRows initial_;
   Simulation simulation_;
+  std::int64_t at_once_;
 };
 
 // The scene as this scheme runs it. Without a known solution rows 0 and 1 come from φ and φ_t, as those of all others.
@@ -92,12 +104,26 @@ Scene scene_of(const Scene& scene, const Problem& problem, const Resolution& r) 
   return other;
 }
 
+// Two problems that differ in theory and lattice at most state one scheme.
+bool same_scheme(const Problem& a, const Problem& b) {
+  return a.method == b.method && scheme_label(a) == scheme_label(b) &&
+         std::ranges::equal(completed(a).parameters, completed(b).parameters);
+}
+
 }  // namespace
 
 std::vector<Contestant> engine_contestants(const Scene& scene) {
+  std::vector<NamedScheme> schemes = named_schemes(scene.problem);
+  auto own = std::ranges::find_if(schemes, [&](const NamedScheme& s) { return same_scheme(s.problem, scene.problem); });
+  if (own == schemes.end()) {
+    std::string name = scheme_label(scene.problem);
+    if (std::ranges::find(schemes, name, &NamedScheme::name) != schemes.end()) name += " of the scene";
+    own = schemes.insert(schemes.begin(), {name, scene.problem});
+  }
+  const std::string own_name = own->name;
   std::vector<Contestant> all;
-  for (NamedScheme& scheme : named_schemes(scene.problem))
-    all.push_back({scheme.name, false, false, scheme.tuned, scheme.nodes, scheme.rank,
+  for (NamedScheme& scheme : schemes)
+    all.push_back({scheme.name, false, false, scheme.tuned, scheme.nodes, scheme.rank, scheme.name == own_name,
                    [&scene, problem = std::move(scheme.problem)](const Resolution& r) -> std::unique_ptr<Racer> {
                      return std::make_unique<EngineRacer>(scene_of(scene, problem, r));
                    }});

@@ -14,7 +14,6 @@
 #include "schemes/state.hpp"
 #include "tools/peers/body_peers.hpp"
 #include "tools/peers/peer.hpp"
-#include "tools/run/interrupt.hpp"
 
 namespace delf {
 
@@ -76,10 +75,10 @@ class PeerRacer final : public Racer {
     newest_ = 0;
   }
   std::int64_t newest() const override { return newest_; }
-  void advance(std::int64_t steps) override {
+  void advance(std::int64_t steps, const RunLimit& limit) override {
     // in one call, unless it takes so long that Ctrl-C would have to wait
-    const std::int64_t most = std::max<std::int64_t>(1, 20000000 / equation_.sites);
-    while (steps > 0 && !Interrupt::asked()) {
+    const std::int64_t most = std::max<std::int64_t>(1, 4000000 / equation_.sites);
+    while (steps > 0 && !limit.reached()) {
       const std::int64_t now = std::min(steps, most);
       peer_->advance(h_, now);
       newest_ += now, steps -= now;
@@ -139,9 +138,9 @@ class BodyRacer final : public Racer {
     newest_ = 0;
   }
   std::int64_t newest() const override { return newest_; }
-  void advance(std::int64_t steps) override {
+  void advance(std::int64_t steps, const RunLimit& limit) override {
     constexpr std::int64_t between_interrupts = 1 << 20;
-    while (steps > 0 && !Interrupt::asked()) {
+    while (steps > 0 && !limit.reached()) {
       const std::int64_t now = std::min(steps, between_interrupts);
       peer_->advance(h_, now);
       newest_ += now, steps -= now;
@@ -185,10 +184,10 @@ std::vector<Contestant> peer_contestants(const Scene& scene) {
   const auto equation = equation_of(scene);
   if (!equation) return all;
   for (const peers::PeerInfo& info : peers::peers())
-    all.push_back(
-        {info.name, true, info.processed, false, 1, 0, [&scene, &info, equation = *equation](const Resolution& r) {
-           return std::unique_ptr<Racer>(new PeerRacer(scene, equation, info, r));
-         }});
+    all.push_back({info.name, true, info.processed, false, 1, 0, false,
+                   [&scene, &info, equation = *equation](const Resolution& r) {
+                     return std::unique_ptr<Racer>(new PeerRacer(scene, equation, info, r));
+                   }});
   return all;
 }
 

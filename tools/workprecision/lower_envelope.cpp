@@ -95,11 +95,13 @@ void compare(WorkPrecisionOutcome& outcome, const std::vector<double>& accuracie
     const auto line = std::ranges::find(outcome.lines, runs[i].scheme, &WorkPrecisionLine::scheme);
     const auto at = static_cast<std::size_t>(line - outcome.lines.begin());
     if (line == outcome.lines.end()) {
-      outcome.lines.push_back({runs[i].scheme, runs[i].peer, {}});
+      outcome.lines.push_back({runs[i].scheme, runs[i].peer, runs[i].own, {}});
       members.emplace_back();
     }
     members[at].push_back(i);
   }
+  outcome.unsteady = static_cast<std::size_t>(std::ranges::count_if(
+      runs, [](const WorkPrecisionRun& r) { return r.repeats > 1 && r.seconds_max > 3 * r.seconds_min; }));
   for (std::size_t l = 0; l < members.size(); ++l) {
     outcome.lines[l].front = lower_envelope(runs, members[l]);
     outcome.lines[l].slope = slope_of(runs, outcome.lines[l].front);

@@ -27,7 +27,7 @@ double slope_of(const std::vector<WorkPrecisionRun>&, std::span<const std::size_
 /// where there is no N, over the number of steps. Not a number for less than two runs.
 double order_of(const std::vector<WorkPrecisionRun>&, std::span<const std::size_t> runs);
 
-/// Lines, envelopes and costs of the runs that an outcome holds.
+/// Lines, envelopes and costs of the runs that an outcome holds, and how many are unsteady.
 void compare(WorkPrecisionOutcome&, const std::vector<double>& accuracies);
 
 }  // namespace delf

@@ -8,15 +8,20 @@
 #include <limits>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 #include "lattice/error.hpp"
 #include "tools/run/interrupt.hpp"
+#include "tools/run/seconds_since.hpp"
 
 namespace delf {
 
 namespace {
 
-constexpr double coarsest = 8;  // the scene's N over the first, and the first h over the scene's
+constexpr double coarsest = 8;         // the scene's N over the first, and the first h over the scene's
+constexpr int scenes_own = 6;          // times √2: N and h of the scene
+constexpr double own_share = 0.1;      // of the time: of the scene's own scheme, before all others
+constexpr double share_of_one = 0.25;  // of the time: the most that one run may take
 // The seconds of two runs within this are taken for equal: they have been run once.
 constexpr double clearly = 0.7;
 constexpr double hopelessly = 0.03;
@@ -40,7 +45,16 @@ ResolutionSearch::ResolutionSearch(const Scene& scene, const WorkPrecisionReques
   const std::vector<double> there = solution.at(scene.problem.lattice, request.until);
   const auto [least, most] = std::ranges::minmax(there);
   field_scale_ = std::max(1e-300, std::max(std::abs(most), std::abs(least)));
-  for (std::size_t c = 0; c < contestants.size(); ++c) seed(c);
+}
+
+bool ResolutionSearch::chosen() const { return request_.sites.empty() && request_.courants.empty(); }
+
+bool ResolutionSearch::is_scenes_own(std::size_t c, const Resolution& r) const {
+  return contestants_[c].own && r.sites == scene_.problem.lattice.sites() && r.steps == scene_steps();
+}
+
+std::int64_t ResolutionSearch::scene_steps() const {
+  return std::max<std::int64_t>(1, std::llround(request_.until / scene_.problem.time_step));
 }
 
 void ResolutionSearch::seed(std::size_t c) {
@@ -64,6 +78,7 @@ Resolution ResolutionSearch::resolution(const Next& next) const {
     const auto cells = [&](int times) { return 2 * std::max(2L, std::lround(0.5 * coarse * refined(times))); };
     const int ends = lattice.is_circle() ? 0 : 1;
     r.sites = next.sites ? next.sites : static_cast<int>(cells(next.space)) + ends;
+    if (!next.sites && next.space == scenes_own && contestants_[next.contestant].own) r.sites = lattice.sites();
     const double k = lattice_of(scene_, r.sites).space_step();
     if (next.courant > 0) h = next.courant * k;
   }
@@ -84,18 +99,56 @@ void ResolutionSearch::push(const Next& next) {
 }
 
 void ResolutionSearch::run(Clock::time_point until, const std::function<void()>& at) {
+  const Clock::time_point begin = Clock::now();
+  const double seconds = seconds_of(until - begin);
+  until_ = until;
+  most_of_one_ = chosen() ? share_of_one * seconds : std::numeric_limits<double>::infinity();
+  if (const auto own = std::ranges::find(contestants_, true, &Contestant::own); chosen() && own != contestants_.end())
+    run_own(static_cast<std::size_t>(own - contestants_.begin()), -seconds_since(until) * own_share, at);
+  for (std::size_t c = 0; c < contestants_.size(); ++c) seed(c);
+  run_cheapest(until, at);
+  out_of_time_ = out_of_time_ || !queue_.empty();
+}
+
+// The scene's own resolution, whatever it takes, and the coarser ones at its h/k: together they cost as much again.
+void ResolutionSearch::run_own(std::size_t c, double seconds, const std::function<void()>& at) {
+  const Clock::time_point until =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  const double most = std::exchange(most_of_one_, std::numeric_limits<double>::infinity());
+  const Next own{c, scenes_own, scenes_own, 0, 0, 0, 0, unknown};
+  push(own);
+  queue_.clear();
+  attempt(own);
+  at();
+  most_of_one_ = most;
+  const double cost = tried_.empty() ? 0 : tried_.back().result.seconds;
+  const double setup = tried_.empty() ? 0 : tried_.back().result.seconds_setup;
+  for (int i = 1; i < scenes_own; ++i)
+    push({c, i, i, 0, 0, cost / refined(2 * (scenes_own - i)), setup / refined(scenes_own - i), unknown});
+  run_cheapest(until, at);
+}
+
+void ResolutionSearch::run_cheapest(Clock::time_point until, const std::function<void()>& at) {
   while (!queue_.empty() && !Interrupt::asked()) {
     const auto cheapest = std::ranges::min_element(queue_, {}, &Next::cost);
-    const double left = std::chrono::duration<double>(until - Clock::now()).count();
-    if (cheapest->cost + cheapest->setup > left) {
-      out_of_time_ = true;
-      break;
-    }
+    if (cheapest->cost + cheapest->setup > -seconds_since(until)) break;
     const Next next = *cheapest;
     queue_.erase(cheapest);
     attempt(next);
     at();
   }
+}
+
+// What fails at a coarse resolution may run at a finer one: a smaller step, or more sites up to those of the scene.
+void ResolutionSearch::retry(const Next& next, const Resolution& r, double cost) {
+  if (next.sites) return;
+  cost = std::max(1.5 * next.cost, refined(1) * cost);
+  const bool point = scene_.problem.lattice.space() == Space::point;
+  const double least = lattice_of(scene_, r.sites).space_step() / 64;
+  if (next.courant == 0 && r.time_step > least)
+    push({next.contestant, next.space, next.time + 1, 0, 0, cost, next.setup, unknown});
+  if (!point && next.space < scenes_own)
+    push({next.contestant, next.space + 1, next.time + 1, next.courant, 0, cost, next.setup, unknown});
 }
 
 void ResolutionSearch::attempt(const Next& next) {
@@ -107,10 +160,21 @@ void ResolutionSearch::attempt(const Next& next) {
   const auto failed = [&](const std::string& why) {
     if (reason.empty()) reason = why;
   };
+  const StepClock clock(scene_.problem.threads);
+  const double begin = clock.now();
   try {
-    TriedRun tried = run_once(scene_, contestants_, next.contestant, r, request_.until, solution_);
+    TriedRun tried =
+        run_once(scene_, contestants_, next.contestant, r, request_.until, solution_, RunLimit(until_, most_of_one_));
     if (Interrupt::asked()) return;  // it is not at its end
-    if (!std::isfinite(tried.result.error_linf)) return failed("the field is no longer finite");
+    if (!std::isfinite(tried.result.seconds)) {
+      out_of_time_ = true;
+      return failed(fmt::format("stopped after {:.2g} s at row {} of {}, N = {}: raise workprecision.budget",
+                                clock.since(begin), tried.racer->newest(), r.steps, r.sites));
+    }
+    if (!std::isfinite(tried.result.error_linf)) {
+      failed("the field is no longer finite");
+      return retry(next, r, clock.since(begin));
+    }
     tried_.push_back(std::move(tried));
     for (TriedRun& run : tried_)
       if (run.contestant == next.contestant && run.racer && !worth(run)) run.racer.reset();
@@ -122,10 +186,7 @@ void ResolutionSearch::attempt(const Next& next) {
       push({next.contestant, next.space + 1, next.time + 1, next.courant, 0, next.cost, next.setup, unknown});
   } catch (const NumericalFailure& error) {
     failed(error.what());
-    // unstable, or without a solution: a smaller step may be neither
-    const double least = lattice_of(scene_, r.sites).space_step() / 64;
-    if (!next.sites && next.courant == 0 && r.time_step > least)
-      push({next.contestant, next.space, next.time + 1, 0, 0, 1.5 * next.cost, next.setup, unknown});
+    retry(next, r, clock.since(begin));  // unstable, or without a solution
   } catch (const std::bad_alloc&) {
     failed(fmt::format("out of memory at N = {}", r.sites));
   } catch (const std::length_error&) {
@@ -149,7 +210,8 @@ bool ResolutionSearch::beaten(const TriedRun& run, double share) const {
 }
 
 bool ResolutionSearch::worth(const TriedRun& run) const {
-  return !request_.sites.empty() || (run.result.error_linf <= field_scale_ && !beaten(run, clearly));
+  return !request_.sites.empty() || is_scenes_own(run.contestant, run.resolution) ||
+         (run.result.error_linf <= field_scale_ && !beaten(run, clearly));
 }
 
 void ResolutionSearch::refine(const Next& next, const WorkPrecisionRun& run) {
@@ -159,7 +221,7 @@ void ResolutionSearch::refine(const Next& next, const WorkPrecisionRun& run) {
     push({next.contestant, next.space + space, next.time + time, next.courant, 0, run.seconds * refined(space + time),
           run.seconds_setup * refined(space), before});
   };
-  if (run.error_linf > unstable * field_scale_) return free ? further(0, 1, unknown) : void();
+  if (run.error_linf > unstable * field_scale_) return retry(next, tried_.back().resolution, run.seconds);
   const bool single = (too_coarse(next, run) || !beaten(tried_.back(), clearly));
   // Dispersion may cancel at one resolution: those after it fall short of it, but still get better.
   const bool both = single || (run.error_linf < falling * next.before && !beaten(tried_.back(), hopelessly));
@@ -184,9 +246,11 @@ std::vector<WorkPrecisionOutcome::LeftOut> ResolutionSearch::left_out() const {
       if (run.contestant == c) least = std::min(least, run.result.error_linf);
     std::string reason = reasons_[c];
     if (std::isfinite(least))
-      reason = fmt::format("no error below the field itself at what was run: {:.2g} at best", least);
+      reason = fmt::format("no error below the field itself at what was run: {:.2g} at best{}", least,
+                           out_of_time_ ? "; raise workprecision.budget" : "");
     else if (reason.empty())
-      reason = Interrupt::asked() ? "interrupted before it was run" : "the time was used up before it was run";
+      reason = Interrupt::asked() ? "interrupted before it was run"
+                                  : "the time was used up before it was run; raise workprecision.budget";
     list.push_back({contestants_[c].name, reason});
   }
   return list;

@@ -26,7 +26,10 @@ struct TriedRun {
 /// scheme equals, and both together as long as that still helps; with given Courant numbers, both together. It ends for
 /// a scheme at its floor, or where the smallest accuracy asked for is reached. Of all schemes' next runs the one with
 /// the cheapest steps is taken first, so that each gets as far as any other for the same cost of a run, until the time
-/// is used up.
+/// is used up. What fails is tried again at smaller steps, and with more sites up to those of the scene.
+///
+/// Before all others the scene's own scheme runs at the scene's own N and h, and in a tenth of the time at others near
+/// those. Costs are those of StepClock: a busy machine does not make a scheme expensive.
 class ResolutionSearch {
  public:
   using Clock = std::chrono::steady_clock;
@@ -41,7 +44,6 @@ class ResolutionSearch {
   std::size_t tried() const { return tried_.size(); }
   /// Schemes without any run worth timing, and why.
   std::vector<WorkPrecisionOutcome::LeftOut> left_out() const;
-  bool out_of_time() const { return out_of_time_; }
 
  private:
   struct Next {
@@ -52,6 +54,12 @@ class ResolutionSearch {
     double cost, setup;  ///< predicted, in seconds: of the steps, and before them
     double before;       ///< the error before N and h were refined together; not a number if they were not
   };
+  bool chosen() const;  ///< no resolution is given
+  std::int64_t scene_steps() const;
+  bool is_scenes_own(std::size_t contestant, const Resolution&) const;
+  void run_own(std::size_t contestant, double seconds, const std::function<void()>& at);
+  void run_cheapest(Clock::time_point until, const std::function<void()>& at);
+  void retry(const Next&, const Resolution&, double cost);
   void seed(std::size_t contestant);
   Resolution resolution(const Next&) const;
   void attempt(const Next&);
@@ -72,11 +80,13 @@ class ResolutionSearch {
   std::vector<std::string> reasons_;
   std::vector<std::vector<std::pair<int, std::int64_t>>> seen_;
   bool out_of_time_ = false;
+  Clock::time_point until_;  ///< no run goes on after it
+  double most_of_one_ = 0;   ///< seconds of a run
 };
 
 /// Builds it and runs it once: errors against the solution, the energy at some fifty rows, and seconds that leave these
-/// out. Throws BadInput or NumericalFailure.
+/// out; these stay unknown if the limit ends it. Throws BadInput or NumericalFailure.
 TriedRun run_once(const Scene&, const std::vector<Contestant>&, std::size_t contestant, const Resolution&, double until,
-                  const ComparedSolution&);
+                  const ComparedSolution&, const RunLimit&);
 
 }  // namespace delf

@@ -7,8 +7,6 @@
 #include <random>
 
 #include "lattice/error.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
 
 namespace delf {
 
@@ -44,25 +42,26 @@ std::vector<int> shared_repeats(const std::vector<double>& cost, int repeats, do
 }
 
 void time_in_turn(std::vector<TriedRun>& runs, const std::vector<int>& repeats, std::uint64_t seed,
-                  std::chrono::steady_clock::time_point until, const std::function<void()>& at) {
-  using Clock = std::chrono::steady_clock;
+                  const StepClock& clock, std::chrono::steady_clock::time_point until,
+                  const std::function<void()>& at) {
+  const RunLimit limit(until);
   std::vector<std::vector<double>> seconds(runs.size());
   std::mt19937_64 random(seed);
   const int rounds = repeats.empty() ? 0 : std::ranges::max(repeats);
-  for (int round = 0; round < rounds && !Interrupt::asked(); ++round) {
+  for (int round = 0; round < rounds && !limit.reached(); ++round) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < runs.size(); ++i)
       if (repeats[i] > round) order.push_back(i);
     std::ranges::shuffle(order, random);
     for (const std::size_t i : order) {
-      if (round > 0 && Clock::now() > until) break;
+      if (limit.reached()) break;
       Racer* racer = runs[i].racer.get();
       racer->restart();
-      const auto from = Clock::now();
-      racer->advance(runs[i].resolution.steps - racer->newest());
-      const auto end = Clock::now();
-      if (Interrupt::asked()) break;
-      seconds[i].push_back(seconds_of(end - from));
+      const double from = clock.now();
+      racer->advance(runs[i].resolution.steps - racer->newest(), limit);
+      const double taken = clock.since(from);
+      if (racer->newest() != runs[i].resolution.steps) break;
+      seconds[i].push_back(taken);
       at();
     }
   }

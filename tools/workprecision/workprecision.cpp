@@ -25,8 +25,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Shares of the budget: of the reference, and of all first runs.
-constexpr double reference_share = 0.1, search_share = 0.6;
+// Shares of the budget: of the reference, and at most; of all first runs.
+constexpr double reference_share = 0.1, longest_reference = 0.4, search_share = 0.6;
 
 Clock::time_point after(Clock::time_point begin, double seconds) {
   return begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
@@ -70,9 +70,17 @@ WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequ
   const auto begin = Clock::now();
   WorkPrecisionOutcome outcome;
   const std::vector<Contestant> schemes = contestants(scene, request);
-  const Reference reference = find_reference(scene, request, after(begin, reference_share * request.budget));
-  outcome.reference = reference.words;
-  outcome.reference_error = reference.error;
+  const auto reference = find_reference(scene, request, after(begin, reference_share * request.budget),
+                                        RunLimit(after(begin, longest_reference * request.budget)));
+  if (!reference) {
+    outcome.status = "interrupted";
+    outcome.reference = "a finer run, which was interrupted";
+    for (const Contestant& one : schemes) outcome.left_out.push_back({one.name, "interrupted before it was run"});
+    outcome.seconds = seconds_since(begin);
+    return outcome;
+  }
+  outcome.reference = reference->words;
+  outcome.reference_error = reference->error;
 
   constexpr double milli = 1e-3;
   Progress progress(static_cast<std::int64_t>(request.budget / milli));
@@ -80,8 +88,8 @@ WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequ
     progress.at(std::min(static_cast<std::int64_t>(seconds_since(begin) / milli),
                          static_cast<std::int64_t>(request.budget / milli)));
   };
-  ResolutionSearch search(scene, request, schemes, reference.solution);
-  search.run(after(Clock::now(), search_share * request.budget), tell);
+  ResolutionSearch search(scene, request, schemes, reference->solution);
+  search.run(after(Clock::now(), search_share * (request.budget - seconds_since(begin))), tell);
   outcome.left_out = search.left_out();
   outcome.tried = search.tried();
 
@@ -89,7 +97,7 @@ WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequ
   std::vector<double> costs;
   for (const TriedRun& run : runs) costs.push_back(run.result.seconds);
   const std::vector<int> repeats = shared_repeats(costs, request.repeats, request.budget - seconds_since(begin));
-  time_in_turn(runs, repeats, request.seed, after(begin, request.budget), tell);
+  time_in_turn(runs, repeats, request.seed, StepClock(scene.problem.threads), after(begin, request.budget), tell);
 
   outcome.fewer_repeats =
       std::ranges::any_of(runs, [&](const TriedRun& run) { return run.result.repeats < request.repeats; });

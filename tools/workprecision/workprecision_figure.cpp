@@ -10,6 +10,7 @@
 #include "tools/figures/gnuplot.hpp"
 #include "tools/files/text_columns.hpp"
 #include "tools/scene/text_file.hpp"
+#include "tools/workprecision/step_clock.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {
@@ -44,6 +45,9 @@ std::vector<Drawn> ranked(const WorkPrecisionOutcome& o) {
     if (!std::isfinite(best)) continue;
     for (Drawn& d : all) d.behind = std::min(d.behind, cost_at(o, *d.line, cost.accuracy) / best);
   }
+  // the scene's own scheme has a colour and a name, however slow it is
+  for (Drawn& d : all)
+    if (d.line->own) d.behind = 0;
   std::ranges::stable_sort(all, {}, &Drawn::behind);
   return all;
 }
@@ -100,7 +104,8 @@ std::string figure(const Scene& scene, const WorkPrecisionOutcome& o, const std:
   write_text_file(scratch / "runs", table);
   return figure_title(
              scene.name + ": error against run time",
-             fmt::format("{}; the steps alone; slopes beside the names{}", scene.problem.theory,
+             fmt::format("{}; {} of the steps alone; slopes beside the names{}", scene.problem.theory,
+                         time_of_steps(scene.problem.threads),
                          std::ranges::any_of(o.runs, &WorkPrecisionRun::peer) ? "; other programs dashed" : "")) +
          fmt::format(
              "set lmargin at screen 0.115\nset rmargin at screen 0.61\n"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/verify/findings_json.hpp"
+#include "tools/workprecision/step_clock.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {
@@ -13,6 +14,7 @@ namespace {
 Json json_of(const WorkPrecisionRun& r) {
   return {{"scheme", r.scheme},
           {"peer", r.peer},
+          {"own", r.own},
           {"sites", r.sites},
           {"time_step", r.time_step},
           {"courant", r.time_step / r.space_step},
@@ -57,6 +59,8 @@ std::string workprecision_json(const Scene& scene, const WorkPrecisionRequest& r
   json["seed"] = request.seed;
   json["repeats"] = request.repeats;
   json["budget"] = request.budget;
+  json["clock"] = time_of_steps(scene.problem.threads);
+  json["unsteady"] = o.unsteady;
   json["reference"] = o.reference;
   json["reference_error"] = o.reference_error;
   json["seconds"] = o.seconds;
@@ -66,6 +70,7 @@ std::string workprecision_json(const Scene& scene, const WorkPrecisionRequest& r
     return Json{
         {"scheme", line.scheme},
         {"peer", line.peer},
+        {"own", line.own},
         {"slope", line.slope},
         {"order", line.order},
         {"forces_per_step", line.front.empty() ? WorkPrecisionRun::unknown : o.runs[line.front.back()].forces_per_step},

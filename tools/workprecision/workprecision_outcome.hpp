@@ -17,7 +17,7 @@ struct WorkPrecisionRun {
 
   std::string scheme;
   bool peer = false;  ///< another program
-  bool processed = false, tuned = false;  ///< as of the contestant
+  bool processed = false, tuned = false, own = false;  ///< as of the contestant
   int sites = 0;
   double space_step = 1, time_step = 0;
   std::int64_t steps = 0;
@@ -25,7 +25,8 @@ struct WorkPrecisionRun {
   double energy_error_max = unknown;                          ///< the largest |E − E₀|/|E₀| of some fifty rows
   double forces_per_step = unknown;  ///< evaluations of the force at each site in a step, the mean of some fifty steps
   double position_error = unknown, velocity_error = unknown;  ///< of the centre of φ_x²
-  double seconds = unknown, seconds_min = unknown, seconds_max = unknown;  ///< of the steps: median, least, most
+  double seconds = unknown, seconds_min = unknown,
+         seconds_max = unknown;  ///< of the steps, by StepClock: median, least, most
   double seconds_setup = unknown;                                          ///< to build and start it, the first time
   int repeats = 0;           ///< timed runs; 0: the seconds are those of the untimed first
   bool on_envelope = false;  ///< no run of its side, engine or peers, is both cheaper and at least as accurate
@@ -34,7 +35,7 @@ struct WorkPrecisionRun {
 /// A scheme over its resolutions.
 struct WorkPrecisionLine {
   std::string scheme;
-  bool peer = false;
+  bool peer = false, own = false;
   std::vector<std::size_t> front;            ///< its runs that no other of them beats, from cheap to accurate
   double slope = WorkPrecisionRun::unknown;  ///< of log error over log seconds along the front
   double order = WorkPrecisionRun::unknown;  ///< observed: error ∝ N^−order at a fixed h/k, or steps^−order on a point
@@ -63,6 +64,7 @@ struct WorkPrecisionOutcome {
   std::vector<LeftOut> left_out;
   std::size_t tried = 0;       ///< resolutions that were run once or more
   bool fewer_repeats = false;  ///< long runs were repeated less often, for the budget
+  std::size_t unsteady = 0;    ///< runs of which one round took three times as long as another, or more
   double seconds = 0;          ///< of it all
 };
 

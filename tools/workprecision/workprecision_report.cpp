@@ -7,6 +7,7 @@
 
 #include "tools/files/text_columns.hpp"
 #include "tools/run/in_words.hpp"
+#include "tools/workprecision/step_clock.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {
@@ -55,9 +56,11 @@ std::vector<std::vector<std::string>> scheme_rows(const WorkPrecisionOutcome& o)
     if (line.front.empty()) continue;
     const auto runs = std::ranges::count(o.runs, line.scheme, &WorkPrecisionRun::scheme);
     const WorkPrecisionRun& best = o.runs[line.front.back()];
-    std::vector<std::string> row{line.scheme + (line.peer ? " (peer)" : ""), std::to_string(runs),
-                                 number("{:.2f}", line.order), number("{:.3g}", best.forces_per_step),
-                                 number("{:.2f}", line.slope)};
+    std::vector<std::string> row{line.scheme + (line.peer  ? " (peer)"
+                                                : line.own ? " (scene's)"
+                                                           : ""),
+                                 std::to_string(runs), number("{:.2f}", line.order),
+                                 number("{:.3g}", best.forces_per_step), number("{:.2f}", line.slope)};
     for (const double accuracy : {1e-2, 1e-4, 1e-6, 1e-8}) {
       const auto found = std::ranges::find_if(line.front, [&](auto i) { return o.runs[i].error_linf <= accuracy; });
       row.push_back(found == line.front.end() ? "" : milliseconds(o.runs[*found].seconds));
@@ -188,9 +191,16 @@ std::string workprecision_report(const Scene& scene, const WorkPrecisionRequest&
   std::string text = fmt::format("{}: {} to t = {:.6g}, error against {}\n", scene.name, scene.problem.theory,
                                  request.until, o.reference);
   text += fmt::format(
-      "  {} of {} resolutions tried are timed, {} times each{}, interleaved, in random order; median of the steps "
-      "alone\n",
-      o.runs.size(), o.tried, request.repeats, o.fewer_repeats ? ", the long ones less often" : "");
+      "  {} of {} resolutions tried are timed, {} times each{}, interleaved, in random order; median {} of the "
+      "steps alone\n",
+      o.runs.size(), o.tried, request.repeats, o.fewer_repeats ? ", the long ones less often" : "",
+      time_of_steps(scene.problem.threads));
+  if (o.unsteady > 0)
+    text += fmt::format(
+        "  warning: {} of these runs took three times as long in one round as in another, or more: something else used "
+        "the\n"
+        "  machine, and times and ratios are uncertain by that; repeat it on an idle one\n",
+        o.unsteady);
   text +=
       "  A line is a run: errors of its last row, and the time of its steps. Take the line with the least time whose "
       "error is\n"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -209,6 +210,79 @@ TEST_CASE("an interrupted comparison writes what it has, and ends with exit code
   REQUIRE_FALSE(json["runs"].empty());
   CHECK(json["runs"][0]["repeats"] == 0);  // each has run once, untimed
   CHECK(json["runs"][0]["seconds"] > 0);
+}
+
+TEST_CASE("the scene's own scheme is run at the scene's own resolution, and is in the tables") {
+  const Folder folder;
+  const Json json = compared(folder,
+                             "soliton-bounce --run.until=4 --output.figures=off --workprecision.budget=3 "
+                             "--workprecision.repeats=1 "
+                             "--workprecision.schemes='r-adaptive,triangle-vertex,composition (2,4)'");
+  const auto own = [](const Json& run) { return run["own"] == true; };
+  CHECK(std::ranges::count_if(json["schemes"], own) == 1);
+  const auto at = std::ranges::find_if(json["runs"], [](const Json& run) {
+    return run["scheme"] == "r-adaptive" && run["sites"] == 36 && run["steps"] == 400;
+  });
+  REQUIRE(at != json["runs"].end());
+  CHECK(own(*at));
+  CHECK((*at)["error_linf"] < 0.1);
+  CHECK(std::ranges::count(json["runs"], "r-adaptive", [](const Json& run) { return run["scheme"]; }) > 2);
+
+  // a scheme without a name in the list has one from the scene
+  const Json unnamed =
+      compared(folder,
+               "kink --run.until=1 --output.figures=off --workprecision.budget=1 "
+               "--scheme.method=composition --scheme.splitting=blanes-moan-4 --workprecision.repeats=1 "
+               "--workprecision.accuracies=1e-2 --workprecision.schemes='composition'");
+  CHECK(std::ranges::count_if(unnamed["schemes"], own) == 1);
+}
+
+TEST_CASE("a scheme that fails at the first, coarse resolution is tried at finer ones") {
+  const Folder folder;
+  const auto scheme = GENERATE(as<std::string>(), "six-tuple", "nine-tuple");  // the scene's own, and another
+  const Json json = compared(folder,
+                             "kdv --run.until=2 --output.figures=off --workprecision.repeats=1 "
+                             "--workprecision.budget=2 --workprecision.accuracies=1e-1,1e-2 "
+                             "--workprecision.schemes=" +
+                                 scheme);
+  REQUIRE_FALSE(json["runs"].empty());
+  CHECK(json["left_out"].empty());
+  const auto least = std::ranges::min(json["runs"], {}, [](const Json& r) { return r["error_linf"].get<double>(); });
+  CHECK(least["error_linf"] < 0.1);
+}
+
+TEST_CASE("the budget and Ctrl-C end workprecision within a run") {
+  const WithScene folder;
+  using Clock = std::chrono::steady_clock;
+  const auto seconds = [](Clock::time_point from) {
+    return std::chrono::duration<double>(Clock::now() - from).count();
+  };
+  auto from = Clock::now();
+  // a run of hours
+  const std::string endless =
+      "small.ini --run.until=1e9 --workprecision.sites=64 --workprecision.schemes=rectangle-symmetric ";
+  const Json never = compared(folder, endless + "--workprecision.budget=1", 3);
+  // one that takes longer than it seems
+  const Json stopped = compared(folder,
+                                "small.ini --run.until=5e4 --workprecision.budget=1 --workprecision.sites=64 "
+                                "--workprecision.schemes='spacetime (4,6) gauss'",
+                                3);
+  CHECK(seconds(from) < 10);
+  CHECK(contains(never["left_out"][0]["reason"].get<std::string>(), "raise workprecision.budget"));
+  REQUIRE(stopped["left_out"].size() == 1);
+  CHECK(contains(stopped["left_out"][0]["reason"].get<std::string>(), "stopped after"));
+
+  // in a run, and in the one that others would have been compared with
+  for (const std::string& arguments :
+       {endless, std::string("collision --run.until=1e8 --workprecision.schemes=rectangle-symmetric ")}) {
+    from = Clock::now();
+    const Ran cut = shell(folder, "'" DELF_PROGRAM "' workprecision " + arguments +
+                                      "--workprecision.budget=1e9 --out cut & p=$!; sleep 1; kill -TERM $p; wait $p");
+    INFO(cut.out << cut.err);
+    CHECK(cut.code == 130);
+    CHECK(seconds(from) < 10);
+    CHECK(Json::parse(read(folder / "cut/workprecision.json"))["status"] == "interrupted");
+  }
 }
 
 TEST_CASE("keys of workprecision that say nothing are refused in one line") {

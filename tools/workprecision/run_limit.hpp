@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <chrono>
+#include <limits>
+
+#include "tools/run/interrupt.hpp"
+#include "tools/run/seconds_since.hpp"
+#include "tools/workprecision/step_clock.hpp"
+
+namespace delf {
+
+/// What ends a run before its last row: a moment up to which the user waits, seconds of the processor since it began,
+/// or Ctrl-C.
+class RunLimit {
+ public:
+  using Clock = std::chrono::steady_clock;
+  explicit RunLimit(Clock::time_point until, double seconds = std::numeric_limits<double>::infinity())
+      : until_(until), seconds_(seconds), cost_begin_(clock_.now()) {}
+
+  bool reached() const {
+    if (Interrupt::asked()) return true;
+    const Clock::time_point now = Clock::now();
+    // the processor's clock is slow to read, and never ahead
+    return now >= until_ || (seconds_of(now - begin_) > seconds_ && clock_.since(cost_begin_) > seconds_);
+  }
+
+ private:
+  StepClock clock_{1};
+  Clock::time_point begin_ = Clock::now(), until_;
+  double seconds_, cost_begin_;
+};
+
+}  // namespace delf

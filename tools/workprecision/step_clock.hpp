@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace delf {
+
+/// What steps cost: the time that this thread had a processor, so that what else the machine does is not counted. Where
+/// run.threads share the steps, it is the time that passes.
+class StepClock {
+ public:
+  explicit StepClock(int threads);
+  /// Seconds since some moment.
+  double now() const;
+  /// Seconds from `from` to now, without those of reading the clock; above 0.
+  double since(double from) const;
+
+ private:
+  bool of_thread_;
+  double reading_ = 0;  ///< the least that two readings are apart
+};
+
+/// "processor time" or "wall time".
+const char* time_of_steps(int threads);
+
+}  // namespace delf
