@@ -112,8 +112,8 @@ void ResolutionSearch::run(Clock::time_point until, const std::function<void()>&
 
 // The scene's own resolution, whatever it takes, and the coarser ones at its h/k: together they cost as much again.
 void ResolutionSearch::run_own(std::size_t c, double seconds, const std::function<void()>& at) {
-  const Clock::time_point until =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  const Clock::time_point begin = Clock::now();
+  Clock::time_point until = begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   const double most = std::exchange(most_of_one_, std::numeric_limits<double>::infinity());
   const Next own{c, scenes_own, scenes_own, 0, 0, 0, 0, unknown};
   push(own);
@@ -121,6 +121,8 @@ void ResolutionSearch::run_own(std::size_t c, double seconds, const std::functio
   attempt(own);
   at();
   most_of_one_ = most;
+  // as long again, but not past the search
+  until = std::min(until_, std::max(until, Clock::now() + (Clock::now() - begin)));
   const double cost = tried_.empty() ? 0 : tried_.back().result.seconds;
   const double setup = tried_.empty() ? 0 : tried_.back().result.seconds_setup;
   for (int i = 1; i < scenes_own; ++i)
