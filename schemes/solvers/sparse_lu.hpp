@@ -7,8 +7,8 @@
 namespace delf {
 using SparseLU = Eigen::SparseLU<Eigen::SparseMatrix<double>>;
 
-/// False where A is singular. Not lu.compute(A): of a matrix with far fewer entries than columns Eigen 3.4 estimates the
-/// memory as 0, and then asks for it again without end.
+/// False where A is singular. Not lu.compute(A): for a matrix with far fewer entries than columns Eigen 3.4 estimates
+/// the memory as 0, and then asks for it again without end.
 bool factor(SparseLU& lu, const Eigen::SparseMatrix<double>& A);
 }  // namespace delf
 

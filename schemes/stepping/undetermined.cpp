@@ -26,13 +26,14 @@ using Vector = Eigen::VectorXd;
 constexpr double rounding = 1e-12, change = 1e-13;
 constexpr int states = 2, tries = 4;
 
-/// x with J x = 0, |x| = 1 at most: of (J + δJ)x = r with a random r, what is of the null space is 10¹³ times the rest. Nothing
-/// where J has full rank. All entries are changed, at random: δJ must join the null vectors of J and of its transpose.
+/// x with J x = 0, |x| = 1 at most: of (J + δJ)x = r with a random r, what is of the null space is 10¹³ times the rest.
+/// Nothing where J has full rank. All entries are changed, at random: δJ must join the null vectors of J and of Jᵀ.
 std::optional<Vector> null_vector(const Assembly& equations, const std::vector<double>& values, std::mt19937& random) {
   std::uniform_real_distribution<double> number(-1, 1);
   const std::vector<Assembly::Place>& places = equations.places();
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t n = 0; n < values.size(); ++n) entries.emplace_back(places[n].equation, places[n].unknown, values[n]);
+  for (std::size_t n = 0; n < values.size(); ++n)
+    entries.emplace_back(places[n].equation, places[n].unknown, values[n]);
   Matrix J(equations.size(), equations.size()), nearby(J.rows(), J.cols());
   J.setFromTriplets(entries.begin(), entries.end());
   for (int once = 0; once < tries; ++once) {

@@ -5,9 +5,9 @@
 
 namespace delf {
 
-/// Structural rank is not numerical rank: each equation of a slab may have an unknown of its own, and its Jacobian still be
+/// Structural rank is not numerical rank: each equation of a slab may have an unknown of its own, and the Jacobian be
 /// singular at every state, as that of y_i + y_{i+1} = r_i on a circle of an even number of sites. Throws BadInput that
-/// names values that no equation determines, if the Jacobian is singular at random states; `turn` is φ(x + L) − φ(x).
+/// names values which no equation determines, if it is singular at random states; `turn` is φ(x + L) − φ(x).
 void require_determined(const LatticeSystem&, const SolvePlan&, double turn);
 
 }  // namespace delf

@@ -3,10 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
+#include <type_traits>
+#include <vector>
 
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
@@ -66,6 +71,30 @@ std::optional<int> order_of_scheme(const Problem& asked) {
   const Problem problem = completed(asked);
   const auto order = find_method(problem.method).order;
   return order ? order(problem) : std::nullopt;
+}
+
+// Of a solution that is not periodic, at its worst: max |φ(L) − φ(0) − 2πn| at the last row.
+double jump_at_seam(const Scene& scene) {
+  const Lattice& lattice = scene.problem.lattice;
+  if (!lattice.is_circle()) return 0;
+  const auto state = make_state(scene.initial, lattice);
+  std::vector<FieldPoint> first(static_cast<std::size_t>(state->components())), last(first);
+  state->at(scene.end(), 0, first);
+  state->at(scene.end(), lattice.length() * (1 - 2 * std::numeric_limits<double>::epsilon()), last);
+  double jump = 0;
+  for (std::size_t a = 0; a < first.size(); ++a)
+    jump = std::max(jump, std::abs(last[a].phi - first[a].phi - 2 * std::numbers::pi * state->winding()));
+  return jump;
+}
+
+// A line where errors of the table are not the scheme's alone.
+std::string floor_in_words(const Scene& scene, const ConvergenceTable& table) {
+  if (!table.exact || table.all_sites || table.levels.empty()) return {};
+  const double least = table.levels.back().linf, jump = jump_at_seam(scene);
+  if (!(jump > 0.1 * least)) return {};
+  return fmt::format("  seam       the exact solution jumps by {:.2g} where the circle closes, and the last error is {:.2g}: "
+                     "its order is not the scheme's; keep the pulse away from both ends of lattice.length\n",
+                     jump, least);
 }
 
 std::string number(const char* format, double value) {
@@ -154,6 +183,7 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
   write_text_file(folder / "convergence.csv", csv_of(table));
   fmt::print("{}", report(scene, label, table));
   if (!table.ended.empty()) fmt::print("  ended      {}\n", table.ended);
+  if constexpr (std::is_same_v<Whole, Scene>) fmt::print("{}", floor_in_words(scene, table));
   if (table.status == "interrupted")
     fmt::print("  not finished (interrupted): {} of {} lines\n", table.levels.size(), request.levels);
   else if (!std::isfinite(order)) fmt::print("  order      not known: fewer than two errors above rounding\n");
@@ -163,6 +193,8 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
   else if (request.of_scheme && std::isfinite(order))
     fmt::print("  order      {:.3f}, and the scheme's is {}: {}\n", order, *request.of_scheme,
                passed ? "passed" : "MISSED; begin with smaller steps, unless the solution is not smooth");
+  else if (std::isfinite(order))
+    fmt::print("  order      {:.3f}, and the scheme declares none: convergence.order asks for one\n", order);
   const std::string missing = drawn(scene, label, table, drawn_orders(request, order), folder);
   std::error_code none;
   const fs::path figure =

@@ -90,8 +90,8 @@ TEST_CASE("ill-posed systems are refused, and say by name what is not determined
 
 TEST_CASE("a slab whose Jacobian is singular at every state is refused, and says along which wave") {
   const Component a{"a"}, b{"b"};
-  const auto action = Scheme{triangle, expression("b*a_t - 0.5*(a_x^2 + b_x^2) + 0.5*(a^2 + b^2)^2", {.fields = {"a", "b"}})}
-                          .family();
+  const auto density = expression("b*a_t - 0.5*(a_x^2 + b_x^2) + 0.5*(a^2 + b^2)^2", {.fields = {"a", "b"}});
+  const auto action = Scheme{triangle, density}.family();
   for (const int N : {2, 4, 6, 20, 24, 200}) {
     CAPTURE(N);
     const std::string even = refusal({action}, {a, b}, Lattice::circle(N, 10));

@@ -210,3 +210,30 @@ TEST_CASE("errors against N are drawn with the slope of the order, on lattices, 
   CHECK(without.code == 0);
   CHECK(contains(without.err, "no figures: "));
 }
+
+TEST_CASE("a solution that jumps where the circle closes is named beside its errors, and one that is periodic is not") {
+  const Folder folder;
+  const auto printed = [&](double centre) {
+    const std::string scene = folder.write(
+        "pulse.ini", "[theory]\ndensity = 0.5*phi_t^2 - 0.5*phi_x^2\n[lattice]\nstencil = triangle-vertex\nlength = 40\n"
+                     "sites = 200\ncourant = 0.5\n[exact]\nphi = 1/cosh(x - " + std::to_string(centre) +
+                         " - t)\n[run]\nuntil = 1\n");
+    const Ran ran = delf_program(folder, "convergence '" + scene + "' --convergence.levels=3 --output.figures=off --out out");
+    INFO(ran.err);
+    CHECK((ran.code == 0 || ran.code == 1));
+    return ran.out;
+  };
+  CHECK(contains(printed(8), "the exact solution jumps by"));
+  CHECK_FALSE(contains(printed(20), "jumps"));
+}
+
+TEST_CASE("lines end with a word on h/k^2 where finer steps of the same h/k fail, and an order without a verdict is said") {
+  const Folder folder;
+  const std::string short_run = "nls --convergence.levels=3 --run.until=0.1 --output.figures=off --out out ";
+  const Ran failed = delf_program(folder, "convergence " + short_run);
+  CHECK(failed.code == 3);
+  CHECK(contains(failed.err, "h/k^2 doubles from line to line"));
+  const Ran done = delf_program(folder, "convergence " + short_run + "--lattice.time_step=0.002");
+  CHECK(done.code == 0);
+  CHECK(contains(done.out, "and the scheme declares none"));
+}
