@@ -92,8 +92,8 @@ std::string floor_in_words(const Scene& scene, const ConvergenceTable& table) {
   if (!table.exact || table.all_sites || table.levels.empty()) return {};
   const double least = table.levels.back().linf, jump = jump_at_seam(scene);
   if (!(jump > 0.1 * least)) return {};
-  return fmt::format("  seam       the exact solution jumps by {:.2g} where the circle closes, and the last error is {:.2g}: "
-                     "its order is not the scheme's; keep the pulse away from both ends of lattice.length\n",
+  return fmt::format("  seam       the exact solution jumps by {:.2g} where the circle closes, and the last error is "
+                     "{:.2g}: its order is not the scheme's; keep the pulse away from both ends of lattice.length\n",
                      jump, least);
 }
 

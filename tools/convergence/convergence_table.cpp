@@ -39,8 +39,9 @@ ConvergenceTable converge(const Scene& scene, int levels) {
       if (level == 0) throw;
       table.status = status_of(error);
       // Where h/k has not changed, and the coarser steps were stable, a limit of h/k² may have been passed.
-      table.ended = fmt::format("N = {}: {}; h/k^2 doubles from line to line, and may be limited: begin with smaller steps",
-                                lattice.sites(), error.what());
+      table.ended = fmt::format(
+          "N = {}: {}; h/k^2 doubles from line to line, and may be limited: begin with smaller steps", lattice.sites(),
+          error.what());
       break;
     } catch (const BadInput& error) {  // such as more sites than are taken
       if (level == 0) throw;

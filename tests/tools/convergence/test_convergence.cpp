@@ -218,7 +218,8 @@ TEST_CASE("a solution that jumps where the circle closes is named beside its err
         "pulse.ini", "[theory]\ndensity = 0.5*phi_t^2 - 0.5*phi_x^2\n[lattice]\nstencil = triangle-vertex\nlength = 40\n"
                      "sites = 200\ncourant = 0.5\n[exact]\nphi = 1/cosh(x - " + std::to_string(centre) +
                          " - t)\n[run]\nuntil = 1\n");
-    const Ran ran = delf_program(folder, "convergence '" + scene + "' --convergence.levels=3 --output.figures=off --out out");
+    const Ran ran =
+        delf_program(folder, "convergence '" + scene + "' --convergence.levels=3 --output.figures=off --out out");
     INFO(ran.err);
     CHECK((ran.code == 0 || ran.code == 1));
     return ran.out;
@@ -227,7 +228,7 @@ TEST_CASE("a solution that jumps where the circle closes is named beside its err
   CHECK_FALSE(contains(printed(20), "jumps"));
 }
 
-TEST_CASE("lines end with a word on h/k^2 where finer steps of the same h/k fail, and an order without a verdict is said") {
+TEST_CASE("where finer steps of the same h/k fail, h/k^2 is named, and an order without a verdict says why") {
   const Folder folder;
   const std::string short_run = "nls --convergence.levels=3 --run.until=0.1 --output.figures=off --out out ";
   const Ran failed = delf_program(folder, "convergence " + short_run);
