@@ -101,7 +101,7 @@ std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, 
     const std::string file = fmt::format("map{}", f);
     write_text_file(scratch / file, table);
     // one scale for all, shown beside them once
-    body += f == 0 ? colour_bar(c.fields.front().name) : "unset colorbox\nunset label 104\n";
+    body += f == 0 ? colour_bar(c.fields.front().name) : "unset colorbox\nunset label\n";
     if (!c.is_one_problem())
       body += fmt::format("set title 't = {:.4g}' offset 0,0.1 textcolor rgb '#333333'\n", film.frames()[f].time);
     body += fmt::format("splot '{}' using {} with pm3d\n", file, flat ? "1:2:3" : "1:2:3:4");

@@ -45,7 +45,7 @@ std::string fitted_label(int number, const std::string& text, double y, double s
   constexpr double least = 8, between_lines = 0.0215;
   const auto columns = static_cast<double>(columns_of(text));
   const double fitted = std::clamp(letters / std::max(1.0, columns), std::min(least, size), size);
-  const auto room = static_cast<std::size_t>(letters / fitted);
+  const auto room = static_cast<std::size_t>(letters / fitted + 1e-9);  // all columns, where the size is fitted to them
   std::vector<std::string> lines{""};
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/figures/figure_style.hpp"
+#include "tools/figures/gnuplot.hpp"
 #include "tools/scene/text_file.hpp"
 
 namespace delf {
@@ -25,8 +26,42 @@ std::string table_of(const FigureSource& source) {
   return table;
 }
 
+// q or q1, q2, ..., unless the theory has names of its own.
 std::string coordinate(const FigureSource& source, std::size_t component) {
+  const std::string name = source.names.drawn()[component];
+  if (!name.starts_with("phi")) return name;
   return source.film.components() == 1 ? "q" : fmt::format("q{}", component + 1);
+}
+
+constexpr std::size_t in_a_panel = 6, most_panels = 4;  // as many curves as there are colours
+
+// More coordinates than colours: panels of some, one below the other, each with the names of its curves.
+std::string panels(const FigureSource& source, std::size_t d) {
+  const std::size_t count = std::min(most_panels, (d + in_a_panel - 1) / in_a_panel);
+  std::string body = fmt::format(
+      "set multiplot layout {},1 margins screen 0.105,0.965,0.12,(top-0.025) spacing screen 0,0.06\n"
+      "set format x ''\nunset xlabel\n",
+      count);
+  for (std::size_t p = 0; p < count; ++p) {
+    const std::size_t first = p * in_a_panel, last = std::min(d, first + in_a_panel);
+    double least = 1e300, most = -1e300;
+    for (std::size_t c = first; c < last; ++c)
+      for (int f = 0; f < source.film.frames(); ++f) {
+        const double q = drawn_frame(source, f, c).front();
+        least = std::min(least, q), most = std::max(most, q);
+      }
+    if (most > least) body += fmt::format("set ytics {}\n", nice_step(most - least, 5));
+    for (std::size_t c = first; c < last; ++c)
+      body += fmt::format(
+          "set label {} {} at graph {},1.0 right offset 0,0.55 font ',10' textcolor rgb '{}' noenhanced\n", 110 + c,
+          gnuplot_quoted(coordinate(source, c)), 1 - 0.07 * static_cast<double>(last - 1 - c), component_colour(c));
+    if (p + 1 == count) body += "set format x '%h'\nset xlabel 'time t'\n";
+    for (std::size_t c = first; c < last; ++c)
+      body += fmt::format("{} 'trajectory' using 1:{} with lines lw 1.4 lc rgb '{}'", c == first ? "plot" : ",", c + 2,
+                          component_colour(c));
+    body += "\nunset label\n";
+  }
+  return body + "unset multiplot\n";
 }
 
 constexpr auto sides = "set lmargin at screen 0.105\nset rmargin at screen 0.965\n";
@@ -57,14 +92,18 @@ std::string trajectory_figure(const FigureSource& source, const std::filesystem:
   write_text_file(scratch / "trajectory", table_of(source));
   const std::size_t d = source.film.components();
   std::string body =
-      figure_title(fmt::format("{}: the coordinate{} over time", source.scene, d == 1 ? "" : "s"),
-                   fmt::format("{}, {}", source.theory, source.scheme)) +
+      figure_title(
+          fmt::format("{}: the coordinate{} over time", source.scene, d == 1 ? "" : "s"),
+          fmt::format(
+              "{}, {}{}", source.theory, source.scheme,
+              d > most_panels * in_a_panel ? fmt::format("; the first {} of {}", most_panels * in_a_panel, d) : "")) +
       sides + rest +
       fmt::format(
           "set xlabel 'time t'\nset xrange [{}:{}]\nset label 103 '{}{}' at screen 0.025,0.4875 center rotate "
           "textcolor rgb '#333333'\n",
-          source.film.time(0), source.film.time(source.film.frames() - 1), d == 1 ? "q" : "coordinates",
-          source.angle ? " / 2π" : "");
+          source.film.time(0), source.film.time(source.film.frames() - 1),
+          d == 1 ? coordinate(source, 0) : "coordinates", source.angle ? " / 2π" : "");
+  if (d > in_a_panel) return body + panels(source, d);
   std::vector<std::vector<double>> curves(d);
   for (std::size_t c = 0; c < d; ++c)
     for (int f = 0; f < source.film.frames(); ++f) curves[c].push_back(drawn_frame(source, f, c).front());
@@ -82,9 +121,10 @@ std::string orbit_figure(const FigureSource& source, const std::filesystem::path
   return figure_title(fmt::format("{}: the orbit", source.scene), fmt::format("{}, {}", source.theory, source.scheme)) +
          rest +
          fmt::format(
-             "set xlabel 'q1'\nset ylabel 'q2'\nset size ratio -1\n{}plot 'orbit' using 2:3 with lines lw 1.2 lc rgb "
-             "'{}'\n",
-             tics(source), line_colour);
+             "set xlabel {} noenhanced\nset ylabel {} noenhanced\nset size ratio -1\n{}plot 'orbit' using 2:3 with "
+             "lines "
+             "lw 1.2 lc rgb '{}'\n",
+             gnuplot_quoted(coordinate(source, 0)), gnuplot_quoted(coordinate(source, 1)), tics(source), line_colour);
 }
 
 }  // namespace delf

@@ -105,8 +105,7 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   const int rows = (panels + columns - 1) / columns;
   std::string body =
       figure_title(
-          fmt::format("{}: waveforms of {}", source.scene,
-                      components.size() > 1 ? "the fields" : drawn_name(source, 0)),
+          fmt::format("{}: waveforms of {}", source.scene, components.size() > 1 ? "the fields" : "φ"),
           fmt::format("{}, {}{}{}", source.theory, source.scheme, turned ? "; multiples of 2π are subtracted" : "",
                       exact_curves > 0 ? "; grey: exact" : "")) +
       fmt::format(

@@ -42,7 +42,9 @@ constexpr auto energy_of_point =
     "q_t ∂ℓ/∂q_t − ℓ, midway between the last two rows, q_t = (q⁺ − q)/h, whatever the scheme; order 2 in h";
 
 std::string energy_in_words(const Problem& problem) {
-  if (find_method(problem.method).energy) return "what scheme.method = " + problem.method + " observes";
+  if (find_method(problem.method).energy)
+    return fmt::format("H of the last row, with the momenta and the quadrature of scheme.method = {} itself",
+                       problem.method);
   return problem.lattice.space() == Space::point ? energy_of_point : energy_formula;
 }
 

@@ -53,6 +53,14 @@ TEST_CASE("figures name what they draw: the field, the density of a text, what c
   const std::string waves = read(folder / "kdv/figures/waveforms.svg");
   CHECK(contains(waves, "kdv: waveforms of φ"));
   CHECK(contains(waves, "ℓ = 0.5*phi_x*phi_t + phi_x^3"));
+  REQUIRE(delf_program(folder, "run gauss-kink --run.until=1 --out gauss").code == 0);
+  CHECK(contains(read(folder / "gauss/figures/energy.svg"), "H of the last row"));
+  // coordinates by the names of their theory, and all of eighteen: six colours a panel
+  REQUIRE(delf_program(folder, "run henon-heiles-text --run.until=1 --out named").code == 0);
+  CHECK(contains(read(folder / "named/figures/orbit.svg"), ">u<"));
+  REQUIRE(delf_program(folder, "run solar-system --run.until=2000 --out planets").code == 0);
+  const std::string planets = read(folder / "planets/figures/trajectory.svg");
+  for (int n = 1; n <= 18; ++n) CHECK(contains(planets, ">q" + std::to_string(n) + "<"));
   REQUIRE(delf_program(folder, "run refined-kink --out complex").code == 0);
   CHECK(contains(read(folder / "complex/figures/levels.svg"), ">level<"));
   CHECK(contains(read(folder / "complex/figures/field.svg"), ">phi<"));
@@ -116,6 +124,11 @@ TEST_CASE("a long subtitle is smaller, or on several lines, and never cut") {
   CHECK(labels(words) == 2);
   CHECK(labels(words + " " + words) == 4);
   CHECK(contains(delf::figure_title("title", words), "word29"));
+  // the size is made to fit: one line, whatever rounding makes of the columns, until the letters are of 8 points
+  for (std::size_t columns = 80; columns <= 130; ++columns) {
+    INFO(columns);
+    CHECK(labels(std::string(columns / 2, 'a') + " " + std::string(columns - columns / 2 - 1, 'b')) == 1);
+  }
 }
 
 TEST_CASE("curves that cannot be told apart are said to, and a spike does not flatten the axis") {
