@@ -60,7 +60,7 @@ TEST_CASE("figures name what they draw: the field, the density of a text, what c
   CHECK(contains(read(folder / "named/figures/orbit.svg"), ">u<"));
   REQUIRE(delf_program(folder, "run solar-system --run.until=2000 --out planets").code == 0);
   const std::string planets = read(folder / "planets/figures/trajectory.svg");
-  for (int n = 1; n <= 18; ++n) CHECK(contains(planets, ">q" + std::to_string(n) + "<"));
+  for (int n = 1; n <= 18; ++n) CHECK(contains(planets, std::string(">q").append(std::to_string(n)).append("<")));
   REQUIRE(delf_program(folder, "run refined-kink --out complex").code == 0);
   CHECK(contains(read(folder / "complex/figures/levels.svg"), ">level<"));
   CHECK(contains(read(folder / "complex/figures/field.svg"), ">phi<"));
