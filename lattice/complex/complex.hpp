@@ -32,6 +32,11 @@ class Complex {
  public:
   using Position = std::array<double, 4>;  ///< t, x, y, z
 
+  /// So many are to be added, with so many sites of stencils in all.
+  void reserve(std::size_t sites, std::size_t stencils, std::size_t vertices) {
+    positions_.reserve(sites), roles_.reserve(sites);
+    shape_of_.reserve(stencils), first_.reserve(stencils + 1), vertices_.reserve(vertices);
+  }
   int add_site(const Position&, SiteRole = SiteRole::free);
   int add_shape(ComplexShape);
   /// Throws BadInput for a site that is not there, or that the stencil names twice.

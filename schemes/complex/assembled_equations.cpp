@@ -12,12 +12,20 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 using Triplet = Eigen::Triplet<double>;
 
-/// The entries of a matrix, and where they stand in another one that has at least these.
+/// Adds the entries to those of `all`, and returns them as a matrix; they are gone then, as there are many.
 template <class M>
-void find_places(const std::vector<Triplet>& entries, const M& all, std::vector<int>& places,
-                 std::vector<double>& values) {
+M take(std::vector<Triplet>& entries, M& all) {
   M part(all.rows(), all.cols());
   part.setFromTriplets(entries.begin(), entries.end());
+  std::vector<Triplet>().swap(entries);
+  all = all.nonZeros() == 0 ? part : M(all + part);
+  return part;
+}
+
+/// The entries of a matrix, and where they stand in another one that has at least these.
+template <class M>
+void find_places(const M& part, const M& all, std::vector<int>& places, std::vector<double>& values) {
+  places.reserve(static_cast<std::size_t>(part.nonZeros())), values.reserve(places.capacity());
   const int* const inner = all.innerIndexPtr();
   for (Eigen::Index outer = 0; outer < part.outerSize(); ++outer) {
     int place = all.outerIndexPtr()[outer];
@@ -42,6 +50,7 @@ AssembledEquations::AssembledEquations(const ComplexSystem& system, std::vector<
     for (int i = 0; i < system.family_of(s).size(); ++i) nodes_.push_back(system.node(s, i));
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  nodes_.shrink_to_fit();  // each was there as often as stencils read it
   for (const auto s : stencils) {
     const PlacedFamily& family = system.family_of(s);
     Stencils& to = family.is_linear() ? linear_ : nonlinear_;
@@ -56,6 +65,7 @@ AssembledEquations::AssembledEquations(const ComplexSystem& system, std::vector<
         if (to.rows[begin + at(i)] >= 0 && to.columns[begin + at(m)] >= 0 && family.is_varying(i, m)) direct_ = false;
   }
   assemble();
+  linear_ = {};  // all of it is in the matrices
   scale();
 }
 
@@ -93,26 +103,27 @@ void AssembledEquations::assemble() {
   };
   collect(linear_, true);
   if (direct_) collect(nonlinear_, false);  // what nonlinear stencils make of the unknowns is constant too
-  std::vector<Triplet> all, of_unknowns;
-  for (const auto& [key, entries] : parts) {
-    all.insert(all.end(), entries.all.begin(), entries.all.end());
-    of_unknowns.insert(of_unknowns.end(), entries.of_unknowns.begin(), entries.of_unknowns.end());
-  }
   matrix_.resize(count_, static_cast<Eigen::Index>(nodes_.size()));
-  matrix_.setFromTriplets(all.begin(), all.end());
   of_unknowns_.resize(count_, count_);
-  of_unknowns_.setFromTriplets(of_unknowns.begin(), of_unknowns.end());
+  std::vector<Rows> matrices;
+  std::vector<Matrix> matrices_of_unknowns;
+  for (auto& [key, entries] : parts) {
+    matrices.push_back(take(entries.all, matrix_));
+    matrices_of_unknowns.push_back(take(entries.of_unknowns, of_unknowns_));
+  }
   at_zero_ = Vector::Zero(count_);
   if (parts.empty()) return;
   if (parts.size() == 1 && parts.begin()->first.first == 0) {  // which is not scaled
     at_zero_ = std::move(parts.begin()->second.at_zero);
     return;
   }
+  std::size_t n = 0;
   for (auto& [key, entries] : parts) {
     Scaled part{key.first, key.second, std::move(entries.at_zero), {}, {}, {}, {}};
     if (part.at_zero.isZero(0)) part.at_zero.resize(0);
-    find_places(entries.all, matrix_, part.places, part.values);
-    find_places(entries.of_unknowns, of_unknowns_, part.places_of_unknowns, part.values_of_unknowns);
+    find_places(matrices[n], matrix_, part.places, part.values);
+    find_places(matrices_of_unknowns[n], of_unknowns_, part.places_of_unknowns, part.values_of_unknowns);
+    matrices[n] = {}, matrices_of_unknowns[n++] = {};
     parts_.push_back(std::move(part));
   }
 }
@@ -131,6 +142,19 @@ void AssembledEquations::scale() {
     add(part.places_of_unknowns, part.values_of_unknowns, of_unknowns_.valuePtr());
     if (part.at_zero.size() > 0) at_zero_ += system_.factor(part.part, part.power) * part.at_zero;
   }
+}
+
+std::size_t AssembledEquations::bytes() const {
+  const auto of = [](const auto& matrix) {
+    return static_cast<std::size_t>(12 * matrix.nonZeros() + 4 * matrix.outerSize());
+  };
+  const auto numbers = [](const auto&... all) { return (... + (all.capacity() * sizeof(all[0]))); };
+  std::size_t sum = of(matrix_) + of(of_unknowns_) + 8 * static_cast<std::size_t>(at_zero_.size()) + numbers(nodes_);
+  sum += numbers(nonlinear_.list, nonlinear_.places, nonlinear_.rows, nonlinear_.columns);
+  for (const Scaled& part : parts_)
+    sum += numbers(part.places, part.places_of_unknowns, part.values, part.values_of_unknowns) +
+           8 * static_cast<std::size_t>(part.at_zero.size());
+  return sum;
 }
 
 AssembledEquations::Vector AssembledEquations::residual(const Vector& y) const {

@@ -41,6 +41,7 @@ class AssembledEquations {
 
   /// No derivative by an unknown varies: with data given, the equations are linear.
   bool is_direct() const { return direct_; }
+  std::size_t bytes() const;
   /// To be called when parts of the system have changed.
   void scale();
 
@@ -111,7 +112,7 @@ class AssembledEquations {
   int count_;
   bool direct_ = true;
   std::vector<std::size_t> nodes_;
-  Stencils linear_, nonlinear_;
+  Stencils linear_, nonlinear_;  ///< the linear ones until they are assembled
   std::vector<Scaled> parts_;
   Vector at_zero_;
   Rows matrix_;

@@ -25,8 +25,9 @@ std::vector<int> cuts_of(const ComplexPlan& plan, int begin, int end, int count)
 
 }  // namespace
 
-ComplexSolver::ComplexSolver(const ComplexSystem& system, Options options)
-    : system_(system), options_(options), touching_(system.complex()), plan_(make_plan(system.complex(), touching_)) {
+ComplexSolver::ComplexSolver(const ComplexSystem& system, Options options) : system_(system), options_(options) {
+  const Touching touching(system.complex());  // of no use behind the plan
+  plan_ = make_plan(system.complex(), touching);
   const auto sites = at(system.complex().sites());
   Places places{std::vector<std::int32_t>(sites, -1), std::vector<std::int32_t>(sites, -1)};
   for (std::size_t n = 0; n < plan_.unknowns.size(); ++n) {
@@ -47,7 +48,7 @@ ComplexSolver::ComplexSolver(const ComplexSystem& system, Options options)
     std::int64_t once = 0, all = 0;
     const auto count = [&](int from, int to, std::int32_t mark, std::int64_t& sum) {
       for (std::int32_t n = plan_.first[at(from)]; n < plan_.first[at(to)]; ++n)
-        for (const auto s : touching_[plan_.equations[at(n)]])
+        for (const auto s : touching[plan_.equations[at(n)]])
           if (seen[at(s)] != mark) seen[at(s)] = mark, ++sum;
     };
     std::int32_t mark = 2 * begin;
@@ -61,12 +62,18 @@ ComplexSolver::ComplexSolver(const ComplexSystem& system, Options options)
   parts_.resize(ranges.size());
   if (options.threads > 1 && shared_levels() > 0) team_ = std::make_unique<ThreadTeam>(options.threads);
   for_each(0, ranges.size(), [&](std::size_t p, std::size_t) {
-    parts_[p] = std::make_unique<LevelPart>(system_, touching_, plan_, places, ranges[p].first, ranges[p].last);
+    parts_[p] = std::make_unique<LevelPart>(system_, touching, plan_, places, ranges[p].first, ranges[p].last);
   });
 }
 
 ComplexSolver::~ComplexSolver() = default;
 ComplexSolver::ComplexSolver(ComplexSolver&&) noexcept = default;
+
+std::size_t ComplexSolver::bytes() const {
+  std::size_t sum = 4 * (plan_.unknowns.size() + plan_.equations.size() + plan_.first.size() + plan_.level.size());
+  for (const auto& part : parts_) sum += part->bytes();
+  return sum;
+}
 
 bool ComplexSolver::is_direct() const {
   return std::ranges::all_of(parts_, [](const auto& part) { return part->is_direct(); });
@@ -110,7 +117,10 @@ ComplexSolver::Report ComplexSolver::solve(std::span<double> y) const {
       for_each(level_[l], level_[l + 1],
                [&](std::size_t p, std::size_t share) { of_share[share].add(parts_[p]->find(y, options_)); });
     if (std::ranges::any_of(of_share, &Report::ended)) break;
-    for_each(level_[l], level_[l + 1], [&](std::size_t p, std::size_t) { parts_[p]->write(y); });
+    for_each(level_[l], level_[l + 1], [&](std::size_t p, std::size_t) {
+      parts_[p]->write(y);
+      if (plan_.levels > 1) parts_[p]->forget();  // all levels' factors would be several times the rest
+    });
   }
   for (const Report& one : of_share) of_share.front().add(one);
   return of_share.front();

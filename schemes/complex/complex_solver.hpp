@@ -48,6 +48,8 @@ class ComplexSolver {
   ComplexSolver(ComplexSolver&&) noexcept;
 
   const ComplexPlan& plan() const { return plan_; }
+  /// Of its matrices and lists, without what a sparse factorisation fills in.
+  std::size_t bytes() const;
   /// No level is iterated.
   bool is_direct() const;
   /// Levels in several parts.
@@ -67,7 +69,6 @@ class ComplexSolver {
 
   const ComplexSystem& system_;
   Options options_;
-  Touching touching_;
   ComplexPlan plan_;
   std::vector<std::unique_ptr<LevelPart>> parts_;
   std::vector<std::size_t> level_;  ///< the first part of each, and the end

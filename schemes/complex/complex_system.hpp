@@ -26,6 +26,11 @@ class ComplexSystem {
  public:
   explicit ComplexSystem(int components) : components_(components) {}
 
+  /// So many are to be added: see Complex.
+  void reserve(std::size_t sites, std::size_t stencils, std::size_t vertices) {
+    complex_.reserve(sites, stencils, vertices);
+    tables_.reserve(stencils), part_of_.reserve(stencils), measures_.reserve(stencils), time_steps_.reserve(stencils);
+  }
   int add_site(const Complex::Position& position, SiteRole role = SiteRole::free) {
     return complex_.add_site(position, role);
   }

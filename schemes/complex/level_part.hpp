@@ -60,6 +60,16 @@ class ComplexSolver::LevelPart {
   }
 
   bool is_direct() const { return equations_->is_direct(); }
+  /// Frees the factors of a Newton step, which no other step needs.
+  void forget() {
+    if (solver_ && !is_direct()) solver_->forget();
+  }
+  /// Without what a sparse factorisation fills in.
+  std::size_t bytes() const {
+    const auto numbers = [](const auto&... all) { return (... + (all.capacity() * sizeof(all[0]))); };
+    return equations_->bytes() + numbers(unknowns_, first_, block_of_, begin_, blocks_) +
+           8 * static_cast<std::size_t>(y_.size() + diagonal_.size() + sources_.size());
+  }
 
   /// Other measures and time steps of the system's parts.
   void rescale() {

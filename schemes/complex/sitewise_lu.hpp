@@ -3,6 +3,7 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseLU>
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -24,16 +25,20 @@ class SitewiseLU {
 
   /// Whether it went well. All matrices have the pattern of the first.
   bool factorize(const Matrix& A) {
-    if (order_.size() == 0) {
+    if (!lu_) {
       find_order(A);
-      lu_.analyzePattern(A * order_);
+      lu_ = std::make_unique<Factors>();
+      lu_->analyzePattern(A * order_);
     }
-    lu_.factorize(A * order_);
-    return lu_.info() == Eigen::Success;
+    lu_->factorize(A * order_);
+    return lu_->info() == Eigen::Success;
   }
-  Vector solve(const Vector& E) const { return order_ * Vector(lu_.solve(E)); }
+  Vector solve(const Vector& E) const { return order_ * Vector(lu_->solve(E)); }
+  /// Frees the factors; the next matrix is analysed anew.
+  void forget() { lu_.reset(); }
 
  private:
+  using Factors = Eigen::SparseLU<Matrix, Eigen::NaturalOrdering<int>>;
   using Order = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>;
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
@@ -56,7 +61,7 @@ class SitewiseLU {
   std::vector<int> of_equations_, of_unknowns_;
   int places_;
   Order order_;
-  Eigen::SparseLU<Matrix, Eigen::NaturalOrdering<int>> lu_;
+  std::unique_ptr<Factors> lu_;
 };
 
 }  // namespace delf

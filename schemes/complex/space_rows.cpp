@@ -57,6 +57,12 @@ SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
       per_row_(space.sites() * (space.constraint ? per_point_ + 1 : 1)),
       system_(space.constraint ? 1 : space.fields()) {
   const int n = space.sites();
+  // in each row stencils of sites, of cells and of a constraint, and of motion to the next row
+  const std::size_t rows = times.size(), sites = at(n), cells = at(space.mesh.cells()), values = at(per_point_),
+                    constraints = space.constraint ? sites : 0;
+  system_.reserve(rows * at(per_row_), rows * (sites + cells + constraints) + (rows - 1) * sites,
+                  rows * (values * (sites + space.mesh.vertices.size()) + (values + 1) * constraints) +
+                      2 * (rows - 1) * values * sites);
   for (std::size_t j = 0; j < times.size(); ++j) {
     add_row(system_.add_part());
     if (j == 0) continue;
@@ -203,7 +209,7 @@ std::span<const double> SpaceEvolution::multipliers() const {
 }
 
 std::size_t SpaceEvolution::bytes() const {
-  return rows_.system().bytes() + energy_rows_.system().bytes() + 8 * y_.size();
+  return rows_.system().bytes() + energy_rows_.system().bytes() + solver_->bytes() + 8 * y_.size();
 }
 
 void SpaceEvolution::set_steps(const std::array<double, 3>& now) {

@@ -25,7 +25,7 @@ ExitCode plan_sites(const ComplexScene& c) {
     fmt::print("{}: {}, {} sites, {}\n", c.scene.name, c.scene.problem.theory, c.sites(), c.mesh_in_words());
     fmt::print("  state      {}\n", c.state_in_words());
     const ComplexPlan& plan = field.solver().plan();
-    const std::size_t bytes = field.system().bytes();
+    const std::size_t bytes = field.bytes();
     fmt::print("  stencils   {} in {} families: of one shape, and coupled alike\n", c.cells(),
                field.system().families());
     fmt::print("  solve      {}\n", plan.describe());
@@ -35,8 +35,8 @@ ExitCode plan_sites(const ComplexScene& c) {
     fmt::print("  levels     {}\n", levels_in_words(plan));
     if (const std::string threads = threads_in_words(field.solver(), c.scene.problem.threads); !threads.empty())
       fmt::print("  threads    {}\n", threads);
-    fmt::print("  memory     {} bytes: rows of the field {} B, sites and stencils {} B\n",
-               bytes + 8 * field.values().size(), 8 * field.values().size(), bytes);
+    fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes,
+               8 * field.values().size(), bytes - 8 * field.values().size());
   } catch (const BadInput& bad) {
     throw c.scene.settings.located(bad);
   }
@@ -70,7 +70,7 @@ ExitCode plan(const ComplexScene& c) {
       const StaticField field(c);
       fmt::print("  stencils   {} of sites and cells\n  solve      {}: sparse Newton steps with a line search\n",
                  field.system().complex().stencils(), field.solver().plan().describe());
-      say_memory(field.system().bytes(), values);
+      say_memory(field.bytes(), values);
     } else if (c.time == MeshTime::cells) {
       const std::vector<double> steps = cell_steps(c);
       const auto [least, largest] = std::ranges::minmax(steps);

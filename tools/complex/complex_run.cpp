@@ -39,7 +39,7 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, Outco
   o.solve = field.solver().plan().describe();
   o.solve_kind = field.solver().plan().largest == 1 ? "explicit" : "sparse";
   o.threads = threads_in_words(field.solver(), c.scene.problem.threads);
-  o.bytes = field.system().bytes();
+  o.bytes = field.bytes();
   const auto begin = Clock::now();
   ComplexSolver::Report solved;
   double residual = 0;

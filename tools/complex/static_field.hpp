@@ -21,6 +21,8 @@ class StaticField {
   ComplexSolver::Report solve() { return solver_.solve(y_); }
   /// −S on a mesh: the energy of a static field.
   double energy() const;
+  /// Of its values, stencils and matrices.
+  std::size_t bytes() const { return system_.bytes() + solver_.bytes() + 8 * y_.size(); }
   /// The largest |E|, relative to the largest sum of absolute terms.
   double residual() const;
 
