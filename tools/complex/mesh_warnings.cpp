@@ -40,10 +40,9 @@ std::vector<std::string> warnings_of_rows(const ComplexScene& c, const Outcome& 
   constexpr double ten_percent = 0.1;
   const std::string remedy =
       c.scene.settings.find("lattice.courant") ? "reduce lattice.courant" : "reduce lattice.time_step";
-  std::vector<Found> found{
-      energy_off_start(o, std::isnan(energy_of_start) ? o.energy_initial : energy_of_start, ten_percent,
-                       remedy + ", or refine the mesh"),
-      energy_off_band(energy_errors, remedy + ", or run less far")};
+  std::vector<Found> found{energy_off_start(o, std::isnan(energy_of_start) ? o.energy_initial : energy_of_start,
+                                            ten_percent, remedy + ", or refine the mesh"),
+                           energy_off_band(energy_errors, remedy + ", or run less far")};
   if (c.has_solution())
     found.push_back(error_beyond_range(o, range_of_solution(c, o.time), remedy + ", or refine the mesh"));
   else
