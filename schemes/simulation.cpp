@@ -138,7 +138,8 @@ struct Simulation::Impl {
     }
   }
   std::string with_reason(const NumericalFailure& failure) const {
-    const std::string reason = stepper.newest() < 1 ? std::string() : without_value(system, stepper.window(2));
+    const bool pair = stepper.newest() >= 1 && stepper.held() >= 2;
+    const std::string reason = pair ? without_value(system, stepper.window(2)) : std::string();
     return reason.empty() ? failure.what() : fmt::format("{}; {}", failure.what(), reason);
   }
 };

@@ -35,7 +35,7 @@ class CompositionStepper final : public StepMethod {
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool looked_at) override;
 
-  StepState state() const override { return {n_, 0}; }
+  StepState state() const override { return {.newest = n_, .held = known_ + 1}; }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   void observe(int back, std::vector<double>& fields, std::vector<double>* rates) const override;

@@ -67,6 +67,8 @@ class Stepper {
   /// The residual of the field equations that were solved for the newest row: max |Σ terms| / max Σ |terms| over the
   /// sites (a vacuum has no scale of its own). Costs about a step, and the first of them rows to work in.
   double residual() const { return method_->residual(); }
+  /// How many of the newest rows are held: less than two after a step that is not looked at, or that failed then.
+  int held() const { return method_->state().held; }
   /// Of the last step: evaluations of the nonlinear part; 0 if it was solved at once.
   int iterations() const { return method_->state().iterations; }
   /// Whether the last step was solved by continuation, and why.

@@ -628,7 +628,7 @@ void RowStepper::step(bool looked_at) {
   impl_->step(looked_at);
 }
 void RowStepper::visit(SavedState& state) { impl_->visit(state); }
-StepState RowStepper::state() const { return {impl_->n(), impl_->iterations, impl_->continued}; }
+StepState RowStepper::state() const { return {impl_->n(), impl_->iterations, impl_->continued, impl_->kept.known()}; }
 std::vector<double> RowStepper::row(int back) const {
   impl_->kept.require(back + 1);
   return impl_->kept.values(impl_->kept.number(back + 1));
