@@ -9,6 +9,7 @@
 
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/stability/parasites.hpp"
+#include "schemes/stepping/undetermined.hpp"
 #include "tools/engine.hpp"
 #include "tools/equations.hpp"
 #include "tools/run/in_words.hpp"
@@ -109,6 +110,11 @@ ExitCode plan(const Scene& scene, bool latex) {
     const InitialRows initial(scene);
     Simulation simulation = build(scene, initial.winding());
     initial.check(simulation);
+    try {
+      require_determined(simulation.evolution());
+    } catch (const BadInput& bad) {
+      throw scene.settings.located(bad);
+    }
     if (latex) {
       try {
         fmt::print("{}", equations_in_latex(scene.problem, simulation));

@@ -7,7 +7,6 @@
 #include "schemes/stepping/rows/row_stepper.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/stepping/slab_stepper.hpp"
-#include "schemes/stepping/undetermined.hpp"
 #include "schemes/system/equation_terms.hpp"
 
 namespace delf {
@@ -24,7 +23,6 @@ std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan&
       return std::make_unique<RowStepper>(system, plan, options);
     } catch (const NoConvergence&) {
       // No constant part to iterate with: Newton's method takes the Jacobian where the field is.
-      require_determined(system, plan, options.turn);
     }
   }
   if (auto stepper = CompositionStepper::make(system, options)) return stepper;

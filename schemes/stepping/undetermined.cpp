@@ -13,6 +13,7 @@
 #include "lattice/error.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
 #include "schemes/system/assembly.hpp"
+#include "schemes/system/equation_terms.hpp"
 #include "schemes/system/slab_extent.hpp"
 
 namespace delf {
@@ -84,14 +85,17 @@ std::string in_words(const LatticeSystem& system, const Assembly& equations, con
 
 }  // namespace
 
-void require_determined(const LatticeSystem& system, const SolvePlan& plan, double turn) {
+void require_determined(const Evolution& evolution) {
+  const LatticeSystem& system = evolution.system();
+  const SolvePlan& plan = evolution.plan();
+  if (!goes_by_rows(system, plan) || evolution.stepper().layout()) return;
   const SlabExtent extent = slab_extent(system, plan);
   const int past = std::max(plan.history, extent.below + 1);
   const std::size_t row = static_cast<std::size_t>(system.lattice().sites() * system.components());
   std::mt19937 random(5489);
   std::uniform_real_distribution<double> value(-1, 1);
   for (int p = 0; p < plan.table.parities; ++p) {
-    const Assembly equations(system, Assembly::slab(plan, p, past, extent.above, turn));
+    const Assembly equations(system, Assembly::slab(plan, p, past, extent.above, 0));
     std::optional<Vector> direction;
     for (int state = 0; state < states; ++state) {
       SectionRing ring(past + extent.above + 1, row);

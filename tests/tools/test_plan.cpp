@@ -62,6 +62,20 @@ TEST_CASE("the plan predicts nothing where no step is taken, or the steps fail")
   }
 }
 
+TEST_CASE("a step that leaves a wave undetermined is refused by plan and run") {
+  const Folder folder;
+  const std::string scene =
+      " nls --scheme.method=multisymplectic --lattice.stencil=triangle --run.steps=2 --lattice.sites=";
+  for (const char* command : {"plan", "run"}) {
+    const Ran ran = delf_program(folder, command + scene + "20");
+    CAPTURE(command, ran.err);
+    CHECK(ran.code == 2);
+    CHECK(contains(ran.err, "lattice.sites = 20: no equation of a step changes with b at sites 0, 1"));
+    CHECK_FALSE(std::filesystem::exists(folder / "results"));
+  }
+  CHECK(delf_program(folder, "plan" + scene + "21").code == 0);
+}
+
 TEST_CASE("threads that steps cannot use are reported by the plan and by a run") {
   CHECK(planned("collision", "threads").empty());
   CHECK(planned("collision --run.threads=2", "threads") == "1 of 2: only explicit steps are shared");

@@ -8,9 +8,9 @@
 #include "jets/tables/rectangle_jet.hpp"
 #include "jets/tables/triangle_jet.hpp"
 #include "lattice/error.hpp"
-#include "schemes/stepping/evolution.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/scheme.hpp"
+#include "schemes/stepping/undetermined.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
 
@@ -58,7 +58,7 @@ std::shared_ptr<const StencilFamily> family(L lagrangian) {
 std::string refusal(std::vector<std::shared_ptr<const StencilFamily>> families, std::vector<Component> components,
                     const Lattice& lattice = Lattice::circle(20, 10)) {
   try {
-    Evolution(lattice, std::move(families), 0.1, {}, std::move(components));
+    require_determined(Evolution(lattice, std::move(families), 0.1, {}, std::move(components)));
   } catch (const BadInput& bad) {
     return bad.key() + ": " + bad.what();
   }
