@@ -83,7 +83,7 @@ WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequ
   outcome.reference_error = reference->error;
 
   constexpr double milli = 1e-3;
-  Progress progress(static_cast<std::int64_t>(request.budget / milli));
+  Progress progress(static_cast<std::int64_t>(request.budget / milli), "millisecond");
   const auto tell = [&] {
     progress.at(std::min(static_cast<std::int64_t>(seconds_since(begin) / milli),
                          static_cast<std::int64_t>(request.budget / milli)));
