@@ -154,7 +154,8 @@ std::string worst_region_figure(const VerdictSource& source, const std::filesyst
          verdict_title(source.scene + ": where the form formula holds worst",
                        fmt::format("{}: residual {:.2g}", worst.title, worst.value), source.scheme) +
          fmt::format(
-             "set lmargin at screen {}\nset rmargin at screen {}\nset bmargin at screen {}\nset tmargin at screen {}\n"
+             "set lmargin at screen {:.4g}\nset rmargin at screen {}\nset bmargin at screen {}\nset tmargin at screen "
+             "{}\n"
              "set grid lc rgb '#ececec' lt 1 lw 0.7\nset xlabel 'space: site i'\n"
              "set label 103 'time: row j' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
              "set label 104 '|term| / Σ|terms|' at screen 0.875,0.668 center textcolor rgb '#333333' noenhanced\n"

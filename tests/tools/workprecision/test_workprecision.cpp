@@ -212,10 +212,10 @@ TEST_CASE("an interrupted comparison writes what it has, and ends with exit code
   CHECK(json["runs"][0]["seconds"] > 0);
 }
 
-TEST_CASE("the scene's own scheme is run at the scene's own resolution, and is in the tables") {
+TEST_CASE("the scene's own scheme is run at the scene's own resolution, and is in the tables", "[slow]") {
   const Folder folder;
   const Json json = compared(folder,
-                             "soliton-bounce --run.until=4 --output.figures=off --workprecision.budget=3 "
+                             "soliton-bounce --run.until=4 --output.figures=off --workprecision.budget=8 "
                              "--workprecision.repeats=1 "
                              "--workprecision.schemes='r-adaptive,triangle-vertex,composition (2,4)'");
   const auto own = [](const Json& run) { return run["own"] == true; };
