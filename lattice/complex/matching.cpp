@@ -18,7 +18,9 @@ class HopcroftKarp {
   }
 
   Matching run() {
-    for (Index r = 0; r < graph_.rows(); ++r) {
+    // From the last row to the first, each takes its last free column: beside a right wall a row has one column less, and
+    // one that comes after its neighbours would find none.
+    for (Index r = graph_.rows() - 1; r >= 0; --r) {
       const auto row = graph_.row(r);
       for (auto c = row.rbegin(); c != row.rend(); ++c)
         if (matching_.row_of[at(*c)] < 0) {
