@@ -11,6 +11,7 @@
 
 #include "jets/tables/named_tables.hpp"
 #include "schemes/complex/space_tables.hpp"
+#include "schemes/verify/check.hpp"
 
 namespace delf {
 namespace {
@@ -26,23 +27,18 @@ struct Part {
 constexpr std::array<Part, 3> parts{{{"motion", 2, 2}, {"site", 1, 1}, {"gradient", 2, 4}}};
 
 /// The sum of some terms, or 0 if that is what rounding has left of them.
-struct Terms {
-  double sum = 0, absolute = 0;
-  void add(double term) { sum += term, absolute += std::abs(term); }
-  bool is_zero(double relative = rounding) const { return std::abs(sum) <= relative * absolute; }
-  double value() const { return is_zero() ? 0 : sum; }
-};
+double value_of(const Balance& terms) { return terms.relative() <= rounding ? 0 : terms.sum; }
 double sum_of(double a, double b) {
-  Terms terms;
+  Balance terms;
   terms.add(a), terms.add(b);
-  return terms.value();
+  return value_of(terms);
 }
 
 /// A jet slot of a coordinate, its weights applied to the coordinates of the sites.
 double applied(const std::vector<TablePoint::Entry>& weights, std::span<const Complex::Position> sites, std::size_t c) {
-  Terms terms;
+  Balance terms;
   for (const auto& e : weights) terms.add(e.weight * sites[at(e.vertex)][c]);
-  return terms.value();
+  return value_of(terms);
 }
 
 std::vector<double> dense(const std::vector<TablePoint::Entry>& entries, std::size_t sites) {
@@ -65,9 +61,9 @@ void set_second_derivatives(TablePoint& point, const TablePoint& q, std::span<co
     const double t_r = applied(q[r], sites, 0), x_r = applied(q[r], sites, 1);
     std::vector<double> rest = dense(q[r], n);
     for (std::size_t l = 0; l < n; ++l) {
-      Terms terms;
+      Balance terms;
       terms.add(rest[l]), terms.add(-t_r * by_t[l]), terms.add(-x_r * by_x[l]);
-      rest[l] = terms.value();
+      rest[l] = value_of(terms);
     }
     there.push_back(r), rests.push_back(std::move(rest));
   }
@@ -77,14 +73,14 @@ void set_second_derivatives(TablePoint& point, const TablePoint& q, std::span<co
   for (Eigen::Index r = 0; r < count; ++r) {
     Eigen::Index column = 0;
     for (const JetSlot s : second_order) {
-      Terms terms;
+      Balance terms;
       for (std::size_t l = 0; l < n; ++l) {
         const double t = sites[l][0] - sites[0][0], x = sites[l][1] - sites[0][1];
         const double monomial = s == JetSlot::phi_tt ? 0.5 * t * t : s == JetSlot::phi_tx ? t * x : 0.5 * x * x;
         terms.add(rests[at(static_cast<int>(r))][l] * monomial);
       }
-      if (std::ranges::find(there, s) != there.end()) B(r, column++) = terms.value();
-      else if (!terms.is_zero(determined)) return;
+      if (std::ranges::find(there, s) != there.end()) B(r, column++) = value_of(terms);
+      else if (terms.relative() > determined) return;
     }
   }
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(B);
@@ -93,9 +89,9 @@ void set_second_derivatives(TablePoint& point, const TablePoint& q, std::span<co
   for (Eigen::Index s = 0; s < count; ++s) {
     std::vector<double> weights(n);
     for (std::size_t l = 0; l < n; ++l) {
-      Terms terms;
+      Balance terms;
       for (Eigen::Index r = 0; r < count; ++r) terms.add(inverse(s, r) * rests[at(static_cast<int>(r))][l]);
-      weights[l] = terms.value();
+      weights[l] = value_of(terms);
     }
     point.set(there[at(static_cast<int>(s))], weights);
   }

@@ -5,6 +5,7 @@
 #include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/lattice_values.hpp"
 #include "tests/schemes/support.hpp"
 
 namespace {
@@ -43,11 +44,7 @@ TEST_CASE("a regular lattice given as a complex has the same plan, rows and form
       CHECK((solver.plan().largest == 1) == (plan.blocks == plan.unknowns));
       if (plan.kind == SolveKind::explicit_) CHECK(solver.plan().levels == steps);
 
-      std::vector<double> y(system.nodes());
-      for (int j = 0; j < count; ++j)
-        for (int i = 0; i < N; ++i)
-          y[static_cast<std::size_t>(whole.site(j, i))] =
-              rows[std::min(static_cast<std::size_t>(j), rows.size() - 1)][static_cast<std::size_t>(i)];
+      std::vector<double> y = first_values(whole, rows, count);
       solver.solve(y);
       for (int j = plan.history; j < count; ++j) {
         evolution.stepper().step();

@@ -11,6 +11,7 @@
 #include "schemes/complex/lattice_complex.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/lattice_values.hpp"
 #include "tests/schemes/complex/stencil_lists.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -69,11 +70,7 @@ TEST_CASE("a lattice written as a list of stencils has the lattice's plan and ro
       CHECK(system.families() == 1);
       const ComplexSolver solver(system);
       CHECK(solver.plan().describe() == ComplexSolver(whole.system).plan().describe());
-      std::vector<double> y(system.nodes());
-      for (int j = 0; j < count; ++j)
-        for (int i = 0; i < N; ++i)
-          y[static_cast<std::size_t>(whole.site(j, i))] =
-              rows[std::min(static_cast<std::size_t>(j), rows.size() - 1)][static_cast<std::size_t>(i)];
+      std::vector<double> y = first_values(whole, rows, count);
       solver.solve(y);
       for (int j = plan.history; j < count; ++j) {
         evolution.stepper().step();
