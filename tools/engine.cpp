@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "schemes/stepping/undetermined.hpp"
 #include "tools/run/in_words.hpp"
 #include "tools/run/outcome.hpp"
 #include "tools/scene/keys.hpp"
@@ -89,6 +90,14 @@ void foresee_memory(const Scene& scene) {
 }
 
 }  // namespace
+
+void require_determined(const Scene& scene, const Simulation& simulation) {
+  try {
+    require_determined(simulation.evolution());
+  } catch (const BadInput& bad) {
+    throw scene.settings.located(bad);
+  }
+}
 
 ExitCode with_memory_for(const Scene& scene, const std::function<ExitCode()>& work) {
   constexpr double least_of_a_site = 64;  // rows, increments, work space: no scheme holds less

@@ -9,7 +9,6 @@
 
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/stability/parasites.hpp"
-#include "schemes/stepping/undetermined.hpp"
 #include "tools/engine.hpp"
 #include "tools/equations.hpp"
 #include "tools/run/in_words.hpp"
@@ -110,11 +109,7 @@ ExitCode plan(const Scene& scene, bool latex) {
     const InitialRows initial(scene);
     Simulation simulation = build(scene, initial.winding());
     initial.check(simulation);
-    try {
-      require_determined(simulation.evolution());
-    } catch (const BadInput& bad) {
-      throw scene.settings.located(bad);
-    }
+    require_determined(scene, simulation);
     if (latex) {
       try {
         fmt::print("{}", equations_in_latex(scene.problem, simulation));

@@ -9,7 +9,6 @@
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/stepping/undetermined.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
@@ -71,14 +70,9 @@ std::string limit_of(const Scene& scene, const Simulation& simulation) {
                 scene.problem.time_step});
 }
 
-// A run would end at once, or in growing rounding errors.
-void refuse_undetermined(const Scene& scene, const Evolution& evolution) {
-  try {
-    require_determined(evolution);
-  } catch (const BadInput& bad) {
-    throw scene.settings.located(bad);
-  }
-  if (const auto ghost = ghost_under_constraint(evolution.system()))
+// A run would end in growing rounding errors.
+void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
+  if (const auto ghost = ghost_under_constraint(system))
     throw scene.settings.error(
         "lattice.stencil", fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
 }
@@ -88,7 +82,8 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   Outcome outcome;
   outcome.winding = initial.winding();
   Simulation simulation = build(scene, outcome.winding);
-  refuse_undetermined(scene, simulation.evolution());
+  require_determined(scene, simulation);
+  refuse_ghost(scene, simulation.evolution().system());
   const bool estimated = Values(scene.settings).toggle("output.estimate");
   if (estimated) require_estimable(scene, simulation.evolution().system());
   outcome.state = initial.description();

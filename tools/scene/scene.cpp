@@ -18,6 +18,7 @@
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/scene/brick_rows.hpp"
+#include "tools/scene/file_beside.hpp"
 #include "tools/scene/key_warning.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/values.hpp"
@@ -126,20 +127,19 @@ StateRequest read_initial(const Values& values, const Problem& problem) {
   return r;
 }
 
-// Beside the scene, where it is meant to be, or else from where the program is run.
 fs::path find_initial_file(const Settings& settings, const Values& values) {
   const auto name = values.text("initial.file");
   if (!name) throw settings.error("initial.state", "needs initial.file, the fields.h5 or .csv to take rows from");
-  std::error_code none;
-  for (const fs::path& path : {settings.file().parent_path() / *name, fs::path(*name)})
-    if (fs::exists(path, none)) {
-      if (fs::is_directory(path, none))
-        throw settings.error("initial.file", "is a directory; name the file in it, such as fields.h5");
-      const fs::path found = fs::absolute(path).lexically_normal();
-      if (found.string().find_first_of("#\n") == std::string::npos) return found;
-      throw settings.error("initial.file", "a path in a scene holds neither # nor line breaks; rename it");
-    }
-  throw settings.error("initial.file", "no such file, neither beside the scene nor here; check the path (# begins a comment)");
+  const auto path = file_beside(settings, *name);
+  if (!path)
+    throw settings.error("initial.file",
+                         "no such file, neither beside the scene nor here; check the path (# begins a comment)");
+  if (std::error_code none; fs::is_directory(*path, none))
+    throw settings.error("initial.file", "is a directory; name the file in it, such as fields.h5");
+  const fs::path found = fs::absolute(*path).lexically_normal();
+  if (found.string().find_first_of("#\n") != std::string::npos)
+    throw settings.error("initial.file", "a path in a scene holds neither # nor line breaks; rename it");
+  return found;
 }
 
 std::optional<StartRule> read_start(const Settings& settings, const Values& values, const Problem& problem) {

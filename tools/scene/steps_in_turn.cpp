@@ -6,10 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 
 #include "jets/expressions/expression.hpp"
 #include "lattice/text_parts.hpp"
+#include "tools/scene/file_beside.hpp"
 
 namespace delf {
 
@@ -28,13 +28,6 @@ double step_of(const Settings& settings, const std::string& text, const std::str
   if (!std::isnormal(step) || step < 0)
     throw settings.error(key, fmt::format("{}{} is no step: steps must be above 0, and finite", place, text));
   return step;
-}
-
-std::optional<fs::path> file_named(const Settings& settings, const std::string& text) {
-  std::error_code none;
-  for (const fs::path& path : {settings.file().parent_path() / text, fs::path(text)})
-    if (fs::exists(path, none)) return path;
-  return std::nullopt;
 }
 
 std::vector<double> steps_in_file(const Settings& settings, const fs::path& path) {
@@ -59,7 +52,7 @@ std::vector<double> steps_in_file(const Settings& settings, const fs::path& path
 }  // namespace
 
 std::vector<double> steps_in_turn(const Settings& settings, const std::string& text) {
-  if (const auto path = file_named(settings, text)) return steps_in_file(settings, *path);
+  if (const auto path = file_beside(settings, text)) return steps_in_file(settings, *path);
   std::vector<double> steps;
   for (const std::string& part : parts_of(text))
     steps.push_back(step_of(settings, part, "", "give steps like 0.1, 0.05, or a file of them"));

@@ -15,7 +15,7 @@ class StepClock {
 
  private:
   bool of_thread_;
-  double reading_ = 0;  ///< the least that two readings are apart
+  double reading_;  ///< what reading it takes, measured once
 };
 
 /// "processor time" or "wall time".
