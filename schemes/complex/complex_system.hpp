@@ -12,8 +12,8 @@ namespace delf {
 
 /// How a ComplexSystem reads stencils.
 struct StencilReading {
-  std::span<const std::int32_t> places =
-      {};                 ///< not empty: y holds some nodes alone, and here each value of each stencil
+  /// Not empty: y holds some nodes alone, and here each value of each stencil.
+  std::span<const std::int32_t> places = {};
   bool unscaled = false;  ///< as if the measures and time steps of all parts were 1
 };
 

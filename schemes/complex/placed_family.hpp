@@ -27,9 +27,8 @@ struct PlacedBatch {
 ///     L_Δ = |Δ| Σ_q w_q ℓ(j_q),    j_q = M_q y_Δ,    |Δ|, w_q and M_q of the stencil's own table
 ///
 /// Weights are divided by the power of the stencil's time step that the slot has: φ_t once, φ_tt twice. Those of φ_x are of
-/// the coordinates themselves. A gradient of two
-/// components is two points, whose φ_x are its components: see schemes/complex/space_tables.hpp. Value l·d + a is component
-/// a at vertex l.
+/// the coordinates themselves. A gradient of two components is two points, whose φ_x are its components: see
+/// schemes/complex/space_tables.hpp. Value l·d + a is component a at vertex l.
 class PlacedFamily {
  public:
   static constexpr int most = 64;  ///< stencils at once

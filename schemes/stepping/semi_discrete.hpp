@@ -25,8 +25,9 @@ struct Bonds {
 ///     H = p·v − L(y, v)   where   p = ∂L/∂v(y, v),         P = −k Σ w φ_x ∂ℓ/∂φ_t.
 ///
 /// v is found by Newton's method with the mass matrix ∂²L/∂v∂v; it is zero at fixed walls. Not a number where that
-/// finds none; where ℓ is linear in φ_t, H does not depend on v, and none is needed. Where values are bound, Σ ∂G/∂y v = 0 (or the bond's rate) holds too, and momenta are known up to forces: those of the bonds,
-/// −∂Gᵀ/∂y μ, or, for `slaved`, any force on the value that each is the equation of.
+/// finds none; where ℓ is linear in φ_t, H does not depend on v, and none is needed. Where values are bound, Σ ∂G/∂y v = 0
+/// (or the bond's rate) holds too, and momenta are known up to forces: those of the bonds, −∂Gᵀ/∂y μ, or, for `slaved`,
+/// any force on the value that each is the equation of.
 EnergyMomentum semi_discrete_energy(const JetFamily&, const LatticeSystem&, const Window&, std::int64_t row,
                                     std::span<const double> p, const Bonds& = {});
 /// Those velocities v, [i·C + c]; 0 where there are none, and not a number where none were found.
