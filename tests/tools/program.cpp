@@ -36,8 +36,11 @@ Ran shell(const Folder& folder, const std::string& line) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder / ".out"), read(folder / ".err")};
 }
 
+std::string program_path() { return DELF_PROGRAM; }
+std::string scenes_folder() { return DELF_SCENES_SOURCE; }
+
 Ran delf_program(const Folder& folder, const std::string& arguments, const std::string& before) {
-  return shell(folder, before + " '" DELF_PROGRAM "' " + arguments);
+  return shell(folder, before + " '" + program_path() + "' " + arguments);
 }
 
 std::string read(const fs::path& path) {

@@ -29,6 +29,11 @@ struct Ran {
   std::string out, err;
 };
 
+/// The path of the program under test.
+std::string program_path();
+/// The folder of the scenes in the source tree.
+std::string scenes_folder();
+
 /// Runs a line of shell in `folder`.
 Ran shell(const Folder&, const std::string& line);
 /// Runs `delf ARGUMENTS` in `folder`, after the `before` of a shell.

@@ -140,7 +140,7 @@ TEST_CASE("a convergence that cannot be measured is refused in one line") {
 TEST_CASE("an interrupted convergence says so, and no order") {
   const Folder folder;
   const Ran ran =
-      shell(folder, "'" DELF_PROGRAM
+      shell(folder, "'" + program_path() +
                     "' convergence kink --lattice.sites=2000 --run.until=1e5 --output.figures=off --out cut & "
                     "p=$!; sleep 0.8; kill -INT $p; wait $p");
   INFO(ran.err << ran.out);

@@ -272,7 +272,7 @@ TEST_CASE("the rows of runs, read as sections, solve their equations") {
 TEST_CASE("the NumPy example solves the equations of its scene, and by Runge and Kutta it does not") {
   const Folder folder;
   const std::string with = python(folder);
-  const std::string examples = DELF_SCENES_SOURCE "/../examples/";
+  const std::string examples = scenes_folder() + "/../examples/";
   double step = 0;
   const delf::Simulation simulation = built(examples + "leapfrog.ini", step);
   const auto largest = [&](const std::string& method) {

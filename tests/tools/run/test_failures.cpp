@@ -131,7 +131,7 @@ TEST_CASE("an interrupted run writes all so far, and ends with exit code 130") {
   const auto signal = GENERATE(as<std::string>(), "INT", "TERM");
   const auto stencil = GENERATE(as<std::string>(), "rectangle-symmetric", "triangle-vertex");
   const Ran ran =
-      shell(folder, "'" DELF_PROGRAM
+      shell(folder, "'" + program_path() +
                     "' run collision --run.until=1e7 --output.every=5000 --output.figures=off --out cut "
                     "--lattice.stencil=" +
                         stencil + " & p=$!; while [ ! -s cut/fields.h5 ]; do sleep 0.05; done; sleep 0.3; kill -" +
@@ -151,7 +151,7 @@ TEST_CASE("an interrupted estimate ends with exit code 130, and the run is there
   const Folder folder;
   // The run takes a third of a second, its estimate some twenty times as long; a slower one is interrupted itself.
   const Ran ran =
-      shell(folder, "'" DELF_PROGRAM
+      shell(folder, "'" + program_path() +
                     "' run kink --run.until=6000 --output.estimate=on --output.figures=off --output.fields=off "
                     "--out cut & p=$!; sleep 0.8; kill -INT $p; wait $p");
   INFO(ran.err << ran.out);

@@ -24,10 +24,10 @@ using namespace delf::testing;
 
 namespace {
 
-const std::string lean_py = DELF_SCENES_SOURCE "/../lean.py", readme = DELF_SCENES_SOURCE "/../bench/README.md";
+const std::string lean_py = scenes_folder() + "/../lean.py", readme = scenes_folder() + "/../bench/README.md";
 
 Ran lean(const Folder& folder, const std::string& arguments) {
-  return shell(folder, "python3 -B '" + lean_py + "' --program '" DELF_PROGRAM "' " + arguments);
+  return shell(folder, "python3 -B '" + lean_py + "' --program '" + program_path() + "' " + arguments);
 }
 
 std::string with(std::string text, const std::string& part, const std::string& instead) {

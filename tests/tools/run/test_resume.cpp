@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string script = DELF_SCENES_SOURCE "/../../tests/tools/run/kill_and_resume.py";
+const std::string script = scenes_folder() + "/../../tests/tools/run/kill_and_resume.py";
 
 Ran resume(const Folder& folder, const std::string& keys = "") { return delf_program(folder, "resume out " + keys); }
 
@@ -30,7 +30,7 @@ TEST_CASE("a run that ends at half of its steps and goes on is the whole run, to
   const auto scene = GENERATE(as<std::string>(), "collision --arguments=--run.steps=41",
                               "breather --arguments=--scheme.method=processed --arguments=--run.steps=41",
                               "r-adaptive --arguments=--run.steps=13");
-  const Ran ran = shell(folder, python(folder) + " " + script + " '" DELF_PROGRAM "' --half --scenes " + scene +
+  const Ran ran = shell(folder, python(folder) + " " + script + " '" + program_path() + "' --half --scenes " + scene +
                                     " --arguments=--output.figures=off --arguments=--output.every=3");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 0);
@@ -39,7 +39,7 @@ TEST_CASE("a run that ends at half of its steps and goes on is the whole run, to
 TEST_CASE("a run that is killed at random instants and resumed is the whole run, to the bit") {
   const Folder folder;
   const Ran ran = shell(folder, python(folder) + " " + script +
-                                    " '" DELF_PROGRAM "' --kills 2 --scenes kink --arguments=--output.figures=off");
+                                    " '" + program_path() + "' --kills 2 --scenes kink --arguments=--output.figures=off");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 0);
 }
@@ -130,7 +130,7 @@ TEST_CASE("a damaged checkpoint is replaced by the one before it, and says so") 
 
 TEST_CASE("a folder that another run holds, and a scene that delf did not write, are left alone") {
   const Folder folder;
-  const std::string line = "'" DELF_PROGRAM "' run kink --run.until=1e6 --output.figures=off --out out";
+  const std::string line = "'" + program_path() + "' run kink --run.until=1e6 --output.figures=off --out out";
   const Ran held = shell(folder, line + " & p=$!; while [ ! -s out/fields.h5 ]; do sleep 0.02; done; " + line +
                                      "; code=$?; kill -HUP $p; wait $p; echo $?; exit $code");
   INFO(held.err);

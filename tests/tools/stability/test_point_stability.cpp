@@ -98,7 +98,7 @@ TEST_CASE("a scheme that is named again is listed once") {
 
 TEST_CASE("an interrupted table of mechanics is written as far as it is") {
   const Folder folder;
-  const Ran ran = shell(folder, "'" DELF_PROGRAM
+  const Ran ran = shell(folder, "'" + program_path() +
                                 "' stability pendulum --stability.steps=100000 --out cut & "
                                 "p=$!; sleep 0.8; kill -INT $p; wait $p");
   INFO(ran.err << ran.out);

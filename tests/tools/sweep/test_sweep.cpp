@@ -158,7 +158,7 @@ TEST_CASE("Ctrl-C leaves whole rows, and the same command goes on from there") {
   const std::string command =
       "sweep '" + scene + "' --run.until=1,2,1e7,2e7 --sweep.jobs=2 --sweep.keep=table --out out";
   const Ran ran =
-      shell(folder, "'" DELF_PROGRAM "' " + command +
+      shell(folder, "'" + program_path() + "' " + command +
                         " & for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do sleep 0.05; test -f "
                         "out/sweep.rows && test $(grep -c finger out/sweep.rows) = 2 && break; done; "
                         "kill -INT $!; wait $!");

@@ -146,7 +146,7 @@ TEST_CASE("fields with momenta are recognised as elements of the engine") {
 
 TEST_CASE("a (q, p) program in NumPy is verified, and a wrong one is found out") {
   const Folder folder;
-  const std::string with = python(folder), examples = DELF_SCENES_SOURCE "/../examples/";
+  const std::string with = python(folder), examples = scenes_folder() + "/../examples/";
   for (const std::string method : {"gauss", "verlet", "wrong"}) {
     INFO(method);
     REQUIRE(shell(folder, with + " '" + examples + "orbit.py' " + method + " x").code == 0);

@@ -446,7 +446,7 @@ TEST_CASE("help verify lists every key of its section") {
 TEST_CASE("an interrupted verification writes what it has found, and ends with exit code 130") {
   const Folder folder;
   const auto signal = GENERATE(as<std::string>(), "INT", "TERM");
-  const Ran ran = shell(folder, "'" DELF_PROGRAM
+  const Ran ran = shell(folder, "'" + program_path() +
                                 "' verify collision --run.until=1e7 --output.figures=off --out cut & p=$!; "
                                 "while [ ! -d cut ]; do sleep 0.05; done; sleep 0.3; kill -" +
                                     signal + " $p; wait $p");
@@ -513,7 +513,7 @@ TEST_CASE("verify draws figures, and takes away those of an earlier time") {
 
 TEST_CASE("rows of a NumPy program are verified from outside, and another method is found out") {
   const Folder folder;
-  const std::string with = python(folder), examples = DELF_SCENES_SOURCE "/../examples/";
+  const std::string with = python(folder), examples = scenes_folder() + "/../examples/";
   const auto method = GENERATE(as<std::string>(), "symplectic", "runge-kutta");
   INFO(method);
   REQUIRE(shell(folder, with + " '" + examples + "leapfrog.py' " + method + " x").code == 0);

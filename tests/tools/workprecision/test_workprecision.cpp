@@ -197,7 +197,7 @@ TEST_CASE("resolutions that workprecision chooses end at the requested accuracy"
 TEST_CASE("an interrupted comparison writes what it has, and ends with exit code 130") {
   const WithScene folder;
   const Ran ran =
-      shell(folder, "'" DELF_PROGRAM
+      shell(folder, "'" + program_path() +
                     "' workprecision small.ini --run.until=50 --workprecision.budget=1e9 --out cut "
                     // the first run is over at once, however slow the machine, and the second never
                     "--workprecision.sites=32,400000 --workprecision.schemes=rectangle-symmetric & p=$!; sleep 2; "
@@ -276,7 +276,7 @@ TEST_CASE("the budget and Ctrl-C end workprecision within a run") {
   for (const std::string& arguments :
        {endless, std::string("collision --run.until=1e8 --workprecision.schemes=rectangle-symmetric ")}) {
     from = Clock::now();
-    const Ran cut = shell(folder, "'" DELF_PROGRAM "' workprecision " + arguments +
+    const Ran cut = shell(folder, "'" + program_path() + "' workprecision " + arguments +
                                       "--workprecision.budget=1e9 --out cut & p=$!; sleep 1; kill -TERM $p; wait $p");
     INFO(cut.out << cut.err);
     CHECK(cut.code == 130);
