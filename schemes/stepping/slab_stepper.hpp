@@ -56,6 +56,8 @@ class SlabStepper final : public StepMethod {
     int last_iterations = 0, fresh_iterations = 0;  ///< of the last slab, and of the last one with a new Jacobian
     double curvature = 0;  ///< the last correction over the square of that before, with a fresh Jacobian each time
     int unseen = 0;        ///< iterations since it was seen
+    double contraction = 0;  ///< of corrections with the constant part, as seen last; 0: not yet
+    bool momentum_follows = false;  ///< the known part of the next slab is this one's and what the slab adds to it
   };
   struct Change {
     double change = 0;  ///< the largest, multipliers apart
@@ -73,11 +75,14 @@ class SlabStepper final : public StepMethod {
   double largest_of(const double* row) const;
   Change take_change(const Parity&, std::int64_t J);
   double wanted(const Change&) const;
-  bool arrived(const Change&, double before) const;
+  bool arrived(const Parity&, const Change&, double before);
   static bool is_rounding(const Change&, double before);
   bool iterate(Parity&, std::int64_t J);
   bool may_iterate(const Parity&);
   const char* newton(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
+  void find_known(const Parity&, std::int64_t J, const std::vector<double>* momenta);
+  bool finish(Parity&, std::int64_t J);
+  void carry(const Parity&, std::int64_t J);
   bool solve_slab_of_start(const std::vector<double>* momenta);
   void check_increments(std::int64_t J) const;
   void solve(std::int64_t J, const std::vector<double>* momenta);
@@ -100,10 +105,14 @@ class SlabStepper final : public StepMethod {
   std::int64_t known_ = 0;   ///< slabs whose every component is known
   bool by_momenta_ = false;  ///< the run began with the discrete Legendre transform
   int iterations_ = 0;
+  double last_change_ = 0, left_ = 0;  ///< of the iteration: its last correction, and what is left, by its estimate
   double largest_[2] = {0, 0};  ///< |y| of the newest two slabs, or of the starting rows
   int wait_ = 1,
       waiting_ = 0;  ///< steps by Newton's method before the constant part is tried again; those that are left
-  std::vector<double> E_, known_E_, change_, jacobian_, predicted_;
+  /// Of slab carried_slab_, in two numbers: the known part of its equations, momenta of the slab below.
+  std::vector<double> carried_, carried_low_;
+  std::int64_t carried_slab_ = -1;
+  std::vector<double> E_, known_E_, gain_, change_, jacobian_, predicted_;
   mutable std::vector<double> residual_, absolute_;
 };
 

@@ -40,6 +40,13 @@ double Window::operator()(std::int64_t row, int i, int a) const {
   return value + (i - home) / lattice->sites() * (turns.empty() ? turn : turns[static_cast<std::size_t>(a)]);
 }
 
+double Window::low_part(std::int64_t row, int i, int a) const {
+  if (!has_low()) return 0;
+  const int home = lattice->is_circle() ? lattice->wrapped(i) : i;
+  return low[static_cast<std::size_t>(std::clamp(row, first_row, last_row()) - first_row)]
+            [static_cast<std::size_t>(home * components + a)];
+}
+
 LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families,
                              double time_step, std::vector<Component> components)
     : lattice_(lattice),

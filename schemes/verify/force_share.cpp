@@ -39,7 +39,7 @@ void ForceShare::at(const Window& window, std::int64_t row, const std::vector<La
     const auto reach = static_cast<std::int64_t>(std::max(1, system_->height()));
     Window still = window;
     still.first_row = row - reach;
-    still.rows.assign(static_cast<std::size_t>(2 * reach + 1), here);
+    still.rows.assign(static_cast<std::size_t>(2 * reach + 1), here), still.low.clear();
     row_.equations(still, row, forces_);
   }
   errors_.assign(at_.size(), std::numeric_limits<double>::quiet_NaN());
