@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/assembly.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
@@ -19,7 +20,8 @@ std::string remedy_for(int max_iterations);
 struct NewtonResult {
   bool converged = false;
   int iterations = 0;
-  std::vector<double> row;  ///< the unknown row, row[i·d + a]
+  double reached = 0;       ///< the part of the step that the root was followed to
+  std::vector<double> row;  ///< the unknown row, row[i·d + a]; of follow_slab() the unknowns of the slab
 };
 
 /// Solves the slab whose unknown row follows `past` (its last row is the newest known) where the equations may have
@@ -28,6 +30,20 @@ struct NewtonResult {
 /// because there the path turns back. Never another root in silence.
 NewtonResult solve_slab(const LatticeSystem&, const SolvePlan&, const Window& past, double tolerance,
                         int max_iterations);
+
+/// The rows J − past … J + future of a section, of which slab J is to be found; multipliers of slab J hold a prediction.
+struct SlabPast {
+  const SectionRing& rows;
+  std::int64_t J, slabs;  ///< `slabs` before it are known, with their inner nodes and multipliers
+  int past, future;
+  double turn;                       ///< φ(x + L) − φ(x)
+  const std::vector<double>& known;  ///< the part of the equations that no unknown changes: momenta of the newest row
+};
+/// The same for a slab of any kind: a small step begins at the newest row and its momenta, for stencils below keep their step.
+NewtonResult follow_slab(const LatticeSystem&, const SolvePlan&, const SlabPast&, double tolerance, int max_iterations);
+/// True if the determinant has not the sign at this root that it has for a small step: between them two roots meet.
+bool turns_back(const LatticeSystem&, const SolvePlan&, const SlabPast&, const std::vector<double>& unknowns,
+                double tolerance);
 
 /// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t. By Newton from y₀ + hφ_t, or, where the
 /// equations are `stiff` or that does not converge, followed from a small h as above. Throws NoConvergence.

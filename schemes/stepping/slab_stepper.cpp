@@ -28,13 +28,13 @@ constexpr int most_points = 8, least_points = 4;
 }  // namespace
 
 SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
-    : system_(system), plan_(plan), options_(options), components_(system.components()) {
+    : system_(system), plan_(plan), options_(options), components_(system.components()), root_(system) {
   SlabExtent extent = slab_extent(system, plan);
   future_ = extent.above;
   lag_ = extent.field_lag;
   back_ = std::move(extent.behind);
   points_ = std::clamp(options.seed_order, 1, most_points);
-  past_ = std::max(plan.history, points_ + extent.below);
+  past_ = std::max(plan.history, std::max(points_, RootWatch::most_rows) + extent.below);
   // Traces are the state of a row: of first order in time, a scheme goes on from one.
   by_values_ =
       plan.history <= 1 && lag_ == 0 && std::ranges::count(system.all_components(), Role::trace, &Component::role) > 0;
@@ -216,8 +216,8 @@ void SlabStepper::predict_without_past(const Unknowns& unknowns, std::int64_t J)
   }
 }
 
-void SlabStepper::fail(std::int64_t J, const char* why) const {
-  std::string remedy = remedy_for(options_.max_iterations);
+void SlabStepper::fail(std::int64_t J, const std::string& why, std::string remedy) const {
+  if (remedy.empty()) remedy = remedy_for(options_.max_iterations);
   if (const auto ghost = ghost_under_constraint(system_))
     remedy = fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint);
   if (mesh_ && J > 0)
@@ -247,6 +247,7 @@ SlabStepper::Change SlabStepper::take_change(const Parity& p, std::int64_t J) {
   result.finite = !overflowed(max_or_nan(most_y));
   result.change = max_or_nan(most_change);
   result.value = std::max(result.value, max_or_nan(most_asked));
+  travelled_ += result.change, value_ = result.value;
   return result;
 }
 
@@ -269,6 +270,7 @@ bool SlabStepper::iterate(Parity& p, std::int64_t J) {
   if (p.factored != Matrix::constant && !factor_constant(p)) return false;
   predict(p, J, points_);
   p.equations.known(*ring_, J, known_E_);
+  travelled_ = 0;
   double before = infinity;
   while (iterations_ < options_.max_iterations) {
     ++iterations_;
@@ -291,9 +293,9 @@ bool SlabStepper::may_iterate(const Parity& p) {
   return false;
 }
 
-/// Newton's method from a polynomial through so many slabs. Why it failed, or nothing.
+/// Newton's method from a polynomial through so many slabs, or from the values that are there if none. Why it failed, or nothing.
 const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std::vector<double>* momenta) {
-  predict(p, J, points);
+  if (points > 0) predict(p, J, points);
   if (!momenta) p.equations.known(*ring_, J, known_E_);
   // Small blocks cost less to factor than an iteration more, and a fresh Jacobian leaves no bias behind.
   const bool always = p.solver.largest_block() <= 24;
@@ -301,6 +303,7 @@ const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std
   bool refactor = always || momenta || p.factored != Matrix::jacobian || p.last_iterations > p.fresh_iterations + 1;
   bool fresh = false;
   double before = infinity;
+  steepest_ = travelled_ = 0;
   for (int iteration = 1;; ++iteration) {
     ++iterations_;
     if (iteration > options_.max_iterations) return "Newton's method does not converge";
@@ -321,6 +324,7 @@ const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std
     }
     // Far from the polynomial another root may be nearer.
     if (iteration == 1 && points > least_points && c.change > 1e-2 * c.value) return "the predictor is far away";
+    if (iteration > 1 && c.change > 64 * epsilon * c.value) steepest_ = std::max(steepest_, c.change / before);
     p.last_iterations = iteration;
     if (fresh) p.fresh_iterations = iteration;
     if (always && iteration > 1) {
@@ -343,10 +347,66 @@ const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std
   return nullptr;
 }
 
+/// Newton's method has no doubt where it has gone straight to the unknowns.
+RootWatch::Verdict SlabStepper::judge(const Parity& p, std::int64_t J) const {
+  // Corrections that shrink by four and more at once leave no other root near (Kantorovich).
+  constexpr double little = 1e-3, straight = 0.25;
+  if (!plan_.nonlinear_in_slab || travelled_ <= little * value_) return RootWatch::Verdict::near;
+  std::vector<RootWatch::Values> lists;
+  for (const Unknowns& list : p.unknowns) {
+    if (list.role == Role::multiplier || list.role == Role::slaved) continue;
+    const std::int64_t rows = std::min<std::int64_t>(list.field() ? J + list.time : known_, past_ + list.time);
+    lists.push_back({J + list.time, static_cast<int>(std::min<std::int64_t>(rows, RootWatch::most_rows)), list.places});
+  }
+  const RootWatch::Verdict verdict = root_.judge(*ring_, lists);
+  return verdict == RootWatch::Verdict::doubtful && steepest_ <= straight ? RootWatch::Verdict::near : verdict;
+}
+
+/// What no unknown changes: in slab 1 of a start by momenta these.
+void SlabStepper::find_known(const Parity& p, std::int64_t J, const std::vector<double>* momenta) {
+  if (!momenta) return p.equations.known(*ring_, J, known_E_);
+  known_E_.assign(static_cast<std::size_t>(p.equations.size()) + 1, 0.0);
+  for (int n = 0; n < p.equations.size(); ++n)
+    if (const Node& e = p.equations.equation(n); J + e.site.time == 0)
+      known_E_[static_cast<std::size_t>(n)] = (*momenta)[static_cast<std::size_t>(p.equations.place(e))];
+}
+std::vector<double> SlabStepper::values_of(const Parity& p, std::int64_t J) const {
+  std::vector<double> values;
+  for (int n = 0; n < p.equations.size(); ++n) values.push_back(p.equations.value(*ring_, J, n));
+  return values;
+}
+SlabPast SlabStepper::past_of(std::int64_t J) const {
+  return {*ring_, J, known_, past_, future_, options_.turn, known_E_};
+}
+
+/// The root that a small step leads to, where Newton's method has found none or another: `why`. One that was only doubtful is
+/// taken where that cannot be told, because not even a small step begins.
+void SlabStepper::follow(Parity& p, std::int64_t J, const std::vector<double>* momenta, const char* why,
+                         const std::vector<double>& doubtful) {
+  predict(p, J, 1);
+  find_known(p, J, momenta);
+  const NewtonResult followed =
+      follow_slab(system_, plan_, past_of(J), options_.tolerance, options_.max_iterations);
+  iterations_ += followed.iterations;
+  const bool is_doubtful = !followed.converged && followed.reached == 0 && !doubtful.empty();
+  if (!followed.converged && !is_doubtful) {
+    const bool begins = followed.reached > 0 && options_.max_iterations >= enough_iterations;
+    fail(J, begins ? fmt::format("{}; the one that a small step leads to ends at {:.2g} of this step", why, followed.reached)
+                   : fmt::format("{}, and none that a small step leads to", why),
+         begins ? fmt::format("reduce lattice.time_step below {:.2g}", followed.reached * system_.times()->step(J - 1)) : "");
+  }
+  for (int n = 0; n < p.equations.size(); ++n)
+    p.equations.value(*ring_, J, n) = (is_doubtful ? doubtful : followed.row)[static_cast<std::size_t>(n)];
+  if (const char* failed = newton(p, J, 0, momenta)) fail(J, failed);
+  if (!is_doubtful) continued_ = Continued::far;
+}
+
 void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
   const FlushDenormals guard;
   Parity& p = parity(J);
   iterations_ = 0;
+  continued_ = Continued::no;
+  steepest_ = 0;
   bool solved = false;
   if (!momenta && may_iterate(p)) {
     solved = iterate(p, J);
@@ -354,13 +414,14 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
     wait_ = solved ? 1 : std::min(2 * wait_ + 1, 63);
   }
   std::string crossed = solved && mesh_ ? mesh_->crossing_at(*ring_, J - lag_) : "";
-  if (!solved || !crossed.empty()) {
+  if (!solved || !crossed.empty() || judge(p, J) != RootWatch::Verdict::near) {
     const char* why = nullptr;
+    std::vector<double> doubtful;
     bool found = false;
-    // Rough sections are predicted better by a few slabs, and a tangled mesh is a root that another predictor may avoid.
-    // Traces alternate about their mean: what is extrapolated may lie where the density is not defined.
+    // Rough sections are predicted better by a few slabs, and a tangled mesh, or a root that has left the motion, is one
+    // that another predictor may avoid. What is extrapolated may lie where the density is not defined.
     for (const int points : {points_, least_points, 1}) {
-      if ((points == least_points && points_ <= least_points) || (points == 1 && !by_values_ && !mesh_)) continue;
+      if (points == least_points && points_ <= least_points) continue;
       if (const char* failed = newton(p, J, points, momenta)) {
         why = failed;
         continue;
@@ -368,12 +429,19 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
       const std::string tangled = mesh_ ? mesh_->crossing_at(*ring_, J - lag_) : "";
       if (crossed.empty()) crossed = tangled;
       if (!tangled.empty()) continue;
-      found = !mesh_ || points == points_ || J < 2 || !mesh_->leaps(*ring_, J - lag_);
+      RootWatch::Verdict verdict = judge(p, J);
+      // No row tells where a first step goes.
+      if (J == 1 && verdict == RootWatch::Verdict::near && plan_.nonlinear_in_slab && travelled_ > 0) {
+        find_known(p, J, momenta);
+        if (turns_back(system_, plan_, past_of(J), values_of(p, J), options_.tolerance)) verdict = RootWatch::Verdict::far;
+      }
+      found = verdict == RootWatch::Verdict::near;
       if (found) break;
-      why = "Newton's method finds no root but one that leaps away";
+      doubtful = verdict == RootWatch::Verdict::doubtful ? values_of(p, J) : std::vector<double>();
+      why = "Newton's method finds no root but one that leaves the motion of the rows before";
     }
     if (found) crossed.clear();
-    else if (crossed.empty()) fail(J, why);
+    else if (crossed.empty()) follow(p, J, momenta, why, doubtful);
   }
   if (!crossed.empty())
     throw MeshCrossing(
@@ -433,8 +501,25 @@ double SlabStepper::residual() const {
   double worst = 0, size = 0;
   for (int n = 0; n < p.equations.size(); ++n) {
     if (system_.component(p.equations.equation(n).component).role == Role::multiplier) continue;
+    if (!std::isfinite(residual_[static_cast<std::size_t>(n)])) return infinity;
     worst = std::max(worst, std::abs(residual_[static_cast<std::size_t>(n)]));
     size = std::max(size, absolute_[static_cast<std::size_t>(n)]);
+  }
+  // Terms may cancel within a stencil, as those of a body that turns back do: then what the row before would leave says how
+  // large they are.
+  if (worst > 1e-6 * size) {
+    std::vector<double> values;
+    for (int n = 0; n < p.equations.size(); ++n) {
+      double& y = p.equations.value(*ring_, J_, n);
+      values.push_back(y);
+      y = p.equations.value(*ring_, J_ - 1, n);
+    }
+    p.equations.residual(*ring_, J_, residual_, &absolute_);
+    for (int n = 0; n < p.equations.size(); ++n) {
+      p.equations.value(*ring_, J_, n) = values[static_cast<std::size_t>(n)];
+      if (system_.component(p.equations.equation(n).component).role != Role::multiplier)
+        size = std::max(size, absolute_[static_cast<std::size_t>(n)]);
+    }
   }
   return size > 0 ? worst / size : 0;
 }
@@ -443,7 +528,7 @@ double SlabStepper::residual() const {
 void SlabStepper::visit(SavedState& state) {
   state.numbers("section", ring_->row(0), ring_->bytes() / sizeof(double));  // from the beginning of the ring
   state("newest slab", J_), state("slabs known", known_), state("by momenta", by_momenta_);
-  state("iterations", iterations_), state("largest", largest_);
+  state("iterations", iterations_), state("continued", continued_), state("largest", largest_);
   state("steps to wait", wait_), state("steps left to wait", waiting_);
   for (Parity& p : parities_) {
     Matrix factored = p.factored;

@@ -282,10 +282,10 @@ void Assembly::set_time_step(double h) {
   take_constant_parts();
 }
 
-/// h, k, t and x of a stencil: h is the step above its anchor's row
+/// h, k, t and x of a stencil: h is the step above its anchor's row. A step of its own is counted from row J − 1.
 Cell Assembly::cell(const Batch& b, std::int64_t J, double x) const {
   const std::int64_t row = J + b.row;
-  if (own_step_) return {*own_step_, space_step_, static_cast<double>(row) * *own_step_, x};
+  if (own_step_) return {*own_step_, space_step_, times_->time(J - 1) + static_cast<double>(b.row + 1) * *own_step_, x};
   return {times_->step(row), space_step_, times_->time(row), x};
 }
 

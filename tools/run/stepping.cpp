@@ -203,7 +203,6 @@ void Stepping::judge(double residual) const {
 /// Near a vacuum all terms are rounding, and their sum has no scale.
 bool Stepping::varies() const {
   constexpr double little = 1e-8;
-  if (simulation_.starting_rows() < 2) return false;
   std::vector<double> row(row_[Role::field].size()), before(row);
   simulation_.copy_row(0, row), simulation_.copy_row(1, before);
   const auto d = static_cast<std::size_t>(simulation_.count(Role::field));

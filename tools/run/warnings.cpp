@@ -230,7 +230,7 @@ std::vector<std::string> Warnings::continued(const Outcome& outcome) const {
   std::vector<std::string> all;
   for (const auto& [why, steps] : outcome.continued)
     all.push_back(
-        fmt::format("{} of {} steps took a thousand times as long, followed from a small time step: {}; {}", steps,
+        fmt::format("{} of {} steps took many times as long, followed from a small time step: {}; {}", steps,
                     outcome.steps_taken, in_words(why),
                     why == Continued::out_of_iterations
                         ? fmt::format("raise scheme.max_iterations, which is {}", scene_.problem.max_iterations)
