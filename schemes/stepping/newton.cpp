@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numbers>
 
 #include "lattice/error.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
@@ -150,6 +148,16 @@ Newton chord(SlabProblem& problem, Vector y, double absolute_tolerance, int max_
   return result;
 }
 
+/// Newton's method, with one Jacobian where that is enough.
+Newton at_once(SlabProblem& problem, const Vector& predicted, double absolute_tolerance, int max_iterations) {
+  const Newton quick = chord(problem, predicted, absolute_tolerance, max_iterations);
+  if (quick.converged) return quick;
+  Newton direct = newton(problem, predicted, absolute_tolerance, max_iterations);
+  direct.iterations += quick.iterations;
+  direct.converged = direct.converged && direct.tame;
+  return direct;
+}
+
 /// Follows the root of the problem from s near 0 to s = 1. A stride is taken once and in two halves: both ways must
 /// be tame and end at the same root, because Newton's method may by accident arrive quickly at a root that is far
 /// away. Stops where the determinant changes sign, because there two roots meet.
@@ -209,8 +217,8 @@ std::string remedy_for(int max_iterations) {
              : "reduce lattice.courant or lattice.time_step";
 }
 
-NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, const Window& past,
-                        double tolerance, int max_iterations) {
+NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, const Window& past, double tolerance,
+                        int max_iterations, bool followed) {
   const std::int64_t J = past.last_row() + 1;
   const int rows = static_cast<int>(past.rows.size());
   const Vector newest = as_vector(past.rows.back());
@@ -228,12 +236,13 @@ NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, cons
                       });
   const auto predict = [&](double s) { return problem.moved(newest, s * increment); };
   const double absolute = tolerance * std::max(largest(newest), largest(predict(1)));
-  const Newton followed = follow(problem, predict, absolute, max_iterations);
-  return as_result(followed, followed.iterations);
+  const Newton found = followed ? follow(problem, predict, absolute, max_iterations)
+                                : at_once(problem, predict(1), absolute, max_iterations);
+  return as_result(found, found.iterations);
 }
 
 NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& plan, const Window& row0,
-                                 const std::vector<double>& velocity, bool stiff, double tolerance,
+                                 const std::vector<double>& velocity, bool followed, double tolerance,
                                  int max_iterations) {
   const Vector y0 = as_vector(row0.rows.back()), phi_t = as_vector(velocity);
   const double h = system.time_step();
@@ -250,59 +259,17 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
   const auto predict = [&](double s) { return problem.moved(y0, s * h * phi_t); };
   const double absolute = tolerance * std::max(largest(y0), largest(predict(1)));
   int iterations = 0;
-  if (!stiff) {
-    const Newton quick = chord(problem, predict(1), absolute, max_iterations);
-    if (quick.converged) return as_result(quick, quick.iterations);
-    const Newton direct = newton(problem, predict(1), absolute, max_iterations);
-    iterations = quick.iterations + direct.iterations;
-    if (direct.converged && direct.tame) return as_result(direct, iterations);
+  if (!followed) {
+    const Newton found = at_once(problem, predict(1), absolute, max_iterations);
+    iterations = found.iterations;
+    if (found.converged) return as_result(found, iterations);
   }
-  const Newton followed = follow(problem, predict, absolute, max_iterations);
-  if (!followed.converged)
+  const Newton root = follow(problem, predict, absolute, max_iterations);
+  if (!root.converged)
     throw NoConvergence(
         "the starting row of initial.start = centred was not found: Newton's method did not converge; " +
         remedy_for(max_iterations));
-  return as_result(followed, iterations + followed.iterations);
-}
-
-std::optional<FixedPointBound> fixed_point_bound(const LatticeSystem& system, const SolvePlan& plan,
-                                                 double amplitude) {
-  for (const auto& family : system.families())
-    if (!family->sources()) return std::nullopt;
-  FixedPointBound bound{0, std::numeric_limits<double>::infinity()};
-  const int d = system.components(), site = system.lattice().sites() / 2;
-  Window uniform{&system.lattice(), d, 0, 0, {}};
-  uniform.rows.resize(1, std::vector<double>(static_cast<std::size_t>(system.lattice().sites() * d)));
-  for (int row = 0; row < (system.placement() == Placement::brick_wall ? 2 : 1); ++row)
-    for (int a = 0; a < d; ++a) {
-      const int unknown_row = row + plan.shift(site, a);
-      std::map<int, double> constant;  // A₊ by column
-      double dominance = 0;            // |A_ii| − Σ |A_ij|
-      for (const Coefficient& c : system.linearised({row, site}, a)) {
-        if (row + c.offset.time != unknown_row) continue;
-        const bool own = c.offset.space == 0 && c.component == a;
-        dominance += own ? std::abs(c.value) : -std::abs(c.value);
-        const int i = site + c.offset.space;
-        constant[system.lattice().home(i) * d + c.component] += c.value;
-      }
-      // The fixed point contracts by at most Σ |J_ij − A_ij| / dominance; J at uniform fields.
-      bound.dominance = std::min(bound.dominance, dominance);
-      constexpr int fields = 16;
-      for (int f = 0; f <= fields; ++f) {
-        const double value = amplitude * (2.0 * f / fields - 1);
-        std::ranges::fill(uniform.rows[0], value);
-        std::vector<LatticeSystem::Entry> entries;
-        system.jacobian(uniform, row, site, a, unknown_row, system.time_step(), entries);
-        std::map<int, double> rest = constant;
-        for (auto& [column, entry] : rest) entry = -entry;
-        for (const auto& e : entries)
-          if (e.row == site * d + a) rest[e.column] += e.value;
-        double sum = 0;
-        for (const auto& [column, entry] : rest) sum += std::abs(entry);
-        if (std::isfinite(sum)) bound.nonlinear = std::max(bound.nonlinear, sum);
-      }
-    }
-  return bound;
+  return as_result(root, iterations + root.iterations);
 }
 
 }  // namespace delf

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,24 +23,15 @@ struct NewtonResult {
 /// Solves the slab whose unknown row follows `past` (its last row is the newest known) where the equations may have
 /// several roots. The one is wanted that h → 0 leads to: it is followed from a small h by full Newton steps, each
 /// stride taken once and in two halves that must agree, and given up where the Jacobian's determinant changes sign,
-/// because there the path turns back. Never another root in silence.
+/// because there the path turns back. Never another root in silence, unless it is not to be `followed`: by Newton's
+/// method from y_n + v_n at once, which may arrive at any root.
 NewtonResult solve_slab(const LatticeSystem&, const SolvePlan&, const Window& past, double tolerance,
-                        int max_iterations);
+                        int max_iterations, bool followed = true);
 
-/// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t. By Newton from y₀ + hφ_t, or, where the
-/// equations are `stiff` or that does not converge, followed from a small h as above. Throws NoConvergence.
+/// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t. By Newton from y₀ + hφ_t at once; if that does
+/// not converge, or if it is to be `followed`, from a small h as above. Throws NoConvergence.
 NewtonResult solve_centred_start(const LatticeSystem&, const SolvePlan&, const Window& row0,
-                                 const std::vector<double>& velocity, bool stiff, double tolerance,
+                                 const std::vector<double>& velocity, bool followed, double tolerance,
                                  int max_iterations);
-
-/// How the fixed point with the constant part A₊ of a step's Jacobian J contracts: by nonlinear/dominance at worst, in
-/// the largest norm, of what y_{n+1} differs.
-struct FixedPointBound {
-  double nonlinear = 0;  ///< max Σ_j |J_ij − A_ij|, over uniform fields up to an amplitude
-  double dominance = 0;  ///< min |A_ii| − Σ_{j≠i} |A_ij|
-};
-/// Uniform fields from −amplitude to amplitude are looked at. Nothing for a density that is nonlinear in its
-/// derivatives: it has no scale of its own to sample, and is judged by how its steps contract.
-std::optional<FixedPointBound> fixed_point_bound(const LatticeSystem&, const SolvePlan&, double amplitude);
 
 }  // namespace delf

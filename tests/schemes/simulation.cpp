@@ -110,6 +110,21 @@ TEST_CASE("hexagons need an even circle, wide stencils a circle, comparators wal
   CHECK(key_of(comparator(Wall::fixed, Wall::natural)) == "boundary.right");
 }
 
+TEST_CASE("a comparator is refused where waves have another speed than 1, or the density other derivatives") {
+  const Lattice ring = Lattice::circle(32, 10);
+  for (const char* method : {"vu-quoc-li", "guo", "damped"}) {
+    const auto key = [&](const char* density) {
+      return key_of(with(problem("rectangle", ring, 0.25, "text"), [&](Problem& p) {
+        p.method = method, p.parameters["theory.density"] = std::string(density);
+      }));
+    };
+    CHECK(key("0.5*phi_t^2 - 0.5*phi_x^2 - phi^4") == "accepted");
+    for (const char* other : {"0.5*phi_t^2 - 0.5*340^2*phi_x^2 - phi^4", "1e3*(0.5*phi_t^2 - 0.5*phi_x^2 - phi^4)",
+                              "0.5*phi_t^2 - 0.5*phi_x^2 + 0.1*phi_t*phi_x - phi^4"})
+      CHECK(key(other) == "scheme.method");
+  }
+}
+
 TEST_CASE("a comparator that is not written for a theory is refused, and says for which") {
   for (const char* method : {"guo", "vu-quoc-li"}) {
     const auto of = [method](const char* theory) {

@@ -62,7 +62,7 @@ std::string report(const Subject& subject, const Scene& scene, const Outcome& o)
                            : fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max));
   for (const auto& [why, steps] : o.continued)
     line("continued",
-         fmt::format("{} of {} steps were followed from a small time step: {}", steps, o.steps_taken, in_words(why)));
+         fmt::format("{} of {} steps took Newton's method: {}", steps, o.steps_taken, in_words(why)));
   // Two measures: of the equations, and of the field.
   line("residual",
        std::isnan(o.residual_max)

@@ -230,8 +230,8 @@ std::vector<std::string> Warnings::continued(const Outcome& outcome) const {
   std::vector<std::string> all;
   for (const auto& [why, steps] : outcome.continued)
     all.push_back(
-        fmt::format("{} of {} steps took a thousand times as long, followed from a small time step: {}; {}", steps,
-                    outcome.steps_taken, in_words(why),
+        fmt::format("{} of {} steps took Newton's method, which is {} times as dear: {}; {}", steps,
+                    outcome.steps_taken, why == Continued::stiff ? "a thousand" : "a hundred to a thousand", in_words(why),
                     why == Continued::out_of_iterations
                         ? fmt::format("raise scheme.max_iterations, which is {}", scene_.problem.max_iterations)
                         : "reduce lattice.time_step"));

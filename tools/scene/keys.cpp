@@ -235,7 +235,9 @@ std::vector<Key> general_keys() {
           "", any, stability_wave_names()},
       Key{"stability.mass_steps", KeyType::text, "", "0.5, 1, 2.3", "values of mh at which limits are found"},
       Key{"stability.most_courant", real, "3", "",
-          "Courant numbers are looked at up to this; on a point, wh up to 8 unless it is given", "", positive},
+          "Courant numbers are looked at up to this, c h/k of own waves of speed c; on a point, wh up to 8 unless it is "
+          "given",
+          "", positive},
       Key{"stability.steps", integer, "2000", "", "steps of a run from noise", "", Limits{100, 1e7}},
       Key{"stability.agreement", real, "0.01", "", "theory and runs may differ by this, relative", "", positive},
       Key{"stability.corners", KeyType::text, "", "all",

@@ -27,6 +27,7 @@ LinearTheory linear_theory(const LinearWaves& waves, double most, int samples) {
   const auto make = [&](double courant) { return system_of(waves.on_circle(courant, sites)); };
   StableSearch search;
   search.samples = samples;
+  search.tolerance = 3e-9 * most;
   LinearTheory theory;
   for (const StableInterval& i : stable_courants(make, most, search)) theory.stable.push_back({i.from, i.to});
   if (theory.stable.empty()) return theory;
