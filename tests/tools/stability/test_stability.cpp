@@ -109,21 +109,17 @@ TEST_CASE("limits of a theory's own waves are those at its own space step") {
 TEST_CASE("limits of own waves are found at the theory's own speed, frequency or stiffness") {
   // leapfrog: ω_max h ≤ 2 with ω_max² = 4c²/k² + m² + 16κ²/k⁴, L = 10 and N = 200
   const double k = 0.05;
+  const testing::Folder folder;
   const auto limit_of = [&](double c, double m, double kappa, const char* stencil) {
     const std::string terms = kappa > 0 ? fmt::format(" - 0.5*{:e}*phi_xx^2", kappa * kappa) : "";
     const std::string density =
         fmt::format("0.5*phi_t^2 - 0.5*{:e}*phi_x^2 - 0.5*{:e}*phi^2{}", c * c, m * m, terms);
-    const Scene scene = read_scene(Settings("own.ini", {},
-                                            {{"theory.density", density, 0},
-                                             {"lattice.space", "circle", 0},
-                                             {"lattice.length", "10", 0},
-                                             {"lattice.sites", "200", 0},
-                                             {"lattice.courant", "0.5", 0},
-                                             {"lattice.stencil", stencil, 0},
-                                             {"initial.phi", "0", 0},
-                                             {"run.steps", "1", 0},
-                                             {"stability.waves", "own", 0},
-                                             {"stability.steps", "400", 0}}));
+    folder.write("own.ini",
+                 fmt::format("[theory]\ndensity = {}\n[lattice]\nspace = circle\nlength = 10\nsites = 200\ncourant = 0.5\n"
+                             "stencil = {}\n[initial]\nphi = 0\nphi_t = 0\n[run]\nsteps = 1\n[stability]\nwaves = own\n"
+                             "steps = 400\n",
+                             density, stencil));
+    const Scene scene = read_scene(folder.path() / "own.ini", {});
     const StabilityRequest request = read_stability_request(scene);
     const Limit limit = find_limit(request.schemes[0].name, {request.schemes[0].problem, std::nullopt}, request.limit);
     CAPTURE(c, m, kappa, limit.theory, limit.observed);
