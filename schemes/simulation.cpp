@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "lattice/error.hpp"
 #include "schemes/methods/method_registry.hpp"
@@ -28,6 +29,12 @@ namespace {
 SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
   if (!(p.time_step > 0) || !std::isfinite(p.time_step))
     throw BadInput("lattice.time_step", "lattice.time_step must be a positive, finite number");
+  for (const auto& [wall, key] : {std::pair{p.lattice.left(), "boundary.left"}, {p.lattice.right(), "boundary.right"}})
+    if (wall == Wall::clamped && p.lattice.space() == Space::interval && !find_method(p.method).reads_stencil)
+      throw BadInput(key,
+                     fmt::format("{} = clamped: keeps phi_x too, which is for densities with second derivatives and "
+                                 "scheme.method = multisymplectic; use fixed or natural",
+                                 key));
   SchemeParts parts = find_method(p.method).build(theory, p);
   // on a point one value starts, and there is nothing beside it that it would have to be lifted to
   const auto is_of_one_field = [&](const Component& c) {

@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "jets/expressions/stencil_expression.hpp"
@@ -32,15 +35,44 @@ void check_walls(const Problem& p, const StencilFamily& family) {
                              : fmt::format("lattice.stencil = {}: is for mechanics and couples no neighbours; use "
                                            "rectangle-symmetric, or lattice.space = point",
                                            p.stencil));
-  const bool clamped = p.lattice.left() == Wall::clamped && p.lattice.right() == Wall::clamped;
-  if (!p.lattice.is_circle() && width > 1 && !clamped)
+  const auto* jets = dynamic_cast<const JetFamily*>(&family);
+  if (p.lattice.space() == Space::interval && !(jets ? fits_between_walls(jets->table()) : width < 2))
     throw BadInput(
         "lattice.stencil",
         fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
-                    "at the walls out of the action, and the error there does not vanish with k; use "
-                    "triangle, rectangle or rectangle-symmetric, lattice.space = circle, or clamp both walls: "
-                    "boundary.left = clamped",
+                    "at the walls out of the action, unless they have three columns around their middle; use "
+                    "triangle, rectangle, rectangle-symmetric, six-tuple or nine-tuple, or lattice.space = circle",
                     p.stencil));
+  for (const auto& [wall, key] : {std::pair{p.lattice.left(), "boundary.left"}, {p.lattice.right(), "boundary.right"}})
+    if (wall == Wall::clamped && width < 2 && p.lattice.space() == Space::interval)
+      throw BadInput(key,
+                     fmt::format("{} = clamped: keeps phi_x too, which is for densities with second derivatives on "
+                                 "stencils that have them; use fixed or natural, or six-tuple or nine-tuple",
+                                 key));
+}
+
+constexpr auto left_slope = "boundary.left_slope", right_slope = "boundary.right_slope";
+
+/// φ_x at clamped walls, as numbers of text, one for each field.
+WallSlopes slopes_of(const FieldTheory& theory, const Problem& p) {
+  const auto read = [&](const char* key) {
+    const auto text = p.parameters.maybe<std::string>(key);
+    if (!text || text->empty()) return std::vector<double>{};
+    std::vector<double> slopes;
+    std::istringstream in(*text);
+    for (std::string part; std::getline(in, part, ',');) {
+      std::istringstream number(part);
+      double slope = 0;
+      if (!(number >> slope) || !(number >> std::ws).eof() || !std::isfinite(slope))
+        throw BadInput(key, fmt::format("{} = {}: is a number for each field, separated by commas", key, *text));
+      slopes.push_back(slope);
+    }
+    if (static_cast<int>(slopes.size()) != theory.components())
+      throw BadInput(key, fmt::format("{} = {}: has {} numbers, and the theory {} fields; give one for each", key,
+                                      *text, slopes.size(), theory.components()));
+    return slopes;
+  };
+  return {read(left_slope), read(right_slope)};
 }
 
 constexpr auto sites_key = "stencil.sites", point_key = "stencil.point", lagrangian_key = "theory.lagrangian",
@@ -79,7 +111,7 @@ std::shared_ptr<const StencilFamily> on_values(const FieldTheory& theory, const 
       lagrangian, StencilPattern(stencil_sites(sites, sites_key)), numbers, lagrangian_key));
 }
 
-/// The action on the stencil that the scene gives as text, with the terms of natural walls.
+/// The action on the stencil that the scene gives as text.
 std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheory& theory, const Problem& p) {
   const auto text_of = [&](const char* key) {
     const auto text = p.parameters.maybe<std::string>(key);
@@ -94,10 +126,7 @@ std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheo
   const std::string points = text_of(point_key);
   const auto family =
       std::static_pointer_cast<const JetFamily>(theory.on_table(stencil_of(sites, points, sites_key, point_key)));
-  std::vector<std::shared_ptr<const StencilFamily>> families{family};
-  const std::shared_ptr<const BatchDensity> density(family, &family->density());
-  for (auto& term : wall_families(family->table(), density, p.lattice)) families.push_back(std::move(term));
-  return families;
+  return {family};
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
@@ -112,8 +141,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                                  "brick wall such as hexagon",
                                  p.stencil));
   check_walls(p, *parts.families[0]);
-  if (!own)
-    for (auto& term : theory.at_walls(p.stencil, p.lattice)) parts.families.push_back(std::move(term));
+  if (const auto* jets = dynamic_cast<const JetFamily*>(parts.families[0].get()))
+    for (auto& term : wall_families(jets->table(), theory.shared_density(), p.lattice, slopes_of(theory, p)))
+      parts.families.push_back(std::move(term));
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));
     parts.components.push_back({"lambda", Role::multiplier, {}});
@@ -165,7 +195,15 @@ const MethodEntry multisymplectic_method{
                     .fallback = 0,
                     .help = "of a brick wall (hexagon): 1 if the first row, or frame, is an odd row of it",
                     .range = {0, 1},
-                    .otherwise = "that of the file's /time and scene, or 0"}},
+                    .otherwise = "that of the file's /time and scene, or 0"},
+                   {.key = left_slope,
+                    .fallback = std::string(),
+                    .help = "phi_x that a clamped left wall keeps, a number for each field",
+                    .otherwise = "that of the initial state"},
+                   {.key = right_slope,
+                    .fallback = std::string(),
+                    .help = "phi_x that a clamped right wall keeps, a number for each field",
+                    .otherwise = "that of the initial state"}},
     .reads_stencil = true,
     .label = [](const Problem& p) { return p.stencil; },
     .variants = variants,

@@ -33,8 +33,8 @@ int pairs_of_order(const Problem& p, const char* key, int order) {
 std::vector<StencilTable> at_both_walls(const StencilTable& table, const Lattice& lattice) {
   if (lattice.space() != Space::interval) return {};
   const auto mirror = [](Wall wall) { return wall == Wall::fixed ? Mirror::odd : Mirror::even; };
-  return {mirror_table(table, Placement::left_mirror, mirror(lattice.left())),
-          mirror_table(table, Placement::right_mirror, mirror(lattice.right()))};
+  return {mirror_table(table, Placement::left_mirror, mirror(lattice.left())).table,
+          mirror_table(table, Placement::right_mirror, mirror(lattice.right())).table};
 }
 
 SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitting& splitting,
@@ -43,11 +43,6 @@ SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitt
     throw BadInput("lattice.space", fmt::format("scheme.method = {}: wide stencils have no neighbours at a point; use "
                                                 "lattice.space = circle or interval",
                                                 p.method));
-  for (const auto& [wall, key] : {std::pair{p.lattice.left(), "boundary.left"}, {p.lattice.right(), "boundary.right"}})
-    if (wall == Wall::clamped)
-      throw BadInput(key, fmt::format("{} = clamped: is for densities with second derivatives, and pairs of sites are "
-                                      "mirrored at walls; use fixed or natural",
-                                      key));
   if (theory.constraint())
     throw BadInput("scheme.method",
                    fmt::format("scheme.method = {}: this version has no constraints between sub-steps; "

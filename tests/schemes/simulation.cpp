@@ -95,12 +95,13 @@ TEST_CASE("a time step that is not positive and finite is refused") {
           "lattice.time_step");
 }
 
-TEST_CASE("hexagons need an even circle, wide stencils a circle, comparators walls that are fixed") {
+TEST_CASE("hexagons need an even circle, six- and nine-tuples take walls, comparators walls that are fixed") {
   CHECK(key_of(problem("hexagon", Lattice::circle(255, 40), 0.5)) == "lattice.sites");
   CHECK(key_of(problem("hexagon", Lattice::circle(254, 40), 0.5)) == "accepted");
-  for (const char* stencil : {"hexagon", "six-tuple", "nine-tuple"})
-    CHECK(key_of(problem(stencil, Lattice::interval(64, 10), 0.5)) == "lattice.stencil");
-  for (const char* stencil : {"triangle", "rectangle", "rectangle-symmetric"})
+  CHECK(key_of(problem("hexagon", Lattice::interval(64, 10), 0.5)) == "lattice.stencil");
+  CHECK(key_of(problem("six-tuple", Lattice::interval(64, 10, Wall::clamped), 0.5)) == "boundary.left");
+  CHECK(key_of(problem("triangle", Lattice::interval(64, 10, Wall::fixed, Wall::clamped), 0.5)) == "boundary.right");
+  for (const char* stencil : {"triangle", "rectangle", "rectangle-symmetric", "six-tuple", "nine-tuple"})
     CHECK(key_of(problem(stencil, Lattice::interval(64, 10, Wall::natural, Wall::natural), 0.5)) == "accepted");
   const auto comparator = [](Wall left, Wall right) {
     return with(problem("", Lattice::interval(64, 10, left, right), 0.5), [](Problem& p) { p.method = "guo"; });

@@ -2,7 +2,9 @@
 #include "tools/scene/initial_rows.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
 
 #include "schemes/moving_start.hpp"
@@ -45,6 +47,41 @@ int InitialRows::winding() const {
   if (!scene_.problem.lattice.is_circle()) return 0;
   if (scene_.initial.winding) return *scene_.initial.winding;
   return state_ ? state_->winding() : file_->winding().value_or(0);
+}
+
+/// φ_x at a wall, of each field: the state's own, or of rows the slope of a cubic,
+///
+///     φ_x = (−11y₀ + 18y₁ − 9y₂ + 2y₃)/6k,    y_j the site j away from the wall; at the right wall of the other sign.
+///
+std::vector<double> InitialRows::slopes(bool left) const {
+  const Lattice& lattice = scene_.problem.lattice;
+  const int wall = left ? 0 : lattice.sites() - 1;
+  std::vector<double> slopes;
+  if (state_) {
+    std::vector<FieldPoint> fields(static_cast<std::size_t>(state_->components()));
+    state_->at(0, lattice.position(wall), fields);
+    for (const FieldPoint& field : fields) slopes.push_back(field.phi_x);
+    return slopes;
+  }
+  const std::vector<double> row = row0();
+  const auto d = static_cast<std::size_t>(file_->components());
+  constexpr std::array weights{-11., 18., -9., 2.};
+  for (std::size_t a = 0; a < d; ++a) {
+    double sum = 0;
+    for (int j = 0; j < 4 && j < lattice.sites(); ++j)
+      sum += weights[static_cast<std::size_t>(j)] * row[static_cast<std::size_t>(left ? j : wall - j) * d + a];
+    slopes.push_back((left ? sum : -sum) / (6 * lattice.space_step()));
+  }
+  return slopes;
+}
+
+void InitialRows::keep_slopes(Problem& problem) const {
+  if (problem.lattice.space() != Space::interval || !find_method(problem.method).reads_stencil) return;
+  for (const bool left : {true, false}) {
+    const char* const key = left ? "boundary.left_slope" : "boundary.right_slope";
+    if ((left ? problem.lattice.left() : problem.lattice.right()) == Wall::clamped && !problem.parameters.has(key))
+      problem.parameters[key] = fmt::format("{:.17g}", fmt::join(slopes(left), ","));
+  }
 }
 
 StartRule InitialRows::rule() const {

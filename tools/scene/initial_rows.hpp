@@ -18,6 +18,8 @@ class InitialRows {
   explicit InitialRows(const Scene&);
 
   int winding() const;
+  /// Gives a problem the slopes that its clamped walls keep: those of row 0, where no key says them.
+  void keep_slopes(Problem&) const;
   StartRule rule() const;
   std::string description() const;
   /// Throws BadScene if these rows have other fields than the simulation.
@@ -35,6 +37,7 @@ class InitialRows {
   /// A row of all components from what the state gives at their nodes; time fractions count only `with_times`.
   std::vector<double> section(const Simulation&, Writer, int row, bool with_times) const;
   std::vector<double> section(const Simulation&, int row) const;
+  std::vector<double> slopes(bool left) const;
   std::vector<double> slaved_in_file(const Simulation&, int row) const;
   std::optional<double> step_in_file(int row) const;
   void start_by_own_step(Simulation&, const std::vector<std::vector<double>>& rows) const;

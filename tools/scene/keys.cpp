@@ -150,10 +150,12 @@ std::vector<Key> general_keys() {
           state_names()},
       Key{"initial.start", choice, "", usual_start(), "what gives row 1", "", any, starts()},
 
-      Key{"boundary.left", choice, "fixed", "", "the left wall of an interval; clamped: its neighbour is kept too", "",
-          any, walls()},
-      Key{"boundary.right", choice, "fixed", "", "the right wall of an interval; clamped: its neighbour is kept too",
+      Key{"boundary.left", choice, "fixed", "",
+          "the left wall of an interval: phi is kept, or phi and phi_x (clamped), or nothing; an end of a beam is "
+          "hinged "
+          "where it is fixed, and free where it is natural",
           "", any, walls()},
+      Key{"boundary.right", choice, "fixed", "", "the right wall of an interval, likewise", "", any, walls()},
       Key{"boundary.mesh", choice, "fixed", "", "the boundary of a mesh", "", any, mesh_walls()},
       Key{"boundary.winding", integer, "", own, "what the field gains around a circle, in units of 2 pi", "", whole},
 

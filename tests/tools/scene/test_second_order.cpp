@@ -165,12 +165,15 @@ TEST_CASE("equations of second order and NLS are verified, and a planted fault i
   }
 }
 
-TEST_CASE("plans name the wave (-1)^j of KdV, and wide stencils ask for clamped walls") {
+TEST_CASE("plans name the wave (-1)^j of KdV, and clamped walls ask for second derivatives") {
   const Folder folder;
   const Ran kdv = delf_program(folder, "plan kdv"), boussinesq = delf_program(folder, "plan boussinesq");
   CHECK(contains(kdv.out, "(-1)^j is a wave of the scheme (1 root), and none of the theory"));
   CHECK_FALSE(contains(boussinesq.out, "(-1)^j is"));
-  check_refused(delf_program(folder, "run boussinesq --boundary.left=fixed"), {"boundary.left = clamped"});
+  check_refused(delf_program(folder, "run kink --lattice.space=interval --boundary.left=clamped"),
+                {"boundary.left", "second derivatives"});
+  check_refused(delf_program(folder, "run boussinesq --lattice.stencil=hexagon --lattice.sites=242"),
+                {"lattice.stencil", "three columns"});
   const Ran limits = delf_program(folder, "stability beam --stability.schemes=nine-tuple --stability.steps=300");
   CHECK(limits.code == 0);
   CHECK(contains(limits.out, "2 limits compared"));

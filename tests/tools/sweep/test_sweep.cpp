@@ -134,8 +134,7 @@ TEST_CASE("a run that fails is a row with its status, and a sweep fails if all i
   ran = delf_program(folder, command + "--lattice.courant=3,4 --run.until=200");
   CHECK(ran.code == 3);
   // what only the engine finds is a row too
-  ran =
-      delf_program(folder, "sweep '" + scene + "' --lattice.stencil=rectangle,nine-tuple --sweep.keep=table --out out");
+  ran = delf_program(folder, "sweep '" + scene + "' --lattice.stencil=rectangle,hexagon --sweep.keep=table --out out");
   CHECK(ran.code == 0);
   runs = sweep_of(folder)["runs"];
   CHECK(runs[1]["status"] == "bad-input");
