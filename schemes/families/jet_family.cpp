@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "jets/tables/slot_places.hpp"
 
 namespace delf {
 namespace {
@@ -73,7 +74,7 @@ struct JetFamily::Jets {
 
 JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> density, bool values_are_sources)
     : StencilFamily(table.pattern, values_at_every_vertex(table.pattern, density->components()), table.tests.empty()),
-      table_(std::move(table)),
+      table_(with_slot_places(std::move(table), *density)),
       density_(std::move(density)),
       d_(density_->components()),
       has_sources_(density_->nonlinearity() == Nonlinearity::values ||
