@@ -7,6 +7,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 
 using namespace delf;
 using namespace delf::testing;
@@ -349,4 +350,24 @@ TEST_CASE("what leaves values of a mesh or a complex free, or makes them grow, i
   const Ran text = delf_program(folder, "verify sphere --fields text.h5");
   CHECK(text.code == 2);
   CHECK(contains(text.err, "--fields: text.h5: is not an HDF5 file"));
+}
+
+TEST_CASE("densities that read t and x run on meshes and are verified") {
+  const Folder folder;
+  folder.write("impurity.ini",
+               "[theory]\nname = sine-gordon-impurity\n[lattice]\nspace = complex\n"
+               "mesh = icosahedron:0\ntime_step = 0.1\n[initial]\nphi = x*z\n[run]\nsteps = 6\n");
+  for (const std::string density : {"",
+                                    " --theory.name=text '--theory.density=0.5*(2 + sin(x + t))*phi_t^2 - 0.5*(1 + "
+                                    "0.2*cos(x - t))*phi_x^2 - phi^4'"}) {
+    const Ran run = delf_program(folder, "run impurity.ini --output.figures=off --out out" + density),
+              verified = delf_program(folder, "verify impurity.ini --output.figures=off" + density);
+    INFO(density << "\n" << run.err << verified.out << verified.err);
+    CHECK(run.code == 0);
+    CHECK(verified.code == 0);
+  }
+  check_refused(
+      delf_program(folder,
+                   "run impurity.ini --theory.name=text '--theory.density=0.5*phi_t^2 - 0.5*phi_x^2 - x*phi*phi_x'"),
+      {"theory.name", "quadratic in phi_x"});
 }
