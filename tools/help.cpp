@@ -131,8 +131,8 @@ constexpr const char* measures_head =
 
 )page";
 constexpr const char* measures_foot = R"page(
-[level]: may be left out. All are of the first field, and see the recorded rows (output.every), no others; a run without
-an answer has null. Their numbers, and what is made of them, are sums, products, powers and functions as in `delf help
+[level]: may be left out. All are of the first field. Extremes, crossings and frequencies see all steps, the others the
+recorded rows (output.every); without an answer there is null. Their numbers, and what is made of them, are sums, products, powers and functions as in `delf help
 lagrangians`, of theory.NAME as NAME, L, pi, and t, the time of the last row.
 )page";
 

@@ -135,7 +135,8 @@ double scale_of_equations(const ComplexSystem& system, std::span<const Balance> 
   const auto has_equation = [&](std::size_t n) { return system.complex().has_equation(static_cast<int>(n / d)); };
   double sum = 0, absolute = 0, size = 0;
   for (std::size_t n = 0; n < E.size(); ++n)
-    if (has_equation(n)) sum = std::max(sum, std::abs(E[n].sum)), absolute = std::max(absolute, E[n].absolute);
+    if (has_equation(n))
+      sum = larger_or_nan(std::abs(E[n].sum), sum), absolute = larger_or_nan(E[n].absolute, absolute);
   if (sum <= suspicious * absolute) return absolute;
   const std::vector<double> sizes = system.sizes(y);
   for (std::size_t n = 0; n < E.size(); ++n)
@@ -149,7 +150,7 @@ double largest_residual(const ComplexSystem& system, std::span<const double> y) 
   const auto d = at(system.components());
   double sum = 0;
   for (std::size_t n = 0; n < E.size(); ++n)
-    if (system.complex().has_equation(static_cast<int>(n / d))) sum = std::max(sum, std::abs(E[n].sum));
+    if (system.complex().has_equation(static_cast<int>(n / d))) sum = larger_or_nan(std::abs(E[n].sum), sum);
   return scale == 0 ? 0 : sum / scale;
 }
 

@@ -433,10 +433,10 @@ double SlabStepper::residual() const {
   double worst = 0, size = 0;
   for (int n = 0; n < p.equations.size(); ++n) {
     if (system_.component(p.equations.equation(n).component).role == Role::multiplier) continue;
-    worst = std::max(worst, std::abs(residual_[static_cast<std::size_t>(n)]));
-    size = std::max(size, absolute_[static_cast<std::size_t>(n)]);
+    worst = larger_or_nan(std::abs(residual_[static_cast<std::size_t>(n)]), worst);
+    size = larger_or_nan(absolute_[static_cast<std::size_t>(n)], size);
   }
-  return size > 0 ? worst / size : 0;
+  return size == 0 ? 0 : worst / size;
 }
 
 /// A Jacobian whose factors are kept is saved as its values, and factored again.

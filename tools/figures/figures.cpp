@@ -81,6 +81,11 @@ int tame_frames(const FigureSource& source) {
   return tame;
 }
 
+std::string subtitle(const FigureSource& source) {
+  return source.theory + ", " + source.scheme +
+         (source.film.is_aliased() ? "; frames too far apart for this motion: what moves may be an alias" : "");
+}
+
 std::vector<std::string> figure_names() {
   std::vector<std::string> names;
   for (const Figure& figure : all) names.emplace_back(figure.name);

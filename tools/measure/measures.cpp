@@ -194,6 +194,7 @@ Measures::Measures(const Scene& scene, int winding, const Simulation& simulation
     } catch (const BadInput& bad) {
       throw scene.settings.located(bad);
     }
+    for (const auto& q : expression.quantities) sees_steps_ = sees_steps_ || q.measurement->sees_steps();
     all_.push_back(std::move(expression));
   }
 }
@@ -203,7 +204,14 @@ Measures::~Measures() = default;
 void Measures::see(const MeasuredRow& row) {
   time_ = row.time;
   for (Expression& expression : all_)
-    for (auto& q : expression.quantities) q.measurement->see(row);
+    for (auto& q : expression.quantities)
+      if (!q.measurement->sees_steps()) q.measurement->see(row);
+}
+
+void Measures::see_step(const MeasuredRow& row) {
+  for (Expression& expression : all_)
+    for (auto& q : expression.quantities)
+      if (q.measurement->sees_steps()) q.measurement->see(row);
 }
 
 void Measures::visit(SavedState& state) {

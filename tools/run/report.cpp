@@ -79,6 +79,7 @@ std::string report(const Subject& subject, const Scene& scene, const Outcome& o)
   for (const Conserved& c : o.conserved)
     line("conserved", fmt::format("{} = {:.10g}; error {:.3g} at most", c.name, c.final, c.error_max));
   if (std::isfinite(o.constraint_max)) line("constraint", fmt::format("{:.3g} at most", o.constraint_max));
+  if (!o.maxima_over.empty()) line("maxima", "of " + o.maxima_over);
   if (std::isfinite(o.error_linf))
     line("error",
          fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));

@@ -50,14 +50,15 @@ std::string energy_in_words(const Problem& problem) {
 
 // Figures of the rows that the recorder kept.
 std::string drawn(const Scene& scene, const InitialRows& initial, const RowNames& names, const Recorder& recorder,
-                  DrawnSection section, const fs::path& folder) {
+                  const Outcome& outcome, DrawnSection section, const fs::path& folder) {
   if (!recorder.film()) return {};
   const auto density = scene.problem.parameters.maybe<std::string>("theory.density");
   const std::string theory = density && !density->empty() ? "ℓ = " + shortened(*density, 70) : scene.problem.theory;
   const bool angle = scene.problem.circle_valued || find_theory(scene.problem.theory).angle;
   return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice,
                        initial.winding(), *recorder.film(), recorder.energy_errors(), scene.times, names,
-                       energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact()},
+                       energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact(),
+                       outcome.maxima_over},
                       folder);
 }
 
@@ -126,7 +127,7 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     run.attempt([&] { write_text_file(folder / "section.csv", section.table); });
   }
   return run.end(subject_of(scene.problem), scene,
-                 [&] { return drawn(scene, initial, names, recorder, std::move(section), folder); });
+                 [&] { return drawn(scene, initial, names, recorder, outcome, std::move(section), folder); });
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ std::string summary_json(const Subject& subject, const Scene& scene, const Outco
   json["energy_initial"] = o.energy_initial;
   json["energy_final"] = o.energy_final;
   json["energy_error_max"] = o.energy_error_max;
+  json["maxima_over"] = o.maxima_over.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(o.maxima_over);
   json["momentum_initial"] = o.momentum_initial;
   json["momentum_final"] = o.momentum_final;
   json["charge_final"] = o.charge_final;

@@ -111,6 +111,7 @@ void Warnings::see(double time, std::span<const double> fields, std::span<const 
 void Warnings::visit(SavedState& state) {
   state("time of the late row", late_time_), state("centre of the late row", late_centre_);
   state("growth of monitors", growth_);
+  turn_.visit(state);
   // a run that goes further than it was to has its last stretch later
   if (state.restores() && late_time_ && *late_time_ < late_) late_time_.reset(), late_centre_.reset();
 }
@@ -121,7 +122,7 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
   for (Found& found :
        std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row), energy(outcome),
                           energy_off_band(energy_errors, "reduce lattice.time_step, or run less far"), error(outcome),
-                          pinned(outcome, last_row)})
+                          pinned(outcome, last_row), phase(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
   std::ranges::move(grown(), std::back_inserter(all));
   std::ranges::move(continued(outcome), std::back_inserter(all));
@@ -207,6 +208,20 @@ Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row)
       "the pulse has stood still at x = {:.4g} since t = {:.4g}, and ought to have moved by {:.3g}: pinned "
       "by the lattice; {}",
       now < 0 ? now + lattice.length() : now, *late_time_, wanted, finer());
+}
+
+/// Where the copies end before the run does, what they tell of its end is a guess: it must be a fifth more.
+Found Warnings::phase(const Outcome& outcome, std::span<const double> last_row) const {
+  constexpr double thirty_percent = 0.3, little = 0.02;
+  const double turn = turn_.value();
+  if (static_cast<double>(outcome.steps) * turn * turn * turn / 12 < little) return {};
+  if (outcome.status != "done" || !outcome.continued.empty()) return {};
+  const auto found = step_error(scene_, initial_, simulation_, outcome.steps, last_row);
+  if (!found || (found->error <= thirty_percent && found->at_end <= 1.2 * thirty_percent)) return {};
+  return fmt::format("half the step moves the field by {:.2g} of its range until t = {:.4g}{}: its phase is off; reduce "
+                     "lattice.time_step",
+                     found->error, found->time,
+                     found->at_end > found->error ? fmt::format(", and so by {:.2g} in the end", found->at_end) : "");
 }
 
 /// A monitor that passes a limit of 1; and one that ends a hundred times above all that it is in the first tenth of the run.

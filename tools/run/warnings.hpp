@@ -8,6 +8,7 @@
 
 #include "tools/run/energy_warnings.hpp"
 #include "tools/run/outcome.hpp"
+#include "tools/run/step_error.hpp"
 #include "tools/run/trace.hpp"
 #include "tools/scene/initial_rows.hpp"
 
@@ -22,6 +23,8 @@ class Warnings {
 
   /// A recorded row of the fields, with the monitors of the method.
   void see(double time, std::span<const double> fields, std::span<const double> monitors);
+  /// The fields of a row before TurnOfStep::rows, recorded or not.
+  void see_early(std::span<const double> fields) { turn_.see(fields); }
   void visit(SavedState&);
   /// One line each, with a remedy, after the last row.
   std::vector<std::string> of(const Outcome&, const Trace& energy_errors, std::span<const double> last_row) const;
@@ -33,6 +36,7 @@ class Warnings {
   Found energy(const Outcome&) const;
   Found error(const Outcome&) const;
   Found pinned(const Outcome&, std::span<const double> last_row) const;
+  Found phase(const Outcome&, std::span<const double> last_row) const;
   std::vector<std::string> grown() const;
   std::vector<std::string> continued(const Outcome&) const;
 
@@ -54,6 +58,7 @@ class Warnings {
     double early = 0, early_time = 0, later = 0, later_time = 0;
   };
   std::vector<Growth> growth_;
+  TurnOfStep turn_;
 };
 
 }  // namespace delf

@@ -16,6 +16,10 @@ struct Done {
   explicit Done(const std::string& arguments) {
     const Folder folder;
     folder.write("small.ini", small_scene());
+    folder.write("lossy.ini",
+                 "[theory]\nname = sine-gordon\nmass = 2\n[lattice]\nspace = interval\nlength = 60\nsites = 17\n"
+                 "courant = 0.5\n[scheme]\nmethod = radau-iia\nstages = 3\nspace = spectral\n[initial]\n"
+                 "state = noise\nwavenumber = 1\n[boundary]\nleft = clamped\nright = clamped\n[run]\nsteps = 7\n");
     const Ran ran = delf_program(folder, "run " + arguments + " --output.figures=off --out out");
     INFO(arguments << "\n" << ran.err);
     REQUIRE(ran.code == 0);
@@ -57,6 +61,24 @@ TEST_CASE("a run that ends well and may be wrong says why, in the report and in 
   CHECK(done.warnings(words) == 1);
   for (const auto& warning : done.summary["warnings"])
     CHECK(contains(done.report, "  warning    " + warning.get<std::string>() + "\n"));
+}
+
+TEST_CASE("what no record shows is warned of: without records, in a few steps, of a phase") {
+  const std::string drifting =
+      "soliton-bounce --mesh.alpha=5 --lattice.sites=24 --run.until=15 --scheme.strategy=control --scheme.time=gauss2";
+  const std::string swinging = "pendulum --initial.amplitude=3 --lattice.stencil=midpoint --run.until=60 --lattice.time_step=";
+  const auto [arguments, words, count] = GENERATE_COPY(table<std::string, std::string, int>({
+      {drifting + " --output.every=0", "the energy leaves its early band", 1},
+      // radau-iia on waves that it damps: 82 % of the energy in seven steps
+      {"lossy.ini", "the energy loses 0.", 1},
+      {"lossy.ini --output.every=0", "the energy loses 0.", 1},
+      {swinging + "0.8", "half the step moves the field by", 1},
+      {swinging + "0.02", "half the step", 0},
+  }));
+  INFO(arguments);
+  const Done done(arguments);
+  INFO(done.summary["warnings"].dump(1));
+  CHECK(done.warnings(words) == count);
 }
 
 TEST_CASE("shipped scenes as they are, and near misses, warn of nothing") {
