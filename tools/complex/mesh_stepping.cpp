@@ -25,7 +25,7 @@ Checksum checksum_of(const ComplexScene& c) {
 
 // To measure a row costs some eight explicit steps.
 WatchedRows watched_rows(const ComplexScene& c) {
-  constexpr std::int64_t apart = 128, most_values = 2048;
+  constexpr std::int64_t apart = 384, most_values = 1024;
   return {most_values / (c.sites() * static_cast<std::int64_t>(c.fields.size())), apart, c.scene.initial.seed};
 }
 

@@ -40,7 +40,7 @@ Found energy_off_band(const Trace& energy_errors, const std::string& remedy) {
       return fmt::format("the energy leaves its early band, {:.2g} of itself, by more than {:.2g} at t = {:.6g}; {}",
                          width, allowed - width / 2, interval.begin, remedy);
   // Whatever its band is, an energy that is kept comes back to where it was.
-  if (const double gone = std::max(least_late, -most_late); !(gone <= 10 * one_percent))
+  if (const double gone = std::max(least_late, -most_late); !(gone <= 20 * one_percent))
     return fmt::format("the energy {} {:.2g} of itself, and does not come back; {}", gone == least_late ? "gains" : "loses",
                        gone, remedy);
   return {};
