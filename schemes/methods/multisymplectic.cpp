@@ -2,9 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <span>
 #include <string_view>
 #include <variant>
 
+#include "jets/expressions/field_equation.hpp"
 #include "jets/expressions/stencil_expression.hpp"
 #include "jets/expressions/stencil_text.hpp"
 #include "jets/tables/named_tables.hpp"
@@ -60,6 +66,96 @@ std::shared_ptr<const StencilFamily> from_odd_row(const FieldTheory& theory, con
   return theory.on_table(std::move(table));
 }
 
+/// The sum −1/(hk) Σ ∂L/∂y over the stencils of a site, on the Taylor polynomial of a jet about it, with a bound of its
+/// rounding.
+struct DiscreteForce {
+  double value = 0, rounding = 0;
+};
+DiscreteForce discrete_force(const StencilFamily& family, std::span<const double> jet, double h, double k) {
+  const auto& sites = family.pattern().vertices;
+  const std::size_t n = sites.size();
+  std::vector<double> y(n), r(n), J(n * n);
+  DiscreteForce force;
+  for (std::size_t l = 0; l < n; ++l) {
+    double largest = 0;
+    for (std::size_t m = 0; m < n; ++m) {
+      const double t = (sites[m].time - sites[l].time) * h, x = (sites[m].space - sites[l].space) * k;
+      y[m] = 0;
+      double over = 1;  // o!
+      std::size_t at = 0;
+      for (int o = 0; at < jet.size(); over *= ++o) {
+        double binomial = 1;
+        for (int in_x = 0; in_x <= o; binomial *= static_cast<double>(o - in_x) / (in_x + 1), ++in_x)
+          y[m] += jet[at++] * binomial * std::pow(t, o - in_x) * std::pow(x, in_x) / over;
+      }
+      largest = std::max(largest, std::abs(y[m]));
+    }
+    const Cell cell{h, k, 0, 0};
+    family.residual(cell, y, r), family.jacobian(cell, y, J);
+    force.value -= r[l] / (h * k);
+    for (std::size_t m = 0; m < n; ++m)
+      force.rounding += std::abs(J[l * n + m]) * largest * 16 * std::numeric_limits<double>::epsilon() / (h * k);
+  }
+  return force;
+}
+
+/// The action does not read k: it is that of a chain, which is no lattice of a field that varies in space.
+bool is_chain(const StencilFamily& family) {
+  std::vector<double> y, r(family.pattern().vertices.size()), again(r);
+  for (std::size_t m = 0; m < r.size(); ++m) y.push_back(0.3 + 0.1 * std::sin(2.0 * static_cast<double>(m)));
+  family.residual({0.1, 0.5, 0, 0}, y, r), family.residual({0.1, 0.25, 0, 0}, y, again);
+  return r == again;
+}
+
+/// An action on values has the equations of the density as h and k tend to 0 together: tried on fields at random.
+void require_action_of(const FieldTheory& theory, const StencilFamily& family, const Problem& p) {
+  const auto equations = FieldEquations::of(theory.density());
+  if (!equations || theory.constraint() || !(p.time_step > 0)) return;
+  const bool chain = is_chain(family), uniform = chain || p.lattice.space() == Space::point;
+  const double k = chain ? 1 : p.lattice.space_step(), courant = p.time_step / p.lattice.space_step();
+  std::mt19937_64 random(1);
+  struct Tried {
+    std::vector<double> jet;
+    double limit, equation, rounding;
+  };
+  std::vector<Tried> all;
+  double scale = 0;
+  constexpr int fields = 24;
+  for (int f = 0; f < fields; ++f) {
+    // half of them where logarithms and roots have values
+    std::uniform_real_distribution<double> anything(f % 2 ? -1 : 0, f % 2 ? 1 : 2);
+    std::vector<double> jet(static_cast<std::size_t>(derivatives_up_to(equations->order())));
+    for (double& value : jet) value = anything(random);
+    std::size_t at = 0;
+    for (int o = 0; uniform && at < jet.size(); ++o)
+      for (int in_x = 0; in_x <= o; ++in_x, ++at)
+        if (in_x > 0) jet[at] = 0;
+    std::array<DiscreteForce, 3> D;
+    for (std::size_t n = 0; n < D.size(); ++n) {
+      const double s = std::ldexp(1.0, -5 - 2 * static_cast<int>(n));
+      D[n] = uniform ? discrete_force(family, jet, s, k) : discrete_force(family, jet, courant * s, s);
+    }
+    // the limit of D₀ + a sᵖ, by Aitken
+    const double last = D[2].value - D[1].value, before = D[1].value - D[0].value, bend = last - before;
+    const bool settled = std::abs(last) <= D[2].rounding + D[1].rounding || std::abs(last) > 0.9 * std::abs(before);
+    const double limit = D[2].value - (settled ? 0 : last * last / bend);
+    const auto [equation, absolute] = (*equations)(jet, 0, 0).front();
+    if (!std::isfinite(limit) || !std::isfinite(absolute)) continue;
+    scale = std::max({scale, absolute, std::abs(limit)});
+    all.push_back({jet, limit, equation, D[2].rounding});
+  }
+  constexpr double agreement = 1e-3;
+  for (const Tried& tried : all)
+    if (std::abs(tried.limit - tried.equation) > agreement * scale + tried.rounding)
+      throw BadInput(
+          lagrangian_key,
+          fmt::format("{}: is no action of the density: at phi = {:.3g}, phi_t = {:.3g}, phi_x = {:.3g}, phi_tt = "
+                      "{:.3g}, phi_tx = {:.3g}, phi_xx = {:.3g} the field equation of the density gives {:.6g}, "
+                      "and {:.6g} is what that of the action tends to for small h and k; correct one of them",
+                      lagrangian_key, tried.jet[0], tried.jet[1], tried.jet[2], tried.jet[3], tried.jet[4],
+                      tried.jet[5], tried.equation, tried.limit));
+}
+
 /// L(y1, …, yn; h, k) on the sites of a stencil as text, as it is; numbers of the theory by their names. Its density says
 /// what is measured.
 std::shared_ptr<const StencilFamily> on_values(const FieldTheory& theory, const Problem& p,
@@ -75,8 +171,10 @@ std::shared_ptr<const StencilFamily> on_values(const FieldTheory& theory, const 
   for (const auto& [key, value] : p.parameters)
     if (const double* number = std::get_if<double>(&value); number && key.starts_with(prefix))
       numbers.emplace_back(key.substr(prefix.size()), *number);
-  return std::make_shared<LagrangianFamily<StencilExpression>>(StencilExpression::lagrangian(
+  auto family = std::make_shared<LagrangianFamily<StencilExpression>>(StencilExpression::lagrangian(
       lagrangian, StencilPattern(stencil_sites(sites, sites_key)), numbers, lagrangian_key));
+  require_action_of(theory, *family, p);
+  return family;
 }
 
 /// The action on the stencil that the scene gives as text, with the terms of natural walls.

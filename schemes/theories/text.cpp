@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "jets/expressions/expression.hpp"
 #include "jets/expressions/generator.hpp"
@@ -20,6 +21,11 @@ namespace {
 constexpr auto density_key = "theory.density", fields_key = "theory.fields", parameters_key = "theory.parameters",
                constraint_key = "theory.constraint", symmetry_key = "theory.symmetry", equation_key = "theory.equation";
 
+/// Names with a meaning in other formulas of a scene, where a parameter would be read instead.
+constexpr std::pair<std::string_view, std::string_view> names_elsewhere[] = {
+    {"L", "the length of space"}, {"y", "a coordinate of space"},          {"z", "a coordinate of space"},
+    {"h", "the time step"},       {"k", "the distance between the sites"}, {"X", "the position of a site"}};
+
 /// Fields, and parameters with the numbers that theory.parameters gives them.
 ExpressionNames names_of(const ParameterValues& values) {
   ExpressionNames names;
@@ -34,6 +40,13 @@ ExpressionNames names_of(const ParameterValues& values) {
                                     number_of(std::string_view(part).substr(equals + 1), parameters_key));
     }
   check_names(names, fields_key, parameters_key);
+  for (const auto& [name, number] : names.parameters)
+    for (const auto& [taken, meaning] : names_elsewhere)
+      if (name == taken)
+        throw BadInput(parameters_key,
+                       fmt::format("{}: \"{}\" is {} in formulas of a scene; choose another name, such as "
+                                   "{}0",
+                                   parameters_key, name, meaning, name));
   return names;
 }
 
