@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "lattice/error.hpp"
@@ -20,6 +19,7 @@
 #include "schemes/system/slab_extent.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "schemes/turn.hpp"
 #include "schemes/without_value.hpp"
 
 namespace delf {
@@ -45,8 +45,8 @@ Evolution make_evolution(SchemeParts parts, const Problem& p) {
   return {p.lattice,
           std::move(parts.families),
           p.time_step,
-          {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
-           2 * std::numbers::pi * p.winding, p.threads, std::move(parts.processor), p.step_control.has_value()},
+          {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real, turn_of(p),
+           p.threads, std::move(parts.processor), p.step_control.has_value()},
           std::move(parts.components)};
 }
 
@@ -91,9 +91,8 @@ struct Simulation::Impl {
   }
   /// What row 0 and its momenta, or the newest row, ask of the steps.
   RowDensity row_density(const std::vector<double>& row0, std::span<const double> momenta) const {
-    return method.row_density(
-        {*theory, system, system.window(0, {row0}, 2 * std::numbers::pi * problem.winding), 0, problem.time_step},
-        momenta, *problem.step_control);
+    return method.row_density({*theory, system, system.window(0, {row0}, turn_of(problem)), 0, problem.time_step},
+                              momenta, *problem.step_control);
   }
   RowDensity row_density() const {
     const RowsInTime rows = newest_rows(*theory, evolution);

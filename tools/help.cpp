@@ -109,8 +109,9 @@ density then says what is measured. This is leapfrog, one cell's share of each e
   sites = (0,0) (1,0) (0,1) (1,1)
 
 theory.equation = phi_tt - phi_xx + sin(phi) = 0 is tested: by Helmholtz's conditions whether any density has it, and whether
-theory.density does. Friction has none: phi_tt + g*phi_t + sin(phi) = f*cos(t) is refused. With the factor exp(g*t) on all of
-the density friction -g phi_t follows; a drive f(t) is a term f(t)*phi; phi_t*phi is a divergence, which adds nothing.
+theory.density does. exact.phi is tested at random points, and theory.lagrangian by what it tends to for small h and k.
+Friction has no density: phi_tt + g*phi_t + sin(phi) = f*cos(t) is refused. With the factor exp(g*t) on all of the density
+friction -g phi_t follows; a drive f(t) is a term f(t)*phi; phi_t*phi is a divergence, which adds nothing.
 
 The states noise and file work for every theory. From C++:
 

@@ -5,14 +5,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <random>
 #include <set>
+#include <span>
+#include <utility>
 
+#include "jets/expressions/evaluate.hpp"
+#include "jets/expressions/parse.hpp"
 #include "schemes/complex/circle_fibre.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/mesh_text.hpp"
+#include "tools/scene/exact_solution.hpp"
 #include "tools/scene/key_warning.hpp"
 #include "tools/scene/steps_in_turn.hpp"
 #include "tools/scene/values.hpp"
@@ -135,6 +142,92 @@ void require_constraint(const ComplexScene& c) {
   });
 }
 
+/// A formula of t, x, y and z with its first and second derivative by each.
+class DerivativesAlong {
+ public:
+  DerivativesAlong(std::string_view text, const std::vector<std::pair<std::string, double>>& numbers,
+                   const std::string& key) {
+    expressions::Graph graph;
+    const int root = expressions::parse(graph, text, {{{"t", 0}, {"x", 1}, {"y", 2}, {"z", 3}}, numbers}, key);
+    for (int v = 0; v < 4; ++v) {
+      const int first = graph.differentiate(root, v);
+      of_[static_cast<std::size_t>(v)] = {expressions::Evaluation(graph, first),
+                                          expressions::Evaluation(graph, graph.differentiate(first, v))};
+    }
+  }
+  double operator()(int variable, int order, double t, const Mesh::Point& p) const {
+    return of_[static_cast<std::size_t>(variable)][static_cast<std::size_t>(order - 1)].operator()<double>(
+        [&](int v) { return v == 0 ? t : p[static_cast<std::size_t>(v - 1)]; });
+  }
+
+ private:
+  std::array<std::array<expressions::Evaluation, 2>, 4> of_;
+};
+
+/// Tries exact.FIELD at points of a flat mesh and at random times. A density there is a sum of its parts along t and each
+/// coordinate (schemes/README.md, Complexes), and so are its field equations:
+///
+///     E = [E(φ_t, φ_tt) − E(0)] + E(φ) + Σ_a [E(φ, ∂_aφ, ∂_a²φ) − E(φ)]
+///
+/// On a surface in space the derivatives along it are not those of the coordinates.
+void require_solution(const ComplexScene& c, const ParameterValues& parameters) {
+  const Mesh& mesh = c.space->mesh;
+  const auto equations = FieldEquations::of(c.theory->density());
+  if (!equations || equations->order() != 2 || c.theory->constraint() || mesh.coordinates() != mesh.dimension) return;
+  const std::size_t d = c.fields.size();
+  const bool still = c.time == MeshTime::none;
+  std::vector<DerivativesAlong> derivatives;
+  for (const ComplexScene::Field& field : c.fields) {
+    const std::string key = "exact." + field.name;
+    derivatives.emplace_back(*Values(c.scene.settings).text(key), numbers_of(parameters), key);
+  }
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> part(0, 1);
+  constexpr int tries = 128;
+  std::vector<TriedPoint> points;
+  for (int n = 0; n < tries; ++n) {
+    const double t = still ? 0 : c.scene.end() * part(random);
+    const Mesh::Point& p = mesh.points[random() % mesh.points.size()];
+    std::vector<std::pair<int, std::vector<double>>> jets;  // with their signs in the sum
+    const std::vector<double> zero(6 * d);
+    std::vector<double> at_rest(zero);
+    for (std::size_t a = 0; a < d; ++a) at_rest[a] = (*c.fields[a].exact)(t, p);
+    jets.emplace_back(1, at_rest);
+    for (int v = still ? 1 : 0; v <= mesh.coordinates(); ++v) {
+      std::vector<double> jet = v == 0 ? zero : at_rest;
+      jets.emplace_back(-1, jet);
+      for (std::size_t a = 0; a < d; ++a) {
+        jet[(v == 0 ? 1 : 2) * d + a] = derivatives[a](v, 1, t, p);
+        jet[(v == 0 ? 3 : 5) * d + a] = derivatives[a](v, 2, t, p);
+      }
+      jets.emplace_back(1, std::move(jet));
+    }
+    std::vector<FieldEquations::Value> sums(d);
+    bool finite = true;
+    for (const auto& [sign, jet] : jets) {
+      finite = finite && std::ranges::all_of(jet, [](double v) { return std::isfinite(v); });
+      const auto values = (*equations)(jet, t, p[0]);
+      for (std::size_t a = 0; a < d; ++a) sums[a].sum += sign * values[a].sum, sums[a].absolute += values[a].absolute;
+    }
+    if (!finite) continue;
+    const auto floor = [&equations, jets, t, x = p[0]](double rounding) {
+      std::vector<double> all;
+      for (const auto& [sign, jet] : jets) {
+        const std::vector<double> one = equations->rounding(jet, t, x, rounding);
+        all.resize(one.size());
+        for (std::size_t a = 0; a < one.size(); ++a) all[a] += one[a];
+      }
+      return all;
+    };
+    points.push_back({fmt::format("t = {:.6g}, ({:.6g})", t,
+                                  fmt::join(std::span(p).first(static_cast<std::size_t>(mesh.coordinates())), ", ")),
+                      std::move(sums), floor});
+  }
+  std::vector<std::string> names;
+  for (const auto& field : c.fields) names.push_back(field.name);
+  require_solved(points, names);
+}
+
 }  // namespace
 
 bool is_on_mesh(const Settings& settings) {
@@ -195,7 +288,10 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     scene.figure_form = read_figure_form(settings, values);
     scene.checkpoint = values.real("output.checkpoint");
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
-    if (c.is_one_problem()) return c;
+    if (c.is_one_problem()) {
+      if (c.space && c.has_solution()) require_solution(c, parameters);
+      return c;
+    }
 
     p.step_control = read_step_control(settings, values);
     if (p.step_control && c.time == MeshTime::cells)
@@ -235,6 +331,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     scene.steps <<= halvings;
     scene.every = values.maybe_integer("output.every")
                       .value_or(std::max(1LL, std::llround(static_cast<double>(scene.steps) / usual_records)));
+    if (c.has_solution()) require_solution(c, parameters);
   } catch (const BadInput& bad) {
     throw settings.located(bad);
   }

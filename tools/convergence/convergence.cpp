@@ -15,6 +15,7 @@
 
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/turn.hpp"
 #include "tools/complex/mesh_convergence.hpp"
 #include "tools/convergence/convergence_figure.hpp"
 #include "tools/convergence/convergence_table.hpp"
@@ -83,7 +84,8 @@ double jump_at_seam(const Scene& scene) {
   state->at(scene.end(), lattice.length() * (1 - 2 * std::numeric_limits<double>::epsilon()), last);
   double jump = 0;
   for (std::size_t a = 0; a < first.size(); ++a)
-    jump = std::max(jump, std::abs(last[a].phi - first[a].phi - 2 * std::numbers::pi * state->winding()));
+    jump = std::max(
+        jump, std::abs(last[a].phi - first[a].phi - 2 * std::numbers::pi * state->winding() - gain_of(scene.problem.parameters)));
   return jump;
 }
 

@@ -46,8 +46,9 @@ std::vector<double> drawn_sites(const FigureSource& source, int frame, std::size
   std::vector<double> values;
   for (std::size_t i = component; i < row.size(); i += source.film.components())
     values.push_back(std::clamp(row[i] / unit, -1e30, 1e30));
-  // φ(x + L) = φ(x) + 2π·winding
-  if (source.lattice.is_circle()) values.push_back(values.front() + source.winding * 2 * std::numbers::pi / unit);
+  // φ(x + L) = φ(x) + 2π·winding + gain
+  if (source.lattice.is_circle())
+    values.push_back(values.front() + (source.winding * 2 * std::numbers::pi + source.gain) / unit);
   return values;
 }
 

@@ -35,6 +35,7 @@ struct FigureSource {
   DrawnSection section = {};
   FigureForm form = {};
   const State* exact = nullptr;  ///< that waveforms are compared with, as long as it says that it can be
+  double gain = 0;               ///< what the fields gain around a circle beside 2π·winding
 };
 
 /// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into

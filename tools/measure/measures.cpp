@@ -11,6 +11,7 @@
 #include "lattice/text_parts.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "schemes/turn.hpp"
 #include "tools/measure/measure_names.hpp"
 
 namespace delf {
@@ -57,14 +58,12 @@ void walk(std::string_view text, auto&& word, auto&& other) {
 }
 
 // Refuses words that could be taken for something else.
-void check_words(std::string_view text, const Constants& constants, const std::string& key) {
+void check_words(std::string_view text, const std::string& key) {
   const auto check = [&](std::size_t begin, std::size_t end) {
     const std::string_view word = text.substr(begin, end - begin);
     if (word.starts_with(reserved))
       throw BadInput(
           key, fmt::format("{}: names that begin with {} are kept for measurements; use another", word, reserved));
-    if (word == "L" && std::ranges::count(constants, "L", &Constants::value_type::first) > 1)
-      throw BadInput(key, "L is both the length of space and theory.L; give the parameter another name");
     return end;
   };
   walk(text, check, [](std::string_view) {});
@@ -107,7 +106,7 @@ struct Measures::Expression {
 
   // Measurements become quantities, which the arithmetic names.
   void read(std::string_view text, const MeasuredField& field) {
-    check_words(text, constants, key);
+    check_words(text, key);
     const auto word = [&](std::size_t begin, std::size_t end) {
       const std::string_view found = text.substr(begin, end - begin);
       if (const MeasurementEntry* entry = find_measurement(found)) return read_measurement(*entry, text, end, field);
@@ -182,7 +181,7 @@ Measures::Measures(const Scene& scene, int winding, const Simulation& simulation
   const auto& components = simulation.components();
   const MeasuredField field{p.lattice,
                             p.time_step,
-                            2 * std::numbers::pi * winding,
+                            2 * std::numbers::pi * winding + gain_of(p.parameters),
                             p.circle_valued || find_theory(p.theory).angle,
                             simulation.count(Role::field),
                             make_theory(find_theory(p.theory), p.parameters)};

@@ -11,6 +11,7 @@
 
 #include "schemes/methods/kernel_alone.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/turn.hpp"
 #include "schemes/verify/stress_balance.hpp"
 #include "schemes/verify/time_reversal.hpp"
 #include "tools/engine.hpp"
@@ -30,7 +31,7 @@ void measure_orders(const Scene& scene, int winding, std::vector<Measured> balan
     Simulation simulation = build(fine, winding);
     initial.start(simulation);
     StressBalance balance(simulation.theory(), fine.problem.lattice, fine.problem.time_step,
-                          2 * std::numbers::pi * winding);
+                          2 * std::numbers::pi * winding + gain_of(fine.problem.parameters));
     ComputedRows source(simulation, 2 * (rows - 1) + 1);
     for (std::int64_t j = 0; auto row = source.next(); ++j) {
       balance.add(j, fields_of(simulation.evolution().system(), *row));

@@ -10,6 +10,7 @@
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "schemes/turn.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
 #include "tools/files/text_columns.hpp"
@@ -55,10 +56,11 @@ std::string drawn(const Scene& scene, const InitialRows& initial, const RowNames
   const auto density = scene.problem.parameters.maybe<std::string>("theory.density");
   const std::string theory = density && !density->empty() ? "ℓ = " + shortened(*density, 70) : scene.problem.theory;
   const bool angle = scene.problem.circle_valued || find_theory(scene.problem.theory).angle;
-  return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice,
-                       initial.winding(), *recorder.film(), recorder.energy_errors(), scene.times, names,
-                       energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact()},
-                      folder);
+  return draw_figures(
+      {scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, initial.winding(),
+       *recorder.film(), recorder.energy_errors(), scene.times, names, energy_in_words(scene.problem),
+       std::move(section), scene.figure_form, initial.exact(), gain_of(scene.problem.parameters)},
+      folder);
 }
 
 // Of the step, where the first rows tell.

@@ -10,6 +10,7 @@
 
 #include "lattice/error.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/smooth_state.hpp"
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -19,12 +20,17 @@
 #include "tools/run/exact_energy.hpp"
 #include "tools/run/solution_error.hpp"
 #include "tools/run/vacuum_symbol.hpp"
+#include "tools/scene/exact_solution.hpp"
 
 namespace delf {
 
 namespace {
 
 constexpr double one_percent = 0.01;
+
+// The scene gives the solution itself.
+bool is_formula(const State* exact) { return dynamic_cast<const SmoothState*>(exact) != nullptr; }
+
 // The largest |z| of the waves that the lattice has near θ: θ_j = 2πj/N on a circle, πj/(N − 1) between walls.
 double growth_near(const Symbol& symbol, const Lattice& lattice, double theta) {
   if (lattice.space() == Space::point) return symbol.amplification(0);
@@ -83,7 +89,7 @@ int Warnings::nodes_in_cell() const {
   for (const Component& component : simulation_.components()) places.insert(component.at.space);
   return static_cast<int>(places.size());
 }
-double Warnings::turn() const { return 2 * std::numbers::pi * initial_.winding(); }
+double Warnings::turn() const { return initial_.turn(); }
 double Warnings::centre(std::span<const double> fields) const {
   return gradient_centre(scene_.problem.lattice, fields, simulation_.count(Role::field), turn());
 }
@@ -121,7 +127,7 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
   for (Found& found :
        std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row), energy(outcome),
                           energy_off_band(energy_errors, "reduce lattice.time_step, or run less far"), error(outcome),
-                          pinned(outcome, last_row)})
+                          ends(outcome), without_solution(), pinned(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
   std::ranges::move(grown(), std::back_inserter(all));
   std::ranges::move(continued(outcome), std::back_inserter(all));
@@ -194,6 +200,25 @@ Found Warnings::error(const Outcome& outcome) const {
   if (!(outcome.error_linf > 0)) return {};
   const double range = range_of(*initial_.exact(), scene_.problem.lattice, outcome.time);
   return error_beyond_range(outcome, range, finer());
+}
+
+/// A formula on the line is compared with a run on a circle, or between walls.
+Found Warnings::ends(const Outcome& outcome) const {
+  if (!(outcome.error_linf > 0) || !is_formula(initial_.exact())) return {};
+  const AtTheEnds ends = at_the_ends(scene_, *initial_.exact());
+  if (!(ends.change > 0.1 * outcome.error_linf)) return {};
+  return fmt::format("the exact solution {}, by {:.2g}, and the error is {:.2g}: it is not the scheme's alone; {}",
+                     ends.words, ends.change, outcome.error_linf,
+                     scene_.problem.lattice.is_circle()
+                         ? "keep the pulse away from both ends of lattice.length"
+                         : "give a solution that keeps its value there, or a longer lattice.length");
+}
+
+Found Warnings::without_solution() const {
+  if (!is_formula(initial_.exact())) return {};
+  const std::string found = delf::without_value(scene_, *initial_.exact());
+  if (found.empty()) return {};
+  return fmt::format("the exact solution {}: no error is known there; correct it, or run less far", found);
 }
 
 Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row) const {

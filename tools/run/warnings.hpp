@@ -32,6 +32,8 @@ class Warnings {
   Found spurious_mode(std::span<const double> last_row) const;
   Found energy(const Outcome&) const;
   Found error(const Outcome&) const;
+  Found ends(const Outcome&) const;
+  Found without_solution() const;
   Found pinned(const Outcome&, std::span<const double> last_row) const;
   std::vector<std::string> grown() const;
   std::vector<std::string> continued(const Outcome&) const;

@@ -156,6 +156,8 @@ std::vector<Key> general_keys() {
           "", any, walls()},
       Key{"boundary.mesh", choice, "fixed", "", "the boundary of a mesh", "", any, mesh_walls()},
       Key{"boundary.winding", integer, "", own, "what the field gains around a circle, in units of 2 pi", "", whole},
+      Key{"boundary.gain", real, "", "none",
+          "what the field gains around a circle beside its winding, in its own units: L for phi = x"},
 
       Key{"run.until", real, "", "this or run.steps", "time of the last row, rounded to whole steps", "time",
           not_negative},

@@ -18,6 +18,7 @@
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/turn.hpp"
 #include "schemes/verify/derivatives.hpp"
 #include "schemes/verify/flux_check.hpp"
 #include "schemes/verify/newton_order.hpp"
@@ -80,7 +81,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
       request_(request),
       initial_(fields && scene.from_file() ? std::nullopt : std::make_optional<InitialRows>(scene)),
       winding_(initial_ ? initial_->winding() : scene.initial.winding.value_or(0)),
-      turn_(2 * std::numbers::pi * winding_),
+      turn_(2 * std::numbers::pi * winding_ + gain_of(scene.problem.parameters)),
       simulation_(build(scene, winding_)),
       faulty_(request.fault == "sign" ? with_wrong_sign(simulation_.evolution().system()) : nullptr),
       system_(faulty_ ? *faulty_ : simulation_.evolution().system()),
@@ -138,7 +139,7 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
           fmt::format("command line: --fields {}: was made with boundary.winding = {}, and the scene has {}; "
                       "use --boundary.winding={}, or leave out its attribute winding",
                       fields, *winding, *here, *winding));
-    turn_ = 2 * std::numbers::pi * *winding;
+    turn_ = 2 * std::numbers::pi * *winding + gain_of(scene_.problem.parameters);
   }
   if (request_.unwrap) {
     if (!nearby.empty())
