@@ -359,8 +359,10 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
     bool found = false;
     // Rough sections are predicted better by a few slabs, and a tangled mesh is a root that another predictor may avoid.
     // Traces alternate about their mean: what is extrapolated may lie where the density is not defined.
-    for (const int points : {points_, least_points, 1}) {
-      if ((points == least_points && points_ <= least_points) || (points == 1 && !by_values_ && !mesh_)) continue;
+    std::vector<int> tried{points_};
+    if (points_ > least_points) tried.push_back(least_points);
+    if (points_ > 1 && (by_values_ || mesh_)) tried.push_back(1);
+    for (const int points : tried) {
       if (const char* failed = newton(p, J, points, momenta)) {
         why = failed;
         continue;

@@ -224,3 +224,14 @@ TEST_CASE("a lattice that fits into no memory ends with exit code 4, and says ho
   CHECK(lines(ran.err).size() == 1);
   CHECK(contains(ran.err, "137 GB"));
 }
+
+TEST_CASE("slabs are solved from a first guess through any number of rows") {
+  const Folder folder;
+  const auto scene = GENERATE(as<std::string>(), "wave-map --lattice.sites=16", "gauss-kink");
+  for (const char* rows : {"0", "1", "2", "4", "5", "8"}) {
+    const Ran ran = delf_program(
+        folder, "run " + scene + " --run.steps=6 --output.figures=off --out out --scheme.seed_order=" + rows);
+    INFO(scene << " " << rows << ": " << ran.err);
+    CHECK(ran.code == 0);
+  }
+}
