@@ -350,3 +350,19 @@ TEST_CASE("what leaves values of a mesh or a complex free, or makes them grow, i
   CHECK(text.code == 2);
   CHECK(contains(text.err, "--fields: text.h5: is not an HDF5 file"));
 }
+
+TEST_CASE("an elliptic problem whose solution is 0 is solved, from whatever start") {
+  const Folder folder;
+  folder.write("s.ini",
+               "[theory]\nname = klein-gordon\n[lattice]\nspace = complex\nmesh = graded:10,11,1\ntime = none\n"
+               "[initial]\nphi = sin(pi*x/10)\n[output]\nfigures = off\n");
+  // the last one has data of 1.2e-16 at one end, and of 0 at the other
+  for (const std::string keys : {"--initial.phi='x*(10-x)'", "--initial.phi='1e6*x*(10-x)*(x-3)'", ""}) {
+    const Ran ran = delf_program(folder, "run s.ini --out out " + keys);
+    CAPTURE(keys, ran.err);
+    CHECK(ran.code == 0);
+    const auto summary = nlohmann::json::parse(read(folder / "out/summary.json"));
+    CHECK(summary["status"] == "done");
+    CHECK(summary["residual_max"].get<double>() < 1e-14);
+  }
+}
