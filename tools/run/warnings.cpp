@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <set>
 
@@ -64,7 +65,8 @@ Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulat
     : scene_(scene), initial_(initial), simulation_(simulation) {
   if (initial.state()) width_ = width_of(scene.initial, scene.problem.lattice);
   const double end = scene.end();
-  if (!initial.exact() || !std::isfinite(width_) || end > initial.exact()->exact_until()) return;
+  has_pulse_ = initial.exact() && std::isfinite(width_);
+  if (!has_pulse_ || end > initial.exact()->exact_until()) return;
   // The last stretch of time in which the solution's pulse moves by some cells: it is slower than light.
   const Lattice& lattice = scene.problem.lattice;
   const double at_end = exact_centre(end), some_cells = 5 * lattice.space_step();
@@ -95,24 +97,19 @@ double Warnings::exact_centre(double time) const {
 }
 
 void Warnings::see(double time, std::span<const double> fields, std::span<const double> monitors) {
-  growth_.resize(monitors.size());
-  const double end = scene_.end();
+  constexpr double larger = 1.01;
+  largest_.resize(monitors.size()), rises_.resize(monitors.size());
   for (std::size_t m = 0; m < monitors.size(); ++m) {
-    Growth& g = growth_[m];
-    const bool early = time <= end / 10;
-    double &most = early ? g.early : g.later, &when = early ? g.early_time : g.later_time;
-    if (monitors[m] > most) most = monitors[m], when = time;
+    if (!(monitors[m] > largest_[m].value)) continue;
+    largest_[m] = {time, monitors[m]};
+    if (rises_[m].empty() || monitors[m] > larger * rises_[m].back().value) rises_[m].push_back(largest_[m]);
   }
-  if (late_time_ || time < late_) return;
-  late_time_ = time;
-  late_centre_ = centre(fields);
+  if (has_pulse_) centres_.push_back({time, centre(fields)});
 }
 
 void Warnings::visit(SavedState& state) {
-  state("time of the late row", late_time_), state("centre of the late row", late_centre_);
-  state("growth of monitors", growth_);
-  // a run that goes further than it was to has its last stretch later
-  if (state.restores() && late_time_ && *late_time_ < late_) late_time_.reset(), late_centre_.reset();
+  state("centres of the pulse", centres_);
+  state("largest values of monitors", largest_), state("rises of monitors", rises_);
 }
 
 std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energy_errors,
@@ -197,31 +194,36 @@ Found Warnings::error(const Outcome& outcome) const {
 }
 
 Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row) const {
-  if (!late_time_ || !(outcome.time > *late_time_)) return {};
+  const auto late = std::ranges::find_if(centres_, [&](const Moment& m) { return m.time >= late_; });
+  if (late == centres_.end() || !(outcome.time > late->time)) return {};
   const Lattice& lattice = scene_.problem.lattice;
   const double k = lattice.space_step(), now = centre(last_row);
-  const double moved = separation(lattice, now, *late_centre_);
-  const double wanted = separation(lattice, exact_centre(outcome.time), exact_centre(*late_time_));
+  const double moved = separation(lattice, now, late->value);
+  const double wanted = separation(lattice, exact_centre(outcome.time), exact_centre(late->time));
   if (!(std::abs(wanted) > 4 * k && std::abs(moved) < k)) return {};
   return fmt::format(
       "the pulse has stood still at x = {:.4g} since t = {:.4g}, and ought to have moved by {:.3g}: pinned "
       "by the lattice; {}",
-      now < 0 ? now + lattice.length() : now, *late_time_, wanted, finer());
+      now < 0 ? now + lattice.length() : now, late->time, wanted, finer());
 }
 
 /// A monitor that passes a limit of 1; and one that ends a hundred times above all that it is in the first tenth of the run.
 std::vector<std::string> Warnings::grown() const {
   std::vector<std::string> all;
   const std::vector<Monitor>& monitors = find_method(scene_.problem.method).monitors;
-  for (std::size_t m = 0; m < std::min(monitors.size(), growth_.size()); ++m) {
-    const Growth& g = growth_[m];
-    if (const double most = std::max(g.early, g.later); monitors[m].when_above_1 && most > 1)
-      all.push_back(fmt::format("{} is {:.3g} at t = {:.4g}, and should stay below 1: {}", monitors[m].name, most,
-                                g.later > g.early ? g.later_time : g.early_time, monitors[m].when_above_1));
-    if (!monitors[m].when_it_grows || !(g.early > 0) || !(g.later > 100 * g.early)) continue;
+  for (std::size_t m = 0; m < std::min(monitors.size(), largest_.size()); ++m) {
+    const Moment& most = largest_[m];
+    if (monitors[m].when_above_1 && most.value > 1)
+      all.push_back(fmt::format("{} is {:.3g} at t = {:.4g}, and should stay below 1: {}", monitors[m].name, most.value,
+                                most.time, monitors[m].when_above_1));
+    const auto after = std::ranges::find_if(rises_[m], [&](const Moment& r) { return r.time > scene_.end() / 10; });
+    if (!monitors[m].when_it_grows || after == rises_[m].begin()) continue;
+    const Moment& early = *std::prev(after);
+    if (!(most.value > 100 * early.value)) continue;
     all.push_back(fmt::format("{} grows from {:.2g} at t = {:.4g} to {:.2g} at t = {:.4g}, like exp({:.3g} t): {}",
-                              monitors[m].name, g.early, g.early_time, g.later, g.later_time,
-                              std::log(g.later / g.early) / (g.later_time - g.early_time), monitors[m].when_it_grows));
+                              monitors[m].name, early.value, early.time, most.value, most.time,
+                              std::log(most.value / early.value) / (most.time - early.time),
+                              monitors[m].when_it_grows));
   }
   return all;
 }

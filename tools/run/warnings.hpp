@@ -46,14 +46,16 @@ class Warnings {
   const InitialRows& initial_;
   const Simulation& simulation_;
   double width_ = std::numeric_limits<double>::infinity();  ///< of the narrowest pulse of the state
-  /// The first row recorded from this time on is kept, to tell whether a pulse still moves.
-  double late_ = std::numeric_limits<double>::infinity();
-  std::optional<double> late_time_, late_centre_;
-  /// The largest value of a monitor in the first tenth of the run, the largest later, and when.
-  struct Growth {
-    double early = 0, early_time = 0, later = 0, later_time = 0;
+  double late_ = std::numeric_limits<double>::infinity();   ///< a pulse that still moves has moved since then
+  bool has_pulse_ = false;                                  ///< of which the exact solution knows where it is
+  // All below is a function of the recorded rows alone, so that a run that goes further warns as one without a break.
+  struct Moment {
+    double time = 0, value = 0;
   };
-  std::vector<Growth> growth_;
+  std::vector<Moment> centres_;  ///< of the pulse in the recorded rows
+  /// The largest value of each monitor, and the values that were 1 % larger than all of those before.
+  std::vector<Moment> largest_;
+  std::vector<std::vector<Moment>> rises_;
 };
 
 }  // namespace delf
