@@ -112,6 +112,8 @@ theory.equation = phi_tt - phi_xx + sin(phi) = 0 is tested: by Helmholtz's condi
 theory.density does. Friction has none: phi_tt + g*phi_t + sin(phi) = f*cos(t) is refused. With the factor exp(g*t) on all of
 the density friction -g phi_t follows; a drive f(t) is a term f(t)*phi; phi_t*phi is a divergence, which adds nothing.
 
+theory.angles = phi says that values 2 pi apart are the same state: sections, measures and figures count modulo 2 pi then.
+
 The states noise and file work for every theory. From C++:
 
   auto scheme = delf::Scheme{delf::hexagon, delf::expression("0.5*phi_t^2 - 0.5*phi_x^2 - 0.25*(phi^2 - 1)^2")};

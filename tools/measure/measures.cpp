@@ -10,6 +10,7 @@
 #include "jets/expressions/expression.hpp"
 #include "lattice/text_parts.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/theories/angles.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/measure/measure_names.hpp"
 
@@ -180,12 +181,10 @@ Measures::Measures(const Scene& scene, int winding, const Simulation& simulation
   check_measure_names(scene);
   const Problem& p = scene.problem;
   const auto& components = simulation.components();
-  const MeasuredField field{p.lattice,
-                            p.time_step,
-                            2 * std::numbers::pi * winding,
-                            p.circle_valued || find_theory(p.theory).angle,
-                            simulation.count(Role::field),
-                            make_theory(find_theory(p.theory), p.parameters)};
+  std::shared_ptr<const FieldTheory> theory = make_theory(find_theory(p.theory), p.parameters);
+  const bool angle = p.circle_valued || std::ranges::count(angles_of(p.theory, *theory, p.parameters), 0) > 0;
+  const MeasuredField field{
+      p.lattice, p.time_step, 2 * std::numbers::pi * winding, angle, simulation.count(Role::field), std::move(theory)};
   for (const std::string& name : names) {
     Expression expression{name, key_of_measure(name), {}, constants_of(scene), {}};
     expression.sites_move = std::ranges::any_of(components, &Component::position);

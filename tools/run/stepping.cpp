@@ -9,6 +9,7 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/momenta.hpp"
+#include "schemes/theories/angles.hpp"
 #include "tools/run/placed_row.hpp"
 
 namespace delf {
@@ -83,7 +84,9 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
     try {
       require_lagrangian(simulation.evolution().system());
       require_momenta_of_all_rows(simulation, names);
-      section_.emplace(scene.section, simulation.count(Role::field), scene.problem.time_step);
+      std::vector<int> angles = angles_of(scene.problem.theory, simulation.theory(), scene.problem.parameters);
+      if (scene.problem.circle_valued) angles = {0};
+      section_.emplace(scene.section, simulation.count(Role::field), scene.problem.time_step, angles);
     } catch (const BadInput& bad) {
       throw scene.settings.located(bad);
     }
