@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "lattice/complex/mesh_topology.hpp"
 #include "schemes/complex/circle_fibre.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
@@ -25,14 +26,13 @@ constexpr std::string_view reversible = "reversible";  // of lattice.time_steps:
 
 /// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
 const std::set<std::string, std::less<>> read_keys{
-    "theory.name",          "theory.fibre",       "lattice.space",     "lattice.mesh",
-    "lattice.time",         "lattice.courant",    "lattice.time_step", "lattice.time_steps",
-    "lattice.step_control", "boundary.mesh",      "scheme.tolerance",  "scheme.max_iterations",
-    "initial.state",        "run.until",          "run.steps",         "run.seed",
-    "output.every",         "output.checkpoint",  "output.fields",     "output.figures",
-    "output.format",        "output.titles",      "verify.variations", "verify.moments",
-    "verify.tolerance",     "verify.fault",       "verify.generator",  "verify.force",
-    "scheme.method",        "convergence.levels", "convergence.order", "convergence.agreement"};
+    "theory.name",        "theory.fibre",      "lattice.space",         "lattice.mesh",       "lattice.merge",
+    "lattice.time",       "lattice.courant",   "lattice.time_step",     "lattice.time_steps", "lattice.step_control",
+    "boundary.mesh",      "scheme.tolerance",  "scheme.max_iterations", "initial.state",      "run.until",
+    "run.steps",          "run.seed",          "output.every",          "output.checkpoint",  "output.fields",
+    "output.figures",     "output.format",     "output.titles",         "verify.variations",  "verify.moments",
+    "verify.tolerance",   "verify.fault",      "verify.generator",      "verify.force",       "scheme.method",
+    "convergence.levels", "convergence.order", "convergence.agreement"};
 
 /// Keys of time, which lattice.time = none has none of.
 const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "lattice.time_step", "lattice.time_steps",
@@ -117,6 +117,14 @@ void read_fields(ComplexScene& c, const Values& values, const ParameterValues& p
     throw settings.error("initial.state", "is of one coordinate; on a mesh give formulas, initial.phi or exact.phi");
 }
 
+/// The stencils of a file stand for the area that they cover, each part once.
+void require_tiling(ComplexScene& c) {
+  c.tiling = tiling_of(*c.stencils);
+  if (const auto& fault = c.tiling.fault)
+    throw BadInput("lattice.mesh", fmt::format("lattice.mesh = {}: {}:{}: {}", c.mesh_file.filename().string(),
+                                               c.mesh_file.filename().string(), fault->line, fault->what));
+}
+
 /// Data are on G = 0: rows 0, or the fixed boundary where there is no time.
 void require_constraint(const ComplexScene& c) {
   const std::vector<double> values = c.values();
@@ -157,8 +165,12 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     c.theory = make_theory(entry, parameters);
     if (!values.given("lattice.mesh"))
       throw settings.error("lattice.mesh", "must be given with lattice.space = complex: a file, or icosahedron:4");
-    auto mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file, halvings);
+    auto mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file, halvings,
+                           values.maybe_real("lattice.merge"));
     if (const auto* list = std::get_if<StencilList>(&mesh)) c.stencils = std::make_unique<const StencilList>(*list);
+    if (const Setting* merge = settings.find("lattice.merge"); merge && (c.stencils || c.mesh_file.empty()))
+      scene.warnings.push_back(key_warning(settings, *merge, "no effect: it is for the points of a mesh file"));
+    if (c.stencils && !c.mesh_file.empty() && !find_fault(*c.stencils, c.theory->density())) require_tiling(c);
     refuse_unread(settings, entry, parameters, c.theory->fields(), values.choice("lattice.time") == "none",
                   c.stencils != nullptr);
     p.method = values.choice("scheme.method");
@@ -298,6 +310,11 @@ std::string ComplexScene::mesh_in_words() const {
   for (std::size_t n = 2; n < count.size(); ++n)
     if (count[n] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : " and ", count[n], names[n]);
   return text;
+}
+
+std::string ComplexScene::topology_in_words() const {
+  if (space) return in_words(topology(space->mesh), space->mesh.dimension);
+  return tiling.cells ? in_words(topology(*tiling.cells), tiling.cells->dimension) : "";
 }
 
 std::string ComplexScene::state_in_words() const {

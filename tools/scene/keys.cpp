@@ -122,6 +122,10 @@ std::vector<Key> general_keys() {
           "graded:LENGTH,POINTS,RATIO, "
           "rectangle:WIDTH,HEIGHT,NX,NY, quadrilaterals:WIDTH,HEIGHT,NX,NY, or of spacetime "
           "refined:LENGTH,DURATION,NX,NT"},
+      Key{"lattice.merge", real, "", "points at one place are refused",
+          "points of a mesh file no further apart are one; 0: points at one place stay apart, as on both sides of a "
+          "slit",
+          "length", not_negative},
       Key{"lattice.time", choice, "rows", "",
           "on a mesh: all sites row by row, none (data all round: an elliptic problem), or each of its cells by its "
           "own "
@@ -183,7 +187,7 @@ std::vector<Key> general_keys() {
       Key{"output.checkpoint", real, "60", "", "save all that `delf resume` needs so often; 0: never", "seconds",
           not_negative},
       Key{"output.section", KeyType::text, "", "none",
-          "a Poincare section: q1 = 0, p1 > 0; its points are in section.csv"},
+          "a Poincare section: q1 = 0, p1 > 0; its points are in section.csv. Angles of the theory count modulo 2 pi"},
 
       Key{"verify.regions", KeyType::text, "", "rectangle staircase hole wall slab random",
           "kinds of regions, drawn from run.seed; or ROWSxSITES, such as 0:8x10:30-3:5x18:22, rows from each moment's "

@@ -299,8 +299,8 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
   if ((key == "output.format" || key == "output.titles") && !scene.figures) return "output.figures = off is in force";
   if (key == "output.section" && !point) return "sections are of mechanics, lattice.space = point";
   const bool of_steps = key == "lattice.time_steps" || key == "lattice.step_control";
-  if (key == "lattice.mesh" || key == "lattice.time" || (of_steps && !scene.problem.step_control) ||
-      key == "boundary.mesh")
+  if (key == "lattice.mesh" || key == "lattice.merge" || key == "lattice.time" ||
+      (of_steps && !scene.problem.step_control) || key == "boundary.mesh")
     return "only lattice.space = complex has a mesh";
   if (key == "boundary.winding" && point) return "a point has no winding";
   if (key == "boundary.winding" && !circle) return "an interval has no winding";
