@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 #include <string_view>
 
 #include "jets/expressions/expression.hpp"
@@ -12,6 +13,7 @@
 #include "lattice/text_parts.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/mirrored_in_time.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
@@ -127,5 +129,18 @@ const TheoryEntry text_theory{
     .make = make,
     .chosen_by = {density_key, equation_key},
     .further = further};
+
+Problem mirrored_in_time(Problem problem, double T) {
+  static const std::regex time("\\bt\\b");
+  ParameterValues values;
+  for (const auto& [key, value] : problem.parameters) {
+    if (key == equation_key) continue;  // the density was tested with it, and it is that of the other direction
+    values[key] = key == density_key || key == constraint_key
+                      ? std::regex_replace(std::get<std::string>(value), time, fmt::format("({:.17g}-t)", T))
+                      : value;
+  }
+  problem.parameters = std::move(values);
+  return problem;
+}
 
 }  // namespace delf

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/verify/force_share.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "schemes/verify/drawn_region.hpp"
 
@@ -12,15 +16,23 @@ namespace delf {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+// Programs whose steps are solved by iteration leave some of the force.
+constexpr double least_share = 1e-8;
+// 2⁻³¹ is how often noise has the same sign in all of them.
+constexpr std::int64_t most_stretches = 32, fewest_stretches = 24;
 
 }  // namespace
 
-ForceShare::ForceShare(const LatticeSystem& system, std::int64_t rows, double solver)
+ForceShare::ForceShare(const LatticeSystem& system, std::int64_t rows, const Precision& precision)
     : system_(&system),
       row_(system),
       stride_(std::clamp<std::int64_t>(rows / 64, 1, 8)),
-      solver_(solver),
+      precision_(precision),
+      stretches_(static_cast<std::size_t>(std::clamp<std::int64_t>(rows / stride_, 1, most_stretches))),
+      rows_(rows),
+      averages_(static_cast<std::size_t>(2 * system.components())),
       at_(static_cast<std::size_t>(system.lattice().sites() * system.components())) {
+  for (Average& one : averages_) one.ES.assign(stretches_, 0), one.SS.assign(stretches_, 0);
   // Σ_a |∂E/∂y_a|, in the midst of space: what an error of the values makes of E
   const int middle = system.lattice().sites() / 2;
   for (int c = 0; c < system.components(); ++c) {
@@ -31,34 +43,187 @@ ForceShare::ForceShare(const LatticeSystem& system, std::int64_t rows, double so
   }
 }
 
-void ForceShare::at(const Window& window, std::int64_t row, const std::vector<LatticeSystem::Value>& E,
-                    const std::vector<double>& relative, double tolerance) {
+bool ForceShare::has_force(std::size_t n) const {
+  const Role role = system_->component(static_cast<int>(n) % system_->components()).role;
+  return role == Role::field || role == Role::inner;
+}
+
+/// F of a row. A node between rows has the value that its field has below it.
+void ForceShare::find_forces(const Window& window, std::int64_t row) {
+  std::vector<double> here = window.rows[static_cast<std::size_t>(row - window.first_row)];
+  const int C = system_->components();
+  for (int c = 0; c < C; ++c) {
+    const Component& node = system_->component(c);
+    if (node.role != Role::inner || node.at.time == 0) continue;
+    for (int b = 0; b < C; ++b) {
+      const Component& below = system_->component(b);
+      if (below.field != node.field || below.at.time != 0 || below.at.space != node.at.space ||
+          (below.role != Role::field && below.role != Role::inner))
+        continue;
+      for (std::size_t i = 0; i < here.size(); i += static_cast<std::size_t>(C))
+        here[i + static_cast<std::size_t>(c)] = here[i + static_cast<std::size_t>(b)];
+    }
+  }
+  const auto reach = static_cast<std::int64_t>(std::max(1, system_->height()));
+  Window still = window;
+  still.first_row = row - reach;
+  still.rows.assign(static_cast<std::size_t>(2 * reach + 1), here);
+  row_.equations(still, row, forces_);
+}
+
+void ForceShare::at(const Window& window, std::int64_t row, const EquationCheck& equations) {
   const std::vector<double>& here = window.rows[static_cast<std::size_t>(row - window.first_row)];
   const bool evaluated = seen_++ % stride_ == 0;
-  if (evaluated) {
-    const auto reach = static_cast<std::int64_t>(std::max(1, system_->height()));
-    Window still = window;
-    still.first_row = row - reach;
-    still.rows.assign(static_cast<std::size_t>(2 * reach + 1), here);
-    row_.equations(still, row, forces_);
-  }
+  if (evaluated) find_forces(window, row);
   errors_.assign(at_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t n = 0; n < at_.size(); ++n) {
-    const int component = static_cast<int>(n) % system_->components();
-    if (std::isnan(relative[n]) || system_->component(component).role != Role::field) continue;
+    const double relative = equations.newest()[n];
+    if (std::isnan(relative) || !has_force(n)) continue;
+    // what is left of terms that cancel is no force
+    const double force = evaluated ? std::abs(forces_[n].sum) : 0;
+    const bool counts = evaluated && force > 1e-14 * forces_[n].absolute;
+    if (counts) force_ = std::max(force_, force);
+    if (evaluated) terms_ = std::max(terms_, forces_[n].absolute);
+    if (system_->component(static_cast<int>(n) % system_->components()).role != Role::field) continue;
     ++equations_;
     Largest& largest = at_[n];
     largest.seen = true;
-    const double error = errors_[n] = std::abs(E[n].sum);
+    const double error = errors_[n] = std::abs(equations.sums()[n].sum);
     if (error > largest.error) largest.error = error, largest.row = row;
-    largest.failed = largest.failed || relative[n] > tolerance;
+    largest.failed = largest.failed || relative > equations.tolerance();
     if (const double y = std::abs(here[n]); y > largest.value)
       largest.value = y, largest_value_ = std::max(largest_value_, y);
-    if (!evaluated) continue;
-    // what is left of terms that cancel is no force
-    const double force = std::abs(forces_[n].sum);
-    if (force > 1e-14 * forces_[n].absolute) largest.force = std::max(largest.force, force);
+    if (counts) largest.force = std::max(largest.force, force);
   }
+  suspect(window, row, equations);
+  if (evaluated) add_to_averages(window, row, equations);
+}
+
+double ForceShare::Average::c() const {
+  double all = 0, squares = 0;
+  for (std::size_t b = 0; b < ES.size(); ++b) all += ES[b], squares += SS[b];
+  return squares > 0 ? all / squares : 0;
+}
+
+double ForceShare::Average::shortfall() const {
+  const double mean = c();
+  double most = 0;
+  for (std::size_t b = 0; b < ES.size(); ++b)
+    if (SS[b] > 0) most = std::max(most, (mean - ES[b] / SS[b]) * (mean < 0 ? -1 : 1));
+  return most;
+}
+
+/// Where the force is lost in the last digits of a step, E is the force, without a sign of its own: such equations do not
+/// count.
+void ForceShare::add_to_averages(const Window& window, std::int64_t row, const EquationCheck& equations) {
+  const std::int64_t reach = std::max(1, system_->height());
+  const auto behind = static_cast<std::size_t>(2 * reach / stride_ + 1);
+  std::vector<double> now(at_.size());
+  for (std::size_t n = 0; n < now.size(); ++n) now[n] = forces_[n].sum;
+  earlier_.push_back(std::move(now));
+  if (earlier_.size() <= behind) return;
+  const std::vector<double> force = std::move(earlier_.front());
+  earlier_.pop_front();
+  const auto C = static_cast<std::size_t>(system_->components());
+  const auto stretch = std::min(stretches_ - 1, static_cast<std::size_t>(seen_ - 1) * stretches_ /
+                                                    static_cast<std::size_t>(std::max<std::int64_t>(rows_, 1)));
+  const double least = relative_bound_ * equations.scale();
+  asked_ = std::max(asked_, precision_.asked * equations.scale());
+  const auto &below = window.rows[static_cast<std::size_t>(row - 1 - window.first_row)],
+             &above = window.rows[static_cast<std::size_t>(row + 1 - window.first_row)];
+  for (std::size_t n = 0; n < at_.size(); ++n) {
+    if (std::isnan(equations.newest()[n]) || !has_force(n) || !(std::abs(force[n]) > least)) continue;
+    const double E = equations.sums()[n].sum;
+    forces_square_ += force[n] * force[n], ++forces_count_;
+    for (const auto& [signal, S] : {std::pair{0, force[n]}, std::pair{1, above[n] - below[n]}}) {
+      Average& average = averages_[2 * (n % C) + static_cast<std::size_t>(signal)];
+      average.ES[stretch] += E * S, average.SS[stretch] += S * S;
+    }
+  }
+}
+
+std::optional<Check> ForceShare::average() const {
+  if (forces_count_ == 0) return std::nullopt;
+  const double force = std::sqrt(forces_square_ / static_cast<double>(forces_count_));
+  std::optional<Check> worst;
+  for (std::size_t n = 0; n < averages_.size(); ++n) {
+    const Average& average = averages_[n];
+    const double squares = std::accumulate(average.SS.begin(), average.SS.end(), 0.0);
+    const auto stretches = std::ranges::count_if(average.SS, [](double SS) { return SS > 0; });
+    if (stretches < fewest_stretches) continue;
+    const double size = std::sqrt(squares / static_cast<double>(forces_count_)) / force;
+    const double value = std::abs(average.c()) * size;
+    const double tolerance = std::max({least_share, average.shortfall() * size, asked_ / force});
+    if (worst && value / tolerance <= worst->value / worst->tolerance) continue;
+    const char* signal = n % 2 == 0 ? "the force" : "φ_t";
+    worst = Check{.name = "field equations, on average",
+                  .region = fmt::format("along {}, {} stretches of rows", signal, stretches),
+                  .value = value,
+                  .tolerance = tolerance,
+                  .normaliser = force,
+                  .count = forces_count_,
+                  .samples = stretches};
+    worst->failure = fmt::format(
+        "E has the sign of {} in each of {} stretches of the rows, and on average {:.2g} of the force. Rounding has no "
+        "sign: {}.",
+        signal, stretches, value,
+        n % 2 == 0 ? "the force is another one (a mass, a coefficient), or steps were not solved"
+                   : "there is friction, or a step that is not reversible");
+  }
+  return worst;
+}
+
+/// The worst equation of a row.
+void ForceShare::suspect(const Window& window, std::int64_t row, const EquationCheck& equations) {
+  const auto C = static_cast<std::size_t>(system_->components());
+  Suspect worst{.row = row};
+  for (std::size_t n = 0; n < at_.size(); ++n)
+    if (!std::isnan(equations.newest()[n]) && has_force(n))
+      if (const double error = std::abs(equations.sums()[n].sum); !(error <= worst.error))
+        worst.error = error, worst.n = n;
+  if (worst.error == 0) return;
+  const auto site = static_cast<int>(worst.n / C), component = static_cast<int>(worst.n % C);
+  // The last change of a step moves what is nonlinear alone.
+  const double left = 10 * precision_.solver * terms_;
+  worst.bound = left + std::max(equations.error_at(window, row, site, component, precision_.values),
+                                precision_.asked * equations.scale());
+  relative_bound_ = worst.bound / equations.scale();
+  if (closest_.bound == 0 || worst.error / worst.bound > closest_.error / closest_.bound) closest_ = worst;
+  if (worst.error <= worst.bound) return;
+  ++rows_beyond_;
+  if (!(worst.error <= beyond_.error)) beyond_ = worst;
+}
+
+std::string ForceShare::where(std::size_t n, std::int64_t row) const {
+  const auto C = static_cast<std::size_t>(system_->components());
+  return in_words(*system_, Node{{0, static_cast<int>(n / C)}, static_cast<int>(n % C)}, row);
+}
+
+std::optional<ForceShare::Judged> ForceShare::check() const {
+  if (closest_.bound == 0) return std::nullopt;
+  // In an equilibrium the terms of the force cancel.
+  const double scale = force_ > closest_.bound ? force_ : terms_;
+  const bool fails = beyond_.bound > 0 && !(beyond_.error <= least_share * scale);
+  const Suspect& worst = fails ? beyond_ : closest_;
+  Check check{.name = "field equations, beside the force",
+              .region = where(worst.n, worst.row),
+              .value = worst.error / scale,
+              .tolerance = std::max(least_share, worst.bound / scale),
+              .normaliser = scale,
+              .count = equations_,
+              .samples = seen_};
+  check.failure = fmt::format(
+      "|E| is {:.2g} of the largest force, in {} row{}, and rounding of the values explains {:.2g}. Beside the terms, "
+      "which grow as 1/h², that may be little: the force is another one (a mass, a coefficient, friction), or steps "
+      "were not solved.",
+      check.value, rows_beyond_, rows_beyond_ == 1 ? "" : "s", worst.bound / scale);
+  Judged judged{std::move(check)};
+  if (!fails && !(scale > worst.bound))
+    judged.unmeasurable = fmt::format(
+        "What rounding of the values makes of the equations is {:.2g} times the force: rows of any force would pass. "
+        "Record more digits, or verify rows of longer time steps.",
+        worst.bound / scale);
+  return judged;
 }
 
 SiteSeverity ForceShare::severity(std::size_t n) const {
@@ -73,7 +238,7 @@ SiteSeverity ForceShare::severity(std::size_t n) const {
           .row = at_[n].row,
           .error = at_[n].error,
           .force = at_[n].force,
-          .rounding = coefficients_ * (8 * epsilon * value + solver_ * largest_value_)};
+          .rounding = coefficients_ * (8 * epsilon * value + precision_.solver * largest_value_)};
 }
 
 std::vector<SiteSeverity> ForceShare::sites() const {
@@ -87,24 +252,19 @@ std::vector<Measured> ForceShare::measured() const {
   double force = 0;
   for (const Largest& largest : at_) force = std::max(force, largest.force);
   if (force == 0) return {};
-  const auto where = [&](std::size_t n) {
-    const auto C = static_cast<std::size_t>(system_->components());
-    return in_words(*system_, Node{{0, static_cast<int>(n / C)}, static_cast<int>(n % C)}, at_[n].row);
-  };
   const auto worst = static_cast<std::size_t>(std::ranges::max_element(at_, {}, &Largest::error) - at_.begin());
   std::vector<Measured> result{{.name = "equations: |E| beside the largest force",
-                                .region = where(worst),
+                                .region = where(worst, at_[worst].row),
                                 .value = at_[worst].error / force,
                                 .normaliser = force,
-                                .count = equations_,
-                                .remark = "verdicts are relative to the terms"}};
+                                .count = equations_}};
   std::size_t site = 0;
   double most = 0;
   for (std::size_t n = 0; n < at_.size(); ++n)
     if (const double share = at_[n].seen ? severity(n).share() : 0; share > most) most = share, site = n;
   if (most > 0)
     result.push_back({.name = "equations: |E| of a site beside its force",
-                      .region = where(site),
+                      .region = where(site, at_[site].row),
                       .value = most,
                       .normaliser = at_[site].force,
                       .count = equations_,

@@ -17,6 +17,7 @@
 #include "schemes/theories/field_theory.hpp"
 #include "tools/run/energy_warnings.hpp"
 #include "tools/run/exact_energy.hpp"
+#include "tools/run/linear_limit.hpp"
 #include "tools/run/solution_error.hpp"
 #include "tools/run/vacuum_symbol.hpp"
 
@@ -25,18 +26,6 @@ namespace delf {
 namespace {
 
 constexpr double one_percent = 0.01;
-// The largest |z| of the waves that the lattice has near θ: θ_j = 2πj/N on a circle, πj/(N − 1) between walls.
-double growth_near(const Symbol& symbol, const Lattice& lattice, double theta) {
-  if (lattice.space() == Space::point) return symbol.amplification(0);
-  const double apart = (lattice.is_circle() ? 2 : 1) * std::numbers::pi / lattice.cells();
-  const auto nearest = static_cast<int>(std::lround(theta / apart));
-  constexpr int window = 16;
-  double most = 1;
-  for (int j = std::max(0, nearest - window); j <= nearest + window; ++j)
-    most = std::max(most, symbol.amplification(std::min(j * apart, std::numbers::pi)));
-  return most;
-}
-
 struct Range {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   void add(double x) { least = std::min(least, x), most = std::max(most, x); }
@@ -138,20 +127,7 @@ Found Warnings::narrow_pulse() const {
 }
 
 Found Warnings::linear_limit(const Outcome& outcome) const {
-  const auto symbol = symbol_of(scene_, simulation_);
-  if (!symbol || outcome.steps == 0) return {};
-  // A few wave numbers for the many roots of an element; between them the analysis looks where roots meet.
-  const StabilityVerdict verdict = linear_stability(*symbol, symbol->size() > 1 ? 33 : 101);
-  if (verdict.stable) return {};
-  const double growth = growth_near(*symbol, scene_.problem.lattice, verdict.worst_theta);
-  if (!std::isfinite(growth)) return {};  // steps of that wave have no solution, and these had one: walls hold it
-  const double decades = static_cast<double>(outcome.steps) * std::log10(growth);
-  if (!(decades > 1)) return {};
-  return fmt::format(
-      "beyond the linear limit of the scheme: waves near qk = {:.3g} grow by {:.4g} in each step, by "
-      "1e{:.0f} in all; reduce {} (`delf stability` finds the limit)",
-      verdict.worst_theta, growth, decades,
-      scene_.problem.lattice.space() == Space::point ? "lattice.time_step" : "lattice.courant");
+  return beyond_linear_limit(scene_, simulation_, outcome.steps);
 }
 
 /// A mode that the scheme has and the theory has not, as far as it is there in the last row.

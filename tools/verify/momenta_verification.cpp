@@ -144,7 +144,8 @@ void verify_momenta(const Scene& scene, const VerifyRequest& request, const std:
   const MomentumScale scale = masses.empty() ? MomentumScale{} : momentum_scale(evidence, masses);
   rows.take_units(scale, masses);
   for (CanonicalRows& file : beside) file.take_units(rows);
-  const double rounding = error_of_rounding(evidence);
+  const auto rounded = rounding_of(evidence.rows, row);
+  const double rounding = rounded ? rounded->relative : 0;
 
   if (alone) {
     verdict.subject = "(q, p) of " + fields;

@@ -108,7 +108,9 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
 
   moment_rows_ = FormCheck::rows_wanted(system_, plan_, request.regions);
   drawer_.emplace(system_, Tangent::solved_rows(system_, plan_, moment_rows_));
-  const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
+  double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
+  // What a file has of its values says how well the equations can hold, unless the scene does.
+  if (rounded_ && !request.own_tolerance) of_steps = std::max(of_steps, 2 * rounded_->relative);
   if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows());
   if (request.wants("forms") && (!fields || request.chosen))
     forms_.emplace(system_, plan_, moment_rows_,
@@ -152,6 +154,9 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
         "command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
         "directions; further pairs are the same at other sizes");
   rows_ = fields_->rows() - std::ranges::max(behind);
+  if (rows_ > 0) rounded_ = rounding_of(rows_, [&](std::int64_t j) { return fields_->row(j); });
+  if (rounded_ && request_.unwrap) rounded_->error = {.absolute = rounded_->unit};
+  if (rounded_) verdict_.subject += ", whose values have " + rounded_->words;
   require_every_row(fields);
 }
 
@@ -222,7 +227,14 @@ void Verification::choose_moments() {
   if (equations_ && fields_) {
     severity_.emplace(system_.lattice(), scene_.problem.time_step, reach, rows_ - 2 * reach);
     const bool iterates = simulation_.evolution().stepper().iterates();
-    share_.emplace(system_, rows_ - 2 * reach, iterates ? scene_.problem.tolerance : 0);
+    ForceShare::Precision precision;
+    precision.solver = iterates ? scene_.problem.tolerance : 0;
+    precision.asked = request_.own_tolerance ? request_.tolerance : 0;
+    if (rounded_) {  // and the last digits of steps
+      precision.values.absolute = rounded_->error.absolute, precision.values.digits = rounded_->error.digits;
+      precision.values.relative = std::max(precision.values.relative, rounded_->error.relative);
+    }
+    share_.emplace(system_, rows_ - 2 * reach, precision);
   }
   const FieldTheory& theory = simulation_.theory();
   if (request_.wants("balance")) {
@@ -347,7 +359,8 @@ void Verification::take(std::vector<double> row) {
     bins_->add(middle, equations_->newest(), system_.components());
     if (fields_) {
       failed_.add(middle, equations_->newest(), system_.components(), equations_->tolerance());
-      share_->at(held_, middle, equations_->sums(), equations_->newest(), equations_->tolerance());
+      share_->at(held_, middle, *equations_);
+      hidden_.add(middle, equations_->newest(), system_.components(), share_->relative_bound());
       severity_->add(middle, share_->errors(), system_.components());
     }
   }
@@ -410,7 +423,8 @@ void Verification::diagnose_rows() {
     if (request_.identify) leave_out("diagnosis: of rows of a file; give --fields");
     return;
   }
-  if (!equations_ || verdict_.status != "done" || !(failed_.failed() > 0 || request_.identify)) return;
+  const bool hidden = failed_.failed() == 0 && verdict_.failed() > 0;  // beside the force
+  if (!equations_ || verdict_.status != "done" || !(failed_.failed() > 0 || hidden || request_.identify)) return;
   if (!std::ranges::all_of(system_.all_components(), [](const Component& c) { return c.role == Role::field; })) {
     leave_out("diagnosis: of schemes whose values are fields at the vertices, and this one has others");
     return;
@@ -426,7 +440,13 @@ void Verification::diagnose_rows() {
   };
   Problem problem = scene_.problem;
   problem.winding = winding_;
-  Evidence evidence{problem, system_, turn_, equations_->tolerance(), rows_, row, failed_};
+  Evidence evidence{problem,
+                    system_,
+                    turn_,
+                    hidden ? share_->relative_bound() : equations_->tolerance(),
+                    rows_,
+                    row,
+                    hidden ? hidden_ : failed_};
   if (fields_->momenta(0)) evidence.momenta = [&](std::int64_t j) { return *fields_->momenta(j); };
   verdict_.diagnosis = diagnose(std::move(evidence)).findings;
 }
@@ -481,7 +501,14 @@ void Verification::collect() {
     add(equations_->checks());
     verdict_.map = bins_->map();
     if (walls_) add({*walls_});
-    if (share_) collect_severity();
+    if (share_) {
+      if (auto judged = share_->check()) {
+        if (judged->unmeasurable.empty()) add({std::move(judged->check)});
+        else verdict_.unmeasured.push_back({std::move(judged->check), std::move(judged->unmeasurable)});
+      }
+      if (auto check = share_->average()) add({std::move(*check)});
+      collect_severity();
+    }
     diagnose_rows();
     verdict_.stencils += equations_->rows() * system_.lattice().sites();
   }

@@ -43,6 +43,17 @@ TEST_CASE("a wave on a mesh runs, is planned and verified through the program") 
     CHECK(delf_program(folder, "verify " + scene + " --out v --verify.fault=" + fault).code == 1);
 }
 
+TEST_CASE("rows of a mesh at short steps are right to rounding, and an edited value is still found") {
+  const Folder folder;
+  for (const char* h : {"0.003", "1e-4"}) {
+    const std::string scene =
+        std::string("sphere --lattice.mesh=icosahedron:2 --run.steps=20 --output.figures=off --lattice.time_step=") + h;
+    CAPTURE(h);
+    CHECK(delf_program(folder, "verify " + scene + " --out v").code == 0);
+    CHECK(delf_program(folder, "verify " + scene + " --out v --verify.fault=field").code == 1);
+  }
+}
+
 TEST_CASE("steps that the field chooses run, end by time, and run again and back to the same") {
   const Folder folder;
   const std::string scene = "sphere --lattice.mesh=icosahedron:1 --lattice.time_steps=reversible ";

@@ -115,6 +115,68 @@ TEST_CASE("a tail that is wrong by less than the tolerance is seen beside the fo
       CHECK(measured["remark"] == "more than rounding, and below the tolerance of the checks");
 }
 
+TEST_CASE("a mass that the terms hide is found beside the force, and rows that are right to rounding are not accused") {
+  constexpr const char* beside = "field equations, beside the force";
+  const Folder folder;
+  folder.write("small.ini", scene());
+  for (const char* h : {"0.3", "0.01", "1e-4", "1e-5"}) {
+    const std::string step = std::string("--lattice.time_step=") + h + " ";
+    CAPTURE(h);
+    REQUIRE(delf_program(folder, "run small.ini --out run " + step).code == 0);
+    copy(folder / "run/fields.h5", folder / "rows.h5", [](int, std::vector<double>&) {});
+    const auto check = [&](const Json& json) {
+      for (const Json& one : json["checks"])
+        if (one["name"] == beside) return one;
+      return Json();
+    };
+    CHECK(check(verified(folder, "--fields rows.h5 " + step, 0))["passed"] == true);
+    // E = (m'^2 - m^2) sin φ, which is 1e-14 of the terms at h = 1e-4
+    const Json wrong = verified(folder, "--fields rows.h5 --theory.mass=1.001 " + step, 1);
+    CHECK(check(wrong)["passed"] == false);
+    CHECK(check(wrong)["value"].get<double>() == Approx(2e-3).epsilon(0.9));
+    CHECK(!wrong["diagnosis"].empty());
+  }
+}
+
+TEST_CASE("rows in single precision are measured by what they have, and where that is nothing the verdict says so") {
+  const Folder folder;
+  folder.write("small.ini", scene());
+  const auto single = [&](const std::string& step) {
+    REQUIRE(delf_program(folder, "run small.ini --out run " + step).code == 0);
+    copy(folder / "run/fields.h5", folder / "rows.h5", [](int, std::vector<double>& row) {
+      for (double& y : row) y = static_cast<float>(y);
+    });
+  };
+  single("");
+  CHECK(contains(verified(folder, "--fields rows.h5", 0)["subject"].get<std::string>(), "single precision"));
+  verified(folder, "--fields rows.h5 --theory.mass=1.001", 1);
+  // Rounding to six digits is ten times what a mass off by 1e-4 makes of one equation, and averages to nothing.
+  const auto digits = [&](const std::string& mass, int code) {
+    const std::string rows = " --run.steps=200 ";
+    REQUIRE(delf_program(folder, "run small.ini --out run" + rows).code == 0);
+    copy(folder / "run/fields.h5", folder / "digits.h5", [](int, std::vector<double>& row) {
+      for (double& y : row) y = std::stod(fmt::format("{:.6g}", y));
+    });
+    return verified(folder, "--fields digits.h5 --theory.mass=" + mass + rows, code);
+  };
+  CHECK(digits("1", 0)["passed"] == true);
+  CHECK(digits("1.0002", 1)["passed"] == false);
+  // ε φ/h² is a hundred times the force: any mass would do
+  single("--lattice.time_step=1e-4 ");
+  for (const char* mass : {"1", "1.1"}) {
+    const Json json =
+        verified(folder, std::string("--fields rows.h5 --lattice.time_step=1e-4 --theory.mass=") + mass, 1);
+    CHECK(json["passed"] == false);
+    for (const Json& check : json["checks"]) {
+      CHECK(check["failure"].is_null());
+      if (check["name"] != "field equations") CHECK(check["unmeasurable"].is_string());
+    }
+  }
+  const Ran ran = delf_program(folder, "verify small.ini --fields rows.h5 --lattice.time_step=1e-4 --out out");
+  CHECK(contains(ran.out, "not measurable: 1 of 2 checks"));
+  CHECK_FALSE(contains(ran.out, "FAILED"));
+}
+
 TEST_CASE("run and verify report the energy that rows have for themselves, where there is one") {
   const Folder folder;
   folder.write("small.ini", scene());
