@@ -283,7 +283,9 @@ const std::vector<Command>& table() {
        "without one differences from the next line. Into DIR (results/NAME of the scene, if not given) go\n"
        "convergence.json, convergence.csv and, with output.figures, figures/convergence: the errors against N, and the\n"
        "slope of the order. Exit code 1 if the last two lines miss the order of the scheme, where it is known, or have\n"
-       "another than convergence.order. On a mesh its sides are halved, and the order is that of L2.\n\n"
+       "another than convergence.order. Where errors are not the scheme's (rounding, ends of the lattice, a formula that\n"
+       "is no solution), the order is not measured, which is said, with exit code 0; unstable steps: 3. On a mesh its\n"
+       "sides are halved, and the order is that of L2.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_convergence, "convergence"},
       {"workprecision", "delf workprecision SCENE [--out DIR] [--KEY=VALUE ...]",

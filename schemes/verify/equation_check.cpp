@@ -20,8 +20,9 @@ double ValueError::of(double y) const {
   return std::max(error, 0.5 * std::pow(10.0, std::floor(std::log10(size)) - digits + 1));
 }
 
-EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan, double tolerance, int data_rows)
-    : system_(&system), row_(system), tolerance_(tolerance), data_rows_(data_rows), seen_(3) {
+EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan, double tolerance, int data_rows,
+                             const std::optional<ValueError>& values)
+    : system_(&system), row_(system), tolerance_(tolerance), data_rows_(data_rows), rounded_(values), seen_(3) {
   reach_ = std::max(1, system.height());
   constexpr std::array names{"field equations", "field equations at natural ends", "constraints"};
   for (std::size_t n = 0; n < seen_.size(); ++n)
@@ -119,6 +120,7 @@ void EquationCheck::at(const Window& window, std::int64_t row) {
     for (std::size_t n = 0; n < sizes.size(); ++n) {
       double& of = scale[is_constraint(components[n]) ? constraint : bulk];
       of = std::max(of, sizes[n]);
+      if (rounded_) of = std::max(of, error_at(window, row, site, components[n], *rounded_) / tolerance_);
     }
   }
   scale_ = scale[natural_end] = scale[bulk];  // ends are measured by the scale of the bulk

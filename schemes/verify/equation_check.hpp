@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,9 @@ class EquationCheck {
  public:
   /// Rows 0 … data_rows − 1 are data, which a run was started from: equations that read no later row were never solved,
   /// and are not asked.
-  EquationCheck(const LatticeSystem&, const SolvePlan&, double tolerance, int data_rows = 0);
+  /// `values` of a format that is coarser than double precision: |E| that it explains is below the tolerance.
+  EquationCheck(const LatticeSystem&, const SolvePlan&, double tolerance, int data_rows = 0,
+                const std::optional<ValueError>& values = {});
 
   /// Rows before and after a row that its equations read.
   int reach() const { return reach_; }
@@ -69,6 +72,7 @@ class EquationCheck {
   AssembledRow row_;
   double tolerance_;
   int data_rows_;
+  std::optional<ValueError> rounded_;
   int reach_ = 1;
   std::vector<char> solved_;  ///< of each site and component: there is an equation
   std::vector<Sort> sorts_;

@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
+#include <random>
+#include <set>
 #include <utility>
 
 #include "schemes/verify/drawn_region.hpp"
@@ -21,6 +25,17 @@ constexpr double least_share = 1e-8;
 // 2⁻³¹ is how often noise has the same sign in all of them.
 constexpr std::int64_t most_stretches = 32, fewest_stretches = 24;
 
+/// How rows and sites are parted: in stretches of rows with all sites, or in longer ones with some neighbouring sites. Where
+/// values were rounded, E is the second difference of that, of which a long smooth average leaves least.
+struct Partition {
+  std::size_t of_rows, of_sites;
+};
+constexpr std::size_t partitions = 2;
+Partition partition(std::size_t which, std::size_t stretches) {
+  constexpr std::size_t long_ones = 4, groups = most_stretches / long_ones;
+  return which == 0 ? Partition{stretches, 1} : Partition{long_ones, groups};
+}
+
 }  // namespace
 
 ForceShare::ForceShare(const LatticeSystem& system, std::int64_t rows, const Precision& precision)
@@ -30,9 +45,12 @@ ForceShare::ForceShare(const LatticeSystem& system, std::int64_t rows, const Pre
       precision_(precision),
       stretches_(static_cast<std::size_t>(std::clamp<std::int64_t>(rows / stride_, 1, most_stretches))),
       rows_(rows),
-      averages_(static_cast<std::size_t>(2 * system.components())),
+      averages_(partitions * static_cast<std::size_t>(2 * system.components())),
       at_(static_cast<std::size_t>(system.lattice().sites() * system.components())) {
-  for (Average& one : averages_) one.ES.assign(stretches_, 0), one.SS.assign(stretches_, 0);
+  for (std::size_t n = 0; n < averages_.size(); ++n) {
+    const Partition parts = partition(n % partitions, stretches_);
+    averages_[n].ES.assign(parts.of_rows * parts.of_sites, 0), averages_[n].SS = averages_[n].ES;
+  }
   // Σ_a |∂E/∂y_a|, in the midst of space: what an error of the values makes of E
   const int middle = system.lattice().sites() / 2;
   for (int c = 0; c < system.components(); ++c) {
@@ -41,6 +59,20 @@ ForceShare::ForceShare(const LatticeSystem& system, std::int64_t rows, const Pre
     for (const Coefficient& one : system.linearised({0, middle}, c)) sum += std::abs(one.value);
     coefficients_ = std::max(coefficients_, sum);
   }
+  rows_have_forces_ = find_whether_rows_have_forces();
+}
+
+/// A row of random values stands still for some reason if F is not 0 there.
+bool ForceShare::find_whether_rows_have_forces() {
+  std::mt19937_64 random(1);
+  std::vector<double> row(at_.size());
+  for (double& y : row) y = std::uniform_real_distribution<double>(0.5, 1.5)(random);
+  const std::int64_t reach = std::max(1, system_->height());
+  const std::vector<std::vector<double>> still(static_cast<std::size_t>(2 * reach + 1), row);
+  system_->equations(system_->window(0, still, 0), reach, forces_);
+  for (std::size_t n = 0; n < forces_.size(); ++n)
+    if (has_force(n) && !(std::abs(forces_[n].sum) <= 1e-10 * forces_[n].absolute)) return true;
+  return false;
 }
 
 bool ForceShare::has_force(std::size_t n) const {
@@ -69,6 +101,7 @@ void ForceShare::find_forces(const Window& window, std::int64_t row) {
   still.first_row = row - reach;
   still.rows.assign(static_cast<std::size_t>(2 * reach + 1), here);
   row_.equations(still, row, forces_);
+  forces_of_ = row;
 }
 
 void ForceShare::at(const Window& window, std::int64_t row, const EquationCheck& equations) {
@@ -82,8 +115,9 @@ void ForceShare::at(const Window& window, std::int64_t row, const EquationCheck&
     // what is left of terms that cancel is no force
     const double force = evaluated ? std::abs(forces_[n].sum) : 0;
     const bool counts = evaluated && force > 1e-14 * forces_[n].absolute;
-    if (counts) force_ = std::max(force_, force);
-    if (evaluated) terms_ = std::max(terms_, forces_[n].absolute);
+    if (counts && rows_have_forces_) force_ = std::max(force_, force);
+    if (evaluated && rows_have_forces_) terms_ = std::max(terms_, forces_[n].absolute);
+    if (!rows_have_forces_) terms_ = std::max(terms_, equations.sums()[n].absolute);
     if (system_->component(static_cast<int>(n) % system_->components()).role != Role::field) continue;
     ++equations_;
     Largest& largest = at_[n];
@@ -96,7 +130,7 @@ void ForceShare::at(const Window& window, std::int64_t row, const EquationCheck&
     if (counts) largest.force = std::max(largest.force, force);
   }
   suspect(window, row, equations);
-  if (evaluated) add_to_averages(window, row, equations);
+  add_to_averages(window, row, equations);
 }
 
 double ForceShare::Average::c() const {
@@ -105,30 +139,49 @@ double ForceShare::Average::c() const {
   return squares > 0 ? all / squares : 0;
 }
 
-double ForceShare::Average::shortfall() const {
+double ForceShare::Average::least() const {
   const double mean = c();
-  double most = 0;
+  // How far the worst stretch falls below |c|: more than |c| if it has the other sign.
+  double shortfall = 0;
   for (std::size_t b = 0; b < ES.size(); ++b)
-    if (SS[b] > 0) most = std::max(most, (mean - ES[b] / SS[b]) * (mean < 0 ? -1 : 1));
-  return most;
+    if (SS[b] > 0) shortfall = std::max(shortfall, (mean - ES[b] / SS[b]) * (mean < 0 ? -1 : 1));
+  // The standard error of c by so many stretches: noise that lasts for some of them shows by the longer ones.
+  const auto error_by = [&](std::size_t joined) {
+    double squares = 0, weights = 0, count = 0;
+    for (std::size_t b = 0; b < ES.size(); b += joined) {
+      double off = 0;
+      for (std::size_t n = b; n < std::min(b + joined, ES.size()); ++n) off += ES[n] - mean * SS[n], weights += SS[n];
+      squares += off * off, count += 1;
+    }
+    return std::sqrt(squares * count / (count - 1)) / weights;
+  };
+  constexpr double standard_errors = 10;
+  return std::min(shortfall, standard_errors * std::max(error_by(1), error_by(4)));
 }
 
 /// Where the force is lost in the last digits of a step, E is the force, without a sign of its own: such equations do not
 /// count.
 void ForceShare::add_to_averages(const Window& window, std::int64_t row, const EquationCheck& equations) {
   const std::int64_t reach = std::max(1, system_->height());
-  const auto behind = static_cast<std::size_t>(2 * reach / stride_ + 1);
-  std::vector<double> now(at_.size());
-  for (std::size_t n = 0; n < now.size(); ++n) now[n] = forces_[n].sum;
-  earlier_.push_back(std::move(now));
-  if (earlier_.size() <= behind) return;
-  const std::vector<double> force = std::move(earlier_.front());
-  earlier_.pop_front();
+  if (forces_of_ == row) {
+    earlier_.push_back({row, std::vector<double>(at_.size())});
+    for (std::size_t n = 0; n < at_.size(); ++n) earlier_.back().F[n] = forces_[n].sum;
+  }
+  while (earlier_.size() > 1 && earlier_[1].row < row - 2 * reach) earlier_.pop_front();
+  if (!(earlier_.front().row < row - 2 * reach)) return;
+  const std::vector<double>& force = earlier_.front().F;
   const auto C = static_cast<std::size_t>(system_->components());
-  const auto stretch = std::min(stretches_ - 1, static_cast<std::size_t>(seen_ - 1) * stretches_ /
-                                                    static_cast<std::size_t>(std::max<std::int64_t>(rows_, 1)));
+  // The stretch of the row, and its weight there: sin² falls to 0 at both ends.
+  std::array<std::pair<std::size_t, double>, partitions> stretch;
+  for (std::size_t which = 0; which < partitions; ++which) {
+    const double of_rows = static_cast<double>(partition(which, stretches_).of_rows);
+    const double place = (static_cast<double>(seen_) - 0.5) / static_cast<double>(rows_) * of_rows;
+    const double sine = std::sin(std::numbers::pi * place);
+    stretch[which] = {static_cast<std::size_t>(std::min(place, of_rows - 0.5)), sine * sine};
+  }
   const double least = relative_bound_ * equations.scale();
-  asked_ = std::max(asked_, precision_.asked * equations.scale());
+  // A coefficient such as 2 − h²m² that was rounded is off by the same in all rows: E ~ ε |y|/h², a quarter of the terms.
+  passed_over_ = std::max(passed_over_, std::max(precision_.asked, epsilon / 4) * equations.scale());
   const auto &below = window.rows[static_cast<std::size_t>(row - 1 - window.first_row)],
              &above = window.rows[static_cast<std::size_t>(row + 1 - window.first_row)];
   for (std::size_t n = 0; n < at_.size(); ++n) {
@@ -136,8 +189,12 @@ void ForceShare::add_to_averages(const Window& window, std::int64_t row, const E
     const double E = equations.sums()[n].sum;
     forces_square_ += force[n] * force[n], ++forces_count_;
     for (const auto& [signal, S] : {std::pair{0, force[n]}, std::pair{1, above[n] - below[n]}}) {
-      Average& average = averages_[2 * (n % C) + static_cast<std::size_t>(signal)];
-      average.ES[stretch] += E * S, average.SS[stretch] += S * S;
+      for (std::size_t which = 0; which < partitions; ++which) {
+        const std::size_t groups = partition(which, stretches_).of_sites, group = n * groups / at_.size();
+        const auto& [at, weight] = stretch[which];
+        Average& average = averages_[partitions * (2 * (n % C) + static_cast<std::size_t>(signal)) + which];
+        average.ES[at * groups + group] += weight * E * S, average.SS[at * groups + group] += weight * S * S;
+      }
     }
   }
 }
@@ -149,26 +206,31 @@ std::optional<Check> ForceShare::average() const {
   for (std::size_t n = 0; n < averages_.size(); ++n) {
     const Average& average = averages_[n];
     const double squares = std::accumulate(average.SS.begin(), average.SS.end(), 0.0);
-    const auto stretches = std::ranges::count_if(average.SS, [](double SS) { return SS > 0; });
+    std::set<double> different;  // groups of a field that is the same everywhere tell one thing
+    for (std::size_t b = 0; b < average.SS.size(); ++b)
+      if (average.SS[b] > 0) different.insert(n % partitions == 0 ? static_cast<double>(b) : average.ES[b]);
+    const auto stretches = static_cast<std::int64_t>(different.size());
     if (stretches < fewest_stretches) continue;
-    const double size = std::sqrt(squares / static_cast<double>(forces_count_)) / force;
+    const double size =
+        std::sqrt(2 * squares / static_cast<double>(forces_count_)) / force;  // weights are ½ on average
     const double value = std::abs(average.c()) * size;
-    const double tolerance = std::max({least_share, average.shortfall() * size, asked_ / force});
+    const double tolerance = std::max({least_share, average.least() * size, passed_over_ / force});
     if (worst && value / tolerance <= worst->value / worst->tolerance) continue;
-    const char* signal = n % 2 == 0 ? "the force" : "φ_t";
+    const bool by_force = n / partitions % 2 == 0;
+    const char* signal = by_force ? "the force" : "φ_t";
     worst = Check{.name = "field equations, on average",
-                  .region = fmt::format("along {}, {} stretches of rows", signal, stretches),
+                  .region = fmt::format("along {}, {} stretches of rows{}", signal, stretches,
+                                        n % partitions == 0 ? "" : " and sites"),
                   .value = value,
                   .tolerance = tolerance,
                   .normaliser = force,
                   .count = forces_count_,
                   .samples = stretches};
     worst->failure = fmt::format(
-        "E has the sign of {} in each of {} stretches of the rows, and on average {:.2g} of the force. Rounding has no "
-        "sign: {}.",
+        "E follows {} in {} stretches of the rows, with {:.2g} of the force on average. Rounding follows nothing: {}.",
         signal, stretches, value,
-        n % 2 == 0 ? "the force is another one (a mass, a coefficient), or steps were not solved"
-                   : "there is friction, or a step that is not reversible");
+        by_force ? "the force is another one (a mass, a coefficient), or steps were not solved"
+                 : "there is friction, or a step that is not reversible");
   }
   return worst;
 }

@@ -30,6 +30,8 @@ struct SiteSeverity {
 ///
 ///     F(j, i) = E(j, i) of the section that is row j in every row
 ///
+/// Where all terms have time differences, and no row has a force, the scale is that of the terms themselves.
+///
 /// Rows are wrong where |E| is more than the errors of the values explain, and more than a share of the force that no
 /// program computes to. Where the errors of the values are larger than the force, nothing can be told.
 ///
@@ -37,7 +39,7 @@ struct SiteSeverity {
 ///
 ///     c = Σ E S / Σ S²          S = F of an earlier row, whose rounding is another; or S = y_{j+1} − y_{j−1}, friction
 ///
-/// in all of 32 stretches of the rows of the same sign.
+/// where it has the same sign in all of 32 stretches of the rows, or is ten of its standard errors.
 ///
 /// F changes slowly from row to row: of long files every eighth row is evaluated, in which a wave goes on by eight sites at
 /// most.
@@ -86,12 +88,13 @@ class ForceShare {
     std::int64_t row = 0;
   };
   void find_forces(const Window&, std::int64_t row);
+  bool find_whether_rows_have_forces();
   /// Sums of one component and one signal, over the equations of each stretch.
   struct Average {
     std::vector<double> ES, SS;
     double c() const;
-    /// How far the worst stretch falls below |c|: more than |c| if it has the other sign.
-    double shortfall() const;
+    /// The least |c| that noise does not give.
+    double least() const;
   };
   void add_to_averages(const Window&, std::int64_t row, const EquationCheck&);
   void suspect(const Window&, std::int64_t row, const EquationCheck&);
@@ -104,18 +107,25 @@ class ForceShare {
   std::int64_t stride_, seen_ = 0;
   Precision precision_;
   double coefficients_ = 0, largest_value_ = 0;
+  bool rows_have_forces_;
   double force_ = 0, terms_ = 0;  ///< max|F|, and the largest sum of the absolute values of its terms
   double relative_bound_ = 0;
   Suspect closest_, beyond_;  ///< the largest |E| / bound; the largest |E| beyond its bound
   std::int64_t rows_beyond_ = 0;
   std::size_t stretches_;
   std::int64_t rows_;
-  std::deque<std::vector<double>> earlier_;  ///< forces of the rows that were evaluated last
-  std::vector<Average> averages_;            ///< [component · 2 + signal]
-  double forces_square_ = 0, asked_ = 0;
+  struct Force {
+    std::int64_t row;
+    std::vector<double> F;
+  };
+  std::deque<Force> earlier_;      ///< of the rows that were evaluated last
+  std::vector<Average> averages_;  ///< [component · 2 + signal]
+  double forces_square_ = 0;
+  double passed_over_ = 0;  ///< |E| that averages do not count
   std::int64_t forces_count_ = 0;
   std::vector<Largest> at_;  ///< [i·C + c]
   std::vector<LatticeSystem::Value> forces_;
+  std::int64_t forces_of_ = -1;  ///< the row
   std::vector<double> errors_;
   std::int64_t equations_ = 0;
 };

@@ -11,6 +11,7 @@
 #include "tools/run/field_error.hpp"
 #include "tools/run/refined_scene.hpp"
 #include "tools/run/solution_error.hpp"
+#include "tools/scene/initial_rows.hpp"
 
 namespace delf {
 
@@ -27,6 +28,7 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     throw scene.settings.error("lattice.time_steps",
                                "reversible steps end at times of their own; give run.until, and a state whose solution "
                                "is known");
+  for (const double phi : InitialRows(scene).row0()) table.size = std::max(table.size, std::abs(phi));
   std::vector<double> before;  // the last row of the level before
   PlacedRow placed_before;
   for (int level = 0; level < levels; ++level) {
@@ -56,6 +58,7 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     now.sites = lattice.sites(), now.space_step = lattice.space_step(), now.time_step = fine.problem.time_step;
     now.seconds = end.seconds, now.measures = end.measures, now.steps = fine.steps;
     for (const double phi : end.row) now.size = std::max(now.size, std::abs(phi));
+    table.size = std::max(table.size, now.size);
     if (table.exact) {
       const FieldError error = end.placed.positions.empty()
                                    ? field_error(end.row, ComparedSolution::exact(fine, end.time).at(lattice, end.time),

@@ -25,6 +25,7 @@ struct ConvergenceLevel {
 
 struct ConvergenceTable {
   bool exact = false;      ///< errors against the exact solution; else differences between one level and the next
+  double size = 0;         ///< the largest |φ| of row 0, and of the last rows
   bool all_sites = false;  ///< errors are those of all sites of a finite complex, not of the last row
   std::vector<ConvergenceLevel> levels;
   double ConvergenceLevel::*norm = &ConvergenceLevel::linf;  ///< that the orders are of

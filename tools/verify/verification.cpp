@@ -111,7 +111,9 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
   // What a file has of its values says how well the equations can hold, unless the scene does.
   if (rounded_ && !request.own_tolerance) of_steps = std::max(of_steps, 2 * rounded_->relative);
-  if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows());
+  std::optional<ValueError> coarse;
+  if (rounded_ && !request.own_tolerance) coarse = rounded_->error;
+  if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows(), coarse);
   if (request.wants("forms") && (!fields || request.chosen))
     forms_.emplace(system_, plan_, moment_rows_,
                    FormCheck::Options{request.regions, request.variations, request.tolerance, turn_,
