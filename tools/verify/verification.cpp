@@ -504,11 +504,12 @@ void Verification::collect() {
     verdict_.map = bins_->map();
     if (walls_) add({*walls_});
     if (share_) {
-      if (auto judged = share_->check()) {
+      // A second look at rows that pass the first: others have failed beside the force, too.
+      if (auto judged = failed_.failed() == 0 ? share_->check() : std::nullopt) {
         if (judged->unmeasurable.empty()) add({std::move(judged->check)});
         else verdict_.unmeasured.push_back({std::move(judged->check), std::move(judged->unmeasurable)});
+        if (auto check = share_->average()) add({std::move(*check)});
       }
-      if (auto check = share_->average()) add({std::move(*check)});
       collect_severity();
     }
     diagnose_rows();

@@ -254,8 +254,9 @@ TEST_CASE("an element whose rule has one end is not reversible, and another step
 TEST_CASE("traces are not asked: a row and its momenta are not their state") {
   Problem p;
   p.theory = "lotka-volterra", p.method = "dgvi", p.lattice = Lattice::point(), p.time_step = 0.1;
-  const auto make = [&] { return std::make_unique<Simulation>(p); };
-  CHECK_FALSE(time_reversal(make, Rows(2, std::vector<double>(make()->components().size(), 1.0)), 8, tolerance));
+  const auto make = [&](std::optional<double>) { return std::make_unique<Simulation>(p); };
+  CHECK_FALSE(
+      time_reversal(make, Rows(2, std::vector<double>(make(std::nullopt)->components().size(), 1.0)), 8, tolerance));
 }
 
 TEST_CASE("a vacuum stays where it is, forward and back") {

@@ -258,7 +258,7 @@ TEST_CASE("a solution that jumps where the circle closes is named beside its err
     CHECK((ran.code == 0 || ran.code == 1));
     return ran.out;
   };
-  CHECK(contains(printed(8), "the exact solution jumps by"));
+  CHECK(contains(printed(8), "the exact solution jumps where the circle closes"));
   CHECK_FALSE(contains(printed(20), "jumps"));
 }
 
