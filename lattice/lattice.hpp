@@ -6,9 +6,8 @@ namespace delf {
 enum class Space { circle, interval, point };
 
 /// The condition at a wall of an interval: `fixed` keeps the initial value (no equation there, V = 0); `clamped` keeps
-/// that of the neighbouring site too, and so φ and φ_x, which is for densities of second order;
-/// `natural` varies it too, so that the equation is what the stencils inside the lattice and the action's terms at the
-/// wall give.
+/// φ_x too, by the action's terms at the wall, which is for densities of second order; `natural` varies the value, so that
+/// the equation is what the stencils inside the lattice and the action's terms at the wall give.
 enum class Wall { fixed, clamped, natural };
 
 /// A regular lattice: ℤ in time, and in space N sites on a circle (x_i = iL/N), on an interval that holds both walls
@@ -51,7 +50,7 @@ class Lattice {
 
  private:
   Lattice(Space, int sites, double length, Wall, Wall);
-  static int sites_kept_by(Wall wall) noexcept { return wall == Wall::natural ? 0 : wall == Wall::fixed ? 1 : 2; }
+  static int sites_kept_by(Wall wall) noexcept { return wall == Wall::natural ? 0 : 1; }
   Space space_;
   int sites_;
   double length_, origin_ = 0;

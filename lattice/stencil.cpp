@@ -19,10 +19,7 @@ void require_closing(const Lattice& lattice, Placement placement) {
 bool has_column(const Lattice& lattice, const StencilPattern& pattern, int column) {
   if (pattern.is_of_wall()) {
     const bool left = pattern.placement == Placement::left_wall || pattern.placement == Placement::left_mirror;
-    const bool any = pattern.placement == Placement::left_mirror || pattern.placement == Placement::right_mirror;
-    return lattice.space() == Space::interval &&
-           (any || (left ? lattice.left() : lattice.right()) == Wall::natural) &&
-           column == (left ? 0 : lattice.sites() - 1);
+    return lattice.space() == Space::interval && column == (left ? 0 : lattice.sites() - 1);
   }
   return lattice.is_circle() || std::ranges::all_of(pattern.vertices, [&](Site offset) {
            const int x = column + offset.space;

@@ -14,7 +14,7 @@ namespace delf {
 enum class Placement {
   every_site,  ///< one stencil for each site
   brick_wall,  ///< only where time + space is even, so that rows of bricks are laid half a brick apart
-  left_wall,   ///< at the first column of an interval, if the wall there is natural: a term of the boundary
+  left_wall,   ///< at the first column of an interval: a term of the boundary, for the walls that need it
   right_wall,  ///< at the last column, likewise
   left_mirror,  ///< at the first column of an interval, whatever its wall: what wide stencils have beyond it
   right_mirror  ///< at the last column, likewise

@@ -11,6 +11,7 @@
 #include "schemes/system/conserved.hpp"
 #include "schemes/system/slab_extent.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -40,7 +41,7 @@ RowMonitors::RowMonitors(const Problem& problem, const FieldTheory& theory,
       system_(evolution.system()),
       has_constraints_(std::ranges::count(system_.all_components(), Role::multiplier, &Component::role) > 0),
       field_lag_(has_constraints_ ? slab_extent(system_, evolution.plan()).field_lag : 0),
-      turn_(2 * std::numbers::pi * problem.winding) {
+      turn_(turn_of(problem)) {
   if (!method_.energy && system_.fields() != theory.components())
     throw std::logic_error("scheme.method = " + method_.name + ": has other fields than the theory, and no energy");
   for (const LinearSymmetry& s : symmetries)
@@ -95,7 +96,7 @@ double RowMonitors::constraint() const {
 }
 
 double RowMonitors::charge() const {
-  if (problem_.lattice.is_circle()) return problem_.winding;
+  if (problem_.lattice.is_circle()) return problem_.winding + gain_of(problem_.parameters) / (2 * std::numbers::pi);
   // of the first field
   const int first = own_layout_ ? theory_.components() : system_.components() + system_.field_component(0);
   const double* const newest = monitored_[static_cast<std::size_t>(first)];

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "lattice/error.hpp"
 #include "schemes/methods/method_registry.hpp"
@@ -20,6 +20,7 @@
 #include "schemes/system/slab_extent.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "schemes/turn.hpp"
 #include "schemes/without_value.hpp"
 
 namespace delf {
@@ -28,6 +29,12 @@ namespace {
 SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
   if (!(p.time_step > 0) || !std::isfinite(p.time_step))
     throw BadInput("lattice.time_step", "lattice.time_step must be a positive, finite number");
+  for (const auto& [wall, key] : {std::pair{p.lattice.left(), "boundary.left"}, {p.lattice.right(), "boundary.right"}})
+    if (wall == Wall::clamped && p.lattice.space() == Space::interval && !find_method(p.method).reads_stencil)
+      throw BadInput(key,
+                     fmt::format("{} = clamped: keeps phi_x too, which is for densities with second derivatives and "
+                                 "scheme.method = multisymplectic; use fixed or natural",
+                                 key));
   SchemeParts parts = find_method(p.method).build(theory, p);
   // on a point one value starts, and there is nothing beside it that it would have to be lifted to
   const auto is_of_one_field = [&](const Component& c) {
@@ -45,8 +52,8 @@ Evolution make_evolution(SchemeParts parts, const Problem& p) {
   return {p.lattice,
           std::move(parts.families),
           p.time_step,
-          {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
-           2 * std::numbers::pi * p.winding, p.threads, std::move(parts.processor), p.step_control.has_value()},
+          {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real, turn_of(p),
+           p.threads, std::move(parts.processor), p.step_control.has_value()},
           std::move(parts.components)};
 }
 
@@ -91,9 +98,8 @@ struct Simulation::Impl {
   }
   /// What row 0 and its momenta, or the newest row, ask of the steps.
   RowDensity row_density(const std::vector<double>& row0, std::span<const double> momenta) const {
-    return method.row_density(
-        {*theory, system, system.window(0, {row0}, 2 * std::numbers::pi * problem.winding), 0, problem.time_step},
-        momenta, *problem.step_control);
+    return method.row_density({*theory, system, system.window(0, {row0}, turn_of(problem)), 0, problem.time_step},
+                              momenta, *problem.step_control);
   }
   RowDensity row_density() const {
     const RowsInTime rows = newest_rows(*theory, evolution);

@@ -11,6 +11,7 @@
 #include "lattice/error.hpp"
 #include "schemes/families/mirror_check.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -75,7 +76,7 @@ std::optional<std::vector<double>> StartingRows::momenta(std::span<const double>
                                                          std::span<const double> velocity) const {
   const Lattice& lattice = system_.lattice();
   const int C = system_.components(), N = lattice.sites();
-  const double turn = 2 * std::numbers::pi * problem_.winding;
+  const double turn = turn_of(problem_);
   std::vector<double> momenta(row0.size(), 0.0), phi, phi_t, p;
   bool any = false;
   for (const auto& family : system_.families()) {

@@ -268,7 +268,7 @@ const std::vector<Command>& table() {
        "Into DIR (results/NAME-sweep, if not given) go sweep.csv and sweep.json, a row for each run with its numbers;\n"
        "sweep.rows, from which the same command goes on after Ctrl-C or worse; runs/, the folder of each run; and a\n"
        "figure of one number over one or two keys. Runs draw figures of their own only if output.figures=on is given\n"
-       "here. Exit code 3 if all runs failed.\n\n"
+       "here. Exit code 4, 3 or 2 if a run failed: of the system, its numerics, or its input.\n\n"
        "  delf sweep collision --scheme.method=multisymplectic,vu-quoc-li --lattice.courant=0.125:0.5:0.125\n"
        "  delf sweep phi4-collision --sweep.bisect=initial.speed=0.255:0.265 --sweep.level=1.25\n\n"
        "Numbers are those of summary.json, and the measures of the scene: `delf help measures`.\n\n"
@@ -283,7 +283,9 @@ const std::vector<Command>& table() {
        "without one differences from the next line. Into DIR (results/NAME of the scene, if not given) go\n"
        "convergence.json, convergence.csv and, with output.figures, figures/convergence: the errors against N, and the\n"
        "slope of the order. Exit code 1 if the last two lines miss the order of the scheme, where it is known, or have\n"
-       "another than convergence.order. On a mesh its sides are halved, and the order is that of L2.\n\n"
+       "another than convergence.order. Where errors are not the scheme's (rounding, ends of the lattice, a formula that\n"
+       "is no solution), the order is not measured, which is said, with exit code 0; unstable steps: 3. On a mesh its\n"
+       "sides are halved, and the order is that of L2.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_convergence, "convergence"},
       {"workprecision", "delf workprecision SCENE [--out DIR] [--KEY=VALUE ...]",

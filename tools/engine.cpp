@@ -12,6 +12,7 @@
 #include "schemes/stepping/undetermined.hpp"
 #include "tools/run/in_words.hpp"
 #include "tools/run/outcome.hpp"
+#include "tools/scene/initial_rows.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/values.hpp"
 
@@ -39,6 +40,8 @@ Simulation build(const Scene& scene, int winding) {
   Problem problem = scene.problem;
   problem.winding = winding;
   try {
+    if (problem.lattice.left() == Wall::clamped || problem.lattice.right() == Wall::clamped)
+      InitialRows(scene).keep_slopes(problem);
     return Simulation(problem);
   } catch (const BadInput& bad) {
     if (bad.key() == "theory.name" || bad.key() == "lattice.stencil")  // that no equation is left by rounding

@@ -54,10 +54,15 @@ std::string equations_in_words(const Problem& p, const Simulation& simulation) {
   const auto* density = dynamic_cast<const SymbolicDensity*>(&simulation.theory().density());
   const StencilTable* table = table_of(p, simulation);
   std::string text;
-  if (table && p.stencil == stencil_as_text)
+  if (table && p.stencil == stencil_as_text) {
+    // As it is given: the family of a density of t and x may have cut its points.
+    constexpr auto sites = "stencil.sites", point = "stencil.point";
+    const StencilTable given =
+        stencil_of(p.parameters.get<std::string>(sites), p.parameters.get<std::string>(point), sites, point);
     text += fmt::format("  stencil    {} sites, {} point{}; consistent, of order {} in h and k for linear equations\n",
-                        table->pattern.size(), table->points.size(), table->points.size() == 1 ? "" : "s",
-                        order_of_consistency(*table));
+                        given.pattern.size(), given.points.size(), given.points.size() == 1 ? "" : "s",
+                        order_of_consistency(given));
+  }
   if (!density) return text + fmt::format("  equations  {}\n", find_theory(p.theory).formula);
   const auto add = [&](const char* head, const std::string& formula) {
     text += fmt::format("  {:<{}}{}\n", head, indent - 2, broken(formula, indent));

@@ -109,8 +109,13 @@ density then says what is measured. This is leapfrog, one cell's share of each e
   sites = (0,0) (1,0) (0,1) (1,1)
 
 theory.equation = phi_tt - phi_xx + sin(phi) = 0 is tested: by Helmholtz's conditions whether any density has it, and whether
-theory.density does. Friction has none: phi_tt + g*phi_t + sin(phi) = f*cos(t) is refused. With the factor exp(g*t) on all of
-the density friction -g phi_t follows; a drive f(t) is a term f(t)*phi; phi_t*phi is a divergence, which adds nothing.
+theory.density does. exact.phi is tested at random points, and theory.lagrangian by what it tends to for small h and k.
+Friction has no density: phi_tt + g*phi_t + sin(phi) = f*cos(t) is refused. With the factor exp(g*t) on all of the density
+friction -g phi_t follows; a drive f(t) is a term f(t)*phi; phi_t*phi is a divergence, which adds nothing.
+
+theory.angles = phi says that values 2 pi apart are the same state: sections, measures and figures count modulo 2 pi then.
+
+theory.angles = phi says that values 2 pi apart are the same state: sections, measures and figures count modulo 2 pi then.
 
 The states noise and file work for every theory. From C++:
 
@@ -131,8 +136,8 @@ constexpr const char* measures_head =
 
 )page";
 constexpr const char* measures_foot = R"page(
-[level]: may be left out. All are of the first field, and see the recorded rows (output.every), no others; a run without
-an answer has null. Their numbers, and what is made of them, are sums, products, powers and functions as in `delf help
+[level]: may be left out. All are of the first field. Extremes, crossings and frequencies see all steps, the others the
+recorded rows (output.every); without an answer there is null. Their numbers, and what is made of them, are sums, products, powers and functions as in `delf help
 lagrangians`, of theory.NAME as NAME, L, pi, and t, the time of the last row.
 )page";
 

@@ -28,8 +28,8 @@ const std::vector<NamedTable>& named_tables() {
       named("rectangle", "4 sites, (5.9) with φ_t on both vertical edges: (5.10)", rectangle),
       named("rectangle-symmetric", "4 sites, space and time alike: (5.12)", rectangle_symmetric),
       named("hexagon", "6 sites of a brick wall (Fig. 5.4); circle, N even", hexagon),
-      named("six-tuple", "6 sites, φ on the middle edge, φ_x left and right of it, φ_xx; circle, clamped", six_tuple),
-      named("nine-tuple", "9 sites, the symmetric rectangle in each of four cells, φ_xx; circle, clamped", nine_tuple),
+      named("six-tuple", "6 sites, φ on the middle edge, φ_x left and right of it, φ_xx", six_tuple),
+      named("nine-tuple", "9 sites, the symmetric rectangle in each of four cells, φ_xx", nine_tuple),
       named("midpoint", "2 sites of a time lattice, q in the middle; lattice.space = point", midpoint),
       named("trapezoidal",
             "2 sites of a time lattice, half at either end: Störmer–Verlet, explicit, not the trapezoidal rule; "

@@ -51,7 +51,7 @@ void AsynchronousEvolution::start(std::span<const double> values, std::span<cons
         momenta_[at(i * d_ + a)] += space_.masses[at(i)] *
                                     space_.density->constant_hessian()[at((d_ + a) * variables + d_ + b)] *
                                     rates[at(i * d_ + b)];
-  for (int c = 0; c < space_.mesh.cells(); ++c) kick(c, y_, 0.5, momenta_);
+  for (int c = 0; c < space_.mesh.cells(); ++c) kick(c, 0, y_, 0.5, momenta_);
   fill_queue();
 }
 
@@ -80,21 +80,34 @@ void AsynchronousEvolution::visit(SavedState& state) {
   if (state.restores()) fill_queue();
 }
 
-void AsynchronousEvolution::kick(int cell, std::span<const double> y, double factor,
-                                 std::vector<double>& momenta) const {
+template <class Use>
+void AsynchronousEvolution::with_cell(int cell, double t, std::span<const double> y, double measure,
+                                      const Use& use) const {
   const auto corners = space_.mesh.cell(cell);
   const PlacedFamily& family = families_.at(static_cast<int>(corners.size()));
-  alignas(64) std::array<double, 16 * most> values, r;
+  alignas(64) std::array<double, 16 * most> values;
+  alignas(64) std::array<double, 4 * most> times, places;
   const auto size = at(family.size());
   if (size > 16) throw BadInput("theory.name", "theory.name: asynchronous steps are for up to four fields");
   for (std::size_t n = 0; n < size; ++n)
     values[n * most] = y[static_cast<std::size_t>(corners[n / at(d_)]) * at(d_) + n % at(d_)];
-  const double measure = factor * steps_[at(cell)], step = 1;
-  family.residual({1, &tables_[at(cell)], &measure, &step, values.data()}, r.data());
-  for (std::size_t n = 0; n < size; ++n) {
-    const auto site = static_cast<std::size_t>(corners[n / at(d_)]);
-    if (!space_.fixed[site]) momenta[site * at(d_) + n % at(d_)] += r[n * most];
-  }
+  for (std::size_t l = 0; l < corners.size(); ++l)
+    times[l * most] = t, places[l * most] = space_.mesh.points[static_cast<std::size_t>(corners[l])][0];
+  const double step = 1;
+  use(family, PlacedBatch{1, &tables_[at(cell)], &measure, &step, values.data(), times.data(), places.data()});
+}
+
+void AsynchronousEvolution::kick(int cell, double t, std::span<const double> y, double factor,
+                                 std::vector<double>& momenta) const {
+  const auto corners = space_.mesh.cell(cell);
+  alignas(64) std::array<double, 16 * most> r;
+  with_cell(cell, t, y, factor * steps_[at(cell)], [&](const PlacedFamily& family, const PlacedBatch& batch) {
+    family.residual(batch, r.data());
+    for (std::size_t n = 0; n < at(family.size()); ++n) {
+      const auto site = static_cast<std::size_t>(corners[n / at(d_)]);
+      if (!space_.fixed[site]) momenta[site * at(d_) + n % at(d_)] += r[n * most];
+    }
+  });
 }
 
 void AsynchronousEvolution::drift(int site, double t) {
@@ -112,7 +125,7 @@ void AsynchronousEvolution::update_next() {
   const auto [t, cell] = queue_.top();
   queue_.pop();
   for (const auto site : space_.mesh.cell(cell)) drift(site, t);
-  kick(cell, y_, 1, momenta_);
+  kick(cell, t, y_, 1, momenta_);
   if (keeps_) cells_.push_back({cell, t});
   queue_.emplace(static_cast<double>(++done_[at(cell)] + 1) * steps_[at(cell)], cell);
   time_ = t;
@@ -146,15 +159,10 @@ double AsynchronousEvolution::energy(double t) const {
   double potential = 0;
   for (int c = 0; c < space_.mesh.cells(); ++c) {
     const double last = static_cast<double>(done_[at(c)]) * steps_[at(c)];
-    kick(c, now, (t - last) / steps_[at(c)] - 0.5, momenta);
-    const auto corners = space_.mesh.cell(c);
-    const PlacedFamily& family = families_.at(static_cast<int>(corners.size()));
-    alignas(64) std::array<double, 16 * most> y;
-    for (std::size_t n = 0; n < at(family.size()); ++n)
-      y[n * most] = now[static_cast<std::size_t>(corners[n / at(d_)]) * at(d_) + n % at(d_)];
-    const double one = 1;
+    kick(c, t, now, (t - last) / steps_[at(c)] - 0.5, momenta);
     double L = 0;
-    family.lagrangian({1, &tables_[at(c)], &one, &one, y.data()}, &L);
+    with_cell(c, t, now, 1,
+              [&](const PlacedFamily& family, const PlacedBatch& batch) { family.lagrangian(batch, &L); });
     potential -= L;
   }
   double kinetic = 0;  // ½ p M⁻¹ p/A

@@ -70,8 +70,11 @@ class AsynchronousEvolution {
   void fill_queue();
   void update_next();
   void drift(int site, double t);
-  /// h_K ∂L/∂y at the corners of a cell, added to the momenta, times a factor.
-  void kick(int cell, std::span<const double> y, double factor, std::vector<double>& momenta) const;
+  /// h_K ∂L/∂y at the corners of a cell at time t, added to the momenta, times a factor.
+  void kick(int cell, double t, std::span<const double> y, double factor, std::vector<double>& momenta) const;
+  /// Calls use(family, batch) with one cell as a batch.
+  template <class Use>
+  void with_cell(int cell, double t, std::span<const double> y, double measure, const Use&) const;
 
   const CellSpace& space_;
   int d_;

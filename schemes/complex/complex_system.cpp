@@ -73,7 +73,7 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
            part_of(stencils[end]) == number)
       ++end;
     const Stencils batch = stencils.subspan(first, end - first);
-    const ScratchRows values(of.size(), most);
+    const ScratchRows values(of.size(), most), places(of.is_placed() ? 2 * of.vertices() : 0, most);
     const ScratchRows numbers(power == 0 ? 1 : power == 1 ? of.size() : of.size() * of.size(), most);
     for (std::size_t s = 0; s < batch.size(); ++s) {
       const auto stencil = at(batch[s]);
@@ -82,9 +82,14 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
       for (int i = 0; i < of.size(); ++i)
         values[i][s] = y[reading.places.empty() ? node(batch[s], i) : at(reading.places[begin + at(i)])];
       begin += at(of.size());
+      for (int l = 0; l < of.vertices() && of.is_placed(); ++l) {
+        const Complex::Position& position = complex_.position(complex_.vertices(batch[s])[at(l)]);
+        places[l][s] = position[0], places[of.vertices() + l][s] = position[1];
+      }
     }
-    evaluate(of, PlacedBatch{static_cast<int>(batch.size()), tables.data(), measures.data(), steps.data(), values[0]},
-             numbers[0]);
+    PlacedBatch placed{static_cast<int>(batch.size()), tables.data(), measures.data(), steps.data(), values[0]};
+    if (of.is_placed()) placed.t = places[0], placed.x = places[of.vertices()];
+    evaluate(of, placed, numbers[0]);
     visit(batch, numbers[0]);
     first = end;
   }
@@ -135,7 +140,8 @@ double scale_of_equations(const ComplexSystem& system, std::span<const Balance> 
   const auto has_equation = [&](std::size_t n) { return system.complex().has_equation(static_cast<int>(n / d)); };
   double sum = 0, absolute = 0, size = 0;
   for (std::size_t n = 0; n < E.size(); ++n)
-    if (has_equation(n)) sum = std::max(sum, std::abs(E[n].sum)), absolute = std::max(absolute, E[n].absolute);
+    if (has_equation(n))
+      sum = larger_or_nan(std::abs(E[n].sum), sum), absolute = larger_or_nan(E[n].absolute, absolute);
   if (sum <= suspicious * absolute) return absolute;
   const std::vector<double> sizes = system.sizes(y);
   for (std::size_t n = 0; n < E.size(); ++n)
@@ -149,7 +155,7 @@ double largest_residual(const ComplexSystem& system, std::span<const double> y) 
   const auto d = at(system.components());
   double sum = 0;
   for (std::size_t n = 0; n < E.size(); ++n)
-    if (system.complex().has_equation(static_cast<int>(n / d))) sum = std::max(sum, std::abs(E[n].sum));
+    if (system.complex().has_equation(static_cast<int>(n / d))) sum = larger_or_nan(std::abs(E[n].sum), sum);
   return scale == 0 ? 0 : sum / scale;
 }
 

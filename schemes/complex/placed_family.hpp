@@ -11,14 +11,16 @@
 
 namespace delf {
 
-/// Some stencils of one family, up to PlacedFamily::most: their tables, measures and time steps, and the values at their
-/// vertices, y[i·most + s].
+/// Some stencils of one family, up to PlacedFamily::most: their tables, measures and time steps, the values at their
+/// vertices, y[i·most + s], and where these lie, t[l·most + s] and x[l·most + s], if the density reads t or x.
 struct PlacedBatch {
   int count = 0;
   const std::int32_t* tables;
   const double* measures;
   const double* time_steps;
   const double* y;
+  const double* t = nullptr;
+  const double* x = nullptr;
 };
 
 /// A density on stencils that lie anywhere: a JetFamily whose tables differ from stencil to stencil in their numbers, and
@@ -29,6 +31,10 @@ struct PlacedBatch {
 /// Weights are divided by the power of the stencil's time step that the slot has: φ_t once, φ_tt twice. Those of φ_x are of
 /// the coordinates themselves. A gradient of two components is two points, whose φ_x are its components: see
 /// schemes/complex/space_tables.hpp. Value l·d + a is component a at vertex l.
+///
+/// A density that reads t and x does so, at each point, where the point has φ: at the mean of the vertices with the weights
+/// of φ; and where the point has derivatives alone, at the mean of the vertices that it reads. A pair of sites in time thus has its
+/// middle, a site its own place, and a cell its centroid, or a Gauss point of it: the action is of second order.
 class PlacedFamily {
  public:
   static constexpr int most = 64;  ///< stencils at once
@@ -45,6 +51,9 @@ class PlacedFamily {
   ComplexShape shape(int values_of_site) const;
   /// ∂r/∂y is proved to be the same at all y: the equations of these stencils are linear.
   bool is_linear() const { return linear_; }
+  bool is_placed() const { return density_->is_placed(); }
+  /// The equations of the stencils depend on t.
+  bool reads_time() const { return reads_time_; }
   /// ∂r/∂y of value m in the equation of value i is not proved to be the same at all y.
   bool is_varying(int i, int m) const { return varying_[static_cast<std::size_t>(i * size() + m)] != 0; }
   /// p, where r ∝ |Δ|/hᵖ and ∂r/∂y ∝ |Δ|/h²ᵖ in the time step h: 1 where jets have φ_t alone, 0 where they do not have
@@ -66,6 +75,7 @@ class PlacedFamily {
   struct Point {
     int number;  ///< of its weight
     std::vector<Entry> entries;
+    std::vector<TablePoint::Entry> place = {};  ///< weights of the vertices, where the density is placed
   };
   struct Strip;
 
@@ -75,7 +85,7 @@ class PlacedFamily {
   std::vector<double> numbers_;          ///< table by table
   std::vector<char> coupled_, varying_;  ///< [i·size + m]
   std::optional<int> time_power_ = 0;
-  bool linear_ = true;
+  bool linear_ = true, reads_time_ = false;
 };
 
 }  // namespace delf

@@ -179,8 +179,18 @@ void SpaceRows::set_times(std::span<const double> times) {
     set_row_measure(j, 0.5 * (below + above));
     if (j + 1 < rows_) set_motion(j, above, above);
   }
+  move_to(times);
+}
+
+void SpaceRows::move_to(std::span<const double> times) {
   for (int j = 0; j < rows_; ++j)
     for (int s = 0; s < per_row_; ++s) system_.set_time(j * per_row_ + s, times[at(j)]);
+}
+
+bool SpaceRows::reads_time() const {
+  for (int f = 0; f < system_.families(); ++f)
+    if (system_.family(f).reads_time()) return true;
+  return false;
 }
 
 namespace {
@@ -228,6 +238,7 @@ void SpaceEvolution::take(double below, double above, double row_measure) {
     y_[2 * n + i] = y_[n + i] + above / below * (y_[n + i] - y_[i]);
   try {
     if (const std::array now{below, above, row_measure}; now != steps_) set_steps(now);
+    if (rows_.reads_time()) rows_.move_to(std::array{time_ - direction_ * below, time_, time_ + direction_ * above});
     report_ = solver_->solve(y_);
     if (!std::isfinite(y_[2 * n])) throw NotFinite("the field is not finite; use a shorter time step");
   } catch (const NoConvergence&) {
@@ -259,6 +270,7 @@ void SpaceEvolution::start(std::span<const double> values, std::span<const doubl
   }
   for (std::size_t i = 0; i < fields; ++i)
     if (space_.fixed[i / at(space_.fields())]) y_[n + i] = values[i];
+  time_ = 0, direction_ = 1;
   take(h, h, 0.5 * h);
   newest_ = 1, time_ = h, before_ = h;
 }
@@ -267,7 +279,7 @@ void SpaceEvolution::step(std::optional<double> time_step) {
   const double h = time_step.value_or(h_);
   take(before_, h, 0.5 * (before_ + h));
   before_ = h;
-  time_ += h;
+  time_ += direction_ * h;
   ++newest_;
 }
 
@@ -276,17 +288,21 @@ void SpaceEvolution::visit(SavedState& state) {
   state("newest", newest_), state("time", time_), state("step before", before_), state("steps", steps);
   state("iterations", report_.iterations);
   state.numbers("rows", y_.data(), y_.size());
-  if (state.restores()) set_steps(steps);
+  if (!state.restores()) return;
+  set_steps(steps);
+  rows_.move_to(std::array{time_ - steps[0] - steps[1], time_ - steps[1], time_});
 }
 
 double SpaceEvolution::energy() const {
   energy_rows_.set_motion(0, 1, before_);
   for (const int row : {0, 1}) energy_rows_.set_row_measure(row, 0.5);
+  energy_rows_.move_to(std::array{time_ - direction_ * before_, time_});
   return energy_of({y_.data() + y_.size() / 3, energy_rows_.system().nodes()});
 }
 
 double SpaceEvolution::energy(std::span<const double> values, std::span<const double> rates) const {
   energy_rows_.set_motion(0, 1, 1);
+  energy_rows_.move_to(std::array{0.0, 0.0});
   for (const int row : {0, 1}) energy_rows_.set_row_measure(row, row == 0 ? 1 : 0);
   std::vector<double> y(energy_rows_.system().nodes(), 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -313,6 +329,7 @@ double SpaceEvolution::energy_of(std::span<const double> rows) const {
 
 Balance SpaceEvolution::momentum(const LinearSymmetry& symmetry) const {
   energy_rows_.set_motion(0, before_, before_);
+  energy_rows_.move_to(std::array{time_ - direction_ * before_, time_});
   const std::span<const double> rows{y_.data() + space_.values_of_row(), 2 * space_.values_of_row()};
   return momentum_across(energy_rows_.system(), energy_rows_.motion(0), rows, symmetry);
 }
@@ -324,6 +341,8 @@ double SpaceEvolution::residual() const {
 void SpaceEvolution::turn_back() {
   const auto n = static_cast<std::ptrdiff_t>(y_.size() / 3);
   std::swap_ranges(y_.begin() + n, y_.begin() + 2 * n, y_.begin() + 2 * n);
+  time_ -= direction_ * before_;  // of the row that is the newest now
+  direction_ = -direction_;
 }
 
 std::optional<double> SpaceEvolution::largest_step() const {

@@ -60,6 +60,10 @@ class SpaceRows {
 
   const ComplexSystem& system() const { return system_; }
   int rows() const { return rows_; }
+  /// The rows lie at these times, which a density may read; measures and steps are left as they are.
+  void move_to(std::span<const double> times);
+  /// An equation depends on t.
+  bool reads_time() const;
   /// The stencils that join a row and the next one.
   std::vector<std::int32_t> motion(int row) const;
   /// Rows of fields alone with the multipliers that fit their equations best, 0 where none holds: the component of E along
@@ -148,7 +152,7 @@ class SpaceEvolution {
   double energy_of(std::span<const double> y) const;
 
   const CellSpace& space_;
-  double h_, before_, time_ = 0;
+  double h_, before_, time_ = 0, direction_ = 1;
   std::int64_t newest_ = 0;
   SpaceRows rows_;
   mutable SpaceRows energy_rows_;  ///< two rows, measured for energies

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/complex/space_tables.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -83,13 +84,15 @@ bool is_quadratic(const BatchDensity& density) {
   alignas(64) std::array<double, 8> l{};
   std::vector<const double*> slots;
   // packs are aligned
-  std::vector<Pack> aligned(at(v) * 8 / lanes);
+  std::vector<Pack> aligned(at(v + 1) * 8 / lanes);
   for (int i = 0; i < v; ++i) {
     double* const row = reinterpret_cast<double*>(aligned.data()) + 8 * i;
     for (std::size_t s = 0; s < 8; ++s) row[s] = jets[at(i)][s];
     slots.push_back(row);
   }
-  density.value({8, slots.data(), 0, nullptr}, l.data());
+  double* const x = reinterpret_cast<double*>(aligned.data()) + 8 * v;
+  std::fill_n(x, 8, uniform(random));
+  density.value({8, slots.data(), uniform(random), x}, l.data());
   const double one = l[1] - l[0], size = std::abs(one) + std::abs(l[0]) + 1e-300;
   return std::abs(l[2] - l[0] - 4 * one) < 1e-12 * size && std::abs(l[3] - l[0] - one) < 1e-12 * size;
 }

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "jets/tables/slot_places.hpp"
 #include "lattice/error.hpp"
 #include "schemes/complex/space_tables.hpp"
 
@@ -26,6 +27,11 @@ class Families {
 
  private:
   void add_table(const StencilList::Entry& e, const StencilTable& table) {
+    if (with_slot_places(table, *density_).points.size() != table.points.size())
+      throw BadInput("theory.name",
+                     "theory.name: a density whose phi_t or phi_x goes with a function of t or x needs "
+                     "stencils whose derivatives lie at one place, and those of " +
+                         e.shape + " do not; use rectangles or six-tuples");
     const std::vector<TablePoint> points = placed_points(table, list_.positions(e));
     std::vector<int> form;
     for (const TablePoint& p : points)
@@ -97,6 +103,12 @@ ComplexSystem spacetime_complex(const StencilList& list, const std::shared_ptr<c
     throw BadInput(
         "lattice.mesh",
         "lattice.mesh: " + (fault->line > 0 ? "line " + std::to_string(fault->line) + ": " : "") + fault->what);
+  // A stencil across the seam of a circle has sites on both of its sides, and no mean place.
+  for (int v = 0; v < density->variables() && list.circumference > 0; ++v)
+    if (density->is_placed() && !density->is_zero(v, density->variables() + 1))
+      throw BadInput("theory.name",
+                     "theory.name: on a finite complex around a circle a density may read t and not x; leave out the "
+                     "circle of lattice.mesh, or choose lattice.space = circle");
   ComplexSystem system(density->components());
   for (const StencilList::Site& s : list.sites) system.add_site(s.position, s.role);
   Families families(system, list, density);

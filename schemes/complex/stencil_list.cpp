@@ -119,11 +119,20 @@ class Faults {
     if (list_.stencils.empty()) return MeshFault{0, "there is no stencil; write lines like stencil triangle 0 1 2"};
     std::vector<std::size_t> order(list_.sites.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t s) { return list_.sites[s].position; });
+    const double L = list_.circumference;
+    const auto place = [&](std::size_t s) {  // x from −½L to ½L, which are one place of a circle
+      Complex::Position p = list_.sites[s].position;
+      if (L > 0) p[1] = std::remainder(p[1], L);
+      if (L > 0 && std::abs(std::abs(p[1]) - L / 2) <= rounding * L) p[1] = L / 2;
+      if (L > 0 && std::abs(p[1]) <= rounding * L) p[1] = 0;
+      return p;
+    };
+    std::ranges::stable_sort(order, {}, place);
     for (std::size_t n = 1; n < order.size(); ++n)
-      if (const std::size_t s = order[n], first = order[n - 1]; list_.sites[s].position == list_.sites[first].position)
+      if (const std::size_t s = order[n], first = order[n - 1]; place(s) == place(first))
         return MeshFault{list_.sites[s].line, "site " + std::to_string(s) + " lies where site " +
-                                                  std::to_string(first) + " does; remove one"};
+                                                  std::to_string(first) + " does" + (L > 0 ? " on the circle" : "") +
+                                                  "; remove one"};
     std::vector<char> used(list_.sites.size(), 0);
     for (std::size_t n = 0; n < list_.stencils.size(); ++n) {
       if (auto fault = of_stencil(n)) return fault;

@@ -37,8 +37,8 @@ Diagnosis diagnose(Evidence evidence) {
 
   // The common first. What settles the case ends it: a seam is no wrong coefficient.
   using Local = std::optional<Finding> (*)(const Evidence&);
-  for (const Local find : {find_rounding, find_wrapped, find_doubled_frame, find_dropped_frame, find_edited_value,
-                           find_first_rows, find_seam, find_fixed_sites, find_sponge}) {
+  for (const Local find : {find_rounding, find_wrapped, find_doubled_frame, find_exchanged_frames, find_dropped_frame,
+                           find_edited_value, find_first_rows, find_seam, find_fixed_sites, find_sponge}) {
     if (evidence.failed.failed() == 0) break;
     if (auto finding = find(evidence)) {
       diagnosis.findings.push_back(std::move(*finding));
@@ -49,7 +49,8 @@ Diagnosis diagnose(Evidence evidence) {
     diagnosis.findings.push_back({"rest", "The fields rest: no equation can be told from another by them."});
     return diagnosis;
   }
-  if (evidence.failed.failed() > 0) evidence.tolerance = std::max(evidence.tolerance, 3 * error_of_rounding(evidence));
+  if (const auto rounded = rounding_of(evidence.rows, evidence.row); rounded && evidence.failed.failed() > 0)
+    evidence.tolerance = std::max(evidence.tolerance, 3 * rounded->relative);
   // Momenta tell maps apart whose rows are the same.
   if (evidence.momenta)
     if (auto finding = find_one_step(evidence, sample)) {

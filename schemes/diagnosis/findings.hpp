@@ -15,6 +15,7 @@ std::optional<Finding> find_rounding(const Evidence&);
 std::optional<Finding> find_wrapped(const Evidence&);
 std::optional<Finding> find_doubled_frame(const Evidence&);
 std::optional<Finding> find_dropped_frame(const Evidence&);
+std::optional<Finding> find_exchanged_frames(const Evidence&);
 std::optional<Finding> find_edited_value(const Evidence&);
 std::optional<Finding> find_first_rows(const Evidence&);
 std::optional<Finding> find_seam(const Evidence&);

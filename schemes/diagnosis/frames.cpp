@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "schemes/diagnosis/findings.hpp"
 #include "schemes/diagnosis/own_equations.hpp"
@@ -49,6 +51,38 @@ std::optional<Finding> find_doubled_frame(const Evidence& e) {
     return std::nullopt;  // the first failure tells
   }
   return std::nullopt;
+}
+
+// Rows p and q stand in each other's place: the equations that read either fail.
+std::optional<Finding> find_exchanged_frames(const Evidence& e) {
+  const std::int64_t reach = reach_of(e);
+  const auto& failing = e.failed.rows();
+  if (failing.empty() || static_cast<std::int64_t>(failing.size()) > 2 * (2 * reach + 1)) return std::nullopt;
+  struct {
+    std::int64_t p = 0, q = 0;
+    double worst = std::numeric_limits<double>::infinity();
+  } best;
+  const auto read_by = [&](std::int64_t frame, std::int64_t row) { return std::abs(row - frame) <= reach; };
+  for (std::int64_t p = failing.front() - reach; p <= failing.front() + reach; ++p)
+    for (std::int64_t q = std::max(p + 1, failing.back() - reach); q <= failing.back() + reach; ++q) {
+      if (p < 0 || q >= e.rows) continue;
+      if (!std::ranges::all_of(failing, [&](std::int64_t row) { return read_by(p, row) || read_by(q, row); })) continue;
+      double worst = 0;
+      for (std::int64_t row = reach; row < e.rows - reach && worst < best.worst; ++row) {
+        if (row > p + reach && row < q - reach) row = q - reach;
+        if (!read_by(p, row) && !read_by(q, row)) continue;
+        Rows rows;
+        for (std::int64_t r = row - reach; r <= row + reach; ++r) rows.push_back(e.row(r == p ? q : r == q ? p : r));
+        worst = std::max(worst, worst_equation(e.system, rows, row - reach, row, e.turn));
+      }
+      if (worst < best.worst) best = {p, q, worst};
+    }
+  if (!(best.worst <= e.tolerance)) return std::nullopt;
+  return Finding{
+      "exchanged-frames",
+      fmt::format("Frames {} and {} were exchanged: with each in the other's place the equations hold there, "
+                  "as they do elsewhere.",
+                  best.p, best.q)};
 }
 
 // Between frames j and j + 1 one is missing: y* = Σ_r w_r y_r of the frames around, at the times −2, −1, 0 | 2, 3, 4

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "schemes/diagnosis/evidence.hpp"
+#include "schemes/verify/equation_check.hpp"
 
 namespace delf {
 
@@ -12,9 +14,12 @@ namespace delf {
 struct RoundedValues {
   std::string words;  ///< "6 decimals", "6 significant digits"
   double unit;        ///< the largest error of a value
+  double relative;    ///< the same beside the largest value
+  ValueError error;
 };
 std::optional<RoundedValues> rounding_of(const std::vector<std::vector<double>>& rows);
-/// What that makes of equations, relative to their terms; 0 if the values have double precision.
-double error_of_rounding(const Evidence&);
+/// The same of `count` rows that can be read, by some of them.
+std::optional<RoundedValues> rounding_of(std::int64_t count,
+                                         const std::function<std::vector<double>(std::int64_t)>& row);
 
 }  // namespace delf

@@ -12,8 +12,8 @@ namespace delf {
 
 namespace {
 
-/// y as text with so many significant digits is y.
-bool has_digits(double y, int digits) { return std::stod(fmt::format("{:.{}e}", y, digits - 1)) == y; }
+/// y as text with so many significant digits.
+double with_digits(double y, int digits) { return std::stod(fmt::format("{:.{}e}", y, digits - 1)); }
 
 }  // namespace
 
@@ -34,27 +34,36 @@ std::optional<RoundedValues> rounding_of(const std::vector<std::vector<double>>&
         return std::abs(scaled - std::round(scaled)) <= 4e-16 * std::abs(scaled);
       };
       while (decimals <= most_decimals && !is_decimal(decimals)) ++decimals;
-      while (digits <= most_digits && !has_digits(y, digits)) ++digits;
+      while (digits <= most_digits && with_digits(y, digits) != y) ++digits;
       if (!single && decimals > most_decimals && digits > most_digits) return std::nullopt;
     }
   if (values < fewest) return std::nullopt;
-  if (single) return RoundedValues{"single precision (float32)", std::ldexp(1.0, -25) * largest};
+  // Numbers in single precision that were written with more digits than they have.
+  if (!single && digits > 7 && digits <= most_digits)
+    single = std::ranges::all_of(rows, [&](const auto& row) {
+      return std::ranges::all_of(row, [&](double y) { return with_digits(static_cast<float>(y), digits) == y; });
+    });
+  const auto found = [&](std::string words, double unit, ValueError error) {
+    return RoundedValues{std::move(words), unit, unit / largest, error};
+  };
+  if (single)
+    return found("single precision (float32)", std::ldexp(1.0, -25) * largest, {.relative = std::ldexp(1.0, -24)});
   // Of both the coarser: decimals have more digits where values are large, and digits more decimals where they are small.
   const double of_decimals = decimals > most_decimals ? 0 : 0.5 * std::pow(10.0, -decimals);
   const double of_digits =
       digits > most_digits ? 0 : 0.5 * std::pow(10.0, std::floor(std::log10(largest)) - digits + 1);
-  if (of_digits > 1.5 * of_decimals) return RoundedValues{fmt::format("{} significant digits", digits), of_digits};
-  return RoundedValues{fmt::format("{} decimals", decimals), of_decimals};
+  if (of_digits > 1.5 * of_decimals)
+    return found(fmt::format("{} significant digits", digits), of_digits, {.digits = digits});
+  return found(fmt::format("{} decimals", decimals), of_decimals, {.absolute = of_decimals});
 }
 
-double error_of_rounding(const Evidence& e) {
+std::optional<RoundedValues> rounding_of(std::int64_t count,
+                                         const std::function<std::vector<double>(std::int64_t)>& row) {
   std::vector<std::vector<double>> rows;
-  const auto values = static_cast<std::int64_t>(e.row(0).size());
-  const std::int64_t last = std::clamp<std::int64_t>(64 / values, 3, std::max<std::int64_t>(e.rows - 1, 3));
-  for (std::int64_t n = 0; n <= last; ++n) rows.push_back(e.row((e.rows - 1) * n / last));
-  const auto rounding = rounding_of(rows);
-  const double largest = largest_of(rows);
-  return rounding && largest > 0 ? rounding->unit / largest : 0;
+  const auto values = static_cast<std::int64_t>(row(0).size());
+  const std::int64_t last = std::clamp<std::int64_t>(64 / values, 3, std::max<std::int64_t>(count - 1, 3));
+  for (std::int64_t n = 0; n <= last; ++n) rows.push_back(row((count - 1) * n / last));
+  return rounding_of(rows);
 }
 
 std::optional<Finding> find_rounding(const Evidence& e) {

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "jets/simd/exact_sum.hpp"
 #include "jets/simd/scratch_rows.hpp"
+#include "jets/tables/slot_places.hpp"
 
 namespace delf {
 namespace {
@@ -30,6 +32,8 @@ void add(double* y, double w, const double* x, int count) {
 }
 void fill_zero(double* y, int count) { std::fill_n(y, count, 0.0); }
 
+bool is_rate(int slot) { return slot_powers[at(slot)].time > 0; }
+
 }  // namespace
 
 /// The jets of some stencils at a point of the table: what a density is evaluated at.
@@ -42,8 +46,27 @@ struct JetFamily::Jets {
         scales(slot_scales(batch.cell)),
         area(family.table_.measure * batch.cell.time_step * batch.cell.space_step),
         jets(variables, std::min(batch.count, most)),
+        increments(batch.low != nullptr ? family.size() : 0, std::min(batch.count, most)),
         x(1, std::min(batch.count, most)),
+        family_(family),
         batch_(batch) {}
+
+  /// The stencils that at_point() is about to be asked of.
+  void look_at(int first, int count) {
+    if (batch_.low == nullptr) return;
+    for (int i = 0; i < family_.size(); ++i) {
+      const int from = family_.first_[at(i / d)] * d + i % d;
+      if (from == i) {
+        fill_zero(increments[i], count);
+        continue;
+      }
+      const double *const y = value(i) + first, *const y0 = value(from) + first;
+      const double *const low = y + (batch_.low - batch_.y), *const low0 = y0 + (batch_.low - batch_.y);
+      for (int s = 0; s < count; s += lanes)
+        ((Pack::load(y + s) - Pack::load(y0 + s)) + (Pack::load(low + s) - Pack::load(low0 + s)))
+            .store(increments[i] + s);
+    }
+  }
 
   /// j_q = M_q y of the stencils first … first + count − 1.
   JetBatch at_point(const TablePoint& p, int first, int count) {
@@ -52,8 +75,12 @@ struct JetFamily::Jets {
         double* const jet = jets[s * d + a];
         for (int i = 0; i < count; i += lanes) {
           Pack sum(0.0);
-          for (const auto& [vertex, weight] : p.slots[at(s)])
-            sum += (weight * scales[at(s)]) * Pack::load(value(vertex * d + a) + first + i);
+          if (batch_.low != nullptr && is_rate(s))
+            for (const auto& [vertex, weight] : p.slots[at(s)])
+              sum += (weight * scales[at(s)]) * Pack::load(increments[vertex * d + a] + i);
+          else
+            for (const auto& [vertex, weight] : p.slots[at(s)])
+              sum += (weight * scales[at(s)]) * Pack::load(value(vertex * d + a) + first + i);
           sum.store(jet + i);
         }
       }
@@ -67,13 +94,14 @@ struct JetFamily::Jets {
   const double area;  ///< |Δ|
 
  private:
-  ScratchRows jets, x;
+  ScratchRows jets, increments, x;
+  const JetFamily& family_;
   const StencilBatch& batch_;
 };
 
 JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> density, bool values_are_sources)
     : StencilFamily(table.pattern, values_at_every_vertex(table.pattern, density->components()), table.tests.empty()),
-      table_(std::move(table)),
+      table_(with_slot_places(std::move(table), *density)),
       density_(std::move(density)),
       d_(density_->components()),
       has_sources_(density_->nonlinearity() == Nonlinearity::values ||
@@ -91,8 +119,81 @@ JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> den
       if (!point.of_vertex[at(i / d_)].empty() || !point.of_test[at(i / d_)].empty()) point.values.push_back(i);
     points_.push_back(std::move(point));
   }
+  find_columns();
   find_sources();
   find_lanes();
+}
+
+void JetFamily::find_columns() {
+  std::vector<double> places;
+  const auto place = [&](int l) {
+    const Site& v = pattern_.vertices[at(l)];
+    return v.space + table_.nodes[at(v.node)].space;
+  };
+  // Where there are tests, the residuals of the rows alone add up to momenta.
+  const auto adds_up = [&](int l) {
+    return table_.tests.empty() || table_.nodes[at(pattern_.vertices[at(l)].node)].time == 0;
+  };
+  if (std::ranges::any_of(pattern_.vertices, [&](const Site& v) { return at(v.node) >= table_.nodes.size(); })) return;
+  first_.resize(at(pattern_.size()));
+  for (int l = 0; l < pattern_.size(); ++l) {
+    const auto column = static_cast<std::size_t>(std::ranges::find(places, place(l)) - places.begin());
+    if (column == places.size()) places.push_back(place(l)), columns_.emplace_back();
+    columns_[column].push_back(l);
+    first_[at(l)] = l;
+  }
+  const auto none_left = [](const std::vector<std::vector<Weight>>& weights, const std::vector<int>& column, int slot) {
+    double sum = 0, absolute = 0;
+    for (const int l : column)
+      for (const Weight& w : weights[at(l)])
+        if (w.slot == slot) sum += w.weight, absolute += std::abs(w.weight);
+    return std::abs(sum) <= 1e-12 * absolute;
+  };
+  bool has_rates = false;
+  for (const Point& point : points_)
+    for (const auto& column : columns_)
+      for (int s = 0; s < density_->slots(); ++s) {
+        if (!is_rate(s)) continue;
+        if (!none_left(point.of_vertex, column, s)) return columns_.clear();
+        for (const int l : column)
+          has_rates |= std::ranges::any_of(point.of_vertex[at(l)], [&](const Weight& w) { return w.slot == s; });
+      }
+  if (!has_rates) return columns_.clear();
+  reads_low_ = true;
+  for (const auto& column : columns_) {
+    const auto is_read = [&](int l) {
+      return std::ranges::any_of(points_, [&](const Point& p) {
+        return std::ranges::any_of(p.of_vertex[at(l)], [](const Weight& w) { return is_rate(w.slot); });
+      });
+    };
+    if (const auto first = std::ranges::find_if(column, is_read); first != column.end())
+      for (const int l : column) first_[at(l)] = *first;
+  }
+  const auto is_tested = [&](int l) {
+    return std::ranges::any_of(points_, [l](const Point& p) { return !p.of_test[at(l)].empty(); });
+  };
+  for (auto& column : columns_) std::erase_if(column, [&](int l) { return !adds_up(l) || !is_tested(l); });
+  for (const Point& point : points_)
+    for (const auto& column : columns_)
+      for (int s = 0; s < density_->slots(); ++s)
+        if (is_rate(s) && !none_left(point.of_test, column, s)) return columns_.clear();
+  for (const auto& column : columns_)
+    for (int a = 0; a < d_; ++a) {
+      sums_.emplace_back();
+      for (const int l : column) sums_.back().push_back(l * d_ + a);
+    }
+  for (Point& point : points_)
+    for (const auto& column : columns_) {
+      std::vector<Weight> all;
+      for (int s = 0; s < density_->slots(); ++s) {
+        Weight sum{s, 0};
+        for (const int l : column)
+          for (const Weight& w : point.of_test[at(l)])
+            if (w.slot == s && !is_rate(s)) sum.weight += w.weight;
+        if (sum.weight != 0) all.push_back(sum);
+      }
+      point.of_test.push_back(std::move(all));
+    }
 }
 
 void JetFamily::find_lanes() {
@@ -107,13 +208,26 @@ void JetFamily::find_lanes() {
     };
     for (int lane = 0; lane < lanes; ++lane) {
       const std::size_t q = at(std::min(first + lane, Q - 1));
-      for (int l = 0; l < pattern_.size(); ++l) {
+      for (int l = 0; l < pattern_.size(); ++l)
         for (const Weight& w : points_[q].of_vertex[at(l)]) entry(of.jets, w.slot, l).v[lane] = w.weight;
-        if (first + lane >= Q) continue;
-        for (const Weight& w : points_[q].of_test[at(l)])
-          entry(of.tests, w.slot, l).v[lane] = table_.points[q].weight * w.weight;
-      }
+      if (first + lane >= Q) continue;
+      for (std::size_t l = 0; l < points_[q].of_test.size(); ++l)
+        for (const Weight& w : points_[q].of_test[l])
+          entry(of.tests, w.slot, static_cast<int>(l)).v[lane] = table_.points[q].weight * w.weight;
     }
+    // Rounded weights of a rate leave a rest that every step would add to the momentum: the smallest one takes it.
+    for (const auto& column : columns_)
+      for (int s = 0; s < density_->slots(); ++s)
+        for (int lane = 0; is_rate(s) && lane < lanes; ++lane) {
+          double rest = 0, low = 0, *smallest = nullptr;
+          for (Lanes::Entry& e : of.tests)
+            if (double& weight = reinterpret_cast<double*>(&e.weight)[lane];
+                e.slot == s && weight != 0 && std::ranges::find(column, e.vertex) != column.end()) {
+              add_exactly(rest, low, weight);
+              if (!smallest || std::abs(weight) < std::abs(*smallest)) smallest = &weight;
+            }
+          if (smallest) *smallest -= rest + low;
+        }
     across_points_.push_back(std::move(of));
   }
 }
@@ -125,6 +239,7 @@ bool JetFamily::lagrangian(const StencilBatch& batch, double* L) const {
   fill_zero(L, batch.count);
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
+    jets.look_at(first, count);
     for (const TablePoint& p : table_.points) {
       density_->value(jets.at_point(p, first, count), l[0]);
       add(L + first, jets.area * p.weight, l[0], count);
@@ -142,29 +257,40 @@ bool JetFamily::adds_to(const Point& point, std::span<const int> equations) cons
 bool JetFamily::residual_of_one(const StencilBatch& batch, std::span<const int> equations, double* r) const {
   if (batch.count != lanes || across_points_.empty()) return false;
   Pack differences(0.0);
-  for (int i = 0; i < size(); ++i) differences += abs(Pack::load(batch.y + i * lanes) - batch.y[i * lanes]);
+  for (const double* values : {batch.y, batch.low})
+    for (int i = 0; values != nullptr && i < size(); ++i)
+      differences += abs(Pack::load(values + i * lanes) - values[i * lanes]);
   if (detail::any_above(differences, 0)) return false;
+  const auto increment = [&](int i) {
+    const int from = first_[at(i / d_)] * d_ + i % d_;
+    return (batch.y[i * lanes] - batch.y[from * lanes]) + (batch.low[i * lanes] - batch.low[from * lanes]);
+  };
 
   const int m = density_->variables();
   const ScratchRows jets(m, lanes), g(m, lanes);
   const auto scales = slot_scales(batch.cell);
   const double area = table_.measure * batch.cell.time_step * batch.cell.space_step;
   fill_zero(r, static_cast<int>(equations.size()) * lanes);
+  thread_local std::vector<int> place;  // of a value, or a sum, among the equations
+  place.assign(values_.size() + sums_.size(), -1);
+  for (std::size_t e = 0; e < equations.size(); ++e) place[at(equations[e])] = static_cast<int>(e);
   for (const Lanes& points : across_points_) {
     fill_zero(jets[0], m * lanes);
     for (const auto& [slot, vertex, weight] : points.jets)
       for (int a = 0; a < d_; ++a) {
         double* const to = jets[slot * d_ + a];
-        (Pack::load(to) + (scales[at(slot)] * batch.y[(vertex * d_ + a) * lanes]) * weight).store(to);
+        const int i = vertex * d_ + a;
+        const double value = batch.low != nullptr && is_rate(slot) ? increment(i) : batch.y[i * lanes];
+        (Pack::load(to) + (scales[at(slot)] * value) * weight).store(to);
       }
     density_->gradient({lanes, jets.data(), batch.cell.t, batch.x}, g.data());
-    for (std::size_t e = 0; e < equations.size(); ++e)
-      for (const auto& [slot, vertex, weight] : points.tests)
-        if (vertex == equations[e] / d_) {
-          double* const to = r + static_cast<std::ptrdiff_t>(e) * lanes;
-          (Pack::load(to) + (area * scales[at(slot)]) * (weight * Pack::load(g[slot * d_ + equations[e] % d_])))
-              .store(to);
-        }
+    for (const auto& [slot, vertex, weight] : points.tests)
+      for (int a = 0; a < d_; ++a) {
+        const int e = place[at(vertex * d_ + a)];
+        if (e < 0) continue;
+        double* const to = r + static_cast<std::ptrdiff_t>(e) * lanes;
+        (Pack::load(to) + (area * scales[at(slot)]) * (weight * Pack::load(g[slot * d_ + a]))).store(to);
+      }
   }
   for (std::size_t e = 0; e < equations.size(); ++e) {
     double* const to = r + static_cast<std::ptrdiff_t>(e) * lanes;
@@ -180,6 +306,7 @@ void JetFamily::residual(const StencilBatch& batch, std::span<const int> equatio
   fill_zero(r, static_cast<int>(equations.size()) * batch.count);
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
+    jets.look_at(first, count);
     for (std::size_t q = 0; q < points_.size(); ++q) {
       if (!adds_to(points_[q], equations)) continue;
       const TablePoint& p = table_.points[q];
@@ -202,6 +329,7 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
   fill_zero(J, static_cast<int>(equations.size() * unknowns.size()) * batch.count);
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
+    jets.look_at(first, count);
     for (std::size_t q = 0; q < points_.size(); ++q) {
       if (!adds_to(points_[q], equations)) continue;
       const TablePoint& p = table_.points[q];

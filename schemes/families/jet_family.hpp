@@ -46,6 +46,7 @@ class JetFamily final : public StencilFamily {
     double weight;
   };
   struct Point {
+    /// Tests of the vertices, then of the columns: what a column's vertices have together.
     std::vector<std::vector<Weight>> of_vertex, of_test;
     std::vector<int> values;  ///< numbers in values() of those that the jet here reads, or that it adds to
   };
@@ -61,6 +62,7 @@ class JetFamily final : public StencilFamily {
     std::vector<Entry> jets, tests;
   };
 
+  void find_columns();
   void find_sources();
   void find_lanes();
   bool residual_of_one(const StencilBatch&, std::span<const int> equations, double* r) const;
@@ -70,6 +72,9 @@ class JetFamily final : public StencilFamily {
   std::shared_ptr<const BatchDensity> density_;
   int d_;
   bool has_sources_;
+  /// Vertices of the same place in space at one time after another: weights of derivatives in time add up to zero there.
+  std::vector<std::vector<int>> columns_;
+  std::vector<int> first_;  ///< [vertex]: the one of its column that increments count from
   std::vector<Point> points_;
   std::vector<Lanes> across_points_;  ///< none where a density depends on the place, which a batch has one time of
   SourceTerms sources_;

@@ -23,6 +23,13 @@ class LagrangianFamily final : public StencilFamily {
       : StencilFamily(lagrangian.pattern(), lagrangian.values(), true), lagrangian_(std::move(lagrangian)) {
     placed_ = delf::is_placed<L>();
     require_good_values();
+    if constexpr (requires { lagrangian_.columns(); }) {
+      sums_ = lagrangian_.columns();
+      reads_low_ = sums_vanish_ = true;
+      first_.assign(values_.size(), -1);
+      for (const std::vector<int>& column : sums_)
+        for (const int i : column) first_[at(i)] = column.front();
+    }
   }
 
   void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override {
@@ -117,12 +124,19 @@ class LagrangianFamily final : public StencilFamily {
       const std::size_t last = std::min(first + width, equations.size());
       for (std::size_t e = first; e < last; ++e) y[at(equations[e])].d[e - first] = Pack(1.0);
       for (int s = 0; s < batch.count; s += lanes) {
-        for (int i = 0; i < size(); ++i) y[at(i)].value = Pack::load(batch.y + i * batch.count + s);
+        for (int i = 0; i < size(); ++i) y[at(i)].value = load(batch, i, s);
         const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
         for (std::size_t e = first; e < last; ++e) value.d[e - first].store(r + e * at(batch.count) + at(s));
       }
       for (std::size_t e = first; e < last; ++e) y[at(equations[e])].d[e - first] = Pack(0.0);
     }
+  }
+  /// Value i of a pack of stencils, counted from the first of its column: L depends on such differences alone.
+  Pack load(const StencilBatch& batch, int i, int s) const {
+    const auto of = [&](const double* values, int n) { return Pack::load(values + n * batch.count + s); };
+    const int from = batch.low == nullptr ? -1 : first_[at(i)];
+    if (from < 0) return of(batch.y, i);
+    return (of(batch.y, i) - of(batch.y, from)) + (of(batch.low, i) - of(batch.low, from));
   }
   /// L as a function of y alone.
   auto in(const Cell& cell) const {
@@ -145,6 +159,7 @@ class LagrangianFamily final : public StencilFamily {
   }
 
   L lagrangian_;
+  std::vector<int> first_;  ///< [i]: the first value of its column; −1: in none
 };
 
 }  // namespace delf

@@ -72,6 +72,7 @@ MappedFamily::MappedFamily(std::shared_ptr<const StencilFamily> family, const Ma
   for (int i = 0; i < size(); ++i)
     for (const auto& [value, weight] : reads_[at(i)]) map_[at(value)].push_back({i, weight});
   for (const auto& entries : tests_) varied_.push_back(!entries.empty());
+  find_rates();
   if (!map.cell) return;
   cell_time_ = map.time;
   for (int i = 0; i < size(); ++i) {
@@ -79,6 +80,40 @@ MappedFamily::MappedFamily(std::shared_ptr<const StencilFamily> family, const Ma
     for (const Entry& entry : reads_[at(i)])
       weight += entry.value == map.cell->second ? entry.weight : entry.value == map.cell->first ? -entry.weight : 0.0;
     if (weight != 0) cell_.push_back({i, weight});
+  }
+}
+
+/// Values that rates are differences of are those of one field at one place: what is added to all of them leaves rates as
+/// they are.
+void MappedFamily::find_rates() {
+  constexpr double rounding = 1e-12;
+  std::vector<int> column(values_.size(), -1);
+  int columns = 0;
+  for (const auto& row : map_) {
+    double sum = 0, absolute = 0;
+    for (const Entry& entry : row) sum += entry.weight, absolute += std::abs(entry.weight);
+    is_rate_.push_back(row.size() > 1 && std::abs(sum) <= rounding * absolute);
+    if (!is_rate_.back()) continue;
+    reads_low_ = true;
+    int own = columns;
+    for (const Entry& entry : row)
+      if (column[at(entry.value)] >= 0) own = column[at(entry.value)];
+    for (const Entry& entry : row) column[at(entry.value)] = own;
+    columns = std::max(columns, own + 1);
+  }
+  for (int c = 0; c < columns; ++c) {
+    std::vector<int> members;
+    std::vector<double> sum(map_.size(), 0.0), absolute = sum;
+    for (int i = 0; i < size(); ++i) {
+      if (column[at(i)] != c) continue;
+      members.push_back(i);
+      for (const Entry& entry : tests_[at(i)])
+        sum[at(entry.value)] += entry.weight, absolute[at(entry.value)] += std::abs(entry.weight);
+    }
+    sums_.push_back(std::move(members)), tests_.emplace_back();
+    for (std::size_t value = 0; value < sum.size(); ++value)
+      if (std::abs(sum[value]) > rounding * absolute[value])
+        tests_.back().push_back({static_cast<int>(value), sum[value]});
   }
 }
 
@@ -92,8 +127,23 @@ int MappedFamily::number_of(const Part& p) const {
 struct MappedFamily::Mapped {
   Mapped(const MappedFamily& of, const StencilBatch& batch) : y(of.family_->size(), batch.count) {
     const auto own = [&](int i) { return batch.y + static_cast<std::ptrdiff_t>(i) * batch.count; };
-    for (int b = 0; b < of.family_->size(); ++b) sum(of.map_[at(b)], own, batch.count, y[b]);
+    for (int b = 0; b < of.family_->size(); ++b)
+      if (batch.low != nullptr && of.is_rate_[at(b)] != 0) add_increments(of.map_[at(b)], batch, y[b]);
+      else sum(of.map_[at(b)], own, batch.count, y[b]);
     inner = {batch.cell, batch.count, batch.x, y[0]};
+  }
+  /// Σ w (y − y₀), y₀ the first of them.
+  static void add_increments(std::span<const Entry> terms, const StencilBatch& batch, double* to) {
+    const auto load = [&](const double* from, const Entry& entry, int s) {
+      return Pack::load(from + static_cast<std::ptrdiff_t>(entry.value) * batch.count + s);
+    };
+    for (int s = 0; s < batch.count; s += lanes) {
+      Pack all(0.0);
+      for (const Entry& entry : terms.subspan(1))
+        all += entry.weight * ((load(batch.y, entry, s) - load(batch.y, terms[0], s)) +
+                               (load(batch.low, entry, s) - load(batch.low, terms[0], s)));
+      all.store(to + s);
+    }
   }
   /// The numbers met, ascending; `place` is where each stands among them.
   static void meet(const std::vector<std::vector<Entry>>& entries, std::span<const int> own, std::vector<int>& numbers,

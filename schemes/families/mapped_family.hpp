@@ -61,10 +61,14 @@ class MappedFamily : public StencilFamily {
   MappedFamily(std::shared_ptr<const StencilFamily>, const Map&,
                std::pair<StencilPattern, std::vector<VertexValue>> own);
   int number_of(const Part&) const;
+  void find_rates();
 
   std::shared_ptr<const StencilFamily> family_;
   std::vector<std::vector<Entry>> map_;            ///< rows of M, by own values
-  std::vector<std::vector<Entry>> reads_, tests_;  ///< columns of M and rows of N, by the family's values
+  /// Columns of M and rows of N, by the family's values; N has rows of sums() too.
+  std::vector<std::vector<Entry>> reads_, tests_;
+  /// By the family's values: a sum of increments in time, whose weights add up to zero.
+  std::vector<char> is_rate_;
   std::vector<Entry> cell_;
   double cell_time_ = 0;
 };

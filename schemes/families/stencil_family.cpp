@@ -10,13 +10,15 @@ namespace {
 
 /// One stencil as a batch: it stands in every lane.
 struct Alone {
-  std::vector<Pack> y;
+  std::vector<Pack> y, low;
   Pack x;
   StencilBatch batch;
 
-  Alone(const Cell& cell, std::span<const double> values) : y(values.size()), x(cell.x) {
-    for (std::size_t i = 0; i < values.size(); ++i) y[i] = Pack(values[i]);
+  Alone(const Cell& cell, std::span<const double> values, std::span<const double> low_parts = {}) : x(cell.x) {
+    for (const double value : values) y.emplace_back(value);
+    for (const double part : low_parts) low.emplace_back(part);
     batch = {cell, lanes, reinterpret_cast<const double*>(&x), reinterpret_cast<const double*>(y.data())};
+    if (!low.empty()) batch.low = reinterpret_cast<const double*>(low.data());
   }
 };
 
@@ -37,6 +39,15 @@ int SourceTerms::Group::latest_time() const {
 
 void StencilFamily::residual(const Cell& cell, std::span<const double> y, std::span<double> r) const {
   const Alone one(cell, y);
+  std::vector<Pack> out(y.size());
+  residual(one.batch, reinterpret_cast<double*>(out.data()));
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = out[i][0];
+}
+
+void StencilFamily::residual(const Cell& cell, std::span<const double> y, std::span<const double> low,
+                             std::span<double> r) const {
+  if (low.empty() || !reads_low()) return residual(cell, y, r);
+  const Alone one(cell, y, low);
   std::vector<Pack> out(y.size());
   residual(one.batch, reinterpret_cast<double*>(out.data()));
   for (std::size_t i = 0; i < r.size(); ++i) r[i] = out[i][0];

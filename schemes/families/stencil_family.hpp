@@ -16,6 +16,8 @@ struct StencilBatch {
   int count;        ///< a multiple of `lanes`
   const double* x;  ///< [s]: of the anchors
   const double* y;  ///< [i·count + s]: value i of stencil s
+  /// The same of what rounding has taken from y: the values are y + low. Null: nothing is known of it.
+  const double* low = nullptr;
 };
 
 /// The part of a residual that is proved linear with constant coefficients: r(y) = r0 + J y + what depends on y
@@ -76,9 +78,19 @@ class StencilFamily {
   bool is_varied(int i) const { return varied_.empty() || varied_[static_cast<std::size_t>(i)]; }
   bool is_placed() const { return placed_; }
 
+  /// True if derivatives in time are sums of differences of y + low, which lose no digits in a short step.
+  bool reads_low() const { return reads_low_; }
+  /// Values whose residuals residual() adds up more exactly than their terms are, as equation size() + n for sums()[n]. A
+  /// field that is raised at one place at all times has no φ_t there: what is left is the momentum that a step adds.
+  const std::vector<std::vector<int>>& sums() const { return sums_; }
+  /// These sums are zero: r depends on differences of their values alone.
+  bool sums_vanish() const { return sums_vanish_; }
+
   /// r of a batch for some equations e, indices of values(): r[e·count + s], where e counts in the list.
   virtual void residual(const StencilBatch&, std::span<const int> equations, double* r) const;
   void residual(const StencilBatch&, double* r) const;  ///< for all of them
+  /// r of one stencil whose values are y + low.
+  void residual(const Cell&, std::span<const double> y, std::span<const double> low, std::span<double> r) const;
   /// ∂rᵉ/∂yᵘ of a batch for some equations e and unknowns u, both indices of values():
   /// J[(e·unknowns.size() + u)·count + s], where e and u count in the lists.
   virtual void jacobian(const StencilBatch&, std::span<const int> equations, std::span<const int> unknowns,
@@ -117,7 +129,8 @@ class StencilFamily {
   StencilPattern pattern_;
   std::vector<VertexValue> values_;
   std::vector<bool> varied_;  ///< [i]; empty: all
-  bool variational_, placed_ = false;
+  bool variational_, placed_ = false, reads_low_ = false, sums_vanish_ = false;
+  std::vector<std::vector<int>> sums_;
 };
 
 /// d components at every vertex, vertex by vertex: i = l·d + a. Nodes inside a cell have components of their own.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <span>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "jets/discrete_lagrangian.hpp"
+#include "jets/simd/exact_sum.hpp"
 #include "lattice/stencil_shape.hpp"
 
 namespace delf {
@@ -28,6 +30,12 @@ class TraceStencil {
     for (std::size_t j = 0; j < ends.size(); ++j)
       if (ends[j] != 0) coefficients_.push_back({static_cast<int>(j), ends[j]});
     for (int a = 0; a < d; ++a) tied_.push_back({a, multiplier + a});
+    // Σ_j φ_j = 1: what rounding leaves of it every step would take from the momentum. The smallest one has it.
+    double rest = -1, low = 0;
+    for (const auto& [j, weight] : coefficients_) add_exactly(rest, low, weight);
+    const auto smallest =
+        std::ranges::min_element(coefficients_, {}, [](const auto& entry) { return std::abs(entry.second); });
+    if (std::abs(rest) < 1e-12) smallest->second -= rest + low;
   }
   /// Some fields alone, each with the component of its multiplier.
   TraceStencil(End end, int d, const std::vector<double>& ends, std::vector<std::pair<int, int>> tied)
@@ -51,6 +59,16 @@ class TraceStencil {
 
   StencilPattern pattern() const { return StencilPattern(read().vertices); }
   std::vector<VertexValue> values() const { return read().values; }
+  /// The numbers of the values of one field: they enter by their differences alone, for Σ_j φ_j = 1.
+  std::vector<std::vector<int>> columns() const {
+    const std::size_t d = tied_.size();
+    std::vector<std::vector<int>> columns;
+    for (std::size_t a = 0; a < d; ++a) {
+      columns.push_back({static_cast<int>(a)});
+      for (std::size_t n = 0; n < coefficients_.size(); ++n) columns.back().push_back(static_cast<int>((2 + n) * d + a));
+    }
+    return columns;
+  }
   template <class T>
   T operator()(std::span<const T> y, const Cell&) const {
     const std::size_t d = tied_.size();

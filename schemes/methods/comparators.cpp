@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "lattice/error.hpp"
 #include "schemes/families/damped_leapfrog.hpp"
 #include "schemes/families/guo.hpp"
@@ -12,12 +14,30 @@
 namespace delf {
 namespace {
 
+/// ℓ = Σ_a ½(φ_tᵃ)² − ½(φ_xᵃ)² + N(φ), by its Hessian: the equations of comparators are written for no other.
+bool is_of_plain_waves(const BatchDensity& density) {
+  const int d = density.components(), m = density.variables();
+  for (int i = d; i < m; ++i)
+    for (int j = 0; j < m; ++j) {
+      const double wanted = i != j ? 0 : i < 2 * d ? 1 : i < 3 * d ? -1 : 0;
+      const double given = density.constant_hessian()[static_cast<std::size_t>(i * m + j)];
+      if (!density.is_constant(i, j) || std::abs(given - wanted) > 1e-12) return false;
+    }
+  return true;
+}
+
 SchemeParts build(const FieldTheory& theory, const Problem& p, DirectResidual stencil) {
   auto family = theory.comparator(std::move(stencil));
   if (!family)
     throw BadInput("scheme.method", fmt::format("scheme.method = {}: not written for theory.name = {}, whose potential "
                                                 "depends on more than the field; use scheme.method = multisymplectic",
                                                 p.method, p.theory));
+  if (!is_of_plain_waves(theory.density()))
+    throw BadInput("scheme.method",
+                   fmt::format("scheme.method = {}: written for phi_t^2/2 - phi_x^2/2 + N(phi), and theory.name = {} has "
+                               "other derivatives; choose units in which the speed is 1, or use scheme.method = "
+                               "multisymplectic",
+                               p.method, p.theory));
   if (p.lattice.space() == Space::point)
     throw BadInput("scheme.method",
                    fmt::format("scheme.method = {}: a scheme for fields, and lattice.space = point has "

@@ -2,9 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <span>
+#include <sstream>
 #include <string_view>
+#include <utility>
 #include <variant>
 
+#include "jets/expressions/field_equation.hpp"
 #include "jets/expressions/stencil_expression.hpp"
 #include "jets/expressions/stencil_text.hpp"
 #include "jets/tables/named_tables.hpp"
@@ -32,15 +40,44 @@ void check_walls(const Problem& p, const StencilFamily& family) {
                              : fmt::format("lattice.stencil = {}: is for mechanics and couples no neighbours; use "
                                            "rectangle-symmetric, or lattice.space = point",
                                            p.stencil));
-  const bool clamped = p.lattice.left() == Wall::clamped && p.lattice.right() == Wall::clamped;
-  if (!p.lattice.is_circle() && width > 1 && !clamped)
+  const auto* jets = dynamic_cast<const JetFamily*>(&family);
+  if (p.lattice.space() == Space::interval && !(jets ? fits_between_walls(jets->table()) : width < 2))
     throw BadInput(
         "lattice.stencil",
         fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
-                    "at the walls out of the action, and the error there does not vanish with k; use "
-                    "triangle, rectangle or rectangle-symmetric, lattice.space = circle, or clamp both walls: "
-                    "boundary.left = clamped",
+                    "at the walls out of the action, unless they have three columns around their middle; use "
+                    "triangle, rectangle, rectangle-symmetric, six-tuple or nine-tuple, or lattice.space = circle",
                     p.stencil));
+  for (const auto& [wall, key] : {std::pair{p.lattice.left(), "boundary.left"}, {p.lattice.right(), "boundary.right"}})
+    if (wall == Wall::clamped && width < 2 && p.lattice.space() == Space::interval)
+      throw BadInput(key,
+                     fmt::format("{} = clamped: keeps phi_x too, which is for densities with second derivatives on "
+                                 "stencils that have them; use fixed or natural, or six-tuple or nine-tuple",
+                                 key));
+}
+
+constexpr auto left_slope = "boundary.left_slope", right_slope = "boundary.right_slope";
+
+/// φ_x at clamped walls, as numbers of text, one for each field.
+WallSlopes slopes_of(const FieldTheory& theory, const Problem& p) {
+  const auto read = [&](const char* key) {
+    const auto text = p.parameters.maybe<std::string>(key);
+    if (!text || text->empty()) return std::vector<double>{};
+    std::vector<double> slopes;
+    std::istringstream in(*text);
+    for (std::string part; std::getline(in, part, ',');) {
+      std::istringstream number(part);
+      double slope = 0;
+      if (!(number >> slope) || !(number >> std::ws).eof() || !std::isfinite(slope))
+        throw BadInput(key, fmt::format("{} = {}: is a number for each field, separated by commas", key, *text));
+      slopes.push_back(slope);
+    }
+    if (static_cast<int>(slopes.size()) != theory.components())
+      throw BadInput(key, fmt::format("{} = {}: has {} numbers, and the theory {} fields; give one for each", key,
+                                      *text, slopes.size(), theory.components()));
+    return slopes;
+  };
+  return {read(left_slope), read(right_slope)};
 }
 
 constexpr auto sites_key = "stencil.sites", point_key = "stencil.point", lagrangian_key = "theory.lagrangian",
@@ -60,6 +97,96 @@ std::shared_ptr<const StencilFamily> from_odd_row(const FieldTheory& theory, con
   return theory.on_table(std::move(table));
 }
 
+/// The sum −1/(hk) Σ ∂L/∂y over the stencils of a site, on the Taylor polynomial of a jet about it, with a bound of its
+/// rounding.
+struct DiscreteForce {
+  double value = 0, rounding = 0;
+};
+DiscreteForce discrete_force(const StencilFamily& family, std::span<const double> jet, double h, double k) {
+  const auto& sites = family.pattern().vertices;
+  const std::size_t n = sites.size();
+  std::vector<double> y(n), r(n), J(n * n);
+  DiscreteForce force;
+  for (std::size_t l = 0; l < n; ++l) {
+    double largest = 0;
+    for (std::size_t m = 0; m < n; ++m) {
+      const double t = (sites[m].time - sites[l].time) * h, x = (sites[m].space - sites[l].space) * k;
+      y[m] = 0;
+      double over = 1;  // o!
+      std::size_t at = 0;
+      for (int o = 0; at < jet.size(); over *= ++o) {
+        double binomial = 1;
+        for (int in_x = 0; in_x <= o; binomial *= static_cast<double>(o - in_x) / (in_x + 1), ++in_x)
+          y[m] += jet[at++] * binomial * std::pow(t, o - in_x) * std::pow(x, in_x) / over;
+      }
+      largest = std::max(largest, std::abs(y[m]));
+    }
+    const Cell cell{h, k, 0, 0};
+    family.residual(cell, y, r), family.jacobian(cell, y, J);
+    force.value -= r[l] / (h * k);
+    for (std::size_t m = 0; m < n; ++m)
+      force.rounding += std::abs(J[l * n + m]) * largest * 16 * std::numeric_limits<double>::epsilon() / (h * k);
+  }
+  return force;
+}
+
+/// The action does not read k: it is that of a chain, which is no lattice of a field that varies in space.
+bool is_chain(const StencilFamily& family) {
+  std::vector<double> y, r(family.pattern().vertices.size()), again(r);
+  for (std::size_t m = 0; m < r.size(); ++m) y.push_back(0.3 + 0.1 * std::sin(2.0 * static_cast<double>(m)));
+  family.residual({0.1, 0.5, 0, 0}, y, r), family.residual({0.1, 0.25, 0, 0}, y, again);
+  return r == again;
+}
+
+/// An action on values has the equations of the density as h and k tend to 0 together: tried on fields at random.
+void require_action_of(const FieldTheory& theory, const StencilFamily& family, const Problem& p) {
+  const auto equations = FieldEquations::of(theory.density());
+  if (!equations || theory.constraint() || !(p.time_step > 0)) return;
+  const bool chain = is_chain(family), uniform = chain || p.lattice.space() == Space::point;
+  const double k = chain ? 1 : p.lattice.space_step(), courant = p.time_step / p.lattice.space_step();
+  std::mt19937_64 random(1);
+  struct Tried {
+    std::vector<double> jet;
+    double limit, equation, rounding;
+  };
+  std::vector<Tried> all;
+  double scale = 0;
+  constexpr int fields = 24;
+  for (int f = 0; f < fields; ++f) {
+    // half of them where logarithms and roots have values
+    std::uniform_real_distribution<double> anything(f % 2 ? -1 : 0, f % 2 ? 1 : 2);
+    std::vector<double> jet(static_cast<std::size_t>(derivatives_up_to(equations->order())));
+    for (double& value : jet) value = anything(random);
+    std::size_t at = 0;
+    for (int o = 0; uniform && at < jet.size(); ++o)
+      for (int in_x = 0; in_x <= o; ++in_x, ++at)
+        if (in_x > 0) jet[at] = 0;
+    std::array<DiscreteForce, 3> D;
+    for (std::size_t n = 0; n < D.size(); ++n) {
+      const double s = std::ldexp(1.0, -5 - 2 * static_cast<int>(n));
+      D[n] = uniform ? discrete_force(family, jet, s, k) : discrete_force(family, jet, courant * s, s);
+    }
+    // the limit of D₀ + a sᵖ, by Aitken
+    const double last = D[2].value - D[1].value, before = D[1].value - D[0].value, bend = last - before;
+    const bool settled = std::abs(last) <= D[2].rounding + D[1].rounding || std::abs(last) > 0.9 * std::abs(before);
+    const double limit = D[2].value - (settled ? 0 : last * last / bend);
+    const auto [equation, absolute] = (*equations)(jet, 0, 0).front();
+    if (!std::isfinite(limit) || !std::isfinite(absolute)) continue;
+    scale = std::max({scale, absolute, std::abs(limit)});
+    all.push_back({jet, limit, equation, D[2].rounding});
+  }
+  constexpr double agreement = 1e-3;
+  for (const Tried& tried : all)
+    if (std::abs(tried.limit - tried.equation) > agreement * scale + tried.rounding)
+      throw BadInput(
+          lagrangian_key,
+          fmt::format("{}: is no action of the density: at phi = {:.3g}, phi_t = {:.3g}, phi_x = {:.3g}, phi_tt = "
+                      "{:.3g}, phi_tx = {:.3g}, phi_xx = {:.3g} the field equation of the density gives {:.6g}, "
+                      "and {:.6g} is what that of the action tends to for small h and k; correct one of them",
+                      lagrangian_key, tried.jet[0], tried.jet[1], tried.jet[2], tried.jet[3], tried.jet[4],
+                      tried.jet[5], tried.equation, tried.limit));
+}
+
 /// L(y1, …, yn; h, k) on the sites of a stencil as text, as it is; numbers of the theory by their names. Its density says
 /// what is measured.
 std::shared_ptr<const StencilFamily> on_values(const FieldTheory& theory, const Problem& p,
@@ -75,11 +202,13 @@ std::shared_ptr<const StencilFamily> on_values(const FieldTheory& theory, const 
   for (const auto& [key, value] : p.parameters)
     if (const double* number = std::get_if<double>(&value); number && key.starts_with(prefix))
       numbers.emplace_back(key.substr(prefix.size()), *number);
-  return std::make_shared<LagrangianFamily<StencilExpression>>(StencilExpression::lagrangian(
+  auto family = std::make_shared<LagrangianFamily<StencilExpression>>(StencilExpression::lagrangian(
       lagrangian, StencilPattern(stencil_sites(sites, sites_key)), numbers, lagrangian_key));
+  require_action_of(theory, *family, p);
+  return family;
 }
 
-/// The action on the stencil that the scene gives as text, with the terms of natural walls.
+/// The action on the stencil that the scene gives as text.
 std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheory& theory, const Problem& p) {
   const auto text_of = [&](const char* key) {
     const auto text = p.parameters.maybe<std::string>(key);
@@ -94,10 +223,7 @@ std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheo
   const std::string points = text_of(point_key);
   const auto family =
       std::static_pointer_cast<const JetFamily>(theory.on_table(stencil_of(sites, points, sites_key, point_key)));
-  std::vector<std::shared_ptr<const StencilFamily>> families{family};
-  const std::shared_ptr<const BatchDensity> density(family, &family->density());
-  for (auto& term : wall_families(family->table(), density, p.lattice)) families.push_back(std::move(term));
-  return families;
+  return {family};
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
@@ -112,8 +238,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                                  "brick wall such as hexagon",
                                  p.stencil));
   check_walls(p, *parts.families[0]);
-  if (!own)
-    for (auto& term : theory.at_walls(p.stencil, p.lattice)) parts.families.push_back(std::move(term));
+  if (const auto* jets = dynamic_cast<const JetFamily*>(parts.families[0].get()))
+    for (auto& term : wall_families(jets->table(), theory.shared_density(), p.lattice, slopes_of(theory, p)))
+      parts.families.push_back(std::move(term));
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));
     parts.components.push_back({"lambda", Role::multiplier, {}});
@@ -165,7 +292,15 @@ const MethodEntry multisymplectic_method{
                     .fallback = 0,
                     .help = "of a brick wall (hexagon): 1 if the first row, or frame, is an odd row of it",
                     .range = {0, 1},
-                    .otherwise = "that of the file's /time and scene, or 0"}},
+                    .otherwise = "that of the file's /time and scene, or 0"},
+                   {.key = left_slope,
+                    .fallback = std::string(),
+                    .help = "phi_x that a clamped left wall keeps, a number for each field",
+                    .otherwise = "that of the initial state"},
+                   {.key = right_slope,
+                    .fallback = std::string(),
+                    .help = "phi_x that a clamped right wall keeps, a number for each field",
+                    .otherwise = "that of the initial state"}},
     .reads_stencil = true,
     .label = [](const Problem& p) { return p.stencil; },
     .variants = variants,

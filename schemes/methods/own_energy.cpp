@@ -9,6 +9,7 @@
 
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/assembly.hpp"
+#include "schemes/turn.hpp"
 
 namespace delf {
 namespace {
@@ -92,7 +93,7 @@ std::optional<OwnEnergy> own_energy(const Simulation& simulation, const Problem&
   for (const OwnEnergyEntry* entry : own_energy_entries())
     if (entry->method == problem.method)
       if (auto own = entry->make(simulation.theory(), system, problem)) return own;
-  if (find_method(problem.method).energy) return std::nullopt;
+  if (find_method(problem.method).energy || gain_of(problem.parameters) != 0) return std::nullopt;
   return quadratic_invariant(system, problem.winding);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "jets/tables/pair_element.hpp"
@@ -11,6 +10,7 @@
 #include "schemes/methods/pair_parts.hpp"
 #include "schemes/system/assembly.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/turn.hpp"
 
 namespace delf {
 namespace {
@@ -63,7 +63,7 @@ class RowAction {
 /// The momenta ∂L/∂y at a row, of the stencils below it.
 class MomentaBelow {
  public:
-  MomentaBelow(const LatticeSystem& system, int winding) : assembly_(system, parts(system, winding)) {}
+  MomentaBelow(const LatticeSystem& system, double turn) : assembly_(system, parts(system, turn)) {}
 
   std::vector<double> operator()(const RowsInTime& rows) const {
     std::vector<double> p;
@@ -72,13 +72,13 @@ class MomentaBelow {
   }
 
  private:
-  static Assembly::Parts parts(const LatticeSystem& system, int winding) {
+  static Assembly::Parts parts(const LatticeSystem& system, double turn) {
     const int N = system.lattice().sites();
     std::vector<Assembly::Anchor> below;
     for (std::size_t f = 0; f < system.families().size(); ++f)
       for (int i = 0; i < N; ++i)
         if (system.has_stencil(*system.families()[f], -1, i)) below.push_back({static_cast<int>(f), {-1, i}});
-    Assembly::Parts parts{.equations = {}, .past = 1, .turn = 2 * std::numbers::pi * winding, .stencils = below};
+    Assembly::Parts parts{.equations = {}, .past = 1, .turn = turn, .stencils = below};
     for (int i = 0; i < N; ++i)
       for (int c = 0; c < system.fields(); ++c) parts.equations.push_back({{0, i}, c});
     return parts;
@@ -113,7 +113,7 @@ std::optional<OwnEnergy> make(const FieldTheory& theory, const LatticeSystem& sy
   const auto order = p.parameters.get<int>("lattice.space_order");
   const auto action = std::make_shared<const RowAction>(
       theory, system.lattice(), pair_space(pair_weights(pairs_of_order(p, "lattice.space_order", order))));
-  const auto momenta = std::make_shared<const MomentaBelow>(system, p.winding);
+  const auto momenta = std::make_shared<const MomentaBelow>(system, turn_of(p));
   return OwnEnergy{"H(q, p) of the composition", formula, false, [=](const RowsInTime& rows) {
                      const Lattice& lattice = rows.system.lattice();
                      const std::vector<double> below = (*momenta)(rows);

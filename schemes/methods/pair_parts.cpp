@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <random>
 #include <utility>
 
+#include "jets/simd/scratch_rows.hpp"
 #include "jets/tables/mirror_table.hpp"
 #include "jets/tables/pair_element.hpp"
 #include "lattice/error.hpp"
@@ -33,9 +36,81 @@ int pairs_of_order(const Problem& p, const char* key, int order) {
 std::vector<StencilTable> at_both_walls(const StencilTable& table, const Lattice& lattice) {
   if (lattice.space() != Space::interval) return {};
   const auto mirror = [](Wall wall) { return wall == Wall::fixed ? Mirror::odd : Mirror::even; };
-  return {mirror_table(table, Placement::left_mirror, mirror(lattice.left())),
-          mirror_table(table, Placement::right_mirror, mirror(lattice.right()))};
+  return {mirror_table(table, Placement::left_mirror, mirror(lattice.left())).table,
+          mirror_table(table, Placement::right_mirror, mirror(lattice.right())).table};
 }
+
+namespace {
+
+/// ℓ = ½ Σ M_ab(x) φ_a,t φ_b,t + U(t, x, φ, φ_x): a sub-step is a kick, of U where the row is, and a drift. M is looked at where
+/// it is not proved constant: at two jets in every place.
+bool is_quadratic_in_rates(const BatchDensity& density) {
+  const int d = density.components(), m = density.variables(), t = m;
+  bool proved = true;
+  for (int a = d; a < 2 * d; ++a) {
+    if (!density.is_zero(a, t)) return false;
+    for (int b = 0; b < m; ++b) {
+      if ((b < d || b >= 2 * d) && !density.is_zero(a, b)) return false;
+      proved = proved && density.is_constant(a, b);
+    }
+  }
+  if (proved) return true;
+  const ScratchRows jet(m, lanes), x(1, lanes), one(m * m, lanes), other(m * m, lanes);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> some(0.1, 2);
+  const double time = some(random);
+  for (int l = 0; l < lanes; ++l) x[0][l] = some(random);
+  for (const auto& H : {one.data(), other.data()}) {
+    for (int v = 0; v < m; ++v)
+      for (int l = 0; l < lanes; ++l) jet[v][l] = some(random);
+    density.hessian({lanes, jet.data(), time, x[0]}, H);
+  }
+  for (int a = d; a < 2 * d; ++a)
+    for (int b = d; b < 2 * d; ++b)
+      for (int l = 0; l < lanes; ++l) {
+        const double M = one[a * m + b][l];
+        if (!(std::abs(M - other[a * m + b][l]) <= 1e-12 * std::abs(M))) return false;
+      }
+  return true;
+}
+
+/// Each sub-step alone is self-adjoint: the action's potential acts at both of its ends alike.
+bool is_of_leapfrog(const Splitting& splitting) {
+  double upper = 0;
+  for (std::size_t s = 0; s < splitting.drifts.size(); ++s) {
+    const double lower = splitting.kicks[s] - upper;
+    upper = splitting.drifts[s] - lower;
+    if (!(std::abs(lower - upper) <= 1e-12)) return false;
+  }
+  return true;
+}
+
+/// What sub-steps do for any density that is nonlinear in φ alone, they do for others under conditions.
+void check_density(const BatchDensity& density, const Problem& p, const Splitting& splitting) {
+  if (density.nonlinearity() != Nonlinearity::all) return;
+  if (!splitting.processor.empty())
+    throw BadInput("theory.name", fmt::format("theory.name = {}: scheme.method = {} takes densities that are "
+                                              "nonlinear in phi alone; use scheme.method = composition",
+                                              p.theory, p.method));
+  // Orders 4 and 6 count on forces that do not depend on rates, and on drifts that do not depend on t.
+  if (!is_of_leapfrog(splitting) && !is_quadratic_in_rates(density))
+    throw BadInput(
+        "theory.name",
+        fmt::format("theory.name = {}: these sub-steps need phi_t in 0.5*M(x)*phi_t^2 alone; use "
+                    "scheme.order = 2 or 8, whose sub-steps are leapfrog's, or scheme.method = multisymplectic",
+                    p.theory));
+  // Images are those of the density too, and what φ_t or φ_x is multiplied by has a kink there.
+  const int d = density.components(), x = density.variables() + 1;
+  for (int a = d; a < 3 * d && p.lattice.space() == Space::interval; ++a)
+    if (!density.is_zero(a, x) && p.parameters.get<int>("lattice.space_order") > 2)
+      throw BadInput("lattice.space_order",
+                     fmt::format("lattice.space_order = {}: between walls pairs go on by mirror images, and a density "
+                                 "with coefficients of x has none to this order; use lattice.space_order = 2, or "
+                                 "lattice.space = circle",
+                                 p.parameters.get<int>("lattice.space_order")));
+}
+
+}  // namespace
 
 SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitting& splitting,
                        const std::vector<double>& pairs) {
@@ -43,20 +118,12 @@ SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitt
     throw BadInput("lattice.space", fmt::format("scheme.method = {}: wide stencils have no neighbours at a point; use "
                                                 "lattice.space = circle or interval",
                                                 p.method));
-  for (const auto& [wall, key] : {std::pair{p.lattice.left(), "boundary.left"}, {p.lattice.right(), "boundary.right"}})
-    if (wall == Wall::clamped)
-      throw BadInput(key, fmt::format("{} = clamped: is for densities with second derivatives, and pairs of sites are "
-                                      "mirrored at walls; use fixed or natural",
-                                      key));
   if (theory.constraint())
     throw BadInput("scheme.method",
                    fmt::format("scheme.method = {}: this version has no constraints between sub-steps; "
                                "use scheme.method = multisymplectic",
                                p.method));
-  if (theory.density().nonlinearity() == Nonlinearity::all)
-    throw BadInput("theory.name", fmt::format("theory.name = {}: scheme.method = {} takes densities that are "
-                                              "nonlinear in phi alone; use scheme.method = multisymplectic",
-                                              p.theory, p.method));
+  check_density(theory.density(), p, splitting);
   const StencilTable time = splitting_element(splitting), space = pair_space(pairs), element = product(time, space);
   // Between sub-steps momenta change by ∂ℓ/∂φ, linear or not.
   SchemeParts parts{{theory.on_table(element, true)}, theory.fields(), theory.symmetries(), splitting.processor, {}};

@@ -2,11 +2,16 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "jets/expressions/expression.hpp"
+#include "jets/expressions/formula_jet.hpp"
+#include "jets/expressions/graph.hpp"
 #include "lattice/error.hpp"
+#include "schemes/smooth_state.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/state_registry.hpp"
+#include "schemes/turn.hpp"
 
 namespace delf {
 namespace initial {
@@ -20,20 +25,30 @@ std::string exact_key(const std::string& field) { return "exact." + field; }
 struct FieldFormula {
   Formula value;
   std::optional<Formula> velocity;  ///< where the value is of t = 0 alone; none: at rest
-  std::string text;
+  std::string text, key, formula;
 };
 
 /// Fields by formulas of x, or of t and x. Around a circle they are continued by what they gain from 0 to L:
 ///
-///     n = ⌊x/L⌋,   φ(t, x) = f(t, x − nL) + 2π·winding·n
+///     n = ⌊x/L⌋,   φ(t, x) = f(t, x − nL) + (2π·winding + gain) n
 ///
-class FormulaState final : public State {
+class FormulaState final : public State, public SmoothState {
  public:
-  FormulaState(std::vector<FieldFormula> fields, bool solves, const Lattice& lattice, std::optional<int> winding)
-      : fields_(std::move(fields)), exact_(solves), circle_(lattice.is_circle()), length_(lattice.length()) {
-    if (circle_) winding_ = winding.value_or(static_cast<int>(std::lround(gain(fields_.front()) / turn)));
-    for (const FieldFormula& f : fields_)
-      if (circle_) seam_ = std::max(seam_, std::abs(gain(f) - turn * winding_));
+  FormulaState(std::vector<FieldFormula> fields, std::vector<std::pair<std::string, double>> numbers, bool solves,
+               const Lattice& lattice, const StateRequest& request)
+      : fields_(std::move(fields)),
+        exact_(solves),
+        circle_(lattice.is_circle()),
+        length_(lattice.length()),
+        numbers_(std::move(numbers)) {
+    if (!circle_) return;
+    const bool alone = gain_of(request.values) == 0;  // of a gain in units of the field no part is taken for a winding
+    winding_ = request.winding.value_or(
+        alone ? static_cast<int>(std::lround(gain(fields_.front()) / (2 * std::numbers::pi))) : 0);
+    turn_ = 2 * std::numbers::pi * winding_ + gain_of(request.values);
+    double range = 0;  // of all fields: one of several may be small
+    for (const FieldFormula& f : fields_) range = std::max(range, range_of(f, lattice));
+    for (const FieldFormula& f : fields_) require_closed(f, range);
   }
 
   int components() const override { return static_cast<int>(fields_.size()); }
@@ -43,10 +58,30 @@ class FormulaState final : public State {
       const FieldFormula& f = fields_[a];
       const double time = exact_ ? t : 0;
       const double phi_t = exact_ ? f.value.by_t(time, s) : f.velocity ? (*f.velocity)(0, s) : 0.0;
-      out[a] = {f.value(time, s) + turn * winding_ * n, phi_t, f.value.by_x(time, s)};
+      out[a] = {f.value(time, s) + turn_ * n, phi_t, f.value.by_x(time, s)};
     }
   }
   bool exact() const override { return exact_; }
+  std::optional<std::vector<double>> jet(double t, double x, int order) const override {
+    if (!exact_) return std::nullopt;
+    if (std::exchange(order_, order) != order) {
+      jets_.clear();
+      try {
+        for (const FieldFormula& f : fields_) jets_.emplace_back(f.formula, numbers_, f.key, order);
+      } catch (const expressions::TooLarge&) {
+        jets_.clear();
+      }
+    }
+    if (jets_.empty()) return std::nullopt;
+    const std::size_t d = fields_.size();
+    std::vector<double> all;
+    for (std::size_t a = 0; a < d; ++a) {
+      const std::vector<double> one = jets_[a](t, x);
+      all.resize(one.size() * d);
+      for (std::size_t n = 0; n < one.size(); ++n) all[n * d + a] = one[n];
+    }
+    return all;
+  }
   int winding() const override { return winding_; }
   std::string description() const override {
     std::string line = "formula:";
@@ -56,14 +91,40 @@ class FormulaState final : public State {
   }
 
  private:
-  static constexpr double turn = 2 * std::numbers::pi;
   /// f(0, L) − f(0, 0)
   double gain(const FieldFormula& f) const { return f.value(0, length_) - f.value(0, 0); }
+  static double range_of(const FieldFormula& f, const Lattice& lattice) {
+    double least = f.value(0, lattice.length()), most = least;
+    for (int i = 0; i < lattice.sites(); ++i) {
+      const double phi = f.value(0, lattice.position(i));
+      least = std::min(least, phi), most = std::max(most, phi);
+    }
+    return most - least;
+  }
+  /// A tail that does not fit is no more than a small part of what the fields span. A solution is that of the line where it
+  /// does not close: a run says how far it is off.
+  void require_closed(const FieldFormula& f, double range) {
+    constexpr double largest_part = 0.01;
+    const double jump = std::abs(gain(f) - turn_), rounding = 1e-12 * (std::abs(f.value(0, 0)) + std::abs(turn_));
+    seam_ = std::max(seam_, jump);
+    if (exact_ || !(jump > largest_part * range + rounding)) return;
+    const double turns = gain(f) / (2 * std::numbers::pi), whole = std::round(turns);
+    const bool winds = std::abs(turns - whole) < 1e-6 * std::max(1.0, std::abs(whole));
+    throw BadInput(f.key, f.key + ": gains " + text(gain(f)) +
+                              " around the circle, and with boundary.winding = " + std::to_string(winding_) +
+                              " it should gain " + text(turn_) + ": it jumps at the seam by " + text(jump) + "; use " +
+                              (winds ? "boundary.winding = " + text(whole)
+                                     : "boundary.gain = " + text(gain(f)) + " without boundary.winding") +
+                              ", a field that closes, or lattice.space = interval");
+  }
 
   std::vector<FieldFormula> fields_;
   bool exact_, circle_;
-  double length_, seam_ = 0;
+  double length_, seam_ = 0, turn_ = 0;
   int winding_ = 0;
+  std::vector<std::pair<std::string, double>> numbers_;
+  mutable std::vector<FormulaJet> jets_;  ///< made when they are asked for
+  mutable int order_ = -1;                ///< that they are of
 };
 
 std::unique_ptr<State> formula(const StateBuild& build) {
@@ -89,16 +150,20 @@ std::unique_ptr<State> formula(const StateBuild& build) {
     if (all_exact.value_or(exact.has_value()) != exact.has_value())
       throw BadInput(exact_key(name), exact_key(name) + ": must be given for all fields or for none; complete or remove it");
     all_exact = exact.has_value();
-    if (exact) fields.push_back({Formula(*exact, numbers, exact_key(name)), std::nullopt, name + " = " + *exact});
+    if (exact)
+      fields.push_back(
+          {Formula(*exact, numbers, exact_key(name)), std::nullopt, name + " = " + *exact, exact_key(name), *exact});
     else {
-      fields.push_back({Formula(*value, numbers, value_key(name)), std::nullopt, name + "(0, x) = " + *value});
+      fields.push_back({Formula(*value, numbers, value_key(name)), std::nullopt, name + "(0, x) = " + *value,
+                        value_key(name), *value});
       if (velocity) {
         fields.back().velocity.emplace(*velocity, numbers, velocity_key(name));
         fields.back().text += ", " + name + "_t(0, x) = " + *velocity;
       }
     }
   }
-  return std::make_unique<FormulaState>(std::move(fields), all_exact.value_or(false), build.lattice, build.request.winding);
+  return std::make_unique<FormulaState>(std::move(fields), std::move(numbers), all_exact.value_or(false), build.lattice,
+                                        build.request);
 }
 
 std::vector<Parameter> further(const std::vector<std::string>& fields) {

@@ -6,24 +6,33 @@
 namespace delf {
 
 extern const StateEntry rows_of_file_state;
-const StateEntry rows_of_file_state{"file",
-                                    "rows read from a file",
-                                    {{"initial.file",
-                                      std::string(),
-                                      "a fields.h5, or a .csv of row,site,values; looked for beside the scene first",
-                                      {},
-                                      {},
-                                      {},
-                                      "none"},
-                                     {"initial.frame",
-                                      0,
-                                      "the frame that row 0 is; the next frames are the next rows",
-                                      {},
-                                      {0, std::numeric_limits<int>::max()}}},
-                                    {},
-                                    {},
-                                    Place::anywhere,
-                                    nullptr,
-                                    true};
+const StateEntry rows_of_file_state{
+    "file",
+    "rows read from a file",
+    {{"initial.file",
+      std::string(),
+      "a fields.h5, a .csv of row,site,values, or a .npy of rows; looked for beside the scene first",
+      {},
+      {},
+      {},
+      "none"},
+     {"initial.frame",
+      0,
+      "the frame that row 0 is; the next frames are the next rows",
+      {},
+      {0, std::numeric_limits<int>::max()}},
+     {"initial.time_step",
+      0.0,
+      "the step between the rows of the file; a run with another step starts from "
+      "their values and rates",
+      "time",
+      {0, std::numeric_limits<double>::infinity(), true},
+      {},
+      "that of the file's times, or else the run's"}},
+    {},
+    {},
+    Place::anywhere,
+    nullptr,
+    true};
 
 }  // namespace delf

@@ -13,6 +13,7 @@
 #include "lattice/nearest_name.hpp"
 #include "schemes/declared.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -143,6 +144,10 @@ std::unique_ptr<State> make_state(const StateRequest& request, const Lattice& la
     throw BadInput("boundary.winding", "boundary.winding = " + std::to_string(*request.winding) + ": the state " +
                                            request.name + " winds " + std::to_string(state->winding()) +
                                            " times; set boundary.winding=" + std::to_string(state->winding()));
+  if (lattice.is_circle() && gain_of(request.values) != 0 && !entry.further)
+    throw BadInput("boundary.gain", "boundary.gain = " + initial::text(gain_of(request.values)) + ": the state " + request.name +
+                                        " gains nothing beside its winding; leave it out, or give the field by a "
+                                        "formula or a file");
   return state;
 }
 

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numbers>
 
 #include "lattice/error.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
@@ -27,53 +25,76 @@ Vector as_vector(const std::vector<double>& row) {
 std::vector<double> as_row(const Vector& v) { return {v.data(), v.data() + v.size()}; }
 int parity_of(const SolvePlan& plan, std::int64_t J) { return static_cast<int>(J & (plan.table.parities - 1)); }
 
-/// The equations of slab J as a function of row J, followed in the step s·h from s = 0 to 1.
+/// The equations of slab J as a function of its unknowns, followed in the step s·h from s = 0 to 1. The unknowns are row J
+/// as a whole, or a list of values where a slab has unknowns in several rows.
 class SlabProblem {
  public:
-  /// The rows that the equations read, made from row J: those of the past move with s, or with row J.
-  using MakeRows = std::function<void(double s, const Vector& row, SectionRing&)>;
+  /// The rows that the equations read, made from the unknowns: those of the past move with s, or with row J.
+  using MakeRows = std::function<void(double s, const Vector& y, SectionRing&)>;
 
   SlabProblem(const LatticeSystem& system, Assembly::Parts parts, std::int64_t J, MakeRows make)
-      : h_(system.time_step()),
+      : h_(system.times()->step(J - 1)),
         J_(J),
         ring_(parts.past + parts.future + 1,
               static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(system.components())),
         equations_(system, std::move(parts)),
-        make_(std::move(make)) {}
+        make_(std::move(make)) {
+    for (int n = 0; n < equations_.size(); ++n) places_.push_back(equations_.place(equations_.unknown(n)));
+  }
+
+  /// y[n] is unknown n; stencils without an unknown give `known`, whatever the step. Multipliers are not asked whether they
+  /// have converged: they have no scale of their own.
+  void list_unknowns(const LatticeSystem& system, const std::vector<double>& known) {
+    known_ = known;
+    for (int n = 0; n < equations_.size(); ++n) {
+      places_[static_cast<std::size_t>(n)] = n;
+      asked_.push_back(system.component(equations_.unknown(n).component).role != Role::multiplier);
+    }
+  }
 
   void set(double s) { equations_.set_time_step(s * h_), s_ = s; }
   const Assembly& equations() const { return equations_; }
 
-  /// ∂E/∂(row J)
-  const std::vector<double>& jacobian(const Vector& row) {
-    make_(s_, row, ring_);
+  /// ∂E/∂y
+  const std::vector<double>& jacobian(const Vector& y) {
+    make_(s_, y, ring_);
     equations_.jacobian(ring_, J_, values_);
     return values_;
   }
-  const std::vector<double>& residual(const Vector& row) {
-    make_(s_, row, ring_);
-    equations_.residual(ring_, J_, E_);
+  const std::vector<double>& residual(const Vector& y) {
+    make_(s_, y, ring_);
+    if (known_.empty()) equations_.residual(ring_, J_, E_);
+    else equations_.residual_from(known_, ring_, J_, E_);
+    E_.resize(static_cast<std::size_t>(equations_.size()));
     return E_;
   }
   /// y + by; a fixed wall keeps its value.
   Vector moved(Vector y, const Vector& by) const {
-    for (int n = 0; n < equations_.size(); ++n) y[place(n)] += by[place(n)];
+    for (const int place : places_) y[place] += by[place];
     return y;
   }
   /// y −= change
-  void take(Vector& row, std::span<const double> change) const {
-    for (int n = 0; n < equations_.size(); ++n) row[place(n)] -= change[static_cast<std::size_t>(n)];
+  void take(Vector& y, std::span<const double> change) const {
+    for (std::size_t n = 0; n < places_.size(); ++n) y[places_[n]] -= change[n];
+  }
+  /// max |y|, multipliers apart.
+  double size(const Vector& y) const {
+    if (asked_.empty()) return largest(y);
+    double most = 0;
+    for (std::size_t n = 0; n < asked_.size(); ++n)
+      if (asked_[n] != 0) most = std::max(most, std::abs(y[static_cast<Eigen::Index>(n)]));
+    return most;
   }
 
  private:
-  int place(int n) const { return equations_.place(equations_.unknown(n)); }
-
   double h_, s_ = 1;
   std::int64_t J_;
   SectionRing ring_;
   Assembly equations_;
   MakeRows make_;
-  std::vector<double> values_, E_;
+  std::vector<int> places_;  ///< of the unknowns in y
+  std::vector<char> asked_;
+  std::vector<double> known_, values_, E_;
 };
 
 struct Newton {
@@ -82,7 +103,8 @@ struct Newton {
   bool tame = true;
   int iterations = 0;
   Vector y;
-  int sign = 0;  ///< of the determinant at the root
+  int sign = 0;        ///< of the determinant at the root
+  double reached = 0;  ///< the part of the step that the root was followed to
 };
 
 /// Whether corrections of this size say that the iteration has arrived. Those that stopped shrinking below a few hundred
@@ -90,7 +112,7 @@ struct Newton {
 bool arrived(double size, double last, double absolute_tolerance, double round_off) {
   return size <= absolute_tolerance || size <= round_off || (size > 0.5 * last && size <= 64 * round_off);
 }
-double round_off_of(const Vector& y) { return 8 * std::numeric_limits<double>::epsilon() * largest(y); }
+double round_off_of(double size) { return 8 * std::numeric_limits<double>::epsilon() * size; }
 
 Newton newton(SlabProblem& problem, Vector y, double absolute_tolerance, int max_iterations,
               double tame_ratio = 0.5) {
@@ -114,7 +136,7 @@ Newton newton(SlabProblem& problem, Vector y, double absolute_tolerance, int max
     const int sign = static_cast<int>(lu.signDeterminant());
     if (it > 1 && sign != result.sign) result.tame = false;
     result.sign = sign;
-    const double size = largest(change), round_off = round_off_of(y);
+    const double size = problem.size(change), round_off = round_off_of(problem.size(y));
     result.converged = arrived(size, last, absolute_tolerance, round_off);
     if (result.converged) break;
     if (size > tame_ratio * last && size > 64 * round_off) result.tame = false;
@@ -138,10 +160,10 @@ Newton chord(SlabProblem& problem, Vector y, double absolute_tolerance, int max_
   for (int it = 1; it <= max_iterations && !result.converged; ++it) {
     result.iterations = it;
     solver.solve(problem.residual(y), change);
-    const double size = largest(as_vector(change));
+    const double size = problem.size(as_vector(change));
     if (!std::isfinite(size)) return result;
     problem.take(y, change);
-    const double round_off = round_off_of(y);
+    const double round_off = round_off_of(problem.size(y));
     result.converged = arrived(size, last, absolute_tolerance, round_off);
     if (!result.converged && size > 0.1 * last && size > 64 * round_off) return result;
     last = size;
@@ -150,12 +172,32 @@ Newton chord(SlabProblem& problem, Vector y, double absolute_tolerance, int max_
   return result;
 }
 
+/// Newton's method, with one Jacobian where that is enough.
+Newton at_once(SlabProblem& problem, const Vector& predicted, double absolute_tolerance, int max_iterations) {
+  const Newton quick = chord(problem, predicted, absolute_tolerance, max_iterations);
+  if (quick.converged) return quick;
+  Newton direct = newton(problem, predicted, absolute_tolerance, max_iterations);
+  direct.iterations += quick.iterations;
+  direct.converged = direct.converged && direct.tame;
+  return direct;
+}
+
+constexpr double next_to_nothing = 1. / 65536;  ///< of a step
+/// The root of a step of next to nothing, which need not be where it was predicted.
+Newton at_beginning(SlabProblem& problem, Vector predicted, double absolute_tolerance, int max_iterations) {
+  problem.set(next_to_nothing);
+  Newton at = newton(problem, std::move(predicted), absolute_tolerance, std::min(max_iterations, enough_iterations));
+  at.converged = at.converged && at.tame;
+  return at;
+}
+
 /// Follows the root of the problem from s near 0 to s = 1. A stride is taken once and in two halves: both ways must
 /// be tame and end at the same root, because Newton's method may by accident arrive quickly at a root that is far
-/// away. Stops where the determinant changes sign, because there two roots meet.
+/// away. Stops where the determinant changes sign, because there two roots meet. Where the root does not begin at its
+/// prediction (`from_root`) the first one is found alone, with a step of next to nothing.
 Newton follow(SlabProblem& problem, const std::function<Vector(double)>& predict, double absolute_tolerance,
-              int max_iterations) {
-  constexpr double first = 1. / 16, largest_stride = 1. / 8, least_stride = 1. / 65536, tame_ratio = 1. / 8;
+              int max_iterations, bool from_root = false) {
+  constexpr double first = 1. / 16, largest_stride = 1. / 8, least_stride = next_to_nothing, tame_ratio = 1. / 8;
   double s = 0, stride = first;
   Newton at;
   Vector offset = 0 * predict(0);  // of the root from its prediction
@@ -168,6 +210,12 @@ Newton follow(SlabProblem& problem, const std::function<Vector(double)>& predict
     found.converged = found.converged && found.tame && (sign == 0 || found.sign == sign);
     return found;
   };
+  if (from_root) {
+    at = at_beginning(problem, predict(s = next_to_nothing), absolute_tolerance, max_iterations);
+    iterations = at.iterations;
+    if (!at.converged) s = 1;
+    else sign = at.sign, offset = at.y - predict(s);
+  }
   while (s < 1) {
     const double next = std::min(1.0, s + stride), middle = (s + next) / 2;
     Newton once = root_at(next, offset);
@@ -175,7 +223,7 @@ Newton follow(SlabProblem& problem, const std::function<Vector(double)>& predict
     if (once.converged)
       if (const Newton half = root_at(middle, offset); half.converged)
         if (const Newton twice = root_at(next, half.y - predict(middle)); twice.converged)
-          same = largest(twice.y - once.y) <= 1e-6 * (1e-300 + largest(once.y)) + 4 * absolute_tolerance &&
+          same = problem.size(twice.y - once.y) <= 1e-6 * (1e-300 + problem.size(once.y)) + 4 * absolute_tolerance &&
                  half.sign == once.sign;
     if (!same) {
       stride /= 2;
@@ -192,11 +240,12 @@ Newton follow(SlabProblem& problem, const std::function<Vector(double)>& predict
     stride = std::min(2 * stride, largest_stride);
   }
   at.iterations = iterations;
+  at.reached = at.converged || s < 1 ? s : 0;
   return at;
 }
 
 NewtonResult as_result(const Newton& found, int iterations) {
-  NewtonResult result{found.converged, iterations, {}};
+  NewtonResult result{found.converged, iterations, found.reached, {}};
   if (found.converged) result.row = as_row(found.y);
   return result;
 }
@@ -209,8 +258,8 @@ std::string remedy_for(int max_iterations) {
              : "reduce lattice.courant or lattice.time_step";
 }
 
-NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, const Window& past,
-                        double tolerance, int max_iterations) {
+NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, const Window& past, double tolerance,
+                        int max_iterations, bool followed) {
   const std::int64_t J = past.last_row() + 1;
   const int rows = static_cast<int>(past.rows.size());
   const Vector newest = as_vector(past.rows.back());
@@ -228,12 +277,119 @@ NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, cons
                       });
   const auto predict = [&](double s) { return problem.moved(newest, s * increment); };
   const double absolute = tolerance * std::max(largest(newest), largest(predict(1)));
-  const Newton followed = follow(problem, predict, absolute, max_iterations);
+  const Newton found = followed ? follow(problem, predict, absolute, max_iterations)
+                                : at_once(problem, predict(1), absolute, max_iterations);
+  return as_result(found, found.iterations);
+}
+
+namespace {
+
+/// A slab from a step of next to nothing to its own: the problem, and where its unknowns go if they go on as before.
+class SlabPath {
+ public:
+  SlabPath(const LatticeSystem& system, const SolvePlan& plan, const SlabPast& past)
+      : past_(past),
+        components_(system.components()),
+        unknowns_(plan.slab(parity_of(plan, past.J)).unknowns),
+        base_(Vector::Zero(static_cast<Eigen::Index>(unknowns_.size()))),
+        way_(base_) {
+    const int parity = parity_of(plan, past.J);
+    for (Node& unknown : unknowns_) unknown.site.time -= parity;
+    find_way(system);
+    problem_.emplace(system, Assembly::slab(plan, parity, past.past, past.future, past.turn), past.J,
+                     [this](double s, const Vector& y, SectionRing& ring) { make_rows(s, y, ring); });
+    problem_->list_unknowns(system, past.known);
+    deep_ = system.height() > 1;
+  }
+  SlabPath(const SlabPath&) = delete;
+  SlabPath& operator=(const SlabPath&) = delete;
+
+  SlabProblem& problem() { return *problem_; }
+  Vector predict(double s) const { return base_ + s * way_; }
+  double size() const { return std::max(problem_->size(base_), problem_->size(predict(1))); }
+
+ private:
+  /// Fields begin at the newest row, and go on as in the step before.
+  void find_way(const LatticeSystem& system) {
+    const RowTimes& times = *system.times();
+    const bool traces = std::ranges::count(system.all_components(), Role::trace, &Component::role) > 0;
+    last_.assign(static_cast<std::size_t>(components_), past_.J - 1);
+    is_field_.resize(last_.size());
+    for (int c = 0; c < components_; ++c) is_field_[static_cast<std::size_t>(c)] = system.component(c).role == Role::field;
+    for (const Node& unknown : unknowns_) last_[static_cast<std::size_t>(unknown.component)] = past_.J + unknown.site.time - 1;
+    for (std::size_t n = 0; n < unknowns_.size(); ++n) {
+      const Node& unknown = unknowns_[n];
+      const Component& c = system.component(unknown.component);
+      const std::int64_t row = past_.J + unknown.site.time;
+      double &base = base_[static_cast<Eigen::Index>(n)], &way = way_[static_cast<Eigen::Index>(n)];
+      if (c.role == Role::multiplier || c.role == Role::slaved) {
+        base = value(row, unknown.site.space, unknown.component);
+        continue;
+      }
+      const int field = system.field_component(c.field), site = unknown.site.space;
+      const std::int64_t last = last_[static_cast<std::size_t>(field)];
+      base = value(last, site, field);
+      if (last < 1) continue;
+      const double before = value(last - 1, site, field), stride = times.step(last) / times.step(last - 1);
+      way = stride * (base - before) * (row > last ? 1 : c.at.time);
+      if (c.role == Role::field) continue;
+      // Traces, and nodes between them, alternate about the vertices from slab to slab, however small the step.
+      if (traces && past_.slabs > 2)
+        base += value(row - 2, site, unknown.component) - value(row - 2, site, field) - (row > last ? 0 : way);
+      else if (!traces && past_.slabs > 0) way = stride * (value(row - 1, site, unknown.component) - before);
+    }
+  }
+  double value(std::int64_t row, int site, int component) const { return past_.rows.row(row)[site * components_ + component]; }
+
+  /// Stencils that reach further than one row see the rows before as far away as the same velocities put them.
+  void make_rows(double s, const Vector& y, SectionRing& ring) {
+    const std::size_t row_size = past_.rows.view().row_size();
+    for (std::int64_t r = past_.J - past_.past; r <= past_.J + past_.future && !copied_; ++r)
+      std::copy_n(past_.rows.row(r), row_size, ring.row(r));
+    copied_ = true;
+    for (std::size_t at = 0; at < row_size && deep_; ++at) {
+      const std::size_t c = at % last_.size();
+      const double newest = past_.rows.row(last_[c])[at];
+      for (std::int64_t r = past_.J - past_.past; r < last_[c] && is_field_[c] != 0; ++r)
+        ring.row(r)[at] = newest - s * (newest - past_.rows.row(r)[at]);
+    }
+    for (std::size_t n = 0; n < unknowns_.size(); ++n)
+      ring.row(past_.J + unknowns_[n].site.time)[unknowns_[n].site.space * components_ + unknowns_[n].component] =
+          y[static_cast<Eigen::Index>(n)];
+  }
+
+  const SlabPast past_;
+  int components_;
+  std::vector<Node> unknowns_;
+  Vector base_, way_;
+  std::vector<std::int64_t> last_;  ///< of each component: the newest row of it that is known
+  std::vector<char> is_field_;
+  bool deep_ = false, copied_ = false;
+  std::optional<SlabProblem> problem_;
+};
+
+}  // namespace
+
+NewtonResult follow_slab(const LatticeSystem& system, const SolvePlan& plan, const SlabPast& past, double tolerance,
+                         int max_iterations) {
+  SlabPath path(system, plan, past);
+  const Newton followed = follow(
+      path.problem(), [&](double s) { return path.predict(s); }, tolerance * path.size(), max_iterations, true);
   return as_result(followed, followed.iterations);
 }
 
+bool turns_back(const LatticeSystem& system, const SolvePlan& plan, const SlabPast& past,
+                const std::vector<double>& unknowns, double tolerance) {
+  SlabPath path(system, plan, past);
+  const double absolute = tolerance * path.size();
+  const Newton first = at_beginning(path.problem(), path.predict(next_to_nothing), absolute, enough_iterations);
+  path.problem().set(1);
+  const Newton last = newton(path.problem(), as_vector(unknowns), absolute, enough_iterations);
+  return first.converged && last.converged && first.sign != last.sign;
+}
+
 NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& plan, const Window& row0,
-                                 const std::vector<double>& velocity, bool stiff, double tolerance,
+                                 const std::vector<double>& velocity, bool followed, double tolerance,
                                  int max_iterations) {
   const Vector y0 = as_vector(row0.rows.back()), phi_t = as_vector(velocity);
   const double h = system.time_step();
@@ -250,59 +406,17 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
   const auto predict = [&](double s) { return problem.moved(y0, s * h * phi_t); };
   const double absolute = tolerance * std::max(largest(y0), largest(predict(1)));
   int iterations = 0;
-  if (!stiff) {
-    const Newton quick = chord(problem, predict(1), absolute, max_iterations);
-    if (quick.converged) return as_result(quick, quick.iterations);
-    const Newton direct = newton(problem, predict(1), absolute, max_iterations);
-    iterations = quick.iterations + direct.iterations;
-    if (direct.converged && direct.tame) return as_result(direct, iterations);
+  if (!followed) {
+    const Newton found = at_once(problem, predict(1), absolute, max_iterations);
+    iterations = found.iterations;
+    if (found.converged) return as_result(found, iterations);
   }
-  const Newton followed = follow(problem, predict, absolute, max_iterations);
-  if (!followed.converged)
+  const Newton root = follow(problem, predict, absolute, max_iterations);
+  if (!root.converged)
     throw NoConvergence(
         "the starting row of initial.start = centred was not found: Newton's method did not converge; " +
         remedy_for(max_iterations));
-  return as_result(followed, iterations + followed.iterations);
-}
-
-std::optional<FixedPointBound> fixed_point_bound(const LatticeSystem& system, const SolvePlan& plan,
-                                                 double amplitude) {
-  for (const auto& family : system.families())
-    if (!family->sources()) return std::nullopt;
-  FixedPointBound bound{0, std::numeric_limits<double>::infinity()};
-  const int d = system.components(), site = system.lattice().sites() / 2;
-  Window uniform{&system.lattice(), d, 0, 0, {}};
-  uniform.rows.resize(1, std::vector<double>(static_cast<std::size_t>(system.lattice().sites() * d)));
-  for (int row = 0; row < (system.placement() == Placement::brick_wall ? 2 : 1); ++row)
-    for (int a = 0; a < d; ++a) {
-      const int unknown_row = row + plan.shift(site, a);
-      std::map<int, double> constant;  // A₊ by column
-      double dominance = 0;            // |A_ii| − Σ |A_ij|
-      for (const Coefficient& c : system.linearised({row, site}, a)) {
-        if (row + c.offset.time != unknown_row) continue;
-        const bool own = c.offset.space == 0 && c.component == a;
-        dominance += own ? std::abs(c.value) : -std::abs(c.value);
-        const int i = site + c.offset.space;
-        constant[system.lattice().home(i) * d + c.component] += c.value;
-      }
-      // The fixed point contracts by at most Σ |J_ij − A_ij| / dominance; J at uniform fields.
-      bound.dominance = std::min(bound.dominance, dominance);
-      constexpr int fields = 16;
-      for (int f = 0; f <= fields; ++f) {
-        const double value = amplitude * (2.0 * f / fields - 1);
-        std::ranges::fill(uniform.rows[0], value);
-        std::vector<LatticeSystem::Entry> entries;
-        system.jacobian(uniform, row, site, a, unknown_row, system.time_step(), entries);
-        std::map<int, double> rest = constant;
-        for (auto& [column, entry] : rest) entry = -entry;
-        for (const auto& e : entries)
-          if (e.row == site * d + a) rest[e.column] += e.value;
-        double sum = 0;
-        for (const auto& [column, entry] : rest) sum += std::abs(entry);
-        if (std::isfinite(sum)) bound.nonlinear = std::max(bound.nonlinear, sum);
-      }
-    }
-  return bound;
+  return as_result(root, iterations + root.iterations);
 }
 
 }  // namespace delf

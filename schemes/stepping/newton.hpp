@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "lattice/plan/solve_plan.hpp"
+#include "schemes/system/assembly.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
@@ -19,30 +18,36 @@ std::string remedy_for(int max_iterations);
 struct NewtonResult {
   bool converged = false;
   int iterations = 0;
-  std::vector<double> row;  ///< the unknown row, row[i·d + a]
+  double reached = 0;       ///< the part of the step that the root was followed to
+  std::vector<double> row;  ///< the unknown row, row[i·d + a]; of follow_slab() the unknowns of the slab
 };
 
 /// Solves the slab whose unknown row follows `past` (its last row is the newest known) where the equations may have
 /// several roots. The one is wanted that h → 0 leads to: it is followed from a small h by full Newton steps, each
 /// stride taken once and in two halves that must agree, and given up where the Jacobian's determinant changes sign,
-/// because there the path turns back. Never another root in silence.
+/// because there the path turns back. Never another root in silence, unless it is not to be `followed`: by Newton's
+/// method from y_n + v_n at once, which may arrive at any root.
 NewtonResult solve_slab(const LatticeSystem&, const SolvePlan&, const Window& past, double tolerance,
-                        int max_iterations);
+                        int max_iterations, bool followed = true);
 
-/// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t. By Newton from y₀ + hφ_t, or, where the
-/// equations are `stiff` or that does not converge, followed from a small h as above. Throws NoConvergence.
-NewtonResult solve_centred_start(const LatticeSystem&, const SolvePlan&, const Window& row0,
-                                 const std::vector<double>& velocity, bool stiff, double tolerance,
-                                 int max_iterations);
-
-/// How the fixed point with the constant part A₊ of a step's Jacobian J contracts: by nonlinear/dominance at worst, in
-/// the largest norm, of what y_{n+1} differs.
-struct FixedPointBound {
-  double nonlinear = 0;  ///< max Σ_j |J_ij − A_ij|, over uniform fields up to an amplitude
-  double dominance = 0;  ///< min |A_ii| − Σ_{j≠i} |A_ij|
+/// The rows J − past … J + future of a section, of which slab J is to be found; multipliers of slab J hold a prediction.
+struct SlabPast {
+  const SectionRing& rows;
+  std::int64_t J, slabs;  ///< `slabs` before it are known, with their inner nodes and multipliers
+  int past, future;
+  double turn;                       ///< φ(x + L) − φ(x)
+  const std::vector<double>& known;  ///< the part of the equations that no unknown changes: momenta of the newest row
 };
-/// Uniform fields from −amplitude to amplitude are looked at. Nothing for a density that is nonlinear in its
-/// derivatives: it has no scale of its own to sample, and is judged by how its steps contract.
-std::optional<FixedPointBound> fixed_point_bound(const LatticeSystem&, const SolvePlan&, double amplitude);
+/// The same for a slab of any kind: a small step begins at the newest row and its momenta, for stencils below keep their step.
+NewtonResult follow_slab(const LatticeSystem&, const SolvePlan&, const SlabPast&, double tolerance, int max_iterations);
+/// True if the determinant has not the sign at this root that it has for a small step: between them two roots meet.
+bool turns_back(const LatticeSystem&, const SolvePlan&, const SlabPast&, const std::vector<double>& unknowns,
+                double tolerance);
+
+/// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t. By Newton from y₀ + hφ_t at once; if that does
+/// not converge, or if it is to be `followed`, from a small h as above. Throws NoConvergence.
+NewtonResult solve_centred_start(const LatticeSystem&, const SolvePlan&, const Window& row0,
+                                 const std::vector<double>& velocity, bool followed, double tolerance,
+                                 int max_iterations);
 
 }  // namespace delf

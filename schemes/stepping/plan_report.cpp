@@ -47,8 +47,10 @@ const char* in_words(Placement placement) {
   switch (placement) {
     case Placement::every_site: break;
     case Placement::brick_wall: return " in a brick wall";
-    case Placement::left_wall: return " at the left wall, natural";
-    case Placement::right_wall: return " at the right wall, natural";
+    case Placement::left_wall:
+      return " at the left wall";
+    case Placement::right_wall:
+      return " at the right wall";
     case Placement::left_mirror: return " at the left wall, pairs with mirror images";
     case Placement::right_mirror: return " at the right wall, pairs with mirror images";
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "jets/fibre.hpp"
+#include "jets/simd/exact_sum.hpp"
 #include "jets/simd/pack_gather.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/first_slab.hpp"
@@ -28,30 +29,34 @@ constexpr int most_points = 8, least_points = 4;
 }  // namespace
 
 SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
-    : system_(system), plan_(plan), options_(options), components_(system.components()) {
+    : system_(system), plan_(plan), options_(options), components_(system.components()), root_(system) {
   SlabExtent extent = slab_extent(system, plan);
   future_ = extent.above;
   lag_ = extent.field_lag;
   back_ = std::move(extent.behind);
   points_ = std::clamp(options.seed_order, 1, most_points);
-  past_ = std::max(plan.history, points_ + extent.below);
+  past_ = std::max(plan.history, std::max(points_, RootWatch::most_rows) + extent.below);
   // Traces are the state of a row: of first order in time, a scheme goes on from one.
   by_values_ =
       plan.history <= 1 && lag_ == 0 && std::ranges::count(system.all_components(), Role::trace, &Component::role) > 0;
   starting_rows_ = by_values_ ? 1 : std::max(plan.history, 1) + future_;
   const std::size_t row = static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_);
-  ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row);
+  ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row, true);
   for (int p = 0; p < plan.table.parities; ++p) {
     Assembly equations(system, Assembly::slab(plan, p, past_, future_, options.turn));
     BlockSolver solver = solver_of(equations);
     std::vector<Unknowns> unknowns = list_unknowns(equations);
     parities_.push_back({std::move(equations), std::move(solver), std::move(unknowns)});
+    const bool follows = parities_.back().equations.keep_low(system);
+    parities_.back().momentum_follows = follows && plan.table.parities == 1;
     parities_.back().has_constant = factor_constant(parities_.back());
   }
   if (system.moves()) mesh_.emplace(system);
   predicted_.resize(row);
   // Made now, so that memory that is short is told at the start.
   for (std::vector<double>* numbers : {&E_, &known_E_, &change_}) numbers->reserve(unknowns() + 1);
+  if (parities_[0].momentum_follows)
+    for (std::vector<double>* numbers : {&carried_, &carried_low_, &gain_}) numbers->reserve(unknowns() + 1);
   for (const Parity& p : parities_) jacobian_.reserve(p.equations.places().size());
 }
 
@@ -106,14 +111,16 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
                                                  "which the positions grow",
                                                  *i, *i + 1, r));
     std::ranges::copy(rows[r], ring_->row(static_cast<std::int64_t>(r)));
+    std::fill_n(ring_->low(static_cast<std::int64_t>(r)), rows[r].size(), 0.0);
     largest_[1] = std::exchange(largest_[0], largest_of(rows[r].data()));
   }
   J_ = static_cast<std::int64_t>(rows.size()) - 1 - future_;
   known_ = 0;
+  carried_slab_ = -1;
   // Nothing of an earlier run is left: starting again gives the same bits.
   for (Parity& p : parities_) {
     if (p.factored == Matrix::jacobian) p.factored = Matrix::none;
-    p.curvature = 0, p.unseen = 0, p.last_iterations = p.fresh_iterations = 0;
+    p.curvature = p.contraction = 0, p.unseen = 0, p.last_iterations = p.fresh_iterations = 0;
   }
   wait_ = 1, waiting_ = 0;
   by_momenta_ = false;
@@ -152,6 +159,7 @@ bool SlabStepper::solve_slab_of_start(const std::vector<double>* momenta) {
   Parity first{std::move(equations), std::move(solver), std::move(unknowns)};
   // newton() begins with the row before, which here is row 0 itself
   std::ranges::copy(std::vector<double>(ring_->row(0), ring_->row(0) + predicted_.size()), ring_->row(-1));
+  std::fill_n(ring_->low(-1), predicted_.size(), 0.0);
   iterations_ = 0;
   if (const char* why = newton(first, 0, least_points, momenta)) fail(0, why);
   return true;
@@ -174,7 +182,9 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
   // What has no equation keeps its value: fixed walls.
   const std::size_t size = predicted_.size();
   std::copy_n(ring_->row(J + future_ - 1), size, ring_->row(J + future_));
+  std::copy_n(ring_->low(J + future_ - 1), size, ring_->low(J + future_));
   for (const Unknowns& unknowns : p.unknowns) {
+    for (const int place : unknowns.places) ring_->low(J + unknowns.time)[place] = 0;
     // Starting rows hold the fields; multipliers and inner nodes are known from the slabs that were solved.
     const std::int64_t available = unknowns.field() ? J + unknowns.time : known_;
     const int points = static_cast<int>(std::min<std::int64_t>(most, available));
@@ -216,8 +226,8 @@ void SlabStepper::predict_without_past(const Unknowns& unknowns, std::int64_t J)
   }
 }
 
-void SlabStepper::fail(std::int64_t J, const char* why) const {
-  std::string remedy = remedy_for(options_.max_iterations);
+void SlabStepper::fail(std::int64_t J, const std::string& why, std::string remedy) const {
+  if (remedy.empty()) remedy = remedy_for(options_.max_iterations);
   if (const auto ghost = ghost_under_constraint(system_))
     remedy = fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint);
   if (mesh_ && J > 0)
@@ -233,13 +243,14 @@ SlabStepper::Change SlabStepper::take_change(const Parity& p, std::int64_t J) {
   Change result{.value = std::max(largest_[0], largest_[1])};
   Pack most_change(0.0), most_y(0.0), most_asked(0.0);
   for (const Unknowns& unknowns : p.unknowns) {
-    double* const row = ring_->row(J + unknowns.time);
+    double *const row = ring_->row(J + unknowns.time), *const low = ring_->low(J + unknowns.time);
     // Multipliers are not asked: they have no scale of their own, and converge with what they act on.
     const bool asked = unknowns.role != Role::multiplier;
     for (std::size_t i = 0; i < unknowns.places.size(); i += lanes) {
       const Pack by = gather(change_.data(), unknowns.numbers.data() + i);
-      const Pack y = gather(row, unknowns.places.data() + i) - by;
-      scatter(y, row, unknowns.places.data() + i);
+      Pack y = gather(row, unknowns.places.data() + i), rest = gather(low, unknowns.places.data() + i);
+      add_exactly(y, rest, -by);
+      scatter(y, row, unknowns.places.data() + i), scatter(rest, low, unknowns.places.data() + i);
       most_y = largest_magnitude(most_y, y);
       if (asked) most_change = largest_magnitude(most_change, by), most_asked = largest_magnitude(most_asked, y);
     }
@@ -247,16 +258,23 @@ SlabStepper::Change SlabStepper::take_change(const Parity& p, std::int64_t J) {
   result.finite = !overflowed(max_or_nan(most_y));
   result.change = max_or_nan(most_change);
   result.value = std::max(result.value, max_or_nan(most_asked));
+  travelled_ += result.change, value_ = result.value;
   return result;
 }
 
 double SlabStepper::wanted(const Change& c) const { return options_.tolerance * c.value; }
 
 /// With one matrix for all iterations corrections shrink by a ratio ρ: what is left after this one is ρ/(1 − ρ) of it.
-bool SlabStepper::arrived(const Change& c, double before) const {
-  if (c.change <= wanted(c)) return true;
-  if (before == infinity || options_.tolerance < smallest_estimated) return false;
+/// Where finish() follows it looks once more: of linear equations one solve is enough for it, and of others a tenth of what is
+/// wanted, by the ratio of the last slab.
+bool SlabStepper::arrived(const Parity& p, const Change& c, double before) {
   const double ratio = c.change / before;
+  left_ = before == infinity || ratio >= 0.5 ? infinity : ratio / (1 - ratio) * c.change;
+  if (!plan_.nonlinear_in_slab && p.factored == Matrix::constant) left_ = 1e3 * epsilon * c.change;
+  if (c.change <= wanted(c)) return true;
+  if (before == infinity && p.momentum_follows && p.factored == Matrix::constant)
+    return !plan_.nonlinear_in_slab || (p.contraction > 0 && 10 * p.contraction * c.change <= wanted(c));
+  if (before == infinity || (options_.tolerance < smallest_estimated && !p.momentum_follows)) return false;
   return ratio < 0.5 && 2 * ratio / (1 - ratio) * c.change <= wanted(c);
 }
 /// Corrections that no longer shrink are rounding, if they are small.
@@ -268,15 +286,17 @@ bool SlabStepper::is_rounding(const Change& c, double before) {
 bool SlabStepper::iterate(Parity& p, std::int64_t J) {
   if (p.factored != Matrix::constant && !factor_constant(p)) return false;
   predict(p, J, points_);
-  p.equations.known(*ring_, J, known_E_);
+  find_known(p, J, nullptr);
+  travelled_ = 0;
   double before = infinity;
   while (iterations_ < options_.max_iterations) {
     ++iterations_;
     p.equations.residual_from(known_E_, *ring_, J, E_);
     p.solver.solve(E_, change_);
     const Change c = take_change(p, J);
+    last_change_ = c.change;
     if (!c.finite) return false;
-    if (arrived(c, before)) return true;
+    if (arrived(p, c, before)) return true;
     if (c.change > 0.25 * before) return is_rounding(c, before);
     before = c.change;
   }
@@ -291,16 +311,17 @@ bool SlabStepper::may_iterate(const Parity& p) {
   return false;
 }
 
-/// Newton's method from a polynomial through so many slabs. Why it failed, or nothing.
+/// Newton's method from a polynomial through so many slabs, or from the values that are there if none. Why it failed, or nothing.
 const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std::vector<double>* momenta) {
-  predict(p, J, points);
-  if (!momenta) p.equations.known(*ring_, J, known_E_);
+  if (points > 0) predict(p, J, points);
+  find_known(p, J, momenta);
   // Small blocks cost less to factor than an iteration more, and a fresh Jacobian leaves no bias behind.
   const bool always = p.solver.largest_block() <= 24;
   // One that was kept and has become slow is not kept any longer.
   bool refactor = always || momenta || p.factored != Matrix::jacobian || p.last_iterations > p.fresh_iterations + 1;
   bool fresh = false;
   double before = infinity;
+  steepest_ = travelled_ = 0;
   for (int iteration = 1;; ++iteration) {
     ++iterations_;
     if (iteration > options_.max_iterations) return "Newton's method does not converge";
@@ -319,8 +340,10 @@ const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std
       p.factored = Matrix::none;
       return "Newton's method diverges";
     }
+    last_change_ = c.change;
     // Far from the polynomial another root may be nearer.
     if (iteration == 1 && points > least_points && c.change > 1e-2 * c.value) return "the predictor is far away";
+    if (iteration > 1 && c.change > 64 * epsilon * c.value) steepest_ = std::max(steepest_, c.change / before);
     p.last_iterations = iteration;
     if (fresh) p.fresh_iterations = iteration;
     if (always && iteration > 1) {
@@ -330,55 +353,162 @@ const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std
       ++p.unseen;
     }
     const bool seen =
-        always && (iteration > 1 || p.unseen < 8) && p.curvature > 0 && options_.tolerance >= smallest_estimated;
+        always && (iteration > 1 || p.unseen < 8) && p.curvature > 0 &&
+        (options_.tolerance >= smallest_estimated || p.momentum_follows);
+    left_ = p.curvature > 0 ? p.curvature * c.change * c.change : infinity;
     if (seen && 4 * p.curvature * c.change * c.change <= wanted(c)) break;
-    if (always ? c.change <= wanted(c) : arrived(c, before)) break;
+    if (always ? c.change <= wanted(c) : arrived(p, c, before)) break;
     if (is_rounding(c, before)) break;
     const bool slow = c.change > 0.1 * before;
     if (slow && fresh && iteration > 8 && c.change > before) return "Newton's method diverges";
     refactor = always || slow || (iteration == 1 && !fresh && c.change > 1e-3 * c.value);
     before = c.change;
   }
-  if (momenta) p.factored = Matrix::none;
   return nullptr;
+}
+
+/// The part of the equations that the slab does not change, computed once and then carried from slab to slab.
+void SlabStepper::find_known(const Parity& p, std::int64_t J, const std::vector<double>* momenta) {
+  if (!p.momentum_follows || carried_slab_ != J) {
+    p.equations.known(*ring_, J, known_E_, momenta);
+    if (!p.momentum_follows) return;
+    carried_ = known_E_;
+    carried_low_.assign(carried_.size(), 0.0);
+    carried_slab_ = J;
+  } else {
+    known_E_ = carried_;
+  }
+}
+
+/// A last correction with the matrix that is there, and what the slab adds to the known part of the next, from one evaluation:
+/// it takes the place of that of known() in the next step. False if the iteration had not arrived, and does not now.
+bool SlabStepper::finish(Parity& p, std::int64_t J) {
+  if (!p.momentum_follows) return true;
+  for (;; ++iterations_) {
+    p.equations.residual_and_gain(known_E_, *ring_, J, E_, gain_);
+    // What is below rounding of the increment is not worth a solve.
+    if (p.factored == Matrix::none || left_ <= 1e-4 * epsilon * largest_[0]) return true;
+    p.solver.solve(E_, change_);
+    const Change c = take_change(p, J);
+    if (!c.finite) return false;
+    if (p.factored == Matrix::constant && last_change_ > 0)
+      p.contraction = std::max(c.change / last_change_, 0.5 * p.contraction);
+    if (c.change <= wanted(c) || is_rounding(c, last_change_)) return true;
+    if (c.change > 0.25 * last_change_ || iterations_ >= options_.max_iterations) return false;
+    last_change_ = c.change;
+  }
+}
+
+void SlabStepper::carry(const Parity& p, std::int64_t J) {
+  if (!p.momentum_follows) return;
+  for (std::size_t n = 0; n + 1 < gain_.size(); ++n) add_exactly(carried_[n], carried_low_[n], gain_[n]);
+  carried_slab_ = J + 1;
+}
+
+/// Newton's method has no doubt where it has gone straight to the unknowns.
+RootWatch::Verdict SlabStepper::judge(const Parity& p, std::int64_t J) const {
+  // Corrections that shrink by four and more at once leave no other root near (Kantorovich).
+  constexpr double little = 1e-3, straight = 0.25;
+  if (!plan_.nonlinear_in_slab || travelled_ <= little * value_) return RootWatch::Verdict::near;
+  std::vector<RootWatch::Values> lists;
+  for (const Unknowns& list : p.unknowns) {
+    if (list.role == Role::multiplier || list.role == Role::slaved) continue;
+    const std::int64_t rows = std::min<std::int64_t>(list.field() ? J + list.time : known_, past_ + list.time);
+    lists.push_back({J + list.time, static_cast<int>(std::min<std::int64_t>(rows, RootWatch::most_rows)), list.places});
+  }
+  const RootWatch::Verdict verdict = root_.judge(*ring_, lists);
+  return verdict == RootWatch::Verdict::doubtful && steepest_ <= straight ? RootWatch::Verdict::near : verdict;
+}
+
+std::vector<double> SlabStepper::values_of(const Parity& p, std::int64_t J) const {
+  std::vector<double> values;
+  for (int n = 0; n < p.equations.size(); ++n) values.push_back(p.equations.value(*ring_, J, n));
+  return values;
+}
+SlabPast SlabStepper::past_of(std::int64_t J) const {
+  return {*ring_, J, known_, past_, future_, options_.turn, known_E_};
+}
+
+/// The root that a small step leads to, where Newton's method has found none or another: `why`. One that was only doubtful is
+/// taken where that cannot be told, because not even a small step begins.
+void SlabStepper::follow(Parity& p, std::int64_t J, const std::vector<double>* momenta, const char* why,
+                         const std::vector<double>& doubtful) {
+  predict(p, J, 1);
+  find_known(p, J, momenta);
+  const NewtonResult followed =
+      follow_slab(system_, plan_, past_of(J), options_.tolerance, options_.max_iterations);
+  iterations_ += followed.iterations;
+  const bool is_doubtful = !followed.converged && followed.reached == 0 && !doubtful.empty();
+  if (!followed.converged && !is_doubtful) {
+    const bool begins = followed.reached > 0 && options_.max_iterations >= enough_iterations;
+    fail(J, begins ? fmt::format("{}; the one that a small step leads to ends at {:.2g} of this step", why, followed.reached)
+                   : fmt::format("{}, and none that a small step leads to", why),
+         begins ? fmt::format("reduce lattice.time_step below {:.2g}", followed.reached * system_.times()->step(J - 1)) : "");
+  }
+  for (int n = 0; n < p.equations.size(); ++n)
+    p.equations.value(*ring_, J, n) = (is_doubtful ? doubtful : followed.row)[static_cast<std::size_t>(n)];
+  const char* failed = newton(p, J, 0, momenta);
+  if (!failed && !finish(p, J)) failed = "Newton's method does not converge";
+  if (failed) fail(J, failed);
+  if (!is_doubtful) continued_ = Continued::far;
 }
 
 void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
   const FlushDenormals guard;
   Parity& p = parity(J);
   iterations_ = 0;
+  continued_ = Continued::no;
+  steepest_ = 0;
   bool solved = false;
   if (!momenta && may_iterate(p)) {
-    solved = iterate(p, J);
+    solved = iterate(p, J) && finish(p, J);
     waiting_ = solved ? 0 : wait_;
     wait_ = solved ? 1 : std::min(2 * wait_ + 1, 63);
   }
   std::string crossed = solved && mesh_ ? mesh_->crossing_at(*ring_, J - lag_) : "";
-  if (!solved || !crossed.empty()) {
+  if (!solved || !crossed.empty() || judge(p, J) != RootWatch::Verdict::near) {
     const char* why = nullptr;
-    bool found = false;
-    // Rough sections are predicted better by a few slabs, and a tangled mesh is a root that another predictor may avoid.
-    // Traces alternate about their mean: what is extrapolated may lie where the density is not defined.
-    for (const int points : {points_, least_points, 1}) {
-      if ((points == least_points && points_ <= least_points) || (points == 1 && !by_values_ && !mesh_)) continue;
-      if (const char* failed = newton(p, J, points, momenta)) {
+    std::vector<double> doubtful;
+    bool found = false, other = false;
+    // Rough sections are predicted better by a few slabs, and a tangled mesh, or a root that has left the motion, is one
+    // that another predictor may avoid. What is extrapolated may lie where the density is not defined.
+    std::vector<int> tried{points_};
+    if (points_ > least_points) tried.push_back(least_points);
+    if (points_ > 1) tried.push_back(1);
+    for (const int points : tried) {
+      const char* failed = newton(p, J, points, momenta);
+      if (!failed && !finish(p, J)) failed = "Newton's method does not converge";
+      if (failed) {
         why = failed;
         continue;
       }
       const std::string tangled = mesh_ ? mesh_->crossing_at(*ring_, J - lag_) : "";
       if (crossed.empty()) crossed = tangled;
       if (!tangled.empty()) continue;
-      found = !mesh_ || points == points_ || J < 2 || !mesh_->leaps(*ring_, J - lag_);
+      RootWatch::Verdict verdict = judge(p, J);
+      // No row tells where a first step goes.
+      if (J == 1 && verdict == RootWatch::Verdict::near && plan_.nonlinear_in_slab && travelled_ > 0) {
+        find_known(p, J, momenta);
+        if (turns_back(system_, plan_, past_of(J), values_of(p, J), options_.tolerance)) verdict = RootWatch::Verdict::far;
+      }
+      const bool leaps = mesh_ && points != points_ && J >= 2 && mesh_->leaps(*ring_, J - lag_);
+      found = verdict == RootWatch::Verdict::near && !leaps;
       if (found) break;
-      why = "Newton's method finds no root but one that leaps away";
+      doubtful = verdict == RootWatch::Verdict::doubtful ? values_of(p, J) : std::vector<double>();
+      other = other || !leaps;
+      why = "Newton's method finds no root but one that leaves the motion of the rows before";
     }
     if (found) crossed.clear();
-    else if (crossed.empty()) fail(J, why);
+    // Where no predictor leads to any root the scheme is unstable, or has none: to follow one there would hide it.
+    else if (crossed.empty() && !other) fail(J, why);
+    else if (crossed.empty()) follow(p, J, momenta, why, doubtful);
   }
   if (!crossed.empty())
     throw MeshCrossing(
         fmt::format("step {}, t = {:.6g}: {}; in the row before, {}; reduce lattice.time_step or mesh.alpha", J,
                     system_.times()->time(J), crossed, mesh_->narrowest_cell(ring_->row(J - 1 - lag_))));
+  carry(p, J);
+  if (momenta) p.factored = Matrix::none;
   if (options_.fibre == Fibre::circle) check_increments(J);
   ++known_;
   largest_[1] = std::exchange(largest_[0], largest_of(ring_->row(J - lag_)));
@@ -419,7 +549,10 @@ Window SlabStepper::window(int rows) const {
   std::vector<std::vector<double>> newest_rows;
   for (std::int64_t r = newest() - rows + 1; r <= newest(); ++r)
     newest_rows.emplace_back(ring_->row(r), ring_->row(r) + size);
-  return system_.window(newest() - rows + 1, std::move(newest_rows), options_.turn);
+  Window window = system_.window(newest() - rows + 1, std::move(newest_rows), options_.turn);
+  for (std::int64_t r = newest() - rows + 1; r <= newest(); ++r)
+    window.low.emplace_back(ring_->low(r), ring_->low(r) + size);
+  return window;
 }
 
 double SlabStepper::residual() const {
@@ -433,17 +566,34 @@ double SlabStepper::residual() const {
   double worst = 0, size = 0;
   for (int n = 0; n < p.equations.size(); ++n) {
     if (system_.component(p.equations.equation(n).component).role == Role::multiplier) continue;
-    worst = std::max(worst, std::abs(residual_[static_cast<std::size_t>(n)]));
-    size = std::max(size, absolute_[static_cast<std::size_t>(n)]);
+    worst = larger_or_nan(std::abs(residual_[static_cast<std::size_t>(n)]), worst);
+    size = larger_or_nan(absolute_[static_cast<std::size_t>(n)], size);
   }
-  return size > 0 ? worst / size : 0;
+  // Terms may cancel within a stencil, as those of a body that turns back do: then what the row before would leave says how
+  // large they are.
+  if (worst > 1e-6 * size) {
+    std::vector<double> values;
+    for (int n = 0; n < p.equations.size(); ++n) {
+      double& y = p.equations.value(*ring_, J_, n);
+      values.push_back(y);
+      y = p.equations.value(*ring_, J_ - 1, n);
+    }
+    p.equations.residual(*ring_, J_, residual_, &absolute_);
+    for (int n = 0; n < p.equations.size(); ++n) {
+      p.equations.value(*ring_, J_, n) = values[static_cast<std::size_t>(n)];
+      if (system_.component(p.equations.equation(n).component).role != Role::multiplier)
+        size = std::max(size, absolute_[static_cast<std::size_t>(n)]);
+    }
+  }
+  return size == 0 ? 0 : worst / size;
 }
 
 /// A Jacobian whose factors are kept is saved as its values, and factored again.
 void SlabStepper::visit(SavedState& state) {
   state.numbers("section", ring_->row(0), ring_->bytes() / sizeof(double));  // from the beginning of the ring
+  state("known part", carried_), state("low part of it", carried_low_), state("slab of it", carried_slab_);
   state("newest slab", J_), state("slabs known", known_), state("by momenta", by_momenta_);
-  state("iterations", iterations_), state("largest", largest_);
+  state("iterations", iterations_), state("continued", continued_), state("largest", largest_);
   state("steps to wait", wait_), state("steps left to wait", waiting_);
   for (Parity& p : parities_) {
     Matrix factored = p.factored;
@@ -453,7 +603,7 @@ void SlabStepper::visit(SavedState& state) {
     state("Jacobian", values);
     state("iterations of the last slab", p.last_iterations);
     state("iterations with a new Jacobian", p.fresh_iterations);
-    state("curvature", p.curvature), state("iterations unseen", p.unseen);
+    state("curvature", p.curvature), state("iterations unseen", p.unseen), state("contraction", p.contraction);
     if (!state.restores()) continue;
     if (factored == Matrix::jacobian) p.has_values = true, p.solver.factor(values), p.factored = factored;
     else if (factored == Matrix::none) p.factored = factored;
@@ -473,7 +623,8 @@ std::size_t SlabStepper::matrix_bytes() const {
 }
 std::size_t SlabStepper::work_bytes() const {
   std::size_t total = 0;
-  const std::vector<double>* const all[] = {&E_, &known_E_, &change_, &predicted_, &residual_, &absolute_};
+  const std::vector<double>* const all[] = {&E_,        &known_E_, &gain_,     &change_,      &predicted_,
+                                            &residual_, &absolute_, &carried_, &carried_low_};
   for (const std::vector<double>* numbers : all) total += numbers->capacity() * sizeof(double);
   for (const Parity& p : parities_)
     for (const Unknowns& list : p.unknowns) total += (list.numbers.capacity() + list.places.capacity()) * sizeof(int);

@@ -5,6 +5,8 @@
 
 #include "lattice/plan/solve_plan.hpp"
 #include "schemes/stepping/mesh_watch.hpp"
+#include "schemes/stepping/newton.hpp"
+#include "schemes/stepping/root_watch.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 #include "schemes/stepping/step_method.hpp"
 
@@ -18,7 +20,8 @@ namespace delf {
 ///  - otherwise, and where that does not contract, the Jacobian: Newton's method from the same polynomial, or from one
 ///    through fewer slabs. The factors of large blocks are kept while they contract by more than ten.
 ///
-/// An iteration ends when what it leaves, estimated from its last two corrections, is below the tolerance.
+/// An iteration ends when what it leaves, estimated from its last two corrections, is below the tolerance. A root that has left
+/// the motion (RootWatch) is not taken: it is sought again from lower orders, and then followed from a small step.
 class SlabStepper final : public StepMethod {
  public:
   SlabStepper(const LatticeSystem&, const SolvePlan&, const StepOptions&);
@@ -28,7 +31,7 @@ class SlabStepper final : public StepMethod {
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool looked_at) override;
 
-  StepState state() const override { return {newest(), plan_.nonlinear_in_slab ? iterations_ : 0}; }
+  StepState state() const override { return {newest(), plan_.nonlinear_in_slab ? iterations_ : 0, continued_}; }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   double residual() const override;
@@ -56,6 +59,8 @@ class SlabStepper final : public StepMethod {
     int last_iterations = 0, fresh_iterations = 0;  ///< of the last slab, and of the last one with a new Jacobian
     double curvature = 0;  ///< the last correction over the square of that before, with a fresh Jacobian each time
     int unseen = 0;        ///< iterations since it was seen
+    double contraction = 0;  ///< of corrections with the constant part, as seen last; 0: not yet
+    bool momentum_follows = false;  ///< the known part of the next slab is this one's and what the slab adds to it
   };
   struct Change {
     double change = 0;  ///< the largest, multipliers apart
@@ -73,15 +78,23 @@ class SlabStepper final : public StepMethod {
   double largest_of(const double* row) const;
   Change take_change(const Parity&, std::int64_t J);
   double wanted(const Change&) const;
-  bool arrived(const Change&, double before) const;
+  bool arrived(const Parity&, const Change&, double before);
   static bool is_rounding(const Change&, double before);
   bool iterate(Parity&, std::int64_t J);
   bool may_iterate(const Parity&);
   const char* newton(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
+  void find_known(const Parity&, std::int64_t J, const std::vector<double>* momenta);
+  bool finish(Parity&, std::int64_t J);
+  void carry(const Parity&, std::int64_t J);
+  RootWatch::Verdict judge(const Parity&, std::int64_t J) const;
+  SlabPast past_of(std::int64_t J) const;
+  std::vector<double> values_of(const Parity&, std::int64_t J) const;  ///< of the unknowns
+  void follow(Parity&, std::int64_t J, const std::vector<double>* momenta, const char* why,
+              const std::vector<double>& doubtful);
   bool solve_slab_of_start(const std::vector<double>* momenta);
   void check_increments(std::int64_t J) const;
   void solve(std::int64_t J, const std::vector<double>* momenta);
-  [[noreturn]] void fail(std::int64_t J, const char* why) const;
+  [[noreturn]] void fail(std::int64_t J, const std::string& why, std::string remedy = {}) const;
   std::size_t unknowns() const;  ///< of a slab, the larger one
   std::size_t equation_bytes() const, matrix_bytes() const, matrix_bytes_to_come() const, work_bytes() const,
       residual_bytes_to_come() const;
@@ -91,6 +104,7 @@ class SlabStepper final : public StepMethod {
   StepOptions options_;
   int components_, past_ = 0, future_ = 0, lag_ = 0, starting_rows_ = 0;
   std::optional<MeshWatch> mesh_;            ///< where it moves
+  RootWatch root_;
   bool by_values_ = false;                   ///< runs begin with the values of row 0 alone
   int points_;                               ///< slabs that a predictor goes through, if there are as many
   std::vector<int> back_;  ///< of each component: rows that its newest value lies behind the newest field
@@ -100,10 +114,17 @@ class SlabStepper final : public StepMethod {
   std::int64_t known_ = 0;   ///< slabs whose every component is known
   bool by_momenta_ = false;  ///< the run began with the discrete Legendre transform
   int iterations_ = 0;
+  double last_change_ = 0, left_ = 0;  ///< of the iteration: its last correction, and what is left, by its estimate
+  double travelled_ = 0, value_ = 0;  ///< in the last slab the sum of all corrections, and the largest |y|
+  double steepest_ = 0;               ///< and the largest ratio of two corrections that follow each other
+  Continued continued_ = Continued::no;
   double largest_[2] = {0, 0};  ///< |y| of the newest two slabs, or of the starting rows
   int wait_ = 1,
       waiting_ = 0;  ///< steps by Newton's method before the constant part is tried again; those that are left
-  std::vector<double> E_, known_E_, change_, jacobian_, predicted_;
+  /// Of slab carried_slab_, in two numbers: the known part of its equations, momenta of the slab below.
+  std::vector<double> carried_, carried_low_;
+  std::int64_t carried_slab_ = -1;
+  std::vector<double> E_, known_E_, gain_, change_, jacobian_, predicted_;
   mutable std::vector<double> residual_, absolute_;
 };
 

@@ -38,11 +38,13 @@ inline constexpr double smallest_estimated = 0.99e-13;
 inline constexpr double largest_finite = 1e150;
 inline bool overflowed(double largest_value) { return !(largest_value <= largest_finite); }
 
-/// Why a step was solved by continuation, its root followed from a small time step, at a thousand times the cost.
-enum class Continued { no, stiff, slow, out_of_iterations };
+/// Why a step was solved by Newton's method, at a hundred times the cost, or, where there may be several roots or it
+/// failed, by continuation, its root followed from a small time step, at a thousand times the cost.
+enum class Continued { no, stiff, slow, out_of_iterations, far };
 inline const char* in_words(Continued why) {
   return why == Continued::stiff  ? "the equations are stiff, and may have several roots"
          : why == Continued::slow ? "the simplified Newton method does not contract"
+         : why == Continued::far  ? "Newton's method went to a root that leaves the motion of the rows before"
                                   : "scheme.max_iterations was reached";
 }
 

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
+#include <tuple>
 
+#include "jets/simd/exact_sum.hpp"
 #include "jets/simd/pack_gather.hpp"
 
 namespace delf {
@@ -58,21 +61,30 @@ class Assembly::Columns {
       : Columns(assembly, section, J, which, assembly.columns_) {}
   Columns(const Assembly& assembly, SectionView section, std::int64_t J, Of which, Numbers& room)
       : section_(section), J_(section.index(J)), components_(assembly.components_) {
-    if (components_ == 1) return;
+    sites_ = section.row_size() / at(components_);
+    are_rows_ = components_ == 1 || sites_ == 1;
+    if (are_rows_) return;
     const auto [low, high] = rows(assembly.batches_, which);
     low_ = low;
-    sites_ = section.row_size() / at(components_);
-    room.resize(at(high - low + 1) * section.row_size());
+    const std::size_t size = at(high - low + 1) * section.row_size();
+    room.resize(section.has_low() ? 2 * size : size);
     double* to = room.data();
-    columns_ = to;
-    for (int row = low; row <= high; ++row) {
-      const double* const from = section.beside(J_, row);
+    columns_ = to, low_parts_ = to + size;
+    const auto add = [&](const double* from) {
       for (int c = 0; c < components_; ++c)
         for (std::size_t i = 0; i < sites_; ++i) *to++ = from[i * at(components_) + at(c)];
-    }
+    };
+    for (int row = low; row <= high; ++row) add(section.beside(J_, row));
+    if (!section.has_low()) return;
+    for (int row = low; row <= high; ++row) add(section.low_of(section.beside(J_, row)));
   }
   const double* operator()(int row, int c) const {
-    return components_ == 1 ? section_.beside(J_, row) : columns_ + at((row - low_) * components_ + c) * sites_;
+    return are_rows_ ? section_.beside(J_, row) + c : columns_ + at((row - low_) * components_ + c) * sites_;
+  }
+  bool has_low() const { return section_.has_low(); }
+  const double* low(int row, int c) const {
+    return are_rows_ ? section_.low_of(section_.beside(J_, row)) + c
+                     : low_parts_ + at((row - low_) * components_ + c) * sites_;
   }
   /// Value i of a pack of stencils from the s-th on.
   [[gnu::always_inline]] Pack operator()(const Batch& b, int i, int s) const {
@@ -89,15 +101,17 @@ class Assembly::Columns {
   SectionView section_;
   int J_, components_, low_ = 0;
   std::size_t sites_ = 0;
-  const double* columns_ = nullptr;
+  bool are_rows_ = false;  ///< a column is a row, or one number of it
+  const double *columns_ = nullptr, *low_parts_ = nullptr;
 };
 
 SectionRing::SectionRing(const Window& window, std::int64_t first, std::int64_t last)
-    : SectionRing(static_cast<int>(last - first + 1), window.rows.front().size()) {
-  for (std::int64_t r = first; r <= last; ++r)
-    std::ranges::copy(
-        window.rows[static_cast<std::size_t>(std::clamp(r, window.first_row, window.last_row()) - window.first_row)],
-        row(r));
+    : SectionRing(static_cast<int>(last - first + 1), window.rows.front().size(), window.has_low()) {
+  for (std::int64_t r = first; r <= last; ++r) {
+    const auto n = static_cast<std::size_t>(std::clamp(r, window.first_row, window.last_row()) - window.first_row);
+    std::ranges::copy(window.rows[n], row(r));
+    if (has_low_) std::ranges::copy(window.low[n], low(r));
+  }
 }
 
 Assembly::Parts Assembly::slab(const SolvePlan& plan, int parity, int past, int future, double turn) {
@@ -213,7 +227,7 @@ void Assembly::list_reads(const LatticeSystem& system) {
         b.side_by_side[at(b.read(i, s) / lanes)] =
             std::adjacent_find(first, first + lanes, [](int p, int q) { return q != p + 1; }) == first + lanes;
       }
-      if (is_equation) b.equations.push_back(i);
+      if (is_equation) b.equations.push_back(i), b.evaluated.push_back(i);
       if (is_unknown) b.unknowns.push_back(i);
       b.rows[at(i)] = std::clamp(row, -parts_.past, parts_.future);
     }
@@ -266,15 +280,44 @@ void Assembly::take_constant_parts() {
     b.linear = part && part->is_all;
     if (!b.linear) continue;
     b.at_zero.clear(), b.terms.clear();
-    for (std::size_t e = 0; e < b.equations.size(); ++e) {
-      const int i = b.equations[e];
+    for (std::size_t e = 0; e < b.evaluated.size(); ++e) {
+      const int i = b.evaluated[e];
+      if (i >= b.size) break;  // such families are not asked for their constant parts
       b.at_zero.push_back(part->r0[at(i)]);
       for (int m = 0; m < b.size; ++m)
         if (const double value = part->J[at(i * b.size + m)]; value != 0)
           b.terms.push_back({static_cast<int>(e), m, value});
     }
     add_constant(b, part->J, fixed_);
+    b.by_differences = keeps_low_ && b.family->reads_low() && take_matrix_of_differences(b);
   }
+}
+
+/// r at a unit of each value y_m − y₀ of a column, y₀ its first one, and of y₀ with all of the column: there a family has no
+/// φ_t, where a sum of J's entries would have the rounding of 1/h². False if a rate may read a value that is in no column.
+bool Assembly::take_matrix_of_differences(Batch& b) const {
+  const std::vector<std::vector<int>>& columns = b.family->sums();
+  const int count = (b.size + lanes) / lanes * lanes;  // the last ones are zero, as is y of r(0)
+  const std::size_t packs = at(count / lanes);
+  Packs y(at(b.size) * packs, Pack(0.0)), low = y, r(b.evaluated.size() * packs), x(packs, b.x[0]);
+  const auto is_in_column = [&](const Term& term) {
+    return std::ranges::any_of(columns, [&](const auto& column) { return std::ranges::count(column, term.m) > 0; });
+  };
+  if (!b.family->sums_vanish() && !std::ranges::all_of(b.terms, is_in_column)) return false;
+  const auto set = [&](int i, int s) { numbers_of(y.data())[i * count + s] = 1; };
+  for (int m = 0; m < b.size; ++m) set(m, m);
+  for (const std::vector<int>& column : columns)
+    for (const int i : column) set(i, column.front());
+  b.family->residual({cell(b, 0, b.x[0][0]), count, numbers_of(x.data()), numbers_of(y.data()), numbers_of(low.data())},
+                     b.evaluated, numbers_of(r.data()));
+  b.at_zero.clear(), b.terms.clear();
+  for (std::size_t e = 0; e < b.evaluated.size(); ++e) {
+    const double* const row = numbers_of(r.data()) + e * at(count);
+    b.at_zero.push_back(row[count - 1]);
+    for (int m = 0; m < b.size; ++m)
+      if (const double value = row[m] - row[count - 1]; value != 0) b.terms.push_back({static_cast<int>(e), m, value});
+  }
+  return true;
 }
 
 void Assembly::set_time_step(double h) {
@@ -282,48 +325,83 @@ void Assembly::set_time_step(double h) {
   take_constant_parts();
 }
 
-/// h, k, t and x of a stencil: h is the step above its anchor's row
+/// h, k, t and x of a stencil: h is the step above its anchor's row. A step of its own is counted from row J − 1.
 Cell Assembly::cell(const Batch& b, std::int64_t J, double x) const {
   const std::int64_t row = J + b.row;
-  if (own_step_) return {*own_step_, space_step_, static_cast<double>(row) * *own_step_, x};
+  if (own_step_) return {*own_step_, space_step_, times_->time(J - 1) + static_cast<double>(b.row + 1) * *own_step_, x};
   return {times_->step(row), space_step_, times_->time(row), x};
 }
 
+/// `low`: with low parts, if the section has any and the family reads them.
 template <class Use>
-void Assembly::strips(const Batch& b, const Columns& columns, std::int64_t J, int numbers, const Use& use) const {
+void Assembly::strips(const Batch& b, const Columns& columns, std::int64_t J, int numbers, bool low,
+                      const Use& use) const {
+  low = low && columns.has_low() && b.family->reads_low();
   // A strip's numbers stay in the cache of first level.
   const int most = std::clamp(largest_strip / std::max(numbers, 1) / lanes * lanes, lanes, most_together);
   for (int first = 0; first < b.padded; first += most) {
     const int count = std::min(most, b.padded - first);
-    y_.resize(at(b.size * count / lanes)), out_.resize(at(numbers * count / lanes));
-    Pack* y = y_.data();
+    const int values = b.size * count / lanes;
+    y_.resize(at(low ? 2 * values : values)), out_.resize(at(numbers * count / lanes));
+    Pack *y = y_.data(), *rest = y + values;
     for (int i = 0; i < b.size; ++i) {
-      const double* const column = columns(b.rows[at(i)], b.family->values()[at(i)].component);
+      const int c = b.family->values()[at(i)].component;
+      const double* const column = columns(b.rows[at(i)], c);
+      const double* const low_parts = low ? columns.low(b.rows[at(i)], c) : nullptr;
       for (int s = first; s < first + count; s += lanes, ++y) {
         Pack read = Columns::of(column, b, b.read(i, s));
-        if (!b.gained.empty())
-          for (int l = 0; l < lanes; ++l) read.v[l] += b.gained[at(b.read(i, s + l))];
+        if (low) *rest = Columns::of(low_parts, b, b.read(i, s));
+        if (!b.gained.empty()) {
+          const Pack before = read, gained = load_unaligned(b.gained.data() + b.read(i, s));
+          read += gained;
+          if (low) *rest += rounding_of_sum(before, gained, read);
+        }
         *y = read;
+        if (low) ++rest;
       }
     }
-    use(StencilBatch{cell(b, J, 0), count, numbers_of(b.x.data() + first / lanes), numbers_of(y_.data())}, first,
-        out_.data());
+    use(StencilBatch{cell(b, J, 0), count, numbers_of(b.x.data() + first / lanes), numbers_of(y_.data()),
+                     low ? numbers_of(y_.data() + values) : nullptr},
+        first, out_.data());
   }
 }
 
-void Assembly::add_residual(const Batch& b, const Columns& columns, std::int64_t J, double* E,
-                            double* absolute) const {
-  const int equations = static_cast<int>(b.equations.size());
-  if (equations == 0) return;
-  strips(b, columns, J, equations, [&](const StencilBatch& strip, int first, Pack* r) {
-    const int packs = strip.count / lanes;
-    if (b.linear && steady()) {
-      for (int e = 0; e < equations; ++e) std::fill_n(r + e * packs, packs, Pack(b.at_zero[at(e)]));
-      for (const auto& [e, m, value] : b.terms)
-        for (int p = 0; p < packs; ++p) r[e * packs + p] += Pack(value) * y_[at(m * packs + p)];
-    } else {
-      b.family->residual(strip, b.equations, numbers_of(r));
+/// The values of a strip, counted from the first of their column, which keeps its own.
+void Assembly::take_differences(const Batch& b, int packs) const {
+  Pack *const y = y_.data(), *const low = y + b.size * packs;
+  for (const std::vector<int>& column : b.family->sums())
+    for (int p = 0; p < packs; ++p) {
+      const int first = column.front() * packs + p;
+      for (const int i : column)
+        if (const int n = i * packs + p; n != first) y[n] = (y[n] - y[first]) + (low[n] - low[first]);
     }
+}
+
+/// With `gain`, what stencils add to the known part of the next slab too.
+void Assembly::add_residual(const Batch& b, const Columns& columns, std::int64_t J, double* E, double* absolute,
+                            double* gain) const {
+  const std::vector<int>& evaluated = gain != nullptr ? b.evaluated : b.equations;
+  const int equations = static_cast<int>(evaluated.size());
+  if (equations == 0) return;
+  // J y has lost the digits that differences of y + low have.
+  const bool low = columns.has_low() && b.family->reads_low();
+  const bool by_matrix = b.linear && steady() && low == b.by_differences;
+  strips(b, columns, J, equations, true, [&](const StencilBatch& strip, int first, Pack* r) {
+    const int packs = strip.count / lanes;
+    if (by_matrix) {
+      if (low) take_differences(b, packs);
+      for (int e = 0; e < equations; ++e) std::fill_n(r + e * packs, packs, Pack(b.at_zero[at(e)]));
+      for (const auto& [e, m, value] : b.terms) {
+        if (e >= equations) break;
+        for (int p = 0; p < packs; ++p) r[e * packs + p] += Pack(value) * y_[at(m * packs + p)];
+      }
+    } else {
+      b.family->residual(strip, evaluated, numbers_of(r));
+    }
+    if (gain != nullptr)
+      for (const auto& [e, equation] : b.gains)
+        for (int p = 0; p < packs; ++p)
+          scatter_add(r[e * packs + p], gain, equation.data() + first + p * lanes, b.stencils - first - p * lanes);
     // No two stencils of a row have the same equation at the same value.
     for (const int i : b.equations)
       for (int p = 0; p < packs; ++p, ++r) {
@@ -335,14 +413,18 @@ void Assembly::add_residual(const Batch& b, const Columns& columns, std::int64_t
   });
 }
 
+/// Zero, or the momenta of row 0. One number more than there are equations takes what belongs to none.
+void Assembly::begin(std::int64_t J, const std::vector<double>* momenta, std::vector<double>& E) const {
+  E.assign(at(size()) + 1, 0.0);
+  if (!momenta) return;
+  for (int n = 0; n < size(); ++n)
+    if (J + equation(n).site.time == 0) E[at(n)] = (*momenta)[at(place(equation(n)))];
+}
+
 void Assembly::residual(SectionView section, std::int64_t J, std::vector<double>& E, std::vector<double>* absolute,
                         const std::vector<double>* momenta) const {
-  // One number more than there are equations takes what belongs to none.
-  E.assign(at(size()) + 1, 0.0);
+  begin(J, momenta, E);
   if (absolute) absolute->assign(E.size(), 0.0);
-  if (momenta)
-    for (int n = 0; n < size(); ++n)
-      if (J + equation(n).site.time == 0) E[at(n)] = (*momenta)[at(place(equation(n)))];
   const Columns columns(*this, section, J, Columns::Of::all);
   for (const Batch& b : batches_)
     if (!below_start(b, J, momenta != nullptr))
@@ -351,11 +433,12 @@ void Assembly::residual(SectionView section, std::int64_t J, std::vector<double>
   if (absolute) absolute->resize(E.size());
 }
 
-void Assembly::known(SectionView section, std::int64_t J, std::vector<double>& E) const {
-  E.assign(at(size()) + 1, 0.0);
+void Assembly::known(SectionView section, std::int64_t J, std::vector<double>& E,
+                     const std::vector<double>* momenta) const {
+  begin(J, momenta, E);
   const Columns columns(*this, section, J, Columns::Of::known);
   for (const Batch& b : batches_)
-    if (b.unknowns.empty()) add_residual(b, columns, J, E.data(), nullptr);
+    if (b.unknowns.empty() && !below_start(b, J, momenta != nullptr)) add_residual(b, columns, J, E.data(), nullptr);
 }
 
 void Assembly::residual_from(const std::vector<double>& known, SectionView section, std::int64_t J,
@@ -364,6 +447,105 @@ void Assembly::residual_from(const std::vector<double>& known, SectionView secti
   const Columns columns(*this, section, J, Columns::Of::unknown);
   for (const Batch& b : batches_)
     if (!b.unknowns.empty()) add_residual(b, columns, J, E.data(), nullptr);
+}
+
+void Assembly::residual_and_gain(const std::vector<double>& known, SectionView section, std::int64_t J,
+                                 std::vector<double>& E, std::vector<double>& gain) const {
+  E = known;
+  gain.assign(at(size()) + 1, 0.0);
+  const Columns columns(*this, section, J, Columns::Of::unknown);
+  for (const Batch& b : batches_)
+    if (!b.unknowns.empty()) add_residual(b, columns, J, E.data(), nullptr, gain.data());
+}
+
+bool Assembly::keep_low(const LatticeSystem& system) {
+  keeps_low_ = true;
+  const bool follows = list_gains(system);
+  for (Batch& b : batches_) {
+    if (!follows) b.evaluated = b.equations, b.gains.clear();
+    out_.reserve(std::max(b.evaluated.size(), at(b.size)));
+  }
+  y_.reserve(2 * y_.capacity()), columns_.reserve(2 * columns_.capacity());
+  take_constant_parts();
+  return follows;
+}
+
+/// False if the known part of the next slab does not follow from this one.
+bool Assembly::list_gains(const LatticeSystem& system) {
+  const auto column_of = [&](int site, int component) -> std::optional<std::tuple<int, int, double>> {
+    const Component& c = system.component(component);
+    if (c.role != Role::field && c.role != Role::inner && c.role != Role::trace) return std::nullopt;
+    return std::tuple{site, c.field, c.at.space};
+  };
+  const auto site_of = [&](const Batch& b, int i, int s) {
+    return system.lattice().home(b.sites[at(s)] + b.family->site(i).space);
+  };
+  // Where a family leaves nodes out of its sums, the residuals of the rows alone add up to momenta.
+  const auto leaves_out = [&](const StencilFamily& family, int i) {
+    return !family.sums().empty() && system.component(family.values()[at(i)].component).at.time != 0 &&
+           std::ranges::none_of(family.sums(), [i](const auto& sum) { return std::ranges::count(sum, i) > 0; });
+  };
+  bool with_nodes = true;
+  for (const auto& family : system.families())
+    for (int i = 0; i < family->size(); ++i) with_nodes = with_nodes && !leaves_out(*family, i);
+
+  // The equation of each column that has a known part, and of which values, by number and site of a stencil above.
+  std::map<std::tuple<int, int, double>, int> equation_of;
+  std::map<std::tuple<int, int, int>, std::vector<int>> above;  // family, row, site: [i]
+  for (const Batch& b : batches_) {
+    if (!b.unknowns.empty()) {
+      if (b.lowest_row < -1) return false;
+      continue;
+    }
+    for (int s = 0; s < b.stencils; ++s) {
+      std::vector<int> equations(at(b.size), size());
+      for (int i = 0; i < b.size; ++i) {
+        const int n = equations[at(i)] = b.equation[at(b.read(i, s))];
+        if (n == size()) continue;
+        // Without low parts there is nothing to gain.
+        if (!b.family->reads_low()) return false;
+        const auto column = column_of(site_of(b, i, s), equation(n).component);
+        if (!column || equation_of.try_emplace(*column, n).first->second != n) return false;
+      }
+      above.emplace(std::tuple{b.number, b.row + 1, b.sites[at(s)]}, std::move(equations));
+    }
+  }
+  if (equation_of.empty()) return false;
+
+  std::size_t met = 0;
+  for (Batch& b : batches_) {
+    if (b.unknowns.empty()) continue;
+    const std::size_t padded = at(b.padded);
+    std::vector<std::vector<int>> to(at(b.size), std::vector<int>(padded, size()));
+    for (int s = 0; s < b.stencils; ++s) {
+      const auto upper = above.find({b.number, b.row, b.sites[at(s)]});
+      if (upper != above.end()) ++met;
+      for (int i = 0; i < b.size; ++i) {
+        const int component = b.family->values()[at(i)].component;
+        if (upper != above.end()) to[at(i)][at(s)] = upper->second[at(i)];
+        const auto column = column_of(site_of(b, i, s), component);
+        if (!column || b.equation[at(b.read(i, s))] == size()) continue;
+        if (!with_nodes && system.component(component).at.time != 0) continue;
+        if (const auto found = equation_of.find(*column); found != equation_of.end()) to[at(i)][at(s)] = found->second;
+      }
+    }
+    const auto add = [&](int e, const std::vector<int>& equations) {
+      if (std::ranges::all_of(equations, [&](int n) { return n == size(); })) return;
+      const auto found = std::ranges::find(b.evaluated, e) - b.evaluated.begin();
+      if (found == std::ssize(b.evaluated)) b.evaluated.push_back(e);
+      b.gains.push_back({static_cast<int>(found), equations});
+    };
+    std::vector<char> added(at(b.size), false);
+    for (std::size_t n = 0; n < b.family->sums().size(); ++n) {
+      const std::vector<int>& values = b.family->sums()[n];
+      if (values.empty() || std::ranges::any_of(values, [&](int i) { return to[at(i)] != to[at(values[0])]; })) continue;
+      for (const int i : values) added[at(i)] = true;
+      if (!b.family->sums_vanish()) add(b.size + static_cast<int>(n), to[at(values[0])]);
+    }
+    for (int i = 0; i < b.size; ++i)
+      if (!added[at(i)]) add(i, to[at(i)]);
+  }
+  return met == above.size();
 }
 
 void Assembly::jacobian(SectionView section, std::int64_t J, std::vector<double>& values,
@@ -375,7 +557,7 @@ void Assembly::jacobian(SectionView section, std::int64_t J, std::vector<double>
     if ((b.linear && steady()) || below_start(b, J, momenta != nullptr)) continue;
     const int pairs = static_cast<int>(b.equations.size() * b.unknowns.size());
     if (pairs == 0) continue;
-    strips(b, columns, J, pairs, [&](const StencilBatch& strip, int first, Pack* derivatives) {
+    strips(b, columns, J, pairs, false, [&](const StencilBatch& strip, int first, Pack* derivatives) {
       b.family->jacobian(strip, b.equations, b.unknowns, numbers_of(derivatives));
       for (int n = 0; n < pairs; ++n)
         for (int s = 0; s < strip.count; s += lanes)
@@ -420,7 +602,7 @@ void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V,
     all.resize(at(b.size));
     std::iota(all.begin(), all.end(), 0);
     const int pairs = static_cast<int>(b.equations.size()) * b.size;
-    strips(b, columns, J, pairs, [&](const StencilBatch& strip, int first, Pack* derivatives) {
+    strips(b, columns, J, pairs, false, [&](const StencilBatch& strip, int first, Pack* derivatives) {
       b.family->jacobian(strip, b.equations, all, numbers_of(derivatives));
       const int packs = strip.count / lanes;
       const int* entry = b.entry.data() + first;
@@ -456,7 +638,8 @@ void Assembly::each(bool jacobian, SectionView section, std::int64_t J, const Vi
     all.resize(at(b.size)), places.resize(at(b.size)), y.resize(at(b.size));
     std::iota(all.begin(), all.end(), 0);
     derivatives.resize(jacobian ? at(b.size * b.size) : at(b.size));
-    strips(b, columns, J, static_cast<int>(derivatives.size()), [&](const StencilBatch& strip, int first, Pack* out) {
+    const int numbers = static_cast<int>(derivatives.size());
+    strips(b, columns, J, numbers, !jacobian, [&](const StencilBatch& strip, int first, Pack* out) {
       if (jacobian) b.family->jacobian(strip, all, all, numbers_of(out));
       else b.family->residual(strip, all, numbers_of(out));
       for (int s = 0; s < std::min(strip.count, b.stencils - first); ++s) {
@@ -511,7 +694,9 @@ std::size_t Assembly::bytes() const {
                       (parts_.equations.size() + parts_.unknowns.size()) * sizeof(Node);
   for (const Batch& b : batches_)
     total += sizeof(Batch) + b.x.size() * sizeof(Pack) + b.gained.size() * sizeof(double) + b.side_by_side.size() +
-             (b.sites.size() + b.rows.size() + b.place.size() + b.equation.size() + b.entry.size()) * sizeof(int);
+             (b.sites.size() + b.rows.size() + b.place.size() + b.equation.size() + b.entry.size() +
+              b.gains.size() * at(b.padded)) *
+                 sizeof(int);
   return total;
 }
 

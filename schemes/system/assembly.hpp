@@ -16,11 +16,11 @@
 
 namespace delf {
 
-/// Rows of a section, row[i·C + c]: a ring of the newest `depth`.
+/// Rows of a section, row[i·C + c]: a ring of the newest `depth`. It may hold each value in two numbers, y + low.
 class SectionView {
  public:
-  SectionView(const double* values, int depth, std::size_t row_size)
-      : values_(values), depth_(depth), row_size_(row_size) {}
+  SectionView(const double* values, int depth, std::size_t row_size, const double* low = nullptr)
+      : values_(values), depth_(depth), row_size_(row_size), low_(low) {}
 
   const double* row(std::int64_t r) const { return at(index(r)); }
   /// Where row r stands in the ring, and the row `by` rows after the one that stands at an index: divisions are slow.
@@ -34,6 +34,9 @@ class SectionView {
     return at(i);
   }
   std::size_t row_size() const { return row_size_; }
+  bool has_low() const { return low_ != nullptr; }
+  /// The low parts of a row that row() or beside() found.
+  const double* low_of(const double* row) const { return low_ + (row - values_); }
 
  private:
   const double* at(int i) const { return values_ + static_cast<std::size_t>(i) * row_size_; }
@@ -41,24 +44,35 @@ class SectionView {
   const double* values_;
   int depth_;
   std::size_t row_size_;
+  const double* low_;
 };
 class SectionRing {
  public:
-  SectionRing(int depth, std::size_t row_size)
-      : depth_(depth), row_size_(row_size), values_(static_cast<std::size_t>(depth) * row_size, 0.0) {}
+  SectionRing(int depth, std::size_t row_size, bool has_low = false)
+      : depth_(depth),
+        row_size_(row_size),
+        has_low_(has_low),
+        values_(static_cast<std::size_t>(depth) * row_size * (has_low ? 2 : 1), 0.0) {}
   /// Rows `first` to `last` of a window.
   SectionRing(const Window&, std::int64_t first, std::int64_t last);
 
   double* row(std::int64_t r) { return values_.data() + (view().row(r) - values_.data()); }
   const double* row(std::int64_t r) const { return view().row(r); }
-  SectionView view() const { return {values_.data(), depth_, row_size_}; }
+  /// The low parts of a row, where there are any: a rounded value and what rounding took from it are one number.
+  double* low(std::int64_t r) { return row(r) + static_cast<std::size_t>(depth_) * row_size_; }
+  const double* low(std::int64_t r) const { return row(r) + static_cast<std::size_t>(depth_) * row_size_; }
+  SectionView view() const {
+    return {values_.data(), depth_, row_size_,
+            has_low_ ? values_.data() + static_cast<std::size_t>(depth_) * row_size_ : nullptr};
+  }
   operator SectionView() const { return view(); }
   std::size_t bytes() const { return values_.size() * sizeof(double); }
 
  private:
   int depth_;
   std::size_t row_size_;
-  std::vector<double> values_;
+  bool has_low_ = false;
+  std::vector<double> values_;  ///< of all rows, then their low parts
 };
 
 /// The assembler: equations of a system, the stencils that they are sums of, and some of their unknowns.
@@ -126,8 +140,20 @@ class Assembly {
                 const std::vector<double>* momenta = nullptr) const;
 
   /// The part of E that contains no unknown, and E from it.
-  void known(SectionView, std::int64_t J, std::vector<double>& E) const;
+  void known(SectionView, std::int64_t J, std::vector<double>& E, const std::vector<double>* momenta = nullptr) const;
   void residual_from(const std::vector<double>& known, SectionView, std::int64_t J, std::vector<double>& E) const;
+
+  /// From here on sections have low parts. True if known() of the next slab follows from that of this one: an equation e of
+  /// row −1 reads, of what is known, the stencils below it alone; in this slab these have unknowns. Where the slab's equations
+  /// hold, and a column is all values of one field at one place,
+  ///
+  ///     known_e(J + 1) = known_e(J) + Σ_{l in its column} r^l,
+  ///
+  /// the momentum that a slab adds: as small as the step, and without the rounding of the momentum itself.
+  bool keep_low(const LatticeSystem&);
+  /// E from its known part, and what the slab adds to it.
+  void residual_and_gain(const std::vector<double>& known, SectionView, std::int64_t J, std::vector<double>& E,
+                         std::vector<double>& gain) const;
   /// The values of places() without the terms that depend on the field. False if some family cannot tell, or nothing is
   /// left of an equation.
   bool constant_jacobian(std::vector<double>& values) const;
@@ -186,18 +212,29 @@ class Assembly {
     /// Of (equations[e], unknowns[u]) of stencil s, at (e·U + u)·padded + s: its number in places(), or one beyond.
     std::vector<int> entry = {};
     bool linear = false;  ///< r = r(0) + J y with the same J everywhere
+    bool by_differences = false;  ///< J acts on differences within columns, and on the first value of each
     std::vector<Term> terms = {};
-    Numbers at_zero = {};  ///< of equations[e]
+    Numbers at_zero = {};  ///< of evaluated[e]
+    /// `equations`, then what else residual_and_gain() asks of the family: values, and sums of them.
+    std::vector<int> evaluated = {};
+    /// What a number of `evaluated` adds to: [s] an equation, or size().
+    struct Gain {
+      int e;
+      std::vector<int> equation;
+    };
+    std::vector<Gain> gains = {};
 
     int read(int i, int s) const { return i * padded + s; }
   };
 
   int place(Site site) const { return parts_.place ? parts_.place(site) : site.space; }
+  bool list_gains(const LatticeSystem&);
   void list_stencils(const LatticeSystem&);
   void list_reads(const LatticeSystem&);
   void list_places(const std::vector<std::vector<int>>& unknown);
   void take_constant_parts();
 
+  void begin(std::int64_t J, const std::vector<double>* momenta, std::vector<double>& E) const;
   bool below_start(const Batch& b, std::int64_t J, bool legendre) const { return legendre && J + b.lowest_row < 0; }
   Cell cell(const Batch& b, std::int64_t J, double x) const;
   /// All steps are as long as those that the constant parts were taken with.
@@ -205,8 +242,11 @@ class Assembly {
   class Columns;
   /// Calls use(stencils, number of the first, room for `numbers` of each) for a batch, strip by strip.
   template <class Use>
-  void strips(const Batch&, const Columns&, std::int64_t J, int numbers, const Use& use) const;
-  void add_residual(const Batch&, const Columns&, std::int64_t J, double* E, double* absolute) const;
+  void strips(const Batch&, const Columns&, std::int64_t J, int numbers, bool low, const Use& use) const;
+  bool take_matrix_of_differences(Batch&) const;
+  void take_differences(const Batch&, int packs) const;
+  void add_residual(const Batch&, const Columns&, std::int64_t J, double* E, double* absolute,
+                    double* gain = nullptr) const;
   void add_constant(const Batch&, const Numbers& J, Numbers& values) const;
   void each(bool jacobian, SectionView y, std::int64_t J, const Visit&) const;
 
@@ -218,6 +258,7 @@ class Assembly {
   std::vector<Batch> batches_;
   std::vector<Place> places_;
   Numbers fixed_;          ///< the values of places() that linear batches give
+  bool keeps_low_ = false;  ///< sections have low parts
   mutable Packs y_, out_;    ///< of a strip
   mutable Numbers columns_;  ///< room for Columns
 };

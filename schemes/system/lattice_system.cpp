@@ -23,6 +23,13 @@ Cell cell_at(const Lattice& lattice, std::int64_t row, int i, double time_step) 
   return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, lattice.position(home)};
 }
 
+/// What walls keep beside φ is in terms of the action there: to the equations they are fixed or natural.
+Lattice with_free_neighbours(const Lattice& lattice) {
+  const auto kept = [](Wall wall) { return wall == Wall::clamped ? Wall::fixed : wall; };
+  if (kept(lattice.left()) == lattice.left() && kept(lattice.right()) == lattice.right()) return lattice;
+  return Lattice::interval(lattice.sites(), lattice.length(), kept(lattice.left()), kept(lattice.right()));
+}
+
 }  // namespace
 
 std::vector<Component> fields(int d) {
@@ -40,9 +47,16 @@ double Window::operator()(std::int64_t row, int i, int a) const {
   return value + (i - home) / lattice->sites() * (turns.empty() ? turn : turns[static_cast<std::size_t>(a)]);
 }
 
+double Window::low_part(std::int64_t row, int i, int a) const {
+  if (!has_low()) return 0;
+  const int home = lattice->is_circle() ? lattice->wrapped(i) : i;
+  return low[static_cast<std::size_t>(std::clamp(row, first_row, last_row()) - first_row)]
+            [static_cast<std::size_t>(home * components + a)];
+}
+
 LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families,
                              double time_step, std::vector<Component> components)
-    : lattice_(lattice),
+    : lattice_(with_free_neighbours(lattice)),
       families_(std::move(families)),
       time_step_(time_step),
       times_(std::make_shared<RowTimes>(time_step)),

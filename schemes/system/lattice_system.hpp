@@ -49,9 +49,13 @@ struct Window {
   std::int64_t first_row = 0;  ///< index of rows[0]
   std::vector<std::vector<double>> rows;
   std::vector<double> turns = {};  ///< of each component, where they differ: multipliers are periodic
+  /// What rounding has taken from the rows: their values are rows + low. Empty: nothing is known of it.
+  std::vector<std::vector<double>> low = {};
 
   /// Rows beyond the window read as its nearest row: stencils may reach there without depending on it.
   double operator()(std::int64_t row, int i, int a) const;
+  bool has_low() const { return !rows.empty() && low.size() == rows.size(); }
+  double low_part(std::int64_t row, int i, int a) const;
   std::int64_t last_row() const { return first_row + static_cast<std::int64_t>(rows.size()) - 1; }
 };
 

@@ -22,7 +22,7 @@ std::vector<double> momenta(const LatticeSystem& system, const Window& window, s
 std::vector<double> half_equations(const LatticeSystem& system, const Window& window, std::int64_t row, Side side) {
   const Lattice& lattice = system.lattice();
   const int C = system.components(), N = lattice.sites();
-  std::vector<double> p(static_cast<std::size_t>(N * C), 0.0), y, r;
+  std::vector<double> p(static_cast<std::size_t>(N * C), 0.0), y, rest, r;
   for (const auto& family : system.families()) {
     const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
     int top = high.time;
@@ -38,14 +38,17 @@ std::vector<double> half_equations(const LatticeSystem& system, const Window& wi
     const std::int64_t anchor = row - (side == Side::below ? top : low.time);
     for (int i = 0; i < N; ++i) {
       if (!system.has_stencil(*family, anchor, i)) continue;
-      y.clear();
+      y.clear(), rest.clear();
       for (int m = 0; m < family->size(); ++m) {
         const Site v = family->site(m);
-        y.push_back(window(anchor + v.time, i + v.space, family->values()[static_cast<std::size_t>(m)].component));
+        const int c = family->values()[static_cast<std::size_t>(m)].component;
+        y.push_back(window(anchor + v.time, i + v.space, c));
+        rest.push_back(window.low_part(anchor + v.time, i + v.space, c));
       }
       r.resize(y.size());
       family->residual(
-          {system.times()->step(anchor), lattice.space_step(), system.times()->time(anchor), lattice.position(i)}, y, r);
+          {system.times()->step(anchor), lattice.space_step(), system.times()->time(anchor), lattice.position(i)}, y,
+          rest, r);
       for (int m = 0; m < family->size(); ++m) {
         const Site v = family->site(m);
         if (anchor + v.time != row || !family->is_varied(m)) continue;

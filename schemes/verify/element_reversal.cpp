@@ -15,7 +15,7 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
-/// ℓ(φ, −φ_t, φ_x, φ_tt, −φ_tx, φ_xx) = ℓ at random jets: half of them from −1 to 1, half of them where logarithms and roots
+/// At some t and x, ℓ(φ, −φ_t, φ_x, φ_tt, −φ_tx, φ_xx) = ℓ at random jets: half of them from −1 to 1, half of them where logarithms and roots
 /// have values.
 bool is_even_in_rates(const BatchDensity& density) {
   constexpr int jets = 2 * lanes;
@@ -25,8 +25,8 @@ bool is_even_in_rates(const BatchDensity& density) {
   for (int v = 0; v < m; ++v)
     for (int n = 0; n < jets; ++n)
       jet[v][n] = std::uniform_real_distribution<double>(n % 2 ? -1 : 0.1, n % 2 ? 1 : 2)(random);
-  std::fill_n(jet[m], jets, 0.0);
-  const JetBatch batch{jets, jet.data(), 0, jet[m]};
+  for (int n = 0; n < jets; ++n) jet[m][n] = std::uniform_real_distribution<double>(0, 1)(random);
+  const JetBatch batch{jets, jet.data(), std::uniform_real_distribution<double>(0, 1)(random), jet[m]};
   density.value(batch, l[0]);
   for (int v = 0; v < m; ++v)
     if (const auto slot = static_cast<JetSlot>(v / density.components());
@@ -61,8 +61,7 @@ bool reversible_elements(const LatticeSystem& system) {
   std::vector<double> held;
   for (const auto& family : system.families()) {
     if (const auto* element = dynamic_cast<const JetFamily*>(family.get())) {
-      if (element->is_placed() || !is_even_in_rates(element->density()) || !is_symmetric(element->table()))
-        return false;
+      if (!is_even_in_rates(element->density()) || !is_symmetric(element->table())) return false;
       continue;
     }
     bool constrains = false;

@@ -14,8 +14,15 @@
 
 namespace delf {
 
-EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan, double tolerance, int data_rows)
-    : system_(&system), row_(system), tolerance_(tolerance), data_rows_(data_rows), seen_(3) {
+double ValueError::of(double y) const {
+  const double size = std::abs(y), error = std::max(absolute, relative * size);
+  if (digits == 0 || size == 0) return error;
+  return std::max(error, 0.5 * std::pow(10.0, std::floor(std::log10(size)) - digits + 1));
+}
+
+EquationCheck::EquationCheck(const LatticeSystem& system, const SolvePlan& plan, double tolerance, int data_rows,
+                             const std::optional<ValueError>& values)
+    : system_(&system), row_(system), tolerance_(tolerance), data_rows_(data_rows), rounded_(values), seen_(3) {
   reach_ = std::max(1, system.height());
   constexpr std::array names{"field equations", "field equations at natural ends", "constraints"};
   for (std::size_t n = 0; n < seen_.size(); ++n)
@@ -43,9 +50,8 @@ EquationCheck::Sort EquationCheck::sort_of(int site, int component) const {
   return end ? natural_end : bulk;
 }
 
-/// Σ_a |∂E/∂y_a y_a|
 std::vector<double> EquationCheck::sizes_at(const Window& window, std::int64_t row, int site,
-                                            const std::vector<int>& components) const {
+                                            const std::vector<int>& components, const Size& size) const {
   const int reach = system_->height();
   Assembly::Parts parts{
       .equations = {}, .parity = static_cast<int>(row & 1), .past = reach, .future = reach, .turn = window.turn};
@@ -59,10 +65,23 @@ std::vector<double> EquationCheck::sizes_at(const Window& window, std::int64_t r
       if (read.time != 0 || system_->lattice().home(read.space) != site || c == components.end()) continue;
       for (std::size_t m = 0; m < at.y.size(); ++m)
         sizes[static_cast<std::size_t>(c - components.begin())] +=
-            std::abs(at.derivatives[static_cast<std::size_t>(i) * at.y.size() + m] * at.y[m]);
+            std::abs(at.derivatives[static_cast<std::size_t>(i) * at.y.size() + m]) *
+            size(at.family.values()[m].component, at.y[m]);
     }
   });
   return sizes;
+}
+
+double EquationCheck::error_at(const Window& window, std::int64_t row, int site, int component,
+                               const ValueError& error) const {
+  std::vector<double> largest(static_cast<std::size_t>(system_->components()), 0.0);
+  for (std::int64_t j = row - reach_; j <= row + reach_; ++j)
+    for (int i = 0; i < system_->lattice().sites(); ++i)
+      for (std::size_t c = 0; c < largest.size(); ++c)
+        largest[c] = std::max(largest[c], std::abs(window(j, i, static_cast<int>(c))));
+  for (double& of_component : largest) of_component = error.of(of_component);
+  return sizes_at(window, row, site, {component}, [&](int c, double) { return largest[static_cast<std::size_t>(c)]; })
+      .front();
 }
 
 /// The largest field or node at each site, of the rows that the equations read.
@@ -96,13 +115,15 @@ void EquationCheck::at(const Window& window, std::int64_t row) {
   for (int c = 0; c < system_->components(); ++c)
     if (const int site = largest_site(c); site >= 0) largest[site].push_back(c);
   for (const auto& [site, components] : largest) {
-    const std::vector<double> sizes = sizes_at(window, row, site, components);
+    const std::vector<double> sizes =
+        sizes_at(window, row, site, components, [](int, double y) { return std::abs(y); });
     for (std::size_t n = 0; n < sizes.size(); ++n) {
       double& of = scale[is_constraint(components[n]) ? constraint : bulk];
       of = std::max(of, sizes[n]);
+      if (rounded_) of = std::max(of, error_at(window, row, site, components[n], *rounded_) / tolerance_);
     }
   }
-  scale[natural_end] = scale[bulk];  // ends are measured by the scale of the bulk
+  scale_ = scale[natural_end] = scale[bulk];  // ends are measured by the scale of the bulk
   newest_.assign(values_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t n = 0; n < values_.size(); ++n) {
     if (!solved_[n] || row + shifts_[n] < data_rows_) continue;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,16 @@
 
 namespace delf {
 
+/// How far values may be from those that were computed: what their format and the last digits of steps make of them.
+struct ValueError {
+  /// A step rounds the sum that gives a row, and a row is rounded again when it is stored.
+  double relative = 2 * std::numeric_limits<double>::epsilon();
+  double absolute = 0;
+  int digits = 0;  ///< significant ones of a text; 0: all
+  /// Where the largest of them is `y`.
+  double of(double y) const;
+};
+
 /// The field equations (5.2) at every site where there is one, row after row: in the bulk, at natural ends, and of
 /// constraints. Relative to Σ_a |∂E/∂y_a y_a| where the field is largest near the row: what is summed in the end are
 /// values times coefficients, and where the field rests, or in a vacuum, the sum has no scale of its own.
@@ -18,7 +30,9 @@ class EquationCheck {
  public:
   /// Rows 0 … data_rows − 1 are data, which a run was started from: equations that read no later row were never solved,
   /// and are not asked.
-  EquationCheck(const LatticeSystem&, const SolvePlan&, double tolerance, int data_rows = 0);
+  /// `values` of a format that is coarser than double precision: |E| that it explains is below the tolerance.
+  EquationCheck(const LatticeSystem&, const SolvePlan&, double tolerance, int data_rows = 0,
+                const std::optional<ValueError>& values = {});
 
   /// Rows before and after a row that its equations read.
   int reach() const { return reach_; }
@@ -29,6 +43,10 @@ class EquationCheck {
   const std::vector<double>& newest() const { return newest_; }
   /// E itself, [i·C + c], whether it is an equation there or not.
   const std::vector<LatticeSystem::Value>& sums() const { return values_; }
+  /// Σ_a |∂E/∂y_a| δ_a at a row and site: the bound of |E| where each value is off by δ, and E of the right values is 0.
+  double error_at(const Window&, std::int64_t row, int site, int component, const ValueError&) const;
+  /// Σ_a |∂E/∂y_a y_a| of that row, where the field is largest: what `newest` is relative to.
+  double scale() const { return scale_; }
   std::int64_t rows() const { return rows_; }
   double tolerance() const { return tolerance_; }
 
@@ -43,7 +61,10 @@ class EquationCheck {
   };
   bool is_constraint(int component) const;
   Sort sort_of(int site, int component) const;
-  std::vector<double> sizes_at(const Window&, std::int64_t row, int site, const std::vector<int>& components) const;
+  /// The size of a value of a component in Σ_a |∂E/∂y_a| size(a).
+  using Size = std::function<double(int component, double y)>;
+  std::vector<double> sizes_at(const Window&, std::int64_t row, int site, const std::vector<int>& components,
+                               const Size&) const;
   void find_sizes(const Window&, std::int64_t row);
   int largest_site(int component) const;
 
@@ -51,6 +72,7 @@ class EquationCheck {
   AssembledRow row_;
   double tolerance_;
   int data_rows_;
+  std::optional<ValueError> rounded_;
   int reach_ = 1;
   std::vector<char> solved_;  ///< of each site and component: there is an equation
   std::vector<Sort> sorts_;
@@ -58,6 +80,7 @@ class EquationCheck {
   std::vector<Seen> seen_;   ///< one for each sort
   std::vector<double> sizes_, newest_;
   std::vector<LatticeSystem::Value> values_;
+  double scale_ = 0;
   std::int64_t rows_ = 0;
 };
 

@@ -57,10 +57,29 @@ bool all_finite(const Values& values) {
   return std::ranges::all_of(values, [](const auto& value) { return std::isfinite(value.absolute); });
 }
 
+bool reads_place(const LatticeSystem& system) {
+  return std::ranges::any_of(system.families(), [](const auto& family) { return family->is_placed(); });
+}
+
 /// A scheme without a Lagrangian has nothing else that could be said for it when it loses its way.
-bool must_return(const LatticeSystem& system) {
+bool must_return(const LatticeSystem& system, const MakeSimulation& make) {
   constexpr std::uint64_t seed = 20260117;
-  return reversible(system, seed) || !is_variational(system);
+  if (!is_variational(system)) return true;
+  if (!reads_place(system)) return reversible(system, seed);
+  return reversible(system, make(mirror_time(system))->evolution().system(), seed);
+}
+
+/// max_c Σ_a |∂E_c/∂y_a| of fields and nodes in the midst of space: what an error of the values makes of momenta.
+double coefficients(const LatticeSystem& system) {
+  double most = 0;
+  for (int c = 0; c < system.components(); ++c) {
+    const Role role = system.component(c).role;
+    if (role != Role::field && role != Role::inner) continue;
+    double sum = 0;
+    for (const Coefficient& a : system.linearised({0, system.lattice().sites() / 2}, c)) sum += std::abs(a.value);
+    most = std::max(most, sum);
+  }
+  return most;
 }
 
 // ---- rows
@@ -96,6 +115,7 @@ struct Ends {
 struct TurningPoint {
   std::int64_t steps;
   Ends state;
+  double time;  ///< of the newest row
 };
 
 /// How the state is read, turned round, and begun from.
@@ -214,7 +234,7 @@ std::vector<TurningPoint> forward(const Motion& motion, Simulation& simulation, 
   std::vector<TurningPoint> points;
   const auto reach_after = [&](std::int64_t m) {
     while (simulation.newest() < first_row + m + 1) simulation.step();
-    points.push_back({m, motion.read(simulation)});
+    points.push_back({m, motion.read(simulation), simulation.time(simulation.newest())});
   };
   try {
     motion.begin(simulation, start_rows);
@@ -271,7 +291,14 @@ Check check_of(const Reversal& reversal, double scale, std::size_t size, double 
 
 }  // namespace
 
-bool reversible(const LatticeSystem& system, std::uint64_t seed) {
+bool reversible(const LatticeSystem& system, std::uint64_t seed) { return reversible(system, system, seed); }
+
+// Row r is seen as row 2·height − r, of bricks as the next one.
+double mirror_time(const LatticeSystem& system) {
+  return (2 * system.height() + (system.placement() == Placement::brick_wall ? 1 : 0)) * system.time_step();
+}
+
+bool reversible(const LatticeSystem& system, const LatticeSystem& mirrored, std::uint64_t seed) {
   const int rows = 2 * system.height() + 1;
   const std::int64_t first_mirrored = system.placement() == Placement::brick_wall ? 1 : 0;
   // Fields of order one suit most densities; where one is not defined there, smaller ones do.
@@ -279,16 +306,15 @@ bool reversible(const LatticeSystem& system, std::uint64_t seed) {
     Rows section = random_rows(system, rows, amplitude, seed);
     const Values ahead = equations_in_the_middle(system, 0, section);
     std::ranges::reverse(section);
-    const Values back = equations_in_the_middle(system, first_mirrored, section);
+    const Values back = equations_in_the_middle(mirrored, first_mirrored, section);
     if (all_finite(ahead) && all_finite(back)) return agree(system, ahead, back, 1) || agree(system, ahead, back, -1);
   }
   return false;
 }
 
-std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simulation>()>& make,
-                                      const std::vector<std::vector<double>>& start_rows, std::int64_t steps,
-                                      double tolerance) {
-  const auto simulation = make();
+std::optional<Reversal> time_reversal(const MakeSimulation& make, const std::vector<std::vector<double>>& start_rows,
+                                      std::int64_t steps, double tolerance) {
+  const auto simulation = make(std::nullopt);
   const LatticeSystem& system = simulation->evolution().system();
   const std::vector<std::int64_t> planned = turning_steps(steps, system.placement() == Placement::brick_wall);
   const auto has = [&](Role role) { return simulation->count(role) > 0; };
@@ -303,7 +329,7 @@ std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simula
 
   const Motion motion(system, elements);
   Reversal reversal;
-  reversal.promised = elements ? reversible_elements(system) : must_return(system);
+  reversal.promised = elements ? reversible_elements(system) : must_return(system, make);
   std::string failure;
   const std::vector<TurningPoint> points = forward(motion, *simulation, start_rows, planned, failure);
   const Ends start = points.empty() ? Ends{} : points[0].state;
@@ -311,7 +337,7 @@ std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simula
   for (std::size_t n = 1; n < points.size(); ++n) {
     double distance = 0;
     try {
-      distance = way_back(motion, *make(), points[n], start, failure);
+      distance = way_back(motion, *make(points[n].time), points[n], start, failure);
     } catch (const BadInput&) {  // a start from momenta is not to be had
       return std::nullopt;
     }
@@ -323,6 +349,9 @@ std::optional<Reversal> time_reversal(const std::function<std::unique_ptr<Simula
   }
   reversal.end = failure;
   reversal.growth = slope(reversal.steps, reversal.distance);
+  // Momenta are differences of values, as coefficients times the values are large: Σ|∂E/∂y| ~ 1/h.
+  constexpr double digits = 8 * std::numeric_limits<double>::epsilon();
+  if (elements) tolerance = std::max(tolerance, digits * coefficients(system) * largest(start.first) / scale);
   if (reversal.promised) reversal.check = check_of(reversal, scale, start.first.size(), tolerance, failure);
   return reversal;
 }

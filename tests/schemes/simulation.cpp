@@ -95,12 +95,13 @@ TEST_CASE("a time step that is not positive and finite is refused") {
           "lattice.time_step");
 }
 
-TEST_CASE("hexagons need an even circle, wide stencils a circle, comparators walls that are fixed") {
+TEST_CASE("hexagons need an even circle, six- and nine-tuples take walls, comparators walls that are fixed") {
   CHECK(key_of(problem("hexagon", Lattice::circle(255, 40), 0.5)) == "lattice.sites");
   CHECK(key_of(problem("hexagon", Lattice::circle(254, 40), 0.5)) == "accepted");
-  for (const char* stencil : {"hexagon", "six-tuple", "nine-tuple"})
-    CHECK(key_of(problem(stencil, Lattice::interval(64, 10), 0.5)) == "lattice.stencil");
-  for (const char* stencil : {"triangle", "rectangle", "rectangle-symmetric"})
+  CHECK(key_of(problem("hexagon", Lattice::interval(64, 10), 0.5)) == "lattice.stencil");
+  CHECK(key_of(problem("six-tuple", Lattice::interval(64, 10, Wall::clamped), 0.5)) == "boundary.left");
+  CHECK(key_of(problem("triangle", Lattice::interval(64, 10, Wall::fixed, Wall::clamped), 0.5)) == "boundary.right");
+  for (const char* stencil : {"triangle", "rectangle", "rectangle-symmetric", "six-tuple", "nine-tuple"})
     CHECK(key_of(problem(stencil, Lattice::interval(64, 10, Wall::natural, Wall::natural), 0.5)) == "accepted");
   const auto comparator = [](Wall left, Wall right) {
     return with(problem("", Lattice::interval(64, 10, left, right), 0.5), [](Problem& p) { p.method = "guo"; });
@@ -108,6 +109,21 @@ TEST_CASE("hexagons need an even circle, wide stencils a circle, comparators wal
   CHECK(key_of(comparator(Wall::fixed, Wall::fixed)) == "accepted");
   CHECK(key_of(comparator(Wall::natural, Wall::fixed)) == "boundary.left");
   CHECK(key_of(comparator(Wall::fixed, Wall::natural)) == "boundary.right");
+}
+
+TEST_CASE("a comparator is refused where waves have another speed than 1, or the density other derivatives") {
+  const Lattice ring = Lattice::circle(32, 10);
+  for (const char* method : {"vu-quoc-li", "guo", "damped"}) {
+    const auto key = [&](const char* density) {
+      return key_of(with(problem("rectangle", ring, 0.25, "text"), [&](Problem& p) {
+        p.method = method, p.parameters["theory.density"] = std::string(density);
+      }));
+    };
+    CHECK(key("0.5*phi_t^2 - 0.5*phi_x^2 - phi^4") == "accepted");
+    for (const char* other : {"0.5*phi_t^2 - 0.5*340^2*phi_x^2 - phi^4", "1e3*(0.5*phi_t^2 - 0.5*phi_x^2 - phi^4)",
+                              "0.5*phi_t^2 - 0.5*phi_x^2 + 0.1*phi_t*phi_x - phi^4"})
+      CHECK(key(other) == "scheme.method");
+  }
 }
 
 TEST_CASE("a comparator that is not written for a theory is refused, and says for which") {

@@ -28,6 +28,8 @@ ExitCode plan_sites(const ComplexScene& c) {
     const std::size_t bytes = field.bytes();
     fmt::print("  stencils   {} in {} families: of one shape, and coupled alike\n", c.cells(),
                field.system().families());
+    if (const std::string shape = c.topology_in_words(); !shape.empty())
+      fmt::print("  cells      {}, area {:.6g}\n", shape, c.tiling.area);
     fmt::print("  solve      {}\n", plan.describe());
     fmt::print("             level by level, each by {}\n",
                field.solver().is_direct() ? plan.largest == 1 ? "divisions: explicit" : "one sparse factorisation"
@@ -37,6 +39,7 @@ ExitCode plan_sites(const ComplexScene& c) {
       fmt::print("  threads    {}\n", threads);
     fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes,
                8 * field.values().size(), bytes - 8 * field.values().size());
+    for (const std::string& gap : c.tiling.gaps) fmt::print("  warning    {}\n", gap);
   } catch (const BadInput& bad) {
     throw c.scene.settings.located(bad);
   }
@@ -60,6 +63,7 @@ ExitCode plan(const ComplexScene& c) {
              boundary_points(space.mesh).empty()      ? ""
              : std::ranges::count(space.fixed, 1) > 0 ? ", fixed"
                                                       : ", natural");
+  fmt::print("             {}\n", c.topology_in_words());
   const std::size_t values = 8 * static_cast<std::size_t>(space.sites()) * c.fields.size();
   const auto say_memory = [](std::size_t bytes, std::size_t rows) {
     fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes, rows,

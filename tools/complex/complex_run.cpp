@@ -59,6 +59,7 @@ std::vector<int> run_static(const ComplexScene& c, MeshRecorder& recorder, Outco
   o.iterations_mean = o.iterations_max = solved.iterations;
   if (solved.ended) o.status = "interrupted";
   if (c.stencils && !solved.ended) warn_of_growth(c, field, o);
+  o.warnings.insert(o.warnings.end(), c.tiling.gaps.begin(), c.tiling.gaps.end());
   if (solved.undetermined > 0)
     o.warnings.push_back(
         fmt::format("the equations hold to rounding, and hardly change in one direction: along it the values are known "

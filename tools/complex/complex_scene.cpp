@@ -5,14 +5,22 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <random>
 #include <set>
+#include <span>
+#include <utility>
 
+#include "jets/expressions/evaluate.hpp"
+#include "jets/expressions/parse.hpp"
+#include "lattice/complex/mesh_topology.hpp"
 #include "schemes/complex/circle_fibre.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/mesh_text.hpp"
+#include "tools/scene/exact_solution.hpp"
 #include "tools/scene/key_warning.hpp"
 #include "tools/scene/steps_in_turn.hpp"
 #include "tools/scene/values.hpp"
@@ -25,14 +33,13 @@ constexpr std::string_view reversible = "reversible";  // of lattice.time_steps:
 
 /// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
 const std::set<std::string, std::less<>> read_keys{
-    "theory.name",          "theory.fibre",       "lattice.space",     "lattice.mesh",
-    "lattice.time",         "lattice.courant",    "lattice.time_step", "lattice.time_steps",
-    "lattice.step_control", "boundary.mesh",      "scheme.tolerance",  "scheme.max_iterations",
-    "initial.state",        "run.until",          "run.steps",         "run.seed",
-    "output.every",         "output.checkpoint",  "output.fields",     "output.figures",
-    "output.format",        "output.titles",      "verify.variations", "verify.moments",
-    "verify.tolerance",     "verify.fault",       "verify.generator",  "verify.force",
-    "scheme.method",        "convergence.levels", "convergence.order", "convergence.agreement"};
+    "theory.name",        "theory.fibre",      "lattice.space",         "lattice.mesh",       "lattice.merge",
+    "lattice.time",       "lattice.courant",   "lattice.time_step",     "lattice.time_steps", "lattice.step_control",
+    "boundary.mesh",      "scheme.tolerance",  "scheme.max_iterations", "initial.state",      "run.until",
+    "run.steps",          "run.seed",          "output.every",          "output.checkpoint",  "output.fields",
+    "output.figures",     "output.format",     "output.titles",         "verify.variations",  "verify.moments",
+    "verify.tolerance",   "verify.fault",      "verify.generator",      "verify.force",       "scheme.method",
+    "convergence.levels", "convergence.order", "convergence.agreement"};
 
 /// Keys of time, which lattice.time = none has none of.
 const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "lattice.time_step", "lattice.time_steps",
@@ -117,6 +124,14 @@ void read_fields(ComplexScene& c, const Values& values, const ParameterValues& p
     throw settings.error("initial.state", "is of one coordinate; on a mesh give formulas, initial.phi or exact.phi");
 }
 
+/// The stencils of a file stand for the area that they cover, each part once.
+void require_tiling(ComplexScene& c) {
+  c.tiling = tiling_of(*c.stencils);
+  if (const auto& fault = c.tiling.fault)
+    throw BadInput("lattice.mesh", fmt::format("lattice.mesh = {}: {}:{}: {}", c.mesh_file.filename().string(),
+                                               c.mesh_file.filename().string(), fault->line, fault->what));
+}
+
 /// Data are on G = 0: rows 0, or the fixed boundary where there is no time.
 void require_constraint(const ComplexScene& c) {
   const std::vector<double> values = c.values();
@@ -133,6 +148,92 @@ void require_constraint(const ComplexScene& c) {
                       "keep it",
                       c.space->mesh.point_number(i), G));
   });
+}
+
+/// A formula of t, x, y and z with its first and second derivative by each.
+class DerivativesAlong {
+ public:
+  DerivativesAlong(std::string_view text, const std::vector<std::pair<std::string, double>>& numbers,
+                   const std::string& key) {
+    expressions::Graph graph;
+    const int root = expressions::parse(graph, text, {{{"t", 0}, {"x", 1}, {"y", 2}, {"z", 3}}, numbers}, key);
+    for (int v = 0; v < 4; ++v) {
+      const int first = graph.differentiate(root, v);
+      of_[static_cast<std::size_t>(v)] = {expressions::Evaluation(graph, first),
+                                          expressions::Evaluation(graph, graph.differentiate(first, v))};
+    }
+  }
+  double operator()(int variable, int order, double t, const Mesh::Point& p) const {
+    return of_[static_cast<std::size_t>(variable)][static_cast<std::size_t>(order - 1)].operator()<double>(
+        [&](int v) { return v == 0 ? t : p[static_cast<std::size_t>(v - 1)]; });
+  }
+
+ private:
+  std::array<std::array<expressions::Evaluation, 2>, 4> of_;
+};
+
+/// Tries exact.FIELD at points of a flat mesh and at random times. A density there is a sum of its parts along t and each
+/// coordinate (schemes/README.md, Complexes), and so are its field equations:
+///
+///     E = [E(φ_t, φ_tt) − E(0)] + E(φ) + Σ_a [E(φ, ∂_aφ, ∂_a²φ) − E(φ)]
+///
+/// On a surface in space the derivatives along it are not those of the coordinates.
+void require_solution(const ComplexScene& c, const ParameterValues& parameters) {
+  const Mesh& mesh = c.space->mesh;
+  const auto equations = FieldEquations::of(c.theory->density());
+  if (!equations || equations->order() != 2 || c.theory->constraint() || mesh.coordinates() != mesh.dimension) return;
+  const std::size_t d = c.fields.size();
+  const bool still = c.time == MeshTime::none;
+  std::vector<DerivativesAlong> derivatives;
+  for (const ComplexScene::Field& field : c.fields) {
+    const std::string key = "exact." + field.name;
+    derivatives.emplace_back(*Values(c.scene.settings).text(key), numbers_of(parameters), key);
+  }
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> part(0, 1);
+  constexpr int tries = 128;
+  std::vector<TriedPoint> points;
+  for (int n = 0; n < tries; ++n) {
+    const double t = still ? 0 : c.scene.end() * part(random);
+    const Mesh::Point& p = mesh.points[random() % mesh.points.size()];
+    std::vector<std::pair<int, std::vector<double>>> jets;  // with their signs in the sum
+    const std::vector<double> zero(6 * d);
+    std::vector<double> at_rest(zero);
+    for (std::size_t a = 0; a < d; ++a) at_rest[a] = (*c.fields[a].exact)(t, p);
+    jets.emplace_back(1, at_rest);
+    for (int v = still ? 1 : 0; v <= mesh.coordinates(); ++v) {
+      std::vector<double> jet = v == 0 ? zero : at_rest;
+      jets.emplace_back(-1, jet);
+      for (std::size_t a = 0; a < d; ++a) {
+        jet[(v == 0 ? 1 : 2) * d + a] = derivatives[a](v, 1, t, p);
+        jet[(v == 0 ? 3 : 5) * d + a] = derivatives[a](v, 2, t, p);
+      }
+      jets.emplace_back(1, std::move(jet));
+    }
+    std::vector<FieldEquations::Value> sums(d);
+    bool finite = true;
+    for (const auto& [sign, jet] : jets) {
+      finite = finite && std::ranges::all_of(jet, [](double v) { return std::isfinite(v); });
+      const auto values = (*equations)(jet, t, p[0]);
+      for (std::size_t a = 0; a < d; ++a) sums[a].sum += sign * values[a].sum, sums[a].absolute += values[a].absolute;
+    }
+    if (!finite) continue;
+    const auto floor = [&equations, jets, t, x = p[0]](double rounding) {
+      std::vector<double> all;
+      for (const auto& [sign, jet] : jets) {
+        const std::vector<double> one = equations->rounding(jet, t, x, rounding);
+        all.resize(one.size());
+        for (std::size_t a = 0; a < one.size(); ++a) all[a] += one[a];
+      }
+      return all;
+    };
+    points.push_back({fmt::format("t = {:.6g}, ({:.6g})", t,
+                                  fmt::join(std::span(p).first(static_cast<std::size_t>(mesh.coordinates())), ", ")),
+                      std::move(sums), floor});
+  }
+  std::vector<std::string> names;
+  for (const auto& field : c.fields) names.push_back(field.name);
+  require_solved(points, names);
 }
 
 }  // namespace
@@ -157,8 +258,12 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     c.theory = make_theory(entry, parameters);
     if (!values.given("lattice.mesh"))
       throw settings.error("lattice.mesh", "must be given with lattice.space = complex: a file, or icosahedron:4");
-    auto mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file, halvings);
+    auto mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file, halvings,
+                           values.maybe_real("lattice.merge"));
     if (const auto* list = std::get_if<StencilList>(&mesh)) c.stencils = std::make_unique<const StencilList>(*list);
+    if (const Setting* merge = settings.find("lattice.merge"); merge && (c.stencils || c.mesh_file.empty()))
+      scene.warnings.push_back(key_warning(settings, *merge, "no effect: it is for the points of a mesh file"));
+    if (c.stencils && !c.mesh_file.empty() && !find_fault(*c.stencils, c.theory->density())) require_tiling(c);
     refuse_unread(settings, entry, parameters, c.theory->fields(), values.choice("lattice.time") == "none",
                   c.stencils != nullptr);
     p.method = values.choice("scheme.method");
@@ -195,7 +300,10 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     scene.figure_form = read_figure_form(settings, values);
     scene.checkpoint = values.real("output.checkpoint");
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
-    if (c.is_one_problem()) return c;
+    if (c.is_one_problem()) {
+      if (c.space && c.has_solution()) require_solution(c, parameters);
+      return c;
+    }
 
     p.step_control = read_step_control(settings, values);
     if (p.step_control && c.time == MeshTime::cells)
@@ -235,6 +343,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     scene.steps <<= halvings;
     scene.every = values.maybe_integer("output.every")
                       .value_or(std::max(1LL, std::llround(static_cast<double>(scene.steps) / usual_records)));
+    if (c.has_solution()) require_solution(c, parameters);
   } catch (const BadInput& bad) {
     throw settings.located(bad);
   }
@@ -298,6 +407,11 @@ std::string ComplexScene::mesh_in_words() const {
   for (std::size_t n = 2; n < count.size(); ++n)
     if (count[n] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : " and ", count[n], names[n]);
   return text;
+}
+
+std::string ComplexScene::topology_in_words() const {
+  if (space) return in_words(topology(space->mesh), space->mesh.dimension);
+  return tiling.cells ? in_words(topology(*tiling.cells), tiling.cells->dimension) : "";
 }
 
 std::string ComplexScene::state_in_words() const {

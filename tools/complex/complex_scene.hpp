@@ -9,6 +9,7 @@
 
 #include "schemes/complex/space_rows.hpp"
 #include "schemes/complex/stencil_list.hpp"
+#include "schemes/complex/tiling.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "tools/complex/place_formula.hpp"
 #include "tools/scene/scene.hpp"
@@ -33,6 +34,7 @@ struct ComplexScene {
   std::unique_ptr<const CellSpace> space;       ///< a mesh; none where the complex is one of spacetime:
   std::unique_ptr<const StencilList> stencils;  ///< then these
   std::filesystem::path mesh_file;              ///< empty: generated
+  Tiling tiling;                                ///< of stencils of a file
   MeshTime time = MeshTime::rows;
   std::vector<double> time_steps;      ///< of rows, over and over; empty: all scene.problem.time_step
   double courant = 0;                  ///< of cells: h_K over the shortest edge of the cell
@@ -63,6 +65,8 @@ struct ComplexScene {
   std::vector<double> solution(double t) const;
   /// "36.5 cells of ..." for reports
   std::string mesh_in_words() const;
+  /// "Euler characteristic 1, 1 boundary curve"; nothing of stencils that are no cells.
+  std::string topology_in_words() const;
   std::string state_in_words() const;
 };
 

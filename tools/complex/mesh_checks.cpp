@@ -8,6 +8,7 @@
 
 #include "jets/expressions/expression.hpp"
 #include "schemes/complex/complex_form.hpp"
+#include "schemes/verify/equation_check.hpp"
 #include "tools/verify/verify_request.hpp"
 
 namespace delf {
@@ -91,12 +92,14 @@ void MeshChecks::look_at(const ComplexSystem& system, std::vector<double> y, con
 void MeshChecks::look_at_equations(const ComplexSystem& system, std::span<const double> y, const std::string& where) {
   std::vector<Balance> E = system.residual(y);
   const auto d = static_cast<std::size_t>(system.components());
+  // The terms are differences of rows, which the last digits of the values change: |E| ≤ ε Σ |∂E/∂y y| is none.
+  const std::vector<double> sizes = system.sizes(y);
+  const double rounding = ValueError().of(*std::ranges::max_element(sizes));
   if (scene_.time == MeshTime::cells) {
     // The times of a site may lie close together: the terms are those of y itself, Σ |∂E/∂y y|, not of its quotients.
-    const std::vector<double> terms = system.sizes(y);
-    for (std::size_t n = 0; n < E.size(); ++n) E[n].absolute = terms[n];
+    for (std::size_t n = 0; n < E.size(); ++n) E[n].absolute = sizes[n];
   }
-  const double scale = scale_of_equations(system, E, y);
+  const double scale = std::max(scale_of_equations(system, E, y), rounding / equations_.tolerance);
   for (std::size_t n = 0; n < E.size(); ++n) {
     const auto site = static_cast<int>(n / d);
     if (!system.complex().has_equation(site)) continue;

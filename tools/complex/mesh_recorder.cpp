@@ -33,9 +33,7 @@ MeshRecorder::MeshRecorder(const ComplexScene& c, const std::filesystem::path& f
 
 void MeshRecorder::record(const MeshRow& r, std::span<const SlabEnergy> slabs) {
   Outcome& o = outcome_;
-  if (!c_.stencils && !std::isfinite(r.energy))
-    throw NotFinite(
-        fmt::format("row {}, t = {:.6g}: the energy is not finite; use smaller fields or steps", r.row, r.time));
+  require_finite(r);
   if (c_.stencils && !std::ranges::all_of(r.values, [](double y) { return std::isfinite(y); }))
     throw NotFinite("a value is not finite; use smaller data, or a finer complex");
   ++o.records;
@@ -47,24 +45,36 @@ void MeshRecorder::record(const MeshRow& r, std::span<const SlabEnergy> slabs) {
   if (c_.scene.figures) film_.add(r.row, r.time, r.values);
 }
 
-void MeshRecorder::note(const MeshRow& r) {
+void MeshRecorder::watch(const MeshRow& r) {
+  require_finite(r);
+  take(r);
+}
+
+void MeshRecorder::require_finite(const MeshRow& r) const {
+  if (c_.stencils || std::isfinite(r.energy)) return;
+  throw NotFinite(
+      fmt::format("row {}, t = {:.6g}: the energy is not finite; use smaller fields or steps", r.row, r.time));
+}
+
+double MeshRecorder::take(const MeshRow& r) {
   Outcome& o = outcome_;
-  o.energy_final = r.energy;
   const double error =
       o.energy_initial == 0 ? Outcome::unknown : (r.energy - o.energy_initial) / std::abs(o.energy_initial);
   if (std::isfinite(error)) energy_errors_.append(r.time, error);
   if (!(std::abs(error) <= o.energy_error_max)) o.energy_error_max = std::abs(error);
   if (std::isfinite(r.residual)) o.residual_max = std::max(o.residual_max, r.residual);
   else if (c_.time == MeshTime::cells) o.residual_max = r.residual;  // of asynchronous steps it is not measured
+  if (c_.theory->constraint() && !(r.constraint <= o.constraint_max)) o.constraint_max = r.constraint;
+  for (std::size_t n = 0; n < r.momenta.size(); ++n) o.conserved[n].take(r.momenta[n].sum, r.momenta[n].absolute);
+  return error;
+}
+
+void MeshRecorder::note(const MeshRow& r) {
+  outcome_.energy_final = r.energy;
+  const double error = take(r);
   Record record{r.row, r.time, r.energy, error, Outcome::unknown, Outcome::unknown, r.iterations, r.residual, {}};
-  if (c_.theory->constraint()) {
-    record.further.push_back(r.constraint);
-    if (!(r.constraint <= o.constraint_max)) o.constraint_max = r.constraint;
-  }
-  for (std::size_t n = 0; n < r.momenta.size(); ++n) {
-    o.conserved[n].take(r.momenta[n].sum, r.momenta[n].absolute);
-    record.further.push_back(r.momenta[n].sum);
-  }
+  if (c_.theory->constraint()) record.further.push_back(r.constraint);
+  for (const Balance& momentum : r.momenta) record.further.push_back(momentum.sum);
   series_->append(record);
 }
 

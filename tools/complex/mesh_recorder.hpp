@@ -23,6 +23,8 @@ class MeshRecorder final : public RunFiles {
 
   /// Of rows of a finite complex series.csv has a line for each slab in place of the row's.
   void record(const MeshRow&, std::span<const SlabEnergy> slabs = {});
+  /// A row that is measured and not recorded.
+  void watch(const MeshRow&);
   Written flush(bool sync) override;
   void visit(SavedState&) override;
   void close();
@@ -30,6 +32,9 @@ class MeshRecorder final : public RunFiles {
   const Trace& energy_errors() const { return energy_errors_; }
 
  private:
+  void require_finite(const MeshRow&) const;
+  /// Maxima of the run; returns the energy error.
+  double take(const MeshRow&);
   void note(const MeshRow&);
 
   const ComplexScene& c_;

@@ -21,8 +21,11 @@ class MeshStepping final : public RowLoop {
   void step(bool) override { evolution_.step(); }
   int iterations() const override { return evolution_.iterations(); }
   void record(std::int64_t row) override;
+  void watch() override;
   void visit_rows(SavedState&) override;
   void finish() override;
+
+  void judge(const MeshRow&) const;
 
   const ComplexScene& c_;
   MeshEvolution& evolution_;

@@ -28,7 +28,9 @@ std::string threads_in_words(const ComplexSolver& solver, int asked) {
 
 Subject subject_of(const ComplexScene& c) {
   Subject subject;
-  subject.where = fmt::format("{} {}, {}", c.sites(), c.stencils ? "sites" : "points", c.mesh_in_words());
+  const std::string shape = c.topology_in_words();
+  subject.where = fmt::format("{} {}, {}{}{}", c.sites(), c.stencils ? "sites" : "points", c.mesh_in_words(),
+                              shape.empty() ? "" : "; ", shape);
   subject.stencil = c.mesh_in_words();
   subject.method = c.time == MeshTime::cells   ? "asynchronous"
                    : c.time == MeshTime::none  ? "elliptic"

@@ -5,6 +5,8 @@
 
 #include <unordered_map>
 
+#include "lattice/complex/coincident_points.hpp"
+#include "lattice/complex/mesh_overlap.hpp"
 #include "tools/complex/text_lines.hpp"
 
 namespace delf {
@@ -189,11 +191,45 @@ class Gmsh {
 
 }  // namespace
 
-Mesh parse_mesh(std::string_view text) {
+namespace {
+
+/// "point 3 (line 5)"
+std::string named(const char* kind, std::int64_t number, const std::vector<int>& lines, std::size_t n) {
+  return fmt::format("{} {}{}", kind, number, n < lines.size() ? fmt::format(" (line {})", lines[n]) : "");
+}
+
+void refuse_coincident(const Mesh& mesh) {
+  const auto found = coincident_points(mesh);
+  if (!found) return;
+  const auto [p, q] = *found;
+  throw MeshError(
+      p < mesh.point_lines.size() ? mesh.point_lines[p] : 0,
+      fmt::format("point {} lies where {} does, and nothing joins the cells there; give a distance as "
+                  "lattice.merge, such as {:.0e}, to make such points one, or 0 where the seam is to be open",
+                  mesh.point_number(p), named("point", mesh.point_number(q), mesh.point_lines, q),
+                  1e-6 * shortest_edge(mesh)));
+}
+
+void refuse_overlaps(const Mesh& mesh) {
+  const auto found = overlapping_cells(mesh);
+  if (!found) return;
+  const auto c = static_cast<std::size_t>(found->first), other = static_cast<std::size_t>(found->second);
+  throw MeshError(
+      c < mesh.cell_lines.size() ? mesh.cell_lines[c] : 0,
+      fmt::format("cell {} overlaps {}: a part of space would count twice; move their points, or remove one",
+                  mesh.cell_number(c), named("cell", mesh.cell_number(other), mesh.cell_lines, other)));
+}
+
+}  // namespace
+
+Mesh parse_mesh(std::string_view text, std::optional<double> merge) {
   TextLines lines(text);
   if (!lines.next()) throw MeshError(1, "the mesh is empty; write lines like point 0 0 and cell 0 1 2");
   Mesh mesh = text.starts_with("$MeshFormat") ? Gmsh(lines).read() : plain_mesh(lines);
+  if (merge && *merge > 0) mesh = merged(mesh, *merge);
   if (const auto fault = find_fault(mesh)) throw MeshError(fault->line, fault->what);
+  if (!merge) refuse_coincident(mesh);
+  refuse_overlaps(mesh);
   return mesh;
 }
 

@@ -10,7 +10,8 @@ namespace {
 
 double largest(std::span<const double> values) {
   double most = 0;
-  for (const double y : values) most = std::max(most, std::abs(y));
+  for (const double y : values)
+    if (!(std::abs(y) <= most)) most = std::abs(y);
   return most;
 }
 

@@ -42,7 +42,8 @@ double positive(const std::string& name, double value) {
   return value;
 }
 
-std::variant<Mesh, StencilList> read_file(const std::string& name, const fs::path& folder, fs::path& file) {
+std::variant<Mesh, StencilList> read_file(const std::string& name, const fs::path& folder, fs::path& file,
+                                          std::optional<double> merge) {
   std::error_code none;
   for (const fs::path& path : {folder / name, fs::path(name)})
     if (file.empty() && fs::is_regular_file(path, none)) file = fs::absolute(path).lexically_normal();
@@ -54,7 +55,7 @@ std::variant<Mesh, StencilList> read_file(const std::string& name, const fs::pat
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   try {
     if (is_stencil_text(text)) return parse_stencils(text);
-    return parse_mesh(text);
+    return parse_mesh(text, merge);
   } catch (const MeshError& error) {
     throw BadInput(key, fmt::format("{} = {}: {}{}: {}", key, name, file.filename().string(),
                                     error.line > 0 ? fmt::format(":{}", error.line) : "", error.what()));
@@ -64,7 +65,7 @@ std::variant<Mesh, StencilList> read_file(const std::string& name, const fs::pat
 }  // namespace
 
 std::variant<Mesh, StencilList> named_mesh(const std::string& name, const fs::path& folder, fs::path& file,
-                                           int halvings) {
+                                           int halvings, std::optional<double> merge) {
   constexpr int most = 3000;
   file.clear();
   Mesh mesh;
@@ -86,7 +87,7 @@ std::variant<Mesh, StencilList> named_mesh(const std::string& name, const fs::pa
     mesh = rectangle_mesh(positive(name, n[0]), positive(name, n[1]), whole(name, n[2], 1, most),
                           whole(name, n[3], 1, most), quadrilaterals);
   } else {
-    return read_file(name, folder, file);
+    return read_file(name, folder, file, merge);
   }
   if (const auto fault = find_fault(mesh)) refuse(name, fault->what);
   return mesh;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "tools/complex/static_field.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "schemes/complex/spacetime_complex.hpp"
 #include "tools/run/interrupt.hpp"
 
@@ -11,6 +15,12 @@ namespace {
 ComplexSystem system_of(const ComplexScene& scene) {
   if (scene.stencils) return spacetime_complex(*scene.stencils, scene.theory->shared_density());
   return SpaceRows(*scene.space).system();
+}
+
+double largest_magnitude(const std::vector<double>& values) {
+  double most = 0;
+  for (const double y : values) most = std::max(most, std::abs(y));
+  return most;
 }
 
 }  // namespace
@@ -33,6 +43,7 @@ StaticField::StaticField(const ComplexScene& scene)
       y_[n] = f.value ? (*f.value)(t, {x, y, z}) : 0.0;
     }
   }
+  start_ = y_;
 }
 
 double StaticField::energy() const {
@@ -49,6 +60,13 @@ double StaticField::energy() const {
   return sum;
 }
 
-double StaticField::residual() const { return largest_residual(system(), y_); }
+double StaticField::residual() const {
+  const double relative = largest_residual(system(), y_);
+  constexpr double few = 64 * std::numeric_limits<double>::epsilon();
+  if (!(largest_magnitude(y_) <= few * largest_magnitude(start_))) return relative;
+  double sum = 0;
+  for (const Balance& E : system().residual(y_)) sum = std::max(sum, std::abs(E.sum));
+  return std::min(relative, sum / std::ranges::max(system().sizes(start_)));
+}
 
 }  // namespace delf

@@ -23,13 +23,14 @@ class StaticField {
   double energy() const;
   /// Of its values, stencils and matrices.
   std::size_t bytes() const { return system_.bytes() + solver_.bytes() + 8 * y_.size(); }
-  /// The largest |E|, relative to the largest sum of absolute terms.
+  /// The largest |E|, relative to the largest sum of absolute terms; of a field that is 0 to the rounding of its start, to
+  /// the terms there.
   double residual() const;
 
  private:
   ComplexSystem system_;
   ComplexSolver solver_;
-  std::vector<double> y_;
+  std::vector<double> y_, start_;
   std::size_t fields_;
 };
 

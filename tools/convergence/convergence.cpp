@@ -18,6 +18,7 @@
 #include "tools/complex/mesh_convergence.hpp"
 #include "tools/convergence/convergence_figure.hpp"
 #include "tools/convergence/convergence_table.hpp"
+#include "tools/convergence/convergence_verdict.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/run/in_words.hpp"
@@ -32,21 +33,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Request {
-  int levels;
-  std::optional<double> order;   ///< that must be met
-  std::optional<int> of_scheme;  ///< that must not be missed, where no order is given
-  double agreement;
-
-  // An order that is not known, since errors are rounding, misses none but one that is asked for.
-  bool met(double measured) const {
-    if (order) return std::abs(measured - *order) <= agreement;
-    return !of_scheme || !std::isfinite(measured) || measured >= *of_scheme - agreement;
-  }
-};
-
 // Of the lines beside the errors: what is asked for, or the scheme's, or the whole numbers around what was found.
-std::vector<double> drawn_orders(const Request& request, double measured) {
+std::vector<double> drawn_orders(const OrderRequest& request, double measured) {
   if (request.order) return {*request.order};
   if (request.of_scheme) return {static_cast<double>(*request.of_scheme)};
   if (!std::isfinite(measured)) return {};
@@ -73,28 +61,16 @@ std::optional<int> order_of_scheme(const Problem& asked) {
   return order ? order(problem) : std::nullopt;
 }
 
-// Of a solution that is not periodic, at its worst: max |φ(L) − φ(0) − 2πn| at the last row.
-double jump_at_seam(const Scene& scene) {
-  const Lattice& lattice = scene.problem.lattice;
-  if (!lattice.is_circle()) return 0;
-  const auto state = make_state(scene.initial, lattice);
-  std::vector<FieldPoint> first(static_cast<std::size_t>(state->components())), last(first);
-  state->at(scene.end(), 0, first);
-  state->at(scene.end(), lattice.length() * (1 - 2 * std::numeric_limits<double>::epsilon()), last);
-  double jump = 0;
-  for (std::size_t a = 0; a < first.size(); ++a)
-    jump = std::max(jump, std::abs(last[a].phi - first[a].phi - 2 * std::numbers::pi * state->winding()));
-  return jump;
-}
-
-// A line where errors of the table are not the scheme's alone.
+// A line where errors of the table are not the scheme's alone, though its order is met.
 std::string floor_in_words(const Scene& scene, const ConvergenceTable& table) {
   if (!table.exact || table.all_sites || table.levels.empty()) return {};
-  const double least = table.levels.back().linf, jump = jump_at_seam(scene);
-  if (!(jump > 0.1 * least)) return {};
-  return fmt::format("  seam       the exact solution jumps by {:.2g} where the circle closes, and the last error is "
-                     "{:.2g}: its order is not the scheme's; keep the pulse away from both ends of lattice.length\n",
-                     jump, least);
+  const double least = table.levels.back().linf;
+  const EndsOfLattice ends = off_at_ends(scene);
+  if (!(ends.off > 0.1 * least)) return {};
+  return fmt::format(
+      "  ends       the exact solution {}, and the last error is {:.2g}: finer lines will not fall below "
+      "that; keep the pulse away from both ends of lattice.length\n",
+      ends.words, least);
 }
 
 std::string number(const char* format, double value) {
@@ -123,8 +99,8 @@ std::string report(const Scene& scene, const std::string& label, const Convergen
   return text;
 }
 
-std::string json_of(const Scene& scene, const std::string& label, const Request& request, const ConvergenceTable& table,
-                    bool passed) {
+std::string json_of(const Scene& scene, const std::string& label, const OrderRequest& request,
+                    const ConvergenceTable& table, const ConvergenceVerdict& verdict, bool passed) {
   using Json = nlohmann::ordered_json;  // what is not a number becomes null
   Json json;
   json["version"] = DELF_VERSION;
@@ -136,6 +112,8 @@ std::string json_of(const Scene& scene, const std::string& label, const Request&
   json["order_expected"] = request.order ? Json(*request.order) : Json();
   json["order_of_scheme"] = request.of_scheme ? Json(*request.of_scheme) : Json();
   json["passed"] = passed;
+  json["verdict"] = to_string(verdict.kind);
+  json["reason"] = verdict.reason.empty() ? Json() : Json(verdict.reason);
   json["ended"] = table.ended.empty() ? Json() : Json(table.ended);
   auto& levels = json["levels"] = Json::array();
   for (const ConvergenceLevel& l : table.levels) {
@@ -172,18 +150,20 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
                      std::optional<int> of_scheme) {
   const Interrupt interrupt;
   const Values values(scene.settings);
-  const Request request{static_cast<int>(values.integer("convergence.levels")), values.maybe_real("convergence.order"),
-                        of_scheme, values.real("convergence.agreement")};
+  const OrderRequest request{static_cast<int>(values.integer("convergence.levels")),
+                             values.maybe_real("convergence.order"), of_scheme, values.real("convergence.agreement")};
   const ConvergenceTable table = converge(whole, request.levels);
-  const double order = table.order();
   const bool failed = table.status != "done" && table.status != "interrupted";
-  const bool passed = !failed && request.met(order);
+  const Scene* const on_lattice = std::is_same_v<Whole, Scene> ? &scene : nullptr;
+  const ConvergenceVerdict verdict = judge(table, request, on_lattice);
+  const double order = verdict.order;
+  const bool passed = !failed && verdict.accepted(request);
   make_results_folder(folder);
-  write_text_file(folder / "convergence.json", json_of(scene, label, request, table, passed));
+  write_text_file(folder / "convergence.json", json_of(scene, label, request, table, verdict, passed));
   write_text_file(folder / "convergence.csv", csv_of(table));
   fmt::print("{}", report(scene, label, table));
   if (!table.ended.empty()) fmt::print("  ended      {}\n", table.ended);
-  if constexpr (std::is_same_v<Whole, Scene>) fmt::print("{}", floor_in_words(scene, table));
+  if (on_lattice && verdict.kind == ConvergenceVerdict::passed) fmt::print("{}", floor_in_words(scene, table));
   if (table.status == "interrupted")
     fmt::print("  not finished (interrupted): {} of {} lines\n", table.levels.size(), request.levels);
   else if (!std::isfinite(order)) fmt::print("  order      not known: fewer than two errors above rounding\n");
@@ -192,9 +172,12 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
                passed ? "passed" : "FAILED");
   else if (request.of_scheme && std::isfinite(order))
     fmt::print("  order      {:.3f}, and the scheme's is {}: {}\n", order, *request.of_scheme,
-               passed ? "passed" : "MISSED; begin with smaller steps, unless the solution is not smooth");
+               verdict.kind == ConvergenceVerdict::missed
+                   ? "MISSED; begin with smaller steps, unless the solution is not smooth"
+                   : to_string(verdict.kind));
   else if (std::isfinite(order))
     fmt::print("  order      {:.3f}, and the scheme declares none: convergence.order asks for one\n", order);
+  if (!verdict.reason.empty()) fmt::print("  reason     {}\n", verdict.reason);
   const std::string missing = drawn(scene, label, table, drawn_orders(request, order), folder);
   std::error_code none;
   const fs::path figure =
@@ -203,6 +186,8 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
   if (table.status == "interrupted") return ExitCode::interrupted;
   if (failed) throw NumericalFailure(table.ended);
+  if (verdict.kind == ConvergenceVerdict::unstable)
+    throw NumericalFailure("the steps are not stable: " + verdict.reason);
   return passed ? ExitCode::done : ExitCode::check_failed;
 }
 

@@ -11,6 +11,7 @@
 #include "tools/run/field_error.hpp"
 #include "tools/run/refined_scene.hpp"
 #include "tools/run/solution_error.hpp"
+#include "tools/scene/initial_rows.hpp"
 
 namespace delf {
 
@@ -27,6 +28,7 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     throw scene.settings.error("lattice.time_steps",
                                "reversible steps end at times of their own; give run.until, and a state whose solution "
                                "is known");
+  for (const double phi : InitialRows(scene).row0()) table.size = std::max(table.size, std::abs(phi));
   std::vector<double> before;  // the last row of the level before
   PlacedRow placed_before;
   for (int level = 0; level < levels; ++level) {
@@ -39,9 +41,9 @@ ConvergenceTable converge(const Scene& scene, int levels) {
       if (level == 0) throw;
       table.status = status_of(error);
       // Where h/k has not changed, and the coarser steps were stable, a limit of h/k² may have been passed.
-      table.ended = fmt::format(
-          "N = {}: {}; h/k^2 doubles from line to line, and may be limited: begin with smaller steps", lattice.sites(),
-          error.what());
+      table.ended =
+          fmt::format("N = {}: {}; h/k^2 doubles from line to line, and may be limited: begin with smaller steps",
+                      lattice.sites(), error.what());
       break;
     } catch (const BadInput& error) {  // such as more sites than are taken
       if (level == 0) throw;
@@ -54,15 +56,17 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     }
     ConvergenceLevel now;
     now.sites = lattice.sites(), now.space_step = lattice.space_step(), now.time_step = fine.problem.time_step;
-    now.seconds = end.seconds, now.measures = end.measures;
+    now.seconds = end.seconds, now.measures = end.measures, now.steps = fine.steps;
     for (const double phi : end.row) now.size = std::max(now.size, std::abs(phi));
+    table.size = std::max(table.size, now.size);
     if (table.exact) {
-      const FieldError error =
-          end.placed.positions.empty()
-              ? field_error(end.row, ComparedSolution::exact(fine, end.time).at(lattice, end.time), lattice.space_step())
-              : field_error(end.placed, *make_state(fine.initial, lattice), end.time);
+      const FieldError error = end.placed.positions.empty()
+                                   ? field_error(end.row, ComparedSolution::exact(fine, end.time).at(lattice, end.time),
+                                                 lattice.space_step())
+                                   : field_error(end.placed, *make_state(fine.initial, lattice), end.time);
       now.linf = error.linf, now.l2 = error.l2;
-    } else if (level > 0) {
+    }
+    if (level > 0) {
       ConvergenceLevel& coarse = table.levels.back();
       const Scene there = refined(scene, 1 << (level - 1));
       // where sites move, those of the finer row lie elsewhere
@@ -71,7 +75,8 @@ ConvergenceTable converge(const Scene& scene, int levels) {
               ? field_error(before, at_sites_of(there, end.row), there.problem.lattice.space_step())
               : field_error(placed_before.fields, linearly_at(end.placed, placed_before.positions),
                             there.problem.lattice.space_step());
-      coarse.linf = error.linf, coarse.l2 = error.l2;
+      coarse.apart = error.linf;
+      if (!table.exact) coarse.linf = error.linf, coarse.l2 = error.l2;
     }
     table.levels.push_back(std::move(now));
     before = std::move(end.row), placed_before = std::move(end.placed);

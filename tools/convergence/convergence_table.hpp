@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -14,14 +15,17 @@ struct ConvergenceLevel {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   int sites = 1;
   double space_step = 0, time_step = 0, seconds = 0;
-  double size = 0;                      ///< the largest |φ| of the last row
+  double size = 0;  ///< the largest |φ| of the last row
+  std::int64_t steps = 0;
   double linf = unknown, l2 = unknown;  ///< errors, or differences from the next level
+  double apart = unknown;               ///< the largest difference from the next level's row, whatever errors are
   double order = unknown;  ///< log₂ of an error's ratio to the next level's: the maximum norm's, on meshes L2's
   std::vector<NamedNumber> measures;
 };
 
 struct ConvergenceTable {
   bool exact = false;      ///< errors against the exact solution; else differences between one level and the next
+  double size = 0;         ///< the largest |φ| of row 0, and of the last rows
   bool all_sites = false;  ///< errors are those of all sites of a finite complex, not of the last row
   std::vector<ConvergenceLevel> levels;
   double ConvergenceLevel::*norm = &ConvergenceLevel::linf;  ///< that the orders are of

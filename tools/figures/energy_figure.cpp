@@ -22,13 +22,16 @@ std::string energy_figure(const FigureSource& source, const std::filesystem::pat
   // sign, and a linear axis in units of the power of ten that they have.
   const bool grown = largest > 10, round_off = largest < 1e-12;
   const double power = grown ? 0 : largest > 0 ? std::floor(std::log10(largest)) : -16;
+  // An interval of more than one row is a band from its least to its largest value.
+  const bool is_band = !grown && std::ranges::any_of(intervals, [](const auto& i) { return i.most > i.least; });
   const auto shown = [&](double error) {
     return grown ? std::max(std::abs(error), 1e-17) : error / std::pow(10, power);
   };
   std::string table;
   for (const auto& i : intervals) {
-    table += fmt::format("{} {}\n", i.begin, shown(i.least));
-    if (i.most != i.least) table += fmt::format("{} {}\n", i.end, shown(i.most));
+    const double middle = 0.5 * (i.begin + i.end);
+    if (grown) table += fmt::format("{} {}\n", middle, shown(std::max(-i.least, i.most)));
+    else table += fmt::format("{} {} {}\n", middle, shown(i.least), shown(i.most));
   }
   write_text_file(scratch / "energy", table);
 
@@ -38,7 +41,8 @@ std::string energy_figure(const FigureSource& source, const std::filesystem::pat
   const std::string label =
       grown ? "|E − E_0| / |E_0|" : fmt::format("(E − E_0) / |E_0|   in units of 10^{{{}}}", power);
   return figure_title(fmt::format("{}: the energy error{}", source.scene, round_off ? " is round-off" : ""),
-                      fmt::format("{}, {}", source.theory, source.scheme)) +
+                      fmt::format("{}, {}{}", source.theory, source.scheme,
+                                  is_band ? "; least to largest of " + source.energy_rows : "")) +
          fmt::format(
              "if (titles) set label 104 {} at screen 0.03,0.862 left font ',9' textcolor rgb '#666666' noenhanced\n",
              gnuplot_quoted("E = " + source.energy)) +
@@ -48,8 +52,13 @@ std::string energy_figure(const FigureSource& source, const std::filesystem::pat
              "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\n{}"
              "set xlabel 'time t'\n"
              "set label 103 '{}' at screen 0.025,0.4875 center rotate textcolor rgb '#333333'\n"
-             "set xrange [{}:{}]\nplot 'energy' using 1:2 with lines lw 1.3 lc rgb '{}'\n",
-             grown ? 0.13 : 0.105, axis, label, intervals.front().begin, intervals.back().end, line_colour);
+             "set xrange [{}:{}]\nplot {}'energy' using 1:2 with lines lw 1.3 lc rgb '{}'\n",
+             grown ? 0.13 : 0.105, axis, label, intervals.front().begin, intervals.back().end,
+             is_band ? fmt::format("'energy' using 1:2:3 with filledcurves lc rgb '{0}' fs solid 0.5 noborder, "
+                                   "'energy' using 1:3 with lines lw 1.3 lc rgb '{0}', ",
+                                   line_colour)
+                     : std::string(),
+             line_colour);
 }
 
 }  // namespace delf

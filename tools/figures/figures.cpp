@@ -46,8 +46,9 @@ std::vector<double> drawn_sites(const FigureSource& source, int frame, std::size
   std::vector<double> values;
   for (std::size_t i = component; i < row.size(); i += source.film.components())
     values.push_back(std::clamp(row[i] / unit, -1e30, 1e30));
-  // φ(x + L) = φ(x) + 2π·winding
-  if (source.lattice.is_circle()) values.push_back(values.front() + source.winding * 2 * std::numbers::pi / unit);
+  // φ(x + L) = φ(x) + 2π·winding + gain
+  if (source.lattice.is_circle())
+    values.push_back(values.front() + (source.winding * 2 * std::numbers::pi + source.gain) / unit);
   return values;
 }
 
@@ -79,6 +80,11 @@ int tame_frames(const FigureSource& source) {
   int tame = 1;
   while (tame < source.film.frames() && (first == 0 || span_of(tame) <= much * first)) ++tame;
   return tame;
+}
+
+std::string subtitle(const FigureSource& source) {
+  return source.theory + ", " + source.scheme +
+         (source.film.is_aliased() ? "; frames too far apart for this motion: what moves may be an alias" : "");
 }
 
 std::vector<std::string> figure_names() {

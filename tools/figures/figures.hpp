@@ -35,7 +35,12 @@ struct FigureSource {
   DrawnSection section = {};
   FigureForm form = {};
   const State* exact = nullptr;  ///< that waveforms are compared with, as long as it says that it can be
+  std::string energy_rows = {};  ///< over which rows the energy is the least and the largest
+  double gain = 0;               ///< what the fields gain around a circle beside 2π·winding
 };
+
+/// The theory and the scheme, and whether the frames of a film are too far apart for what moves in it.
+std::string subtitle(const FigureSource&);
 
 /// Draws the space–time map and the waveforms, or on a point the trajectory and the orbit, and the energy error into
 /// `folder`/figures, in all formats. Returns what is missing, in one line, or an empty string.

@@ -2,54 +2,103 @@
 #include "tools/figures/film.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
 
 namespace {
-constexpr std::int64_t most = 600;
-std::int64_t stride_for(std::int64_t count, std::int64_t limit = most) {
-  return std::max<std::int64_t>(1, (count + limit - 1) / limit);
+
+constexpr std::size_t most = 600;
+
+void drop_every_second(std::vector<double>& all, std::size_t width) {
+  const std::size_t kept = all.size() / width / 2;
+  for (std::size_t f = 1; f < kept; ++f)
+    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(2 * f * width), width,
+                all.begin() + static_cast<std::ptrdiff_t>(f * width));
+  all.resize(kept * width);
 }
+
 }  // namespace
 
-Film::Film(const Lattice& lattice, std::int64_t expected_frames, std::size_t components)
-    : stride_(stride_for(expected_frames, lattice.sites() == 1 ? 10 * most : most)),
-      site_stride_(static_cast<std::size_t>(stride_for(lattice.sites()))),
+Film::Film(const Lattice& lattice, std::size_t components)
+    : capacity_(lattice.sites() == 1 ? 10 * most : most),
+      site_stride_(std::max<std::size_t>(1, (static_cast<std::size_t>(lattice.sites()) + most - 1) / most)),
       components_(components) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(lattice.sites()); i += site_stride_)
     space_.push_back(lattice.position(static_cast<int>(i)));
   newest_.resize(space_.size() * components_);
+  newest_rates_.resize(newest_.size());
 }
 
-void Film::append(double time, std::span<const double> row) {
-  for (std::size_t i = 0; i < space_.size(); ++i)
-    for (std::size_t a = 0; a < components_; ++a)
-      newest_[i * components_ + a] = row[i * site_stride_ * components_ + a];
+void Film::append(double time, std::span<const double> row, std::span<const double> rates) {
+  for (std::size_t n = 0; n < newest_.size(); ++n) {
+    const std::size_t at = n / components_ * site_stride_ * components_ + n % components_;
+    newest_[n] = row[at];
+    newest_rates_[n] = rates.empty() ? std::numeric_limits<double>::quiet_NaN() : rates[at];
+  }
   newest_time_ = time;
   newest_kept_ = false;
-  if (seen_++ % stride_ == 0) keep(time);
+  if (seen_++ % stride_ == 0) keep();
 }
 
-void Film::keep(double time) {
-  times_.push_back(time);
+void Film::keep() {
+  if (times_.size() >= capacity_) halve();
+  put();
+}
+
+void Film::put() {
+  times_.push_back(newest_time_);
   values_.insert(values_.end(), newest_.begin(), newest_.end());
+  rates_.insert(rates_.end(), newest_rates_.begin(), newest_rates_.end());
   newest_kept_ = true;
-  // the last record may come early, after less than a full interval
-  const auto n = times_.size();
-  const double first = n > 1 ? times_[1] - times_[0] : 0;
-  if (n < 3 || times_[n - 1] - times_[n - 2] > 0.999 * first) even_frames_ = static_cast<int>(n);
+}
+
+// The capacity is even: the row that finds the film full is the next of those that are kept.
+void Film::halve() {
+  drop_every_second(times_, 1);
+  for (std::vector<double>* all : {&values_, &rates_}) drop_every_second(*all, newest_.size());
+  stride_ *= 2;
 }
 
 void Film::visit(SavedState& state) {
   state("film stride", stride_), state("rows seen", seen_), state("newest is kept", newest_kept_);
-  state("even frames", even_frames_), state("newest time", newest_time_), state("newest", newest_);
-  state("times", times_), state("frames", values_);
+  state("newest time", newest_time_), state("newest", newest_), state("newest rates", newest_rates_);
+  state("times", times_), state("frames", values_), state("rates", rates_);
 }
 
 void Film::finish() {
-  if (!newest_kept_) keep(newest_time_);
+  if (!newest_kept_) put();
+}
+
+// The last record may come early, after less than a full interval.
+int Film::even_frames() const {
+  std::size_t n = times_.size();
+  while (n > 2 && !(times_[n - 1] - times_[n - 2] > 0.999 * (times_[1] - times_[0]))) --n;
+  return static_cast<int>(n);
+}
+
+double Film::alias() const {
+  constexpr double little = 1e-4;  // a hundredth of what the field varies by is not seen
+  const bool is_map = space_.size() > 1;  // of the first component; of a point all coordinates are drawn
+  const std::size_t step = is_map ? components_ : 1, width = newest_.size();
+  double missed = 0, changed = 0, size = 0;
+  for (int f = 1; f < even_frames(); ++f) {
+    const auto now = frame(f), last = frame(f - 1);
+    const double *const rates = &rates_[static_cast<std::size_t>(f) * width], *const last_rates = rates - width;
+    const double half = 0.5 * (time(f) - time(f - 1));
+    double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < width; i += step) {
+      const double change = now[i] - last[i], by_rates = half * (rates[i] + last_rates[i]);
+      if (std::isnan(by_rates)) continue;
+      missed += (change - by_rates) * (change - by_rates), changed += change * change;
+      sum += now[i], squares += now[i] * now[i];
+    }
+    size += is_map ? squares - sum * sum / static_cast<double>(width / step) : squares;
+  }
+  return missed <= little * size ? 0 : missed / changed;
 }
 
 std::span<const double> Film::frame(int index) const {

@@ -65,7 +65,7 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
   const double t0 = film.time(0), t1 = film.time(frames - 1), dt = (t1 - t0) / (frames - 1);
   return gnuplot_colours(scale) +
          figure_title(fmt::format("{}: {} over space and time", source.scene, shown),
-                      fmt::format("{}, {}", source.theory, source.scheme)) +
+                      subtitle(source)) +
          fmt::format(
              "set lmargin at screen 0.105\nset rmargin at screen 0.855\n"
              "set bmargin at screen 0.12\nset tmargin at screen top\n"

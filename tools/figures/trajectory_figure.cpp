@@ -95,7 +95,7 @@ std::string trajectory_figure(const FigureSource& source, const std::filesystem:
       figure_title(
           fmt::format("{}: the coordinate{} over time", source.scene, d == 1 ? "" : "s"),
           fmt::format(
-              "{}, {}{}", source.theory, source.scheme,
+              "{}{}", subtitle(source),
               d > most_panels * in_a_panel ? fmt::format("; the first {} of {}", most_panels * in_a_panel, d) : "")) +
       sides + rest +
       fmt::format(
@@ -118,7 +118,7 @@ std::string trajectory_figure(const FigureSource& source, const std::filesystem:
 std::string orbit_figure(const FigureSource& source, const std::filesystem::path& scratch) {
   if (source.lattice.space() != Space::point || source.film.frames() < 2 || source.film.components() != 2) return {};
   write_text_file(scratch / "orbit", table_of(source));
-  return figure_title(fmt::format("{}: the orbit", source.scene), fmt::format("{}, {}", source.theory, source.scheme)) +
+  return figure_title(fmt::format("{}: the orbit", source.scene), subtitle(source)) +
          rest +
          fmt::format(
              "set xlabel {} noenhanced\nset ylabel {} noenhanced\nset size ratio -1\n{}plot 'orbit' using 2:3 with "

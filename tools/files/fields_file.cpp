@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "tools/files/fields_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <limits>
 
 #include "tools/failure.hpp"
+#include "tools/files/mark_closed.hpp"
 #include "tools/files/open_to_read.hpp"
 
 namespace delf {
@@ -49,6 +55,8 @@ Hdf5Handle growing(hid_t file, const char* name, std::vector<hsize_t> chunk) {
   const Hdf5Handle properties = timeless();
   H5Pset_chunk(properties, rank, chunk.data());
   H5Pset_fletcher32(properties);  // a damaged block is noticed when it is read
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  H5Pset_fill_value(properties, H5T_NATIVE_DOUBLE, &nothing);  // and a row that a failed write has lost
   const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access, 1, 0, H5D_CHUNK_CACHE_W0_DEFAULT);
   return {H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, access), H5Dclose};
@@ -95,6 +103,7 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   frames_per_block_ = std::min(frames_per_block_, static_cast<std::size_t>(std::max<std::int64_t>(1, expected_frames)));
   quiet_hdf5();
   const std::filesystem::path made = kept.size > 0 ? std::filesystem::path(path.string() + ".part") : path;
+  written_to_ = made;
   const Hdf5Handle format(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(format, H5F_LIBVER_V110, H5F_LIBVER_V110);
   const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
@@ -157,6 +166,7 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   }
   std::filesystem::rename(made, path, error);
   require(!error, "cannot be replaced");
+  written_to_ = path;
 }
 
 void FieldsFile::copy_frames(const std::filesystem::path& from, const WrittenPart& kept) {
@@ -249,9 +259,46 @@ void FieldsFile::append(double time, const RecordedRow& row, const RecordedDatas
   if ((written_.size + times_.size()) % frames_per_block_ == 0) write_block();
 }
 
+/// Reserves the disk for a block of rows. Where there is no room nothing is begun, and the file can be closed as it is.
+bool FieldsFile::has_room() {
+#ifdef __linux__
+  constexpr std::size_t metadata = 1 << 16;
+  std::size_t values = 1;
+  for (const Rows* rows : all_rows()) {
+    if (!rows->dataset) continue;
+    std::size_t of_frame = 1;
+    for (const hsize_t n : rows->shape) of_frame *= n;
+    values += of_frame;
+  }
+  void* descriptor = nullptr;
+  struct stat now {};
+  if (H5Fget_vfd_handle(file_, H5P_DEFAULT, &descriptor) < 0 || fstat(*static_cast<int*>(descriptor), &now) != 0)
+    return true;
+  const auto bytes = static_cast<off_t>(sizeof(double) * frames_per_block_ * values + metadata);
+  rlimit most{};
+  if (getrlimit(RLIMIT_FSIZE, &most) == 0 && most.rlim_cur != RLIM_INFINITY &&
+      static_cast<rlim_t>(now.st_size + bytes) > most.rlim_cur)
+    return false;
+  return fallocate(*static_cast<int*>(descriptor), FALLOC_FL_KEEP_SIZE, now.st_size, bytes) == 0 ||
+         (errno != ENOSPC && errno != EFBIG && errno != EDQUOT);
+#else
+  return true;
+#endif
+}
+
+bool FieldsFile::close_all() {
+  bool closed = time_.close();
+  for (Rows* rows : all_rows()) closed = rows->dataset.close() && closed;
+  return file_.close() && closed;
+}
+
 void FieldsFile::write_block() {
   if (times_.empty()) return;
   const hsize_t frames = times_.size();
+  if (!has_room()) {
+    close_all();
+    require(false, "cannot be written");
+  }
   bool written = append_block(time_, written_.size, {frames}, times_.data());
   for (Rows* rows : all_rows())
     if (rows->dataset)
@@ -273,9 +320,7 @@ void FieldsFile::write_block() {
 void FieldsFile::close() {
   if (!file_) return;
   write_block();
-  bool datasets = time_.close();
-  for (Rows* rows : all_rows()) datasets = rows->dataset.close() && datasets;
-  require(file_.close() && datasets, "cannot be closed");
+  require(close_all(), "cannot be closed");
 }
 
 // Closing would write a header that promises more than there is; without it the last flush stays readable.
@@ -288,6 +333,7 @@ void FieldsFile::abandon() {
 void FieldsFile::require(bool went_well, const char* what) {
   if (went_well) return;
   abandon();
+  mark_closed(written_to_);
   throw SystemFailure(fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), what));
 }
 

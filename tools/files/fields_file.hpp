@@ -36,7 +36,8 @@ struct MeshOfFile {
 ///
 /// With `kept`, a file of that name is gone on with behind its first frames: they are copied, and the copy takes its place.
 /// Throws BadScene where they cannot be read or are others, and leaves the file as it is.
-/// Rows are written in blocks, and each block is flushed: what has been written stays readable. Throws SystemFailure.
+/// Rows are written in blocks, and each block is flushed: what has been written stays readable. Throws SystemFailure, and
+/// leaves a file then that any reader opens, with the rows of its last flush.
 class FieldsFile {
  public:
   FieldsFile(const std::filesystem::path&, std::span<const double> space, std::int64_t expected_frames,
@@ -58,12 +59,14 @@ class FieldsFile {
     std::string name = {};
   };
   Rows rows(const char* name, std::vector<hsize_t> shape) const;
+  bool has_room();
   void write_block();
+  bool close_all();
   void copy_frames(const std::filesystem::path& from, const WrittenPart& kept);
   void abandon();
   void require(bool went_well, const char* what);
 
-  std::filesystem::path path_;
+  std::filesystem::path path_, written_to_;  ///< path_, or a file that is to take its place
   std::size_t sites_, frames_per_block_;
   WrittenPart written_;        ///< frames
   std::vector<double> times_;  ///< buffered

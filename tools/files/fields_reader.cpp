@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "lattice/error.hpp"
+#include "lattice/text_parts.hpp"
 #include "tools/files/open_to_read.hpp"
 #include "tools/files/read_apart.hpp"
 #include "tools/files/written_storage.hpp"
@@ -65,12 +66,13 @@ FieldsReader::FieldsReader(const std::filesystem::path& path) {
 }
 
 void FieldsReader::read_all() const {
-  winding(), scene(), coordinates();
+  scene(), names(), coordinates();
   for (int frame = 0; frame < frames(); ++frame) {
     time(frame), momenta(frame);
     for (const Role role : all_roles)
       if (frame < shape(role).frames) values(role, frame);
   }
+  winding();
 }
 
 void FieldsReader::open(const std::filesystem::path& path) {
@@ -168,9 +170,12 @@ std::optional<std::vector<double>> FieldsReader::coordinates() const {
   return read_slice(dataset, 2, from, extent, x.data()) ? std::optional(x) : std::nullopt;
 }
 
-std::string FieldsReader::scene() const {
-  if (H5Aexists(file_, "scene") <= 0) return {};
-  const Hdf5Handle attribute(H5Aopen(file_, "scene", H5P_DEFAULT), H5Aclose);
+namespace {
+
+/// The text of an attribute; empty if there is none, or if it is no text.
+std::string text_of(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return {};
+  const Hdf5Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
   if (!attribute) throw bad_file("its attributes cannot be read; the file is damaged");
   const Hdf5Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Sget_simple_extent_npoints(space) != 1)
@@ -181,15 +186,34 @@ std::string FieldsReader::scene() const {
   return text;
 }
 
+}  // namespace
+
+std::string FieldsReader::scene() const { return text_of(file_, "scene"); }
+
+std::vector<std::string> FieldsReader::names() const {
+  const std::string text = text_of(part(Role::field).dataset, "components");
+  return text.empty() ? std::vector<std::string>() : parts_of(text);
+}
+
 std::optional<int> FieldsReader::winding() const {
   const htri_t there = H5Aexists(file_, "winding");
   if (there == 0) return std::nullopt;
   const Hdf5Handle attribute(H5Aopen(file_, "winding", H5P_DEFAULT), H5Aclose);
   if (there < 0 || !attribute) throw bad_file("its attributes cannot be read; the file is damaged");
-  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
-  int value = 0;
-  if (H5Sget_simple_extent_npoints(space) != 1) return std::nullopt;  // or more would be written than there is room for
-  return attribute && H5Aread(attribute, H5T_NATIVE_INT, &value) >= 0 ? std::optional(value) : std::nullopt;
+  const Hdf5Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+  constexpr auto remedy = "write one whole number, or leave it out and let the rows say it";
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT)
+    throw bad_file(fmt::format("its attribute winding is {}; {}", kind == H5T_STRING ? "a text" : "no number", remedy));
+  if (const auto count = H5Sget_simple_extent_npoints(space);
+      count != 1)  // or more would be written than there is room for
+    throw bad_file(fmt::format("its attribute winding has {} values; {}", count, remedy));
+  double value = 0;
+  if (H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0)
+    throw bad_file("its attributes cannot be read; the file is damaged");
+  if (value != std::round(value) || std::abs(value) > std::numeric_limits<int>::max())
+    throw bad_file(fmt::format("its attribute winding is {}; {}", value, remedy));
+  return static_cast<int>(value);
 }
 
 }  // namespace delf

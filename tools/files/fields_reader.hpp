@@ -25,7 +25,9 @@ class FieldsReader final : public RowsFile {
   std::vector<double> row(int frame) const override;
   /// Of /momentum; nothing where it is not of the shape of /field, or not finite.
   std::optional<std::vector<double>> momenta(int frame) const override;
+  /// Throws BadInput where the attribute is anything but one whole number.
   std::optional<int> winding() const override;
+  std::vector<std::string> names() const override;
 
   /// The resolved scene that the file has as an attribute; empty if it has none.
   std::string scene() const;

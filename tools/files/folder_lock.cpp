@@ -17,7 +17,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
   if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   close(descriptor_);
   throw SystemFailure(
-      fmt::format("{}: another run writes to this folder; wait for it, or choose another --out", folder.string()));
+      fmt::format("{}: another command writes to this folder; wait for it, or choose another --out", folder.string()));
 }
 
 FolderLock::~FolderLock() {

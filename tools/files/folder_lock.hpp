@@ -4,10 +4,10 @@
 
 namespace delf {
 
-/// Holds a folder of results for one run: a lock on the folder itself, which ends with the process, however that ends.
+/// Holds a folder of results for one run, or one sweep: a lock on the folder itself, which ends with the process, however that ends.
 class FolderLock {
  public:
-  /// Throws SystemFailure if another run holds it. Where the file system knows no locks, nothing is held.
+  /// Throws SystemFailure if another command holds it. Where the file system knows no locks, nothing is held.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

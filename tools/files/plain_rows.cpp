@@ -85,7 +85,12 @@ std::vector<double> PlainRows::frame_of(const std::vector<double>& values, int f
   return row;
 }
 
-std::vector<double> PlainRows::row(int frame) const { return frame_of(array_.values, frame); }
+std::vector<double> PlainRows::row(int frame) const {
+  if (frame >= frames_)
+    throw BadInput("initial.frame",
+                   fmt::format("row {} is needed, and the file has {} of them; give it more", frame, frames_));
+  return frame_of(array_.values, frame);
+}
 
 std::optional<std::vector<double>> PlainRows::momenta(int frame) const {
   if (array_.momenta.empty()) return std::nullopt;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace delf {
@@ -23,6 +24,8 @@ class RowsFile {
   virtual std::optional<std::vector<double>> momenta(int) const { return std::nullopt; }
   /// What the field gains around the circle, in units of 2π, if the file says so.
   virtual std::optional<int> winding() const = 0;
+  /// The names of the fields in their order; empty if the file says none.
+  virtual std::vector<std::string> names() const { return {}; }
 };
 
 /// A table if the name ends in .csv, else a fields.h5.

@@ -30,7 +30,7 @@ class EnergyErrorTime final : public Measurement {
 const MeasurementEntry energy_error_time_measurement{
     "energy_error_time",
     "level",
-    "the first time at which the energy is off by more than the level, relative to row 0; 0.01 is 1 %",
+    "the first recorded time at which the energy is off by more than the level, relative to row 0; 0.01 is 1 %",
     1,
     1,
     [](const MeasuredField&, const std::vector<double>& numbers) -> std::unique_ptr<Measurement> {

@@ -30,18 +30,21 @@ struct MeasuredField {
   double place(double x) const;
 };
 
-/// A recorded row, and the row one step before it (the next one, for row 0).
+/// A row, and, where it is recorded, the row one step before it (the next one, for row 0).
 struct MeasuredRow {
   double time;
   std::span<const double> row, other;
   double energy_error = std::numeric_limits<double>::quiet_NaN();  ///< relative to row 0
 };
 
-/// One number of a run. It sees the recorded rows, in their order, and keeps no more of them than it needs.
+/// One number of a run. It sees the recorded rows, or the rows of all steps, in their order, and keeps no more of them
+/// than it needs.
 class Measurement {
  public:
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   virtual ~Measurement() = default;
+  /// True if it sees the rows of all steps: what passes between two records is not lost.
+  virtual bool sees_steps() const { return false; }
   virtual void see(const MeasuredRow&) = 0;
   /// Not a number where there is no answer.
   virtual double value() const = 0;

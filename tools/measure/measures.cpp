@@ -10,7 +10,9 @@
 #include "jets/expressions/expression.hpp"
 #include "lattice/text_parts.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/theories/angles.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "schemes/turn.hpp"
 #include "tools/measure/measure_names.hpp"
 
 namespace delf {
@@ -57,14 +59,12 @@ void walk(std::string_view text, auto&& word, auto&& other) {
 }
 
 // Refuses words that could be taken for something else.
-void check_words(std::string_view text, const Constants& constants, const std::string& key) {
+void check_words(std::string_view text, const std::string& key) {
   const auto check = [&](std::size_t begin, std::size_t end) {
     const std::string_view word = text.substr(begin, end - begin);
     if (word.starts_with(reserved))
       throw BadInput(
           key, fmt::format("{}: names that begin with {} are kept for measurements; use another", word, reserved));
-    if (word == "L" && std::ranges::count(constants, "L", &Constants::value_type::first) > 1)
-      throw BadInput(key, "L is both the length of space and theory.L; give the parameter another name");
     return end;
   };
   walk(text, check, [](std::string_view) {});
@@ -107,7 +107,7 @@ struct Measures::Expression {
 
   // Measurements become quantities, which the arithmetic names.
   void read(std::string_view text, const MeasuredField& field) {
-    check_words(text, constants, key);
+    check_words(text, key);
     const auto word = [&](std::size_t begin, std::size_t end) {
       const std::string_view found = text.substr(begin, end - begin);
       if (const MeasurementEntry* entry = find_measurement(found)) return read_measurement(*entry, text, end, field);
@@ -180,12 +180,11 @@ Measures::Measures(const Scene& scene, int winding, const Simulation& simulation
   check_measure_names(scene);
   const Problem& p = scene.problem;
   const auto& components = simulation.components();
-  const MeasuredField field{p.lattice,
-                            p.time_step,
-                            2 * std::numbers::pi * winding,
-                            p.circle_valued || find_theory(p.theory).angle,
-                            simulation.count(Role::field),
-                            make_theory(find_theory(p.theory), p.parameters)};
+  std::shared_ptr<const FieldTheory> theory = make_theory(find_theory(p.theory), p.parameters);
+  const bool angle = p.circle_valued || std::ranges::count(angles_of(p.theory, *theory, p.parameters), 0) > 0;
+  const MeasuredField field{
+      p.lattice, p.time_step, 2 * std::numbers::pi * winding + gain_of(p.parameters),
+      angle,     simulation.count(Role::field),                                       std::move(theory)};
   for (const std::string& name : names) {
     Expression expression{name, key_of_measure(name), {}, constants_of(scene), {}};
     expression.sites_move = std::ranges::any_of(components, &Component::position);
@@ -194,6 +193,7 @@ Measures::Measures(const Scene& scene, int winding, const Simulation& simulation
     } catch (const BadInput& bad) {
       throw scene.settings.located(bad);
     }
+    for (const auto& q : expression.quantities) sees_steps_ = sees_steps_ || q.measurement->sees_steps();
     all_.push_back(std::move(expression));
   }
 }
@@ -203,7 +203,14 @@ Measures::~Measures() = default;
 void Measures::see(const MeasuredRow& row) {
   time_ = row.time;
   for (Expression& expression : all_)
-    for (auto& q : expression.quantities) q.measurement->see(row);
+    for (auto& q : expression.quantities)
+      if (!q.measurement->sees_steps()) q.measurement->see(row);
+}
+
+void Measures::see_step(const MeasuredRow& row) {
+  for (Expression& expression : all_)
+    for (auto& q : expression.quantities)
+      if (q.measurement->sees_steps()) q.measurement->see(row);
 }
 
 void Measures::visit(SavedState& state) {

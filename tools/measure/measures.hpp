@@ -29,6 +29,9 @@ class Measures {
   bool empty() const { return all_.empty(); }
   /// A recorded row of the fields, and the row before it (row 1 for row 0) where it is held.
   void see(const MeasuredRow&);
+  /// The row of any step, for measurements that see all of them.
+  void see_step(const MeasuredRow&);
+  bool sees_steps() const { return sees_steps_; }
   std::vector<NamedNumber> results() const;
   void visit(SavedState&);
 
@@ -36,6 +39,7 @@ class Measures {
   struct Expression;
   std::vector<Expression> all_;
   double time_ = 0;
+  bool sees_steps_ = false;
 };
 
 }  // namespace delf

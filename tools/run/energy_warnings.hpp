@@ -13,7 +13,8 @@ using Found = std::optional<std::string>;
 
 /// The energy of row 0, or of the last row, is off that of the initial state by more than such a share of it.
 Found energy_off_start(const Outcome&, double energy_of_start, double allowed, const std::string& remedy);
-/// The energy leaves the band of the first tenth of the run. Other rows may be off its middle by five widths, though not
+/// The energy of the last tenth of the run is a fifth of itself away from row 0, all along; or it leaves the band of the
+/// first tenth. Other rows may be off its middle by five widths, though not
 /// by more than 2.5 % of the energy unless that is within two widths: a run may drift from the beginning. One percent is
 /// no reason to warn.
 Found energy_off_band(const Trace& energy_errors, const std::string& remedy);

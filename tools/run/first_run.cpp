@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "lattice/error.hpp"
 #include "tools/run/placed_row.hpp"
@@ -83,7 +82,7 @@ TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants
   run.error_linf = error.linf, run.error_l2 = error.l2;
   if (!solution.is_exact() || scene.from_file()) return tried;
   // the same of the exact field, at the same sites and times
-  const double turn = 2 * std::numbers::pi * InitialRows(scene).winding();
+  const double turn = InitialRows(scene).turn();
   const int fields = solution.components();
   const auto centre = [&](const std::vector<double>& field) { return gradient_centre(lattice, field, fields, turn); };
   const double off = separation(lattice, centre(last), centre(there));

@@ -11,6 +11,8 @@
 
 #include "schemes/methods/kernel_alone.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/theories/mirrored_in_time.hpp"
+#include "schemes/turn.hpp"
 #include "schemes/verify/stress_balance.hpp"
 #include "schemes/verify/time_reversal.hpp"
 #include "tools/engine.hpp"
@@ -30,7 +32,7 @@ void measure_orders(const Scene& scene, int winding, std::vector<Measured> balan
     Simulation simulation = build(fine, winding);
     initial.start(simulation);
     StressBalance balance(simulation.theory(), fine.problem.lattice, fine.problem.time_step,
-                          2 * std::numbers::pi * winding);
+                          2 * std::numbers::pi * winding + gain_of(fine.problem.parameters));
     ComputedRows source(simulation, 2 * (rows - 1) + 1);
     for (std::int64_t j = 0; auto row = source.next(); ++j) {
       balance.add(j, fields_of(simulation.evolution().system(), *row));
@@ -48,8 +50,12 @@ void reverse_time(const Scene& scene, int winding, const std::vector<std::vector
                   Verdict& verdict) {
   Scene alone = scene;  // a start applies a kernel's processor, and the state at the turning point has it behind it
   if (build(scene, winding).is_processed()) alone.problem = kernel_alone(scene.problem);
-  const auto fresh = [&] { return std::make_unique<Simulation>(build(alone, winding)); };
-  const bool by_rows = fresh()->evolution().stepper().layout() != nullptr;
+  const auto fresh = [&](std::optional<double> T) {
+    Scene seen = alone;
+    if (T) seen.problem = mirrored_in_time(seen.problem, *T);
+    return std::make_unique<Simulation>(build(seen, winding));
+  };
+  const bool by_rows = fresh(std::nullopt)->evolution().stepper().layout() != nullptr;
   const std::int64_t most = most_updates / (by_rows ? 1 : 40) / scene.problem.lattice.sites();
   const std::int64_t steps = std::clamp<std::int64_t>(scene.steps, 8, std::max<std::int64_t>(8, most));
   const auto reversal = time_reversal(fresh, first_rows, steps, tolerance);

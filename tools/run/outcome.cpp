@@ -20,7 +20,7 @@ void Outcome::visit(SavedState& saved) {
   saved("steps taken", steps_taken), saved("records", records), saved("seconds", seconds);
   saved("shortest step", shortest), saved("longest step", longest);
   saved("most iterations", iterations_max), saved("largest residual", residual_max);
-  for (const Continued why : {Continued::stiff, Continued::slow, Continued::out_of_iterations}) {
+  for (const Continued why : {Continued::stiff, Continued::slow, Continued::out_of_iterations, Continued::far}) {
     const auto found = continued.find(why);
     std::int64_t count = found == continued.end() ? 0 : found->second;
     saved("steps by continuation", count);

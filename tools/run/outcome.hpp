@@ -16,7 +16,7 @@ namespace delf {
 
 class SavedState;
 
-/// A sum that a symmetry conserves, over the recorded rows.
+/// A sum that a symmetry conserves, over the rows that are measured.
 struct Conserved {
   std::string name;
   double initial, final;
@@ -54,6 +54,7 @@ struct Outcome {
   double energy_initial = unknown, energy_final = unknown, energy_error_max = unknown;
   double momentum_initial = unknown, momentum_final = unknown, charge_final = unknown;
   double constraint_max = unknown;  ///< the largest |G|, if the scheme has constraints
+  std::string maxima_over;          ///< the rows that these maxima, and those below, are over, in words
   std::vector<double> of_method;    ///< the largest of each monitor of the method, or the least
   std::vector<Conserved> conserved;
   double error_linf = unknown, error_l2 = unknown;

@@ -23,15 +23,20 @@ Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, cons
   }
   if (kept) series_.emplace(series, kept->series);
   else series_.emplace(series, names.further);
-  if (scene.figures) film_.emplace(lattice, expected, names.drawn().size());
+  if (scene.figures) film_.emplace(lattice, names.drawn().size());
 }
 
-void Recorder::append(const Record& record, const RecordedRow& row, const RecordedDatasets& datasets) {
+void Recorder::append(const Record& record, const RecordedRow& row, const RecordedDatasets& datasets,
+                      std::span<const double> rates) {
   series_->append(record);
   if (fields_) fields_->append(record.time, row, datasets);
-  if (film_) film_->append(record.time, drawn(row));
-  if (std::isfinite(record.energy_error)) energy_errors_.append(record.time, record.energy_error);
-  const double error = std::abs(record.energy_error);
+  if (film_) film_->append(record.time, drawn(row), names_.drawn_mesh() ? std::span<const double>() : rates);
+  watch(record.time, record.energy_error);
+}
+
+void Recorder::watch(double time, double energy_error) {
+  if (std::isfinite(energy_error)) energy_errors_.append(time, energy_error);
+  const double error = std::abs(energy_error);
   if (std::isnan(error) || error > largest_energy_error_) largest_energy_error_ = error;  // not a number stays so
 }
 

@@ -25,7 +25,10 @@ class Recorder final : public RunFiles {
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&, const std::optional<Written>& kept = {});
 
-  void append(const Record&, const RecordedRow&, const RecordedDatasets&);
+  /// `rates`: of the fields, where they are known.
+  void append(const Record&, const RecordedRow&, const RecordedDatasets&, std::span<const double> rates = {});
+  /// The energy of a row that is not recorded.
+  void watch(double time, double energy_error);
   Written flush(bool sync) override;
   void visit(SavedState&) override;
   /// Writes all buffered rows. A failure does not prevent the other files; the first one is then thrown.
@@ -33,6 +36,7 @@ class Recorder final : public RunFiles {
 
   const Film* film() const noexcept { return film_ ? &*film_ : nullptr; }
   const Trace& energy_errors() const noexcept { return energy_errors_; }
+  /// Of the rows that were recorded or watched.
   double largest_energy_error() const noexcept { return largest_energy_error_; }
 
  private:

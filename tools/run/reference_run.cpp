@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "lattice/error.hpp"
@@ -41,7 +40,7 @@ std::optional<std::vector<double>> last_row(const Contestant& scheme, const Scen
 std::optional<Reference> refined(const Contestant& scheme, const Scene& scene, const WorkPrecisionRequest& request,
                                  double courant, Clock::time_point until, const RunLimit& limit) {
   const bool point = scene.problem.lattice.space() == Space::point;
-  const double turn = 2 * std::numbers::pi * InitialRows(scene).winding();
+  const double turn = InitialRows(scene).turn();
   const int d = make_state(scene.initial, scene.problem.lattice)->components();
   const int ends = scene.problem.lattice.is_circle() ? 0 : 1;
   const int finest = request.sites.empty() ? scene.problem.lattice.sites() : std::ranges::max(request.sites);

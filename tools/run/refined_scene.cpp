@@ -49,6 +49,11 @@ QuietEnd run_quietly(const Scene& scene) {
   std::vector<double> other(end.row.size());
   const bool two = simulation.starting_rows() > 1;
   std::optional<double> energy_initial;
+  const auto see_step = [&](std::int64_t row) {
+    if (!measures.sees_steps() || (!scene.until && row > scene.steps)) return;
+    simulation.observe(static_cast<int>(simulation.newest() - row), end.row);
+    measures.see_step({simulation.time(row), end.row, {}});
+  };
   const auto see = [&](std::int64_t row) {
     if (!scene.until && row > scene.steps) return;
     const int back = static_cast<int>(simulation.newest() - row);
@@ -64,13 +69,17 @@ QuietEnd run_quietly(const Scene& scene) {
   const auto recorded = [&](std::int64_t row) {
     return scene.is_recorded(row, simulation.newest(), simulation.time(simulation.newest()));
   };
-  for (std::int64_t row = 0; row <= simulation.newest(); ++row)
+  for (std::int64_t row = 0; row <= simulation.newest(); ++row) {
+    see_step(row);
     if (recorded(row)) see(row);
+  }
   const auto begin = std::chrono::steady_clock::now();
   const auto is_over = [&] { return scene.is_over(simulation.newest(), simulation.time(simulation.newest())); };
   while (!is_over() && !Interrupt::asked()) {
     const std::int64_t row = simulation.newest() + 1;
-    simulation.step(scene.until || scene.next_record(row - 1) == row);
+    simulation.step(scene.until || scene.next_record(row - 1) == row ||
+                    (measures.sees_steps() && simulation.is_processed()));
+    see_step(row);
     if (recorded(row)) see(row);
   }
   end.seconds = seconds_since(begin);

@@ -62,7 +62,7 @@ std::string report(const Subject& subject, const Scene& scene, const Outcome& o)
                            : fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max));
   for (const auto& [why, steps] : o.continued)
     line("continued",
-         fmt::format("{} of {} steps were followed from a small time step: {}", steps, o.steps_taken, in_words(why)));
+         fmt::format("{} of {} steps took Newton's method: {}", steps, o.steps_taken, in_words(why)));
   // Two measures: of the equations, and of the field.
   line("residual",
        std::isnan(o.residual_max)
@@ -79,6 +79,7 @@ std::string report(const Subject& subject, const Scene& scene, const Outcome& o)
   for (const Conserved& c : o.conserved)
     line("conserved", fmt::format("{} = {:.10g}; error {:.3g} at most", c.name, c.final, c.error_max));
   if (std::isfinite(o.constraint_max)) line("constraint", fmt::format("{:.3g} at most", o.constraint_max));
+  if (!o.maxima_over.empty()) line("maxima", "of " + o.maxima_over);
   if (std::isfinite(o.error_linf))
     line("error",
          fmt::format("{:.4g} in the maximum norm, {:.4g} in L2, against the exact solution", o.error_linf, o.error_l2));

@@ -39,10 +39,11 @@ struct Unrecorded {
 
 bool is_solution(double residual, double tolerance) {
   constexpr double most = 1e-6;  // of the sum of the absolute terms; a loose tolerance asks for more
-  return !(residual > std::max(most, 1e3 * tolerance));
+  return residual <= std::max(most, 1e3 * tolerance);
 }
 
-RowLoop::RowLoop(const Scene& scene, Outcome& outcome) : scene_(scene), outcome_(outcome) {}
+RowLoop::RowLoop(const Scene& scene, Outcome& outcome, const WatchedRows& watched)
+    : scene_(scene), outcome_(outcome), watched_(watched) {}
 
 void RowLoop::start() {
   try {
@@ -81,6 +82,7 @@ void RowLoop::run(RunFiles& files, Checkpoints& checkpoints) {
   } catch (const Unrecorded& row) {
     outcome_.status = row.status;
     outcome_.break_time = time(newest_);
+    if (recorded_ < 0 && record_start()) recorded_ = 0;
     outcome_.failure =
         fmt::format("{} ({})", row.why,
                     recorded_ < 0 ? std::string("no row is recorded")
@@ -99,6 +101,7 @@ void RowLoop::record_and_step() {
   if (started_ && is_over()) save();
   try {
     Progress progress(scene_.steps);
+    find_next_watched();
     while (started_ && !is_over() && !Interrupt::asked()) {
       step_until(scene_.next_record(newest_), progress);
       if (is_over()) save();
@@ -126,14 +129,15 @@ void RowLoop::fail(const NumericalFailure& error) {
 }
 
 void RowLoop::step_until(std::int64_t row, Progress& progress) {
-  const Stopwatch watch(outcome_.seconds);
+  const Stopwatch stopwatch(outcome_.seconds);
   const FlushDenormals for_all_steps;  // each would set and restore it
   bool looked_at = true;               // as the row that an interruption leaves must be: it is recorded
   while (newest_ < row && !(looked_at && (Interrupt::asked() || (scene_.until && is_over())))) {
     if (Interrupt::asked() || checkpoints_->due(newest_)) save();
     if (rows_due_.at(newest_)) files_->flush(false), rows_due_.restart();
     const std::int64_t unseen = Interrupt::asked() ? 0 : row - 1 - newest_;
-    looked_at = unseen == 0 || looks_at_all() || scene_.until;  // any row may be the last
+    const bool watched = newest_ + 1 == next_watched_;
+    looked_at = unseen == 0 || watched || looks_at_all() || scene_.until;  // any row may be the last
     step(looked_at);
     ++newest_;
     ++outcome_.steps_taken;
@@ -141,6 +145,9 @@ void RowLoop::step_until(std::int64_t row, Progress& progress) {
     iterations_ += iterations();
     outcome_.iterations_max = std::max(outcome_.iterations_max, iterations());
     progress.at(newest_);
+    if (!watched) continue;
+    require_result([&] { watch(); });
+    find_next_watched();
   }
 }
 
@@ -153,6 +160,15 @@ void RowLoop::note_length() {
 
 bool RowLoop::is_due(std::int64_t row) const { return scene_.is_recorded(row, newest_, time(newest_)); }
 
+// A row that is recorded by its number is measured there. The last row of a run may be none of a run that goes further: it
+// is watched all the same.
+void RowLoop::find_next_watched() {
+  next_watched_ = watched_.next(newest_);
+  while (scene_.every > 0 && scene_.every != 1 && next_watched_ % scene_.every == 0)
+    next_watched_ = watched_.next(next_watched_);
+  if (scene_.every == 1) next_watched_ = -1;
+}
+
 // Steps that the field chooses end by time, and their number is a guess.
 bool RowLoop::is_over() const { return scene_.is_over(newest_, time(newest_)); }
 
@@ -160,9 +176,18 @@ void RowLoop::put(std::int64_t row) {
   const std::int64_t before = recorded_;
   recorded_ = row;
   try {
-    record(row);
-  } catch (const NumericalFailure& error) {
+    require_result([&] { record(row); });
+  } catch (const Unrecorded&) {
     recorded_ = before;
+    throw;
+  }
+}
+
+template <class Look>
+void RowLoop::require_result(const Look& look) const {
+  try {
+    look();
+  } catch (const NumericalFailure& error) {
     throw Unrecorded{status_of(error), error.what()};
   }
 }
@@ -171,6 +196,7 @@ void RowLoop::close() {
   outcome_.steps = std::max<std::int64_t>(0, recorded_);
   outcome_.time = time(outcome_.steps);
   if (outcome_.steps_taken > 0) outcome_.iterations_mean = iterations_ / static_cast<double>(outcome_.steps_taken);
+  outcome_.maxima_over = watched_.in_words(outcome_.steps, scene_.every);
   finish();
 }
 

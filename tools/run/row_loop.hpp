@@ -7,16 +7,17 @@
 #include "tools/run/outcome.hpp"
 #include "tools/run/progress.hpp"
 #include "tools/run/run_files.hpp"
+#include "tools/run/watched_rows.hpp"
 
 namespace delf {
 
 /// Whether a row solves its equations, whose residual is relative to their terms; otherwise rounding or an overflow has
-/// taken it, and it is no result.
+/// taken it, and it is no result. A residual that is not a number is that of no solution.
 bool is_solution(double residual, double tolerance);
 
 /// Steps a field through its scene, on a lattice or on a mesh, and records rows 0, every, 2·every, … and the last one,
-/// whichever becomes the last. Checkpoints are written on the way and at the end. When a step fails, the last good row is
-/// recorded; the outcome says the rest.
+/// whichever becomes the last. Energy and residual are measured at these and at the watched rows. Checkpoints are written
+/// on the way and at the end. When a step fails, the last good row is recorded; the outcome says the rest.
 class RowLoop {
  public:
   virtual ~RowLoop() = default;
@@ -30,7 +31,7 @@ class RowLoop {
   void run(RunFiles&, Checkpoints&);
 
  protected:
-  RowLoop(const Scene&, Outcome&);
+  RowLoop(const Scene&, Outcome&, const WatchedRows&);
 
   /// Whether there are rows to step from.
   bool started() const { return started_; }
@@ -52,6 +53,10 @@ class RowLoop {
   virtual int iterations() const = 0;
   /// A row that was made is recorded; or throws NumericalFailure, if it is no result.
   virtual void record(std::int64_t row) = 0;
+  /// The newest row is measured as if it were recorded; or throws NumericalFailure, if it is no result.
+  virtual void watch() = 0;
+  /// Where no row was recorded before one that is no result: records the data of row 0, and returns true if it can.
+  virtual bool record_start() { return false; }
   virtual void visit_rows(SavedState&) = 0;
   /// The results, after the last row, however the run ends.
   virtual void finish() = 0;
@@ -63,15 +68,20 @@ class RowLoop {
   void put(std::int64_t row);
   void fail(const NumericalFailure&);
   bool is_due(std::int64_t row) const;
+  void find_next_watched();
+  template <class Look>
+  void require_result(const Look&) const;
   bool is_over() const;
   void close();
 
   const Scene& scene_;
   Outcome& outcome_;
+  const WatchedRows watched_;
   RunFiles* files_ = nullptr;
   Checkpoints* checkpoints_ = nullptr;
   Due rows_due_{10};         ///< recorded rows reach the disk after so many seconds
   std::int64_t saved_ = -1;  ///< row of the last checkpoint
+  std::int64_t next_watched_ = 0;
   bool started_ = false;
   std::int64_t newest_ = 0, recorded_ = -1;
   double iterations_ = 0;

@@ -9,7 +9,8 @@
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/theories/theory_registry.hpp"
+#include "schemes/theories/angles.hpp"
+#include "schemes/turn.hpp"
 #include "tools/engine.hpp"
 #include "tools/figures/figures.hpp"
 #include "tools/files/text_columns.hpp"
@@ -49,15 +50,17 @@ std::string energy_in_words(const Problem& problem) {
 }
 
 // Figures of the rows that the recorder kept.
-std::string drawn(const Scene& scene, const InitialRows& initial, const RowNames& names, const Recorder& recorder,
-                  DrawnSection section, const fs::path& folder) {
+std::string drawn(const Scene& scene, const InitialRows& initial, const FieldTheory& fields, const RowNames& names,
+                  const Recorder& recorder, const Outcome& outcome, DrawnSection section, const fs::path& folder) {
   if (!recorder.film()) return {};
   const auto density = scene.problem.parameters.maybe<std::string>("theory.density");
   const std::string theory = density && !density->empty() ? "ℓ = " + shortened(*density, 70) : scene.problem.theory;
-  const bool angle = scene.problem.circle_valued || find_theory(scene.problem.theory).angle;
+  const std::vector<int> angles = angles_of(scene.problem.theory, fields, scene.problem.parameters);
+  const bool angle = scene.problem.circle_valued || angles.size() == static_cast<std::size_t>(fields.components());
   return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice,
                        initial.winding(), *recorder.film(), recorder.energy_errors(), scene.times, names,
-                       energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact()},
+                       energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact(),
+                       outcome.maxima_over, gain_of(scene.problem.parameters)},
                       folder);
 }
 
@@ -125,8 +128,9 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     section = {points->table(), points->title(), points->drawn_columns()};
     run.attempt([&] { write_text_file(folder / "section.csv", section.table); });
   }
-  return run.end(subject_of(scene.problem), scene,
-                 [&] { return drawn(scene, initial, names, recorder, std::move(section), folder); });
+  return run.end(subject_of(scene.problem), scene, [&] {
+    return drawn(scene, initial, simulation.theory(), names, recorder, outcome, std::move(section), folder);
+  });
 }
 
 }  // namespace

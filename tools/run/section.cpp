@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
@@ -21,6 +22,7 @@ namespace delf {
 namespace {
 
 constexpr std::size_t rows_around = 8;
+constexpr double turn = 2 * std::numbers::pi;
 
 // "q", "p" of one coordinate; "q1", "q2", … of several
 std::string name_of(std::size_t place, std::size_t coordinates) {
@@ -66,11 +68,14 @@ SectionRequest::SectionRequest(const std::string& text, int coordinates) : surfa
   std::ranges::copy_if(terms, std::back_inserter(conditions), [&](const Term& term) { return !is_surface(term); });
 }
 
-Section::Section(const std::string& text, int coordinates, double time_step)
+Section::Section(const std::string& text, int coordinates, double time_step, const std::vector<int>& angles)
     : title_(text),
       request_(text, coordinates),
       coordinates_(static_cast<std::size_t>(coordinates)),
-      time_step_(time_step) {}
+      time_step_(time_step),
+      is_angle_(2 * coordinates_, 0) {
+  for (const int field : angles) is_angle_[static_cast<std::size_t>(field)] = 1;
+}
 
 void Section::see(std::vector<double> point) {
   ++newest_;
@@ -90,11 +95,23 @@ void Section::finish() {
   while (crossed_ + 1 < rows_.size()) cross(crossed_++);
 }
 
-/// The point between rows_[first] and the next one, if there is one.
+/// The points between rows_[first] and the next one: one where q passes the value of the surface, and of an angle one for
+/// each of value + 2πn that it passes.
 void Section::cross(std::size_t first) {
-  const auto off = [&](const std::vector<double>& point) {
-    return point[request_.surface.place] - request_.surface.value;
-  };
+  const auto [place, relation, value] = request_.surface;
+  const double before = rows_[first][place], after = rows_[first + 1][place];
+  if (!is_angle_[place]) return cross(first, value);
+  constexpr double most_turns = 1000;  // more than any motion that eight rows can follow
+  const double least = (std::min(before, after) - value) / turn, most = (std::max(before, after) - value) / turn;
+  if (!(most - least < most_turns)) return;
+  std::vector<double> levels;
+  for (double n = std::floor(least); n <= most; ++n) levels.push_back(value + n * turn);
+  if (before > after) std::ranges::reverse(levels);
+  for (const double level : levels) cross(first, level);
+}
+
+void Section::cross(std::size_t first, double level) {
+  const auto off = [&](const std::vector<double>& point) { return point[request_.surface.place] - level; };
   const double before = off(rows_[first]), after = off(rows_[first + 1]);
   if ((before < 0) == (after < 0)) return;
   std::vector<double> nodes;
@@ -116,7 +133,10 @@ void Section::cross(std::size_t first) {
                                           boost::math::tools::eps_tolerance<double>(52), iterations);
     s = std::midpoint(left, right);
   }
-  const std::vector<double> point = at(s);
+  std::vector<double> point = at(s);
+  for (std::size_t place = 0; place < point.size(); ++place)
+    if (place == request_.surface.place) point[place] += request_.surface.value - level;
+    else if (is_angle_[place]) point[place] = std::remainder(point[place], turn);
   for (const SectionRequest::Term& term : request_.conditions)
     if (!(term.relation == '<' ? point[term.place] < term.value : point[term.place] > term.value)) return;
   ++points_;

@@ -27,9 +27,10 @@ struct SectionRequest {
 
 /// The points where a motion crosses the section, either way unless a condition tells. Between two rows (q, p) is the
 /// polynomial through the eight rows around them, of degree 7, in the middle of which they lie but at the ends of a run.
+/// An angle crosses its value modulo 2π, and has values from −π to π in conditions and in the table.
 class Section {
  public:
-  Section(const std::string& text, int coordinates, double time_step);
+  Section(const std::string& text, int coordinates, double time_step, const std::vector<int>& angles = {});
 
   /// (q, p) of the next row, from row 0 on.
   void see(std::vector<double> point);
@@ -46,11 +47,13 @@ class Section {
 
  private:
   void cross(std::size_t first);
+  void cross(std::size_t first, double level);
 
   std::string title_;
   SectionRequest request_;
   std::size_t coordinates_;
   double time_step_;
+  std::vector<char> is_angle_;            ///< of (q, p)
   std::deque<std::vector<double>> rows_;  ///< the newest, eight at most
   std::int64_t newest_ = -1;
   std::size_t crossed_ = 0;  ///< intervals between rows_ that are done

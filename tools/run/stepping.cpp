@@ -9,6 +9,8 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/momenta.hpp"
+#include "schemes/theories/angles.hpp"
+#include "schemes/without_value.hpp"
 #include "tools/run/placed_row.hpp"
 
 namespace delf {
@@ -34,6 +36,19 @@ void require_momenta_of_all_rows(const Simulation& simulation, const RowNames& n
         "output.section",
         "this method has no momenta at row 0, which a section needs; leave it out, or use a method that starts "
         "from two rows or records /momentum");
+}
+
+// The rows that are measured beside the recorded ones, so that a step takes 5 % longer at most. To measure a row costs as
+// much as an implicit step by rows, two to four explicit ones, or a fifth of a step of Newton's method.
+WatchedRows watched_rows(const Scene& scene, const Simulation& simulation) {
+  const Stepper& stepper = simulation.evolution().stepper();
+  const bool by_rows = stepper.layout() != nullptr;
+  const std::int64_t apart = !by_rows && stepper.iterates() ? 8 : stepper.iterates() ? 64 : 256;
+  constexpr std::int64_t most_values = 16384, most_rows = 64;  // some tenth of a millisecond
+  const auto sums = static_cast<std::int64_t>(1 + 2 * simulation.conserved_names().size());  // each costs twice as much
+  const std::int64_t values = static_cast<std::int64_t>(scene.problem.lattice.sites()) *
+                              static_cast<std::int64_t>(simulation.components().size());
+  return {std::min(most_rows, most_values / values) / sums, apart * sums, scene.initial.seed};
 }
 
 /// Of a row from a solution, at its sites, wherever they are.
@@ -68,7 +83,7 @@ std::string threads_in_words(const Simulation& simulation, int asked) {
 
 Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,
                    const std::optional<OwnEnergy>& own, Outcome& outcome)
-    : RowLoop(scene, outcome),
+    : RowLoop(scene, outcome, watched_rows(scene, simulation)),
       scene_(scene),
       initial_(initial),
       simulation_(simulation),
@@ -83,7 +98,9 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
     try {
       require_lagrangian(simulation.evolution().system());
       require_momenta_of_all_rows(simulation, names);
-      section_.emplace(scene.section, simulation.count(Role::field), scene.problem.time_step);
+      std::vector<int> angles = angles_of(scene.problem.theory, simulation.theory(), scene.problem.parameters);
+      if (scene.problem.circle_valued) angles = {0};
+      section_.emplace(scene.section, simulation.count(Role::field), scene.problem.time_step, angles);
     } catch (const BadInput& bad) {
       throw scene.settings.located(bad);
     }
@@ -103,13 +120,16 @@ void Stepping::make_first_rows() {
   const auto monitors = this->monitors();
   outcome_.energy_initial = monitors.energy;
   outcome_.momentum_initial = monitors.momentum;
+  require_energy(monitors.energy);
   for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
     const double initial = monitors.conserved[j];
     outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0};
   }
   if (!names_.of[Role::multiplier].empty()) outcome_.constraint_max = 0;
-  for (std::int64_t row = 0; section_ && row <= newest_row(); ++row)
-    section_->see(phase_point(static_cast<int>(newest_row() - row)));
+  for (int back = static_cast<int>(newest_row()); back >= 0; --back) {
+    if (section_) section_->see(phase_point(back));
+    see_step(back);
+  }
 }
 
 /// (q, p) of the row `back` rows before the newest: the momenta that the method records, or those of its equations.
@@ -148,6 +168,41 @@ void Stepping::step(bool looked_at) {
   if (const Continued why = simulation_.evolution().stepper().continued(); why != Continued::no)
     ++outcome_.continued[why];
   if (section_) section_->see(phase_point(0));
+  see_step(0);
+}
+
+void Stepping::watch() {
+  const auto monitors = this->monitors();
+  const double residual = simulation_.residual();
+  judge(monitors, residual);
+  take(monitors, residual);
+  recorder_->watch(simulation_.time(newest()), energy_error(monitors.energy));
+}
+
+bool Stepping::record_start() {
+  starts_again_ = true;
+  record(0);
+  return true;
+}
+
+double Stepping::energy_error(double energy) const {
+  return (energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);
+}
+
+/// Maxima of the run.
+void Stepping::take(const Simulation::Monitors& monitors, double residual) {
+  if (!(residual <= outcome_.residual_max)) outcome_.residual_max = residual;
+  if (!row_[Role::multiplier].empty() && !(monitors.constraint <= outcome_.constraint_max))
+    outcome_.constraint_max = monitors.constraint;
+  std::vector<double>& extremes = outcome_.of_method;
+  const std::vector<Monitor>& declared = find_method(scene_.problem.method).monitors;
+  extremes.resize(monitors.of_method.size(), Outcome::unknown);
+  for (std::size_t m = 0; m < extremes.size(); ++m) {
+    const double value = monitors.of_method[m];
+    if (std::isnan(extremes[m]) || (declared[m].least ? value < extremes[m] : value > extremes[m])) extremes[m] = value;
+  }
+  for (std::size_t j = 0; j < outcome_.conserved.size(); ++j)
+    outcome_.conserved[j].take(monitors.conserved[j], monitors.conserved_scale[j]);
 }
 
 void Stepping::record(std::int64_t row) {
@@ -155,7 +210,8 @@ void Stepping::record(std::int64_t row) {
   record.row = row;
   record.time = simulation_.time(row);
   std::vector<double> of_method;
-  if (!started()) {
+  const bool has_monitors = started() && !starts_again_;
+  if (!has_monitors) {
     const auto sites = static_cast<std::size_t>(scene_.problem.lattice.sites());
     row_[Role::field] = initial_.row0();
     record.energy = record.energy_error = record.momentum = record.charge = Outcome::unknown;
@@ -165,34 +221,37 @@ void Stepping::record(std::int64_t row) {
   } else {
     const int back = static_cast<int>(newest() - row);
     record.residual = row == newest() ? simulation_.residual() : 0;  // the starting rows solve no equation
-    judge(record.residual);
+    const auto monitors = this->monitors();
+    judge(monitors, record.residual);
+    take(monitors, record.residual);
     simulation_.observe(back, row_[Role::field]);
     for (const Role role : all_roles)
       if (role != Role::field && !row_[role].empty()) simulation_.copy_row(back, row_[role], role);
     for (std::size_t d = 0; d < datasets_.size(); ++d) datasets_[d] = simulation_.dataset(d, back);
-    const auto monitors = this->monitors();
     record.energy = monitors.energy;
-    record.energy_error = (monitors.energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);
+    record.energy_error = energy_error(monitors.energy);
     record.momentum = monitors.momentum;
     record.charge = monitors.charge;
-    monitor(monitors, record);
+    put(monitors, record);
     of_method = monitors.of_method;
     record.iterations = last_iterations_;
-    if (!(record.residual <= outcome_.residual_max)) outcome_.residual_max = record.residual;
   }
-  if (started()) {
+  if (has_monitors) {
     warnings_.see(record.time, row_[Role::field], of_method);
     measure(record, static_cast<int>(newest() - row));
   }
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
   outcome_.charge_final = record.charge;
-  recorder_->append(record, row_, datasets_);
+  recorder_->append(record, row_, datasets_,
+                    has_monitors && recorder_->film() ? rates(static_cast<int>(newest() - row)) : std::vector<double>());
   ++outcome_.records;
 }
 
-/// A row that does not solve its equations is not recorded.
-void Stepping::judge(double residual) const {
+/// A row that does not solve its equations, or has no energy, is no result.
+void Stepping::judge(const Simulation::Monitors& monitors, double residual) const {
+  require_energy(monitors.energy);
+  if (std::isnan(residual) && !outcome_.failure.empty()) return;  // a step that failed may have left no equations
   if (is_solution(residual, scene_.problem.tolerance) || !varies()) return;
   throw NoConvergence(
       fmt::format("step {}, t = {:.6g}: the residual of the field equations is {:.2g} of their terms: the "
@@ -200,10 +259,23 @@ void Stepping::judge(double residual) const {
                   newest(), simulation_.time(newest()), residual));
 }
 
+void Stepping::require_energy(double energy) const {
+  // Schemes whose momenta tell no velocities have no energy from the start on.
+  if (std::isfinite(energy) || (started() && std::isnan(outcome_.energy_initial))) return;
+  const Evolution& evolution = simulation_.evolution();
+  const std::string reason = evolution.stepper().held() >= 2 && evolution.stepper().newest() >= 1
+                                 ? without_value(evolution.system(), evolution.stepper().window(2))
+                                 : std::string();
+  if (!started() && std::isnan(energy) && reason.empty()) return;
+  const std::int64_t row = simulation_.newest();
+  throw NotFinite(fmt::format("step {}, t = {:.6g}: the energy is not finite{}; reduce lattice.time_step, or begin "
+                              "where the density has values all along",
+                              row, simulation_.time(row), reason.empty() ? "" : ": " + reason));
+}
+
 /// Near a vacuum all terms are rounding, and their sum has no scale.
 bool Stepping::varies() const {
   constexpr double little = 1e-8;
-  if (simulation_.starting_rows() < 2) return false;
   std::vector<double> row(row_[Role::field].size()), before(row);
   simulation_.copy_row(0, row), simulation_.copy_row(1, before);
   const auto d = static_cast<std::size_t>(simulation_.count(Role::field));
@@ -212,7 +284,22 @@ bool Stepping::varies() const {
     largest = std::max(largest, std::abs(row[n]));
     change = std::max({change, std::abs(row[n] - before[n]), std::abs(row[n] - row[n % d])});
   }
-  return change > little * largest;
+  return !(change <= little * largest);
+}
+
+// Measures at a place see every step, recorded or not, and warnings the first ones.
+void Stepping::see_step(int back) {
+  const std::int64_t row = simulation_.newest() - back;
+  const bool is_early = row < TurnOfStep::rows;
+  if (!is_early && !measures_.sees_steps()) return;
+  seen_.resize(row_[Role::field].size());
+  if (is_early) {
+    simulation_.copy_row(back, seen_);
+    warnings_.see_early(seen_);
+  }
+  if (!measures_.sees_steps() || (!scene_.until && row > scene_.steps)) return;
+  simulation_.observe(back, seen_);
+  measures_.see_step({simulation_.time(row), seen_, {}});
 }
 
 // The row before it, or after row 0, is held by schemes that start from two rows.
@@ -227,6 +314,17 @@ void Stepping::measure(const Record& record, int back) {
   measures_.see({record.time, row_[Role::field], other, record.energy_error});
 }
 
+/// (φ − φ′)/h of the row and the one before it, or after row 0; none where that is not held.
+std::vector<double> Stepping::rates(int back) const {
+  if (newest() < 1 || simulation_.evolution().stepper().held() < 2) return {};
+  const int other = back == 0 ? 1 : back - 1;
+  std::vector<double> rates(row_[Role::field].size());
+  simulation_.observe(other, rates);
+  const double h = simulation_.time(newest() - back) - simulation_.time(newest() - other);
+  for (std::size_t n = 0; n < rates.size(); ++n) rates[n] = (row_[Role::field][n] - rates[n]) / h;
+  return rates;
+}
+
 Simulation::Monitors Stepping::monitors() const {
   Simulation::Monitors all = simulation_.monitors();
   if (own_energy_) {
@@ -237,23 +335,10 @@ Simulation::Monitors Stepping::monitors() const {
 }
 
 // The constraint, the monitors of the method, and the conserved sums.
-void Stepping::monitor(const Simulation::Monitors& monitors, Record& record) {
-  if (!row_[Role::multiplier].empty()) {
-    record.further.push_back(monitors.constraint);
-    if (!(monitors.constraint <= outcome_.constraint_max)) outcome_.constraint_max = monitors.constraint;
-  }
-  record.further.insert(record.further.end(), monitors.of_method.begin(), monitors.of_method.end());
-  std::vector<double>& extremes = outcome_.of_method;
-  const std::vector<Monitor>& declared = find_method(scene_.problem.method).monitors;
-  extremes.resize(monitors.of_method.size(), Outcome::unknown);
-  for (std::size_t m = 0; m < extremes.size(); ++m) {
-    const double value = monitors.of_method[m];
-    if (std::isnan(extremes[m]) || (declared[m].least ? value < extremes[m] : value > extremes[m])) extremes[m] = value;
-  }
-  for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
-    outcome_.conserved[j].take(monitors.conserved[j], monitors.conserved_scale[j]);
-    record.further.push_back(monitors.conserved[j]);
-  }
+void Stepping::put(const Simulation::Monitors& monitors, Record& record) const {
+  if (!row_[Role::multiplier].empty()) record.further.push_back(monitors.constraint);
+  for (const auto& values : {monitors.of_method, monitors.conserved})
+    record.further.insert(record.further.end(), values.begin(), values.end());
 }
 
 void Stepping::finish() {
@@ -261,7 +346,24 @@ void Stepping::finish() {
   outcome_.energy_error_max = recorder_->largest_energy_error();
   measure_error();
   outcome_.measures = measures_.results();
-  if (started()) outcome_.warnings = warnings_.of(outcome_, recorder_->energy_errors(), row_[Role::field]);
+  if (!started()) return;
+  outcome_.warnings = warnings_.of(outcome_, recorder_->energy_errors(), row_[Role::field]);
+  warn_of_alias();
+}
+
+void Stepping::warn_of_alias() {
+  const Film* film = recorder_->film();
+  if (!film || !film->is_aliased()) return;
+  // For pulses the excess is in proportion to the time between frames.
+  const double apart = static_cast<double>(scene_.every * film->stride()), wanted = apart * Film::aliased / film->alias();
+  const auto every = std::max<std::int64_t>(1, std::llround(std::floor(wanted)));
+  constexpr std::int64_t most_frames = 600;
+  const bool fits = every < scene_.every && outcome_.steps / every <= most_frames;
+  outcome_.warnings.push_back(fmt::format(
+      "the frames of the figures are {:.3g} apart in time, too far for this motion: what moves in them may be an alias; {}",
+      apart * scene_.problem.time_step,
+      fits ? fmt::format("set output.every = {} or less", every)
+           : fmt::format("a figure shows {} steps of this run at most: run less far", most_frames * every)));
 }
 
 void Stepping::measure_error() {

@@ -32,18 +32,26 @@ class Stepping final : public RowLoop {
   double time(std::int64_t row) const override { return simulation_.time(row); }
   std::optional<double> own_length() const override;
   void step(bool looked_at) override;
-  bool looks_at_all() const override { return section_.has_value(); }
+  bool looks_at_all() const override { return section_ || (measures_.sees_steps() && simulation_.is_processed()); }
   int iterations() const override { return last_iterations_; }
   void record(std::int64_t row) override;
+  void watch() override;
+  bool record_start() override;
   void visit_rows(SavedState&) override;
   void finish() override;
 
-  void judge(double residual) const;
+  double energy_error(double energy) const;  ///< relative to row 0
+  void take(const Simulation::Monitors&, double residual);
+  void judge(const Simulation::Monitors&, double residual) const;
+  void require_energy(double energy) const;
   bool varies() const;
+  void see_step(int back);
   void measure(const Record&, int back);
   void measure_error();
+  std::vector<double> rates(int back) const;
+  void warn_of_alias();
   std::vector<double> phase_point(int back) const;
-  void monitor(const Simulation::Monitors&, Record&);
+  void put(const Simulation::Monitors&, Record&) const;
   Simulation::Monitors monitors() const;
 
   const Scene& scene_;
@@ -58,7 +66,9 @@ class Stepping final : public RowLoop {
   RecordedRow row_;
   RecordedDatasets datasets_;
   std::optional<Section> section_;
+  std::vector<double> seen_;  ///< a row that is not recorded
   int last_iterations_ = 0;
+  bool starts_again_ = false;  ///< the data of row 0 are recorded after steps
 };
 
 }  // namespace delf

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/run/outcome.hpp"
+#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -29,6 +30,7 @@ std::string summary_json(const Subject& subject, const Scene& scene, const Outco
   json["time_step"] = subject.time_step;
   if (o.longest > 0) json["time_step_min"] = o.shortest, json["time_step_max"] = o.longest;
   json["winding"] = o.winding;
+  json["boundary_gain"] = gain_of(p.parameters);
   json["state"] = o.state;
   json["start"] = std::isnan(subject.time_step) ? nlohmann::ordered_json() : to_string(o.start);
   json["seed"] = scene.initial.seed;
@@ -52,6 +54,7 @@ std::string summary_json(const Subject& subject, const Scene& scene, const Outco
   json["energy_initial"] = o.energy_initial;
   json["energy_final"] = o.energy_final;
   json["energy_error_max"] = o.energy_error_max;
+  json["maxima_over"] = o.maxima_over.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(o.maxima_over);
   json["momentum_initial"] = o.momentum_initial;
   json["momentum_final"] = o.momentum_final;
   json["charge_final"] = o.charge_final;

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <set>
 
 #include "lattice/error.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/smooth_state.hpp"
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -17,25 +19,19 @@
 #include "schemes/theories/field_theory.hpp"
 #include "tools/run/energy_warnings.hpp"
 #include "tools/run/exact_energy.hpp"
+#include "tools/run/linear_limit.hpp"
 #include "tools/run/solution_error.hpp"
 #include "tools/run/vacuum_symbol.hpp"
+#include "tools/scene/exact_solution.hpp"
 
 namespace delf {
 
 namespace {
 
 constexpr double one_percent = 0.01;
-// The largest |z| of the waves that the lattice has near θ: θ_j = 2πj/N on a circle, πj/(N − 1) between walls.
-double growth_near(const Symbol& symbol, const Lattice& lattice, double theta) {
-  if (lattice.space() == Space::point) return symbol.amplification(0);
-  const double apart = (lattice.is_circle() ? 2 : 1) * std::numbers::pi / lattice.cells();
-  const auto nearest = static_cast<int>(std::lround(theta / apart));
-  constexpr int window = 16;
-  double most = 1;
-  for (int j = std::max(0, nearest - window); j <= nearest + window; ++j)
-    most = std::max(most, symbol.amplification(std::min(j * apart, std::numbers::pi)));
-  return most;
-}
+
+// The scene gives the solution itself.
+bool is_formula(const State* exact) { return dynamic_cast<const SmoothState*>(exact) != nullptr; }
 
 struct Range {
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -64,7 +60,8 @@ Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulat
     : scene_(scene), initial_(initial), simulation_(simulation) {
   if (initial.state()) width_ = width_of(scene.initial, scene.problem.lattice);
   const double end = scene.end();
-  if (!initial.exact() || !std::isfinite(width_) || end > initial.exact()->exact_until()) return;
+  has_pulse_ = initial.exact() && std::isfinite(width_);
+  if (!has_pulse_ || end > initial.exact()->exact_until()) return;
   // The last stretch of time in which the solution's pulse moves by some cells: it is slower than light.
   const Lattice& lattice = scene.problem.lattice;
   const double at_end = exact_centre(end), some_cells = 5 * lattice.space_step();
@@ -83,7 +80,7 @@ int Warnings::nodes_in_cell() const {
   for (const Component& component : simulation_.components()) places.insert(component.at.space);
   return static_cast<int>(places.size());
 }
-double Warnings::turn() const { return 2 * std::numbers::pi * initial_.winding(); }
+double Warnings::turn() const { return initial_.turn(); }
 double Warnings::centre(std::span<const double> fields) const {
   return gradient_centre(scene_.problem.lattice, fields, simulation_.count(Role::field), turn());
 }
@@ -95,24 +92,20 @@ double Warnings::exact_centre(double time) const {
 }
 
 void Warnings::see(double time, std::span<const double> fields, std::span<const double> monitors) {
-  growth_.resize(monitors.size());
-  const double end = scene_.end();
+  constexpr double larger = 1.01;
+  largest_.resize(monitors.size()), rises_.resize(monitors.size());
   for (std::size_t m = 0; m < monitors.size(); ++m) {
-    Growth& g = growth_[m];
-    const bool early = time <= end / 10;
-    double &most = early ? g.early : g.later, &when = early ? g.early_time : g.later_time;
-    if (monitors[m] > most) most = monitors[m], when = time;
+    if (!(monitors[m] > largest_[m].value)) continue;
+    largest_[m] = {time, monitors[m]};
+    if (rises_[m].empty() || monitors[m] > larger * rises_[m].back().value) rises_[m].push_back(largest_[m]);
   }
-  if (late_time_ || time < late_) return;
-  late_time_ = time;
-  late_centre_ = centre(fields);
+  if (has_pulse_) centres_.push_back({time, centre(fields)});
 }
 
 void Warnings::visit(SavedState& state) {
-  state("time of the late row", late_time_), state("centre of the late row", late_centre_);
-  state("growth of monitors", growth_);
-  // a run that goes further than it was to has its last stretch later
-  if (state.restores() && late_time_ && *late_time_ < late_) late_time_.reset(), late_centre_.reset();
+  state("centres of the pulse", centres_);
+  state("largest values of monitors", largest_), state("rises of monitors", rises_);
+  turn_.visit(state);
 }
 
 std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energy_errors,
@@ -121,7 +114,7 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
   for (Found& found :
        std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row), energy(outcome),
                           energy_off_band(energy_errors, "reduce lattice.time_step, or run less far"), error(outcome),
-                          pinned(outcome, last_row)})
+                           ends(outcome), without_solution(), pinned(outcome, last_row), phase(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
   std::ranges::move(grown(), std::back_inserter(all));
   std::ranges::move(continued(outcome), std::back_inserter(all));
@@ -138,20 +131,7 @@ Found Warnings::narrow_pulse() const {
 }
 
 Found Warnings::linear_limit(const Outcome& outcome) const {
-  const auto symbol = symbol_of(scene_, simulation_);
-  if (!symbol || outcome.steps == 0) return {};
-  // A few wave numbers for the many roots of an element; between them the analysis looks where roots meet.
-  const StabilityVerdict verdict = linear_stability(*symbol, symbol->size() > 1 ? 33 : 101);
-  if (verdict.stable) return {};
-  const double growth = growth_near(*symbol, scene_.problem.lattice, verdict.worst_theta);
-  if (!std::isfinite(growth)) return {};  // steps of that wave have no solution, and these had one: walls hold it
-  const double decades = static_cast<double>(outcome.steps) * std::log10(growth);
-  if (!(decades > 1)) return {};
-  return fmt::format(
-      "beyond the linear limit of the scheme: waves near qk = {:.3g} grow by {:.4g} in each step, by "
-      "1e{:.0f} in all; reduce {} (`delf stability` finds the limit)",
-      verdict.worst_theta, growth, decades,
-      scene_.problem.lattice.space() == Space::point ? "lattice.time_step" : "lattice.courant");
+  return beyond_linear_limit(scene_, simulation_, outcome.steps);
 }
 
 /// A mode that the scheme has and the theory has not, as far as it is there in the last row.
@@ -196,32 +176,70 @@ Found Warnings::error(const Outcome& outcome) const {
   return error_beyond_range(outcome, range, finer());
 }
 
+/// A formula on the line is compared with a run on a circle, or between walls.
+Found Warnings::ends(const Outcome& outcome) const {
+  if (!(outcome.error_linf > 0) || !is_formula(initial_.exact())) return {};
+  const AtTheEnds ends = at_the_ends(scene_, *initial_.exact());
+  if (!(ends.change > 0.1 * outcome.error_linf)) return {};
+  return fmt::format("the exact solution {}, by {:.2g}, and the error is {:.2g}: it is not the scheme's alone; {}",
+                     ends.words, ends.change, outcome.error_linf,
+                     scene_.problem.lattice.is_circle()
+                         ? "keep the pulse away from both ends of lattice.length"
+                         : "give a solution that keeps its value there, or a longer lattice.length");
+}
+
+Found Warnings::without_solution() const {
+  if (!is_formula(initial_.exact())) return {};
+  const std::string found = delf::without_value(scene_, *initial_.exact());
+  if (found.empty()) return {};
+  return fmt::format("the exact solution {}: no error is known there; correct it, or run less far", found);
+}
+
 Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row) const {
-  if (!late_time_ || !(outcome.time > *late_time_)) return {};
+  const auto late = std::ranges::find_if(centres_, [&](const Moment& m) { return m.time >= late_; });
+  if (late == centres_.end() || !(outcome.time > late->time)) return {};
   const Lattice& lattice = scene_.problem.lattice;
   const double k = lattice.space_step(), now = centre(last_row);
-  const double moved = separation(lattice, now, *late_centre_);
-  const double wanted = separation(lattice, exact_centre(outcome.time), exact_centre(*late_time_));
+  const double moved = separation(lattice, now, late->value);
+  const double wanted = separation(lattice, exact_centre(outcome.time), exact_centre(late->time));
   if (!(std::abs(wanted) > 4 * k && std::abs(moved) < k)) return {};
   return fmt::format(
       "the pulse has stood still at x = {:.4g} since t = {:.4g}, and ought to have moved by {:.3g}: pinned "
       "by the lattice; {}",
-      now < 0 ? now + lattice.length() : now, *late_time_, wanted, finer());
+      now < 0 ? now + lattice.length() : now, late->time, wanted, finer());
+}
+
+/// Where the copies end before the run does, what they tell of its end is a guess: it must be a fifth more.
+Found Warnings::phase(const Outcome& outcome, std::span<const double> last_row) const {
+  constexpr double thirty_percent = 0.3, little = 0.02;
+  const double turn = turn_.value();
+  if (static_cast<double>(outcome.steps) * turn * turn * turn / 12 < little) return {};
+  if (outcome.status != "done" || !outcome.continued.empty()) return {};
+  const auto found = step_error(scene_, initial_, simulation_, outcome.steps, last_row);
+  if (!found || (found->error <= thirty_percent && found->at_end <= 1.2 * thirty_percent)) return {};
+  return fmt::format("half the step moves the field by {:.2g} of its range until t = {:.4g}{}: its phase is off; reduce "
+                     "lattice.time_step",
+                     found->error, found->time,
+                     found->at_end > found->error ? fmt::format(", and so by {:.2g} in the end", found->at_end) : "");
 }
 
 /// A monitor that passes a limit of 1; and one that ends a hundred times above all that it is in the first tenth of the run.
 std::vector<std::string> Warnings::grown() const {
   std::vector<std::string> all;
   const std::vector<Monitor>& monitors = find_method(scene_.problem.method).monitors;
-  for (std::size_t m = 0; m < std::min(monitors.size(), growth_.size()); ++m) {
-    const Growth& g = growth_[m];
-    if (const double most = std::max(g.early, g.later); monitors[m].when_above_1 && most > 1)
-      all.push_back(fmt::format("{} is {:.3g} at t = {:.4g}, and should stay below 1: {}", monitors[m].name, most,
-                                g.later > g.early ? g.later_time : g.early_time, monitors[m].when_above_1));
-    if (!monitors[m].when_it_grows || !(g.early > 0) || !(g.later > 100 * g.early)) continue;
+  for (std::size_t m = 0; m < std::min(monitors.size(), largest_.size()); ++m) {
+    const Moment& most = largest_[m];
+    if (monitors[m].when_above_1 && most.value > 1)
+      all.push_back(fmt::format("{} is {:.3g} at t = {:.4g}, and should stay below 1: {}", monitors[m].name, most.value,
+                                most.time, monitors[m].when_above_1));
+    const auto after = std::ranges::find_if(rises_[m], [&](const Moment& r) { return r.time > scene_.end() / 10; });
+    if (!monitors[m].when_it_grows || after == rises_[m].begin()) continue;
+    const Moment& early = *std::prev(after);
+    if (!(most.value > 100 * early.value)) continue;
     all.push_back(fmt::format("{} grows from {:.2g} at t = {:.4g} to {:.2g} at t = {:.4g}, like exp({:.3g} t): {}",
-                              monitors[m].name, g.early, g.early_time, g.later, g.later_time,
-                              std::log(g.later / g.early) / (g.later_time - g.early_time), monitors[m].when_it_grows));
+                              monitors[m].name, early.value, early.time, most.value, most.time,
+                              std::log(most.value / early.value) / (most.time - early.time),
+                              monitors[m].when_it_grows));
   }
   return all;
 }
@@ -230,8 +248,10 @@ std::vector<std::string> Warnings::continued(const Outcome& outcome) const {
   std::vector<std::string> all;
   for (const auto& [why, steps] : outcome.continued)
     all.push_back(
-        fmt::format("{} of {} steps took a thousand times as long, followed from a small time step: {}; {}", steps,
-                    outcome.steps_taken, in_words(why),
+        fmt::format("{} of {} steps took Newton's method, which is {} times as dear: {}; {}", steps,
+                    outcome.steps_taken,
+                    why == Continued::stiff || why == Continued::far ? "a thousand" : "a hundred to a thousand",
+                    in_words(why),
                     why == Continued::out_of_iterations
                         ? fmt::format("raise scheme.max_iterations, which is {}", scene_.problem.max_iterations)
                         : "reduce lattice.time_step"));

@@ -8,6 +8,7 @@
 
 #include "tools/run/energy_warnings.hpp"
 #include "tools/run/outcome.hpp"
+#include "tools/run/step_error.hpp"
 #include "tools/run/trace.hpp"
 #include "tools/scene/initial_rows.hpp"
 
@@ -22,6 +23,8 @@ class Warnings {
 
   /// A recorded row of the fields, with the monitors of the method.
   void see(double time, std::span<const double> fields, std::span<const double> monitors);
+  /// The fields of a row before TurnOfStep::rows, recorded or not.
+  void see_early(std::span<const double> fields) { turn_.see(fields); }
   void visit(SavedState&);
   /// One line each, with a remedy, after the last row.
   std::vector<std::string> of(const Outcome&, const Trace& energy_errors, std::span<const double> last_row) const;
@@ -32,7 +35,10 @@ class Warnings {
   Found spurious_mode(std::span<const double> last_row) const;
   Found energy(const Outcome&) const;
   Found error(const Outcome&) const;
+  Found ends(const Outcome&) const;
+  Found without_solution() const;
   Found pinned(const Outcome&, std::span<const double> last_row) const;
+  Found phase(const Outcome&, std::span<const double> last_row) const;
   std::vector<std::string> grown() const;
   std::vector<std::string> continued(const Outcome&) const;
 
@@ -46,14 +52,17 @@ class Warnings {
   const InitialRows& initial_;
   const Simulation& simulation_;
   double width_ = std::numeric_limits<double>::infinity();  ///< of the narrowest pulse of the state
-  /// The first row recorded from this time on is kept, to tell whether a pulse still moves.
-  double late_ = std::numeric_limits<double>::infinity();
-  std::optional<double> late_time_, late_centre_;
-  /// The largest value of a monitor in the first tenth of the run, the largest later, and when.
-  struct Growth {
-    double early = 0, early_time = 0, later = 0, later_time = 0;
+  double late_ = std::numeric_limits<double>::infinity();   ///< a pulse that still moves has moved since then
+  bool has_pulse_ = false;                                  ///< of which the exact solution knows where it is
+  // All below is a function of the recorded rows alone, so that a run that goes further warns as one without a break.
+  struct Moment {
+    double time = 0, value = 0;
   };
-  std::vector<Growth> growth_;
+  std::vector<Moment> centres_;  ///< of the pulse in the recorded rows
+  /// The largest value of each monitor, and the values that were 1 % larger than all of those before.
+  std::vector<Moment> largest_;
+  std::vector<std::vector<Moment>> rises_;
+  TurnOfStep turn_;
 };
 
 }  // namespace delf

@@ -2,13 +2,19 @@
 #include "tools/scene/initial_rows.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "schemes/moving_start.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/turn.hpp"
 #include "tools/files/fields_reader.hpp"
+#include "tools/scene/exact_solution.hpp"
 
 namespace delf {
 
@@ -17,6 +23,7 @@ InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
   try {
     if (!scene.from_file()) {
       state_ = make_state(scene.initial, scene.problem.lattice);
+      if (state_->exact()) require_solution(scene, *state_);
       if (rule() == StartRule::exact && !state_->knows_second_row())
         throw settings.error("initial.start", "the second row of this state is not known; use centred");
       if (rule() == StartRule::values)
@@ -27,15 +34,7 @@ InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
                                                   scene.problem.method, key));
       return;
     }
-    file_ = open_rows(scene.initial_file);
-    if (scene.start && scene.start != StartRule::exact && scene.start != rule())
-      throw settings.error("initial.start", "a file has rows, but no velocities; leave initial.start out");
-    if (scene.problem.lattice.space() == Space::point && file_->sites() != 1)
-      throw settings.error("lattice.space", fmt::format("the file {} has {} sites, and a point is one",
-                                                        scene.initial_file.string(), file_->sites()));
-    if (file_->sites() != scene.problem.lattice.sites())
-      throw settings.error("lattice.sites", fmt::format("the file {} has {} sites; use as many",
-                                                        scene.initial_file.string(), file_->sites()));
+    read_file();
   } catch (const BadInput& bad) {
     throw settings.located(bad);
   }
@@ -43,18 +42,59 @@ InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
 
 int InitialRows::winding() const {
   if (!scene_.problem.lattice.is_circle()) return 0;
-  if (scene_.initial.winding) return *scene_.initial.winding;
-  return state_ ? state_->winding() : file_->winding().value_or(0);
+  if (file_) return winding_;
+  return scene_.initial.winding.value_or(state_->winding());
+}
+
+double InitialRows::turn() const {
+  return scene_.problem.lattice.is_circle() ? 2 * std::numbers::pi * winding() + gain_of(scene_.problem.parameters) : 0;
+}
+
+/// φ_x at a wall, of each field: the state's own, or of rows the slope of a cubic,
+///
+///     φ_x = (−11y₀ + 18y₁ − 9y₂ + 2y₃)/6k,    y_j the site j away from the wall; at the right wall of the other sign.
+///
+std::vector<double> InitialRows::slopes(bool left) const {
+  const Lattice& lattice = scene_.problem.lattice;
+  const int wall = left ? 0 : lattice.sites() - 1;
+  std::vector<double> slopes;
+  if (state_) {
+    std::vector<FieldPoint> fields(static_cast<std::size_t>(state_->components()));
+    state_->at(0, lattice.position(wall), fields);
+    for (const FieldPoint& field : fields) slopes.push_back(field.phi_x);
+    return slopes;
+  }
+  const std::vector<double> row = row0();
+  const auto d = static_cast<std::size_t>(file_->components());
+  constexpr std::array weights{-11., 18., -9., 2.};
+  for (std::size_t a = 0; a < d; ++a) {
+    double sum = 0;
+    for (int j = 0; j < 4 && j < lattice.sites(); ++j)
+      sum += weights[static_cast<std::size_t>(j)] * row[static_cast<std::size_t>(left ? j : wall - j) * d + a];
+    slopes.push_back((left ? sum : -sum) / (6 * lattice.space_step()));
+  }
+  return slopes;
+}
+
+void InitialRows::keep_slopes(Problem& problem) const {
+  if (problem.lattice.space() != Space::interval || !find_method(problem.method).reads_stencil) return;
+  for (const bool left : {true, false}) {
+    const char* const key = left ? "boundary.left_slope" : "boundary.right_slope";
+    if ((left ? problem.lattice.left() : problem.lattice.right()) == Wall::clamped && !problem.parameters.has(key))
+      problem.parameters[key] = fmt::format("{:.17g}", fmt::join(slopes(left), ","));
+  }
 }
 
 StartRule InitialRows::rule() const {
+  const MethodEntry& method = find_method(scene_.problem.method);
   // of a method that starts from momenta, where the file has them
-  if (file_ && find_method(scene_.problem.method).start == StartRule::legendre && file_->momenta(scene_.initial_frame))
-    return StartRule::legendre;
+  if (file_ && method.start == StartRule::legendre && file_->momenta(scene_.initial_frame)) return StartRule::legendre;
+  if (own_step_)
+    for (const StartRule rates : {StartRule::legendre, StartRule::centred})
+      if (std::ranges::count(method.starts, rates) > 0) return rates;
   if (file_) return StartRule::exact;
   if (scene_.start) return *scene_.start;
-  return find_method(scene_.problem.method)
-      .start.value_or(state_->knows_second_row() ? StartRule::exact : StartRule::centred);
+  return method.start.value_or(state_->knows_second_row() ? StartRule::exact : StartRule::centred);
 }
 
 std::string InitialRows::description() const {
@@ -66,8 +106,10 @@ std::string InitialRows::description() const {
 void InitialRows::check(const Simulation& simulation) const {
   const int here = state_ ? state_->components() : file_->components(), fields = simulation.count(Role::field);
   // the positions of sites that move are the method's to find
-  if (here == (state_ && starts_by_sites(simulation, scene_.problem) ? simulation.theory().components() : fields))
+  if (here == (state_ && starts_by_sites(simulation, scene_.problem) ? simulation.theory().components() : fields)) {
+    if (file_) require_positions(simulation);
     return;
+  }
   std::string names;
   for (const Component& c : simulation.components())
     if (c.role == Role::field) names += (names.empty() ? "" : ", ") + c.name;
@@ -122,7 +164,7 @@ std::vector<double> InitialRows::section(const Simulation& simulation, Writer wr
     const auto a = static_cast<std::size_t>(components[c].field);
     if (at_node.empty() || components[c].at.time != node.time || components[c].at.space != node.space) {
       node = components[c].at;
-      if (file_) at_node = file_->row(scene_.initial_frame + row);
+      if (file_) at_node = file_row(simulation, row);
       else
         at_node =
             values(write, (row + (with_times ? node.time : 0)) * h, scene_.problem.lattice.shifted(node.space * k));
@@ -138,7 +180,7 @@ std::vector<double> InitialRows::section(const Simulation& simulation, int row) 
 
 void InitialRows::start_momenta(Simulation& simulation) const {
   const auto& components = simulation.components();
-  const std::vector<double> of_fields = *file_->momenta(scene_.initial_frame);
+  const std::vector<double> of_fields = in_order(simulation, *file_->momenta(scene_.initial_frame));
   const auto d = components.size(), fields = static_cast<std::size_t>(simulation.count(Role::field));
   const std::vector<double> row0 = section(simulation, 0);
   std::vector<double> momenta(row0.size(), 0.0);
@@ -177,6 +219,8 @@ void InitialRows::start(Simulation& simulation) const {
   check(simulation);
   const double h = scene_.problem.time_step;
   try {
+    if (own_step_ && simulation.starting_rows() > 1 && !file_->momenta(scene_.initial_frame))
+      return start_by_rates(simulation);
     if (file_ && rule() == StartRule::legendre) return start_momenta(simulation);
     if (file_ && simulation.count(Role::inner) + simulation.count(Role::trace) > 0)
       throw BadInput("initial.state",
@@ -202,13 +246,16 @@ void InitialRows::start(Simulation& simulation) const {
     for (int j = 1; file_ && j < simulation.starting_rows(); ++j)
       if (const auto step = step_in_file(j);
           step && !(std::abs(*step - h) <= 1e-9 * h + 1e-15 * std::abs(*file_->time(scene_.initial_frame + j))))
-        throw BadInput("initial.frame",
-                       fmt::format("frames {} and {} of the file are {:.12g} apart, and the time step is {:.10g}; use "
-                                   "lattice.time_step = {:.12g}, {}or record with output.every = 1",
-                                   scene_.initial_frame + j - 1, scene_.initial_frame + j, *step, h, *step,
-                                   find_method(scene_.problem.method).row_density
-                                       ? "lattice.time_steps = reversible if the field chose the steps of the file, "
-                                       : ""));
+        throw BadInput(
+            "initial.frame",
+            fmt::format("frames {} and {} of the file are {:.12g} apart, and the time step is {:.10g}; use "
+                        "lattice.time_step = {:.12g}, {}or record with output.every = 1, or start from values "
+                        "and rates by initial.time_step = {:.12g}",
+                        scene_.initial_frame + j - 1, scene_.initial_frame + j, *step, h, *step,
+                        find_method(scene_.problem.method).row_density
+                            ? "lattice.time_steps = reversible if the field chose the steps of the file, "
+                            : "",
+                        *step));
     simulation.start(rows);
   } catch (const BadInput& bad) {
     throw scene_.settings.located(bad);

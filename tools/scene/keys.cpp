@@ -122,6 +122,10 @@ std::vector<Key> general_keys() {
           "graded:LENGTH,POINTS,RATIO, "
           "rectangle:WIDTH,HEIGHT,NX,NY, quadrilaterals:WIDTH,HEIGHT,NX,NY, or of spacetime "
           "refined:LENGTH,DURATION,NX,NT"},
+      Key{"lattice.merge", real, "", "points at one place are refused",
+          "points of a mesh file no further apart are one; 0: points at one place stay apart, as on both sides of a "
+          "slit",
+          "length", not_negative},
       Key{"lattice.time", choice, "rows", "",
           "on a mesh: all sites row by row, none (data all round: an elliptic problem), or each of its cells by its "
           "own "
@@ -150,12 +154,16 @@ std::vector<Key> general_keys() {
           state_names()},
       Key{"initial.start", choice, "", usual_start(), "what gives row 1", "", any, starts()},
 
-      Key{"boundary.left", choice, "fixed", "", "the left wall of an interval; clamped: its neighbour is kept too", "",
-          any, walls()},
-      Key{"boundary.right", choice, "fixed", "", "the right wall of an interval; clamped: its neighbour is kept too",
+      Key{"boundary.left", choice, "fixed", "",
+          "the left wall of an interval: phi is kept, or phi and phi_x (clamped), or nothing; an end of a beam is "
+          "hinged "
+          "where it is fixed, and free where it is natural",
           "", any, walls()},
+      Key{"boundary.right", choice, "fixed", "", "the right wall of an interval, likewise", "", any, walls()},
       Key{"boundary.mesh", choice, "fixed", "", "the boundary of a mesh", "", any, mesh_walls()},
       Key{"boundary.winding", integer, "", own, "what the field gains around a circle, in units of 2 pi", "", whole},
+      Key{"boundary.gain", real, "", "none",
+          "what the field gains around a circle beside its winding, in its own units: L for phi = x"},
 
       Key{"run.until", real, "", "this or run.steps", "time of the last row, rounded to whole steps", "time",
           not_negative},
@@ -183,7 +191,7 @@ std::vector<Key> general_keys() {
       Key{"output.checkpoint", real, "60", "", "save all that `delf resume` needs so often; 0: never", "seconds",
           not_negative},
       Key{"output.section", KeyType::text, "", "none",
-          "a Poincare section: q1 = 0, p1 > 0; its points are in section.csv"},
+          "a Poincare section: q1 = 0, p1 > 0; its points are in section.csv. Angles of the theory count modulo 2 pi"},
 
       Key{"verify.regions", KeyType::text, "", "rectangle staircase hole wall slab random",
           "kinds of regions, drawn from run.seed; or ROWSxSITES, such as 0:8x10:30-3:5x18:22, rows from each moment's "
@@ -235,7 +243,9 @@ std::vector<Key> general_keys() {
           "", any, stability_wave_names()},
       Key{"stability.mass_steps", KeyType::text, "", "0.5, 1, 2.3", "values of mh at which limits are found"},
       Key{"stability.most_courant", real, "3", "",
-          "Courant numbers are looked at up to this; on a point, wh up to 8 unless it is given", "", positive},
+          "Courant numbers are looked at up to this, c h/k of own waves of speed c; on a point, wh up to 8 unless it is "
+          "given",
+          "", positive},
       Key{"stability.steps", integer, "2000", "", "steps of a run from noise", "", Limits{100, 1e7}},
       Key{"stability.agreement", real, "0.01", "", "theory and runs may differ by this, relative", "", positive},
       Key{"stability.corners", KeyType::text, "", "all",

@@ -40,10 +40,11 @@ RowsTable::RowsTable(const std::filesystem::path& path) {
   struct Entry {
     int row, site, line;
     std::size_t values;  ///< where they begin
+    double time;
   };
   std::vector<Entry> entries;
   std::vector<double> values;
-  std::size_t columns = 0;
+  std::size_t columns = 0, of_time = 0;  // 0: no column has it
   for (std::string line; std::getline(in, line);) {
     ++at;
     if (at == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
@@ -54,6 +55,11 @@ RowsTable::RowsTable(const std::filesystem::path& path) {
       if (cells.size() < 3 || cells[0] != "row" || cells[1] != "site")
         throw wrong("is no header of rows; begin the table with row,site and the names of the fields");
       columns = cells.size();
+      for (std::size_t c = 2; c < columns; ++c)
+        if (cells[c] != "t" && cells[c] != "time") names_.push_back(cells[c]);
+        else if (of_time == 0) of_time = c;
+        else throw wrong("names the time twice; keep one column of it");
+      if (names_.empty()) throw wrong("names no field; give one after row,site and the time");
       continue;
     }
     if (cells.size() != columns)
@@ -61,12 +67,13 @@ RowsTable::RowsTable(const std::filesystem::path& path) {
     const auto row = number<int>(cells[0]), site = number<int>(cells[1]);
     if (!row || !site || *row < 0 || *site < 0)
       throw wrong("row and site are integers that count from 0; correct them");
-    entries.push_back({*row, *site, at, values.size()});
+    entries.push_back({*row, *site, at, values.size(), 0});
     for (std::size_t c = 2; c < columns; ++c) {
       const auto value = number<double>(cells[c]);
       if (!value || !std::isfinite(*value))
         throw wrong(fmt::format("\"{}\" is not a finite number; write one like 0.125", cells[c].substr(0, 30)));
-      values.push_back(*value);
+      if (c == of_time) entries.back().time = *value;
+      else values.push_back(*value);
     }
   }
   at = 0;
@@ -88,12 +95,23 @@ RowsTable::RowsTable(const std::filesystem::path& path) {
                       e.row, e.site, row, site));
     }
     ++site;
+    if (of_time > 0 && site == 1) times_.push_back(e.time);
+    if (of_time > 0 && e.time != times_.back()) {
+      at = e.line;
+      throw wrong(
+          fmt::format("row {} is at time {} here, and at {} before; a row has one time", e.row, e.time, times_.back()));
+    }
     const auto first = values.begin() + static_cast<std::ptrdiff_t>(e.values);
-    values_.insert(values_.end(), first, first + static_cast<std::ptrdiff_t>(columns - 2));
+    values_.insert(values_.end(), first, first + static_cast<std::ptrdiff_t>(names_.size()));
   }
   if (site != sites_) throw wrong(fmt::format("row {} ends at site {} of {}; give every site", row, site, sites_));
   frames_ = row + 1;
-  components_ = static_cast<int>(columns) - 2;
+  components_ = static_cast<int>(names_.size());
+}
+
+std::optional<double> RowsTable::time(int frame) const {
+  return frame < static_cast<int>(times_.size()) ? std::optional(times_[static_cast<std::size_t>(frame)])
+                                                 : std::nullopt;
 }
 
 std::vector<double> RowsTable::row(int frame) const {

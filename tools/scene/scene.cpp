@@ -17,6 +17,7 @@
 #include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "schemes/turn.hpp"
 #include "tools/scene/brick_rows.hpp"
 #include "tools/scene/file_beside.hpp"
 #include "tools/scene/key_warning.hpp"
@@ -86,6 +87,9 @@ Problem read_problem(const Settings& settings, const Values& values) {
   p.theory = values.choice("theory.name");
   p.circle_valued = values.choice("theory.fibre") == "S1";
   p.lattice = read_lattice(settings, values);
+  if (values.given(gain_key) && p.lattice.is_circle()) p.parameters[gain_key] = values.real(gain_key);
+  if (p.circle_valued && gain_of(p.parameters) != 0)
+    throw settings.error(gain_key, "on the fibre S1 a field gains multiples of 2 pi; use boundary.winding");
   p.stencil = stencil_name(values.choice("lattice.stencil"), p.lattice.space() == Space::point);
   p.method = values.choice("scheme.method");
   p.tolerance = std::max(values.real("scheme.tolerance"), smallest_tolerance);
@@ -123,6 +127,7 @@ StateRequest read_initial(const Values& values, const Problem& problem) {
   r.velocity_of = [theory](auto q, auto p) { return velocity_of(theory->density(), q, p); };
   if (const auto winding = values.maybe_integer("boundary.winding"); winding && problem.lattice.is_circle())
     r.winding = static_cast<int>(*winding);
+  if (problem.parameters.has(gain_key)) r.values[gain_key] = gain_of(problem.parameters);
   r.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
   return r;
 }
@@ -299,11 +304,12 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
   if ((key == "output.format" || key == "output.titles") && !scene.figures) return "output.figures = off is in force";
   if (key == "output.section" && !point) return "sections are of mechanics, lattice.space = point";
   const bool of_steps = key == "lattice.time_steps" || key == "lattice.step_control";
-  if (key == "lattice.mesh" || key == "lattice.time" || (of_steps && !scene.problem.step_control) ||
-      key == "boundary.mesh")
+  if (key == "lattice.mesh" || key == "lattice.merge" || key == "lattice.time" ||
+      (of_steps && !scene.problem.step_control) || key == "boundary.mesh")
     return "only lattice.space = complex has a mesh";
   if (key == "boundary.winding" && point) return "a point has no winding";
   if (key == "boundary.winding" && !circle) return "an interval has no winding";
+  if (key == gain_key && !circle) return "only a circle is gone around";
   if ((key == "boundary.left" || key == "boundary.right") && point) return "a point has no walls";
   if ((key == "boundary.left" || key == "boundary.right") && circle) return "a circle has no walls";
   return "";

@@ -75,7 +75,7 @@ class Watched {
     first_ = std::max(extent_of(row_, fields_).largest, std::numeric_limits<double>::min());
   }
 
-  void run(double budget) {
+  void run(double budget, const std::function<void(const CornerResult&)>& report) {
     const auto begin = std::chrono::steady_clock::now();
     const std::int64_t every = std::max<std::int64_t>(1, corner_.steps / 50);
     std::int64_t look_at_clock = 1;
@@ -86,7 +86,11 @@ class Watched {
       simulation_.step(looked_at);
       result_.steps = next;
       if (next >= look_at_clock) look_at_clock = next + clock_stride(seconds_since(begin), next);
-      if (looked_at) look();
+      if (looked_at) {
+        look();
+        result_.seconds = seconds_since(begin);
+        if (report) report(result_);
+      }
       if (cut && next < corner_.steps) {
         result_.cut_at = static_cast<double>(next) * corner_.problem.time_step;
         return;
@@ -222,7 +226,7 @@ std::vector<Setting> keys_of(const Corner& corner) {
   return keys;
 }
 
-CornerResult run_corner(const Corner& corner, double budget, const std::function<void()>& started) {
+CornerResult run_corner(const Corner& corner, double budget, const std::function<void(const CornerResult&)>& report) {
   CornerResult result;
   const auto begin = std::chrono::steady_clock::now();
   const auto now = [&] { return static_cast<double>(result.steps + 1) * corner.problem.time_step; };
@@ -232,8 +236,8 @@ CornerResult run_corner(const Corner& corner, double budget, const std::function
     Simulation simulation = build(scene, initial.winding());
     Watched watched(corner, scene, initial, simulation, result);
     watched.start();
-    if (started) started();
-    watched.run(budget);
+    if (report) report(result);
+    watched.run(budget, report);
   } catch (const BadInput& error) {
     end(result, CornerVerdict::refused, error.what());
   } catch (const NoConvergence& error) {

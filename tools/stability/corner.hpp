@@ -38,7 +38,7 @@ enum class CornerVerdict {
   silent,    ///< a row holds what is not a number, and nothing was said
   failed,    ///< something was thrown that is no answer of delf
   crashed,   ///< the process ended
-  hung       ///< it had to be ended
+  hung       ///< it had to be ended in a step that took a hundred thousand times as long as those before
 };
 const char* to_string(CornerVerdict);
 inline bool must_not_be(CornerVerdict v) { return v >= CornerVerdict::unsolved; }
@@ -57,10 +57,11 @@ struct CornerResult {
 /// The keys of a scene that is this corner, `delf run` being given all of them.
 std::vector<Setting> keys_of(const Corner&);
 
-/// Steps it here, for at most `budget` seconds, and catches everything that is thrown. `started` is called before the
-/// first step.
-CornerResult run_corner(const Corner&, double budget, const std::function<void()>& started = {});
-/// The same in a process of its own, so that a crash or a hang is a verdict too.
+/// Steps it here, for at most `budget` seconds and a step, and catches everything that is thrown. `report` is called with
+/// what there is so far, before the first step and some fifty times on the way.
+CornerResult run_corner(const Corner&, double budget, const std::function<void(const CornerResult&)>& report = {});
+/// The same in a process of its own, so that a crash or a hang is a verdict too. A step that outlasts the budget by
+/// another budget and a second is ended, and the result is what was reported before it.
 CornerResult run_corner_apart(const Corner&, double budget);
 
 }  // namespace delf

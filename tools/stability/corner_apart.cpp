@@ -18,16 +18,16 @@ namespace delf {
 
 namespace {
 
-// What goes through the pipe: numbers as they are, then the reason.
-constexpr char started = 's';  // the first byte, before the first step; an answer without it begins with this one:
-constexpr char answer = 'a';
+/// A message through the pipe: a mark, numbers as they are, and the reason.
+constexpr char on_the_way = 'w', answer = 'a';
 struct Numbers {
   int verdict;
   double error_linf, energy_error_max, residual_max, diverged_at, cut_at, seconds;
   std::int64_t steps;
+  std::uint64_t reason;  ///< characters of it, which follow
 };
 
-void send(int pipe, const CornerResult& r) {
+void send(int pipe, char mark, const CornerResult& r) {
   const Numbers numbers{static_cast<int>(r.verdict),
                         r.error_linf,
                         r.energy_error_max,
@@ -35,8 +35,9 @@ void send(int pipe, const CornerResult& r) {
                         r.diverged_at,
                         r.cut_at,
                         r.seconds,
-                        r.steps};
-  std::string text(1, answer);
+                        r.steps,
+                        r.reason.size()};
+  std::string text(1, mark);
   text.append(reinterpret_cast<const char*>(&numbers), sizeof numbers);
   text += r.reason;
   for (std::size_t at = 0; at < text.size();) {
@@ -46,16 +47,29 @@ void send(int pipe, const CornerResult& r) {
   }
 }
 
-CornerResult received(const std::string& text) {
-  Numbers n;
-  std::memcpy(&n, text.data(), sizeof n);
-  CornerResult r;
-  r.verdict = static_cast<CornerVerdict>(n.verdict);
-  r.reason = text.substr(sizeof n);
-  r.error_linf = n.error_linf, r.energy_error_max = n.energy_error_max, r.residual_max = n.residual_max;
-  r.diverged_at = n.diverged_at, r.cut_at = n.cut_at, r.seconds = n.seconds, r.steps = n.steps;
-  return r;
-}
+/// The last result that has come, and its mark.
+struct Received {
+  char mark = 0;  ///< nothing has come
+  CornerResult result;
+  double at = 0;     ///< seconds from the start
+  std::string text;  ///< of which a part may still be to come
+
+  void take(double now) {
+    constexpr std::size_t head = 1 + sizeof(Numbers);
+    while (text.size() >= head) {
+      Numbers n;
+      std::memcpy(&n, text.data() + 1, sizeof n);
+      if (text.size() < head + n.reason) return;
+      mark = text.front(), at = now;
+      result.verdict = static_cast<CornerVerdict>(n.verdict);
+      result.reason = text.substr(head, n.reason);
+      result.error_linf = n.error_linf, result.energy_error_max = n.energy_error_max;
+      result.residual_max = n.residual_max, result.diverged_at = n.diverged_at, result.cut_at = n.cut_at;
+      result.seconds = n.seconds, result.steps = n.steps;
+      text.erase(0, head + n.reason);
+    }
+  }
+};
 
 CornerResult ended(CornerVerdict verdict, const std::string& reason, double seconds) {
   CornerResult r;
@@ -68,9 +82,7 @@ CornerResult ended(CornerVerdict verdict, const std::string& reason, double seco
 }  // namespace
 
 CornerResult run_corner_apart(const Corner& corner, double budget) {
-  const double to_start = 5 * budget + 1;
-  const double patience =
-      20 * budget * corner.patience + 40;  // beyond the budget there is one more step, and a look at it
+  const double to_start = 5 * budget + 1, to_run = budget * corner.patience + budget + 1;
   int pipe_ends[2];
   if (pipe(pipe_ends) != 0) return run_corner(corner, budget);
   std::fflush(nullptr);  // or the child would write it again
@@ -83,16 +95,15 @@ CornerResult run_corner_apart(const Corner& corner, double budget) {
     close(pipe_ends[0]);
     signal(SIGINT, SIG_DFL);
     const int out = pipe_ends[1];
-    send(out, run_corner(corner, budget, [out] {
-           if (write(out, &started, 1) < 0) _exit(1);
-         }));
+    send(out, answer, run_corner(corner, budget, [out](const CornerResult& r) { send(out, on_the_way, r); }));
     _exit(0);
   }
   close(pipe_ends[1]);
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return seconds_since(begin); };
-  std::string text;
-  bool hung = false, late = false;
+  Received received;
+  double started = 0;
+  bool ended_here = false;
   while (true) {
     pollfd waiting{pipe_ends[0], POLLIN, 0};
     const int ready = poll(&waiting, 1, 100);
@@ -100,11 +111,14 @@ CornerResult run_corner_apart(const Corner& corner, double budget) {
       char bytes[4096];
       const ssize_t n = read(pipe_ends[0], bytes, sizeof bytes);
       if (n == 0 || (n < 0 && errno != EINTR)) break;
-      if (n > 0) text.append(bytes, static_cast<std::size_t>(n));
+      if (n > 0) {
+        if (received.mark == 0) started = elapsed();
+        received.text.append(bytes, static_cast<std::size_t>(n));
+        received.take(elapsed());
+      }
     }
-    late = text.empty() && elapsed() > to_start;
-    hung = elapsed() > patience;
-    if (late || hung || Interrupt::asked()) {
+    ended_here = received.mark == 0 ? elapsed() > to_start : elapsed() > started + to_run;
+    if (ended_here || Interrupt::asked()) {
       kill(child, SIGKILL);
       break;
     }
@@ -113,14 +127,21 @@ CornerResult run_corner_apart(const Corner& corner, double budget) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (hung) return ended(CornerVerdict::hung, fmt::format("no answer after {:.3g} s", patience), elapsed());
-  if (late) {
-    CornerResult r = ended(CornerVerdict::unstarted, fmt::format("no first rows after {:.3g} s", to_start), elapsed());
-    r.cut_at = 0;
-    return r;
+  CornerResult& result = received.result;
+  if (received.mark == answer) return result;
+  if (ended_here && received.mark == 0) {
+    result = ended(CornerVerdict::unstarted, fmt::format("no first rows after {:.3g} s", to_start), elapsed());
+    result.cut_at = 0;
+    return result;
   }
-  if (!text.empty() && text.front() == started) text.erase(0, 1);
-  if (text.size() > sizeof(Numbers)) return received(text.substr(1));
+  if (ended_here) {
+    constexpr double far_longer = 1e5;
+    const double waited = elapsed() - received.at;
+    const bool hung = result.steps > 0 && waited * static_cast<double>(result.steps) > far_longer * result.seconds;
+    if (hung) return ended(CornerVerdict::hung, fmt::format("no answer from a step after {:.3g} s", waited), elapsed());
+    result.cut_at = static_cast<double>(result.steps) * corner.problem.time_step;
+    return result;
+  }
   if (WIFSIGNALED(status))
     return ended(CornerVerdict::crashed,
                  fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status))), elapsed());

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -35,7 +36,7 @@ Corner corner_of(const std::string& group, const Draft& d, const NamedScheme& sc
   c.problem.parameters["theory.mass"] = d.mass;
   c.problem.parameters["theory.lambda"] = d.lambda;
   c.problem.circle_valued = d.circle_valued;
-  c.problem.winding = 0;
+  c.problem.winding = 0, c.problem.parameters[gain_key] = 0.0;
   c.problem.lattice = Lattice::circle(d.sites, d.length);
   c.problem.time_step = d.courant * c.problem.lattice.space_step();
   c.state.theory = d.theory;

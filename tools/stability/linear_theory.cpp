@@ -12,6 +12,7 @@
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/stability/stable_set.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -27,6 +28,7 @@ LinearTheory linear_theory(const LinearWaves& waves, double most, int samples) {
   const auto make = [&](double courant) { return system_of(waves.on_circle(courant, sites)); };
   StableSearch search;
   search.samples = samples;
+  search.tolerance = 3e-9 * most;
   LinearTheory theory;
   for (const StableInterval& i : stable_courants(make, most, search)) theory.stable.push_back({i.from, i.to});
   if (theory.stable.empty()) return theory;
@@ -94,7 +96,7 @@ bool LinearTheory::is_clear(double courant, double relative) const {
 Problem LinearWaves::on_circle(double courant, int sites) const {
   Problem p = scheme;
   p.circle_valued = false;
-  p.winding = 0;
+  p.winding = 0, p.parameters[gain_key] = 0.0;
   const double k = mass_step ? 1 / courant : scheme.lattice.space_step();
   p.time_step = courant * k;
   p.lattice = Lattice::circle(sites, sites * k);

@@ -11,6 +11,7 @@
 #include "lattice/error.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/turn.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/progress.hpp"
@@ -32,7 +33,7 @@ namespace {
 std::string growth_under_constraint(Problem problem) {
   constexpr int sites = 32;  // of a circle that is only asked for its equations
   problem.lattice = Lattice::circle(sites, sites * problem.lattice.space_step());
-  problem.winding = 0;
+  problem.winding = 0, problem.parameters[gain_key] = 0.0;
   try {
     const auto ghost = ghost_under_constraint(Simulation(problem).evolution().system());
     return ghost ? in_words_under_constraint(*ghost) : "";

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "jets/tables/named_tables.hpp"
+#include "schemes/stability/highest_frequency.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "schemes/unknown_name.hpp"
@@ -35,6 +36,14 @@ std::vector<double> positive_numbers(const Scene& scene, const char* key, const 
 bool has_own_waves(const Scene& scene, const BatchDensity& density) {
   if (scene.settings.find("stability.waves")) return Values(scene.settings).choice("stability.waves") == "own";
   return density.slots() > 3;
+}
+
+/// h/k at which the highest frequency ω that the lattice has makes ωh = 2, as leapfrog's limit does: 1/c for waves of
+/// speed c.
+double own_courant_unit(const BatchDensity& density, double k) {
+  if (density.is_placed()) return 1;
+  const double omega = highest_frequency(density, 0, 2 / k);
+  return omega > 0 ? 2 / (omega * k) : 1;
 }
 
 /// The scene's own scheme, and others that are asked for.
@@ -135,6 +144,7 @@ StabilityRequest read_stability_request(const Scene& scene) {
   const Values values(scene.settings);
   const auto list = [&](const char* key) { return listed_names(scene, key); };
   StabilityRequest request;
+  double own_unit = 1;
   try {
     const auto theory = make_theory(find_theory(scene.problem.theory), scene.problem.parameters);
     request.own_waves = has_own_waves(scene, theory->density());
@@ -142,6 +152,7 @@ StabilityRequest read_stability_request(const Scene& scene) {
       throw scene.settings.error("stability.waves",
                                  "own waves are those about the field 0, which does not solve the field equations of "
                                  "this theory; use stability.waves = klein-gordon");
+    if (request.own_waves) own_unit = own_courant_unit(theory->density(), scene.problem.lattice.space_step());
     request.schemes = request.own_waves ? with_own_scheme(list("stability.schemes"), scene.problem)
                                         : chosen_schemes(list("stability.schemes"), scene.problem);
     if (!request.own_waves && list("stability.schemes").empty()) add_own_scheme(request, scene.problem);
@@ -165,7 +176,7 @@ StabilityRequest read_stability_request(const Scene& scene) {
   if (values.choice("stability.fault") == "limit") request.limit.theory_factor = 1.05;
   request.budget = values.real("stability.budget");
   request.map = values.toggle("stability.map");
-  if (request.own_waves) request.corners.clear(), request.map = false;
+  if (request.own_waves) request.corners.clear(), request.map = false, request.limit.most *= own_unit;
   return request;
 }
 

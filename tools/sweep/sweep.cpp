@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "tools/figures/drawing.hpp"
+#include "tools/files/folder_lock.hpp"
 #include "tools/measure/measure_names.hpp"
 #include "tools/run/interrupt.hpp"
 #include "tools/run/seconds_since.hpp"
@@ -71,6 +72,30 @@ void draw_and_report(const SweepRequest& request, const SweepOutcome& outcome, c
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
 }
 
+/// Every row ended well, or the sweep did not: the gravest failure gives the exit code.
+void require_rows(const fs::path& scene, const SweepOutcome& outcome) {
+  const auto count = [&](const auto& fits) { return std::ranges::count_if(outcome.rows, fits, &SweepRow::status); };
+  const auto all = outcome.rows.size(), done = outcome.done();
+  if (done == all) return;
+  const auto of_system = [](const std::string& status) { return status == "system-failure" || status == "crashed"; };
+  const auto of_input = [](const std::string& status) { return status == "bad-input"; };
+  if (const auto failed = count(of_system); failed > 0)
+    throw SystemFailure(fmt::format(
+        "{} of {} runs crashed or were failed by the system: the table above says why; the same command tries them "
+        "again",
+        failed, all));
+  const auto refused = count(of_input);
+  if (static_cast<std::size_t>(refused) == all)
+    throw BadScene(
+        fmt::format("{}: none of its runs could begin: the table above has what is wrong with each", scene.string()));
+  if (static_cast<std::size_t>(refused) + done == all)
+    throw BadScene(fmt::format("{}: {} of {} runs could not begin: the table above has what is wrong with each",
+                               scene.string(), refused, all));
+  throw NumericalFailure(
+      done == 0 ? "none of the runs ended well: the table above says why"
+                : fmt::format("{} of {} runs did not end well: the table above says why", all - done, all));
+}
+
 }  // namespace
 
 ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_line,
@@ -86,6 +111,7 @@ ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_lin
   }
   const FigureForm form = runs.empty() ? FigureForm{} : runs.front().scene.figure_form;
   make_results_folder(folder);
+  const FolderLock held(folder);  // another sweep there would remove the folders of runs under way
 
   SweepOutcome outcome;
   outcome.scene = scene.stem().string();
@@ -104,11 +130,8 @@ ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_lin
                                request.number, suggestion(request.number, pool.known_numbers())));
   draw_and_report(request, outcome, form, folder);
   if (outcome.status == "interrupted") return ExitCode::interrupted;
-  if (outcome.done() > 0) return ExitCode::done;
-  if (std::ranges::all_of(outcome.rows, [](const SweepRow& row) { return row.status == "bad-input"; }))
-    throw BadScene(fmt::format("{}: none of its runs could begin: the table above has what is wrong with each",
-                               scene.string()));
-  throw NumericalFailure("none of the runs ended well: the table above says why");
+  require_rows(scene, outcome);
+  return ExitCode::done;
 }
 
 }  // namespace delf

@@ -19,6 +19,7 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/turn.hpp"
 #include "schemes/verify/phase_space_check.hpp"
 #include "tools/engine.hpp"
 #include "tools/files/recorded_section.hpp"
@@ -136,7 +137,7 @@ void verify_momenta(const Scene& scene, const VerifyRequest& request, const std:
 
   const auto row = [&](std::int64_t j) { return rows.section().row(j); };
   const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
-  const double turn = 2 * std::numbers::pi * rows.section().winding().value_or(0);
+  const double turn = 2 * std::numbers::pi * rows.section().winding().value_or(0) + gain_of(scene.problem.parameters);
   const Evidence evidence{plain, *system, turn, of_steps, rows.section().rows(), row, {}, [&](std::int64_t j) {
                             return *rows.section().momenta(j);
                           }};
@@ -144,7 +145,8 @@ void verify_momenta(const Scene& scene, const VerifyRequest& request, const std:
   const MomentumScale scale = masses.empty() ? MomentumScale{} : momentum_scale(evidence, masses);
   rows.take_units(scale, masses);
   for (CanonicalRows& file : beside) file.take_units(rows);
-  const double rounding = error_of_rounding(evidence);
+  const auto rounded = rounding_of(evidence.rows, row);
+  const double rounding = rounded ? rounded->relative : 0;
 
   if (alone) {
     verdict.subject = "(q, p) of " + fields;

@@ -52,9 +52,16 @@ struct ReversalCurve {
   std::vector<double> distance;
 };
 
+/// A statement of which the values can tell nothing: it has neither passed nor failed.
+struct Unmeasured {
+  Check check;
+  std::string reason;
+};
+
 /// The results of `delf verify`: everything in verify.json, in the report on stdout and in the figures.
 struct Verdict {
   std::vector<Check> checks;
+  std::vector<Unmeasured> unmeasured;
   std::vector<Measured> measured;
   std::vector<Finding> diagnosis;     ///< what rows of a file are
   std::vector<std::string> left_out;  ///< "noether: no symmetry is declared"
@@ -74,8 +81,10 @@ struct Verdict {
   std::int64_t failed() const {
     return std::ranges::count_if(checks, [](const Check& check) { return !check.passed(); });
   }
-  /// Every check was made and passed; without checks, nothing has passed.
-  bool passed() const { return status == "done" && !(checks.empty() && measured.empty()) && failed() == 0; }
+  /// Every check was made and passed; without checks, or where one can tell nothing, nothing has passed.
+  bool passed() const {
+    return status == "done" && !(checks.empty() && measured.empty()) && failed() == 0 && unmeasured.empty();
+  }
 };
 
 /// verify.json; what is not a finite number is null.

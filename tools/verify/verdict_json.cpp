@@ -12,7 +12,14 @@ namespace {
 Json json_of(const Check& c) {
   return {{"name", c.name},           {"region", c.region},         {"value", c.value},
           {"tolerance", c.tolerance}, {"normaliser", c.normaliser}, {"count", c.count},
-          {"samples", c.samples},     {"passed", c.passed()},       {"failure", c.passed() ? Json() : Json(c.failure)}};
+          {"samples", c.samples},     {"passed", c.passed()},       {"failure", c.passed() ? Json() : Json(c.failure)},
+          {"unmeasurable", Json()}};
+}
+
+Json json_of(const Unmeasured& u) {
+  Json json = json_of(u.check);
+  json["passed"] = false, json["failure"] = Json(), json["unmeasurable"] = u.reason;
+  return json;
 }
 
 Json json_of(const Measured& m) {
@@ -65,6 +72,7 @@ std::string verdict_json(const Scene& scene, const Verdict& v) {
   json["stencils"] = v.stencils;
   json["passed"] = v.passed();
   json["checks"] = json_list(v.checks, of_each);
+  for (const Unmeasured& u : v.unmeasured) json["checks"].push_back(json_of(u));
   json["measured"] = json_list(v.measured, of_each);
   json["diagnosis"] = json_list(v.diagnosis, of_each);
   json["severity"] = json_list(worst_of(v.severest), of_each);

@@ -43,9 +43,12 @@ std::string number(double value) {
 
 std::string table_of_checks(const Verdict& v) {
   std::vector<std::vector<std::string>> rows;
-  for (const Check& c : v.checks)
-    rows.push_back({c.name, number(c.value), fmt::format("{:.2g}", c.tolerance), fmt::format("{}", c.count), c.region,
-                    c.passed() ? "ok" : "FAILED"});
+  const auto add = [&](const Check& c, const char* verdict) {
+    rows.push_back(
+        {c.name, number(c.value), fmt::format("{:.2g}", c.tolerance), fmt::format("{}", c.count), c.region, verdict});
+  };
+  for (const Check& c : v.checks) add(c, c.passed() ? "ok" : "FAILED");
+  for (const Unmeasured& u : v.unmeasured) add(u.check, "not measurable");
   if (rows.empty()) return {};
   return fmt::format("\n{}", text_table({{"check", false, widest_name},
                                          {"largest", true},
@@ -114,6 +117,15 @@ std::string failures(const Verdict& v) {
   return text;
 }
 
+std::string unmeasured(const Verdict& v) {
+  std::string text;
+  for (const Unmeasured& u : v.unmeasured) {
+    text += "\nnot measurable: " + shortened(u.check.name, widest_line - 16) + "\n";
+    for (const std::string& part : wrapped(u.reason, widest_failure - 2)) text += "  " + part + "\n";
+  }
+  return text;
+}
+
 std::string diagnosis(const Verdict& v) {
   std::string text;
   for (const Finding& finding : v.diagnosis)
@@ -125,6 +137,8 @@ std::string conclusion(const Verdict& v) {
   const auto all = static_cast<std::int64_t>(v.checks.size()), failed = v.failed();
   if (failed > 0) return fmt::format("FAILED: {} of {} checks\n", failed, all);
   if (v.status != "done") return fmt::format("not finished ({}): {} of {} checks passed so far\n", v.status, all, all);
+  if (const std::size_t untold = v.unmeasured.size(); untold > 0)
+    return fmt::format("not measurable: {} of {} checks; the others passed\n", untold, v.checks.size() + untold);
   if (all == 0)
     return v.measured.empty() ? "FAILED: there was nothing to check\n"
                               : "measured; nothing that is promised was checked\n";
@@ -139,7 +153,7 @@ std::string verdict_report(const Scene& scene, const Verdict& v) {
       "rounding; a check\n"
       "  passes below its tolerance, or fails and says why. What is measured below is not promised to vanish.\n";
   return header(scene, v) + how_to_read + table_of_checks(v) + table_of_measured(v) + left_out(v) + failures(v) +
-         diagnosis(v) + "\n" + conclusion(v);
+         unmeasured(v) + diagnosis(v) + "\n" + conclusion(v);
 }
 
 }  // namespace delf

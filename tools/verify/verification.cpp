@@ -18,6 +18,7 @@
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/turn.hpp"
 #include "schemes/verify/derivatives.hpp"
 #include "schemes/verify/flux_check.hpp"
 #include "schemes/verify/newton_order.hpp"
@@ -80,7 +81,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
       request_(request),
       initial_(fields && scene.from_file() ? std::nullopt : std::make_optional<InitialRows>(scene)),
       winding_(initial_ ? initial_->winding() : scene.initial.winding.value_or(0)),
-      turn_(2 * std::numbers::pi * winding_),
+      turn_(2 * std::numbers::pi * winding_ + gain_of(scene.problem.parameters)),
       simulation_(build(scene, winding_)),
       faulty_(request.fault == "sign" ? with_wrong_sign(simulation_.evolution().system()) : nullptr),
       system_(faulty_ ? *faulty_ : simulation_.evolution().system()),
@@ -108,8 +109,12 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
 
   moment_rows_ = FormCheck::rows_wanted(system_, plan_, request.regions);
   drawer_.emplace(system_, Tangent::solved_rows(system_, plan_, moment_rows_));
-  const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
-  if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows());
+  double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
+  // What a file has of its values says how well the equations can hold, unless the scene does.
+  if (rounded_ && !request.own_tolerance) of_steps = std::max(of_steps, 2 * rounded_->relative);
+  std::optional<ValueError> coarse;
+  if (rounded_ && !request.own_tolerance) coarse = rounded_->error;
+  if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows(), coarse);
   if (request.wants("forms") && (!fields || request.chosen))
     forms_.emplace(system_, plan_, moment_rows_,
                    FormCheck::Options{request.regions, request.variations, request.tolerance, turn_,
@@ -138,7 +143,7 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
           fmt::format("command line: --fields {}: was made with boundary.winding = {}, and the scene has {}; "
                       "use --boundary.winding={}, or leave out its attribute winding",
                       fields, *winding, *here, *winding));
-    turn_ = 2 * std::numbers::pi * *winding;
+    turn_ = 2 * std::numbers::pi * *winding + gain_of(scene_.problem.parameters);
   }
   if (request_.unwrap) {
     if (!nearby.empty())
@@ -152,6 +157,9 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
         "command line: --nearby: give them in pairs, two solutions near to those of --fields in different "
         "directions; further pairs are the same at other sizes");
   rows_ = fields_->rows() - std::ranges::max(behind);
+  if (rows_ > 0) rounded_ = rounding_of(rows_, [&](std::int64_t j) { return fields_->row(j); });
+  if (rounded_ && request_.unwrap) rounded_->error = {.absolute = rounded_->unit};
+  if (rounded_) verdict_.subject += ", whose values have " + rounded_->words;
   require_every_row(fields);
 }
 
@@ -222,7 +230,14 @@ void Verification::choose_moments() {
   if (equations_ && fields_) {
     severity_.emplace(system_.lattice(), scene_.problem.time_step, reach, rows_ - 2 * reach);
     const bool iterates = simulation_.evolution().stepper().iterates();
-    share_.emplace(system_, rows_ - 2 * reach, iterates ? scene_.problem.tolerance : 0);
+    ForceShare::Precision precision;
+    precision.solver = iterates ? scene_.problem.tolerance : 0;
+    precision.asked = request_.own_tolerance ? request_.tolerance : 0;
+    if (rounded_) {  // and the last digits of steps
+      precision.values.absolute = rounded_->error.absolute, precision.values.digits = rounded_->error.digits;
+      precision.values.relative = std::max(precision.values.relative, rounded_->error.relative);
+    }
+    share_.emplace(system_, rows_ - 2 * reach, precision);
   }
   const FieldTheory& theory = simulation_.theory();
   if (request_.wants("balance")) {
@@ -347,7 +362,8 @@ void Verification::take(std::vector<double> row) {
     bins_->add(middle, equations_->newest(), system_.components());
     if (fields_) {
       failed_.add(middle, equations_->newest(), system_.components(), equations_->tolerance());
-      share_->at(held_, middle, equations_->sums(), equations_->newest(), equations_->tolerance());
+      share_->at(held_, middle, *equations_);
+      hidden_.add(middle, equations_->newest(), system_.components(), share_->relative_bound());
       severity_->add(middle, share_->errors(), system_.components());
     }
   }
@@ -410,7 +426,8 @@ void Verification::diagnose_rows() {
     if (request_.identify) leave_out("diagnosis: of rows of a file; give --fields");
     return;
   }
-  if (!equations_ || verdict_.status != "done" || !(failed_.failed() > 0 || request_.identify)) return;
+  const bool hidden = failed_.failed() == 0 && verdict_.failed() > 0;  // beside the force
+  if (!equations_ || verdict_.status != "done" || !(failed_.failed() > 0 || hidden || request_.identify)) return;
   if (!std::ranges::all_of(system_.all_components(), [](const Component& c) { return c.role == Role::field; })) {
     leave_out("diagnosis: of schemes whose values are fields at the vertices, and this one has others");
     return;
@@ -426,7 +443,13 @@ void Verification::diagnose_rows() {
   };
   Problem problem = scene_.problem;
   problem.winding = winding_;
-  Evidence evidence{problem, system_, turn_, equations_->tolerance(), rows_, row, failed_};
+  Evidence evidence{problem,
+                    system_,
+                    turn_,
+                    hidden ? share_->relative_bound() : equations_->tolerance(),
+                    rows_,
+                    row,
+                    hidden ? hidden_ : failed_};
   if (fields_->momenta(0)) evidence.momenta = [&](std::int64_t j) { return *fields_->momenta(j); };
   verdict_.diagnosis = diagnose(std::move(evidence)).findings;
 }
@@ -481,7 +504,15 @@ void Verification::collect() {
     add(equations_->checks());
     verdict_.map = bins_->map();
     if (walls_) add({*walls_});
-    if (share_) collect_severity();
+    if (share_) {
+      // A second look at rows that pass the first: others have failed beside the force, too.
+      if (auto judged = failed_.failed() == 0 ? share_->check() : std::nullopt) {
+        if (judged->unmeasurable.empty()) add({std::move(judged->check)});
+        else verdict_.unmeasured.push_back({std::move(judged->check), std::move(judged->unmeasurable)});
+        if (auto check = share_->average()) add({std::move(*check)});
+      }
+      collect_severity();
+    }
     diagnose_rows();
     verdict_.stencils += equations_->rows() * system_.lattice().sites();
   }

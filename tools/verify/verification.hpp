@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "schemes/diagnosis/evidence.hpp"
+#include "schemes/diagnosis/rounded_values.hpp"
 #include "schemes/methods/own_energy.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -90,9 +91,10 @@ class Verification {
   std::optional<OwnEnergy> energy_;
   std::optional<Measured> energy_change_;  ///< where rows choose the steps
   double first_energy_ = 0;
-  FailedEquations failed_;
-  std::optional<ForceShare> share_;  ///< of rows of a file
-  std::optional<Check> walls_;       ///< of rows of a file: fixed walls keep their values
+  FailedEquations failed_, hidden_;       ///< of `equations_`; and beyond the errors of the values
+  std::optional<RoundedValues> rounded_;  ///< of rows of a file
+  std::optional<ForceShare> share_;       ///< of rows of a file
+  std::optional<Check> walls_;            ///< of rows of a file: fixed walls keep their values
 
   std::int64_t rows_ = 0;  ///< of the section
   std::int64_t balance_rows_ = 0;

@@ -74,6 +74,7 @@ VerifyRequest read_verify_request(const Scene& scene) {
   request.variations = static_cast<int>(values.integer("verify.variations"));
   request.moments = static_cast<int>(values.integer("verify.moments"));
   request.tolerance = values.real("verify.tolerance");
+  request.own_tolerance = values.given("verify.tolerance");
   request.generator = values.text("verify.generator").value_or("");
   request.force = values.toggle("verify.force");
   request.identify = values.toggle("verify.identify");

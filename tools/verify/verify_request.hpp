@@ -19,7 +19,8 @@ struct VerifyRequest {
   int variations = 2;
   int moments = 8;
   double tolerance = 1e-13;
-  std::string generator;  ///< empty: none
+  bool own_tolerance = false;  ///< the scene gives it
+  std::string generator;       ///< empty: none
   bool force = false;
   bool identify = false;  ///< a diagnosis of rows that pass, too
   bool unwrap = false;    ///< rows of a file are reduced modulo 2π

@@ -66,6 +66,7 @@ class EngineRacer final : public Racer {
   Simulation build() {
     Problem problem = scene_.problem;
     problem.winding = initial_.winding();
+    initial_.keep_slopes(problem);
     Simulation simulation(problem);
     refuse_unstable(simulation);
     return simulation;

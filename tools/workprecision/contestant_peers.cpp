@@ -12,6 +12,7 @@
 
 #include "lattice/error.hpp"
 #include "schemes/state.hpp"
+#include "schemes/turn.hpp"
 #include "tools/peers/body_peers.hpp"
 #include "tools/peers/peer.hpp"
 
@@ -30,7 +31,7 @@ std::optional<WaveEquation> equation_of(const Scene& scene) {
       peers::wave_equation(p.theory, parameter("theory.mass"), parameter("theory.lambda"), p.lattice.length(), 0, 0);
   if (!equation) return equation;
   const auto state = make_state(scene.initial, p.lattice);
-  equation->turn = 2 * std::numbers::pi * scene.initial.winding.value_or(state->winding());
+  equation->turn = 2 * std::numbers::pi * scene.initial.winding.value_or(state->winding()) + gain_of(p.parameters);
   return equation;
 }
 

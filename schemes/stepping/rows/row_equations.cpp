@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <random>
 #include <set>
 
 #include "jets/simd/scratch_rows.hpp"
@@ -81,6 +82,12 @@ void RowEquations::build_solvers() {
     solver_[0] = by_component(std::move(solvers));
     return;
   }
+  const auto see = [this](const std::vector<UnknownEntry>& unknowns) {
+    for (const UnknownEntry& e : unknowns) wall_scale_ = std::max(wall_scale_, std::abs(e.coefficient));
+  };
+  std::ranges::for_each(equations_.unknowns, see);
+  for (const SiteEquation& s : equations_.exceptional) see(s.unknowns);
+  if (wall_scale_ == 0) wall_scale_ = 1;  // of two fixed walls alone
   for (int parity = 0; parity < (alternating ? 2 : 1); ++parity) {
     std::vector<MatrixEntry> entries;
     std::set<std::pair<int, int>> special;
@@ -94,7 +101,7 @@ void RowEquations::build_solvers() {
     };
     for (const auto& s : equations_.exceptional) {
       special.insert({s.site, s.component});
-      if (s.fixed) entries.push_back({s.site * d_ + s.component, s.site * d_ + s.component, 1.0});
+      if (s.fixed) entries.push_back({s.site * d_ + s.component, s.site * d_ + s.component, wall_scale_});
       else add(s.site, s.component, s.equation.shift, s.unknowns);
     }
     for (int i = 0; i < layout_.sites(); ++i)
@@ -163,7 +170,8 @@ void RowEquations::find_packs(SourceRow& row, bool everywhere) const {
 /// Quadrature values as sums of rows. Rows before the newest that is read are taken from it and the increments,
 /// y_{j−1} = y_j − v_j, so that they may have been written over.
 RowEquations::Inputs RowEquations::make_inputs(const SourceTerms::Group& group, SourceRow& row) {
-  Inputs inputs{.family = system_.families()[at(row.family)].get(), .values = {}, .single_rows = {}, .outputs = row.outputs,
+  Inputs inputs{.family = system_.families()[at(row.family)].get(), .values = {}, .single_rows = {}, .unknown = {},
+                .outputs = row.outputs,
                 .time = group.time, .space = group.space};
   int newest = std::numeric_limits<int>::min();
   for (const auto& value : group.inputs)
@@ -173,7 +181,9 @@ RowEquations::Inputs RowEquations::make_inputs(const SourceTerms::Group& group, 
     }
   for (const auto& value : group.inputs) {
     std::map<std::pair<int, int>, double> weights;  // of rows at shifts
+    inputs.unknown.push_back(0);
     for (const SourceTerms::Part& part : value) {
+      if (row.newest + part.vertex.time == 1) inputs.unknown.back() += std::abs(part.weight);
       const int back = 1 - (row.newest + newest);  // of the newest row that is read
       weights[{y_.row(back, part.component), part.vertex.space}] += part.weight;
       for (int r = 0; r < newest - part.vertex.time; ++r)
@@ -340,7 +350,7 @@ double RowEquations::value_at(const SiteEquation& special, const RowTable& table
   const int own = layout_.slot(special.site), a = special.component;
   const bool changes = taking && taking->changes;
   if (special.fixed)  // v_{n+1} = v_n + w = 0
-    return changes ? 0 : table[v_.row(taking ? 1 : 0, a)][own];
+    return changes ? 0 : wall_scale_ * table[v_.row(taking ? 1 : 0, a)][own];
   const EquationTerms& equation = special.equation;
   const double sign = (n + 1 - equation.shift + special.site) % 2 == 0 ? 1 : -1;
   double value = changes ? 0 : equation.constant + sign * equation.constant_alternating;
@@ -362,19 +372,17 @@ double RowEquations::value_at(const SiteEquation& special, const RowTable& table
   return value;
 }
 
-void RowEquations::evaluate(const RowTable& table, std::int64_t n, const SourceRow& source, int back, int from, int to,
-                            double* const* out) const {
+template <class Visit>
+[[gnu::always_inline]] inline void RowEquations::for_each_batch(const double* const* rows, std::int64_t anchors,
+                                                                const SourceRow& source, int from, int to,
+                                                                Visit visit) const {
   constexpr int most_packs = 64;
   from = std::max(from, source.first_pack), to = std::min(to, source.last_pack);
   const Inputs& inputs = inputs_[static_cast<std::size_t>(&source - sources_.data())];
-  const int count = static_cast<int>(inputs.values.size()), outputs = inputs.outputs;
+  const int count = static_cast<int>(inputs.values.size());
   const bool bricks = source.stride == 2, placed = positions_.rows() > 0;
-  const std::int64_t anchors = n + source.newest - back;
-  // The rows of the anchors `back` rows before: further back in the rings of y and v.
-  const double* const* const rows = table.data() + back * d_;
-  const ScratchRows scratch(inputs.formed + (bricks ? outputs : 0) + placed, most_packs * lanes);
+  const ScratchRows scratch(inputs.formed + placed, most_packs * lanes);
   std::array<const double*, most_values> slots;
-  std::array<double*, most_values> results;
   // Bricks stand where row + site is even: at every second pack.
   const int stride = bricks ? 2 : 1;
   for (int first = bricks ? from + static_cast<int>((from + anchors) & 1) : from; first < to; first += most_packs * stride) {
@@ -390,18 +398,111 @@ void RowEquations::evaluate(const RowTable& table, std::int64_t n, const SourceR
       }
     JetBatch batch{packs * lanes, slots.data(), 0, nullptr};
     if (placed) {
-      double* const x = scratch[inputs.formed + (bricks ? outputs : 0)];
+      double* const x = scratch[inputs.formed];
       for (int p = 0; p < packs; ++p)
         (Pack::load(positions_.row(0) + begin + p * stride * lanes) + inputs.space * system_.lattice().space_step())
             .store(x + p * lanes);
       batch.x = x;
       batch.t = (static_cast<double>(anchors) + inputs.time) * system_.time_step();
     }
-    for (int c = 0; c < outputs; ++c) results[at(c)] = bricks ? scratch[next + c] : out[c] + begin;
-    inputs.family->evaluate_sources(source.group, batch, results.data());
-    for (int c = 0; c < outputs && bricks; ++c)
-      for (int p = 0; p < packs; ++p) Pack::load(results[at(c)] + p * lanes).store(out[c] + begin + 2 * p * lanes);
+    visit(batch, begin, packs);
   }
+}
+
+void RowEquations::evaluate(const RowTable& table, std::int64_t n, const SourceRow& source, int back, int from, int to,
+                            double* const* out) const {
+  const Inputs& inputs = inputs_[static_cast<std::size_t>(&source - sources_.data())];
+  const bool bricks = source.stride == 2;
+  // The rows of the anchors `back` rows before: further back in the rings of y and v.
+  for_each_batch(table.data() + back * d_, n + source.newest - back, source, from, to,
+                 [&](const JetBatch& batch, std::ptrdiff_t begin, int packs) {
+                   std::array<double*, most_values> results;
+                   const ScratchRows every_second(bricks ? inputs.outputs : 0, batch.count);
+                   for (int c = 0; c < inputs.outputs; ++c) results[at(c)] = bricks ? every_second[c] : out[c] + begin;
+                   inputs.family->evaluate_sources(source.group, batch, results.data());
+                   for (int c = 0; c < inputs.outputs && bricks; ++c)
+                     for (int p = 0; p < packs; ++p)
+                       Pack::load(results[at(c)] + p * lanes).store(out[c] + begin + 2 * p * lanes);
+                 });
+}
+
+/// max Σ_j W_j |∂g_c/∂m_j| over a batch, if it is more than slopes[c].
+void RowEquations::add_slopes(const SourceRow& source, const JetBatch& batch, double* slopes) const {
+  const Inputs& inputs = inputs_[static_cast<std::size_t>(&source - sources_.data())];
+  const int count = static_cast<int>(inputs.values.size());
+  const ScratchRows derivatives(inputs.outputs * count, batch.count);
+  inputs.family->differentiate_sources(source.group, batch, derivatives.data());
+  for (int c = 0; c < inputs.outputs; ++c) {
+    Pack most(slopes[c]);
+    for (int i = 0; i < batch.count; i += lanes) {
+      Pack sum(0.0);
+      for (int j = 0; j < count; ++j)
+        if (inputs.unknown[at(j)] != 0) sum += inputs.unknown[at(j)] * abs(Pack::load(derivatives[c * count + j] + i));
+      most = max_or_nan(sum, most);
+    }
+    slopes[c] = max_or_nan(most);
+  }
+}
+
+/// Quadrature values that are all the same, and random ones; those at which a derivative is not finite say nothing.
+std::vector<double> RowEquations::slopes_within(double size, std::int64_t n) const {
+  constexpr int alike = 128, all = 2 * alike;
+  std::vector<double> slopes(sources_.size(), 0.0);
+  std::mt19937_64 generator(1);
+  const auto random = [&] { return std::ldexp(static_cast<double>(generator() >> 11), -52) - 1; };
+  for (std::size_t s = 0; s < sources_.size(); s += at(sources_[s].outputs)) {
+    const SourceRow& source = sources_[s];
+    if (!source.reads_unknown) continue;
+    const Inputs& inputs = inputs_[s];
+    const int count = static_cast<int>(inputs.values.size());
+    const ScratchRows values(count, all), x(1, all);
+    for (int i = 0; i < all; ++i) {
+      for (int j = 0; j < count; ++j)
+        values[j][i] = size * (i < alike ? 2.0 * i / (alike - 2) - 1 : random());
+      x[0][i] = system_.lattice().position(static_cast<int>(static_cast<std::int64_t>(i) * layout_.sites() / all));
+    }
+    const double t = (static_cast<double>(n + source.newest) + inputs.time) * system_.time_step();
+    for (int i = 0; i < all; i += lanes) {
+      std::array<const double*, most_values> slots;
+      for (int j = 0; j < count; ++j) slots[at(j)] = values[j] + i;
+      std::array<double, most_values> found{};
+      add_slopes(source, {lanes, slots.data(), t, x[0] + i}, found.data());
+      for (int c = 0; c < source.outputs; ++c)
+        if (std::isfinite(found[at(c)])) slopes[s + at(c)] = std::max(slopes[s + at(c)], found[at(c)]);
+    }
+  }
+  return slopes;
+}
+
+std::vector<double> RowEquations::slopes_at(const RowTable& table, std::int64_t n, double s) const {
+  std::vector<double> slopes(sources_.size(), 0.0);
+  constexpr int strip = 64;
+  for (std::size_t first = 0; first < sources_.size(); first += at(sources_[first].outputs)) {
+    const SourceRow& source = sources_[first];
+    if (!source.reads_unknown) continue;
+    for (int from = 0; from < layout_.packs(); from += strip) {
+      const int to = std::min(from + strip, layout_.packs());
+      // y = y_n + s (y_n − y_{n−1}) + s² (y_{n+1} − 2y_n + y_{n−1}) and v = y − y_n of the strip, and as far beside it as
+      // its quadrature values read.
+      const ScratchRows way(2 * d_, (to - from + source.right - source.left) * lanes);
+      RowTable rows = table;
+      for (int a = 0; a < d_; ++a) {
+        const double *const next = table[y_.row(0, a)], *const now = table[y_.row(1, a)],
+                     *const last = table[y_.row(2, a)];
+        double *const y = way[a] - layout_.at(from + source.left), *const v = way[d_ + a] - layout_.at(from + source.left);
+        for (std::ptrdiff_t i = layout_.at(from + source.left); i < layout_.at(to + source.right); i += lanes) {
+          const Pack before = Pack::load(now + i) - Pack::load(last + i), after = Pack::load(next + i) - Pack::load(now + i);
+          const Pack moved = s * before + (s * s) * (after - before);
+          moved.store(v + i);
+          (Pack::load(now + i) + moved).store(y + i);
+        }
+        rows[y_.row(0, a)] = y, rows[v_.row(0, a)] = v;
+      }
+      for_each_batch(rows.data(), n + source.newest, source, from, to,
+                     [&](const JetBatch& batch, std::ptrdiff_t, int) { add_slopes(source, batch, &slopes[first]); });
+    }
+  }
+  return slopes;
 }
 
 std::size_t RowEquations::residual_bytes() const { return RowBuffer::bytes_of(layout_.doubles(), measured_count()); }

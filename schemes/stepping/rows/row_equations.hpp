@@ -98,6 +98,11 @@ class RowEquations {
   /// pack v stands at layout.at(v).
   void evaluate(const RowTable&, std::int64_t n, const SourceRow& first_of_group, int back, int from, int to,
                 double* const* out) const;
+  /// Of each source row, the most that a change of 1 in y_{n+1} everywhere may change it by, max Σ_j W_j |∂g/∂m_j|: W_j is
+  /// what the weights of row n + 1 in its quadrature value m_j sum to. With quadrature values up to `size`; and on the way
+  /// from row n to row n + 1, at the row y_n + s v_n + s² (v_{n+1} − v_n).
+  std::vector<double> slopes_within(double size, std::int64_t n) const;
+  std::vector<double> slopes_at(const RowTable&, std::int64_t n, double s) const;
   /// max |E| / max Σ |terms| at row n + 1 as it stands, source terms evaluated there.
   double residual(RowTable, std::int64_t n);
   std::size_t residual_bytes() const;  ///< that residual() will have allocated
@@ -109,9 +114,14 @@ class RowEquations {
     const StencilFamily* family = nullptr;
     std::vector<RowSum> values;               ///< of number 0
     std::vector<RowSum::OneRow> single_rows;  ///< those that are one row, which need not be formed
+    std::vector<double> unknown;              ///< W_j, of each value
     int outputs = 1, formed = 0;              ///< of the group; values that are formed
     double time = 0, space = 0;
   };
+  /// Visits the quadrature values of the packs from … to in batches: visit(batch, the place of its first pack, packs).
+  template <class Visit>
+  void for_each_batch(const double* const* rows, std::int64_t anchors, const SourceRow&, int from, int to, Visit) const;
+  void add_slopes(const SourceRow&, const JetBatch&, double* slopes) const;
   void build_rows(RowTable&, int source_rows);
   void find_packs(SourceRow&, bool everywhere) const;
   Inputs make_inputs(const SourceTerms::Group&, SourceRow&);
@@ -137,6 +147,7 @@ class RowEquations {
   bool bricks_;
   SteppedEquations equations_;
   RowTable::Ring y_, v_;
+  double wall_scale_ = 0;  ///< of the equation v = 0 of a fixed wall, beside those of the bulk in one matrix
   bool iterates_ = false, reads_increments_beside_ = false;
   int measured_ = 0;  ///< in the table: w, and source terms at row n + 1, as residual() finds them
   std::vector<SourceRow> sources_;

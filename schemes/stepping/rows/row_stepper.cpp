@@ -82,7 +82,7 @@ struct RowStepper::Impl {
     if (d > static_cast<int>(most_components)) throw NoConvergence("rows of so many components go slab by slab");
     choose_strips();
     if (!equations.iterates()) return;
-    tolerance.emplace(system, plan, equations, layout, table, options);
+    tolerance.emplace(system, equations, layout, table, options);
     changes.assign(tolerance->gains().size(), 0.0);
   }
 
@@ -404,10 +404,11 @@ struct RowStepper::Impl {
   }
   void choose_order() {
     tolerance->see_span(table);
-    predictor.choose(table, n(), source_rows_there, tolerance->gains(), tolerance->contraction_now(largest),
-                     tolerance->enough(largest, largest), system.time_step());
+    predictor.choose(table, n(), source_rows_there, tolerance->gains(), contraction_now(),
+                     tolerance->enough(largest, contraction_now()), system.time_step());
   }
-  bool is_stiff() { return tolerance && tolerance->is_stiff(largest); }
+  double contraction_now() { return tolerance->contraction().next_change(largest, n()); }
+  bool is_stiff(double size) { return tolerance && tolerance->contraction().is_stiff(size, n()); }
 
   /// The new row, beside the old one or over it. False if it could not be solved for; `continued` then says why.
   bool solve_step() {
@@ -419,8 +420,7 @@ struct RowStepper::Impl {
     double value = max_or_nan(found);
     if (overflowed(value)) return set_largest(value);
     if (!iterates) return set_largest(value);
-    const double by = tolerance->contraction_now(largest),
-                 enough = tolerance->enough(std::max({value, largest, largest_before}), largest);
+    const double by = contraction_now(), enough = tolerance->enough(std::max({value, largest, largest_before}), by);
     double effect = tolerance->effect_of(changes);
     for (iterations = 1; !(effect <= enough);) {
       if (!(effect < 1e100)) return give_up(Continued::slow);
@@ -430,7 +430,7 @@ struct RowStepper::Impl {
       const bool is_last = options.tolerance >= smallest_estimated && by * effect <= enough;
       found = pass(Kind::correction, !is_last);
       value = max_or_nan(found);
-      if (overflowed(value)) return set_largest(value);
+      if (overflowed(value)) return give_up(Continued::slow);
       if (is_last) break;
       ++iterations;
       const double before = effect;
@@ -441,7 +441,13 @@ struct RowStepper::Impl {
         return give_up(Continued::slow);
       }
     }
-    return set_largest(value);
+    return may_have_other_roots(value) ? give_up(Continued::stiff) : set_largest(value);
+  }
+  /// There may be other roots near row n + 1 as it stands, whose largest |y| is `value`. A step in place has no row n any
+  /// more to look from.
+  bool may_have_other_roots(double value) {
+    if (!is_stiff(std::max(value, largest))) return false;
+    return kept.in_place() || tolerance->contraction().is_stiff_along(table, n());
   }
   bool give_up(Continued why) {
     continued = why;
@@ -466,9 +472,17 @@ struct RowStepper::Impl {
     }
   }
 
-  /// Where the fixed point does not contract: the root followed from a small time step by full Newton steps.
-  void follow_root() {
+  /// Where the fixed point does not contract: by Newton's method, and where there may be other roots than the one that it
+  /// finds, by following the root from a small time step.
+  void solve_by_newton() {
     const Window past = kept.window(history);
+    if (continued != Continued::stiff) {
+      const NewtonResult direct = solve_slab(system, plan, past, options.tolerance,
+                                             std::min(options.max_iterations, enough_iterations), false);
+      iterations += direct.iterations;
+      if (direct.converged && has_no_other_root_near(direct.row)) return;
+      if (is_stiff(largest)) continued = Continued::stiff;
+    }
     const NewtonResult result = solve_slab(system, plan, past, options.tolerance, options.max_iterations);
     iterations += result.iterations;
     if (!result.converged)
@@ -477,20 +491,38 @@ struct RowStepper::Impl {
           "small time step by full Newton steps; {}",
           n() + 1, static_cast<double>(n() + 1) * system.time_step(), in_words(continued),
           remedy_for(options.max_iterations)));
-    kept.set(0, result.row);
+    set_row(result.row);
+    set_largest(kept.largest(0));
+  }
+  void set_row(const std::vector<double>& row) {
+    kept.set(0, row);
     kept.find_increment(0);
     evaluate_unknown();
-    double value = 0;
-    for (double x : result.row) value = std::max(value, std::abs(x));
-    set_largest(value);
+  }
+  /// Takes a row that Newton's method has found, unless there may be other roots near it.
+  bool has_no_other_root_near(const std::vector<double>& row) {
+    set_row(row);
+    const double value = kept.largest(0);
+    return !may_have_other_roots(value) && set_largest(value);
+  }
+
+  /// The same of row 1 of a centred start, from row 0 and y₋₁ = y₁ − 2hφ_t.
+  bool may_have_other_roots_from(const std::vector<double>& row0, const std::vector<double>& velocity,
+                                 const std::vector<double>& row1) {
+    if (!tolerance) return false;
+    std::vector<double> before = row1;
+    for (std::size_t i = 0; i < before.size(); ++i) before[i] -= 2 * system.time_step() * velocity[i];
+    kept.leave_place();
+    kept.set(0, row1), kept.set(1, row0), kept.set(2, before);
+    tolerance->restart();
+    largest = kept.largest(1);
+    return may_have_other_roots(kept.largest(0));
   }
 
   void step_beside() {
     kept.leave_place();
     kept.forget_oldest();
-    const bool stiff = is_stiff();
-    if (stiff) begin_step(), iterations = 0, continued = Continued::stiff;
-    if (stiff || !solve_step()) follow_root();
+    if (!solve_step()) solve_by_newton();
     if (overflowed(largest)) {
       largest = largest_before;
       report_not_finite();
@@ -532,7 +564,7 @@ struct RowStepper::Impl {
   /// A step whose row nobody asks for is in place, as long as there is a row to go back to.
   void step(bool looked_at) {
     const bool may_be_in_place = !looked_at && goes_in_place && (kept.in_place() || (kept.known() >= 2 && n() > kept.start_row())) &&
-                                 !(equations.iterates() && source_rows_there == 0) && !is_stiff();
+                                 !(equations.iterates() && source_rows_there == 0) && !is_stiff(largest);
     if (!may_be_in_place) step_beside();
     else if (!step_in_place()) step_again(n() + 1);
   }
@@ -615,12 +647,12 @@ void RowStepper::start_centred(const std::vector<double>& row0, const std::vecto
     throw BadInput("initial.start", "initial.start = centred makes one more row, and this stencil needs " +
                                         std::to_string(s.history) + " starting rows; choose initial.start = exact");
   const Window first{&s.system.lattice(), s.d, s.options.turn, 0, {row0}};
-  double size = 0;
-  for (const double value : row0) size = std::max(size, std::abs(value));
-  const bool stiff = s.tolerance && s.tolerance->is_stiff(size);
-  const NewtonResult result =
-      solve_centred_start(s.system, s.plan, first, velocity, stiff, s.options.tolerance, s.options.max_iterations);
-  start({row0, result.row});
+  const auto solved = [&](bool followed) {
+    return solve_centred_start(s.system, s.plan, first, velocity, followed, s.options.tolerance,
+                               s.options.max_iterations).row;
+  };
+  const std::vector<double> row1 = solved(false);
+  start({row0, s.may_have_other_roots_from(row0, velocity, row1) ? solved(true) : row1});
 }
 
 void RowStepper::step(bool looked_at) {

@@ -10,20 +10,14 @@ namespace {
 
 constexpr double round_off = std::numeric_limits<double>::epsilon();
 
-}  // namespace
-
-/// How y answers to a change of 1 in a source term: exact on a circle, where one impulse shows it. In the middle of an
-/// interval it is near enough: the tolerance is tested by it, and the change itself is what ends an iteration.
-StepTolerance::StepTolerance(const LatticeSystem& system, const SolvePlan& plan, const RowEquations& equations,
-                             const RowLayout& layout, RowTable& table, const StepOptions& options)
-    : equations_(equations),
-      layout_(layout),
-      d_(system.components()),
-      tolerance_(options.tolerance),
-      contraction_(system, plan) {
+/// How y answers to a change of 1 in a source term, [source][component]: exact on a circle, where one impulse shows it. In
+/// the middle of an interval it is near enough: the tolerance is tested by it, and the change itself is what ends an
+/// iteration.
+std::vector<std::vector<double>> gains_of(int d, const RowEquations& equations, const RowLayout& layout, RowTable& table) {
   constexpr std::int64_t first_step = -1;
+  std::vector<std::vector<double>> gains;
   for (const SourceRow& source : equations.sources()) {
-    gains_.push_back(0);
+    std::vector<double>& gain = gains.emplace_back(static_cast<std::size_t>(d), 0.0);
     if (!source.reads_unknown) continue;
     double* const delta = table[source.change];
     // Two sites in the middle: a source term at a wall, or between bricks, is read by no equation.
@@ -33,22 +27,34 @@ StepTolerance::StepTolerance(const LatticeSystem& system, const SolvePlan& plan,
       std::fill_n(delta, layout.doubles(), 0.0);
       for (const int slot : layout.slots_of(site)) delta[slot] = 1;
       layout.fill_halo(delta);
-      RowBuffer memory(layout, d_);
+      RowBuffer memory(layout, d);
       std::vector<double*> w;
-      for (int a = 0; a < d_; ++a) w.push_back(memory.row(a));
+      for (int a = 0; a < d; ++a) w.push_back(memory.row(a));
       equations.right_sides(table, first_step, {0, true}, 0, layout.packs(), w.data());
       equations.solver(first_step).solve(w.data());
       std::vector<double> sites(static_cast<std::size_t>(layout.sites()));
-      for (int a = 0; a < d_; ++a) {
-        layout.gather(w[static_cast<std::size_t>(a)], sites);
+      for (std::size_t a = 0; a < gain.size(); ++a) {
+        layout.gather(w[a], sites);
         double sum = 0;
         for (const double x : sites) sum += std::abs(x);
-        gains_.back() = std::max(gains_.back(), sum);
+        gain[a] = std::max(gain[a], sum);
       }
     }
-    gain_ = std::max(gain_, gains_.back() / equations.weight_of(source));
     std::fill_n(delta, layout.doubles(), 0.0);
   }
+  return gains;
+}
+
+}  // namespace
+
+StepTolerance::StepTolerance(const LatticeSystem& system, const RowEquations& equations, const RowLayout& layout,
+                             RowTable& table, const StepOptions& options)
+    : equations_(equations),
+      layout_(layout),
+      d_(system.components()),
+      tolerance_(options.tolerance),
+      contraction_(equations, gains_of(d_, equations, layout, table)) {
+  for (const std::vector<double>& of_source : contraction_.gains()) gains_.push_back(*std::ranges::max_element(of_source));
 }
 
 double StepTolerance::effect_of(const std::vector<double>& changes) const {
@@ -81,25 +87,9 @@ double StepTolerance::allowed(double size) const {
 /// What is left to a prediction has the same sign step after step, and moves the energy: over 5000 collisions (N = 255,
 /// h = k/8, tolerance 6e-8) by 1e-4 of it where all of the tolerance was, within what the exact root does with this share.
 /// The smallest tolerances ask for all that rounding allows: what is left then no longer shrinks.
-double StepTolerance::share(double largest) {
+double StepTolerance::share(double contraction) const {
   constexpr double left_to_predictions = 0.01;
-  return tolerance_ >= smallest_estimated ? left_to_predictions : std::min(contraction_now(largest), 1.0) / 64;
-}
-
-double StepTolerance::contraction_now(double largest) {
-  if (contracts_by_ < 0 || contraction_.is_outgrown(largest))
-    contracts_by_ = contraction_.next_change(largest, 1, gain_);
-  return contracts_by_;
-}
-
-bool StepTolerance::is_stiff(double largest) {
-  if (contraction_.is_outgrown(largest)) contracts_by_ = -1;
-  return contraction_.is_stiff(largest);
-}
-
-void StepTolerance::visit(SavedState& state) {
-  state("span", span_), state("contracts by", contracts_by_);
-  contraction_.visit(state);
+  return tolerance_ >= smallest_estimated ? left_to_predictions : std::min(contraction, 1.0) / 64;
 }
 
 }  // namespace delf

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "schemes/stepping/contraction.hpp"
+#include "schemes/stepping/rows/contraction.hpp"
 #include "schemes/stepping/rows/row_equations.hpp"
 #include "schemes/stepping/step_method.hpp"
 
@@ -13,8 +13,7 @@ namespace delf {
 class StepTolerance {
  public:
   /// For equations that iterate. Uses the rows of changes in the table.
-  StepTolerance(const LatticeSystem&, const SolvePlan&, const RowEquations&, const RowLayout&, RowTable&,
-                const StepOptions&);
+  StepTolerance(const LatticeSystem&, const RowEquations&, const RowLayout&, RowTable&, const StepOptions&);
 
   /// Of each source row: what a change of 1 changes y by, at most.
   const std::vector<double>& gains() const { return gains_; }
@@ -22,28 +21,25 @@ class StepTolerance {
   double effect_of(const std::vector<double>& changes) const;
   /// What the row y_n spans, max y − min y; what is allowed is relative to it from here on.
   void see_span(const RowTable&);
-  /// For a prediction or a last change, and fields whose largest |y| is `size`; `largest`: that of row n.
-  double enough(double size, double largest) { return share(largest) * allowed(size); }
-  /// By which one more iteration's change would be less.
-  double contraction_now(double largest);
-  /// A step from fields of this size may have several roots.
-  bool is_stiff(double largest);
+  /// For a prediction or a last change, and fields whose largest |y| is `size`, where one more iteration's change would
+  /// be less by `contraction`.
+  double enough(double size, double contraction) const { return share(contraction) * allowed(size); }
+  Contraction& contraction() { return contraction_; }
 
-  void restart() { span_ = 0, contracts_by_ = -1; }
-  void visit(SavedState&);
+  void restart() { span_ = 0, contraction_.restart(); }
+  void visit(SavedState& state) { state("span", span_), contraction_.visit(state); }
 
  private:
-  double share(double largest);
+  double share(double contraction) const;
   double allowed(double size) const;
 
   const RowEquations& equations_;
   const RowLayout& layout_;
   int d_;
   double tolerance_;
-  Contraction contraction_;
   std::vector<double> gains_;
-  double gain_ = 0;  ///< the same for source terms whose weights in an equation sum to 1
-  double span_ = 0, contracts_by_ = -1;
+  Contraction contraction_;
+  double span_ = 0;
 };
 
 }  // namespace delf

@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <random>
+#include <string>
 
 #include "jets/batch_of.hpp"
 #include "jets/expressions/expression.hpp"
 #include "lattice/error.hpp"
+#include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/first_and_last_step.hpp"
 #include "schemes/complex/reversible_steps.hpp"
@@ -30,14 +33,15 @@ std::vector<double> at_points(const Mesh& mesh, const Solution& f, double t) {
 }
 
 /// The error at t = 1 against a solution, √(Σ A_i e_i²).
-double error_of(Mesh mesh, std::shared_ptr<const BatchDensity> density, bool fixed, double courant, const Solution& f) {
+double error_of(Mesh mesh, std::shared_ptr<const BatchDensity> density, bool fixed, double courant, const Solution& f,
+                bool direct = true) {
   const CellSpace space(std::move(mesh), std::move(density), fixed);
   const int steps = static_cast<int>(std::ceil(1 / (courant * shortest_edge(space.mesh))));
   SpaceEvolution evolution(space, 1.0 / steps);
   std::vector<double> rates;
   for (const Mesh::Point& p : space.mesh.points) rates.push_back((f(1e-6, p) - f(-1e-6, p)) / 2e-6);
   evolution.start(at_points(space.mesh, f, 0), rates);
-  CHECK(evolution.is_direct());
+  CHECK(evolution.is_direct() == direct);
   while (evolution.newest() < steps) evolution.step();
   const std::vector<double> exact = at_points(space.mesh, f, 1);
   double error = 0;
@@ -261,6 +265,71 @@ TEST_CASE("the energy of a wave on a sphere stays in a band that shrinks with th
   const double coarse = band(0.1), fine = band(0.05);
   CHECK(coarse < 0.1);
   CHECK(coarse / fine > 3);
+}
+
+/// ℓ = ½Aφ_t² − ½B|∇φ|² − ¼Cφ⁴ + Fφ, coefficients of t and x, with the solution u = cos πx cos t:
+/// F = (Au_t)_t − (Bu_x)_x + Cu³.
+std::string manufactured(const std::string& A, const std::string& A_t) {
+  const std::string u = "cos(pi*x)*cos(t)", B = "(1.2 + 0.4*cos(2*x - 0.5*t))", B_x = "(-0.8*sin(2*x - 0.5*t))",
+                    C = "(1 + 0.5*sin(2*x + t))";
+  const std::string F = "(-" + A_t + "*cos(pi*x)*sin(t) - " + A + "*" + u + " + " + B_x + "*pi*sin(pi*x)*cos(t) + " +
+                        B + "*pi^2*" + u + " + " + C + "*(" + u + ")^3)";
+  return "0.5*" + A + "*phi_t^2 - 0.5*" + B + "*phi_x^2 - 0.25*" + C + "*phi^4 + " + F + "*phi";
+}
+const Solution manufactured_solution = [](double t, const Mesh::Point& p) {
+  return std::cos(M_PI * p[0]) * std::cos(t);
+};
+
+TEST_CASE("densities that read t and x converge with order 2 on meshes, and have the form formula") {
+  const std::string moving = manufactured("(1.5 + 0.3*sin(x + 0.7*t))", "(0.21*cos(x + 0.7*t))");
+  for (const bool quadrilaterals : {false, true}) {
+    const auto error = [&](int n) {
+      return error_of(rectangle_mesh(2, 0.5, 16 * n, 4 * n, quadrilaterals), expression(moving), false, 0.3,
+                      manufactured_solution, false);
+    };
+    CHECK(std::log2(error(1) / error(2)) == Approx(2).margin(0.2));
+  }
+  const std::array times{0.0, 0.05, 0.12, 0.15, 0.19};
+  const CellSpace space(rectangle_mesh(2, 1, 4, 3, false), expression(moving), false);
+  const SpaceRows rows(space, times);
+  const Complex& complex = rows.system().complex();
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> normal;
+  std::vector<double> y(rows.system().nodes());
+  for (double& value : y) value = 0.3 * normal(random);
+  const Touching touching(complex);
+  const ComplexForm form(rows.system(),
+                         ComplexRegion::around(complex, touching, draw_centres(complex, touching, 7, random)), y);
+  const auto V = form.first_variations(2, random);
+  CHECK(form.linearised(V[0]) < 1e-12);
+  CHECK(form.form_formula(V[0], V[1]).relative() < 1e-13);
+}
+
+TEST_CASE("cells with steps of their own read t and x when they act: of order 2 in their steps") {
+  const CellSpace space(graded_interval(2, 21, 0.97), expression(manufactured("1", "0")), false);
+  const auto values = [&](double courant) {
+    std::vector<double> steps;
+    for (int c = 0; c < space.mesh.cells(); ++c) {
+      const auto cell = space.mesh.cell(c);
+      steps.push_back(courant * std::abs(space.mesh.points[static_cast<std::size_t>(cell[1])][0] -
+                                         space.mesh.points[static_cast<std::size_t>(cell[0])][0]));
+    }
+    AsynchronousEvolution evolution(space, steps);
+    const std::vector<double> start = at_points(space.mesh, manufactured_solution, 0);
+    evolution.start(start, std::vector<double>(start.size(), 0.0));
+    evolution.advance(1);
+    return evolution.values(1);
+  };
+  const std::vector<double> limit = values(0.4 / 64), exact = at_points(space.mesh, manufactured_solution, 1);
+  const auto distance = [&](const std::vector<double>& now) {
+    double sum = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) sum += space.masses[i] * std::pow(now[i] - limit[i], 2);
+    return std::sqrt(sum);
+  };
+  CHECK(distance(exact) < 0.02);  // of the mesh alone
+  const double order = std::log2(distance(values(0.1)) / distance(values(0.025))) / 2;
+  CHECK(order > 1.7);
+  CHECK(order < 2.4);
 }
 
 TEST_CASE("a density that cells cannot have is refused") {

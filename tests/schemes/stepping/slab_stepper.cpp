@@ -84,7 +84,7 @@ void start_wave(Evolution& evolution) {
 
 struct Run {
   std::vector<Row> rows;  ///< as far as steps were made
-  int iterations = 0, first_iterations = 0;
+  int iterations = 0;
   bool reported = false;
   double residual = 0;
 };
@@ -96,7 +96,6 @@ Run run_wave(Evolution& evolution, int steps) {
       evolution.stepper().step();
       run.rows.push_back(evolution.stepper().row(0));
       run.iterations += evolution.stepper().iterations();
-      if (n == 0) run.first_iterations = run.iterations;
       run.residual = std::max(run.residual, evolution.stepper().residual());
     }
   } catch (const NoConvergence&) {
@@ -194,7 +193,7 @@ TEST_CASE("the same between walls, where the first and the last cell have other 
   }
 }
 
-TEST_CASE("where the constant part does not contract steps are Newton's, and the slabs the same") {
+TEST_CASE("where the constant part does not contract the slabs are those of Newton's method") {
   const double h = ring.space_step() / 2;
   const Family stiff = element_family(2, 2, 6);  // mh = 1.9
   Evolution tried = element_evolution(stiff, 2, 2, ring, h);
@@ -203,7 +202,6 @@ TEST_CASE("where the constant part does not contract steps are Newton's, and the
   REQUIRE(b.rows.size() >= 1);
   REQUIRE(a.rows.size() == b.rows.size());
   CHECK(distance(a, b) < 1e-11);
-  CHECK(a.first_iterations > b.first_iterations);
 }
 
 TEST_CASE("a wrong constant part or a wrong Jacobian is slow, or reported, and no other solution") {

@@ -121,10 +121,10 @@ void compare(const Pair& pair, const std::string& stencil, bool point, int steps
 
 bool fits(const NamedTable& table, bool point) { return table.is_for_point() == point; }
 
-/// As long as rounding is below what is compared. Staggered waves off the sphere grow from it, and the phase of a planet is
-/// off by its square.
+/// As long as rounding is below what is compared. Staggered waves grow from it, on an even circle linearly and off the
+/// sphere like e^t, and the phase of a planet is off by its square.
 int steps_of(const Pair& pair, const std::string& stencil) {
-  if (!pair.constraint.empty() && (stencil == "rectangle-symmetric" || stencil == "nine-tuple")) return 30;
+  if (stencil == "rectangle-symmetric" || stencil == "nine-tuple") return pair.constraint.empty() ? 300 : 30;
   return pair.density.find("1/sqrt") != std::string::npos ? 300 : 1000;
 }
 

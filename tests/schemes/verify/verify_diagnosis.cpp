@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lattice/plan/solve_plan.hpp"
@@ -487,6 +488,12 @@ TEST_CASE("a diagnosis finds frames and values that were changed") {
             "a step of 2 steps of 0.3125 by kick", "is missing"},
            {"a frame doubled", with(changed(rows, [](Rows& r) { r.insert(r.begin() + 20, r[20]); })),
             "Frames 20 and 21 are the same", "missing"},
+           {"two frames exchanged", with(changed(rows, [](Rows& r) { std::swap(r[12], r[41]); })),
+            "Frames 12 and 41 were exchanged", "missing"},
+           {"neighbours exchanged", with(changed(rows, [](Rows& r) { std::swap(r[30], r[31]); })),
+            "Frames 30 and 31 were exchanged", "missing"},
+           {"the first exchanged", with(changed(rows, [](Rows& r) { std::swap(r[0], r[59]); })),
+            "Frames 0 and 59 were exchanged", "missing"},
            {"a value edited", with(changed(rows, [](Rows& r) { r[25][33] += 1e-7; })),
             "One value was changed: row 25, site 33", "frame"},
            {"two values edited", with(changed(rows, [](Rows& r) { r[25][33] += 1e-7, r[25][34] -= 1e-7; })),

@@ -10,6 +10,7 @@
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/theories/mirrored_in_time.hpp"
 #include "schemes/verify/time_reversal.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/r_adaptive_rows.hpp"
@@ -41,7 +42,7 @@ Rows start_rows(Problem& p, const std::string& name) {
 
 std::optional<Reversal> there_and_back(Problem p, const std::string& state, std::int64_t steps) {
   const Rows rows = start_rows(p, state);
-  return time_reversal([&] { return std::make_unique<Simulation>(p); }, rows, steps, tolerance);
+  return time_reversal([&](auto) { return std::make_unique<Simulation>(p); }, rows, steps, tolerance);
 }
 
 Problem sine_gordon(const std::string& stencil, const std::string& method = "multisymplectic") {
@@ -77,7 +78,7 @@ Reversal another_way_back(Problem p, const std::string& state, Change change) {
   const Rows rows = start_rows(p, state);
   int built = 0;
   const auto reversal = time_reversal(
-      [&] {
+      [&](auto) {
         if (built++ == 1) change(p);
         return std::make_unique<Simulation>(p);
       },
@@ -199,7 +200,7 @@ TEST_CASE("moving meshes with their multipliers come back to their start") {
     rows[0].insert(rows[0].end(), {given::y0[i], given::X0[i], 0});
     rows[1].insert(rows[1].end(), {given::y1[i], given::X1[i], 0});
   }
-  const auto reversal = time_reversal([&] { return std::make_unique<Simulation>(p); }, rows, 8, tolerance);
+  const auto reversal = time_reversal([&](auto) { return std::make_unique<Simulation>(p); }, rows, 8, tolerance);
   REQUIRE(reversal);
   CAPTURE(reversal->check.value, reversal->check.failure, reversal->distance);
   CHECK(reversal->promised);
@@ -253,15 +254,60 @@ TEST_CASE("an element whose rule has one end is not reversible, and another step
 TEST_CASE("traces are not asked: a row and its momenta are not their state") {
   Problem p;
   p.theory = "lotka-volterra", p.method = "dgvi", p.lattice = Lattice::point(), p.time_step = 0.1;
-  const auto make = [&] { return std::make_unique<Simulation>(p); };
-  CHECK_FALSE(time_reversal(make, Rows(2, std::vector<double>(make()->components().size(), 1.0)), 8, tolerance));
+  const auto make = [&](std::optional<double>) { return std::make_unique<Simulation>(p); };
+  CHECK_FALSE(
+      time_reversal(make, Rows(2, std::vector<double>(make(std::nullopt)->components().size(), 1.0)), 8, tolerance));
 }
 
 TEST_CASE("a vacuum stays where it is, forward and back") {
   const Problem p = sine_gordon("rectangle-symmetric");
-  const auto reversal =
-      time_reversal([&] { return std::make_unique<Simulation>(p); }, Rows(2, std::vector<double>(100)), 8, tolerance);
+  const auto reversal = time_reversal([&](auto) { return std::make_unique<Simulation>(p); },
+                                      Rows(2, std::vector<double>(100)), 8, tolerance);
   REQUIRE(reversal);
   CHECK(reversal->check.value == 0);
   CHECK(reversal->check.passed());
+}
+
+// q_tt + sin q = 0.3 cos(1.3 t): backwards the force is that of T − t.
+TEST_CASE("a force that changes in time is reversed with the rows") {
+  for (const auto& [stencil, method] :
+       std::vector<std::pair<std::string, std::string>>{{"vertex", "multisymplectic"},
+                                                        {"midpoint", "multisymplectic"},
+                                                        {"trapezoidal", "multisymplectic"},
+                                                        {"midpoint", "cgvi"}}) {
+    CAPTURE(stencil, method);
+    Problem p;
+    p.theory = "text", p.lattice = Lattice::point(), p.stencil = stencil, p.method = method, p.time_step = 0.05;
+    p.parameters["theory.density"] = std::string("0.5*phi_t^2 + cos(phi) + 0.3*phi*cos(1.3*t)");
+    const std::size_t C = Simulation(p).components().size();
+    const auto way = [&](bool mirrored) {
+      return time_reversal(
+          [&](std::optional<double> T) {
+            return std::make_unique<Simulation>(T && mirrored ? mirrored_in_time(p, *T) : p);
+          },
+          Rows{std::vector<double>(C, 0.5), std::vector<double>(C, 0.5003)}, 32, tolerance);
+    };
+    const auto back = way(true);
+    REQUIRE(back);
+    CHECK(back->promised);
+    CAPTURE(back->check.value, back->distance);
+    CHECK(back->check.passed());
+    CHECK(back->distance.back() < 1e-11);
+    // the same force on the way back is another one
+    CHECK(way(false)->distance.back() > 1e-4);
+  }
+}
+
+TEST_CASE("momenta of short steps are compared within the rounding of the differences that they are") {
+  Problem p;
+  p.theory = "pendulum", p.lattice = Lattice::point(), p.method = "cgvi";
+  for (const double h : {1e-2, 1e-4, 1e-5}) {
+    p.time_step = h;
+    const std::size_t C = Simulation(p).components().size();
+    const auto back = time_reversal([&](auto) { return std::make_unique<Simulation>(p); },
+                                    {std::vector<double>(C, 2.0), std::vector<double>(C, 2.0 + 0.7 * h)}, 8, 1e-12);
+    REQUIRE(back);
+    CAPTURE(h, back->check.value, back->check.tolerance);
+    CHECK(back->check.passed());
+  }
 }

@@ -7,6 +7,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/refused.hpp"
 
 using namespace delf;
 using namespace delf::testing;
@@ -41,6 +42,17 @@ TEST_CASE("a wave on a mesh runs, is planned and verified through the program") 
   CHECK(delf_program(folder, "verify " + scene + " --out v").code == 0);
   for (const char* fault : {"field", "variation", "sign"})
     CHECK(delf_program(folder, "verify " + scene + " --out v --verify.fault=" + fault).code == 1);
+}
+
+TEST_CASE("rows of a mesh at short steps are right to rounding, and an edited value is still found") {
+  const Folder folder;
+  for (const char* h : {"0.003", "1e-4"}) {
+    const std::string scene =
+        std::string("sphere --lattice.mesh=icosahedron:2 --run.steps=20 --output.figures=off --lattice.time_step=") + h;
+    CAPTURE(h);
+    CHECK(delf_program(folder, "verify " + scene + " --out v").code == 0);
+    CHECK(delf_program(folder, "verify " + scene + " --out v --verify.fault=field").code == 1);
+  }
 }
 
 TEST_CASE("steps that the field chooses run, end by time, and run again and back to the same") {
@@ -349,4 +361,40 @@ TEST_CASE("what leaves values of a mesh or a complex free, or makes them grow, i
   const Ran text = delf_program(folder, "verify sphere --fields text.h5");
   CHECK(text.code == 2);
   CHECK(contains(text.err, "--fields: text.h5: is not an HDF5 file"));
+}
+
+TEST_CASE("densities that read t and x run on meshes and are verified") {
+  const Folder folder;
+  folder.write("impurity.ini",
+               "[theory]\nname = sine-gordon-impurity\n[lattice]\nspace = complex\n"
+               "mesh = icosahedron:0\ntime_step = 0.1\n[initial]\nphi = x*z\n[run]\nsteps = 6\n");
+  for (const std::string density : {"",
+                                    " --theory.name=text '--theory.density=0.5*(2 + sin(x + t))*phi_t^2 - 0.5*(1 + "
+                                    "0.2*cos(x - t))*phi_x^2 - phi^4'"}) {
+    const Ran run = delf_program(folder, "run impurity.ini --output.figures=off --out out" + density),
+              verified = delf_program(folder, "verify impurity.ini --output.figures=off" + density);
+    INFO(density << "\n" << run.err << verified.out << verified.err);
+    CHECK(run.code == 0);
+    CHECK(verified.code == 0);
+  }
+  check_refused(
+      delf_program(folder,
+                   "run impurity.ini --theory.name=text '--theory.density=0.5*phi_t^2 - 0.5*phi_x^2 - x*phi*phi_x'"),
+      {"theory.name", "quadratic in phi_x"});
+}
+
+TEST_CASE("an elliptic problem whose solution is 0 is solved, from whatever start") {
+  const Folder folder;
+  folder.write("s.ini",
+               "[theory]\nname = klein-gordon\n[lattice]\nspace = complex\nmesh = graded:10,11,1\ntime = none\n"
+               "[initial]\nphi = sin(pi*x/10)\n[output]\nfigures = off\n");
+  // the last one has data of 1.2e-16 at one end, and of 0 at the other
+  for (const std::string keys : {"--initial.phi='x*(10-x)'", "--initial.phi='1e6*x*(10-x)*(x-3)'", ""}) {
+    const Ran ran = delf_program(folder, "run s.ini --out out " + keys);
+    CAPTURE(keys, ran.err);
+    CHECK(ran.code == 0);
+    const auto summary = nlohmann::json::parse(read(folder / "out/summary.json"));
+    CHECK(summary["status"] == "done");
+    CHECK(summary["residual_max"].get<double>() < 1e-14);
+  }
 }

@@ -195,3 +195,43 @@ TEST_CASE("threads share wide levels of a finite complex, and the plan says whic
                  "compared with a solution alone"));
   CHECK(contains(delf_program(folder, "plan pulse.ini --lattice.mesh=refined:60,1,35,20").err, "multiple of 3"));
 }
+
+TEST_CASE("stencils of a file that do not tile are refused or warned of, by line, and plan tells their area") {
+  const Folder folder;
+  std::string list = "complex\ncircle 4\n";
+  for (const auto& [t, role] : {std::pair("0", "given"), {"1", "initial"}, {"2", "final"}})
+    for (const char* x : {"0", "1", "2", "3"}) list += std::string("site ") + t + " " + x + " " + role + "\n";
+  list +=
+      "stencil rectangle 0 4 5 1\nstencil rectangle 1 5 6 2\nstencil rectangle 2 6 7 3\nstencil rectangle 3 7 4 0\n"
+      "stencil rectangle 4 8 9 5\nstencil rectangle 5 9 10 6\nstencil rectangle 6 10 11 7\n";
+  const std::string last = "stencil rectangle 7 11 8 4";
+  folder.write("s.ini",
+               "[theory]\nname = wave\n[lattice]\nspace = complex\nmesh = cx.txt\n[exact]\n"
+               "phi = cos(pi*x/2)*cos(pi*t/2)\n[output]\nfigures = off\n");
+  const auto run = [&](const std::string& end, const std::string& command = "run") {
+    folder.write("cx.txt", list + end);
+    return delf_program(folder, command + " s.ini" + (command == "run" ? " --out out" : ""));
+  };
+  const Ran right = run(last + "\n");
+  CHECK(right.code == 0);
+  CHECK(summary(folder)["warnings"].empty());
+  CHECK(contains(run(last + "\n", "plan").out, "  cells      Euler characteristic 0, 2 boundary curves, area 8\n"));
+  for (const auto& [end, words] : {std::pair(last + " share 7\n", "cx.txt:22: the stencils around site"),
+                                   {last + "\nstencil triangle 0 4 5\n", "cx.txt:23: the stencils around site"}}) {
+    const Ran wrong = run(end);
+    CAPTURE(wrong.err);
+    CHECK(wrong.code == 2);
+    CHECK(lines(wrong.err).size() == 1);
+    CHECK(contains(wrong.err, words));
+    CHECK(run(end, "plan").code == 2);
+  }
+  const Ran gap = run("");
+  CHECK(gap.code == 0);
+  CHECK(summary(folder)["warnings"].size() == 2);
+  CHECK(contains(gap.out, "stencils cover 0.75 of the surroundings of site 7 (t = 1, x = 3)"));
+  CHECK(contains(run("", "plan").out, "stencils cover 0.75 of the surroundings of site 7 (t = 1, x = 3)"));
+  // the same place of the circle, twice
+  folder.write("cx.txt", "complex\ncircle 4\nsite 0 0\nsite 0 4\nsite 1 0\nstencil triangle 0 2 1\n");
+  CHECK(contains(delf_program(folder, "run s.ini --out out").err,
+                 "cx.txt:4: site 1 lies where site 0 does on the circle"));
+}

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <optional>
 #include <string>
 
 #include "lattice/error.hpp"
@@ -11,9 +12,9 @@ using namespace delf::testing;
 
 namespace {
 
-std::string fault_of(const std::string& text) {
+std::string fault_of(const std::string& text, std::optional<double> merge = {}) {
   try {
-    parse_mesh(text);
+    parse_mesh(text, merge);
   } catch (const MeshError& error) {
     return std::to_string(error.line) + ": " + error.what();
   }
@@ -77,4 +78,77 @@ TEST_CASE("a mesh that cannot be read says on which line") {
   std::string binary = msh2;
   binary.replace(binary.find("2.2 0"), 5, "2.2 1");
   CHECK(fault_of(binary) == "2: a binary file; save it as ASCII (Mesh.Binary = 0)");
+}
+
+TEST_CASE("a seam whose points are listed twice is refused, made one, or kept open") {
+  const std::string twice = square + "point 1 0\npoint 2 0\npoint 2 1\npoint 1 1\ncell 0 1 2 3\ncell 4 5 6 7\n";
+  CHECK_THAT(fault_of(twice), Catch::StartsWith("5: point 4 lies where point 1 (line 2) does") &&
+                                  Catch::Contains("lattice.merge, such as 1e-06"));
+  CHECK(fault_of(twice, 0.0) == "none");
+  CHECK(parse_mesh(twice, 0.0).points.size() == 8);
+  const Mesh one = parse_mesh(twice, 1e-6);
+  CHECK(one.points.size() == 6);
+  CHECK(one.cell(1)[3] == 2);
+  CHECK(boundary_points(one).size() == 6);
+  // so far that a cell loses a side
+  CHECK_THAT(fault_of(twice, 1.0), Catch::StartsWith("9: cell 0 is degenerate"));
+}
+
+TEST_CASE("cells of a file that overlap are refused with the lines of both") {
+  CHECK(fault_of(square + "point 0.5 0.5\npoint 2 0.5\npoint 2 2.1\ncell 0 1 2 3\ncell 4 5 6\n") ==
+        "9: cell 1 overlaps cell 0 (line 8): a part of space would count twice; move their points, or remove one");
+}
+
+TEST_CASE("a mesh with a seam runs as one without, and plan and report tell its shape") {
+  const Folder folder;
+  // 4 × 2 squares; with `twice` the points at x = 2 are there for the left half and for the right one
+  const auto mesh = [&](bool twice) {
+    std::string text;
+    int count = 0;
+    std::vector<std::vector<int>> number(5, std::vector<int>(3)), right = number;
+    for (int i = 0; i <= 4; ++i)
+      for (int j = 0; j <= 2; ++j) {
+        text += "point " + std::to_string(i) + " " + std::to_string(j) + "\n";
+        number[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = count++;
+      }
+    right = number;
+    for (std::size_t j = 0; twice && j <= 2; ++j) {
+      text += "point 2 " + std::to_string(j) + "\n";
+      right[2][j] = count++;
+    }
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 2; ++j) {
+        const auto& low = i < 2 ? number : right;
+        text += "cell " + std::to_string(low[i][j]) + " " + std::to_string(low[i + 1][j]) + " " +
+                std::to_string(low[i + 1][j + 1]) + " " + std::to_string(low[i][j + 1]) + "\n";
+      }
+    return text;
+  };
+  folder.write("one.txt", mesh(false)), folder.write("two.txt", mesh(true));
+  folder.write("g.ini",
+               "[theory]\nname = wave\n[lattice]\nspace = complex\nmesh = two.txt\ncourant = 0.4\n[initial]\n"
+               "phi = exp(-(x-1)^2)\n[run]\nuntil = 4\n[boundary]\nmesh = natural\n[output]\nfigures = off\n");
+  const Ran refused = delf_program(folder, "run g.ini --out out");
+  CHECK(refused.code == 2);
+  CHECK(lines(refused.err).size() == 1);
+  CHECK(contains(refused.err, "two.txt:16: point 15 lies where point 6 (line 7) does"));
+  const auto last = [&](const std::string& keys) {
+    const Ran ran = delf_program(folder, "run g.ini --out out " + keys);
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    return std::pair(lines(read(folder / "out/series.csv")).back(), ran.out);
+  };
+  const auto [wanted, whole] = last("--lattice.mesh=one.txt");
+  const auto [merged, of_merged] = last("--lattice.merge=1e-9");
+  const auto [open, of_open] = last("--lattice.merge=0");
+  CHECK(merged == wanted);
+  CHECK(open != wanted);
+  CHECK(contains(of_merged, "8 quadrilaterals; Euler characteristic 1, 1 boundary curve\n"));
+  CHECK(contains(of_open, "Euler characteristic 2, 2 boundary curves, in 2 pieces\n"));
+  CHECK(contains(delf_program(folder, "plan g.ini --lattice.merge=0").out,
+                 "16 boundary points, natural\n             Euler characteristic 2, 2 boundary curves, in 2 pieces\n"));
+  CHECK(delf_program(folder, "run out/scene.ini --out again").code == 0);
+  CHECK(lines(read(folder / "again/series.csv")).back() == open);
+  CHECK(contains(delf_program(folder, "run sphere --run.steps=2 --lattice.merge=0 --output.figures=off --out s").err,
+                 "lattice.merge"));
 }

@@ -87,7 +87,7 @@ TEST_CASE("without gnuplot a run succeeds, and says which package is missing") {
 
 TEST_CASE("a film keeps the first and the last row, few enough, and evenly spaced but for the last") {
   const auto lattice = delf::Lattice::circle(2000, 10);
-  Film film(lattice, 5000);
+  Film film(lattice);
   for (int f = 0; f < 5000; ++f) film.append(f, std::vector<double>(2000, f));
   film.finish();
   CHECK(film.frames() <= 601);
@@ -97,6 +97,44 @@ TEST_CASE("a film keeps the first and the last row, few enough, and evenly space
   CHECK(film.frame(film.frames() - 1)[3] == 4999);
   CHECK(film.even_frames() == film.frames() - 1);
   CHECK(film.time(2) - film.time(1) == film.time(film.even_frames() - 1) - film.time(film.even_frames() - 2));
+}
+
+TEST_CASE("frames farther apart than the motion lasts are aliased, whatever their number") {
+  const delf::Lattice lattice = delf::Lattice::circle(16, 16);
+  // cos(qx − ωt) and its rate, in so many frames a period
+  const auto film_of = [&](double frames_a_period, double amplitude) {
+    Film film(lattice);
+    for (int f = 0; f < 2000; ++f) {
+      std::vector<double> row, rates;
+      for (int i = 0; i < 16; ++i) {
+        const double phase = 2 * std::acos(-1.0) * (i / 16.0 - f / frames_a_period);
+        row.push_back(std::cos(2 * std::acos(-1.0) * i / 16.0) + amplitude * std::cos(phase));
+        rates.push_back(amplitude * std::sin(phase) * 2 * std::acos(-1.0) / frames_a_period);
+      }
+      film.append(f, row, rates);
+    }
+    film.finish();
+    return film;
+  };
+  CHECK(film_of(200, 1).stride() == 4);
+  CHECK_FALSE(film_of(200, 1).is_aliased());
+  CHECK_FALSE(film_of(12, 1).is_aliased());  // three frames in a period are left
+  CHECK(film_of(9, 1).is_aliased());
+  CHECK(film_of(4.01, 1).is_aliased());      // nearly at rest
+  CHECK_FALSE(film_of(4.01, 1e-3).is_aliased());
+}
+
+TEST_CASE("a map that shows what is not there says so, in its title and in the report") {
+  if (!has_gnuplot()) return;
+  const Folder folder;
+  // the two collide every 25.29
+  const auto [every, aliased] = GENERATE(table<std::string, bool>({{"13", false}, {"640", true}}));
+  const Ran ran = delf_program(
+      folder, "run collision --run.until=400 --output.fields=off --output.format=svg --out out --output.every=" + every);
+  INFO(ran.out);
+  REQUIRE(ran.code == 0);
+  CHECK(contains(ran.out, "what moves in them may be an alias; set output.every = ") == aliased);
+  CHECK(contains(read(folder / "out/figures/spacetime.svg"), "may be an alias") == aliased);
 }
 
 TEST_CASE("a trace keeps every extreme in bounded memory") {

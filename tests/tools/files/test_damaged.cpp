@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <random>
 
 #include "lattice/error.hpp"
@@ -76,4 +77,27 @@ TEST_CASE("a fields.h5 that is still written can be read") {
   CHECK(reader.frames() == 3);
   CHECK(reader.row(2)[4] == 1.5);
   file.close();
+}
+
+TEST_CASE("a fields.h5 whose disk filled opens as any other, and has the rows of its last flush") {
+  const Folder folder;
+  for (const int blocks : {60, 400, 2000}) {  // of 512 or 1024 bytes: files end there
+    const delf::testing::Ran ran = delf::testing::delf_program(
+        folder, "run kink --lattice.sites=64 --run.steps=4000 --output.every=1 --output.figures=off --out out",
+        "ulimit -f " + std::to_string(blocks) + "; ");
+    INFO(ran.err);
+    REQUIRE(ran.code == 4);
+    CHECK(delf::testing::contains(ran.err, "has room"));
+    // as any reader opens it: with no words about writers
+    const Hdf5Handle file(H5Fopen((folder / "out/fields.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    CHECK(file);
+    if (blocks < 2000) continue;  // not one block of rows
+    const FieldsReader reader(folder / "out/fields.h5");
+    CHECK(reader.frames() >= 1024);
+    // the last one was written: no row of nothing is behind them
+    for (int frame = 0; frame < reader.frames(); ++frame) {
+      const std::vector<double> row = reader.row(frame);
+      CHECK(std::ranges::max(row) > std::ranges::min(row));
+    }
+  }
 }

@@ -199,13 +199,12 @@ TEST_CASE("parameters of a theory hide neither quantities nor the length of spac
   CHECK(m["at"].get<double>() == Approx(1).margin(0.05));
   CHECK(m["own"] == 5);
   CHECK(m["sum"].get<double>() == Approx(6).margin(0.05));
-  CHECK(measures_of(folder, text_scene("L = 5", "n = kinks\n"))["n"] == 2);
-  for (const char* measure : {"L", "value(L/2)"}) {
+  for (const char* measure : {"kinks", "L", "value(L/2)"}) {
     const Ran ran =
         delf_program(folder, "run '" + text_scene("L = 5", std::string("m = ") + measure + "\n") + "' --out no");
     INFO(ran.err);
     CHECK(ran.code == 2);
-    CHECK(contains(ran.err, "L is both the length of space and theory.L"));
+    CHECK(contains(ran.err, "\"L\" is the length of space in formulas"));
   }
 }
 
@@ -297,4 +296,42 @@ TEST_CASE("the time at which the energy is lost is measured, of sites that move 
   CHECK(ran.err.find("the sites of this scheme move") != std::string::npos);
   ran = delf_program(folder, moving + "'--measure.lost=energy_error_time(0)' --out refused");
   CHECK(ran.code == 2);
+}
+
+TEST_CASE("measures at a place see all steps: records beyond Nyquist's frequency change nothing") {
+  const Folder folder;
+  const auto scene = [&](const std::string& until, const std::string& every) {
+    return folder.write("oscillator.ini",
+                        "[theory]\nname = harmonic-oscillator\n[lattice]\nstencil = trapezoidal\nspace = point\n"
+                        "time_step = 0.1\n[initial]\nstate = point\nq = 1\n[run]\nuntil = " +
+                            until + "\n[output]\nfigures = off\nevery = " + every +
+                            "\n[measure]\nomega = frequency(0)\npassed = crossings(0, 0)\nhigh = maximum(0)\n"
+                            "low = minimum(0)\nwhen = minimum_time(0)\n");
+  };
+  // trapezoidal: sin(ωh/2) = h/2
+  const double omega = 20 * std::asin(0.05);
+  for (const char* every : {"1", "50", "0"}) {
+    INFO(every);
+    const auto m = measures_of(folder, scene("50", every));
+    CHECK(m["omega"].get<double>() == Approx(omega).epsilon(0.01));
+    CHECK(m["passed"] == 16);
+    CHECK(m["high"].get<double>() == Approx(1).epsilon(1e-3));
+    CHECK(m["low"].get<double>() == Approx(-1).epsilon(1e-3));
+    CHECK(std::remainder(m["when"].get<double>() - pi / omega, 2 * pi / omega) == Approx(0.0).margin(2e-3));
+  }
+  // of less than a period no frequency is known
+  CHECK(measures_of(folder, scene("5", "1"))["omega"].is_null());
+}
+
+TEST_CASE("a run in parts has the measures of the whole, to the bit") {
+  const Folder folder;
+  const std::string scene = folder.write(
+      "kink.ini", kink_scene("omega = frequency(20)\npassed = crossings(18, pi)\nhigh = maximum(18)\n"
+                             "when = maximum_time(18)\nlast = value(18)\n"));
+  const auto whole = measures_of(folder, scene, "--output.every=7");
+  measures_of(folder, scene, "--output.every=7 --run.until=4");
+  const Ran ran = delf_program(folder, "resume out --run.until=10");
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK(nlohmann::json::parse(read(folder / "out/summary.json"))["measures"] == whole);
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/python.hpp"
@@ -136,7 +138,7 @@ TEST_CASE("a folder that another run holds, and a scene that delf did not write,
   INFO(held.err);
   CHECK(held.code == 4);
   CHECK(contains(held.out, "130"));
-  CHECK(contains(held.err, "another run writes to this folder"));
+  CHECK(contains(held.err, "another command writes to this folder"));
 
   const std::string mine = folder.write("scene.ini", small_scene());
   const Ran over = delf_program(folder, "run scene.ini --out .");
@@ -145,4 +147,26 @@ TEST_CASE("a folder that another run holds, and a scene that delf did not write,
   CHECK(contains(over.err, "a scene that delf did not write"));
   CHECK(delf_program(folder, "run static-kink --out .").code == 2);  // on a mesh too
   CHECK(read(mine) == small_scene());
+}
+
+TEST_CASE("a run that goes further warns as one without a break") {
+  const Folder folder;
+  const auto warnings = [&](const std::string& scene, int first, int steps) {
+    const std::string run = "run " + scene + " --output.every=1 --output.figures=off --out ";
+    REQUIRE(delf_program(folder, run + "whole --run.steps=" + std::to_string(steps)).code == 0);
+    REQUIRE(delf_program(folder, run + "out --run.steps=" + std::to_string(first)).code == 0);
+    REQUIRE(resume(folder, "--run.steps=" + std::to_string(steps)).code == 0);
+    const auto of = [&](const char* results) {
+      return nlohmann::json::parse(read(folder / (std::string(results) + "/summary.json")))["warnings"];
+    };
+    CHECK(of("out") == of("whole"));
+    return of("whole").dump();
+  };
+  folder.write("jump.ini",
+               "[theory]\nname = guiding-centre\n[lattice]\nspace = point\ntime_step = 0.01\n[scheme]\nmethod = dgvi\n"
+               "functions = 5\nquadrature = gauss\npoints = 6\nflux = midpoint\n[initial]\nstate = "
+               "point\nq = 0.3, 2, 0.1, 2\n");
+  CHECK(contains(warnings("jump.ini", 23, 60), "jump grows from"));
+  CHECK(contains(warnings("kink --initial.speed=0.1 --lattice.sites=21 --lattice.stencil=triangle-vertex", 140, 168),
+                 "pinned by the lattice"));
 }

@@ -134,3 +134,58 @@ TEST_CASE("a section of a method without momenta at row 0 is refused in one line
                 {"output.section", "no momenta at row 0"});
   CHECK_FALSE(std::filesystem::exists(folder / "out"));
 }
+
+TEST_CASE("an angle crosses its section modulo 2 pi, and has values from -pi to pi there") {
+  constexpr double pi = std::numbers::pi, h = 0.1;
+  // q1 turns forwards, 0.95 of a turn in ten rows; q2 turns backwards
+  const auto section = [&](const std::string& text, const std::vector<int>& angles, double speed = 6) {
+    Section made(text, 2, h, angles);
+    for (int n = 0; n <= 100; ++n) made.see({0.1 + speed * n * h, 1 - 2 * n * h, speed, -2});
+    made.finish();
+    return numbers_of(made.table());
+  };
+  const auto points = section("q1 = 0, p1 > 0", {0, 1});
+  REQUIRE(points.size() == 9);  // 0.1 + 6t = 2πn, t < 10
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const double t = (2 * pi * static_cast<double>(n + 1) - 0.1) / 6;
+    CHECK(std::abs(points[n][0] - t) < 1e-12);
+    CHECK(std::abs(points[n][1]) < 1e-12);
+    CHECK(std::abs(points[n][2] - std::remainder(1 - 2 * t, 2 * pi)) < 1e-12);
+  }
+  CHECK(section("q1 = 0", {}).empty());
+  CHECK(section("q1 = 3", {}).size() == 1);
+  CHECK(section("q1 = 3, q2 < 0", {0}).size() == 9);  // q2 itself, from 1 to −19, is no angle here
+  CHECK(section("q1 = 3, q2 < 0", {0, 1}).size() == 3);
+  CHECK(section("q2 = -1", {0, 1}).size() == 3);
+  // more than a turn between two rows, in their order
+  const auto fast = section("q1 = 0", {0}, 100);
+  REQUIRE(fast.size() == 159);
+  CHECK(std::ranges::is_sorted(fast, {}, [](const auto& point) { return point[0]; }));
+  const auto back = section("q1 = 0", {0}, -100);
+  REQUIRE(back.size() == 160);
+  CHECK(std::ranges::is_sorted(back, {}, [](const auto& point) { return point[0]; }));
+}
+
+TEST_CASE("sections of pendulums that turn over have every turn: by name, as text, and on the circle") {
+  const Folder folder;
+  const std::string keys =
+      "[lattice]\nspace = point\nstencil = trapezoidal\ntime_step = 0.05\n[initial]\nstate = point\nq = 0.1\nv = 8\n"
+      "[run]\nuntil = 30\n[output]\nfigures = off\nsection = q = 0, p > 0\n";
+  folder.write("p.ini", "[theory]\nname = pendulum\n" + keys);
+  folder.write("t.ini", "[theory]\ndensity = 0.5*phi_t^2 + cos(phi) - 1\n" + keys);
+  const auto count = [&](const std::string& command) {
+    const Ran ran = delf_program(folder, "run " + command + " --out out");
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    return lines(read(folder / "out/section.csv")).size() - 1;
+  };
+  CHECK(count("p.ini") == 37);  // 30.0125/T, T = ∫ dq/√(64 + 2 cos q − 2 cos 0.1) = 0.79806
+  CHECK(count("t.ini --theory.angles=phi") == 37);
+  CHECK(count("t.ini") == 0);
+  CHECK(count("t.ini --theory.fibre=S1") == 37);
+  check_refused(delf_program(folder, "run t.ini --theory.angles=psi --out out"),
+                {"theory.angles", "none of the fields"});
+  check_refused(
+      delf_program(folder, "run t.ini --theory.angles=phi --theory.density='0.5*phi_t^2 - 0.5*phi^2' --out out"),
+      {"theory.angles", "grows by 2 pi"});
+}

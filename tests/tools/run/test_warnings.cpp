@@ -3,6 +3,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/python.hpp"
 
 using namespace delf::testing;
 
@@ -16,6 +17,10 @@ struct Done {
   explicit Done(const std::string& arguments) {
     const Folder folder;
     folder.write("small.ini", small_scene());
+    folder.write("lossy.ini",
+                 "[theory]\nname = sine-gordon\nmass = 2\n[lattice]\nspace = interval\nlength = 60\nsites = 17\n"
+                 "courant = 0.5\n[scheme]\nmethod = radau-iia\nstages = 3\nspace = spectral\n[initial]\n"
+                 "state = noise\nwavenumber = 1\n[run]\nsteps = 7\n");
     const Ran ran = delf_program(folder, "run " + arguments + " --output.figures=off --out out");
     INFO(arguments << "\n" << ran.err);
     REQUIRE(ran.code == 0);
@@ -59,6 +64,24 @@ TEST_CASE("a run that ends well and may be wrong says why, in the report and in 
     CHECK(contains(done.report, "  warning    " + warning.get<std::string>() + "\n"));
 }
 
+TEST_CASE("what no record shows is warned of: without records, in a few steps, of a phase") {
+  const std::string drifting =
+      "soliton-bounce --mesh.alpha=5 --lattice.sites=24 --run.until=15 --scheme.strategy=control --scheme.time=gauss2";
+  const std::string swinging = "pendulum --initial.amplitude=3 --lattice.stencil=midpoint --run.until=60 --lattice.time_step=";
+  const auto [arguments, words, count] = GENERATE_COPY(table<std::string, std::string, int>({
+      {drifting + " --output.every=0", "the energy leaves its early band", 1},
+      // radau-iia on waves that it damps: 82 % of the energy in seven steps
+      {"lossy.ini", "the energy loses 0.", 1},
+      {"lossy.ini --output.every=0", "the energy loses 0.", 1},
+      {swinging + "0.8", "half the step moves the field by", 1},
+      {swinging + "0.02", "half the step", 0},
+  }));
+  INFO(arguments);
+  const Done done(arguments);
+  INFO(done.summary["warnings"].dump(1));
+  CHECK(done.warnings(words) == count);
+}
+
 TEST_CASE("shipped scenes as they are, and near misses, warn of nothing") {
   const std::string arguments =
       GENERATE(as<std::string>(), "kepler", "pendulum", "fast-kink", "kink", "kink-train", "collision --run.until=20",
@@ -93,4 +116,19 @@ TEST_CASE("the report says what residual and tolerance are of") {
   CHECK(
       contains(Done("small.ini --run.steps=10").report, "scheme.tolerance = 1e-14 is of the last change of the field"));
   CHECK_FALSE(contains(Done("wave-packet --run.steps=10").report, "scheme.tolerance"));
+}
+
+TEST_CASE("no error of random scenes is silent, and the count can fail", "[slow]") {
+  const Folder folder;
+  const auto count = [&](const std::string& options) {
+    return shell(folder, python(folder) + " -B '" + scenes_folder() + "/../../tests/tools/run/random_scenes.py' '" +
+                             program_path() + "' " + options);
+  };
+  const Ran ran = count("--count 40");
+  INFO(ran.out << ran.err);
+  CHECK(ran.code == 0);
+  const Ran strict = count("--count 6 --limit 1e-9");
+  INFO(strict.out << strict.err);
+  CHECK(strict.code == 1);
+  CHECK(contains(strict.out, "wrong, silent"));
 }

@@ -153,6 +153,52 @@ TEST_CASE("a Lagrangian on values, without jets, steps like the stencil whose ac
                 {"theory.lagrangian: is an action by itself"});
 }
 
+TEST_CASE("a Lagrangian on values that has other equations than the density is refused") {
+  const Folder folder;
+  const std::string sites = "[stencil]\nsites = (0,0) (1,0) (0,1) (1,1)\n[initial]\nphi = sin(2*pi*x/L)\n";
+  const std::string action = "0.25*((y2 - y1)^2 + (y4 - y3)^2)/h^2 - 0.25*((y3 - y1)^2 + (y4 - y2)^2)/k^2 + ";
+  const auto write = [&](const std::string& lagrangian) {
+    folder.write("own.ini", "[theory]\ndensity = 0.5*phi_t^2 - 0.5*phi_x^2 + cos(phi) - 1\nlagrangian = " + lagrangian +
+                                "\n" + sites + circle);
+    return delf_program(folder, "plan own.ini");
+  };
+  const std::string potential = "0.25*(cos(y1) + cos(y2) + cos(y3) + cos(y4))";
+  CHECK(write("h*k*(" + action + potential + " - 1)").code == 0);
+  CHECK(write("h*k*(" + action + potential + ")").code == 0);                    // a constant less
+  CHECK(write("h*k*(" + action + potential + ") + k*(y2^2 - y1^2)").code == 0);  // a divergence more
+  CHECK(write("h*k*(" + action + "cos(y1))").code == 0);                         // of order 1
+  CHECK(write("h*k*(" + action + "cos(0.25*(y1 + y2 + y3 + y4)))").code == 0);
+  const std::string refused = "theory.lagrangian: is no action of the density";
+  check_refused(write("h*k*(" + action + "0.99*" + potential + ")"), {refused});
+  check_refused(write("2*h*k*(" + action + potential + ")"), {refused});
+  check_refused(write("h*k*(" + action + "cos(y1) - 0.01*y1^4)"), {refused});
+  check_refused(
+      write("h*k*(0.25*((y2 - y1)^2 + (y4 - y3)^2)/k^2 - 0.25*((y3 - y1)^2 + (y4 - y2)^2)/h^2 + " + potential + ")"),
+      {refused});
+  check_refused(write("-h*k*(" + action + potential + ")"), {refused});
+  // a chain, whose sites are no points of a field, and mechanics
+  folder.write(
+      "chain.ini",
+      "[theory]\ndensity = 0.5*phi_t^2 - (exp(phi_x) - phi_x - 1)\nlagrangian = h*(0.5*((y2 - y1)/h)^2 - "
+      "(exp(y3 - y1) - (y3 - y1) - 1))\n[stencil]\nsites = (0,0) (1,0) (0,1)\n[initial]\nphi = 0.1*sin(2*pi*x/L)\n"
+      "[lattice]\nlength = 63\nsites = 63\ntime_step = 0.05\n" +
+          rest);
+  const Ran chain = delf_program(folder, "plan chain.ini");
+  INFO(chain.err);
+  CHECK(chain.code == 0);
+}
+
+TEST_CASE("a parameter that formulas would read as something else is refused") {
+  const Folder folder;
+  for (const char* name : {"L", "y", "z", "X", "h", "k", "t", "x", "phi", "phi_t", "sin", "pi"}) {
+    INFO(name);
+    folder.write("own.ini", std::string("[theory]\ndensity = 0.5*phi_t^2 - 0.5*phi_x^2\nparameters = a = 1, ") + name +
+                                " = 5\n[initial]\nphi = 0\n" + circle);
+    const Ran ran = delf_program(folder, "plan own.ini");
+    check_refused(ran, {"own.ini:3: theory.parameters", std::string("\"") + name + "\"", "choose another name"});
+  }
+}
+
 TEST_CASE("a derivative that no stencil of the scheme has in its jets is refused, not left out") {
   const Folder folder;
   const std::string initial = "[initial]\nstate = noise\n";
@@ -205,7 +251,7 @@ TEST_CASE("a density without a value says where, and which part of it") {
   const Ran ran = delf_program(folder, "run log.ini --out out --lattice.stencil=triangle-vertex");
   INFO(ran.err);
   CHECK(ran.code == 3);
-  CHECK(contains(ran.err, "step 7, t = 1.11111, site 0"));
+  CHECK(contains(ran.err, "step 6, t = 0.952381: the energy is not finite"));
   CHECK(contains(ran.err, "near site 0 at t = 0.952381 log(phi) has no value, where phi = -0.104106"));
   CHECK(lines(ran.err).size() == 1);
 }

@@ -165,16 +165,44 @@ TEST_CASE("equations of second order and NLS are verified, and a planted fault i
   }
 }
 
-TEST_CASE("plans name the wave (-1)^j of KdV, and wide stencils ask for clamped walls") {
+TEST_CASE("plans name the wave (-1)^j of KdV, and clamped walls ask for second derivatives") {
   const Folder folder;
   const Ran kdv = delf_program(folder, "plan kdv"), boussinesq = delf_program(folder, "plan boussinesq");
   CHECK(contains(kdv.out, "(-1)^j is a wave of the scheme (1 root), and none of the theory"));
   CHECK_FALSE(contains(boussinesq.out, "(-1)^j is"));
-  check_refused(delf_program(folder, "run boussinesq --boundary.left=fixed"), {"boundary.left = clamped"});
+  check_refused(delf_program(folder, "run kink --lattice.space=interval --boundary.left=clamped"),
+                {"boundary.left", "second derivatives"});
+  check_refused(delf_program(folder, "run boussinesq --lattice.stencil=hexagon --lattice.sites=242"),
+                {"lattice.stencil", "three columns"});
   const Ran limits = delf_program(folder, "stability beam --stability.schemes=nine-tuple --stability.steps=300");
   CHECK(limits.code == 0);
   CHECK(contains(limits.out, "2 limits compared"));
   check_refused(
       delf_program(folder, "stability kdv"),
       {"not applicable, there is no limit to find: six-tuple: on a circle no step determines the waves of theta = 0"});
+}
+
+TEST_CASE("ends of beams, and densities that read t and x on triangles and sub-steps, are verified") {
+  const Folder folder;
+  folder.write("beam.ini",
+               "[theory]\ndensity = 0.5*phi_t^2 - 0.5*phi_xx^2\n[lattice]\nspace = interval\nlength = 1\nsites = 21\n"
+               "time_step = 0.002\n[initial]\nphi = 0.5*x + x^2*(1 - x)^2\n[run]\nsteps = 14\n");
+  folder.write("placed.ini",
+               "[theory]\ndensity = 0.5*(1.5 + 0.5*sin(x))*phi_t^2 - 0.5*(1.2 + 0.4*cos(x))*phi_x^2 - 0.25*phi^4\n"
+               "[lattice]\nspace = circle\nlength = 2*pi\nsites = 20\ncourant = 0.4\n[initial]\nphi = sin(x)\n"
+               "[run]\nsteps = 14\n");
+  for (const std::string scene :
+       {"beam.ini --lattice.stencil=six-tuple --boundary.left=clamped --boundary.right=natural",
+        "beam.ini --lattice.stencil=nine-tuple --boundary.left=fixed --boundary.right=clamped",
+        "placed.ini --lattice.stencil=triangle '--theory.density=exp(0.4*t)*(0.5*phi_t^2 - 0.5*phi_x^2 - 0.5*phi^2)'",
+        "placed.ini --lattice.stencil=triangle", "placed.ini --lattice.stencil=triangle-vertex",
+        "placed.ini --lattice.stencil=triangle --lattice.space=interval --boundary.left=natural",
+        "placed.ini --scheme.method=composition"}) {
+    const std::string run = "verify " + scene + " --output.figures=off";
+    const Ran right = delf_program(folder, run), wrong = delf_program(folder, run + " --verify.fault=sign");
+    INFO(run << "\n" << right.out << right.err);
+    CHECK(right.code == 0);
+    CHECK(wrong.code == 1);
+    CHECK(contains(right.out, "form formula"));
+  }
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -102,6 +104,32 @@ TEST_CASE("limits of a theory's own waves are those at its own space step") {
   LimitRequest faulty = quick();
   faulty.theory_factor = 1.05;
   CHECK_FALSE(find_limit("triangle-vertex", own, faulty).agrees());
+}
+
+TEST_CASE("limits of own waves are found at the theory's own speed, frequency or stiffness") {
+  // leapfrog: ω_max h ≤ 2 with ω_max² = 4c²/k² + m² + 16κ²/k⁴, L = 10 and N = 200
+  const double k = 0.05;
+  const testing::Folder folder;
+  const auto limit_of = [&](double c, double m, double kappa, const char* stencil) {
+    const std::string terms = kappa > 0 ? fmt::format(" - 0.5*{:e}*phi_xx^2", kappa * kappa) : "";
+    const std::string density =
+        fmt::format("0.5*phi_t^2 - 0.5*{:e}*phi_x^2 - 0.5*{:e}*phi^2{}", c * c, m * m, terms);
+    folder.write("own.ini",
+                 fmt::format("[theory]\ndensity = {}\n[lattice]\nspace = circle\nlength = 10\nsites = 200\ncourant = 0.5\n"
+                             "stencil = {}\n[initial]\nphi = 0\nphi_t = 0\n[run]\nsteps = 1\n[stability]\nwaves = own\n"
+                             "steps = 400\n",
+                             density, stencil));
+    const Scene scene = read_scene(folder.path() / "own.ini", {});
+    const StabilityRequest request = read_stability_request(scene);
+    const Limit limit = find_limit(request.schemes[0].name, {request.schemes[0].problem, std::nullopt}, request.limit);
+    CAPTURE(c, m, kappa, limit.theory, limit.observed);
+    CHECK(limit.agrees());
+    return limit.theory;
+  };
+  for (const double c : {1e-3, 1.0, 340.0, 3e8})
+    CHECK(std::abs(limit_of(c, 0, 0, "triangle-vertex") * c - 1) < 1e-6);
+  CHECK(std::abs(limit_of(1, 1e4, 0, "triangle-vertex") * k * std::sqrt(4 / (k * k) + 1e8) / 2 - 1) < 1e-6);
+  CHECK(std::isinf(limit_of(340, 0, 0, "rectangle")));
 }
 
 TEST_CASE("limits found by running are those of the symbol, to one in a hundred") {
@@ -303,6 +331,18 @@ TEST_CASE("a stress case in a process of its own ends as it does here") {
     CHECK(apart.error_linf == here.error_linf);
     CHECK(apart.steps == here.steps);
   }
+}
+
+TEST_CASE("a stress case whose steps outlast its budget is cut, with what there was before") {
+  Corner c = corner("size", "N = 1000000", "rectangle");
+  c.problem.lattice = Lattice::circle(300001, 0.3 * 300001);
+  c.problem.time_step = 0.15;
+  c.state.name = "noise", c.state.values["initial.amplitude"] = 1.0;
+  c.problem.parameters["theory.mass"] = 30.0;  // mh = 4.5: steps are followed, at seconds each
+  const CornerResult r = run_corner_apart(c, 0.05);
+  CHECK_FALSE(must_not_be(r.verdict));
+  CHECK(std::isfinite(r.cut_at));
+  CHECK(r.steps < c.steps);
 }
 
 TEST_CASE("every stress case of every group names keys that a scene has") {

@@ -121,22 +121,24 @@ TEST_CASE("finished runs are not repeated, others and those of other settings ar
   CHECK(sweep_of(folder)["runs_reused"] == 2);
 }
 
-TEST_CASE("a run that fails is a row with its status, and a sweep fails if all its runs do") {
+TEST_CASE("a run that fails is a row with its status, and a sweep with such a row is not done") {
   const Folder folder;
   const std::string scene = folder.write("kink.ini", scene_with_kink());
   const std::string command = "sweep '" + scene + "' --lattice.stencil=triangle-vertex --sweep.keep=table --out out ";
   Ran ran = delf_program(folder, command + "--lattice.courant=0.5,3 --run.until=200");
-  CHECK(ran.code == 0);
+  CHECK(ran.code == 3);
+  CHECK(contains(ran.err, "1 of 2 runs did not end well"));
   Json runs = sweep_of(folder)["runs"];
   CHECK(runs[0]["status"] == "done");
   CHECK(runs[1]["status"] == "not-finite");
   CHECK(runs[1]["failure"].is_string());
   ran = delf_program(folder, command + "--lattice.courant=3,4 --run.until=200");
   CHECK(ran.code == 3);
+  CHECK(contains(ran.err, "none of the runs ended well"));
   // what only the engine finds is a row too
-  ran =
-      delf_program(folder, "sweep '" + scene + "' --lattice.stencil=rectangle,nine-tuple --sweep.keep=table --out out");
-  CHECK(ran.code == 0);
+  ran = delf_program(folder, "sweep '" + scene + "' --lattice.stencil=rectangle,hexagon --sweep.keep=table --out out");
+  CHECK(ran.code == 2);
+  CHECK(contains(ran.err, "1 of 2 runs could not begin"));
   runs = sweep_of(folder)["runs"];
   CHECK(runs[1]["status"] == "bad-input");
   CHECK(contains(runs[1]["failure"], "lattice.stencil"));
@@ -149,6 +151,33 @@ TEST_CASE("runs that warn are counted, and the first warning is told") {
   CHECK(contains(delf_program(folder, command + "11,101").out,
                  "warnings   of 1 runs, in sweep.json; the first: a pulse"));
   CHECK_FALSE(contains(delf_program(folder, command + "101,121").out, "warnings"));
+}
+
+TEST_CASE("a folder of results is held by one sweep at a time") {
+  const Folder folder;
+  const std::string scene = folder.write("kink.ini", scene_with_kink());
+  // The second one begins when a run of the first is under way, which goes on until it is interrupted.
+  const std::string command = "'" + program_path() + "' sweep '" + scene + "' --sweep.jobs=1 --out out ";
+  const Ran ran = shell(folder, command +
+                                    "--run.until=1e7,2e7 > first.txt 2>&1 & for i in $(seq 100); do sleep 0.05; "
+                                    "ls out/runs > /dev/null 2>&1 && break; done; " +
+                                    command + "--run.until=1,2; code=$?; kill -INT $!; wait $!; exit $code");
+  CHECK(ran.code == 4);
+  CHECK(lines(ran.err).size() == 1);
+  CHECK(contains(ran.err, "out: another command writes to this folder"));
+  // and it is free again
+  CHECK(delf_program(folder, "sweep '" + scene + "' --run.until=1,2 --out out").code == 0);
+}
+
+TEST_CASE("a run of a sweep that the system ends is a failure of the sweep") {
+  const Folder folder;
+  const std::string scene = folder.write("kink.ini", scene_with_kink());
+  // Files end at 40 blocks of 512 bytes: rows of the longer run do not fit.
+  const Ran ran = shell(folder, "ulimit -f 40; '" + program_path() + "' sweep '" + scene +
+                                    "' --sweep.keep=table --output.figures=off --output.checkpoint=0 "
+                                    "--output.every=1 --run.until=0.4,200 --out out");
+  CHECK(ran.code == 4);
+  CHECK(contains(ran.err, "1 of 2 runs crashed or were failed by the system"));
 }
 
 TEST_CASE("Ctrl-C leaves whole rows, and the same command goes on from there") {

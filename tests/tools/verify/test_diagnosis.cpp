@@ -115,6 +115,77 @@ TEST_CASE("a tail that is wrong by less than the tolerance is seen beside the fo
       CHECK(measured["remark"] == "more than rounding, and below the tolerance of the checks");
 }
 
+TEST_CASE("a mass that the terms hide is found beside the force, and rows that are right to rounding are not accused") {
+  const Folder folder;
+  folder.write("small.ini", scene());
+  const auto check = [](const Json& json, const std::string& name) {
+    for (const Json& one : json["checks"])
+      if (one["name"] == name) return one;
+    return Json();
+  };
+  struct Case {
+    const char *h, *mass;
+    double share;  // of the force: E = (m'^2 - m^2) sin φ
+  };
+  for (const Case& c : {Case{"0.01", "1", 0}, {"1e-4", "1.00003", 6e-5}, {"1e-5", "1.0003", 6e-4}}) {
+    const std::string step = std::string("--lattice.time_step=") + c.h + " ";
+    CAPTURE(c.h, c.mass);
+    REQUIRE(delf_program(folder, "run small.ini --out run " + step).code == 0);
+    copy(folder / "run/fields.h5", folder / "rows.h5", [](int, std::vector<double>&) {});
+    const Json right = verified(folder, "--fields rows.h5 " + step, 0);
+    CHECK(check(right, "field equations, beside the force")["passed"] == true);
+    CHECK(check(right, "field equations, on average")["passed"] == true);
+    if (c.share == 0) continue;
+    // relative to the terms it is below the tolerance
+    const Json wrong = verified(folder, "--fields rows.h5 --theory.mass=" + std::string(c.mass) + " " + step, 1);
+    CHECK(check(wrong, "field equations")["passed"] == true);
+    const Json beside = check(wrong, "field equations, beside the force");
+    CHECK(beside["passed"] == false);
+    CHECK(beside["value"].get<double>() > 0.1 * c.share);
+    CHECK(beside["value"].get<double>() < 10 * c.share);
+    CHECK(!wrong["diagnosis"].empty());
+  }
+}
+
+TEST_CASE("rows in single precision are measured by what they have, and where that is nothing the verdict says so") {
+  const Folder folder;
+  folder.write("small.ini", scene());
+  const auto single = [&](const std::string& step) {
+    REQUIRE(delf_program(folder, "run small.ini --out run " + step).code == 0);
+    copy(folder / "run/fields.h5", folder / "rows.h5", [](int, std::vector<double>& row) {
+      for (double& y : row) y = static_cast<float>(y);
+    });
+  };
+  single("");
+  CHECK(contains(verified(folder, "--fields rows.h5", 0)["subject"].get<std::string>(), "single precision"));
+  verified(folder, "--fields rows.h5 --theory.mass=1.001", 1);
+  // Rounding to six digits is ten times what a mass off by 1e-4 makes of one equation, and averages to nothing.
+  const auto digits = [&](const std::string& mass, int code) {
+    const std::string rows = " --run.steps=200 ";
+    REQUIRE(delf_program(folder, "run small.ini --out run" + rows).code == 0);
+    copy(folder / "run/fields.h5", folder / "digits.h5", [](int, std::vector<double>& row) {
+      for (double& y : row) y = std::stod(fmt::format("{:.6g}", y));
+    });
+    return verified(folder, "--fields digits.h5 --theory.mass=" + mass + rows, code);
+  };
+  CHECK(digits("1", 0)["passed"] == true);
+  CHECK(digits("1.0002", 1)["passed"] == false);
+  // ε φ/h² is a hundred times the force: any mass would do
+  single("--lattice.time_step=1e-4 ");
+  for (const char* mass : {"1", "1.1"}) {
+    const Json json =
+        verified(folder, std::string("--fields rows.h5 --lattice.time_step=1e-4 --theory.mass=") + mass, 1);
+    CHECK(json["passed"] == false);
+    for (const Json& check : json["checks"]) {
+      CHECK(check["failure"].is_null());
+      if (check["name"] != "field equations") CHECK(check["unmeasurable"].is_string());
+    }
+  }
+  const Ran ran = delf_program(folder, "verify small.ini --fields rows.h5 --lattice.time_step=1e-4 --out out");
+  CHECK(contains(ran.out, "not measurable: 1 of 2 checks"));
+  CHECK_FALSE(contains(ran.out, "FAILED"));
+}
+
 TEST_CASE("run and verify report the energy that rows have for themselves, where there is one") {
   const Folder folder;
   folder.write("small.ini", scene());

@@ -521,7 +521,8 @@ TEST_CASE("rows of a NumPy program are verified from outside, and another method
   const std::string fields = "'" + examples + "leapfrog.ini' --fields x/fields.h5 ";
 
   const Verified alone = verified(folder, fields, code);
-  CHECK(alone.json["checks"].size() == 1);
+  // those that fail are not judged a second time, beside the force
+  CHECK(alone.json["checks"].size() == (code == 0 ? 3 : 1));
   CHECK(alone.check("field equations")["passed"] == (code == 0));
   if (code == 1) CHECK(contains(alone.out, "12672 of 12672 equations do not hold"));
 

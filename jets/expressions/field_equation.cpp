@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "jets/expressions/field_equation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "jets/expressions/euler_lagrange.hpp"
+#include "jets/expressions/evaluate.hpp"
+#include "jets/expressions/expression.hpp"
+#include "jets/expressions/parse.hpp"
+#include "jets/simd/scratch_rows.hpp"
+
+namespace delf {
+
+using namespace expressions;
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+class FieldEquations::Form {
+ public:
+  explicit Form(int order) : order_(order) {}
+  virtual ~Form() = default;
+  int order() const { return order_; }
+  virtual std::vector<Value> values(std::span<const double> jet, double t, double x) const = 0;
+
+ private:
+  int order_;
+};
+
+namespace {
+
+/// By the rules of differentiation, of a density as text.
+class OfText final : public FieldEquations::Form {
+ public:
+  explicit OfText(const SymbolicDensity& density)
+      : Form(density.slots() > 3 ? 4 : 2), jets_(density.names()), parameters_(density.names().parameters) {
+    Graph graph;
+    const int l = parse(graph, density.text(), jets_.names, "theory.density");
+    terms_.resize(at(jets_.d));
+    for (int a = 0; a < jets_.d; ++a)
+      for (const int term : euler_lagrange(graph, l, a, jets_)) terms_[at(a)].emplace_back(graph, term);
+    if (density.constraint().empty()) return;
+    const int G = parse(graph, density.constraint(), jets_.names, "theory.constraint");
+    G_.emplace_back(graph, G);
+    for (int a = 0; a < jets_.d; ++a) G_.emplace_back(graph, graph.differentiate(G, jets_.derivative(a, 0, 0)));
+  }
+
+  std::vector<FieldEquations::Value> values(std::span<const double> jet, double t, double x) const override {
+    const auto variable = [&](int v) {
+      if (jets_.is_derivative(v)) return jet[at(v)];
+      if (v == jets_.t() || v == jets_.x()) return v == jets_.t() ? t : x;
+      return parameters_[at(v - jets_.parameter(0))].second;
+    };
+    std::vector<FieldEquations::Value> E(at(jets_.d));
+    for (std::size_t a = 0; a < E.size(); ++a)
+      for (const Evaluation& term : terms_[a]) {
+        const double value = term.operator()<double>(variable);
+        E[a].sum += value, E[a].absolute += std::abs(value);
+      }
+    if (G_.empty()) return E;
+    // λ = E·∂G/|∂G|²
+    std::vector<double> slopes;
+    FieldEquations::Value G{G_[0].operator()<double>(variable), 0};
+    double along = 0, square = 0;
+    for (int a = 0; a < jets_.d; ++a) {
+      const double slope = slopes.emplace_back(G_[at(a + 1)].operator()<double>(variable));
+      along += E[at(a)].sum * slope, square += slope * slope;
+      G.absolute += std::abs(slope * jet[at(jets_.derivative(a, 0, 0))]);
+    }
+    for (std::size_t a = 0; a < E.size() && square > 0; ++a) {
+      const double force = along / square * slopes[a];
+      E[a].sum -= force, E[a].absolute += std::abs(force);
+    }
+    E.push_back(G);
+    return E;
+  }
+
+ private:
+  JetVariables jets_;
+  std::vector<std::pair<std::string, double>> parameters_;
+  std::vector<std::vector<Evaluation>> terms_;
+  std::vector<Evaluation> G_;  ///< G, ∂G/∂φ_a; empty: no constraint
+};
+
+/// By the Hessian of a compiled density of first order.
+class OfHessian final : public FieldEquations::Form {
+ public:
+  explicit OfHessian(const BatchDensity& density) : Form(2), density_(density) {}
+
+  std::vector<FieldEquations::Value> values(std::span<const double> jet, double t, double x) const override {
+    const int d = density_.components(), m = density_.variables();
+    const std::vector<double> g = gradient(jet, t, x), H = hessian(jet, t, x);
+    // D_t and D_x of φ, φ_t, φ_x are φ_t, φ_tt, φ_tx and φ_x, φ_tx, φ_xx
+    constexpr int by_t[] = {1, 3, 4}, by_x[] = {2, 4, 5};
+    std::vector<FieldEquations::Value> E(at(d));
+    for (int a = 0; a < d; ++a) {
+      const auto add = [&](double term) { E[at(a)].sum += term, E[at(a)].absolute += std::abs(term); };
+      add(-g[at(a)]);
+      for (int s = 0; s < 3; ++s)
+        for (int b = 0; b < d; ++b) {
+          add(H[at((d + a) * m + s * d + b)] * jet[at(by_t[s] * d + b)]);
+          add(H[at((2 * d + a) * m + s * d + b)] * jet[at(by_x[s] * d + b)]);
+        }
+    }
+    if (!density_.is_placed()) return E;
+    // what changes with t and x at a fixed jet, by differences
+    constexpr double step = 1e-4;
+    for (const bool in_t : {true, false}) {
+      const double by = step * std::max(1.0, std::abs(in_t ? t : x));
+      const auto above = gradient(jet, in_t ? t + by : t, in_t ? x : x + by),
+                 below = gradient(jet, in_t ? t - by : t, in_t ? x : x - by);
+      for (int a = 0; a < d; ++a) {
+        const int v = (in_t ? d : 2 * d) + a;
+        const double term = (above[at(v)] - below[at(v)]) / (2 * by);
+        E[at(a)].sum += term, E[at(a)].absolute += std::abs(term);
+      }
+    }
+    return E;
+  }
+
+ private:
+  /// The first of a pack of equal jets.
+  template <class Function>
+  std::vector<double> at_jet(std::span<const double> jet, double t, double x, int results,
+                             const Function& function) const {
+    const int m = density_.variables();
+    const ScratchRows in(m + 1, lanes), out(results, lanes);
+    for (int v = 0; v <= m; ++v) std::fill_n(in[v], lanes, v < m ? jet[at(v)] : x);
+    function(JetBatch{lanes, in.data(), t, in[m]}, out.data());
+    std::vector<double> first;
+    for (int r = 0; r < results; ++r) first.push_back(out[r][0]);
+    return first;
+  }
+  std::vector<double> gradient(std::span<const double> jet, double t, double x) const {
+    return at_jet(jet, t, x, density_.variables(),
+                  [&](const JetBatch& batch, double* const* g) { density_.gradient(batch, g); });
+  }
+  std::vector<double> hessian(std::span<const double> jet, double t, double x) const {
+    return at_jet(jet, t, x, density_.variables() * density_.variables(),
+                  [&](const JetBatch& batch, double* const* H) { density_.hessian(batch, H); });
+  }
+
+  const BatchDensity& density_;
+};
+
+}  // namespace
+
+std::optional<FieldEquations> FieldEquations::of(const BatchDensity& density) {
+  if (const auto* text = dynamic_cast<const SymbolicDensity*>(&density)) try {
+      return FieldEquations(std::make_shared<const OfText>(*text));
+    } catch (const TooLarge&) {
+      return std::nullopt;
+    }
+  if (density.slots() > 3) return std::nullopt;
+  return FieldEquations(std::make_shared<const OfHessian>(density));
+}
+
+int FieldEquations::order() const { return form_->order(); }
+
+std::vector<FieldEquations::Value> FieldEquations::operator()(std::span<const double> jet, double t, double x) const {
+  return form_->values(jet, t, x);
+}
+
+std::vector<double> FieldEquations::rounding(std::span<const double> jet, double t, double x, double rounding) const {
+  constexpr double change = 1e-7;
+  const std::vector<Value> here = form_->values(jet, t, x);
+  std::vector<double> changed(jet.begin(), jet.end()), sums(here.size(), 0.0);
+  for (std::size_t n = 0; n < changed.size(); ++n) {
+    if (jet[n] == 0) continue;
+    changed[n] = jet[n] * (1 + change);
+    const std::vector<Value> there = form_->values(changed, t, x);
+    for (std::size_t a = 0; a < sums.size(); ++a) sums[a] += std::abs(there[a].sum - here[a].sum) * rounding / change;
+    changed[n] = jet[n];
+  }
+  return sums;
+}
+
+}  // namespace delf

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "schemes/simulation.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// In words: waves on the theory's vacuum grow more than tenfold in so many steps, by linear theory. Nothing where they do
+/// not, or where there is no such theory.
+std::optional<std::string> beyond_linear_limit(const Scene&, const Simulation&, std::int64_t steps);
+
+}  // namespace delf
