@@ -39,16 +39,25 @@ void require_momenta_of_all_rows(const Simulation& simulation, const RowNames& n
 }
 
 // The rows that are measured beside the recorded ones, so that a step takes 5 % longer at most. To measure a row costs as
-// much as an implicit step by rows, two to four explicit ones, or a fifth of a step of Newton's method.
+// much as an implicit step by rows or a slab on a point, two to four explicit steps, five slabs of elements on a lattice (its
+// momenta are solved for) and some sixty on a moving mesh.
 WatchedRows watched_rows(const Scene& scene, const Simulation& simulation) {
   const Stepper& stepper = simulation.evolution().stepper();
-  const bool by_rows = stepper.layout() != nullptr;
-  const std::int64_t apart = !by_rows && stepper.iterates() ? 8 : stepper.iterates() ? 64 : 256;
-  constexpr std::int64_t most_values = 16384, most_rows = 64;  // some tenth of a millisecond
+  const bool by_rows = stepper.layout() != nullptr, point = scene.problem.lattice.space() == Space::point;
+  const bool moves = std::ranges::any_of(simulation.components(), &Component::position);
+  constexpr std::int64_t most_values = 16384;  // some tenth of a millisecond
+  struct Watched {
+    std::int64_t rows, apart;
+  };
+  const auto [rows, apart] = !stepper.iterates()  ? Watched{64, 256}
+                             : by_rows            ? Watched{64, 64}
+                             : point              ? Watched{64, 32}
+                             : moves              ? Watched{2, 256}
+                                                  : Watched{8, 128};
   const auto sums = static_cast<std::int64_t>(1 + 2 * simulation.conserved_names().size());  // each costs twice as much
   const std::int64_t values = static_cast<std::int64_t>(scene.problem.lattice.sites()) *
                               static_cast<std::int64_t>(simulation.components().size());
-  return {std::min(most_rows, most_values / values) / sums, apart * sums, scene.initial.seed};
+  return {std::min(rows, most_values / values) / sums, apart * sums, scene.initial.seed};
 }
 
 /// Of a row from a solution, at its sites, wherever they are.
