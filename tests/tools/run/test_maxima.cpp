@@ -62,7 +62,7 @@ TEST_CASE("a short run is measured at all steps, whatever is recorded") {
   const Folder folder;
   folder.write("small.ini", small_scene());
   const std::string scene = GENERATE(as<std::string>(), "small.ini --run.steps=60", "pendulum --run.steps=50 --lattice.stencil=midpoint",
-                                     "r-adaptive --run.steps=50", "kepler --run.steps=20");
+                                     "r-adaptive --run.steps=2", "kepler --run.steps=20");
   const Json all = summary(folder, "run " + scene + " --output.every=1"),
              few = summary(folder, "run " + scene + " --output.every=0");
   CHECK(all["maxima_over"] == "all steps");
