@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "schemes/turn.hpp"
 #include "tools/engine.hpp"
 #include "tools/run/linear_limit.hpp"
 #include "tools/run/refined_scene.hpp"
@@ -102,7 +103,7 @@ EndsOfLattice off_at_ends(const Scene& scene) {
   if (lattice.space() == Space::point || scene.from_file()) return {};
   const auto state = make_state(scene.initial, lattice);
   const double L = lattice.length(), end = scene.end(), acts = std::min(end, L),
-               turn = 2 * std::numbers::pi * state->winding();
+               turn = 2 * std::numbers::pi * state->winding() + gain_of(scene.problem.parameters);
   const int times = state->exact() ? 9 : 1, points = lattice.is_circle() ? 2048 : 2;
   const auto d = static_cast<std::size_t>(state->components());
   EndsOfLattice result;

@@ -72,6 +72,18 @@ TEST_CASE("where errors are not the scheme's, the table says whose they are, and
   }
 }
 
+TEST_CASE("a field that gains around a circle by boundary.gain closes there") {
+  const Folder folder;
+  folder.write("gain.ini",
+               "[theory]\nname = wave\n[lattice]\nstencil = triangle-vertex\nlength = 6.283185307179586\nsites = 32\n"
+               "courant = 0.5\n[boundary]\ngain = 12.566370614359172\n[run]\nuntil = 1\n[exact]\nphi = 2*x + sin(x - t)\n");
+  const Ran ran = delf_program(folder, "convergence gain.ini --output.figures=off --out out");
+  INFO(ran.err << ran.out);
+  CHECK(ran.code == 0);
+  CHECK(contains(ran.out, "passed"));
+  CHECK_FALSE(contains(ran.out, "where the circle closes"));
+}
+
 TEST_CASE("a composition of order four shows four") {
   const Folder folder;
   convergence_of(folder,
