@@ -399,6 +399,11 @@ bool SlabStepper::finish(Parity& p, std::int64_t J) {
   }
 }
 
+const char* SlabStepper::newton_and_finish(Parity& p, std::int64_t J, int points, const std::vector<double>* momenta) {
+  if (const char* failed = newton(p, J, points, momenta)) return failed;
+  return finish(p, J) ? nullptr : "Newton's method does not converge";
+}
+
 void SlabStepper::carry(const Parity& p, std::int64_t J) {
   if (!p.momentum_follows) return;
   for (std::size_t n = 0; n + 1 < gain_.size(); ++n) add_exactly(carried_[n], carried_low_[n], gain_[n]);
@@ -447,9 +452,7 @@ void SlabStepper::follow(Parity& p, std::int64_t J, const std::vector<double>* m
   }
   for (int n = 0; n < p.equations.size(); ++n)
     p.equations.value(*ring_, J, n) = (is_doubtful ? doubtful : followed.row)[static_cast<std::size_t>(n)];
-  const char* failed = newton(p, J, 0, momenta);
-  if (!failed && !finish(p, J)) failed = "Newton's method does not converge";
-  if (failed) fail(J, failed);
+  if (const char* failed = newton_and_finish(p, J, 0, momenta)) fail(J, failed);
   if (!is_doubtful) continued_ = Continued::far;
 }
 
@@ -476,9 +479,7 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
     if (points_ > least_points) tried.push_back(least_points);
     if (points_ > 1) tried.push_back(1);
     for (const int points : tried) {
-      const char* failed = newton(p, J, points, momenta);
-      if (!failed && !finish(p, J)) failed = "Newton's method does not converge";
-      if (failed) {
+      if (const char* failed = newton_and_finish(p, J, points, momenta)) {
         why = failed;
         continue;
       }

@@ -85,6 +85,7 @@ class SlabStepper final : public StepMethod {
   const char* newton(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
   void find_known(const Parity&, std::int64_t J, const std::vector<double>* momenta);
   bool finish(Parity&, std::int64_t J);
+  const char* newton_and_finish(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
   void carry(const Parity&, std::int64_t J);
   RootWatch::Verdict judge(const Parity&, std::int64_t J) const;
   SlabPast past_of(std::int64_t J) const;

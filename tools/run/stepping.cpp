@@ -44,7 +44,7 @@ void require_momenta_of_all_rows(const Simulation& simulation, const RowNames& n
 WatchedRows watched_rows(const Scene& scene, const Simulation& simulation) {
   const Stepper& stepper = simulation.evolution().stepper();
   const bool by_rows = stepper.layout() != nullptr, point = scene.problem.lattice.space() == Space::point;
-  const bool moves = std::ranges::any_of(simulation.components(), &Component::position);
+  const bool moves = simulation.evolution().system().moves();
   constexpr std::int64_t most_values = 16384;  // some tenth of a millisecond
   struct Watched {
     std::int64_t rows, apart;
