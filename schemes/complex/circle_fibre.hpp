@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 namespace delf {
 

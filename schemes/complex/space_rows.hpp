@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "jets/symmetry.hpp"
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/constraint_density.hpp"
 #include "schemes/complex/space_tables.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "jets/batch_density.hpp"
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 #include "schemes/complex/complex_system.hpp"
 
 namespace delf {

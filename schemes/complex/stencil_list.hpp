@@ -9,7 +9,7 @@
 #include "jets/batch_density.hpp"
 #include "jets/tables/stencil_table.hpp"
 #include "lattice/complex/complex.hpp"
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 namespace delf {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "lattice/complex/mesh_overlap.hpp"
+#include "lattice/space/mesh_overlap.hpp"
 
 namespace delf {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "jets/expressions/evaluate.hpp"
 #include "jets/expressions/parse.hpp"
-#include "lattice/complex/mesh_topology.hpp"
+#include "lattice/space/mesh_topology.hpp"
 #include "schemes/complex/circle_fibre.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"

@@ -5,8 +5,8 @@
 
 #include <unordered_map>
 
-#include "lattice/complex/coincident_points.hpp"
-#include "lattice/complex/mesh_overlap.hpp"
+#include "lattice/space/coincident_points.hpp"
+#include "lattice/space/mesh_overlap.hpp"
 #include "tools/complex/text_lines.hpp"
 
 namespace delf {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <variant>
 
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 #include "schemes/complex/stencil_list.hpp"
 
 namespace delf {

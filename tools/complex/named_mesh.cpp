@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "jets/expressions/expression.hpp"
-#include "lattice/complex/mesh_refinement.hpp"
+#include "lattice/space/mesh_refinement.hpp"
 #include "lattice/error.hpp"
 #include "lattice/text_parts.hpp"
 #include "schemes/complex/refined_piece.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "jets/expressions/evaluate.hpp"
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 namespace delf {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lattice/complex/mesh_topology.hpp"
+#include "lattice/space/mesh_topology.hpp"
 #include "schemes/complex/refined_piece.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/complex/stencil_lists.hpp"

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 namespace delf {
 

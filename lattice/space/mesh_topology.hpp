@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 namespace delf {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 namespace delf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/complex/mesh_refinement.hpp"
+#include "lattice/space/mesh_refinement.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/complex/mesh_topology.hpp"
+#include "lattice/space/mesh_topology.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/complex/mesh_overlap.hpp"
+#include "lattice/space/mesh_overlap.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/complex/mesh_topology.hpp"
+#include "lattice/space/mesh_topology.hpp"
 
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "lattice/complex/coincident_points.hpp"
-#include "lattice/complex/mesh_overlap.hpp"
+#include "lattice/space/coincident_points.hpp"
+#include "lattice/space/mesh_overlap.hpp"
 #include "tests/catch.hpp"
 
 namespace {

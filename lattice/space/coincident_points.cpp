@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/complex/coincident_points.hpp"
+#include "lattice/space/coincident_points.hpp"
 
 #include <algorithm>
 #include <cmath>

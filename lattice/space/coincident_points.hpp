@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 namespace delf {
 

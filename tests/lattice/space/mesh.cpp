@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "lattice/complex/mesh_refinement.hpp"
+#include "lattice/space/mesh_refinement.hpp"
 #include "tests/catch.hpp"
 
 namespace {

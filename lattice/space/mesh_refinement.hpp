@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 namespace delf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/complex/mesh.hpp"
+#include "lattice/space/mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
