@@ -13,6 +13,7 @@ struct Cell {
   double time_step = 1;   ///< h; negative in a sub-step that goes back, and the measure with it
   double space_step = 1;  ///< k
   double t = 0, x = 0;    ///< of the anchor
+  int stencil = 0;        ///< of a family whose stencils are listed: its number
 };
 
 /// L_Δ(y¹, …, yⁿ) = |Δ| Σ_q w_q ℓ(φ_q, φ_t,q, φ_x,q): the discrete Lagrangian of a density on the jets of a stencil.

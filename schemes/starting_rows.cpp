@@ -44,7 +44,7 @@ void StartingRows::hold_walls(std::vector<double>& row, bool velocity) const {
     const Component& component = system_.component(c);
     const bool inner = component.role == Role::inner || component.role == Role::trace;
     if (!inner && !(velocity && component.role == Role::field)) continue;
-    for (const int i : {0, system_.lattice().sites() - 1})
+    for (int i = 0; i < system_.lattice().sites(); ++i)
       if (system_.is_held(i, c))
         row[static_cast<std::size_t>(i * C + c)] =
             velocity ? 0 : row[static_cast<std::size_t>(i * C + system_.field_component(component.field))];
@@ -80,7 +80,7 @@ std::optional<std::vector<double>> StartingRows::momenta(std::span<const double>
   std::vector<double> momenta(row0.size(), 0.0), phi, phi_t, p;
   bool any = false;
   for (const auto& family : system_.families()) {
-    for (int cell = 0; cell < N; ++cell) {
+    for (int cell = 0; cell < system_.anchors(*family); ++cell) {
       if (!system_.has_stencil(*family, 0, cell)) continue;
       std::vector<std::size_t> places;
       phi.clear(), phi_t.clear();
@@ -88,14 +88,15 @@ std::optional<std::vector<double>> StartingRows::momenta(std::span<const double>
         const int c = family->values()[static_cast<std::size_t>(i)].component;
         if (family->site(i).time != 0 || system_.component(c).at.time != 0) continue;
         if (system_.component(c).role == Role::slaved && !system_.component(c).position) continue;  // a rate
-        const int x = cell + family->site(i).space, home = lattice.home(x);
+        const int x = family->column(cell, i), home = lattice.home(x);
         places.push_back(static_cast<std::size_t>(home * C + c));
         phi.push_back(row0[places.back()] + (x - home) / N * turn);
         phi_t.push_back(velocity[places.back()]);
       }
       p.resize(places.size());
       // constraints and trace stencils have none
-      if (!family->momentum({problem_.time_step, lattice.space_step(), 0, lattice.position(cell)}, phi, phi_t, p))
+      const double place = family->listed() ? 0 : lattice.position(cell);
+      if (!family->momentum({problem_.time_step, lattice.space_step(), 0, place, cell}, phi, phi_t, p))
         break;
       any = true;
       for (std::size_t n = 0; n < places.size(); ++n)

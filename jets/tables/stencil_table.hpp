@@ -29,6 +29,14 @@ struct TablePoint {
   double weight = 1;
   double time = 0, space = 0;  ///< where it lies, from the anchor, in steps
   std::array<std::vector<Entry>, jet_slots> slots;
+  /// On a space where stencils do not repeat, each has numbers of its own (schemes/families/own_weights.hpp): the number that
+  /// multiplies the point's weight, the one that is the place x, and those that multiply the entries of a slot; −1, or no
+  /// list: none.
+  struct Own {
+    int weight = -1, place = -1;
+    std::array<std::vector<int>, jet_slots> slots = {};
+  };
+  Own own = {};
 
   /// Weights that are zero are left out.
   void set(JetSlot slot, const std::vector<double>& weights) {

@@ -17,8 +17,14 @@ Entries product(const Entries& time, const Entries& space, int width) {
 }
 TablePoint product(const TablePoint& r, const TablePoint& s, int width) {
   TablePoint point{.weight = r.weight * s.weight, .time = r.time, .space = s.space, .slots = {}};
+  point.own.weight = s.own.weight, point.own.place = s.own.place;
   const auto fill = [&](JetSlot slot, JetSlot of_time, JetSlot of_space) {
     point.slots[static_cast<std::size_t>(slot)] = product(r[of_time], s[of_space], width);
+    const std::vector<int>& own = s.own.slots[static_cast<std::size_t>(of_space)];
+    for (std::size_t a = 0; a < r[of_time].size(); ++a) {
+      std::vector<int>& all = point.own.slots[static_cast<std::size_t>(slot)];
+      all.insert(all.end(), own.begin(), own.end());
+    }
   };
   fill(JetSlot::phi, JetSlot::phi, JetSlot::phi);
   fill(JetSlot::phi_t, JetSlot::phi_t, JetSlot::phi);

@@ -204,6 +204,28 @@ SolveKind classify(const SolvePlan& plan, const SlabGraph& slab, long long place
   return !plan.cyclic && one_way ? SolveKind::chain : SolveKind::cyclic_band;
 }
 
+/// The plan of a mesh, whose sites are alike in time: that of one site, with those beside it somewhere in its row. Where the
+/// slab couples them, they are solved together.
+SolvePlan planned_on_mesh(const Lattice& lattice, const SystemPattern& system, SolvePlan plan, const SlabGraph& slab) {
+  plan.cyclic = false;
+  long long sites = 0, unknowns = 0, blocks = 0;
+  for (int i = 0; i < lattice.sites(); ++i) {
+    plan.table.held.push_back(lattice.is_fixed(i));
+    sites += !lattice.is_fixed(i);
+  }
+  for (int c = 0; c < system.components; ++c) unknowns += plan.table.entries[static_cast<std::size_t>(c)].solved;
+  std::vector<char> is_wide(static_cast<std::size_t>(slab.blocks), 0);  // of each block of the quotient
+  for (const SlabGraph::Edge& e : slab.edges)
+    if (e.cells != 0 && slab.block[static_cast<std::size_t>(e.from)] == slab.block[static_cast<std::size_t>(e.to)])
+      is_wide[static_cast<std::size_t>(slab.block[static_cast<std::size_t>(e.from)])] = 1;
+  for (const char wide : is_wide) blocks += wide ? 1 : sites;
+  plan.unknowns = sites * unknowns;
+  plan.blocks = blocks;
+  plan.lower = plan.upper = 0;
+  plan.kind = slab.edges.empty() ? SolveKind::explicit_ : SolveKind::sparse;
+  return plan;
+}
+
 /// Whether each of the two periods adds the same number of blocks.
 bool grow_evenly(const Analysed& a, const Analysed& longer, const Analysed& longest) {
   return longer.blocks[0] - a.blocks[0] == longest.blocks[0] - longer.blocks[0] &&
@@ -257,6 +279,12 @@ SolvePlan make_plan(const Lattice& lattice, const SystemPattern& system) {
   if (system.components < 1 || system.width < 0 || !system.equations)
     throw BadInput("lattice.stencil", "lattice.stencil: the system has no equations; add a stencil");
 
+  if (lattice.space() == Space::mesh) {
+    if (is_fixed_everywhere(lattice))
+      throw BadInput("boundary.mesh", "boundary.mesh = fixed: every point of the mesh keeps its value; refine the mesh");
+    const Analysed site(lattice, system, Quotient::of_circle(lattice, system));
+    return planned_on_mesh(lattice, system, planned(lattice, system, site), site.slab);
+  }
   if (lattice.is_circle())
     return planned(lattice, system, Analysed(lattice, system, Quotient::of_circle(lattice, system)));
 

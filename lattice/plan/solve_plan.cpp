@@ -16,6 +16,7 @@ const SolvePlan::Entry& SolvePlan::node(int site, int component, int parity) con
 }
 
 bool SolvePlan::solved(int site, int component) const {
+  if (is_held(site)) return false;
   return node(site, component, 0).solved || node(site, component, table.parities - 1).solved;
 }
 
@@ -37,7 +38,8 @@ Slab SolvePlan::slab(int J) const {
   Slab slab;
   slab.matched = table.matched;
   const int N = table.lattice_sites;
-  for (int site = 0; site < N; ++site)
+  for (int site = 0; site < N; ++site) {
+    if (is_held(site)) continue;
     for (int component = 0; component < components; ++component)
       for (int parity = 0; parity < table.parities; ++parity) {
         const Entry& e = node(site, component, parity);
@@ -52,6 +54,7 @@ Slab SolvePlan::slab(int J) const {
         if (!slab.matched && (equation.time - parity) % table.parities == 0)
           slab.equations.push_back({equation, component});
       }
+  }
   return slab;
 }
 

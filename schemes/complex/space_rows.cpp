@@ -24,12 +24,12 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, bool fixed_boundary,
                      std::shared_ptr<const StencilFamily> constraint_)
-    : mesh(std::move(mesh_)),
+    : MeshSpace{std::move(mesh_), {}},
       density(std::move(density_)),
       constraint(constraint_ ? std::make_shared<const ConstraintDensity>(std::move(constraint_)) : nullptr),
       tables(density),
-      masses(lumped_masses(mesh)),
-      fixed(mesh.points.size(), 0) {
+      masses(lumped_masses(mesh)) {
+  fixed.assign(mesh.points.size(), 0);
   if (fixed_boundary)
     for (const auto p : boundary_points(mesh)) fixed[static_cast<std::size_t>(p)] = 1;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "jets/symmetry.hpp"
-#include "lattice/space/mesh.hpp"
+#include "lattice/space/mesh_space.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/constraint_density.hpp"
 #include "schemes/complex/space_tables.hpp"
@@ -19,7 +19,7 @@ namespace delf {
 class SavedState;
 
 /// A mesh of space and a density on it, with what rows of any steps have in common.
-struct CellSpace {
+struct CellSpace : MeshSpace {
   /// `constraint`: of d + 1 values at a vertex, as a theory declares it. Throws BadInput for a density that has no form on
   /// cells.
   CellSpace(Mesh, std::shared_ptr<const BatchDensity>, bool fixed_boundary,
@@ -33,12 +33,10 @@ struct CellSpace {
   /// The largest |G(φ)| of some fields.
   double largest_constraint(std::span<const double> fields) const;
 
-  Mesh mesh;
   std::shared_ptr<const BatchDensity> density;
   std::shared_ptr<const ConstraintDensity> constraint;  ///< null: none
   SpaceTables tables;
   std::vector<double> masses;  ///< A_i
-  std::vector<char> fixed;     ///< [i]: a point of the boundary that keeps its value
 };
 
 /// The sites of the mesh at some times, row after row: site i of row j has the number j·N + i. Stencils of motion join rows;

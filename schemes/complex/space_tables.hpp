@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "jets/batch_density.hpp"
+#include "jets/tables/cell_points.hpp"
 #include "lattice/space/mesh.hpp"
 #include "schemes/complex/complex_system.hpp"
 
@@ -43,10 +44,5 @@ class SpaceTables {
   std::shared_ptr<const BatchDensity> density_;
   bool coupled_;  ///< φ and ∇φ
 };
-
-/// ∫ N of each corner over the cell: the shares of its measure.
-std::vector<double> corner_shares(const Mesh&, int cell);
-/// A_i of each point.
-std::vector<double> lumped_masses(const Mesh&);
 
 }  // namespace delf

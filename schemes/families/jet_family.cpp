@@ -30,6 +30,16 @@ std::array<double, jet_slots> slot_scales(const Cell& cell) {
 void add(double* y, double w, const double* x, int count) {
   for (int i = 0; i < count; i += lanes) (Pack::load(y + i) + w * Pack::load(x + i)).store(y + i);
 }
+/// y += w a b c x, where a, b and c are numbers of the stencils' own, or null for 1.
+void add(double* y, double w, std::array<const double*, 3> own, const double* x, int count) {
+  std::ranges::partition(own, [](const double* numbers) { return numbers != nullptr; });
+  if (own[0] == nullptr) return add(y, w, x, count);
+  for (int i = 0; i < count; i += lanes) {
+    Pack factor = w * Pack::load(own[0] + i);
+    for (int n = 1; n < 3 && own[at(n)] != nullptr; ++n) factor = factor * Pack::load(own[at(n)] + i);
+    (Pack::load(y + i) + factor * Pack::load(x + i)).store(y + i);
+  }
+}
 void fill_zero(double* y, int count) { std::fill_n(y, count, 0.0); }
 
 bool is_rate(int slot) { return slot_powers[at(slot)].time > 0; }
@@ -48,11 +58,15 @@ struct JetFamily::Jets {
         jets(variables, std::min(batch.count, most)),
         increments(batch.low != nullptr ? family.size() : 0, std::min(batch.count, most)),
         x(1, std::min(batch.count, most)),
+        numbers(static_cast<int>(family.own_.numbers.size()), std::min(batch.count, most)),
         family_(family),
         batch_(batch) {}
 
   /// The stencils that at_point() is about to be asked of.
   void look_at(int first, int count) {
+    for (std::size_t n = 0; n < family_.own_.numbers.size(); ++n)
+      for (int s = 0; s < count; ++s)
+        numbers[static_cast<int>(n)][s] = family_.own_.numbers[n][at(batch_.numbers[first + s])];
     if (batch_.low == nullptr) return;
     for (int i = 0; i < family_.size(); ++i) {
       const int from = family_.first_[at(i / d)] * d + i % d;
@@ -73,6 +87,17 @@ struct JetFamily::Jets {
     for (int s = 0; s * d < variables; ++s)
       for (int a = 0; a < d; ++a) {
         double* const jet = jets[s * d + a];
+        if (!p.own.slots[at(s)].empty()) {
+          const auto& entries = p.slots[at(s)];
+          fill_zero(jet, count);
+          for (std::size_t e = 0; e < entries.size(); ++e) {
+            const int value_number = entries[e].vertex * d + a;
+            const double* const from =
+                batch_.low != nullptr && is_rate(s) ? increments[value_number] : value(value_number) + first;
+            add(jet, entries[e].weight * scales[at(s)], {own(p.own.slots[at(s)][e])}, from, count);
+          }
+          continue;
+        }
         for (int i = 0; i < count; i += lanes) {
           Pack sum(0.0);
           if (batch_.low != nullptr && is_rate(s))
@@ -84,9 +109,13 @@ struct JetFamily::Jets {
           sum.store(jet + i);
         }
       }
-    for (int i = 0; i < count; ++i) x[0][i] = batch_.x[first + i] + p.space * batch_.cell.space_step;
+    if (const double* const place = own(p.own.place)) std::copy_n(place, count, x[0]);
+    else
+      for (int i = 0; i < count; ++i) x[0][i] = batch_.x[first + i] + p.space * batch_.cell.space_step;
     return {count, jets.data(), batch_.cell.t + p.time * batch_.cell.time_step, x[0]};
   }
+  /// A number of each stencil, from the first on; null for −1.
+  const double* own(int number) { return number < 0 ? nullptr : numbers[number]; }
   const double* value(int i) const { return batch_.y + static_cast<std::ptrdiff_t>(i) * batch_.count; }
 
   const int d, variables;
@@ -94,23 +123,30 @@ struct JetFamily::Jets {
   const double area;  ///< |Δ|
 
  private:
-  ScratchRows jets, increments, x;
+  ScratchRows jets, increments, x, numbers;
   const JetFamily& family_;
   const StencilBatch& batch_;
 };
 
-JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> density, bool values_are_sources)
+JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> density, bool values_are_sources,
+                     OwnWeights own)
     : StencilFamily(table.pattern, values_at_every_vertex(table.pattern, density->components()), table.tests.empty()),
-      table_(with_slot_places(std::move(table), *density)),
+      table_(own.stencils ? std::move(table) : with_slot_places(std::move(table), *density)),
       density_(std::move(density)),
+      own_(std::move(own)),
       d_(density_->components()),
       has_sources_(density_->nonlinearity() == Nonlinearity::values ||
                    (values_are_sources && density_->nonlinearity() == Nonlinearity::none)) {
   placed_ = density_->is_placed();
+  listed_ = own_.stencils;
   const auto by_vertex = [this](const TablePoint& p) {
     std::vector<std::vector<Weight>> weights(at(pattern_.size()));
     for (int s = 0; s < density_->slots(); ++s)
-      for (const auto& [vertex, weight] : p.slots[at(s)]) weights[at(vertex)].push_back({s, weight});
+      for (std::size_t e = 0; e < p.slots[at(s)].size(); ++e) {
+        const auto& [vertex, weight] = p.slots[at(s)][e];
+        const std::vector<int>& numbers = p.own.slots[at(s)];
+        weights[at(vertex)].push_back({s, weight, numbers.empty() ? -1 : numbers[e]});
+      }
     return weights;
   };
   for (std::size_t q = 0; q < table_.points.size(); ++q) {
@@ -186,10 +222,10 @@ void JetFamily::find_columns() {
     for (const auto& column : columns_) {
       std::vector<Weight> all;
       for (int s = 0; s < density_->slots(); ++s) {
-        Weight sum{s, 0};
+        Weight sum{s, 0, -1};
         for (const int l : column)
           for (const Weight& w : point.of_test[at(l)])
-            if (w.slot == s && !is_rate(s)) sum.weight += w.weight;
+            if (w.slot == s && !is_rate(s)) sum.weight += w.weight, sum.own = w.own;  // the same at all times
         if (sum.weight != 0) all.push_back(sum);
       }
       point.of_test.push_back(std::move(all));
@@ -198,7 +234,7 @@ void JetFamily::find_columns() {
 
 void JetFamily::find_lanes() {
   const int Q = static_cast<int>(points_.size());
-  if (placed_ || Q < 2) return;
+  if (placed_ || Q < 2 || listed_) return;
   for (int first = 0; first < Q; first += lanes) {
     Lanes of;
     const auto entry = [](std::vector<Lanes::Entry>& list, int slot, int vertex) -> Pack& {
@@ -242,7 +278,7 @@ bool JetFamily::lagrangian(const StencilBatch& batch, double* L) const {
     jets.look_at(first, count);
     for (const TablePoint& p : table_.points) {
       density_->value(jets.at_point(p, first, count), l[0]);
-      add(L + first, jets.area * p.weight, l[0], count);
+      add(L + first, jets.area * p.weight, {jets.own(p.own.weight)}, l[0], count);
     }
   }
   return true;
@@ -313,9 +349,10 @@ void JetFamily::residual(const StencilBatch& batch, std::span<const int> equatio
       density_->gradient(jets.at_point(p, first, count), g.data());
       // r += |Δ| w_q M_qᵀ ∂ℓ/∂j
       for (std::size_t e = 0; e < equations.size(); ++e)
-        for (const auto& [slot, weight] : points_[q].of_test[at(equations[e] / d_)])
+        for (const auto& [slot, weight, own] : points_[q].of_test[at(equations[e] / d_)])
           add(r + static_cast<std::ptrdiff_t>(e) * batch.count + first,
-              jets.area * p.weight * jets.scales[at(slot)] * weight, g[slot * d_ + equations[e] % d_], count);
+              jets.area * p.weight * jets.scales[at(slot)] * weight, {jets.own(p.own.weight), jets.own(own)},
+              g[slot * d_ + equations[e] % d_], count);
     }
   }
 }
@@ -347,7 +384,7 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
               add(to,
                   jets.area * p.weight * jets.scales[at(left.slot)] * left.weight * jets.scales[at(right.slot)] *
                       right.weight,
-                  H[row * m + column], count);
+                  {jets.own(p.own.weight), jets.own(left.own), jets.own(right.own)}, H[row * m + column], count);
             }
         }
     }
@@ -364,17 +401,18 @@ std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
   const auto hessian = [&](int row, int column) {
     return has_sources_ && row < d_ && column < d_ ? 0.0 : density_->constant_hessian()[at(row * m + column)];
   };
+  const auto own = [&](int number) { return number < 0 ? 1.0 : own_.numbers[at(number)][at(cell.stencil)]; };
   for (std::size_t q = 0; q < points_.size(); ++q) {
-    const double w = area * table_.points[q].weight;
+    const double w = area * table_.points[q].weight * own(table_.points[q].own.weight);
     for (const int i : points_[q].values)
       for (const Weight& left : points_[q].of_test[at(i / d_)]) {
-        const double to = w * scales[at(left.slot)] * left.weight;
+        const double to = w * scales[at(left.slot)] * left.weight * own(left.own);
         const int row = left.slot * d_ + i % d_;
         if (!(has_sources_ && row < d_)) part.r0[at(i)] += to * density_->constant_gradient()[at(row)];
         for (const int k : points_[q].values)
           for (const Weight& right : points_[q].of_vertex[at(k / d_)])
             part.J[at(i * n + k)] +=
-                to * scales[at(right.slot)] * right.weight * hessian(row, right.slot * d_ + k % d_);
+                to * scales[at(right.slot)] * right.weight * own(right.own) * hessian(row, right.slot * d_ + k % d_);
       }
   }
   for (const auto* numbers : {&part.J, &part.r0})
@@ -415,7 +453,7 @@ void JetFamily::find_sources() {
 }
 
 const SourceTerms* JetFamily::sources() const {
-  return density_->nonlinearity() == Nonlinearity::all ? nullptr : &sources_;
+  return density_->nonlinearity() == Nonlinearity::all || listed_ ? nullptr : &sources_;
 }
 void JetFamily::evaluate_sources(int, const JetBatch& inputs, double* const* g) const { density_->slope(inputs, g); }
 void JetFamily::differentiate_sources(int, const JetBatch& inputs, double* const* d) const {
@@ -442,10 +480,12 @@ bool JetFamily::momentum(const Cell& cell, std::span<const double> phi, std::spa
     add_up(JetSlot::phi, 0, phi, 1);
     add_up(JetSlot::phi, 1, phi_t, 1);
     add_up(JetSlot::phi_x, 2, phi, 1 / cell.space_step);
-    std::fill_n(x[0], lanes, cell.x + point.space * cell.space_step);
+    const auto own = [&](int n) { return own_.numbers[at(n)][at(cell.stencil)]; };
+    const double weight_of_point = point.own.weight < 0 ? point.weight : point.weight * own(point.own.weight);
+    std::fill_n(x[0], lanes, point.own.place < 0 ? cell.x + point.space * cell.space_step : own(point.own.place));
     density_->gradient({lanes, jet.data(), cell.t, x[0]}, g.data());
     for (const auto& [vertex, weight] : point[JetSlot::phi])
-      for (int a = 0; a < d_; ++a) p[at(vertex * d_ + a)] += cell.space_step * point.weight * weight * g[d_ + a][0];
+      for (int a = 0; a < d_; ++a) p[at(vertex * d_ + a)] += cell.space_step * weight_of_point * weight * g[d_ + a][0];
   }
   return true;
 }

@@ -4,6 +4,7 @@
 
 #include "jets/simd/pack.hpp"
 #include "jets/tables/stencil_table.hpp"
+#include "schemes/families/own_weights.hpp"
 #include "schemes/families/stencil_family.hpp"
 
 namespace delf {
@@ -14,11 +15,12 @@ namespace delf {
 ///     ∂L/∂y = |Δ| Σ_q w_q M_qᵀ ∂ℓ/∂j(j_q),    ∂²L/∂y∂y = |Δ| Σ_q w_q M_qᵀ ∂²ℓ/∂j∂j(j_q) M_q
 ///
 /// Stencils of sites, elements with nodes inside and the sub-steps of a composition alike: value l·d + a is component
-/// node·d + a of the section at vertex l. A table with tests N_q has N_qᵀ in the place of the left M_qᵀ, and no L.
+/// node·d + a of the section at vertex l. A table with tests N_q has N_qᵀ in the place of the left M_qᵀ, and no L. Where
+/// stencils are listed, w_q and M_q have numbers of each stencil's own as factors.
 class JetFamily final : public StencilFamily {
  public:
   /// Where ∂ℓ/∂φ is linear it is part of the constant part, or a source term if `values_are_sources`.
-  JetFamily(StencilTable, std::shared_ptr<const BatchDensity>, bool values_are_sources = false);
+  JetFamily(StencilTable, std::shared_ptr<const BatchDensity>, bool values_are_sources = false, OwnWeights = {});
 
   const StencilTable& table() const { return table_; }
   const BatchDensity& density() const { return *density_; }
@@ -44,6 +46,7 @@ class JetFamily final : public StencilFamily {
   struct Weight {
     int slot;
     double weight;
+    int own;  ///< the stencil's own number that multiplies it, or −1
   };
   struct Point {
     /// Tests of the vertices, then of the columns: what a column's vertices have together.
@@ -70,6 +73,7 @@ class JetFamily final : public StencilFamily {
 
   StencilTable table_;
   std::shared_ptr<const BatchDensity> density_;
+  OwnWeights own_;
   int d_;
   bool has_sources_;
   /// Vertices of the same place in space at one time after another: weights of derivatives in time add up to zero there.

@@ -2,6 +2,7 @@
 #include "schemes/families/stencil_family.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 
@@ -12,12 +13,15 @@ namespace {
 struct Alone {
   std::vector<Pack> y, low;
   Pack x;
+  std::array<int, lanes> numbers;
   StencilBatch batch;
 
   Alone(const Cell& cell, std::span<const double> values, std::span<const double> low_parts = {}) : x(cell.x) {
     for (const double value : values) y.emplace_back(value);
     for (const double part : low_parts) low.emplace_back(part);
     batch = {cell, lanes, reinterpret_cast<const double*>(&x), reinterpret_cast<const double*>(y.data())};
+    numbers.fill(cell.stencil);
+    batch.numbers = numbers.data();
     if (!low.empty()) batch.low = reinterpret_cast<const double*>(low.data());
   }
 };
@@ -84,6 +88,7 @@ void StencilFamily::residual(const StencilBatch& batch, std::span<const int> equ
   for (std::size_t s = 0; s < count; ++s) {
     Cell cell = batch.cell;
     cell.x = batch.x[s];
+    if (batch.numbers != nullptr) cell.stencil = batch.numbers[s];
     for (std::size_t i = 0; i < size; ++i) y[i] = batch.y[i * count + s];
     residual(cell, y, out);
     for (std::size_t e = 0; e < equations.size(); ++e) r[e * count + s] = out[static_cast<std::size_t>(equations[e])];
@@ -97,6 +102,7 @@ void StencilFamily::jacobian(const StencilBatch& batch, std::span<const int> equ
   for (std::size_t s = 0; s < count; ++s) {
     Cell cell = batch.cell;
     cell.x = batch.x[s];
+    if (batch.numbers != nullptr) cell.stencil = batch.numbers[s];
     for (std::size_t i = 0; i < size; ++i) y[i] = batch.y[i * count + s];
     jacobian(cell, y, all);
     for (std::size_t e = 0; e < equations.size(); ++e)

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "jets/discrete_lagrangian.hpp"
 #include "jets/batch_density.hpp"
+#include "lattice/space/listed_stencils.hpp"
 #include "lattice/stencil_shape.hpp"
 
 namespace delf {
@@ -18,6 +20,7 @@ struct StencilBatch {
   const double* y;  ///< [i·count + s]: value i of stencil s
   /// The same of what rounding has taken from y: the values are y + low. Null: nothing is known of it.
   const double* low = nullptr;
+  const int* numbers = nullptr;  ///< [s]: of stencils that are listed; else null
 };
 
 /// The part of a residual that is proved linear with constant coefficients: r(y) = r0 + J y + what depends on y
@@ -77,6 +80,10 @@ class StencilFamily {
   /// r[i] enters the equation of y[i]. False for a value that is read but not varied: its equation is another family's.
   bool is_varied(int i) const { return varied_.empty() || varied_[static_cast<std::size_t>(i)]; }
   bool is_placed() const { return placed_; }
+  /// On a space where stencils do not repeat, those of a row. Null: one at every anchor of the pattern.
+  const ListedStencils* listed() const { return listed_.get(); }
+  /// The column where y[i] of a stencil lies: of the anchor in this column, beyond a circle's ends too, or of a number.
+  int column(int anchor, int i) const { return listed_ ? listed_->site(anchor, site(i).space) : anchor + site(i).space; }
 
   /// True if derivatives in time are sums of differences of y + low, which lose no digits in a short step.
   bool reads_low() const { return reads_low_; }
@@ -129,6 +136,7 @@ class StencilFamily {
   StencilPattern pattern_;
   std::vector<VertexValue> values_;
   std::vector<bool> varied_;  ///< [i]; empty: all
+  std::shared_ptr<const ListedStencils> listed_;
   bool variational_, placed_ = false, reads_low_ = false, sums_vanish_ = false;
   std::vector<std::vector<int>> sums_;
 };

@@ -72,15 +72,16 @@ void require_mass(const FieldTheory& theory) {
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   require_mass(theory);
-  if (theory.constraint() && p.lattice.space() != Space::point)
+  if (theory.constraint() && p.lattice.space() != Space::point && p.lattice.space() != Space::mesh)
     throw BadInput("scheme.method",
-                   "scheme.method = cgvi: constraints of elements are for lattice.space = point; use scheme.method = "
+                   "scheme.method = cgvi: constraints of elements are for lattice.space = point or complex; use scheme.method = "
                    "multisymplectic");
   const TimeElementKeys keys(p.parameters);
   const StencilTable time = keys.element(), space = space_table(p), element = product(time, space);
   SchemeParts parts = keys.continuity == Continuity::shared
                           ? element_parts(theory, element)
                           : element_parts(theory, element, Traces{keys.basis.values(0), keys.basis.values(1), space});
+  take_to_mesh(parts, theory, p, time);
   if (theory.constraint()) add_constraints(parts, theory, keys, element);
   return parts;
 }
@@ -181,6 +182,7 @@ const MethodEntry cgvi_method{
     .formula = "continuous Galerkin variational integrators: Gauss, Lobatto IIIA-IIIB and other elements of time",
     .build = build,
     .parameters = keys(),
+    .on_meshes = true,
     .label = label,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,

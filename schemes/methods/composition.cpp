@@ -37,6 +37,7 @@ Splitting splitting_of(const Problem& p) {
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
+  if (p.lattice.mesh()) return pair_parts(theory, p, splitting_of(p), {});
   const int pairs = pairs_of_order(p, "lattice.space_order", p.parameters.get<int>("lattice.space_order"));
   return pair_parts(theory, p, splitting_of(p), pair_weights(pairs));
 }
@@ -79,6 +80,7 @@ const MethodEntry composition_method{
                     .help = "the sub-steps, by name; the number is their order",
                     .choices = names_of(named_splittings()),
                     .otherwise = "leapfrog, blanes-moan-4, blanes-moan-6 or kahan-li-8, by scheme.order"}},
+    .on_meshes = true,
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,
     .variants = variants,

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "schemes/families/jet_family.hpp"
+#include "schemes/families/mesh_families.hpp"
 #include "schemes/families/trace_stencil.hpp"
+#include "schemes/problem.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/semi_discrete.hpp"
 #include "schemes/system/momenta.hpp"
@@ -57,6 +59,14 @@ SchemeParts element_parts(const FieldTheory& theory, const StencilTable& element
     }
   if (traces) add_traces(parts, theory.fields(), *traces);
   return parts;
+}
+
+void take_to_mesh(SchemeParts& parts, const FieldTheory& theory, const Problem& p, const StencilTable& time,
+                  bool values_are_sources) {
+  if (!p.lattice.mesh()) return;
+  const auto families = mesh_families(time, theory.shared_density(), *p.lattice.mesh(), values_are_sources);
+  parts.families.erase(parts.families.begin());
+  parts.families.insert(parts.families.begin(), families.begin(), families.end());
 }
 
 EnergyMomentum element_energy(const RowsInTime& rows) {

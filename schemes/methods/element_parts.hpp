@@ -20,6 +20,11 @@ struct Traces {
 /// node · d + a. With traces, λ_n and μ_{n+1} of every node in space follow.
 SchemeParts element_parts(const FieldTheory&, const StencilTable& element, const std::optional<Traces>& traces = {});
 
+/// The same on a mesh, where the space is one: the action of a time table on its sites and cells in place of the parts' first
+/// family, which is of this table on a point.
+void take_to_mesh(SchemeParts&, const FieldTheory&, const Problem&, const StencilTable& time,
+                  bool values_are_sources = false);
+
 /// The energy of such a scheme at the newest row: H of the momenta there and of the rows, summed over space. And the
 /// momentum −Σ φ_x ∂ℓ/∂φ_t, at the same points.
 EnergyMomentum element_energy(const RowsInTime&);

@@ -86,6 +86,7 @@ struct MethodEntry {
 
   std::vector<Parameter> parameters = {};  ///< that it reads
   bool reads_stencil = false;              ///< it reads lattice.stencil too
+  bool on_meshes = false;  ///< built for a mesh too: a table of time on its sites and cells (take_to_mesh), from momenta
   /// The scheme in reports, from the values of all parameters; null: the name.
   std::string (*label)(const Problem&) = nullptr;
 

@@ -10,7 +10,9 @@
 #include "jets/simd/scratch_rows.hpp"
 #include "jets/tables/mirror_table.hpp"
 #include "jets/tables/pair_element.hpp"
+#include "jets/tables/space_table.hpp"
 #include "lattice/error.hpp"
+#include "schemes/methods/element_parts.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
@@ -124,7 +126,9 @@ SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitt
                                "use scheme.method = multisymplectic",
                                p.method));
   check_density(theory.density(), p, splitting);
-  const StencilTable time = splitting_element(splitting), space = pair_space(pairs), element = product(time, space);
+  const bool mesh = p.lattice.space() == Space::mesh;
+  const StencilTable time = splitting_element(splitting), space = mesh ? point_space() : pair_space(pairs),
+                     element = product(time, space);
   // Between sub-steps momenta change by ∂ℓ/∂φ, linear or not.
   SchemeParts parts{{theory.on_table(element, true)}, theory.fields(), theory.symmetries(), splitting.processor, {}};
   for (const StencilTable& at_wall : at_both_walls(space, p.lattice)) {
@@ -132,6 +136,7 @@ SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitt
     term.pattern.placement = at_wall.pattern.placement;
     parts.families.push_back(theory.on_table(std::move(term), true));
   }
+  take_to_mesh(parts, theory, p, time, true);
   for (std::size_t s = 1; s < element.nodes.size(); ++s)
     for (const Component& field : theory.fields())
       parts.components.push_back(

@@ -24,7 +24,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
     throw BadInput("scheme.method",
                    "scheme.method = radau-iia: this version has no constraints at its stages; use scheme.method = "
                    "multisymplectic");
-  SchemeParts parts = element_parts(theory, product(radau_element(stages(p)), space_table(p)));
+  const StencilTable time = radau_element(stages(p));
+  SchemeParts parts = element_parts(theory, product(time, space_table(p)));
+  take_to_mesh(parts, theory, p, time);
   parts.symmetries.clear();
   return parts;
 }
@@ -47,6 +49,7 @@ const MethodEntry radau_iia_method{
                    space_key(),
                    space_order_key(),
                    degree_space_key()},
+    .on_meshes = true,
     .label = label,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,

@@ -59,10 +59,10 @@ Parameter degree_space_key() {
 }
 
 StencilTable space_table(const Problem& p) {
-  if (p.lattice.space() == Space::point) {
+  if (p.lattice.space() == Space::point || p.lattice.space() == Space::mesh) {
     for (const char* key : {"scheme.space", "lattice.space_order", "scheme.degree_space"})
       if (p.parameters.has(key))
-        throw BadInput(key, fmt::format("{}: lattice.space = point has no space; leave it out", key));
+        throw BadInput(key, fmt::format("{}: is for lattice.space = circle or interval; leave it out", key));
     return point_space();
   }
   require_of(p, "lattice.space_order", "pairs");
@@ -74,7 +74,7 @@ StencilTable space_table(const Problem& p) {
 }
 
 std::string space_label(const Problem& p) {
-  if (p.lattice.space() == Space::point) return {};
+  if (p.lattice.space() == Space::point || p.lattice.space() == Space::mesh) return {};
   const std::string space = space_of(p);
   if (space == "pairs") return fmt::format(", pairs of order {}", order_of(p));
   if (space == "spectral") return fmt::format(", spectral of degree {}", degree_of(p));
@@ -83,6 +83,7 @@ std::string space_label(const Problem& p) {
 
 std::optional<int> order_in_space(const Problem& p, int in_time) {
   if (p.lattice.space() == Space::point) return in_time;
+  if (p.lattice.space() == Space::mesh) return std::min(in_time, 2);  // of linear and bilinear cells
   const std::string space = space_of(p);
   if (space == "spectral") return std::nullopt;
   return std::min(in_time, space == "pairs" ? order_of(p) : 2);

@@ -31,7 +31,7 @@ std::vector<std::shared_ptr<const StencilFamily>> without_constraints(const Latt
 
 std::optional<ConstraintGhost> ghost_under_constraint(const LatticeSystem& system) {
   const auto families = without_constraints(system);
-  if (families.empty()) return std::nullopt;
+  if (families.empty() || system.lattice().space() == Space::mesh) return std::nullopt;
   try {
     // At a stability limit a root is −1 as well, but not below it.
     const Symbol symbol(LatticeSystem(system.lattice(), families, system.time_step()));

@@ -22,22 +22,27 @@ class Reads {
 
   std::vector<Node> of(const Node& equation) {
     const Lattice& lattice = system_.lattice();
+    if (lattice.space() == Space::mesh) return nodes_of(equation, system_.linearised(equation.site, equation.component));
     const int i = equation.site.space, far = 2 * system_.width() + 1;
     const bool circle = lattice.is_circle();
     const auto [found, fresh] =
         known_.try_emplace({equation.component, (equation.site.time + i) % 2, circle ? far : std::min(i, far),
                             circle ? far : std::min(lattice.sites() - 1 - i, far)});
     if (fresh) found->second = system_.linearised(equation.site, equation.component);
+    return nodes_of(equation, found->second);
+  }
+
+ private:
+  std::vector<Node> nodes_of(const Node& equation, const std::vector<Coefficient>& coefficients) const {
     std::vector<Node> nodes;
-    for (const Coefficient& c : found->second) {
+    for (const Coefficient& c : coefficients) {
       Site site = equation.site + c.offset;
-      site.space = lattice.home(site.space), site.node = 0;  // components tell nodes apart
+      site.space = system_.lattice().home(site.space), site.node = 0;  // components tell nodes apart
       nodes.push_back({site, c.component});
     }
     return nodes;
   }
 
- private:
   const LatticeSystem& system_;
   std::map<std::tuple<int, int, int, int>, std::vector<Coefficient>> known_;
 };

@@ -81,6 +81,7 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
                      lattice.sites() == 1 ? "site" : "sites",
                      lattice.is_circle()               ? "a circle"
                      : lattice.space() == Space::point ? "a point"
+                     : lattice.space() == Space::mesh  ? "a mesh"
                                                        : "an interval with both walls",
                      lattice.space_step(), system.time_step(), system.time_step() / lattice.space_step());
   if (system.components() > 1) {
@@ -137,7 +138,7 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   } else {
     append_table(out, system, bulk, "");
   }
-  if (!lattice.is_circle())
+  if (!lattice.is_circle() && lattice.space() != Space::mesh)
     for (int i : {0, lattice.sites() - 1})
       append_table(out, system, {0, i}, i == 0 ? " at the left wall" : " at the right wall");
   if (const auto ghost = ghost_under_constraint(system))

@@ -133,7 +133,7 @@ Assembly::Parts Assembly::across(const LatticeSystem& system, int parity, double
     const StencilFamily& family = *system.families()[at(f)];
     const auto [low, high] = std::ranges::minmax(family.pattern().vertices, {}, &Site::time);
     for (int row = -high.time; row + low.time < 0; ++row)
-      for (int i = 0; i < system.lattice().sites(); ++i)
+      for (int i = 0; i < system.anchors(family); ++i)
         if (system.has_stencil(family, row + parity, i)) anchors.push_back({f, {row, i}});
   }
   return {.equations = {},
@@ -163,7 +163,8 @@ void Assembly::list_stencils(const LatticeSystem& system) {
     for (const Node& e : parts_.equations)
       for (const auto& touch : system.touching(e.site + Site{parts_.parity, 0}, e.component)) {
         const Site site = e.site + touch.anchor;
-        anchors.push_back({touch.family_index, {site.time, lattice.home(site.space)}});
+        const int place = touch.family->listed() ? touch.anchor.space : lattice.home(site.space);
+        anchors.push_back({touch.family_index, {site.time, place}});
       }
   std::ranges::sort(anchors);
   anchors.erase(std::ranges::unique(anchors).begin(), anchors.end());
@@ -190,7 +191,8 @@ void Assembly::list_stencils(const LatticeSystem& system) {
     b.padded = (b.stencils + lanes - 1) / lanes * lanes;
     b.sites.resize(at(b.padded), b.sites.back());
     b.x.resize(at(b.padded / lanes));
-    for (int s = 0; s < b.padded; ++s) b.x[at(s / lanes)].v[s % lanes] = lattice.position(b.sites[at(s)]);
+    for (int s = 0; s < b.padded; ++s)  // listed stencils have places of their own
+      b.x[at(s / lanes)].v[s % lanes] = b.family->listed() ? 0 : lattice.position(b.sites[at(s)]);
   }
 }
 
@@ -212,7 +214,7 @@ void Assembly::list_reads(const LatticeSystem& system) {
       const double turn = system.turn_of(c, parts_.turn);
       bool is_equation = false, is_unknown = false;
       for (int s = 0; s < b.padded; ++s) {
-        const int x = b.sites[at(s)] + vertex.space, home = lattice.home(x);
+        const int x = b.family->column(b.sites[at(s)], i), home = lattice.home(x);
         const std::size_t read = at(b.read(i, s));
         const int equation = s < b.stencils && b.family->is_varied(i) ? equation_at(row, home, c) : -1;
         b.place[read] = place(Site{row, home, vertex.node});
@@ -276,6 +278,7 @@ void Assembly::list_places(const std::vector<std::vector<int>>& unknown) {
 void Assembly::take_constant_parts() {
   fixed_.assign(places_.size() + 1, 0.0);
   for (Batch& b : batches_) {
+    if (b.family->listed()) continue;  // each stencil has a J of its own
     const auto part = b.family->constant_part(cell(b, 0, b.x[0][0]));
     b.linear = part && part->is_all;
     if (!b.linear) continue;
@@ -361,7 +364,7 @@ void Assembly::strips(const Batch& b, const Columns& columns, std::int64_t J, in
       }
     }
     use(StencilBatch{cell(b, J, 0), count, numbers_of(b.x.data() + first / lanes), numbers_of(y_.data()),
-                     low ? numbers_of(y_.data() + values) : nullptr},
+                     low ? numbers_of(y_.data() + values) : nullptr, b.sites.data() + first},
         first, out_.data());
   }
 }
@@ -478,7 +481,7 @@ bool Assembly::list_gains(const LatticeSystem& system) {
     return std::tuple{site, c.field, c.at.space};
   };
   const auto site_of = [&](const Batch& b, int i, int s) {
-    return system.lattice().home(b.sites[at(s)] + b.family->site(i).space);
+    return system.lattice().home(b.family->column(b.sites[at(s)], i));
   };
   // Where a family leaves nodes out of its sums, the residuals of the rows alone add up to momenta.
   const auto leaves_out = [&](const StencilFamily& family, int i) {
@@ -575,11 +578,30 @@ void Assembly::add_constant(const Batch& b, const Numbers& J, Numbers& values) c
       for (int s = 0; s < b.padded; ++s) values[at(*entry++)] += J[at(i * b.size + m)];
 }
 
+/// The same for a batch whose stencils each have their own.
+bool Assembly::add_own_constants(const Batch& b, Numbers& values) const {
+  const std::size_t pairs = b.equations.size() * b.unknowns.size();
+  for (int s = 0; s < b.stencils; ++s) {
+    Cell of = cell(b, 0, 0);
+    of.stencil = b.sites[at(s)];
+    const auto part = b.family->constant_part(of);
+    if (!part) return false;
+    for (std::size_t n = 0; n < pairs; ++n)
+      values[at(b.entry[n * at(b.padded) + at(s)])] += part->J[at(b.equations[n / b.unknowns.size()] * b.size +
+                                                                  b.unknowns[n % b.unknowns.size()])];
+  }
+  return true;
+}
+
 bool Assembly::constant_jacobian(std::vector<double>& values) const {
   values.assign(places_.size() + 1, 0.0);
   for (const Batch& b : batches_) {
     if (b.unknowns.empty()) continue;
     // What depends on the place is not in the constant part: one cell stands for all.
+    if (b.family->listed()) {
+      if (!add_own_constants(b, values)) return false;
+      continue;
+    }
     const auto part = b.family->constant_part(cell(b, 0, b.x[0][0]));
     if (!part) return false;
     add_constant(b, part->J, values);

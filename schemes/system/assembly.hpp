@@ -201,7 +201,7 @@ class Assembly {
     int size;             ///< values of a stencil
     int row, lowest_row;  ///< of the anchors and of the lowest value, from J
     int stencils, padded;
-    std::vector<int> sites = {};  ///< of the anchors
+    std::vector<int> sites = {};  ///< of the anchors, or the numbers of listed stencils
     Packs x = {};
     std::vector<int> rows = {};                      ///< of value i, from J
     std::vector<int> place = {};                     ///< of the site, in the row
@@ -248,6 +248,7 @@ class Assembly {
   void add_residual(const Batch&, const Columns&, std::int64_t J, double* E, double* absolute,
                     double* gain = nullptr) const;
   void add_constant(const Batch&, const Numbers& J, Numbers& values) const;
+  bool add_own_constants(const Batch&, Numbers& values) const;
   void each(bool jacobian, SectionView y, std::int64_t J, const Visit&) const;
 
   std::shared_ptr<const RowTimes> times_;

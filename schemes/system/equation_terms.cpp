@@ -116,6 +116,7 @@ void add_output_terms(const LatticeSystem& system, int site, int a, EquationTerm
 
 bool goes_by_rows(const LatticeSystem& system, const SolvePlan& plan) {
   const int d = system.components(), last = system.lattice().sites() - 1;
+  if (system.lattice().space() == Space::mesh) return false;
   // Between walls the number of sites is odd, and arcs of an even number of sites do not cover them.
   if (system.placement() == Placement::brick_wall && !system.lattice().is_circle()) return false;
   for (const auto& family : system.families())

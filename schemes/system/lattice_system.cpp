@@ -18,7 +18,9 @@
 namespace delf {
 namespace {
 
-Cell cell_at(const Lattice& lattice, std::int64_t row, int i, double time_step) {
+Cell cell_at(const Lattice& lattice, const StencilFamily& family, std::int64_t row, int i, double time_step) {
+  if (family.listed())
+    return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, 0, i};
   const int home = lattice.home(i);
   return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, lattice.position(home)};
 }
@@ -66,10 +68,10 @@ LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr
     for (const VertexValue& value : family->values()) read = std::max(read, value.component + 1);
     if (family->pattern().placement == Placement::brick_wall) placement_ = Placement::brick_wall;
     const auto [least, most] = std::ranges::minmax(family->pattern().vertices, {}, &Site::space);
-    width_ = std::max(width_, most.space - least.space);
+    if (!family->listed()) width_ = std::max(width_, most.space - least.space);
     const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
     height_ = std::max(height_, high.time - low.time);
-    if (!lattice_.is_circle() && most.space - least.space >= lattice_.sites())
+    if (!lattice_.is_circle() && !family->listed() && most.space - least.space >= lattice_.sites())
       throw BadInput(
           "lattice.stencil",
           lattice_.space() == Space::point
@@ -115,6 +117,12 @@ std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice
     const StencilFamily& family = *families_[f];
     for (int i = 0; i < family.size(); ++i) {
       if (family.values()[static_cast<std::size_t>(i)].component != component || !family.is_varied(i)) continue;
+      if (const ListedStencils* const listed = family.listed()) {
+        for (const auto& [stencil, place] : listed->touching(site.space))
+          if (place == family.site(i).space)
+            result.push_back({&family, {-family.site(i).time, stencil}, i, static_cast<int>(f)});
+        continue;
+      }
       const Site vertex = family.site(i), offset{-vertex.time, -vertex.space}, anchor = site + offset;
       if (delf::has_stencil(lattice, family.pattern(), anchor))
         result.push_back({&family, offset, i, static_cast<int>(f)});
@@ -162,17 +170,18 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
       const int size = touch.family->size();
       std::vector<double> y(static_cast<std::size_t>(size)), J(y.size());
       // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
-      const Cell cell = cell_at(lattice, site.time + touch.anchor.time, site.space + touch.anchor.space, time_step_);
+      const int anchor = touch.family->listed() ? touch.anchor.space : site.space + touch.anchor.space;
+      const Cell cell = cell_at(lattice, *touch.family, site.time + touch.anchor.time, anchor, time_step_);
       const double widened = 1 / std::min(1.0, std::max(cell.time_step, cell.space_step));
       Cell wide = cell;
       wide.time_step *= widened, wide.space_step *= widened;
       const auto key = [&](int m) {
         const Site vertex = touch.family->site(m);
-        return std::tuple{touch.anchor + Site{vertex.time, vertex.space},
+        return std::tuple{Site{touch.anchor.time + vertex.time, touch.family->column(anchor, m) - site.space},
                           touch.family->values()[static_cast<std::size_t>(m)].component};
       };
       const auto [part, first] = constant_parts.try_emplace(touch.family);
-      if (first) part->second = touch.family->constant_part(cell);
+      if (first || touch.family->listed()) part->second = touch.family->constant_part(cell);
       if (part->second)
         for (int m = 0; m < size; ++m)
           samples[key(m)].constant += part->second->J[static_cast<std::size_t>(touch.index * size + m)];
@@ -208,12 +217,16 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
 SystemPattern LatticeSystem::pattern() const {
   SystemPattern pattern;
   pattern.components = components();
-  pattern.width = std::max(width_, 1);
+  pattern.width = lattice_.space() == Space::mesh ? lattice_.sites() : std::max(width_, 1);
   pattern.placement = placement_;
   for (const Component& component : names_) pattern.names.push_back(component.name);
   // Round a circle the sites are alike, but for their parity in a brick wall.
   using Known = std::map<std::pair<int, int>, std::vector<Coupling>>;
-  pattern.equations = [this, known = std::make_shared<Known>()](const Lattice& lattice, Site site, int component) {
+  // Those of a mesh differ in the numbers of their stencils alone: one that keeps no value stands for all.
+  int any = 0;
+  while (lattice_.space() == Space::mesh && any + 1 < lattice_.sites() && lattice_.is_fixed(any)) ++any;
+  pattern.equations = [this, any, known = std::make_shared<Known>()](const Lattice& lattice, Site site, int component) {
+    if (lattice.space() == Space::mesh) site.space = any;
     const auto find = [&] {
       std::vector<Coupling> couplings;
       for (const Coefficient& c : linearised(lattice, site, component))
@@ -221,7 +234,7 @@ SystemPattern LatticeSystem::pattern() const {
       return couplings;
     };
     // between walls sites differ; round a circle and on a point all are alike
-    if (!lattice.is_circle() && lattice.space() != Space::point) return find();
+    if (lattice.space() == Space::interval) return find();
     const bool bricks = placement_ == Placement::brick_wall;
     const auto [at, fresh] = known->try_emplace({component, bricks ? (site.time + site.space) & 1 : 0});
     if (fresh) at->second = find();
@@ -237,7 +250,7 @@ Window LatticeSystem::window(std::int64_t first_row, std::vector<std::vector<dou
 }
 
 bool LatticeSystem::has_stencil(const StencilFamily& family, std::int64_t row, int site) const {
-  return delf::has_stencil(lattice_, family.pattern(), {static_cast<int>(row & 1), site});
+  return family.listed() || delf::has_stencil(lattice_, family.pattern(), {static_cast<int>(row & 1), site});
 }
 
 void LatticeSystem::equations(const Window& window, std::int64_t row, std::vector<Value>& values) const {

@@ -112,7 +112,7 @@ class LatticeSystem {
   /// One stencil that reads a component at a site: which family, its anchor relative to that site, as which value.
   struct Touch {
     const StencilFamily* family;
-    Site anchor;
+    Site anchor;  ///< of a listed stencil the space is its number, and nothing relative
     int index;
     int family_index;
   };
@@ -133,6 +133,10 @@ class LatticeSystem {
 
   /// Whether a family has a stencil at (row, site), whose row matters by its parity.
   bool has_stencil(const StencilFamily&, std::int64_t row, int site) const;
+  /// Anchors of a row that may have a stencil: sites, or the numbers of listed ones.
+  int anchors(const StencilFamily& family) const {
+    return family.listed() ? family.listed()->size() : lattice_.sites();
+  }
 
   struct Value {
     double sum = 0, absolute = 0;  ///< Σ rˡ and Σ |rˡ|

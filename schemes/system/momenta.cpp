@@ -36,23 +36,24 @@ std::vector<double> half_equations(const LatticeSystem& system, const Window& wi
       ++top;
     }
     const std::int64_t anchor = row - (side == Side::below ? top : low.time);
-    for (int i = 0; i < N; ++i) {
+    for (int i = 0; i < system.anchors(*family); ++i) {
       if (!system.has_stencil(*family, anchor, i)) continue;
       y.clear(), rest.clear();
       for (int m = 0; m < family->size(); ++m) {
         const Site v = family->site(m);
         const int c = family->values()[static_cast<std::size_t>(m)].component;
-        y.push_back(window(anchor + v.time, i + v.space, c));
-        rest.push_back(window.low_part(anchor + v.time, i + v.space, c));
+        y.push_back(window(anchor + v.time, family->column(i, m), c));
+        rest.push_back(window.low_part(anchor + v.time, family->column(i, m), c));
       }
       r.resize(y.size());
       family->residual(
-          {system.times()->step(anchor), lattice.space_step(), system.times()->time(anchor), lattice.position(i)}, y,
-          rest, r);
+          {system.times()->step(anchor), lattice.space_step(), system.times()->time(anchor),
+           family->listed() ? 0 : lattice.position(i), i},
+          y, rest, r);
       for (int m = 0; m < family->size(); ++m) {
         const Site v = family->site(m);
         if (anchor + v.time != row || !family->is_varied(m)) continue;
-        const int x = i + v.space, home = lattice.home(x);
+        const int x = family->column(i, m), home = lattice.home(x);
         const int c = family->values()[static_cast<std::size_t>(m)].component;
         p[static_cast<std::size_t>(home * C + c)] +=
             side == Side::below ? r[static_cast<std::size_t>(m)] : -r[static_cast<std::size_t>(m)];

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "schemes/complex/asynchronous.hpp"
+#include "schemes/simulation.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/static_field.hpp"
@@ -85,6 +86,10 @@ ExitCode plan(const ComplexScene& c) {
           least, largest, updates, static_cast<double>(c.scene.steps) * static_cast<double>(steps.size()));
       fmt::print("  solve      explicit, in the order of a priority queue\n");
       say_memory(AsynchronousEvolution(space, steps).bytes(), 2 * values);
+    } else if (c.has_method()) {
+      const Simulation simulation(c.problem_on_mesh());
+      fmt::print("  steps      {} of h = {:.6g}\n{}", c.scene.steps, c.scene.problem.time_step,
+                 simulation.plan_report());
     } else {
       const SpaceEvolution evolution(space, c.time_step(0));
       fmt::print("  steps      {} of {}\n", c.scene.steps,

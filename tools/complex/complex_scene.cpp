@@ -17,6 +17,7 @@
 #include "jets/expressions/parse.hpp"
 #include "lattice/space/mesh_topology.hpp"
 #include "schemes/complex/circle_fibre.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/mesh_text.hpp"
@@ -47,8 +48,10 @@ const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "latt
                                                    "output.every"};
 
 void refuse_unread(const Settings& settings, const TheoryEntry& theory, const ParameterValues& parameters,
-                   const std::vector<Component>& fields, bool still, bool spacetime) {
+                   const MethodEntry& method, const std::vector<Component>& fields, bool still, bool spacetime) {
   std::set<std::string, std::less<>> known = read_keys;
+  if (method.on_meshes)
+    for (const Parameter& p : method.parameters) known.insert(p.key);
   for (const Parameter& p : parameters_of(theory, parameters)) known.insert(p.key);
   for (const Component& field : fields)
     known.insert({"exact." + field.name, "initial." + field.name, "initial." + field.name + "_t"});
@@ -68,13 +71,24 @@ void refuse_unread(const Settings& settings, const TheoryEntry& theory, const Pa
   }
 }
 
+void read(ParameterValues& parameters, const Values& values, const std::vector<Parameter>& declared) {
+  for (const Parameter& p : declared)
+    if (values.given(p.key) || p.otherwise.empty()) parameters[p.key] = values.parameter(p);
+}
+
 ParameterValues read_parameters(const Values& values, const TheoryEntry& theory) {
   ParameterValues parameters;
-  for (const Parameter& p : theory.parameters)
-    if (values.given(p.key) || p.otherwise.empty()) parameters[p.key] = values.parameter(p);
+  read(parameters, values, theory.parameters);
   if (theory.further)
     for (const Parameter& p : theory.further(parameters)) parameters[p.key] = values.parameter(p);
   return parameters;
+}
+
+std::string names_of_methods_on_meshes() {
+  std::vector<std::string> names;
+  for (const MethodEntry* entry : method_entries())
+    if (entry->on_meshes) names.push_back(entry->name);
+  return fmt::format("{}", fmt::join(names, " or "));
 }
 
 std::vector<double> read_time_steps(const Settings& settings, const Values& values) {
@@ -264,11 +278,16 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     if (const Setting* merge = settings.find("lattice.merge"); merge && (c.stencils || c.mesh_file.empty()))
       scene.warnings.push_back(key_warning(settings, *merge, "no effect: it is for the points of a mesh file"));
     if (c.stencils && !c.mesh_file.empty() && !find_fault(*c.stencils, c.theory->density())) require_tiling(c);
-    refuse_unread(settings, entry, parameters, c.theory->fields(), values.choice("lattice.time") == "none",
-                  c.stencils != nullptr);
     p.method = values.choice("scheme.method");
-    if (p.method != find_key("scheme.method")->fallback)
-      throw settings.error("scheme.method", "needs a regular lattice; leave it out on a mesh");
+    const MethodEntry& method = find_method(p.method);
+    p.parameters = parameters;
+    if (method.on_meshes) read(p.parameters, values, method.parameters);
+    refuse_unread(settings, entry, parameters, method, c.theory->fields(), values.choice("lattice.time") == "none",
+                  c.stencils != nullptr);
+    const bool rows_alone = c.has_method();
+    if (rows_alone && !method.on_meshes)
+      throw settings.error("scheme.method", "needs a regular lattice; leave it out on a mesh, or use " +
+                                                names_of_methods_on_meshes());
     double edge = 1;  // of the mesh as it is given
     if (!c.stencils) {
       edge = shortest_edge(std::get<Mesh>(mesh));
@@ -281,11 +300,15 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
              : time == "none"  ? MeshTime::none
              : time == "cells" ? MeshTime::cells
                                : MeshTime::rows;
+    if (rows_alone && c.time != MeshTime::rows)
+      throw settings.error("scheme.method", "is for lattice.time = rows; leave it out");
     if (c.theory->constraint() && c.time != MeshTime::rows && c.time != MeshTime::none)
       throw BadInput("theory.name", "theory.name = " + p.theory +
                                         ": a constraint on a mesh is for lattice.time = rows or none; choose one of "
                                         "these");
     p.circle_valued = values.choice("theory.fibre") == "S1";
+    if (p.circle_valued && rows_alone)
+      throw settings.error("theory.fibre", "S1 on a mesh is for the usual method; leave scheme.method out, or use R");
     if (p.circle_valued && (c.time != MeshTime::rows || c.theory->fields().size() > 1))
       throw settings.error("theory.fibre", "S1 on a mesh is for one field with lattice.time = rows; use R");
     p.tolerance = values.real("scheme.tolerance");
@@ -306,6 +329,8 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     }
 
     p.step_control = read_step_control(settings, values);
+    if (rows_alone && values.given("lattice.time_steps"))
+      throw settings.error("lattice.time_steps", "are of the usual method on a mesh; leave scheme.method out");
     if (p.step_control && c.time == MeshTime::cells)
       throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
     if (p.step_control && c.theory->constraint())
@@ -348,6 +373,15 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     throw settings.located(bad);
   }
   return c;
+}
+
+bool ComplexScene::has_method() const { return scene.problem.method != find_key("scheme.method")->fallback; }
+
+Problem ComplexScene::problem_on_mesh() const {
+  Problem problem = scene.problem;
+  problem.lattice = Lattice::on(std::shared_ptr<const MeshSpace>(std::shared_ptr<const MeshSpace>(), space.get()));
+  problem.stencil = Problem().stencil;
+  return problem;
 }
 
 int ComplexScene::sites() const { return stencils ? static_cast<int>(stencils->sites.size()) : space->sites(); }

@@ -49,6 +49,10 @@ struct ComplexScene {
     return time_steps.empty() ? scene.problem.time_step
                               : time_steps[static_cast<std::size_t>(step) % time_steps.size()];
   }
+  /// The method that is not the rows' own: steps as lattices have them, by its families on the sites and cells.
+  bool has_method() const;
+  /// The problem on the mesh as the space of a lattice, for such a method.
+  Problem problem_on_mesh() const;
   /// Steps that the field chooses: ReversibleSteps of this strength, with time_step for ε.
   const std::optional<double>& step_control() const { return scene.problem.step_control; }
   /// Solved at once: there are no steps.

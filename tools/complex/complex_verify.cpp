@@ -39,6 +39,9 @@ class MeshVerification {
   /// Of rows computed here, or of those of a file.
   Verdict run(const std::optional<std::string>& fields) {
     const auto begin = std::chrono::steady_clock::now();
+    if (scene_.has_method() && !fields)
+      throw scene_.scene.settings.error("scheme.method",
+                                        "is not checked on a mesh by this version; leave it out for delf verify");
     if (fields) look_at_file(*fields);
     else if (scene_.is_one_problem()) look_at_field();
     else if (scene_.time == MeshTime::cells) look_at_cells();

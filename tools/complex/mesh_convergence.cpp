@@ -9,9 +9,7 @@
 #include <tuple>
 
 #include "lattice/error.hpp"
-#include "schemes/complex/asynchronous.hpp"
-#include "tools/complex/complex_commands.hpp"
-#include "tools/complex/row_steps.hpp"
+#include "tools/complex/mesh_evolution.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/failure.hpp"
 #include "tools/run/interrupt.hpp"
@@ -29,24 +27,17 @@ struct End {
 std::optional<End> last_row(const ComplexScene& c) {
   End end;
   const auto begin = std::chrono::steady_clock::now();
-  const std::int64_t steps = c.scene.steps;
   if (c.is_one_problem()) {
     StaticField field(c);
     field.solve();
     end.values.assign(field.values().begin(), field.values().end());
-  } else if (c.time == MeshTime::cells) {
-    AsynchronousEvolution evolution(*c.space, cell_steps(c));
-    evolution.start(c.values(), c.rates());
-    for (std::int64_t n = 1; n <= steps && !Interrupt::asked(); ++n)
-      evolution.advance(end.time = static_cast<double>(n) * c.scene.problem.time_step);
-    end.values = evolution.values(end.time);
   } else {
-    SpaceEvolution evolution(*c.space, c.time_step(0), {c.scene.problem.tolerance, c.scene.problem.max_iterations});
-    RowSteps row_steps(c);
-    row_steps.start(evolution);
-    while (!c.scene.is_over(evolution.newest(), evolution.time()) && !Interrupt::asked()) row_steps.step(evolution);
-    end.values.assign(evolution.row().begin(), evolution.row().end());
-    end.time = evolution.time();
+    const std::unique_ptr<MeshEvolution> evolution = make_mesh_evolution(c);
+    evolution->start();
+    while (!c.scene.is_over(evolution->newest(), evolution->time()) && !Interrupt::asked()) evolution->step();
+    const MeshRow last = evolution->row(evolution->newest());
+    end.values.assign(last.values.begin(), last.values.end());
+    end.time = evolution->time();
   }
   if (Interrupt::asked()) return std::nullopt;
   end.seconds = seconds_since(begin);

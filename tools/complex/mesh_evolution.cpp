@@ -6,7 +6,11 @@
 #include <algorithm>
 
 #include "schemes/complex/asynchronous.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/system/mesh_energy.hpp"
+#include "schemes/system/momenta.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/row_steps.hpp"
 
@@ -66,6 +70,89 @@ class AllSites final : public MeshEvolution {
   RowSteps steps_;
 };
 
+/// The lattice's own steps, by a method's families on the sites and cells.
+class ByMethod final : public MeshEvolution {
+ public:
+  explicit ByMethod(const ComplexScene& c)
+      : c_(c),
+        simulation_(c.problem_on_mesh()),
+        energy_(c.theory->shared_density(), *c.space),
+        values_(c.space->fields_of_row()) {}
+
+  void start() override {
+    const std::vector<double> values = c_.values(), rates = c_.rates();
+    const auto& components = simulation_.components();
+    std::vector<double> row, velocity;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(c_.sites()); ++i)
+      for (const Component& component : components) {
+        const bool is_field = component.role != Role::multiplier;
+        const std::size_t at = i * c_.fields.size() + static_cast<std::size_t>(component.field);
+        row.push_back(is_field ? values[at] : 0);
+        velocity.push_back(component.role == Role::field ? rates[at] : 0);
+      }
+    simulation_.start_legendre(row, velocity);
+  }
+  std::int64_t newest() const override { return simulation_.newest(); }
+  double time() const override { return simulation_.time(newest()); }
+  double last_step() const override { return c_.scene.problem.time_step; }
+  void step() override { simulation_.step(); }
+  int iterations() const override { return simulation_.iterations(); }
+  MeshRow row(std::int64_t row) override {
+    const bool is_newest = row >= newest();
+    const int back = is_newest ? 0 : 1;
+    const double t = is_newest ? time() : 0;
+    simulation_.copy_row(back, values_);
+    const std::vector<double> p = momenta(back);
+    MeshRow now{row, t, values_, energy_(values_, energy_.rates(values_, p, t), t), is_newest ? iterations() : 0,
+                is_newest && row > 0 ? simulation_.residual() : 0};
+    for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(sum(symmetry, p));
+    if (c_.space->constraint) now.constraint = c_.space->largest_constraint(now.values);
+    if (simulation_.count(Role::multiplier) == 1 && is_newest) {
+      multipliers_.resize(static_cast<std::size_t>(c_.sites()));
+      simulation_.copy_row(0, multipliers_, Role::multiplier);
+      now.multipliers = multipliers_;
+    }
+    return now;
+  }
+  void visit(SavedState& state) override { simulation_.visit(state); }
+  void describe(Outcome& o) const override {
+    o.solve = simulation_.solve_summary();
+    o.solve_kind = simulation_.solve_kind();
+    o.bytes = simulation_.bytes();
+  }
+
+ private:
+  /// Of the fields at the newest row, or the one before it, [i·d + a]: the half of their equations.
+  std::vector<double> momenta(int back) const {
+    const Evolution& evolution = simulation_.evolution();
+    const Stepper& stepper = evolution.stepper();
+    const std::vector<double> all = half_equations(evolution.system(), stepper.window(2), stepper.newest() - back,
+                                                   back == 0 ? Side::below : Side::above);
+    const std::size_t C = simulation_.components().size(), d = c_.fields.size();
+    std::vector<double> p;
+    for (std::size_t n = 0; n < all.size(); n += C) p.insert(p.end(), all.begin() + static_cast<std::ptrdiff_t>(n),
+                                                             all.begin() + static_cast<std::ptrdiff_t>(n + d));
+    return p;
+  }
+  /// Σ_i p_i · ξ(φ_i)
+  Balance sum(const LinearSymmetry& symmetry, const std::vector<double>& p) const {
+    const std::size_t d = c_.fields.size();
+    Balance balance;
+    for (std::size_t n = 0; n < p.size(); ++n) {
+      const std::size_t a = n % d;
+      double xi = symmetry.shift[a];
+      for (std::size_t b = 0; b < d; ++b) xi += symmetry.matrix[a * d + b] * values_[n - a + b];
+      balance.add(p[n] * xi);
+    }
+    return balance;
+  }
+
+  const ComplexScene& c_;
+  Simulation simulation_;
+  MeshEnergy energy_;
+  std::vector<double> values_, multipliers_;
+};
+
 /// Row n is at n h, with h = scene.problem.time_step.
 class OwnSteps final : public MeshEvolution {
  public:
@@ -104,6 +191,7 @@ class OwnSteps final : public MeshEvolution {
 
 std::unique_ptr<MeshEvolution> make_mesh_evolution(const ComplexScene& c) {
   if (c.time == MeshTime::cells) return std::make_unique<OwnSteps>(c);
+  if (c.has_method()) return std::make_unique<ByMethod>(c);
   return std::make_unique<AllSites>(c);
 }
 
