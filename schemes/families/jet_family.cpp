@@ -391,6 +391,18 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
   }
 }
 
+bool JetFamily::is_constant(int i, int m) const {
+  for (const Point& point : points_)
+    for (const Weight& left : point.of_test[at(i / d_)])
+      for (const Weight& right : point.of_vertex[at(m / d_)]) {
+        const int row = left.slot * d_ + i % d_, column = right.slot * d_ + m % d_;
+        if (has_sources_ && row < d_ && column < d_ ? !density_->is_zero(row, column)
+                                                     : !density_->is_constant(row, column))
+          return false;
+      }
+  return true;
+}
+
 /// Where ∂ℓ/∂φ varies it is a source term as a whole, the constant entries of its Hessian with it.
 std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
   const int n = size(), m = density_->variables();

@@ -32,6 +32,7 @@ class JetFamily final : public StencilFamily {
   void jacobian(const StencilBatch&, std::span<const int> equations, std::span<const int> unknowns,
                 double* J) const override;
   bool lagrangian(const StencilBatch&, double* L) const override;
+  bool is_constant(int i, int m) const override;
   std::optional<ConstantPart> constant_part(const Cell&) const override;
 
   const SourceTerms* sources() const override;

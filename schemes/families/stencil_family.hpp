@@ -104,6 +104,8 @@ class StencilFamily {
                         double* J) const;
   /// L of a batch, where there is one; the residual is its gradient.
   virtual bool lagrangian(const StencilBatch&, double* /*L*/) const { return false; }
+  /// ∂rⁱ/∂yᵐ is proved to be that of the constant part at all y, t and x.
+  virtual bool is_constant(int /*i*/, int /*m*/) const { return false; }
   /// Nothing where it is not finite.
   virtual std::optional<ConstantPart> constant_part(const Cell&) const;
 

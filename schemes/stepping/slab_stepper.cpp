@@ -50,6 +50,7 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
     const bool follows = parities_.back().equations.keep_low(system);
     parities_.back().momentum_follows = follows && plan.table.parities == 1;
     parities_.back().has_constant = factor_constant(parities_.back());
+    if (parities_.back().has_constant) parities_.back().levels = list_levels(parities_.back(), p);
   }
   if (system.moves()) mesh_.emplace(system);
   predicted_.resize(row);
@@ -90,6 +91,63 @@ bool SlabStepper::factor_constant(Parity& p) {
   if (there) p.has_values = true, there = p.solver.factor(jacobian_);
   p.factored = there ? Matrix::constant : Matrix::none;
   return there;
+}
+
+std::vector<SlabStepper::Level> SlabStepper::list_levels(const Parity& p, int parity) const {
+  constexpr int most_levels = 64;
+  const Assembly& all = p.equations;
+  const auto n = static_cast<std::size_t>(all.size());
+  if (!plan_.nonlinear_in_slab || plan_.blocks != plan_.unknowns || !all.matched() || all.unknowns() != all.size())
+    return {};
+  // Each unknown is one level above those that its equation contains.
+  const std::vector<char> present = all.present();
+  std::vector<int> level(n, 0);
+  bool changed = true;
+  for (int round = 0; changed; ++round) {
+    if (round > most_levels) return {};
+    changed = false;
+    for (std::size_t place = 0; place < present.size(); ++place) {
+      const auto [equation, unknown] = all.places()[place];
+      if (present[place] == 0 || equation == unknown) continue;
+      const int least = level[static_cast<std::size_t>(unknown)] + 1;
+      if (int& own = level[static_cast<std::size_t>(equation)]; own < least) own = least, changed = true;
+    }
+  }
+  std::vector<Level> levels;
+  for (int l = 0; l <= std::ranges::max(level); ++l) {
+    Assembly::Parts parts{.equations = {},
+                          .unknowns = {},
+                          .matched = true,
+                          .parity = parity,
+                          .past = past_,
+                          .future = future_,
+                          .turn = options_.turn};
+    for (std::size_t u = 0; u < n; ++u)
+      if (level[u] == l)
+        parts.equations.push_back(all.equation(static_cast<int>(u))),
+            parts.unknowns.push_back(all.unknown(static_cast<int>(u)));
+    Assembly equations(system_, std::move(parts));
+    BlockSolver solver = solver_of(equations);
+    std::vector<double> matrix;
+    if (!equations.is_linear() || !equations.constant_jacobian(matrix) || !solver.factor(matrix)) return {};
+    std::vector<Unknowns> unknowns = list_unknowns(equations);
+    levels.push_back({std::move(equations), std::move(solver), std::move(unknowns)});
+  }
+  return levels;
+}
+
+/// One solve a level, from the predictor. finish() corrects the slab as a whole, by its constant part.
+bool SlabStepper::solve_levels(Parity& p, std::int64_t J) {
+  ++iterations_;
+  left_ = infinity, last_change_ = 0;
+  for (const Level& level : p.levels) {
+    level.equations.residual(*ring_, J, E_);
+    level.solver.solve(E_, change_);
+    const Change c = take_change(level.unknowns, J);
+    if (!c.finite) return false;
+    last_change_ = std::max(last_change_, c.change);
+  }
+  return true;
 }
 
 /// The largest |y| of the fields in a row: starting rows need not hold anything else.
@@ -238,11 +296,11 @@ void SlabStepper::fail(std::int64_t J, const std::string& why, std::string remed
 }
 
 /// y −= change
-SlabStepper::Change SlabStepper::take_change(const Parity& p, std::int64_t J) {
+SlabStepper::Change SlabStepper::take_change(const std::vector<Unknowns>& lists, std::int64_t J) {
   // A field that passes through zero has the scale that it had before.
   Change result{.value = std::max(largest_[0], largest_[1])};
   Pack most_change(0.0), most_y(0.0), most_asked(0.0);
-  for (const Unknowns& unknowns : p.unknowns) {
+  for (const Unknowns& unknowns : lists) {
     double *const row = ring_->row(J + unknowns.time), *const low = ring_->low(J + unknowns.time);
     // Multipliers are not asked: they have no scale of their own, and converge with what they act on.
     const bool asked = unknowns.role != Role::multiplier;
@@ -288,12 +346,13 @@ bool SlabStepper::iterate(Parity& p, std::int64_t J) {
   predict(p, J, points_);
   find_known(p, J, nullptr);
   travelled_ = 0;
+  if (!p.levels.empty()) return solve_levels(p, J);
   double before = infinity;
   while (iterations_ < options_.max_iterations) {
     ++iterations_;
     p.equations.residual_from(known_E_, *ring_, J, E_);
     p.solver.solve(E_, change_);
-    const Change c = take_change(p, J);
+    const Change c = take_change(p.unknowns, J);
     last_change_ = c.change;
     if (!c.finite) return false;
     if (arrived(p, c, before)) return true;
@@ -335,7 +394,7 @@ const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std
     if (momenta) p.equations.residual(*ring_, J, E_, nullptr, momenta);
     else p.equations.residual_from(known_E_, *ring_, J, E_);
     p.solver.solve(E_, change_);
-    const Change c = take_change(p, J);
+    const Change c = take_change(p.unknowns, J);
     if (!c.finite) {
       p.factored = Matrix::none;
       return "Newton's method diverges";
@@ -389,7 +448,7 @@ bool SlabStepper::finish(Parity& p, std::int64_t J) {
     // What is below rounding of the increment is not worth a solve.
     if (p.factored == Matrix::none || left_ <= 1e-4 * epsilon * largest_[0]) return true;
     p.solver.solve(E_, change_);
-    const Change c = take_change(p, J);
+    const Change c = take_change(p.unknowns, J);
     if (!c.finite) return false;
     if (p.factored == Matrix::constant && last_change_ > 0)
       p.contraction = std::max(c.change / last_change_, 0.5 * p.contraction);
@@ -414,7 +473,7 @@ void SlabStepper::carry(const Parity& p, std::int64_t J) {
 RootWatch::Verdict SlabStepper::judge(const Parity& p, std::int64_t J) const {
   // Corrections that shrink by four and more at once leave no other root near (Kantorovich).
   constexpr double little = 1e-3, straight = 0.25;
-  if (!plan_.nonlinear_in_slab || travelled_ <= little * value_) return RootWatch::Verdict::near;
+  if (!plan_.nonlinear_in_slab || !p.levels.empty() || travelled_ <= little * value_) return RootWatch::Verdict::near;
   std::vector<RootWatch::Values> lists;
   for (const Unknowns& list : p.unknowns) {
     if (list.role == Role::multiplier || list.role == Role::slaved) continue;
@@ -614,7 +673,10 @@ void SlabStepper::visit(SavedState& state) {
 
 std::size_t SlabStepper::equation_bytes() const {
   std::size_t total = 0;
-  for (const Parity& p : parities_) total += p.equations.bytes();
+  for (const Parity& p : parities_) {
+    total += p.equations.bytes();
+    for (const Level& level : p.levels) total += level.equations.bytes() + level.solver.bytes();
+  }
   return total;
 }
 std::size_t SlabStepper::matrix_bytes() const {
@@ -647,7 +709,7 @@ StepReport SlabStepper::report(bool residual) const {
   const std::size_t residual_bytes = residual ? residual_bytes_to_come() : 0;
   return {.starting_rows = starting_rows_,
           .behind = back_,
-          .iterates = plan_.nonlinear_in_slab,
+          .iterates = plan_.nonlinear_in_slab && !by_levels(),
           .solver = parities_[0].solver.name(),
           .bytes = ring_->bytes() + equation_bytes() + matrix_bytes() + work_bytes(),
           .bytes_to_come = matrix_bytes_to_come() + residual_bytes,

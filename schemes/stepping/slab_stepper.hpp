@@ -31,7 +31,7 @@ class SlabStepper final : public StepMethod {
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool looked_at) override;
 
-  StepState state() const override { return {newest(), plan_.nonlinear_in_slab ? iterations_ : 0, continued_}; }
+  StepState state() const override { return {newest(), plan_.nonlinear_in_slab && !by_levels() ? iterations_ : 0, continued_}; }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   double residual() const override;
@@ -49,10 +49,18 @@ class SlabStepper final : public StepMethod {
     bool field() const { return role == Role::field; }
   };
   enum class Matrix { none, constant, jacobian };
+  /// Unknowns that depend on those of lower levels and on no other of their own, and that their equations contain linearly, with
+  /// the same matrix always: found by one solve, such as the rows between the sub-steps of a composition.
+  struct Level {
+    Assembly equations;
+    BlockSolver solver;
+    std::vector<Unknowns> unknowns;
+  };
   struct Parity {
     Assembly equations;
     BlockSolver solver;
     std::vector<Unknowns> unknowns;
+    std::vector<Level> levels = {};                 ///< none where some unknown is not of that kind
     bool has_constant = false;                      ///< there is a constant part, and it has an inverse
     bool has_values = false;                        ///< the solver has had the values of a matrix, and keeps them
     Matrix factored = Matrix::none;                 ///< what the solver holds
@@ -72,11 +80,14 @@ class SlabStepper final : public StepMethod {
   const Parity& parity(std::int64_t J) const { return parities_[static_cast<std::size_t>(J) % parities_.size()]; }
   std::vector<Unknowns> list_unknowns(const Assembly&) const;
   bool factor_constant(Parity&);
+  std::vector<Level> list_levels(const Parity&, int parity) const;
+  bool solve_levels(Parity&, std::int64_t J);
+  bool by_levels() const { return !parities_.empty() && !parities_[0].levels.empty(); }
   void predict(const Parity&, std::int64_t J, int most_points);
   double weight_of_past(std::int64_t row, int m, int points) const;
   void predict_without_past(const Unknowns&, std::int64_t J);
   double largest_of(const double* row) const;
-  Change take_change(const Parity&, std::int64_t J);
+  Change take_change(const std::vector<Unknowns>&, std::int64_t J);
   double wanted(const Change&) const;
   bool arrived(const Parity&, const Change&, double before);
   static bool is_rounding(const Change&, double before);

@@ -612,6 +612,14 @@ bool Assembly::constant_jacobian(std::vector<double>& values) const {
   return std::ranges::all_of(has, [](char any) { return any != 0; });
 }
 
+bool Assembly::is_linear() const {
+  for (const Batch& b : batches_)
+    for (const int i : b.equations)
+      for (const int m : b.unknowns)
+        if (!b.family->is_constant(i, m)) return false;
+  return true;
+}
+
 void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V, std::vector<double>& values) const {
   values.assign(places_.size() + 1, 0.0);
   for (Variation& v : V) v.E.assign(at(size()) + 1, 0.0), v.absolute.assign(v.E.size(), 0.0);

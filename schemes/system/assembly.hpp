@@ -157,6 +157,8 @@ class Assembly {
   /// The values of places() without the terms that depend on the field. False if some family cannot tell, or nothing is
   /// left of an equation.
   bool constant_jacobian(std::vector<double>& values) const;
+  /// Every entry of the Jacobian is proved to be constant: the equations are linear in the unknowns.
+  bool is_linear() const;
 
   /// Σ_a ∂E/∂y_a V_a and Σ|terms| for several V at once, every a that the stencils read, and the values of places().
   struct Variation {
