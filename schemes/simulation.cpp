@@ -29,6 +29,10 @@ namespace {
 SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
   if (!(p.time_step > 0) || !std::isfinite(p.time_step))
     throw BadInput("lattice.time_step", "lattice.time_step must be a positive, finite number");
+  if (p.lattice.mesh() && !find_method(p.method).on_meshes)
+    throw BadInput("scheme.method", fmt::format("scheme.method = {}: needs a regular lattice; use composition, cgvi or "
+                                                "radau-iia on a mesh",
+                                                p.method));
   for (const auto& [wall, key] : {std::pair{p.lattice.left(), "boundary.left"}, {p.lattice.right(), "boundary.right"}})
     if (wall == Wall::clamped && p.lattice.space() == Space::interval && !find_method(p.method).reads_stencil)
       throw BadInput(key,

@@ -23,6 +23,7 @@
 #include "tools/scene/scene.hpp"
 #include "tools/scene/shipped_scenes.hpp"
 #include "tools/scene/suggestion.hpp"
+#include "tools/stability/mesh_stability.hpp"
 #include "tools/stability/stability.hpp"
 #include "tools/sweep/sweep.hpp"
 #include "tools/verify/verify.hpp"
@@ -162,7 +163,12 @@ ExitCode carry_out_workprecision(const Arguments& arguments) {
 }
 
 ExitCode carry_out_stability(const Arguments& arguments) {
-  const Scene scene = scene_of(arguments);
+  Settings settings = settings_of(arguments);
+  if (is_on_mesh(settings)) {
+    const ComplexScene mesh = complex_scene_of(std::move(settings));
+    return mesh_stability(mesh, arguments.out.value_or("results/" + mesh.scene.name));
+  }
+  const Scene scene = scene_of(std::move(settings));
   return stability(scene, arguments.out.value_or("results/" + scene.name));
 }
 

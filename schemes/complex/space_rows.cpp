@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/complex/space_rows.hpp"
 
+#include <Spectra/MatOp/SparseSymMatProd.h>
+#include <Spectra/SymEigsSolver.h>
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <random>
 
 #include "lattice/error.hpp"
 #include "schemes/complex/complex_noether.hpp"
@@ -197,6 +200,18 @@ namespace {
 
 constexpr std::array<double, 3> three_rows{0, 1, 2};  // until start() says how long a step is
 
+/// Of a symmetric matrix; 0 if Lanczos's method does not converge.
+double largest_eigenvalue(const Eigen::SparseMatrix<double>& K) {
+  constexpr int few = 32, basis = 24, most_iterations = 1000;
+  if (K.rows() <= few)
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(K), Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+  Spectra::SparseSymMatProd<double> product(K);
+  Spectra::SymEigsSolver<Spectra::SparseSymMatProd<double>> lanczos(product, 1, basis);
+  lanczos.init();
+  lanczos.compute(Spectra::SortRule::LargestAlge, most_iterations, 1e-8);
+  return lanczos.info() == Spectra::CompInfo::Successful ? lanczos.eigenvalues()[0] : 0;
+}
+
 }  // namespace
 
 SpaceEvolution::SpaceEvolution(const CellSpace& space, double time_step, ComplexSolver::Options options)
@@ -346,15 +361,11 @@ void SpaceEvolution::turn_back() {
 }
 
 std::optional<double> SpaceEvolution::largest_step() const {
-  // y″ = −K y/M: the largest eigenvalue of M⁻¹K by the power method on the linearised equations at 0.
+  // y″ = −M⁻¹K y, of the linearised equations at 0: the largest eigenvalue ω² of M^(−1/2) K M^(−1/2), by Lanczos.
   const ComplexSystem& system = rows_.system();
   const auto d = at(space_.fields());
   const std::size_t n = space_.values_of_row(), fields = space_.fields_of_row();
-  struct Entry {
-    std::size_t i, m;
-    double value;
-  };
-  std::vector<Entry> stiffness;
+  std::vector<Eigen::Triplet<double>> stiffness;
   std::vector<double> mass(n, 0.0);
   const std::vector<double> zero(system.nodes(), 0.0);
   system.each_jacobian(system.all_stencils(), zero, [&](ComplexSystem::Stencils batch, const double* J) {
@@ -369,28 +380,17 @@ std::optional<double> SpaceEvolution::largest_step() const {
           const double value = J[(i * size + m) * static_cast<std::size_t>(PlacedFamily::most) + s];
           if (system.family_of(batch[s]).time_power() == 1)
             mass[row - n] += 0.5 * value * steps_[1];  // two motions meet at a site, each M/h
-          else stiffness.push_back({row - n, column - n, -value / steps_[2]});
+          else stiffness.emplace_back(static_cast<int>(row - n), static_cast<int>(column - n), -value / steps_[2]);
         }
   });
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  std::vector<double> v(fields), w(fields);
-  for (double& x : v) x = normal(random);
-  double eigenvalue = 0;
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    std::fill(w.begin(), w.end(), 0.0);
-    for (const Entry& e : stiffness) w[e.i] += e.value * v[e.m];
-    double norm = 0, product = 0;
-    for (std::size_t i = 0; i < fields; ++i) {
-      w[i] = mass[i] == 0 ? 0 : w[i] / mass[i];
-      product += w[i] * v[i], norm += v[i] * v[i];
-    }
-    eigenvalue = product / norm;
-    double size = 0;
-    for (const double x : w) size += x * x;
-    if (!(size > 0)) return std::nullopt;
-    for (std::size_t i = 0; i < fields; ++i) v[i] = w[i] / std::sqrt(size);
+  std::vector<Eigen::Triplet<double>> scaled;
+  for (const auto& e : stiffness) {
+    const double masses = mass[static_cast<std::size_t>(e.row())] * mass[static_cast<std::size_t>(e.col())];
+    if (masses > 0) scaled.emplace_back(e.row(), e.col(), e.value() / std::sqrt(masses));
   }
+  Eigen::SparseMatrix<double> K(static_cast<int>(fields), static_cast<int>(fields));
+  K.setFromTriplets(scaled.begin(), scaled.end());
+  const double eigenvalue = largest_eigenvalue(K);
   return eigenvalue > 0 ? std::optional(2 / std::sqrt(eigenvalue)) : std::nullopt;
 }
 

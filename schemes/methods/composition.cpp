@@ -36,14 +36,37 @@ Splitting splitting_of(const Problem& p) {
   return splitting;
 }
 
+/// Without a value of its own where there are no pairs.
+Parameter unless_given(Parameter parameter) {
+  parameter.otherwise = "4, on a circle or an interval";
+  return parameter;
+}
+
+/// Mechanics, and cells that have a space of their own.
+bool has_no_pairs(const Problem& p) {
+  return p.lattice.space() == Space::point || p.lattice.space() == Space::mesh;
+}
+
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
-  if (p.lattice.mesh()) return pair_parts(theory, p, splitting_of(p), {});
-  const int pairs = pairs_of_order(p, "lattice.space_order", p.parameters.get<int>("lattice.space_order"));
+  if (has_no_pairs(p)) {
+    if (p.parameters.has("lattice.space_order"))
+      throw BadInput("lattice.space_order",
+                     "lattice.space_order: is for lattice.space = circle or interval; leave it out");
+    return pair_parts(theory, p, splitting_of(p), {});
+  }
+  const int pairs = pairs_of_order(p, "lattice.space_order", space_order_of(p));
   return pair_parts(theory, p, splitting_of(p), pair_weights(pairs));
 }
 
 std::vector<NamedScheme> variants(const Problem& base) {
   std::vector<NamedScheme> schemes;
+  if (has_no_pairs(base)) {
+    for (int order = 2; order <= highest_splitting_order; order += 2) {
+      schemes.push_back({fmt::format("composition {}", order), base});
+      schemes.back().problem.parameters["scheme.order"] = order;
+    }
+    return schemes;
+  }
   for (int order = 2; order <= highest_splitting_order; order += 2)
     for (int space = 2; space <= 12; space += 2) {
       schemes.push_back({fmt::format("composition ({},{})", order, space), base});
@@ -59,7 +82,8 @@ std::optional<int> order(const Problem& p) {
   const auto name = p.parameters.maybe<std::string>("scheme.splitting");
   const int time = name ? std::ranges::find(named_splittings(), *name, &NamedSplitting::name)->order
                         : p.parameters.maybe<int>("scheme.order").value_or(usual_order);
-  return std::min(time, p.parameters.get<int>("lattice.space_order"));
+  if (p.lattice.space() == Space::point) return time;
+  return std::min(time, p.lattice.space() == Space::mesh ? 2 : space_order_of(p));
 }
 
 }  // namespace
@@ -69,7 +93,7 @@ const MethodEntry composition_method{
     .name = "composition",
     .formula = "sub-steps of scheme.order over pairs of sites of lattice.space_order: explicit, any even order",
     .build = build,
-    .parameters = {space_order_parameter(),
+    .parameters = {unless_given(space_order_parameter()),
                    {.key = "scheme.order",
                     .fallback = usual_order,
                     .help = "order in time: 2, 4, 6, 8",

@@ -8,6 +8,7 @@
 #include "jets/tables/pair_element.hpp"
 #include "schemes/methods/own_energy.hpp"
 #include "schemes/methods/pair_parts.hpp"
+#include "schemes/system/legendre.hpp"
 #include "schemes/system/assembly.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/turn.hpp"
@@ -104,13 +105,23 @@ bool is_plainly_kinetic(const BatchDensity& density) {
 /// over the pairs of the scheme itself, with the momenta of its own discrete Legendre transform; wᵢ = ½ at a natural wall.
 std::optional<OwnEnergy> make(const FieldTheory& theory, const LatticeSystem& system, const Problem& p) {
   const BatchDensity& density = theory.density();
+  if (p.lattice.space() == Space::point)
+    return OwnEnergy{"H(q, p) of the composition", formula, false,
+                     [momenta = std::make_shared<const MomentaBelow>(system, turn_of(p))](const RowsInTime& rows) {
+                       std::vector<double> q;
+                       for (int a = 0; a < rows.theory.components(); ++a) q.push_back(rows.rows(rows.newest, 0, a));
+                       std::vector<double> below = (*momenta)(rows);
+                       below.resize(q.size());  // the rows between sub-steps have none
+                       return hamiltonian(rows.theory.density(), q, below,
+                                          static_cast<double>(rows.newest) * rows.time_step);
+                     }};
   if (!is_plainly_kinetic(density)) return std::nullopt;
   const int d = density.components();
   Eigen::MatrixXd M(d, d);
   for (int a = 0; a < d; ++a)
     for (int b = 0; b < d; ++b) M(a, b) = density.constant_hessian()[at((d + a) * density.variables() + d + b)];
   const Eigen::MatrixXd inverse = M.inverse();
-  const auto order = p.parameters.get<int>("lattice.space_order");
+  const int order = space_order_of(p);
   const auto action = std::make_shared<const RowAction>(
       theory, system.lattice(), pair_space(pair_weights(pairs_of_order(p, "lattice.space_order", order))));
   const auto momenta = std::make_shared<const MomentaBelow>(system, turn_of(p));

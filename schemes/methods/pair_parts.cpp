@@ -24,6 +24,8 @@ Parameter space_order_parameter() {
           .range = {.low = 2, .high = 2 * widest_pair}};
 }
 
+int space_order_of(const Problem& p) { return p.parameters.maybe<int>("lattice.space_order").value_or(4); }
+
 int pairs_of_order(const Problem& p, const char* key, int order) {
   if (order % 2 != 0 || order < 2 || order > 2 * widest_pair)
     throw BadInput(
@@ -104,19 +106,19 @@ void check_density(const BatchDensity& density, const Problem& p, const Splittin
   // Images are those of the density too, and what φ_t or φ_x is multiplied by has a kink there.
   const int d = density.components(), x = density.variables() + 1;
   for (int a = d; a < 3 * d && p.lattice.space() == Space::interval; ++a)
-    if (!density.is_zero(a, x) && p.parameters.get<int>("lattice.space_order") > 2)
+    if (!density.is_zero(a, x) && space_order_of(p) > 2)
       throw BadInput("lattice.space_order",
                      fmt::format("lattice.space_order = {}: between walls pairs go on by mirror images, and a density "
                                  "with coefficients of x has none to this order; use lattice.space_order = 2, or "
                                  "lattice.space = circle",
-                                 p.parameters.get<int>("lattice.space_order")));
+                                 space_order_of(p)));
 }
 
 }  // namespace
 
 SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitting& splitting,
                        const std::vector<double>& pairs) {
-  if (p.lattice.space() == Space::point)
+  if (p.lattice.space() == Space::point && !splitting.processor.empty())
     throw BadInput("lattice.space", fmt::format("scheme.method = {}: wide stencils have no neighbours at a point; use "
                                                 "lattice.space = circle or interval",
                                                 p.method));
@@ -126,8 +128,7 @@ SchemeParts pair_parts(const FieldTheory& theory, const Problem& p, const Splitt
                                "use scheme.method = multisymplectic",
                                p.method));
   check_density(theory.density(), p, splitting);
-  const bool mesh = p.lattice.space() == Space::mesh;
-  const StencilTable time = splitting_element(splitting), space = mesh ? point_space() : pair_space(pairs),
+  const StencilTable time = splitting_element(splitting), space = pairs.empty() ? point_space() : pair_space(pairs),
                      element = product(time, space);
   // Between sub-steps momenta change by ∂ℓ/∂φ, linear or not.
   SchemeParts parts{{theory.on_table(element, true)}, theory.fields(), theory.symmetries(), splitting.processor, {}};

@@ -10,6 +10,8 @@ namespace delf {
 
 /// lattice.space_order, 2, 4, …, 2 · widest_pair.
 Parameter space_order_parameter();
+/// The same of a problem, 4 if it is not given.
+int space_order_of(const Problem&);
 /// Checks lattice.space_order, an even number, and gives the number of pairs p.
 int pairs_of_order(const Problem&, const char* key, int order);
 

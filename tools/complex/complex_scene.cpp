@@ -40,7 +40,8 @@ const std::set<std::string, std::less<>> read_keys{
     "run.steps",          "run.seed",          "output.every",          "output.checkpoint",  "output.fields",
     "output.figures",     "output.format",     "output.titles",         "verify.variations",  "verify.moments",
     "verify.tolerance",   "verify.fault",      "verify.generator",      "verify.force",       "scheme.method",
-    "convergence.levels", "convergence.order", "convergence.agreement"};
+    "convergence.levels", "convergence.order", "convergence.agreement", "stability.agreement", "stability.steps",
+    "stability.fault"};
 
 /// Keys of time, which lattice.time = none has none of.
 const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "lattice.time_step", "lattice.time_steps",

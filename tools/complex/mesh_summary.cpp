@@ -31,6 +31,7 @@ Subject subject_of(const ComplexScene& c) {
   const std::string shape = c.topology_in_words();
   subject.where = fmt::format("{} {}, {}{}{}", c.sites(), c.stencils ? "sites" : "points", c.mesh_in_words(),
                               shape.empty() ? "" : "; ", shape);
+  if (c.has_method()) subject.where += "; " + scheme_label(c.problem_on_mesh());
   subject.stencil = c.mesh_in_words();
   subject.method = c.time == MeshTime::cells   ? "asynchronous"
                    : c.time == MeshTime::none  ? "elliptic"

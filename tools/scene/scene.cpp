@@ -249,7 +249,7 @@ Scene read_scene(Settings given) {
   if (const Setting* space = settings.find("lattice.space"); space && space->value == "complex")
     throw settings.error(
         "lattice.space",
-        "works with run, resume, plan, verify, sweep and convergence; use one of these, or another space");
+        "works with run, resume, plan, verify, sweep, convergence and stability; use one of these, or another space");
   settings.keep_one_of("lattice.courant", "lattice.time_step", "give one of them, such as lattice.courant = 0.5");
   settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 100");
   try {

@@ -289,7 +289,7 @@ TEST_CASE("a scene on a mesh with an error is refused in one line") {
   refused("run sphere --lattice.mesh=icosahedron:99", "99 must be a whole number from 0 to 9");
   refused("run sphere --lattice.sites=10", "not applicable to lattice.space = complex");
   refused("run sphere '--theory.density=0.5*phi_t^2 - phi_x^4'", "is not quadratic in phi_x");
-  refused("stability sphere", "works with run, resume, plan, verify, sweep and convergence");
+  refused("workprecision sphere", "works with run, resume, plan, verify, sweep, convergence and stability");
   refused("convergence sphere --lattice.time_steps=0.1,0.2", "are not refined");
   refused("run sphere --lattice.time_steps=0.1,-1", "steps must be above 0");
   refused("run sphere --lattice.step_control=2", "has no effect without lattice.time_steps = reversible");

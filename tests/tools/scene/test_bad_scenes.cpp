@@ -57,7 +57,8 @@ TEST_CASE("what overflows, does not fit, or comes twice is named") {
       {"run kink --out one --out two", "--out two: is a second one, after --out one"},
       {"run soliton-bounce --lattice.time_steps=reversibel", "lattice.time_steps = reversibel: must be reversible"},
       {"stability soliton-bounce --lattice.time_steps=reversible", "limits are of equal steps"},
-      {"stability static-kink", "lattice.space = complex: works with run, resume, plan, verify, sweep and convergence"},
+      {"stability static-kink", "limits are those of rows"},
+      {"workprecision static-kink", "lattice.space = complex: works with run, resume, plan, verify, sweep, convergence"},
       {"run cr.ini", "cr.ini: its lines end in CR alone"},
   }));
   std::string scene = small_scene();

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "tools/stability/mesh_stability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "schemes/methods/method_registry.hpp"
+#include "tools/files/text_columns.hpp"
+#include "tools/run/interrupt.hpp"
+#include "tools/run/progress.hpp"
+#include "tools/scene/text_file.hpp"
+#include "tools/scene/values.hpp"
+#include "tools/stability/point_limits.hpp"
+
+namespace delf {
+namespace {
+
+constexpr int run_steps = 300;
+constexpr double noise = 1e-9, grown = 1e-4;
+
+struct MeshFinding {
+  PointFinding oscillator;
+  double limit = 0;  ///< h
+  bool agrees = true;
+};
+
+/// Noise of the linear theory stays as small as it is. With steps that double it is at `grown` after some 20.
+bool stays(const ComplexScene& c, const NamedScheme& scheme, double h) {
+  Problem problem = c.problem_on_mesh();
+  problem.method = scheme.problem.method, problem.parameters = scheme.problem.parameters;
+  problem.time_step = h;
+  Simulation simulation(problem);
+  std::mt19937_64 random(c.scene.initial.seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> row, rates(simulation.components().size() * static_cast<std::size_t>(c.sites()), 0.0);
+  for (int i = 0; i < c.sites(); ++i) {
+    std::vector<double> fields(c.fields.size());
+    for (double& phi : fields) phi = c.space->fixed[static_cast<std::size_t>(i)] ? 0 : noise * normal(random);
+    for (const Component& component : simulation.components())
+      row.push_back(component.role == Role::multiplier ? 0 : fields[static_cast<std::size_t>(component.field)]);
+  }
+  std::vector<double> fields(c.space->fields_of_row());
+  try {
+    simulation.start_legendre(row, rates);
+    for (int n = 1; n < run_steps && !Interrupt::asked(); ++n) {
+      simulation.step();
+      simulation.copy_row(0, fields);
+      for (const double phi : fields)
+        if (!(std::abs(phi) < grown)) return false;
+    }
+    return true;
+  } catch (const NumericalFailure&) {
+    return false;
+  }
+}
+
+/// The variants of all methods that step a mesh, the scene's own first, on one oscillator.
+std::vector<NamedScheme> schemes_of(const ComplexScene& c) {
+  Problem point = c.problem_on_mesh();
+  point.lattice = Lattice::point();
+  std::vector<NamedScheme> schemes;
+  if (c.has_method()) schemes.push_back({scheme_label(point), point});
+  point.parameters = {};
+  for (const NamedScheme& scheme : named_schemes(point))
+    if (find_method(scheme.problem.method).on_meshes) schemes.push_back(scheme);
+  return schemes;
+}
+
+std::string in_words(double limit) {
+  return std::isinf(limit) ? "none" : fmt::format("{:.6g}", limit);
+}
+
+}  // namespace
+
+ExitCode mesh_stability(const ComplexScene& c, const std::filesystem::path& folder) {
+  const Interrupt interrupt;
+  if (c.time != MeshTime::rows)
+    throw c.scene.settings.error("lattice.time", "limits are those of rows; leave it out for delf stability");
+  if (c.theory->constraint())
+    throw c.scene.settings.error("theory.name", "limits on a mesh are of theories without a constraint; choose another");
+  const Values values(c.scene.settings);
+  PointRequest request;
+  request.agreement = values.real("stability.agreement");
+  request.steps = static_cast<int>(values.integer("stability.steps"));
+  if (values.choice("stability.fault") == "limit") request.theory_factor = 1.05;
+  const auto longest = SpaceEvolution(*c.space, c.time_step(0)).largest_step();
+  if (!longest)
+    throw c.scene.settings.error("theory.name", "nothing oscillates about phi = 0; choose a theory whose vacuum is there");
+  const double omega = 2 / *longest;
+  const std::vector<NamedScheme> schemes = schemes_of(c);
+  Progress progress(static_cast<std::int64_t>(schemes.size()));
+  std::vector<MeshFinding> findings;
+  for (const NamedScheme& scheme : schemes) {
+    if (Interrupt::asked()) break;
+    MeshFinding f{find_point_limit(scheme, request)};
+    if (!f.oscillator.left_out.empty()) continue;
+    f.limit = f.oscillator.theory / omega;
+    f.agrees = f.oscillator.agrees;
+    // Implicit elements stay at any step: a run beyond all waves' resolution shows it.
+    const double in = std::isinf(f.limit) ? 4 / omega : f.limit * (1 - 2 * request.agreement);
+    if (f.limit > 0) f.agrees = f.agrees && stays(c, scheme, in);
+    if (f.limit > 0 && std::isfinite(f.limit) && !f.oscillator.too_narrow && f.oscillator.stable.size() < 2)
+      f.agrees = f.agrees && !stays(c, scheme, f.limit * (1 + 2 * request.agreement));
+    if (Interrupt::asked()) break;  // it is half done
+    findings.push_back(std::move(f));
+    progress.at(static_cast<std::int64_t>(findings.size()));
+  }
+  nlohmann::ordered_json limits = nlohmann::ordered_json::array();
+  std::vector<std::vector<std::string>> rows;
+  for (const MeshFinding& f : findings) {
+    const auto number = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(); };
+    limits.push_back({{"scheme", f.oscillator.scheme},
+                      {"frequency_step", number(f.oscillator.theory)},
+                      {"time_step", number(f.limit)},
+                      {"unlimited", std::isinf(f.limit)},
+                      {"order", number(f.oscillator.order)},
+                      {"agrees", f.agrees}});
+    rows.push_back({f.oscillator.scheme, fmt::format("{:.2f}", f.oscillator.order), in_words(f.oscillator.theory),
+                    in_words(f.limit), f.agrees ? "" : "FAILED"});
+  }
+  make_results_folder(folder);
+  write_text_file(folder / "stability.json", nlohmann::ordered_json{{"version", DELF_VERSION},
+                                                                    {"scene", c.scene.name},
+                                                                    {"largest_frequency", omega},
+                                                                    {"agreement", request.agreement},
+                                                                    {"limits", limits}}
+                                                     .dump(2) +
+                                                 "\n");
+  fmt::print("{}: {}; the largest frequency about phi = 0 is {:.6g}\n\n{}", c.scene.name, c.mesh_in_words(), omega,
+             text_table({{"scheme"}, {"order", true}, {"wh", true}, {"longest h", true}, {"remarks"}}, rows, 120));
+  if (Interrupt::asked()) {
+    fmt::print("\nnot finished (interrupted)\n{}: stability.json\n", folder.string());
+    return ExitCode::interrupted;
+  }
+  const auto failed = std::ranges::count(findings, false, &MeshFinding::agrees);
+  fmt::print("\n{} of {} limits agree\n{}: stability.json\n", findings.size() - static_cast<std::size_t>(failed),
+             findings.size(), folder.string());
+  return failed == 0 ? ExitCode::done : ExitCode::check_failed;
+}
+
+}  // namespace delf
