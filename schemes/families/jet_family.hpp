@@ -24,6 +24,9 @@ class JetFamily final : public StencilFamily {
 
   const StencilTable& table() const { return table_; }
   const BatchDensity& density() const { return *density_; }
+  const std::shared_ptr<const BatchDensity>& shared_density() const { return density_; }
+  /// Of listed stencils; else without any.
+  const OwnWeights& own_weights() const { return own_; }
 
   using StencilFamily::jacobian;
   using StencilFamily::lagrangian;

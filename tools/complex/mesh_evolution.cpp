@@ -79,19 +79,7 @@ class ByMethod final : public MeshEvolution {
         energy_(c.theory->shared_density(), *c.space),
         values_(c.space->fields_of_row()) {}
 
-  void start() override {
-    const std::vector<double> values = c_.values(), rates = c_.rates();
-    const auto& components = simulation_.components();
-    std::vector<double> row, velocity;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(c_.sites()); ++i)
-      for (const Component& component : components) {
-        const bool is_field = component.role != Role::multiplier;
-        const std::size_t at = i * c_.fields.size() + static_cast<std::size_t>(component.field);
-        row.push_back(is_field ? values[at] : 0);
-        velocity.push_back(component.role == Role::field ? rates[at] : 0);
-      }
-    simulation_.start_legendre(row, velocity);
-  }
+  void start() override { delf::start(c_, simulation_); }
   std::int64_t newest() const override { return simulation_.newest(); }
   double time() const override { return simulation_.time(newest()); }
   double last_step() const override { return c_.scene.problem.time_step; }
@@ -188,6 +176,18 @@ class OwnSteps final : public MeshEvolution {
 };
 
 }  // namespace
+
+void start(const ComplexScene& c, Simulation& simulation) {
+  const std::vector<double> values = c.values(), rates = c.rates();
+  std::vector<double> row, velocity;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.sites()); ++i)
+    for (const Component& component : simulation.components()) {
+      const std::size_t at = i * c.fields.size() + static_cast<std::size_t>(component.field);
+      row.push_back(component.role == Role::multiplier ? 0 : values[at]);
+      velocity.push_back(component.role == Role::field ? rates[at] : 0);
+    }
+  simulation.start_legendre(row, velocity);
+}
 
 std::unique_ptr<MeshEvolution> make_mesh_evolution(const ComplexScene& c) {
   if (c.time == MeshTime::cells) return std::make_unique<OwnSteps>(c);

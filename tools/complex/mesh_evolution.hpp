@@ -12,6 +12,8 @@
 
 namespace delf {
 
+class Simulation;
+
 class SavedState;
 
 /// A row of a mesh, and what is said of it.
@@ -56,6 +58,9 @@ class MeshEvolution {
   /// How it is solved, and what it costs.
   virtual void describe(Outcome&) const = 0;
 };
+
+/// Rows 0 and 1 of a method of lattices, from the scene's fields and rates.
+void start(const ComplexScene&, Simulation&);
 
 /// Of a scene whose time is rows or cells.
 std::unique_ptr<MeshEvolution> make_mesh_evolution(const ComplexScene&);

@@ -63,9 +63,9 @@ TEST_CASE("what a method on a mesh does not have is refused with a remedy") {
     CHECK(ran.code == 2);
     CHECK(contains(ran.err, words));
   }
-  const Ran verify = delf_program(folder, "verify " + sphere + " --scheme.method=composition");
+  const Ran verify = delf_program(folder, "verify " + sphere + " --scheme.method=radau-iia");
   CHECK(verify.code == 2);
-  CHECK(contains(verify.err, "leave it out"));
+  CHECK(contains(verify.err, "use one of these"));
 }
 
 TEST_CASE("limits of methods on a mesh are those of its highest oscillator, and runs agree") {
@@ -78,11 +78,33 @@ TEST_CASE("limits of methods on a mesh are those of its highest oscillator, and 
   bool verlet = false, gauss = false, composition = false;
   for (const auto& limit : json["limits"]) {
     CHECK(limit["agrees"] == true);
-    if (limit["scheme"] == "cgvi stormer-verlet") verlet = true, CHECK(limit["time_step"] == Approx(2 / omega).epsilon(1e-3));
-    if (limit["scheme"] == "cgvi gauss2") gauss = true, CHECK(limit["unlimited"] == true);
-    if (limit["scheme"] == "composition 4") composition = true, CHECK(limit["time_step"] > 2 / omega);
+    if (limit["scheme"] == "cgvi stormer-verlet") {
+      verlet = true;
+      CHECK(limit["time_step"] == Approx(2 / omega).epsilon(1e-3));
+    }
+    if (limit["scheme"] == "cgvi gauss2") {
+      gauss = true;
+      CHECK(limit["unlimited"] == true);
+    }
+    if (limit["scheme"] == "composition 4") {
+      composition = true;
+      CHECK(limit["time_step"] > 2 / omega);
+    }
   }
   CHECK((verlet && gauss && composition));
   // a planted error of theory is found by the runs
   CHECK(delf_program(folder, "stability sphere --lattice.mesh=icosahedron:1 --stability.fault=limit --out out").code == 1);
+}
+
+TEST_CASE("methods on a mesh keep the form, and planted faults are found") {
+  const Folder folder;
+  for (const std::string method : {"composition", "cgvi --scheme.tableau=gauss2", "cgvi --scheme.tableau=lobatto3"}) {
+    CAPTURE(method);
+    const std::string scene = "verify " + sphere + " --verify.moments=2 --scheme.method=" + method + " --out out";
+    const Ran ran = delf_program(folder, scene);
+    CAPTURE(ran.out, ran.err);
+    CHECK(ran.code == 0);
+    for (const std::string fault : {"sign", "field", "variation"})
+      CHECK(delf_program(folder, scene + " --verify.fault=" + fault).code == 1);
+  }
 }
