@@ -200,8 +200,9 @@ namespace {
 
 constexpr std::array<double, 3> three_rows{0, 1, 2};  // until start() says how long a step is
 
-/// Of a symmetric matrix; 0 if Lanczos's method does not converge.
+/// Of a symmetric matrix; 0 if it is not finite, or Lanczos's method does not converge.
 double largest_eigenvalue(const Eigen::SparseMatrix<double>& K) {
+  if (!Eigen::Map<const Eigen::VectorXd>(K.valuePtr(), K.nonZeros()).allFinite()) return 0;
   constexpr int few = 32, basis = 24, most_iterations = 1000;
   if (K.rows() <= few)
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(K), Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();

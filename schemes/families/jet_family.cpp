@@ -439,15 +439,18 @@ void JetFamily::find_sources() {
   std::vector<const TablePoint*> representatives;
   for (std::size_t q = 0; q < table_.points.size(); ++q) {
     const TablePoint& p = table_.points[q];
+    if (listed_ && p[JetSlot::phi].empty()) continue;
+    own_values_ = own_values_ || !p.own.slots[at(static_cast<int>(JetSlot::phi))].empty();
     const auto same = [&p](const TablePoint* other) {
-      return std::ranges::equal(p[JetSlot::phi], (*other)[JetSlot::phi], [](const auto& e, const auto& f) {
-        return e.vertex == f.vertex && e.weight == f.weight;
-      });
+      return p.own.weight == other->own.weight &&
+             std::ranges::equal(p[JetSlot::phi], (*other)[JetSlot::phi], [](const auto& e, const auto& f) {
+               return e.vertex == f.vertex && e.weight == f.weight;
+             });
     };
     const auto group = static_cast<std::size_t>(std::ranges::find_if(representatives, same) - representatives.begin());
     if (group == representatives.size()) {
       representatives.push_back(&p);
-      SourceTerms::Group made{.inputs = {}, .time = p.time, .space = p.space};
+      SourceTerms::Group made{.inputs = {}, .time = p.time, .space = p.space, .own = p.own.weight};
       for (int a = 0; a < d_; ++a) {
         SourceTerms::QuadratureValue value;
         for (const auto& [vertex, weight] : p[JetSlot::phi])
@@ -465,7 +468,7 @@ void JetFamily::find_sources() {
 }
 
 const SourceTerms* JetFamily::sources() const {
-  return density_->nonlinearity() == Nonlinearity::all || listed_ ? nullptr : &sources_;
+  return density_->nonlinearity() == Nonlinearity::all || own_values_ ? nullptr : &sources_;
 }
 void JetFamily::evaluate_sources(int, const JetBatch& inputs, double* const* g) const { density_->slope(inputs, g); }
 void JetFamily::differentiate_sources(int, const JetBatch& inputs, double* const* d) const {

@@ -39,6 +39,9 @@ class JetFamily final : public StencilFamily {
   std::optional<ConstantPart> constant_part(const Cell&) const override;
 
   const SourceTerms* sources() const override;
+  double own_number(int number, int stencil) const override {
+    return number < 0 ? 1 : own_.numbers[static_cast<std::size_t>(number)][static_cast<std::size_t>(stencil)];
+  }
   void evaluate_sources(int group, const JetBatch& inputs, double* const* g) const override;
   void differentiate_sources(int group, const JetBatch& inputs, double* const* d) const override;
 
@@ -80,6 +83,7 @@ class JetFamily final : public StencilFamily {
   OwnWeights own_;
   int d_;
   bool has_sources_;
+  bool own_values_ = false;  ///< stencils have weights of φ of their own, and no groups of the same inputs
   /// Vertices of the same place in space at one time after another: weights of derivatives in time add up to zero there.
   std::vector<std::vector<int>> columns_;
   std::vector<int> first_;  ///< [vertex]: the one of its column that increments count from

@@ -46,6 +46,7 @@ struct SourceTerms {
   struct Group {
     std::vector<QuadratureValue> inputs;
     double time = 0, space = 0;  ///< where it lies, from the anchor, in steps
+    int own = -1;  ///< of listed stencils: the number of their own that multiplies the group's weights, or none
     /// The latest vertex time that it depends on: below the pattern's latest, it is known before a step.
     int latest_time() const;
   };
@@ -111,6 +112,8 @@ class StencilFamily {
 
   /// What r has besides its constant part; null if it is not of that form. And the functions g_c of a group.
   virtual const SourceTerms* sources() const { return nullptr; }
+  /// A number of a listed stencil's own (SourceTerms::Group::own); 1 for none.
+  virtual double own_number(int /*number*/, int /*stencil*/) const { return 1; }
   virtual void evaluate_sources(int /*group*/, const JetBatch& /*inputs*/, double* const* /*g*/) const {}
   /// ∂g_c/∂m_j: d[c·inputs + j][i]
   virtual void differentiate_sources(int /*group*/, const JetBatch& /*inputs*/, double* const* /*d*/) const {}

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "schemes/stepping/composition_stepper.hpp"
+#include "schemes/stepping/kick_stepper.hpp"
 #include "schemes/stepping/rows/row_stepper.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/stepping/slab_stepper.hpp"
@@ -26,6 +27,7 @@ std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan&
     }
   }
   if (auto stepper = CompositionStepper::make(system, options)) return stepper;
+  if (auto stepper = KickStepper::make(system, plan, options)) return stepper;
   if (processed)
     throw BadInput("scheme.method",
                    "scheme.method: a processed kernel is explicit sub-steps over pairs of sites, and these "

@@ -2,6 +2,7 @@
 #include "schemes/system/momenta.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lattice/error.hpp"
 
@@ -19,10 +20,12 @@ std::vector<double> momenta(const LatticeSystem& system, const Window& window, s
   return half_equations(system, window, row, side);
 }
 
-std::vector<double> half_equations(const LatticeSystem& system, const Window& window, std::int64_t row, Side side) {
+std::vector<double> half_equations(const LatticeSystem& system, const Window& window, std::int64_t row, Side side,
+                                   std::vector<double>* absolute) {
   const Lattice& lattice = system.lattice();
   const int C = system.components(), N = lattice.sites();
   std::vector<double> p(static_cast<std::size_t>(N * C), 0.0), y, rest, r;
+  if (absolute) absolute->assign(p.size(), 0.0);
   for (const auto& family : system.families()) {
     const auto [low, high] = std::ranges::minmax(family->pattern().vertices, {}, &Site::time);
     int top = high.time;
@@ -57,6 +60,7 @@ std::vector<double> half_equations(const LatticeSystem& system, const Window& wi
         const int c = family->values()[static_cast<std::size_t>(m)].component;
         p[static_cast<std::size_t>(home * C + c)] +=
             side == Side::below ? r[static_cast<std::size_t>(m)] : -r[static_cast<std::size_t>(m)];
+        if (absolute) (*absolute)[static_cast<std::size_t>(home * C + c)] += std::abs(r[static_cast<std::size_t>(m)]);
       }
     }
   }

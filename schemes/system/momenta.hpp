@@ -20,7 +20,8 @@ enum class Side { below, above };
 /// stencils reach. Throws BadInput for a scheme without a Lagrangian.
 std::vector<double> momenta(const LatticeSystem&, const Window&, std::int64_t row, Side);
 /// The same sums of any scheme, with a Lagrangian or without one.
-std::vector<double> half_equations(const LatticeSystem&, const Window&, std::int64_t row, Side);
+std::vector<double> half_equations(const LatticeSystem&, const Window&, std::int64_t row, Side,
+                                   std::vector<double>* absolute = nullptr);
 /// Throws that BadInput.
 void require_lagrangian(const LatticeSystem&);
 
