@@ -3,7 +3,7 @@
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/refused.hpp"
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/keys.hpp"
 
 using namespace delf::testing;

@@ -20,7 +20,7 @@
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/mesh_text.hpp"
-#include "tools/scene/exact_solution.hpp"
+#include "tools/rows/exact_solution.hpp"
 #include "tools/scene/key_warning.hpp"
 #include "tools/scene/steps_in_turn.hpp"
 #include "tools/scene/values.hpp"

@@ -13,9 +13,9 @@
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/row_steps.hpp"
 #include "tools/complex/static_field.hpp"
-#include "tools/failure.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/report/failure.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/seconds_since.hpp"
 
 namespace delf {
 namespace {

@@ -12,7 +12,7 @@
 #include "tools/complex/mesh_files.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 
 namespace delf {
 namespace {

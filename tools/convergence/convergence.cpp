@@ -15,16 +15,16 @@
 
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
+#include "tools/compare/convergence_table.hpp"
 #include "tools/complex/mesh_convergence.hpp"
 #include "tools/convergence/convergence_figure.hpp"
-#include "tools/convergence/convergence_table.hpp"
 #include "tools/convergence/convergence_verdict.hpp"
-#include "tools/engine.hpp"
 #include "tools/figures/drawing.hpp"
-#include "tools/run/in_words.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/outcome.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/in_words.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/rows/engine.hpp"
 #include "tools/scene/values.hpp"
 
 namespace delf {

@@ -11,10 +11,10 @@
 
 #include "lattice/error.hpp"
 #include "schemes/turn.hpp"
-#include "tools/engine.hpp"
-#include "tools/run/linear_limit.hpp"
-#include "tools/run/refined_scene.hpp"
-#include "tools/scene/initial_rows.hpp"
+#include "tools/compare/refined_scene.hpp"
+#include "tools/rows/engine.hpp"
+#include "tools/rows/initial_rows.hpp"
+#include "tools/warnings/linear_limit.hpp"
 
 namespace delf {
 namespace {

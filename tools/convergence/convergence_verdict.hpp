@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "tools/convergence/convergence_table.hpp"
+#include "tools/compare/convergence_table.hpp"
 
 namespace delf {
 

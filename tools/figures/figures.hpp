@@ -9,8 +9,8 @@
 #include "schemes/state.hpp"
 #include "tools/figures/figure_form.hpp"
 #include "tools/figures/film.hpp"
-#include "tools/run/trace.hpp"
-#include "tools/scene/row_names.hpp"
+#include "tools/figures/trace.hpp"
+#include "tools/files/row_names.hpp"
 
 namespace delf {
 

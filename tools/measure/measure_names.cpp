@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "jets/expressions/parse.hpp"
-#include "tools/run/outcome.hpp"
+#include "tools/outcome/outcome.hpp"
 
 namespace delf {
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "tools/complex/mesh_figures.hpp"
-#include "tools/failure.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figures.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {

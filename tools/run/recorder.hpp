@@ -7,12 +7,12 @@
 #include <string>
 
 #include "tools/figures/film.hpp"
+#include "tools/figures/trace.hpp"
 #include "tools/files/fields_file.hpp"
+#include "tools/files/record.hpp"
+#include "tools/files/row_names.hpp"
 #include "tools/files/series_file.hpp"
-#include "tools/run/record.hpp"
 #include "tools/run/run_files.hpp"
-#include "tools/run/trace.hpp"
-#include "tools/scene/row_names.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {

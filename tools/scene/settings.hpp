@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/keys.hpp"
 
 namespace delf {

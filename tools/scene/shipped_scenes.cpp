@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "lattice/text_parts.hpp"
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/suggestion.hpp"
 
 namespace delf {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/verify/findings_json.hpp"
+#include "tools/outcome/findings_json.hpp"
 #include "tools/stability/stability_findings.hpp"
 
 namespace delf {

@@ -12,10 +12,10 @@
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "schemes/unknown_name.hpp"
-#include "tools/run/vacuum_symbol.hpp"
 #include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/stability/corner_list.hpp"
+#include "tools/warnings/vacuum_symbol.hpp"
 
 namespace delf {
 

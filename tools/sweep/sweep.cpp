@@ -9,11 +9,11 @@
 
 #include "tools/figures/drawing.hpp"
 #include "tools/files/folder_lock.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/measure/measure_names.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/seconds_since.hpp"
 #include "tools/scene/suggestion.hpp"
-#include "tools/scene/text_file.hpp"
 #include "tools/sweep/sweep_outcome.hpp"
 
 namespace delf {

@@ -11,7 +11,7 @@
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/gnuplot.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/sweep/sweep_outcome.hpp"
 #include "tools/sweep/swept_number.hpp"
 

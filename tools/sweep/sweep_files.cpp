@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/run/in_words.hpp"
+#include "tools/report/in_words.hpp"
 #include "tools/sweep/sweep_outcome.hpp"
 
 namespace delf {

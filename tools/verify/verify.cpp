@@ -5,12 +5,12 @@
 
 #include <cstdio>
 
-#include "tools/engine.hpp"
 #include "tools/figures/drawing.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/outcome.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/rows/engine.hpp"
 #include "tools/scene/brick_rows.hpp"
-#include "tools/scene/text_file.hpp"
 #include "tools/verify/momenta_verification.hpp"
 #include "tools/verify/verdict_figures.hpp"
 #include "tools/verify/verification.hpp"

@@ -7,14 +7,14 @@
 #include <chrono>
 #include <cstdio>
 
-#include "tools/engine.hpp"
 #include "tools/figures/drawing.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/progress.hpp"
-#include "tools/run/reference_run.hpp"
-#include "tools/run/seconds_since.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/progress.hpp"
+#include "tools/report/seconds_since.hpp"
+#include "tools/rows/engine.hpp"
 #include "tools/workprecision/lower_envelope.hpp"
+#include "tools/workprecision/reference_run.hpp"
 #include "tools/workprecision/timed_rounds.hpp"
 
 namespace delf {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "tools/verify/findings_json.hpp"
-#include "tools/workprecision/step_clock.hpp"
+#include "tools/outcome/findings_json.hpp"
+#include "tools/report/step_clock.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {

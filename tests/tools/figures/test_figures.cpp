@@ -6,7 +6,7 @@
 #include "tests/tools/program.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/film.hpp"
-#include "tools/run/trace.hpp"
+#include "tools/figures/trace.hpp"
 
 using namespace delf::testing;
 using delf::Film;

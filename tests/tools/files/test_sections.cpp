@@ -11,7 +11,7 @@
 #include "tests/tools/refused.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/files/hdf5_handle.hpp"
-#include "tools/scene/rows_table.hpp"
+#include "tools/files/rows_table.hpp"
 
 using namespace delf::testing;
 using delf::Hdf5Handle;

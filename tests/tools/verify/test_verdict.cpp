@@ -6,7 +6,7 @@
 #include "tests/catch.hpp"
 #include "tests/tools/figures/has_gnuplot.hpp"
 #include "tests/tools/program.hpp"
-#include "tools/files/text_columns.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/verify/verdict.hpp"
 #include "tools/verify/verdict_figures.hpp"
 

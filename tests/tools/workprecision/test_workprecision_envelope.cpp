@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "tests/catch.hpp"
+#include "tools/compare/solution_error.hpp"
 #include "tools/workprecision/lower_envelope.hpp"
-#include "tools/run/solution_error.hpp"
 #include "tools/workprecision/timed_rounds.hpp"
 
 using namespace delf;
