@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "tools/bench/packed_slab.hpp"
+#include "tools/bench/by_hand/packed_slab.hpp"
 
 namespace delf::bench {
 

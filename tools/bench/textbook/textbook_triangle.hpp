@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "tools/bench/textbook.hpp"
-#include "tools/bench/textbook_fixed_point.hpp"
-#include "tools/bench/textbook_rows.hpp"
+#include "tools/bench/textbook/textbook.hpp"
+#include "tools/bench/textbook/textbook_fixed_point.hpp"
+#include "tools/bench/textbook/textbook_rows.hpp"
 
 namespace delf::bench {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "jets/simd/pack_math.hpp"
-#include "tools/bench/packed_band.hpp"
+#include "tools/bench/by_hand/packed_band.hpp"
 
 namespace delf::bench {
 

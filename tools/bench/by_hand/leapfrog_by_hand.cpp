@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/leapfrog_by_hand.hpp"
+#include "tools/bench/by_hand/leapfrog_by_hand.hpp"
 
 #include "jets/simd/pack_math.hpp"
 #include "schemes/stepping/flush_denormals.hpp"

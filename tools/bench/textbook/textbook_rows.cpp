@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/textbook_rows.hpp"
+#include "tools/bench/textbook/textbook_rows.hpp"
 
 #include <algorithm>
 

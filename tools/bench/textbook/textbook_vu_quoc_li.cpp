@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/textbook_vu_quoc_li.hpp"
+#include "tools/bench/textbook/textbook_vu_quoc_li.hpp"
 
-#include "tools/bench/textbook_quotient.hpp"
+#include "tools/bench/textbook/textbook_quotient.hpp"
 
 namespace delf::bench {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/textbook.hpp"
+#include "tools/bench/textbook/textbook.hpp"
 
 #include <stdexcept>
 
-#include "tools/bench/textbook_explicit.hpp"
-#include "tools/bench/textbook_guo.hpp"
-#include "tools/bench/textbook_hexagon.hpp"
-#include "tools/bench/textbook_rectangle.hpp"
-#include "tools/bench/textbook_triangle.hpp"
-#include "tools/bench/textbook_vu_quoc_li.hpp"
+#include "tools/bench/textbook/textbook_explicit.hpp"
+#include "tools/bench/textbook/textbook_guo.hpp"
+#include "tools/bench/textbook/textbook_hexagon.hpp"
+#include "tools/bench/textbook/textbook_rectangle.hpp"
+#include "tools/bench/textbook/textbook_triangle.hpp"
+#include "tools/bench/textbook/textbook_vu_quoc_li.hpp"
 
 namespace delf::bench {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/textbook_autovectorised.hpp"
+#include "tools/bench/textbook/textbook_autovectorised.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/textbook_cyclic_thomas.hpp"
+#include "tools/bench/textbook/textbook_cyclic_thomas.hpp"
 
 namespace delf::bench {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/textbook_rectangle.hpp"
+#include "tools/bench/textbook/textbook_rectangle.hpp"
 
 #include <cmath>
 #include <utility>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "tools/bench/textbook.hpp"
-#include "tools/bench/textbook_cyclic_thomas.hpp"
-#include "tools/bench/textbook_fixed_point.hpp"
-#include "tools/bench/textbook_rows.hpp"
-#include "tools/bench/textbook_wave_part.hpp"
+#include "tools/bench/textbook/textbook.hpp"
+#include "tools/bench/textbook/textbook_cyclic_thomas.hpp"
+#include "tools/bench/textbook/textbook_fixed_point.hpp"
+#include "tools/bench/textbook/textbook_rows.hpp"
+#include "tools/bench/textbook/textbook_wave_part.hpp"
 
 namespace delf::bench {
 

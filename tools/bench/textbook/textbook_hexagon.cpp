@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/textbook_hexagon.hpp"
+#include "tools/bench/textbook/textbook_hexagon.hpp"
 
 #include <cmath>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/textbook_triangle.hpp"
+#include "tools/bench/textbook/textbook_triangle.hpp"
 
 #include <cmath>
 #include <utility>

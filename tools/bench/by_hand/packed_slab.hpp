@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "tools/bench/mixed_number.hpp"
-#include "tools/bench/packed_band.hpp"
+#include "tools/bench/by_hand/mixed_number.hpp"
+#include "tools/bench/by_hand/packed_band.hpp"
 
 namespace delf::bench {
 

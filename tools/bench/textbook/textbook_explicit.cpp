@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/bench/textbook_explicit.hpp"
+#include "tools/bench/textbook/textbook_explicit.hpp"
 
 #include <algorithm>
 #include <cmath>
