@@ -7,10 +7,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "schemes/diagnosis/unwrap.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "schemes/turn.hpp"
+#include "tools/diagnosis/unwrap.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/files/plain_rows.hpp"
 #include "tools/rows/initial_rows.hpp"

@@ -10,17 +10,17 @@
 #include <numbers>
 #include <optional>
 
-#include "schemes/diagnosis/diagnosis.hpp"
-#include "schemes/diagnosis/fields_system.hpp"
-#include "schemes/diagnosis/momentum_scale.hpp"
-#include "schemes/diagnosis/one_step_maps.hpp"
-#include "schemes/diagnosis/own_equations.hpp"
-#include "schemes/diagnosis/rounded_values.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/turn.hpp"
 #include "schemes/verify/phase_space_check.hpp"
+#include "tools/diagnosis/diagnosis.hpp"
+#include "tools/diagnosis/fields_system.hpp"
+#include "tools/diagnosis/own_equations.hpp"
+#include "tools/diagnosis/rounded_values.hpp"
+#include "tools/diagnosis/scheme/momentum_scale.hpp"
+#include "tools/diagnosis/scheme/one_step_maps.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/seconds_since.hpp"
 #include "tools/rows/engine.hpp"

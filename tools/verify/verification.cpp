@@ -12,8 +12,6 @@
 #include <span>
 
 #include "jets/expressions/expression.hpp"
-#include "schemes/diagnosis/diagnosis.hpp"
-#include "schemes/diagnosis/unwrap.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/step_density.hpp"
@@ -23,6 +21,8 @@
 #include "schemes/verify/flux_check.hpp"
 #include "schemes/verify/newton_order.hpp"
 #include "schemes/verify/wrong_sign.hpp"
+#include "tools/diagnosis/diagnosis.hpp"
+#include "tools/diagnosis/unwrap.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/progress.hpp"
 #include "tools/report/seconds_since.hpp"
