@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/theories/spherical_pendulum.hpp"
+#include "schemes/theories/mechanics/spherical_pendulum.hpp"
 
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"

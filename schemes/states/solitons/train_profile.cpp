@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/states/train_profile.hpp"
+#include "schemes/states/solitons/train_profile.hpp"
 
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>

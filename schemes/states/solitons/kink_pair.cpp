@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/states/kink_profile.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/pulse.hpp"
 #include "schemes/states/scaled_hyperbolic.hpp"
+#include "schemes/states/solitons/kink_profile.hpp"
 #include "schemes/states/state_registry.hpp"
 
 namespace delf {

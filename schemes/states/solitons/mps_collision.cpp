@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/solitons/train_profile.hpp"
 #include "schemes/states/state_registry.hpp"
-#include "schemes/states/train_profile.hpp"
 
 namespace delf {
 namespace initial {

@@ -4,8 +4,8 @@
 
 #include "lattice/error.hpp"
 #include "schemes/states/parameters.hpp"
+#include "schemes/states/solitons/train_profile.hpp"
 #include "schemes/states/state_registry.hpp"
-#include "schemes/states/train_profile.hpp"
 
 namespace delf {
 namespace initial {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/states/kink_profile.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/pulse.hpp"
+#include "schemes/states/solitons/kink_profile.hpp"
 #include "schemes/states/state_registry.hpp"
 
 namespace delf {

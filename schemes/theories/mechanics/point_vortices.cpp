@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/theories/point_vortices.hpp"
+#include "schemes/theories/mechanics/point_vortices.hpp"
 
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"

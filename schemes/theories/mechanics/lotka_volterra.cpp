@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/theories/lotka_volterra.hpp"
+#include "schemes/theories/mechanics/lotka_volterra.hpp"
 
 #include <string>
 

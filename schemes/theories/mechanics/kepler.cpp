@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/theories/kepler.hpp"
+#include "schemes/theories/mechanics/kepler.hpp"
 
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"

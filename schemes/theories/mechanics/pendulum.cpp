@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/theories/pendulum.hpp"
+#include "schemes/theories/mechanics/pendulum.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/verify/element_reversal.hpp"
+#include "schemes/verify/reversal/element_reversal.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/verify/time_reversal.hpp"
+#include "schemes/verify/reversal/time_reversal.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/lattice_system.hpp"
-#include "schemes/verify/element_reversal.hpp"
+#include "schemes/verify/reversal/element_reversal.hpp"
 
 namespace delf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/states/kink_profile.hpp"
+#include "schemes/states/solitons/kink_profile.hpp"
 
 #include <cmath>
 #include <numbers>

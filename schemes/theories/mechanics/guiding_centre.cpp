@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/theories/guiding_centre.hpp"
+#include "schemes/theories/mechanics/guiding_centre.hpp"
 
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"

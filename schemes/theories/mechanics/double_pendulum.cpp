@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/theories/double_pendulum.hpp"
+#include "schemes/theories/mechanics/double_pendulum.hpp"
 
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
