@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/compare/field_error.hpp"
-#include "tools/workprecision/contestant.hpp"
+#include "tools/scene/scene.hpp"
 
 namespace delf {
 

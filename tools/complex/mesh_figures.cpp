@@ -234,6 +234,4 @@ std::string draw_mesh(const ComplexScene& c, const MeshFilm& film, std::span<con
   return missing;
 }
 
-std::vector<std::string> mesh_figure_names() { return {"field", "levels", "updates"}; }
-
 }  // namespace delf

@@ -29,15 +29,4 @@ struct ErrorEstimate {
 /// One line each.
 std::vector<std::string> in_words(const ErrorEstimate&);
 
-class LatticeSystem;
-struct Scene;
-struct Outcome;
-
-/// Throws BadScene for a scene with output.estimate whose rows runs at other steps do not have.
-void require_estimable(const Scene&, const LatticeSystem&);
-
-/// `last_row` and the measures of `outcome` are those of the scene's own run. A scene that cannot be run at half its steps
-/// has an estimate that says so.
-ErrorEstimate estimate_error(const Scene&, const Outcome& outcome, const std::vector<double>& last_row);
-
 }  // namespace delf

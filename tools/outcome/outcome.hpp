@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "schemes/stepping/step_method.hpp"
-#include "tools/measure/measures.hpp"
 #include "tools/outcome/error_estimate.hpp"
+#include "tools/outcome/named_number.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
