@@ -249,7 +249,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
   Settings& settings = scene.settings;
   scene.name = settings.file().stem().string();
   const Values values(settings);
-  for (const Key& key : settings.all_keys()) values.check(key);
+  for (const Parameter& key : settings.all_keys()) values.check(key);
   try {
     Problem& p = scene.problem;
     p.theory = values.choice("theory.name");
@@ -267,7 +267,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     refuse_unread(settings, entry, parameters, c.theory->fields(), values.choice("lattice.time") == "none",
                   c.stencils != nullptr);
     p.method = values.choice("scheme.method");
-    if (p.method != find_key("scheme.method")->fallback)
+    if (p.method != fallback_of(*find_key("scheme.method")))
       throw settings.error("scheme.method", "needs a regular lattice; leave it out on a mesh");
     double edge = 1;  // of the mesh as it is given
     if (!c.stencils) {
@@ -428,13 +428,13 @@ std::string resolved_text(const ComplexScene& c) {
   const Settings& settings = c.scene.settings;
   return fmt::format("{}{} understood it: `delf run scene.ini` gives the same rows to the bit.\n",
                      resolved_scene_begins, DELF_VERSION) +
-         sections_of(settings, [&](const Key& key) -> std::string {
+         sections_of(settings, [&](const Parameter& key) -> std::string {
            // of more steps the fallback is another
-           if (key.name == "output.every" && !c.is_one_problem()) return fmt::format("{}", c.scene.every);
-           const Setting* const given = settings.find(key.name);
+           if (key.key == "output.every" && !c.is_one_problem()) return fmt::format("{}", c.scene.every);
+           const Setting* const given = settings.find(key.key);
            if (!given) return {};
-           if (key.name == "lattice.mesh" && !c.mesh_file.empty()) return c.mesh_file.string();
-           if (key.name == "lattice.time_steps")
+           if (key.key == "lattice.mesh" && !c.mesh_file.empty()) return c.mesh_file.string();
+           if (key.key == "lattice.time_steps")
              return c.scene.problem.step_control ? given->value : fmt::format("{}", fmt::join(c.time_steps, ", "));
            return given->value;
          });

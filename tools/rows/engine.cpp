@@ -24,12 +24,12 @@ namespace {
 std::string extreme_number(const Settings& settings) {
   double farthest = 60;  // powers of ten: squares and products of two of them still fit
   std::string found;
-  for (const Key& key : settings.all_keys()) {
-    const Setting* s = key.type == KeyType::real ? settings.find(key.name) : nullptr;
+  for (const Parameter& key : settings.all_keys()) {
+    const Setting* s = type_of(key) == KeyType::real ? settings.find(key.key) : nullptr;
     if (!s) continue;
-    const double value = std::abs(Values(settings).real(key.name));
+    const double value = std::abs(Values(settings).real(key.key));
     if (const double powers = value > 0 ? std::abs(std::log10(value)) : 0; powers > farthest)
-      farthest = powers, found = key.name;
+      farthest = powers, found = key.key;
   }
   return found;
 }

@@ -130,16 +130,6 @@ std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& asked, c
   return chosen;
 }
 
-const std::vector<std::string>& stability_waves() {
-  static const std::vector<std::string> all{"klein-gordon", "own"};
-  return all;
-}
-
-const std::vector<std::string>& stability_faults() {
-  static const std::vector<std::string> all{"none", "limit"};
-  return all;
-}
-
 StabilityRequest read_stability_request(const Scene& scene) {
   const Values values(scene.settings);
   const auto list = [&](const char* key) { return listed_names(scene, key); };

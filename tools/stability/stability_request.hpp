@@ -32,11 +32,6 @@ void add_once(std::vector<NamedScheme>&, const NamedScheme&);
 /// (stability.schemes).
 std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& names, const Problem& base);
 
-/// What stability.waves may be.
-const std::vector<std::string>& stability_waves();
-/// Faults that can be planted.
-const std::vector<std::string>& stability_faults();
-
 /// The [stability] keys of a scene. Throws BadScene.
 StabilityRequest read_stability_request(const Scene&);
 

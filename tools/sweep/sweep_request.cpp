@@ -36,7 +36,7 @@ std::vector<std::string> range(const Setting& s, double from, double to, double 
 
 // Text, lists of times and regions hold commas and colons of their own.
 bool may_be_swept(const Setting& s) {
-  if (const Key* key = find_key(s.key)) return key->type != KeyType::text && key->type != KeyType::times;
+  if (const Parameter* key = find_key(s.key)) return type_of(*key) != KeyType::text;
   return s.key.starts_with("theory.");  // a parameter that the scene declares
 }
 
@@ -98,7 +98,7 @@ void read_bisection(const Scene& scene, const Values& values, SweepRequest& requ
     throw scene.settings.error("sweep.bisect",
                                fmt::format("{} has several values; give one of both", request.keys.front()));
   request.keys = {trimmed(text.substr(0, equals))};
-  if (const Key* key = scene.settings.key(request.keys[0]); !key || key->type != KeyType::real)
+  if (const Parameter* key = scene.settings.key(request.keys[0]); !key || type_of(*key) != KeyType::real)
     throw scene.settings.error(
         "sweep.bisect", fmt::format("{} is no key with real values; choose one of `delf help run`", request.keys[0]));
   request.bisection =

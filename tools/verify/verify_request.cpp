@@ -34,11 +34,6 @@ const std::vector<std::string>& verify_checks() {
   return all;
 }
 
-const std::vector<std::string>& verify_faults() {
-  static const std::vector<std::string> all{"none", "variation", "sign", "field"};
-  return all;
-}
-
 VerifyRequest read_verify_request(const Scene& scene) {
   const Values values(scene.settings);
   VerifyRequest request;

@@ -309,9 +309,9 @@ TEST_CASE("help workprecision lists every key of its section") {
   CHECK(ran.code == 0);
   int keys = 0;
   for (const auto& key : delf::keys())
-    if (key.name.starts_with("workprecision.")) {
+    if (key.key.starts_with("workprecision.")) {
       ++keys;
-      CHECK(contains(ran.out, std::string(key.name)));
+      CHECK(contains(ran.out, std::string(key.key)));
     }
   CHECK(keys == 7);
 }
