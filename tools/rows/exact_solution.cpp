@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <span>
 #include <utility>
@@ -17,7 +16,6 @@
 #include "schemes/smooth_state.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -110,38 +108,6 @@ std::string without_value(const Scene& scene, const State& exact) {
         return fmt::format("{} has no value at t = {:.4g}, x = {:.4g}", scene.initial.fields[a], at.t, at.x);
   }
   return {};
-}
-
-AtTheEnds at_the_ends(const Scene& scene, const State& exact) {
-  const Lattice& lattice = scene.problem.lattice;
-  AtTheEnds worst;
-  if (lattice.space() == Space::point) return worst;
-  constexpr int times = 64;
-  const double L = lattice.length(), turn = 2 * std::numbers::pi * exact.winding() + gain_of(scene.problem.parameters);
-  const auto at = [&](double t, double x) {
-    std::vector<FieldPoint> values(static_cast<std::size_t>(exact.components()));
-    exact.at(t, x, values);
-    return values;
-  };
-  const auto take = [&](double change, const char* words) {
-    if (change > worst.change) worst = {change, words};
-  };
-  const auto left = at(0, 0), right = at(0, L);
-  for (int n = 0; n <= times; ++n) {
-    const double t = scene.end() * n / times;
-    const auto here = at(t, 0),
-               there = at(t, lattice.is_circle() ? L * (1 - 2 * std::numeric_limits<double>::epsilon()) : L);
-    for (std::size_t a = 0; a < here.size(); ++a) {
-      if (lattice.is_circle()) take(std::abs(there[a].phi - here[a].phi - turn), "jumps where the circle closes");
-      else {
-        if (lattice.left() != Wall::natural)
-          take(std::abs(here[a].phi - left[a].phi), "moves at the left wall, which is fixed");
-        if (lattice.right() != Wall::natural)
-          take(std::abs(there[a].phi - right[a].phi), "moves at the right wall, which is fixed");
-      }
-    }
-  }
-  return worst;
 }
 
 }  // namespace delf

@@ -27,12 +27,4 @@ void require_solution(const Scene&, const State& exact);
 /// Returns "phi has no value at t = 1, x = 2" for one of those points; empty if it has a value at all of them.
 std::string without_value(const Scene&, const State& exact);
 
-/// The largest change of an exact solution at the ends of space, in the time of the run, that the run does not have.
-struct AtTheEnds {
-  double change = 0;
-  std::string words;  ///< "the exact solution jumps where the circle closes"
-};
-/// The jump where a circle closes, or the motion of a fixed wall.
-AtTheEnds at_the_ends(const Scene&, const State& exact);
-
 }  // namespace delf

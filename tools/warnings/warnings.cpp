@@ -18,6 +18,7 @@
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "tools/compare/solution_error.hpp"
+#include "tools/rows/at_the_ends.hpp"
 #include "tools/rows/exact_solution.hpp"
 #include "tools/warnings/energy_warnings.hpp"
 #include "tools/warnings/exact_energy.hpp"
@@ -179,7 +180,7 @@ Found Warnings::error(const Outcome& outcome) const {
 /// A formula on the line is compared with a run on a circle, or between walls.
 Found Warnings::ends(const Outcome& outcome) const {
   if (!(outcome.error_linf > 0) || !is_formula(initial_.exact())) return {};
-  const AtTheEnds ends = at_the_ends(scene_, *initial_.exact());
+  const EndChange ends = at_the_ends(scene_, *initial_.exact()).value;
   if (!(ends.change > 0.1 * outcome.error_linf)) return {};
   return fmt::format("the exact solution {}, by {:.2g}, and the error is {:.2g}: it is not the scheme's alone; {}",
                      ends.words, ends.change, outcome.error_linf,

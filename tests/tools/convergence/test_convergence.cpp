@@ -52,7 +52,7 @@ TEST_CASE("where errors are not the scheme's, the table says whose they are, and
   };
   for (const Case& c : std::vector<Case>{
            {"right.ini", "passed", "", 0},
-           {"moving.ini", "not measured", "moves at a fixed wall", 0},
+           {"moving.ini", "not measured", "wall, which is fixed", 0},
            {"kink --lattice.length=10 --run.until=2", "not measured", "where the circle closes", 0},
            {"kink --lattice.length=20 --run.until=2", "not measured", "where the circle closes", 0},
            {"breather --lattice.space=interval --boundary.left=natural --boundary.right=natural --lattice.length=8 "
