@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -12,22 +11,11 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/read_number.hpp"
 #include "lattice/text_parts.hpp"
 #include "tools/files/fields_reader.hpp"
 
 namespace delf {
-
-namespace {
-
-// a number, or nothing if the text is none
-template <class Number>
-std::optional<Number> number(const std::string& text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
-}  // namespace
 
 RowsTable::RowsTable(const std::filesystem::path& path) {
   std::ifstream in(path);
@@ -64,12 +52,12 @@ RowsTable::RowsTable(const std::filesystem::path& path) {
     }
     if (cells.size() != columns)
       throw wrong(fmt::format("has {} columns, and the header has {}; give as many", cells.size(), columns));
-    const auto row = number<int>(cells[0]), site = number<int>(cells[1]);
+    const auto row = read_number<int>(cells[0]), site = read_number<int>(cells[1]);
     if (!row || !site || *row < 0 || *site < 0)
       throw wrong("row and site are integers that count from 0; correct them");
     entries.push_back({*row, *site, at, values.size(), 0});
     for (std::size_t c = 2; c < columns; ++c) {
-      const auto value = number<double>(cells[c]);
+      const auto value = read_number<double>(cells[c]);
       if (!value || !std::isfinite(*value))
         throw wrong(fmt::format("\"{}\" is not a finite number; write one like 0.125", cells[c].substr(0, 30)));
       if (c == of_time) entries.back().time = *value;

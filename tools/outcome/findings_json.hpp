@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -9,11 +8,11 @@
 
 namespace delf {
 
-// Common parts of verify.json and stability.json.
+// Common parts of the files in JSON: summary, verify, sweep, convergence, stability and workprecision.
 
+/// What is not a finite number is written as null.
 using Json = nlohmann::ordered_json;
 
-inline Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 inline Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 /// The head: which version found it, of which scene.

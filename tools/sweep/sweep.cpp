@@ -59,12 +59,7 @@ void write_tables(const SweepRequest& request, const SweepOutcome& outcome, cons
 void draw_and_report(const SweepRequest& request, const SweepOutcome& outcome, const FigureForm& form,
                      const fs::path& folder) {
   remove_figures({"sweep"}, folder);
-  std::string missing;
-  try {
-    missing = draw_sweep(request, outcome, form, folder);
-  } catch (const std::exception& error) {  // a failed figure does not fail the command
-    missing = error.what();
-  }
+  const std::string missing = draw_sweep(request, outcome, form, folder);
   fmt::print("{}", sweep_report(request, outcome));
   std::error_code none;
   const bool drawn = fs::exists(folder / "figures" / ("sweep." + form.formats.front()), none);

@@ -355,10 +355,7 @@ TEST_CASE("every stress case of every group names keys that a scene has") {
   CHECK(corners("no such group", chosen_schemes({}, Problem{})).empty());
 }
 
-TEST_CASE("names in lists are separated by commas outside brackets") {
-  CHECK(names_in_list("guo, spacetime (2,2) gauss ,triangle") ==
-        std::vector<std::string>{"guo", "spacetime (2,2) gauss", "triangle"});
-  CHECK(names_in_list(" ").empty());
+TEST_CASE("schemes are chosen by their names") {
   CHECK(chosen_schemes({"all"}, Problem{}).size() > 10);
   CHECK_THROWS_AS(chosen_schemes({"triangel"}, Problem{}), BadInput);
 }
