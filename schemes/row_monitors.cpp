@@ -39,6 +39,7 @@ RowMonitors::RowMonitors(const Problem& problem, const FieldTheory& theory,
       evolution_(evolution),
       stepper_(evolution.stepper()),
       system_(evolution.system()),
+      equations_(system_),
       has_constraints_(std::ranges::count(system_.all_components(), Role::multiplier, &Component::role) > 0),
       field_lag_(has_constraints_ ? slab_extent(system_, evolution.plan()).field_lag : 0),
       turn_(turn_of(problem)) {
@@ -76,7 +77,7 @@ EnergyMomentum RowMonitors::energy_momentum() const {
 }
 
 /// max |G| over the constraints of the newest slab, each at the row that the plan has it in.
-double RowMonitors::constraint() const {
+double RowMonitors::constraint() {
   if (!has_constraints_ || stepper_.newest() < 2) return 0;
   const std::int64_t slab = stepper_.newest() + field_lag_;
   double worst = 0;
@@ -89,7 +90,7 @@ double RowMonitors::constraint() const {
           std::min(stepper_.newest(), slab - evolution_.plan().shift(i, c, static_cast<int>(slab & 1)));
       const auto [at, fresh] = of_row.try_emplace(row);
       if (fresh)
-        system_.equations(stepper_.window(std::max(3, static_cast<int>(stepper_.newest() - row) + 2)), row, at->second);
+        equations_.equations(stepper_.window(std::max(3, static_cast<int>(stepper_.newest() - row) + 2)), row, at->second);
       worst = std::max(worst, std::abs(at->second[static_cast<std::size_t>(i * system_.components() + c)].sum));
     }
   return worst;
@@ -172,17 +173,19 @@ void RowMonitors::prepare() {
 }
 
 std::size_t RowMonitors::bytes() const {
-  return cell_weights_.bytes() + positions_.bytes() + last_rows_.bytes() + (own_layout_ ? own_layout_->bytes() : 0);
+  return cell_weights_.bytes() + positions_.bytes() + last_rows_.bytes() + equations_.bytes() +
+         (own_layout_ ? own_layout_->bytes() : 0);
 }
 
-std::size_t RowMonitors::bytes_of_run() const {
+std::size_t RowMonitors::bytes_of_run() {
+  if (has_constraints_) equations_.prepare(turn_);
   if (cell_weights_.rows()) return bytes();
   const auto bytes = [&](const RowLayout& layout, int own_rows) {
     return RowBuffer::bytes_of(layout.doubles(), 1 + (theory_.is_placed() ? 1 : 0) + own_rows);
   };
-  if (stepper_.layout()) return bytes(*stepper_.layout(), 0);
+  if (stepper_.layout()) return bytes(*stepper_.layout(), 0) + equations_.bytes();
   const RowLayout own(problem_.lattice, 1);
-  return bytes(own, 3 * theory_.components()) + own.bytes();
+  return bytes(own, 3 * theory_.components()) + equations_.bytes() + own.bytes();
 }
 
 }  // namespace delf
