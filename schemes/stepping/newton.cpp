@@ -45,8 +45,8 @@ class SlabProblem {
 
   /// y[n] is unknown n; stencils without an unknown give `known`, whatever the step. Multipliers are not asked whether they
   /// have converged: they have no scale of their own.
-  void list_unknowns(const LatticeSystem& system, const std::vector<double>& known) {
-    known_ = known;
+  void list_unknowns(const LatticeSystem& system, const SlabPast& past) {
+    known_ = past.known, momenta_ = past.momenta;
     for (int n = 0; n < equations_.size(); ++n) {
       places_[static_cast<std::size_t>(n)] = n;
       asked_.push_back(system.component(equations_.unknown(n).component).role != Role::multiplier);
@@ -59,12 +59,12 @@ class SlabProblem {
   /// ∂E/∂y
   const std::vector<double>& jacobian(const Vector& y) {
     make_(s_, y, ring_);
-    equations_.jacobian(ring_, J_, values_);
+    equations_.jacobian(ring_, J_, values_, momenta_);
     return values_;
   }
   const std::vector<double>& residual(const Vector& y) {
     make_(s_, y, ring_);
-    if (known_.empty()) equations_.residual(ring_, J_, E_);
+    if (known_.empty() || momenta_) equations_.residual(ring_, J_, E_, nullptr, momenta_);
     else equations_.residual_from(known_, ring_, J_, E_);
     E_.resize(static_cast<std::size_t>(equations_.size()));
     return E_;
@@ -96,6 +96,7 @@ class SlabProblem {
   std::vector<int> places_;  ///< of the unknowns in y
   std::vector<char> asked_;
   std::vector<double> known_, values_, E_;
+  const std::vector<double>* momenta_ = nullptr;
 };
 
 struct Root {
@@ -275,18 +276,16 @@ namespace {
 /// A slab from a step of next to nothing to its own: the problem, and where its unknowns go if they go on as before.
 class SlabPath {
  public:
-  SlabPath(const LatticeSystem& system, const SolvePlan& plan, const SlabPast& past)
+  SlabPath(const LatticeSystem& system, const SlabPast& past)
       : past_(past),
         components_(system.components()),
-        unknowns_(plan.slab(parity_of(plan, past.J)).unknowns),
+        unknowns_(past.parts.unknowns),
         base_(Vector::Zero(static_cast<Eigen::Index>(unknowns_.size()))),
         way_(base_) {
-    const int parity = parity_of(plan, past.J);
-    for (Node& unknown : unknowns_) unknown.site.time -= parity;
     find_way(system);
-    problem_.emplace(system, Assembly::slab(plan, parity, past.past, past.future, past.turn), past.J,
+    problem_.emplace(system, past.parts, past.J,
                      [this](double s, const Vector& y, SectionRing& ring) { make_rows(s, y, ring); });
-    problem_->list_unknowns(system, past.known);
+    problem_->list_unknowns(system, past);
     deep_ = system.height() > 1;
   }
   SlabPath(const SlabPath&) = delete;
@@ -332,13 +331,13 @@ class SlabPath {
   /// Stencils that reach further than one row see the rows before as far away as the same velocities put them.
   void make_rows(double s, const Vector& y, SectionRing& ring) {
     const std::size_t row_size = past_.rows.view().row_size();
-    for (std::int64_t r = past_.J - past_.past; r <= past_.J + past_.future && !copied_; ++r)
+    for (std::int64_t r = past_.J - past_.parts.past; r <= past_.J + past_.parts.future && !copied_; ++r)
       std::copy_n(past_.rows.row(r), row_size, ring.row(r));
     copied_ = true;
     for (std::size_t at = 0; at < row_size && deep_; ++at) {
       const std::size_t c = at % last_.size();
       const double newest = past_.rows.row(last_[c])[at];
-      for (std::int64_t r = past_.J - past_.past; r < last_[c] && is_field_[c] != 0; ++r)
+      for (std::int64_t r = past_.J - past_.parts.past; r < last_[c] && is_field_[c] != 0; ++r)
         ring.row(r)[at] = newest - s * (newest - past_.rows.row(r)[at]);
     }
     for (std::size_t n = 0; n < unknowns_.size(); ++n)
@@ -346,7 +345,7 @@ class SlabPath {
           y[static_cast<Eigen::Index>(n)];
   }
 
-  const SlabPast past_;
+  const SlabPast& past_;
   int components_;
   std::vector<Node> unknowns_;
   Vector base_, way_;
@@ -358,17 +357,15 @@ class SlabPath {
 
 }  // namespace
 
-NewtonResult follow_slab(const LatticeSystem& system, const SolvePlan& plan, const SlabPast& past, double tolerance,
-                         int max_iterations) {
-  SlabPath path(system, plan, past);
+NewtonResult follow_slab(const LatticeSystem& system, const SlabPast& past, double tolerance, int max_iterations) {
+  SlabPath path(system, past);
   const Root followed = follow(
       path.problem(), [&](double s) { return path.predict(s); }, tolerance * path.size(), max_iterations, true);
   return as_result(followed, followed.iterations);
 }
 
-bool turns_back(const LatticeSystem& system, const SolvePlan& plan, const SlabPast& past,
-                const std::vector<double>& unknowns, double tolerance) {
-  SlabPath path(system, plan, past);
+bool turns_back(const LatticeSystem& system, const SlabPast& past, const std::vector<double>& unknowns, double tolerance) {
+  SlabPath path(system, past);
   const double absolute = tolerance * path.size();
   const Root first = at_beginning(path.problem(), path.predict(next_to_nothing), absolute, enough_iterations);
   path.problem().set(1);

@@ -167,7 +167,12 @@ bool SlabStepper::solve_slab_of_start(const std::vector<double>* momenta) {
   std::ranges::copy(std::vector<double>(ring_->row(0), ring_->row(0) + predicted_.size()), ring_->row(-1));
   std::fill_n(ring_->low(-1), predicted_.size(), 0.0);
   iterations_ = 0;
-  if (const Stop stop = newton(first, 0, least_points, momenta); !has_root(stop)) fail(0, in_words(stop));
+  Stop stop = newton(first, 0, least_points, momenta);
+  std::string crossed;
+  if (has_root(stop)) stop = watch(first, 0, least_points, momenta, crossed);
+  if (stop == Stop::doubtful_root) follow(first, 0, momenta, stop, values_of(first, 0));
+  else if (stop == Stop::other_root) follow(first, 0, momenta, stop, {});
+  else if (!has_root(stop)) fail(0, in_words(stop));
   return true;
 }
 
@@ -427,7 +432,7 @@ void SlabStepper::carry(const Parity& p, std::int64_t J) {
 /// Judges the root that Newton's method has gone to from a polynomial through so many slabs; 0: by the constant part.
 Stop SlabStepper::watch(const Parity& p, std::int64_t J, int points, const std::vector<double>* momenta,
                         std::string& crossed) {
-  if (const std::string tangled = mesh_ ? mesh_->crossing_at(*ring_, J - lag_) : ""; !tangled.empty()) {
+  if (const std::string tangled = mesh_ && J > 0 ? mesh_->crossing_at(*ring_, J - lag_) : ""; !tangled.empty()) {
     if (crossed.empty()) crossed = tangled;
     return Stop::tangled;
   }
@@ -435,9 +440,9 @@ Stop SlabStepper::watch(const Parity& p, std::int64_t J, int points, const std::
   if (!plan_.nonlinear_in_slab) return Stop::converged;
   const Stop stop = root_.judge(at_, *ring_, J, known_, p.watched);
   // No row tells where a first step goes.
-  if (points == 0 || J != 1 || !has_root(stop) || at_.travelled == 0) return stop;
+  if (points == 0 || J > 1 || !has_root(stop) || at_.travelled == 0) return stop;
   find_known(p, J, momenta);
-  return turns_back(system_, plan_, past_of(J), values_of(p, J), options_.tolerance) ? Stop::other_root : stop;
+  return turns_back(system_, past_of(J, momenta), values_of(p, J), options_.tolerance) ? Stop::other_root : stop;
 }
 
 std::vector<double> SlabStepper::values_of(const Parity& p, std::int64_t J) const {
@@ -445,8 +450,11 @@ std::vector<double> SlabStepper::values_of(const Parity& p, std::int64_t J) cons
   for (int n = 0; n < p.equations.size(); ++n) values.push_back(p.equations.value(*ring_, J, n));
   return values;
 }
-SlabPast SlabStepper::past_of(std::int64_t J) const {
-  return {*ring_, J, known_, past_, future_, options_.turn, known_E_};
+SlabPast SlabStepper::past_of(std::int64_t J, const std::vector<double>* momenta) const {
+  const Assembly::Parts whole =
+      Assembly::slab(plan_, static_cast<int>(J % plan_.table.parities), past_, future_, options_.turn);
+  if (J > 0) return {*ring_, J, known_, whole, known_E_};
+  return {*ring_, J, known_, first_slab(system_, whole, momenta), known_E_, momenta};
 }
 
 /// The root that a small step leads to, where Newton's method has found another. One that was only doubtful is
@@ -456,7 +464,7 @@ void SlabStepper::follow(Parity& p, std::int64_t J, const std::vector<double>* m
   predict(p, J, 1);
   find_known(p, J, momenta);
   const NewtonResult followed =
-      follow_slab(system_, plan_, past_of(J), options_.tolerance, options_.max_iterations);
+      follow_slab(system_, past_of(J, momenta), options_.tolerance, options_.max_iterations);
   iterations_ += followed.iterations;
   const bool is_doubtful = !followed.converged && followed.reached == 0 && !doubtful.empty();
   if (!followed.converged && !is_doubtful) {

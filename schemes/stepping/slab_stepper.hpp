@@ -87,7 +87,7 @@ class SlabStepper final : public StepMethod {
   Stop finish(Parity&, std::int64_t J, Stop);
   void carry(const Parity&, std::int64_t J);
   Stop watch(const Parity&, std::int64_t J, int points, const std::vector<double>* momenta, std::string& crossed);
-  SlabPast past_of(std::int64_t J) const;
+  SlabPast past_of(std::int64_t J, const std::vector<double>* momenta) const;
   std::vector<double> values_of(const Parity&, std::int64_t J) const;  ///< of the unknowns
   void follow(Parity&, std::int64_t J, const std::vector<double>* momenta, Stop why,
               const std::vector<double>& doubtful);
