@@ -173,19 +173,17 @@ void RowMonitors::prepare() {
 }
 
 std::size_t RowMonitors::bytes() const {
-  return cell_weights_.bytes() + positions_.bytes() + last_rows_.bytes() + equations_.bytes() +
-         (own_layout_ ? own_layout_->bytes() : 0);
+  return cell_weights_.bytes() + positions_.bytes() + last_rows_.bytes() + (own_layout_ ? own_layout_->bytes() : 0);
 }
 
-std::size_t RowMonitors::bytes_of_run() {
-  if (has_constraints_) equations_.prepare(turn_);
+std::size_t RowMonitors::bytes_of_run() const {
   if (cell_weights_.rows()) return bytes();
   const auto bytes = [&](const RowLayout& layout, int own_rows) {
     return RowBuffer::bytes_of(layout.doubles(), 1 + (theory_.is_placed() ? 1 : 0) + own_rows);
   };
-  if (stepper_.layout()) return bytes(*stepper_.layout(), 0) + equations_.bytes();
+  if (stepper_.layout()) return bytes(*stepper_.layout(), 0);
   const RowLayout own(problem_.lattice, 1);
-  return bytes(own, 3 * theory_.components()) + equations_.bytes() + own.bytes();
+  return bytes(own, 3 * theory_.components()) + own.bytes();
 }
 
 }  // namespace delf

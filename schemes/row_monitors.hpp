@@ -29,7 +29,7 @@ class RowMonitors {
   const std::vector<std::string>& conserved_names() const { return conserved_names_; }
   std::size_t bytes() const;
   /// What bytes() will be once it was asked.
-  std::size_t bytes_of_run();
+  std::size_t bytes_of_run() const;
 
  private:
   void prepare();

@@ -20,13 +20,8 @@ class AssembledRow {
   /// E of every site and component of a row, [i·C + c], whether it is an equation there or not. The turn of all windows is
   /// that of the first.
   void equations(const Window&, std::int64_t row, std::vector<LatticeSystem::Value>& values);
-  /// The lists that equations() needs; without this it makes them.
-  void prepare(double turn);
-  std::size_t bytes() const;
 
  private:
-  bool of_bricks() const;
-  const Assembly& assembly(int parity, double turn);
   const LatticeSystem* system_;
   std::array<std::shared_ptr<const Assembly>, 2> of_parity_;  ///< of rows; brick walls alone have two kinds
 };
