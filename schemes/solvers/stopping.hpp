@@ -46,8 +46,7 @@ struct Progress {
 
 // Criteria: functions of Progress. Each is asked after every correction, in the order in which they are passed.
 
-/// Corrections that no longer shrink are rounding below this part of |y|. By ill-conditioned Jacobians they are some hundred
-/// units of ε, by well-conditioned ones a few.
+/// Corrections that no longer shrink are rounding below this part of |y|: 512 ε leaves room for a Jacobian of condition 100.
 inline constexpr double rounding_of_corrections = 512 * std::numeric_limits<double>::epsilon();
 
 /// |δ| ≤ tolerance.
