@@ -42,7 +42,15 @@ void KeptRows::find_increment(int back) {
   }
 }
 
-void KeptRows::turn() {
+void KeptRows::extrapolate() {
+  for (int a = 0; a < d_; ++a) {
+    const double *const y = table_[equations_.y().row(1, a)], *const v = table_[equations_.v().row(1, a)];
+    double *const new_y = table_[equations_.y().row(0, a)], *const new_v = table_[equations_.v().row(0, a)];
+    for (std::size_t i = 0; i < layout_.doubles(); ++i) new_v[i] = v[i], new_y[i] = y[i] + v[i];
+  }
+}
+
+void KeptRows::advance() {
   table_.turn(equations_.y()), table_.turn(equations_.v());
   ++n_;
   known_ = std::min(known_ + 1, history_ + 1);
@@ -92,7 +100,7 @@ void KeptRows::go_in_place() {
     }
 }
 
-void KeptRows::turn_in_place() {
+void KeptRows::advance_in_place() {
   ++n_;
   known_ = 1;
 }

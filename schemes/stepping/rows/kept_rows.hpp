@@ -23,8 +23,10 @@ class KeptRows {
   void set(int back, const std::vector<double>& values);
   /// Increments of number `back`, from its row and the row before.
   void find_increment(int back);
+  /// y_{n+1} = y_n + v_n
+  void extrapolate();
   /// Row n + 1 has been made.
-  void turn();
+  void advance();
 
   std::int64_t newest() const { return n_; }
   std::int64_t start_row() const { return started_; }  ///< the increment to the row before it is not known
@@ -42,7 +44,7 @@ class KeptRows {
   bool in_place() const { return !beside_.empty(); }
   /// From here on row n + 1 takes the place of row n.
   void go_in_place();
-  void turn_in_place();
+  void advance_in_place();
   void leave_place();
   /// Back to the row before the first step in place.
   void go_back_to_kept();
