@@ -170,11 +170,11 @@ class CirculantSolver::WholeRow final : public Sweeps {
   void begin(double*) override { ready_ = 0, last_ = Pack(0.0); }
   void forward(double* u, int end) override {
     last_ = s_.run_forward(u, ready_, end, last_);
-    turn(u, end);
+    close(u, end);
   }
   void forward(const RowSum& sum, const double* const* rows, double* u, int end) override {
     last_ = s_.run_forward(sum, rows, u, ready_, end, last_);
-    turn(u, end);
+    close(u, end);
   }
   PackRange ready() const override {
     if (ready_ < packs_) return {0, 0};
@@ -187,7 +187,7 @@ class CirculantSolver::WholeRow final : public Sweeps {
   }
 
  private:
-  void turn(const double* u, int end) {
+  void close(const double* u, int end) {
     if ((ready_ = end) < packs_) return;
     left_ = packs_;
     from_outside_ = s_.entering(u, s_.sum_of_first(u));

@@ -14,8 +14,8 @@ namespace delf {
 /// row n + 1 is made. Steps in place make it over row n; the row before the first of them stays.
 class KeptRows {
  public:
-  /// For equations that read `history` rows; φ(x + L) = φ(x) + turn.
-  KeptRows(const LatticeSystem&, const RowLayout&, const RowEquations&, RowTable&, int history, double turn);
+  /// For equations that read `history` rows; φ(x + L) = φ(x) + monodromy.
+  KeptRows(const LatticeSystem&, const RowLayout&, const RowEquations&, RowTable&, int history, double monodromy);
 
   /// The newest `history` of these rows, and the increments between them.
   void start(const std::vector<std::vector<double>>& rows);
@@ -60,7 +60,7 @@ class KeptRows {
   const RowEquations& equations_;
   RowTable& table_;
   int d_, history_;
-  double turn_;
+  double monodromy_;
   std::int64_t n_ = -1, started_ = -1, kept_row_ = -1;
   int known_ = 0;
   std::vector<double*> beside_;  ///< where row n + 1 is made when steps are not in place; empty if they are not

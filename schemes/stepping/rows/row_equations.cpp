@@ -27,11 +27,11 @@ RowTable::Ring RowTable::add(const RowLayout& layout, int held, int width) {
   if (held == 0) rows_.resize(rows_.size() + at(width), nullptr);
   return ring;
 }
-void RowTable::turn(const Ring& ring) {
+void RowTable::advance(const Ring& ring) {
   const auto first = rows_.begin() + ring.first, last = first + ring.held * ring.width;
   std::rotate(first, last - ring.width, last);
 }
-void RowTable::turn_back(const Ring& ring) {
+void RowTable::go_back(const Ring& ring) {
   const auto first = rows_.begin() + ring.first;
   std::rotate(first, first + ring.width, first + ring.held * ring.width);
 }

@@ -23,8 +23,9 @@ class RowTable {
   };
   /// `held` = 0: a place for a row that is elsewhere.
   Ring add(const RowLayout& layout, int held, int width = 1);
-  void turn(const Ring& ring);
-  void turn_back(const Ring& ring);
+  /// The oldest row becomes number 0; or number 0 the oldest.
+  void advance(const Ring& ring);
+  void go_back(const Ring& ring);
   double*& operator[](int row) { return rows_[static_cast<std::size_t>(row)]; }
   double* operator[](int row) const { return rows_[static_cast<std::size_t>(row)]; }
   const double* const* data() const { return rows_.data(); }
@@ -48,7 +49,7 @@ struct SourceRow {
   bool reads_back = false;       ///< it reads rows before n too
   int first_pack = 0, last_pack = 0;  ///< equations read it in these packs: all, or those near a wall
   int stride = 1;                ///< of bricks, those of the row before stand elsewhere: 2
-  int correction = -1;           ///< row: δ, what the last evaluation has changed it by
+  int correction = -1;           ///< row of δ, by which the last evaluation has changed it
 };
 
 /// The field equations of one slab for whole rows. With y_{n+1} = y_n + v_n + w,

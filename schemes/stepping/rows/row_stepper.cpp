@@ -236,7 +236,7 @@ struct RowStepper::Impl {
   }
   void advance_sources() {
     for (const SourceRow& source : equations.sources())
-      if (!source.is_local) table.turn(source.ring);
+      if (!source.is_local) table.advance(source.ring);
     ++past_sources;
     count_sources();
   }
@@ -373,9 +373,9 @@ double RowStepper::residual() const {
   if (s.n() < s.history) return 0;
   if (s.kept.known() < 2) return std::numeric_limits<double>::quiet_NaN();
   RowTable rows = s.table;
-  rows.turn_back(s.equations.y()), rows.turn_back(s.equations.v());
+  rows.go_back(s.equations.y()), rows.go_back(s.equations.v());
   for (const SourceRow& source : s.equations.sources())
-    if (!source.is_local) rows.turn_back(source.ring);
+    if (!source.is_local) rows.go_back(source.ring);
   return s.equations.residual(std::move(rows), s.n() - 1);
 }
 Window RowStepper::window(int rows) const {

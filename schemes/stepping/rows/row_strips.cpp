@@ -10,8 +10,8 @@ namespace delf {
 namespace {
 
 // Strips that stay in the first level of the cache; in the second one where a solve follows a recurrence strip by strip.
-constexpr int short_strip = 64, long_strip = 1024;
-constexpr int packs_of_a_thread = 1024;
+constexpr int short_strip = 64, medium_strip = 256, long_strip = 1024;
+constexpr int packs_of_a_thread = 1024, packs_beyond_cache = 4096;
 constexpr std::size_t most_outputs = 32;
 
 using Pointers = std::array<double*, most_outputs>;
@@ -26,7 +26,7 @@ RowStrips::RowStrips(const LatticeSystem& system, const RowEquations& equations,
       layout_(layout),
       kept_(kept),
       d_(system.components()),
-      turn_(options.turn),
+      monodromy_(options.turn),
       table_(&table),
       from_(0),
       to_(layout.packs()),
@@ -45,8 +45,8 @@ RowStrips::RowStrips(const LatticeSystem& system, const RowEquations& equations,
   sums_are_updates_ = solver_ == Solver::number && equations.right_side(0, Solving::step);
   const bool takes_whole_rows =
       solver_ == Solver::whole_rows || (solver_ == Solver::sweeps && sweeps_[0]->takes_whole_rows());
-  const bool is_long = !takes_whole_rows && layout.packs() > 4 * long_strip;
-  const int packs = takes_whole_rows ? to_ : std::min(to_, (warm_up > 0 ? 2 * long_strip : short_strip) + 2 * delay_);
+  const bool is_long = !takes_whole_rows && layout.packs() > packs_beyond_cache;
+  const int packs = takes_whole_rows ? to_ : std::min(to_, (warm_up > 0 ? 2 * long_strip : longest_strip_) + 2 * delay_);
   if (!sums_are_updates_ || is_long) memory_ = RowBuffer(at(packs) * lanes, d_);
   can_go_in_place_ = is_long && history == 2 && equations.reads_newest_alone() && options.fibre == Fibre::real &&
                      (warm_up == 0 || warm_up > equations.reach());
@@ -64,7 +64,7 @@ RowStrips::RowStrips(const RowStrips& whole, int from, int to)
       layout_(whole.layout_),
       kept_(whole.kept_),
       d_(whole.d_),
-      turn_(whole.turn_),
+      monodromy_(whole.monodromy_),
       table_(&own_),
       from_(from),
       to_(to),
@@ -96,7 +96,11 @@ void RowStrips::choose_solver() {
 
 /// Recurrences by strips begin with the right sides of the last packs.
 void RowStrips::lay_out_strips(int warm_up) {
-  const int length = solver_ == Solver::whole_rows ? to_ - from_ : warm_up > 0 ? long_strip : short_strip;
+  // Short passes over rows that come from memory wait for it.
+  const int length = solver_ == Solver::whole_rows           ? to_ - from_
+                     : warm_up > 0                           ? long_strip
+                     : layout_.packs() > packs_beyond_cache ? medium_strip
+                                                             : short_strip;
   if (warm_up > 0) strips_.push_back({to_ - warm_up, to_});
   for (int begin = from_, end; begin < to_; begin = end) {
     end = warm_up > 0 && to_ - begin < 2 * length ? to_ : std::min(to_, begin + length);
@@ -348,7 +352,7 @@ Pack take_over(const double* now, double* g, double* delta, std::ptrdiff_t begin
 
 void RowStrips::compare_packs(int from, int to) {
   // Beyond the cache a row that few steps read is not worth writing: δ is then found again.
-  keeps_corrections_ = solving_ == Solving::correction || order_ == 0 || layout_.packs() <= 4 * long_strip;
+  keeps_corrections_ = solving_ == Solving::correction || order_ == 0 || layout_.packs() <= packs_beyond_cache;
   const RowTable& rows = *table_;
   const auto& sources = equations_.sources();
   for (std::size_t first = 0; first < sources.size(); first += at(sources[first].outputs)) {
@@ -379,7 +383,7 @@ void RowStrips::close() const {
     // Loads wait for slots of theirs that have just been stored alone.
     const bool overlaps_last = layout_.halos_come_first();
     if (!overlaps_last) layout_.copy_overlaps(v, y);
-    layout_.fill_halo(y, turn_);
+    layout_.fill_halo(y, monodromy_);
     if (equations_.reads_increments_beside()) layout_.fill_halo(v);
     if (overlaps_last) layout_.copy_overlaps(v, y);
   }

@@ -62,7 +62,7 @@ class RowStrips final : public RowOperations {
   const RowLayout& layout_;
   const KeptRows& kept_;
   const int d_;
-  const double turn_;  ///< φ(x + L) − φ(x)
+  const double monodromy_;  ///< φ(x + L) − φ(x)
   RowTable* table_;
   RowTable own_;             ///< a thread's: source terms that no row is kept of lie elsewhere
   const int from_, to_;      ///< packs of this part
