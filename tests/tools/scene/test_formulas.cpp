@@ -90,7 +90,7 @@ TEST_CASE("delf plan prints the density and its equations, and LaTeX of them alo
   CHECK(latex.out.ends_with("\\]\n"));
   CHECK(contains(delf_program(folder, "plan collision").out, "equations  φ_tt − φ_xx + m² sin φ = 0"));
   CHECK(contains(delf_program(folder, "plan collision --latex").out, "\\varphi_{tt} - \\varphi_{xx} + m^{2}\\,"));
-  check_refused(delf_program(folder, "plan collision --theory.speed=2 --latex"), {"theory.name = sine-gordon: is compiled"});
+  check_refused(delf_program(folder, "plan solar-system --latex"), {"theory.name = solar-system: is compiled"});
   check_refused(delf_program(folder, "run own.ini --latex"), {"--latex: `run` prints no formulas"});
 }
 
