@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "tools/run/in_words.hpp"
@@ -34,6 +35,8 @@ void Progress::look(std::int64_t step) {
   const auto now = Clock::now();
   const double since = seconds_of(now - last_look_);
   last_look_ = now;
+  if (silent) next_look_ = std::numeric_limits<std::int64_t>::max();
+  if (silent) return;
   if (since < 0.025) stride_ *= 2;
   if (since > 0.1) stride_ = std::max<std::int64_t>(1, stride_ / 2);
   next_look_ = step + stride_;

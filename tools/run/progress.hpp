@@ -9,6 +9,9 @@ namespace delf {
 /// nothing for runs of a second or two.
 class Progress {
  public:
+  /// Nothing is shown for runs of this thread: whoever calls shows it.
+  static inline thread_local bool silent = false;
+
   /// `unit` is the word for a step.
   explicit Progress(std::int64_t steps, const char* unit = "step");
   ~Progress();

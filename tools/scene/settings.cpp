@@ -11,6 +11,7 @@
 
 #include "lattice/text_parts.hpp"
 #include "tools/scene/declared_keys.hpp"
+#include "tools/scene/made_settings.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/repeated_keys.hpp"
 #include "tools/scene/scene_text.hpp"
@@ -160,6 +161,12 @@ Settings read_settings(const std::filesystem::path& file, const std::vector<Sett
   if (const Setting* again = given_twice(in_file, first))
     throw BadScene(fmt::format("{}:{}: {} = {}: line {} gives it already; keep one of them", file.string(), again->line,
                                again->key, again->value, first->line));
+  return made_settings(file, in_file, on_command_line);
+}
+
+Settings made_settings(const std::filesystem::path& file, const std::vector<Setting>& in_file,
+                       const std::vector<Setting>& on_command_line) {
+  check_command_line(on_command_line);
   Settings settings(file, in_file, on_command_line);
   declare_keys(settings);
   const std::vector<Key> known = settings.all_keys();
