@@ -39,6 +39,7 @@ RowMonitors::RowMonitors(const Problem& problem, const FieldTheory& theory,
       evolution_(evolution),
       stepper_(evolution.stepper()),
       system_(evolution.system()),
+      equations_(system_),
       has_constraints_(std::ranges::count(system_.all_components(), Role::multiplier, &Component::role) > 0),
       field_lag_(has_constraints_ ? slab_extent(system_, evolution.plan()).field_lag : 0),
       turn_(turn_of(problem)) {
@@ -76,7 +77,7 @@ EnergyMomentum RowMonitors::energy_momentum() const {
 }
 
 /// max |G| over the constraints of the newest slab, each at the row that the plan has it in.
-double RowMonitors::constraint() const {
+double RowMonitors::constraint() {
   if (!has_constraints_ || stepper_.newest() < 2) return 0;
   const std::int64_t slab = stepper_.newest() + field_lag_;
   double worst = 0;
@@ -89,7 +90,7 @@ double RowMonitors::constraint() const {
           std::min(stepper_.newest(), slab - evolution_.plan().shift(i, c, static_cast<int>(slab & 1)));
       const auto [at, fresh] = of_row.try_emplace(row);
       if (fresh)
-        system_.equations(stepper_.window(std::max(3, static_cast<int>(stepper_.newest() - row) + 2)), row, at->second);
+        equations_.equations(stepper_.window(std::max(3, static_cast<int>(stepper_.newest() - row) + 2)), row, at->second);
       worst = std::max(worst, std::abs(at->second[static_cast<std::size_t>(i * system_.components() + c)].sum));
     }
   return worst;

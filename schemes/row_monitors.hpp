@@ -9,6 +9,7 @@
 #include "schemes/solvers/row_layout.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/system/assembled_row.hpp"
 
 namespace delf {
 
@@ -36,7 +37,7 @@ class RowMonitors {
   void copy_observed_pair();
   EnergyMomentum energy_momentum() const;
   double charge() const;
-  double constraint() const;
+  double constraint();
   void find_conserved(Simulation::Monitors&) const;
   const RowLayout& layout() const { return own_layout_ ? *own_layout_ : *stepper_.layout(); }
 
@@ -47,6 +48,7 @@ class RowMonitors {
   const Evolution& evolution_;
   const Stepper& stepper_;
   const LatticeSystem& system_;
+  AssembledRow equations_;
   bool has_constraints_;
   int field_lag_;  ///< rows from the newest row of fields up to the newest slab
   double turn_;    ///< φ(x + L) − φ(x)

@@ -26,7 +26,7 @@ po::parsed_options parsed(const std::vector<std::string>& words) {
   known.add_options()("help", "")("version", "")("latex", "")("out", po::value<std::string>());
   known.add_options()("fields", po::value<std::string>())("nearby", po::value<std::string>());
   known.add_options()("dataset", po::value<std::string>());
-  for (const Key& key : keys()) known.add_options()(std::string(key.name).c_str(), po::value<std::string>());
+  for (const Parameter& key : keys()) known.add_options()(key.key.c_str(), po::value<std::string>());
   using namespace po::command_line_style;
   constexpr int exact_names = allow_long | long_allow_adjacent | long_allow_next;  // no guessing
   try {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

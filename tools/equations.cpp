@@ -11,6 +11,7 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "schemes/theories/theory_text.hpp"
 
 namespace delf {
 namespace {
@@ -22,6 +23,12 @@ const StencilTable* table_of(const Problem& p, const Simulation& simulation) {
   if (!find_method(p.method).reads_stencil) return nullptr;
   const auto* family = dynamic_cast<const JetFamily*>(simulation.evolution().system().families()[0].get());
   return family ? &family->table() : nullptr;
+}
+
+/// The density as text: that of the scene, or the text of a built-in theory; null if there is none.
+std::shared_ptr<const SymbolicDensity> text_of(const Problem& p, const Simulation& simulation) {
+  if (auto own = std::dynamic_pointer_cast<const SymbolicDensity>(simulation.theory().shared_density())) return own;
+  return text_of(p.theory, p.parameters);
 }
 
 /// A sum broken between its terms, so that lines are no longer than what a terminal shows.
@@ -51,7 +58,8 @@ std::string broken(const std::string& sum, std::size_t indent) {
 
 std::string equations_in_words(const Problem& p, const Simulation& simulation) {
   constexpr std::size_t indent = 13;
-  const auto* density = dynamic_cast<const SymbolicDensity*>(&simulation.theory().density());
+  const auto density = text_of(p, simulation);
+  const bool is_compiled = density.get() != &simulation.theory().density();
   const StencilTable* table = table_of(p, simulation);
   std::string text;
   if (table && p.stencil == stencil_as_text) {
@@ -63,12 +71,14 @@ std::string equations_in_words(const Problem& p, const Simulation& simulation) {
                         given.pattern.size(), given.points.size(), given.points.size() == 1 ? "" : "s",
                         order_of_consistency(given));
   }
-  if (!density) return text + fmt::format("  equations  {}\n", find_theory(p.theory).formula);
+  if (is_compiled) text += fmt::format("  equations  {}\n", find_theory(p.theory).formula);
+  if (!density) return text;
   const auto add = [&](const char* head, const std::string& formula) {
     text += fmt::format("  {:<{}}{}\n", head, indent - 2, broken(formula, indent));
   };
   add("density", density->text());
-  for (const std::string& equation : field_equations(*density, Notation::plain)) add("equations", equation);
+  if (!is_compiled)
+    for (const std::string& equation : field_equations(*density, Notation::plain)) add("equations", equation);
   if (table)
     for (const std::string& equation : discrete_field_equations(*density, *table, Notation::plain))
       add("at (j,i)", equation);
@@ -76,7 +86,7 @@ std::string equations_in_words(const Problem& p, const Simulation& simulation) {
 }
 
 std::string equations_in_latex(const Problem& p, const Simulation& simulation) {
-  const auto* density = dynamic_cast<const SymbolicDensity*>(&simulation.theory().density());
+  const auto density = text_of(p, simulation);
   if (!density)
     throw BadInput("theory.name",
                    fmt::format("theory.name = {}: is compiled, and has no formulas to print; write it as "

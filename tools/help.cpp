@@ -16,7 +16,7 @@ namespace delf {
 namespace {
 
 // "one of R, S1"; "above 0"; "from 0 to 8"; empty for any value
-std::string values_of(const Key& key) {
+std::string values_of(const Parameter& key) {
   constexpr std::size_t most = 8;  // `delf list` has those that are many
   constexpr double large = 1e9;    // limits of what can be computed with say nothing here
   if (!key.choices.empty() && key.choices.size() <= most)
@@ -30,16 +30,16 @@ std::string values_of(const Key& key) {
 // Of a command with a section of its own those, of others all that belong to no such command.
 void print_keys(std::string_view only) {
   std::string_view section;
-  for (const Key& key : keys()) {
-    const auto of = section_of(key.name);
+  for (const Parameter& key : keys()) {
+    const auto of = section_of(key.key);
     const bool elsewhere = std::ranges::any_of(commands(), [&](const Command& c) { return c.section == of; });
     if (only.empty() ? elsewhere : of != only) continue;
-    if (const auto now = section_of(key.name); now != section) {
+    if (const auto now = section_of(key.key); now != section) {
       section = now;
       fmt::print("\n[{}]\n", section);
     }
-    const auto value = key.fallback.empty() ? key.otherwise : key.fallback;
-    fmt::print("  {:<22} {}{} ({}{})\n", key.name, key.meaning, key.unit.empty() ? "" : fmt::format(" [{}]", key.unit),
+    const auto value = key.otherwise.empty() ? fallback_of(key) : key.otherwise;
+    fmt::print("  {:<22} {}{} ({}{})\n", key.key, key.help, key.unit.empty() ? "" : fmt::format(" [{}]", key.unit),
                value, values_of(key));
   }
 }

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

@@ -9,7 +9,7 @@
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/states/state_registry.hpp"
-#include "tools/files/text_columns.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/scene/shipped_scenes.hpp"
 #include "tools/scene/suggestion.hpp"
 

@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "tools/command_line.hpp"
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 
 namespace {
 

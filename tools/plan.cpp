@@ -9,14 +9,14 @@
 
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/stability/parasites.hpp"
-#include "tools/engine.hpp"
 #include "tools/equations.hpp"
-#include "tools/run/in_words.hpp"
-#include "tools/run/outcome.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/in_words.hpp"
+#include "tools/report/seconds_since.hpp"
+#include "tools/rows/engine.hpp"
+#include "tools/rows/initial_rows.hpp"
 #include "tools/run/stepping.hpp"
-#include "tools/run/vacuum_symbol.hpp"
-#include "tools/scene/initial_rows.hpp"
+#include "tools/warnings/vacuum_symbol.hpp"
 
 namespace delf {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {

@@ -8,6 +8,12 @@ namespace delf {
 
 /// Jets on the six-tuple ◫ (vertices 0 1 2 below, 5 4 3 above): φ and φ_t on the middle edge, φ_x and φ_tx on the left
 /// and on the right half, φ_xx the mean of both rows.
+///
+/// The field equation of ℓ = ½φ_t² − ½φ_x² + cos φ − 1:
+///
+///     -(phi(j+1,i-1) - 2*phi(j+1,i) + phi(j+1,i+1) + 2*phi(j,i-1) - 4*phi(j,i) + 2*phi(j,i+1) + phi(j-1,i-1) -
+///           2*phi(j-1,i) + phi(j-1,i+1))/(4*k^2) + (phi(j+1,i) - 2*phi(j,i) + phi(j-1,i))/h^2
+///       + sin((phi(j+1,i) + phi(j,i))/2)/2 + sin((phi(j,i) + phi(j-1,i))/2)/2 = 0
 inline constexpr struct SixTuple {
   static constexpr JetTable<6, 2> table{shapes::six_tuple,
                                         1,
@@ -27,6 +33,16 @@ inline constexpr struct SixTuple {
 
 /// Jets on the nine-tuple ⊞: the symmetric rectangle's jet in each of its four cells, with φ_tx of the cell, φ_xx the
 /// mean of its two rows and φ_tt that of its two columns.
+///
+/// The field equation of ℓ = ½φ_t² − ½φ_x² + cos φ − 1:
+///
+///     (phi(j+1,i-1) + 2*phi(j+1,i) + phi(j+1,i+1) - 2*phi(j,i-1) - 4*phi(j,i) - 2*phi(j,i+1) + phi(j-1,i-1) +
+///           2*phi(j-1,i) + phi(j-1,i+1))/(4*h^2)
+///       - (phi(j+1,i-1) - 2*phi(j+1,i) + phi(j+1,i+1) + 2*phi(j,i-1) - 4*phi(j,i) + 2*phi(j,i+1) + phi(j-1,i-1) -
+///           2*phi(j-1,i) + phi(j-1,i+1))/(4*k^2) + sin((phi(j+1,i) + phi(j+1,i+1) + phi(j,i) + phi(j,i+1))/4)/4
+///       + sin((phi(j+1,i-1) + phi(j+1,i) + phi(j,i-1) + phi(j,i))/4)/4
+///       + sin((phi(j,i) + phi(j,i+1) + phi(j-1,i) + phi(j-1,i+1))/4)/4
+///       + sin((phi(j,i-1) + phi(j,i) + phi(j-1,i-1) + phi(j-1,i))/4)/4 = 0
 inline constexpr struct NineTuple {
   static constexpr JetTable<9, 4> table = [] {
     JetTable<9, 4> result{shapes::nine_tuple, 1, {}};

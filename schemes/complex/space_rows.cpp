@@ -202,7 +202,10 @@ constexpr std::array<double, 3> three_rows{0, 1, 2};  // until start() says how 
 
 /// Of a symmetric matrix; 0 if it is not finite, or Lanczos's method does not converge.
 double largest_eigenvalue(const Eigen::SparseMatrix<double>& K) {
-  if (!Eigen::Map<const Eigen::VectorXd>(K.valuePtr(), K.nonZeros()).allFinite()) return 0;
+  // Squares of what is near the ends of the range overflow.
+  const double size = K.nonZeros() == 0 ? 0 : K.coeffs().abs().maxCoeff();
+  if (!(size > 0) || !std::isfinite(size)) return 0;
+  if (size > 1e100 || size < 1e-100) return size * largest_eigenvalue(K / size);
   constexpr int few = 32, basis = 24, most_iterations = 1000;
   if (K.rows() <= few)
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(K), Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "lattice/error.hpp"
 #include "schemes/methods/moving_parts.hpp"
+#include "schemes/solvers/newton.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
 
 namespace delf {
@@ -53,30 +53,44 @@ class StartOfMesh {
   }
 
   /// Newton's method from X, which keeps its order; nothing if it does not arrive.
-  std::optional<Vector> solve(const MeshMonitor& monitor, Vector X) {
+  std::optional<Vector> solve(const MeshMonitor& monitor, const Vector& X) {
     const Eigen::Index n = N_ - 2;
-    Vector G(n), by_t(n);
-    Sparse by_X(n, n);
-    SparseLU lu;
-    double before = std::numeric_limits<double>::infinity();
-    for (int iteration = 0; iteration < 30; ++iteration) {
-      evaluate(monitor, X, G, by_X, by_t);
-      if (!factor(lu, by_X)) return std::nullopt;
-      const Vector change = lu.solve(G);
-      if (!change.allFinite()) return std::nullopt;
-      X.segment(1, n) -= change;
+    MeshEquations equations{*this, monitor, X, Vector(n), Vector(n), Sparse(n, n)};
+    const auto tangled = [&](const NewtonProgress&) {
+      const Vector& Y = equations.X;
       for (int i = 0; i + 1 < N_; ++i)
-        if (!(X[i] < X[i + 1])) return std::nullopt;
-      // corrections that no longer shrink are rounding, if they are small
-      const double size = change.lpNorm<Eigen::Infinity>(), scale = X.lpNorm<Eigen::Infinity>();
-      if (size <= 1e-16 * scale || (size >= 0.25 * before && size <= 1e-11 * scale)) return X;
-      if (iteration > 8 && size > before) return std::nullopt;
-      before = size;
-    }
-    return std::nullopt;
+        if (!(Y[i] < Y[i + 1])) return Stop::tangled;
+      return Stop::no;
+    };
+    NewtonProgress at;
+    const Stop stop = newton(equations, at, Overflows{}, tangled, Converged{}, Rounding{rounding}, Diverges{},
+                             OutOfIterations{30});
+    return has_root(stop) ? std::optional(std::move(equations.X)) : std::nullopt;
   }
 
  private:
+  static constexpr double rounding = 1e-11;  ///< of corrections: the field is steep in narrow cells
+  /// G(X) = 0 for the sites between the walls.
+  struct MeshEquations {
+    StartOfMesh& start;
+    const MeshMonitor& monitor;
+    Vector X, G, by_t;
+    Sparse by_X;
+    SparseLU lu = {};
+
+    bool linearise(const NewtonProgress&) {
+      start.evaluate(monitor, X, G, by_X, by_t);
+      return factor(lu, by_X);
+    }
+    const Vector& residual() const { return G; }
+    Vector solve(const Vector& E) const { return lu.solve(E); }
+    void apply(const Vector& change, NewtonProgress& at) {
+      X.segment(1, change.size()) -= change;
+      at.finite = change.allFinite();
+      at.take(change.lpNorm<Eigen::Infinity>(), X.lpNorm<Eigen::Infinity>());
+    }
+  };
+
   int N_;
   const Profile& profile_;
   std::vector<FieldPoint> point_;

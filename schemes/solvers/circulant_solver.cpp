@@ -102,34 +102,30 @@ Pack CirculantSolver::run_forward(const RowSum& sum, const double* const* rows, 
   return sink.last;
 }
 
-/// x_i = (u_i + q^(i+1) U) + q x_{i+1} in place, U what enters the arcs, felt in the first `near` packs; returns the
-/// first x.
-Pack CirculantSolver::run_backward(double* u, int first, int last, Pack after, Pack entering_u) const {
+/// sink(at, x_i) with x_i = (u_i + q^(i+1) U) + q x_{i+1}, U what enters the arcs, felt in the first `near` packs; returns
+/// the first x. Four at once, as above.
+template <class Sink>
+Pack CirculantSolver::run_backward(const double* u, int first, int last, Pack after, Pack entering_u, Sink& given) const {
+  auto sink = given;
   const double q = q_, q2 = q * q, q3 = q * q2, q4 = q2 * q2;
-  const double* const begin = u + layout_->at(first);
-  double* at = u + layout_->at(last - 1);
-  const double* const far = u + layout_->at(std::max(first, near_));
-  for (; at - 3 * lanes >= far; at -= 4 * lanes) {
-    const Pack s1 = Pack::load(at), s2 = Pack::load(at - lanes) + q * s1, s3 = Pack::load(at - 2 * lanes) + q * s2,
-               s4 = Pack::load(at - 3 * lanes) + q * s3;
-    (s1 + q * after).store(at);
-    (s2 + q2 * after).store(at - lanes);
-    (s3 + q3 * after).store(at - 2 * lanes);
-    (after = s4 + q4 * after).store(at - 3 * lanes);
-  }
-  for (; at >= far; at -= lanes) (after = Pack::load(at) + q * after).store(at);
-  const double* power = forward_.data() + (at - (u + layout_->at(0))) / lanes;
-  for (; at - 3 * lanes >= begin; at -= 4 * lanes, power -= 4) {
-    const Pack s1 = Pack::load(at) + power[0] * entering_u, s2 = (Pack::load(at - lanes) + power[-1] * entering_u) + q * s1,
-               s3 = (Pack::load(at - 2 * lanes) + power[-2] * entering_u) + q * s2,
-               s4 = (Pack::load(at - 3 * lanes) + power[-3] * entering_u) + q * s3;
-    (s1 + q * after).store(at);
-    (s2 + q2 * after).store(at - lanes);
-    (s3 + q3 * after).store(at - 2 * lanes);
-    (after = s4 + q4 * after).store(at - 3 * lanes);
-  }
-  for (; at >= begin; at -= lanes, --power)
-    (after = (Pack::load(at) + *power * entering_u) + q * after).store(at);
+  const auto four = [&](std::ptrdiff_t at, Pack r1, Pack r2, Pack r3, Pack r4) {
+    const Pack s1 = r1, s2 = r2 + q * s1, s3 = r3 + q * s2, s4 = r4 + q * s3, before = after;
+    after = s4 + q4 * before;
+    sink(at, s1 + q * before), sink(at - lanes, s2 + q2 * before), sink(at - 2 * lanes, s3 + q3 * before);
+    sink(at - 3 * lanes, after);
+  };
+  const auto load = [u](std::ptrdiff_t at) { return Pack::load(u + at); };
+  const std::ptrdiff_t begin = layout_->at(first), far = layout_->at(std::max(first, near_));
+  std::ptrdiff_t at = layout_->at(last - 1);
+  for (; at - 3 * lanes >= far; at -= 4 * lanes)
+    four(at, load(at), load(at - lanes), load(at - 2 * lanes), load(at - 3 * lanes));
+  for (; at >= far; at -= lanes) sink(at, after = load(at) + q * after);
+  const double* power = forward_.data() + (at - layout_->at(0)) / lanes;
+  for (; at - 3 * lanes >= begin; at -= 4 * lanes, power -= 4)
+    four(at, load(at) + power[0] * entering_u, load(at - lanes) + power[-1] * entering_u,
+         load(at - 2 * lanes) + power[-2] * entering_u, load(at - 3 * lanes) + power[-3] * entering_u);
+  for (; at >= begin; at -= lanes, --power) sink(at, after = (load(at) + *power * entering_u) + q * after);
+  if constexpr (!std::is_const_v<Sink>) given = sink;
   return after;
 }
 
@@ -162,7 +158,8 @@ void CirculantSolver::solve(double* const* w) const {
   double* const u = w[0];
   run_forward(u, 0, layout_->packs(), Pack(0.0));
   const Entering e = entering(u, sum_of_first(u));
-  run_backward(u, 0, layout_->packs(), e.x, e.u);
+  const auto store = [u](std::ptrdiff_t at, Pack x) { x.store(u + at); };
+  run_backward(u, 0, layout_->packs(), e.x, e.u, store);
 }
 
 /// Both recurrences over the whole row, the second one from its end in strips.
@@ -173,21 +170,24 @@ class CirculantSolver::WholeRow final : public Sweeps {
   void begin(double*) override { ready_ = 0, last_ = Pack(0.0); }
   void forward(double* u, int end) override {
     last_ = s_.run_forward(u, ready_, end, last_);
-    turn(u, end);
+    close(u, end);
   }
   void forward(const RowSum& sum, const double* const* rows, double* u, int end) override {
     last_ = s_.run_forward(sum, rows, u, ready_, end, last_);
-    turn(u, end);
+    close(u, end);
   }
-  PackRange backward(double* u) override {
-    if (ready_ < packs_ || left_ == 0) return {0, 0};
-    const int end = std::exchange(left_, left_ < 2 * strip ? 0 : left_ - strip);
-    from_outside_.x = s_.run_backward(u, left_, end, from_outside_.x, from_outside_.u);
-    return {left_, end};
+  PackRange ready() const override {
+    if (ready_ < packs_) return {0, 0};
+    return {left_ < 2 * strip ? 0 : left_ - strip, left_};
+  }
+  void backward(const double* u, RowUpdate& update) override {
+    const PackRange packs = ready();
+    from_outside_.x = s_.run_backward(u, packs.first, packs.last, from_outside_.x, from_outside_.u, update);
+    left_ = packs.first;
   }
 
  private:
-  void turn(const double* u, int end) {
+  void close(const double* u, int end) {
     if ((ready_ = end) < packs_) return;
     left_ = packs_;
     from_outside_ = s_.entering(u, s_.sum_of_first(u));
@@ -196,7 +196,7 @@ class CirculantSolver::WholeRow final : public Sweeps {
   static constexpr int strip = 64;
   const CirculantSolver& s_;
   const int packs_;
-  int ready_ = 0, left_ = 0;
+  int ready_ = 0, left_ = 0;  ///< packs before left_ are still to be solved for
   Pack last_ = 0.0;
   Entering from_outside_;
 };
@@ -220,13 +220,13 @@ class CirculantSolver::ByStrips final : public Sweeps {
     last_ = s_.run_forward(sum, rows, u, ready_, end, last_);
     look_back(u, end);
   }
-  PackRange backward(double* u) override {
-    const int end = ready_ == packs_ ? packs_ : std::max(done_, ready_ - s_.near_);
-    if (end == done_) return {0, 0};
+  PackRange ready() const override { return {done_, ready_ == packs_ ? packs_ : std::max(done_, ready_ - s_.near_)}; }
+  void backward(const double* u, RowUpdate& update) override {
+    const int end = ready().last;
     Pack x = ready_ == packs_ ? after_ : Pack(0.0);
     for (int v = ready_ - 1; v >= end; --v) x = Pack::load(u + s_.layout_->at(v)) + s_.q_ * x;
-    s_.run_backward(u, done_, end, x, Pack(0.0));
-    return {std::exchange(done_, end), end};
+    s_.run_backward(u, done_, end, x, Pack(0.0), update);
+    done_ = end;
   }
 
  private:

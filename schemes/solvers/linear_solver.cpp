@@ -62,7 +62,11 @@ class ScalarSolver final : public LinearSolver {
       sum.evaluate(rows, layout_.at(ready_), layout_.at(end), lanes, w);
       ready_ = end;
     }
-    PackRange backward(double*) override { return {std::exchange(done_, ready_), ready_}; }
+    PackRange ready() const override { return {done_, ready_}; }
+    void backward(const double* w, RowUpdate& update) override {
+      for (std::ptrdiff_t at = layout_.at(done_); at < layout_.at(ready_); at += lanes) update(at, Pack::load(w + at));
+      done_ = ready_;
+    }
 
    private:
     const RowLayout& layout_;

@@ -9,11 +9,12 @@
 #include "lattice/matrix_entry.hpp"
 #include "schemes/solvers/row_layout.hpp"
 #include "schemes/solvers/row_sum.hpp"
+#include "schemes/solvers/row_update.hpp"
 
 namespace delf {
 
 /// A solve by a sweep to the right and one to the left, strip by strip, so that what makes the right side and what uses
-/// the solution find a strip in the cache. One component; w holds the right side, and the solution takes its place.
+/// the solution find a strip in the cache. One component; w holds the right side.
 class Sweeps {
  public:
   virtual ~Sweeps() = default;
@@ -25,8 +26,10 @@ class Sweeps {
   /// The right side is there for the packs up to `end`; the first call begins at pack 0. With a sum, it is that one.
   virtual void forward(double* w, int end) = 0;
   virtual void forward(const RowSum& right_side, const double* const* rows, double* w, int end) = 0;
-  /// The next packs whose solution is there: none until more are swept forward. Whatever the order, each comes once.
-  virtual PackRange backward(double* w) = 0;
+  /// The next packs to solve for: none until more are swept forward. Whatever the order, each comes once.
+  virtual PackRange ready() const = 0;
+  /// Solves for them, and updates their sites by the solution, which is not kept.
+  virtual void backward(const double* w, RowUpdate&) = 0;
 };
 
 /// A factored matrix over the unknowns of a slab: solves A w = rhs for whole rows, d rows each. In words: `name()`.

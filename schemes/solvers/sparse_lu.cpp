@@ -12,5 +12,9 @@ bool factor(SparseLU& lu, const Eigen::SparseMatrix<double>& A) {
   lu.compute(A);
   return lu.info() == Eigen::Success;
 }
+bool factor_again(SparseLU& lu, const Eigen::SparseMatrix<double>& A) {
+  lu.factorize(A);
+  return lu.info() == Eigen::Success;
+}
 
 }  // namespace delf

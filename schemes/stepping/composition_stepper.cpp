@@ -237,7 +237,7 @@ double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const d
                                slopes.data());
     for (int a = 0; a < d_; ++a) {
       const auto at = row(a) + begin;
-      const Strip rows{packs,
+      const PairStrip rows{packs,
                        step.linear.data() + static_cast<std::ptrdiff_t>(a) * reach_,
                        step.nonlinear[static_cast<std::size_t>(a)],
                        step.stride,

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "jets/fibre.hpp"
+#include "jets/simd/exact_sum.hpp"
 #include "jets/simd/scratch_rows.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/saved_state.hpp"
@@ -30,7 +31,7 @@ const double* numbers(const std::vector<Pack>& packs) { return reinterpret_cast<
 /// What a slab's families add up to, node by node, while they are read.
 struct KickStepper::Parts {
   int fields, nodes, sites, padded;
-  std::vector<std::map<std::pair<int, int>, double>> entries;  ///< [node]: of K and of the kinetic terms
+  std::vector<std::map<std::pair<int, int>, double>> entries;  ///< [node]: of K
   std::vector<std::vector<double>> constant, mass;             ///< [node][place]
   std::vector<std::vector<Source>> sources;
 
@@ -64,20 +65,28 @@ struct KickStepper::Parts {
 
 bool KickStepper::Parts::add(const LatticeSystem& system, const StencilFamily& family, int anchor,
                              const std::vector<Value>& values) {
+  // The kinetic terms are as 1/h and the others as h: in a step 2⁶⁰ times as long the others are left, without the rounding
+  // of their difference from the kinetic ones.
+  constexpr double longer = 0x1p60;
   Cell cell{system.time_step(), system.lattice().space_step(), 0, 0, anchor};
   const auto part = family.constant_part(cell);
-  if (!part) return false;
+  cell.time_step *= longer;
+  const auto others = family.constant_part(cell);
+  if (!part || !others) return false;
+  constexpr double tiny = 0x1p-100;  // what is left of a kinetic term
   const std::size_t n = values.size();
   for (std::size_t i = 0; i < n; ++i) {
     const Value& v = values[i];
     if (v.data) continue;
-    constant[at(v.node)][at(v.place)] += part->r0[i];
+    constant[at(v.node)][at(v.place)] += others->r0[i] / longer;
     for (std::size_t m = 0; m < n; ++m) {
       const double J = part->J[i * n + m];
       const Value& u = values[m];
       if (J == 0) continue;
-      if (u.node == v.node) entries[at(v.node)][{v.place, u.place}] += J;
-      else if (u.place != v.place || std::abs(u.node - v.node) != 1) return false;
+      if (u.node == v.node) {
+        if (const double K = others->J[i * n + m] / longer; std::abs(K) > tiny * std::abs(J))
+          entries[at(v.node)][{v.place, u.place}] += K;
+      } else if (u.place != v.place || std::abs(u.node - v.node) != 1) return false;
       else if (u.node > v.node) mass[at(v.node)][at(v.place)] -= J;
     }
   }
@@ -125,10 +134,7 @@ KickStepper::Kick KickStepper::Parts::kick(int node) const {
   for (int place = 0; place < fields * padded; ++place) {
     kick.first.push_back(static_cast<std::int32_t>(kick.column.size()));
     for (; next != entries[at(node)].end() && next->first.first == place; ++next) {
-      double value = next->second;
-      if (next->first.second == place)  // less the kinetic terms: they are differences
-        value -= (node > 0 ? mass[at(node - 1)][at(place)] : 0) + (node < nodes ? mass[at(node)][at(place)] : 0);
-      kick.column.push_back(next->first.second), kick.value.push_back(value);
+      kick.column.push_back(next->first.second), kick.value.push_back(next->second);
     }
   }
   kick.first.push_back(static_cast<std::int32_t>(kick.column.size()));
@@ -200,6 +206,7 @@ KickStepper::KickStepper(const LatticeSystem& system, const SolvePlan& plan, con
       nodes_(parts.nodes),
       padded_(parts.padded),
       behind_(slab_extent(system, plan).behind),
+      low_rows_(rows_held, std::vector<double>(at(parts.sites * system.components()), 0.0)),
       rows_(rows_held, std::vector<double>(at(parts.sites * system.components()), 0.0)) {
   const std::size_t packs = at(fields_ * padded_ / lanes);
   alone_ = parts.kick(0);
@@ -211,13 +218,15 @@ KickStepper::KickStepper(const LatticeSystem& system, const SolvePlan& plan, con
       if (const double M = parts.mass[at(node)][at(place)]; M != 0) numbers(inverse_.back())[place] = 1 / M;
   }
   y_.assign(at(nodes_ + 1), Packs(packs, Pack(0.0)));
+  low_ = y_;
   momentum_.assign(packs, Pack(0.0));
 }
 
 /// P ← P + K y + c + w N′(y),   y′ = y + M⁻¹ P, strip by strip.
-void KickStepper::kick_and_drift(const Kick& kick, const Packs& inverse, const Packs& y, Packs& next) {
-  const double *const from = numbers(y), *const constant = numbers(kick.constant), *const drift = numbers(inverse);
-  double *const P = numbers(momentum_), *const to = numbers(next);
+void KickStepper::kick_and_drift(const Kick& kick, int node) {
+  const double *const from = numbers(y_[at(node)]), *const from_low = numbers(low_[at(node)]),
+                     *const constant = numbers(kick.constant), *const drift = numbers(inverse_[at(node)]);
+  double *const P = numbers(momentum_), *const to = numbers(y_[at(node + 1)]), *const to_low = numbers(low_[at(node + 1)]);
   const ScratchRows slope(fields_, strip);
   std::array<const double*, 8> inputs_of_few;
   std::vector<const double*> inputs_of_many;
@@ -248,8 +257,9 @@ void KickStepper::kick_and_drift(const Kick& kick, const Packs& inverse, const P
     for (int a = 0; a < fields_; ++a) {
       const int begin = a * padded_ + first;
       for (int i = begin; i < begin + count; i += lanes) {
-        const Pack moved = Pack::load(from + i) + Pack::load(drift + i) * Pack::load(P + i);
-        moved.store(to + i);
+        Pack moved = Pack::load(from + i), low = Pack::load(from_low + i);
+        add_exactly(moved, low, Pack::load(drift + i) * Pack::load(P + i));
+        moved.store(to + i), low.store(to_low + i);
         largest_ = largest_magnitude(largest_, moved);
       }
     }
@@ -260,23 +270,23 @@ void KickStepper::take_slab(const Kick& first) {
   const FlushDenormals guard;
   largest_ = Pack(0.0);
   for (int node = 0; node < nodes_; ++node)
-    kick_and_drift(node == 0 ? first : kicks_[at(node)], inverse_[at(node)], y_[at(node)], y_[at(node + 1)]);
+    kick_and_drift(node == 0 ? first : kicks_[at(node)], node);
   if (overflowed(max_or_nan(largest_)))
     throw NotFinite(fmt::format("step {}, t = {:.6g}: the field is not finite; reduce lattice.time_step or lattice.courant",
                                 newest_ + 1, system_.times()->time(newest_ + 1)));
-  for (int node = 1; node < nodes_; ++node) keep(newest_, node, y_[at(node)]);
-  keep(++newest_, 0, y_.back());
-  std::swap(y_.front(), y_.back());
+  for (int node = 1; node < nodes_; ++node) keep(newest_, node);
+  std::swap(y_.front(), y_.back()), std::swap(low_.front(), low_.back());
+  keep(++newest_, 0);
 }
 
-void KickStepper::keep(std::int64_t row, int node, const Packs& y) {
-  std::vector<double>& to = ring(row);
-  const std::size_t C = at(system_.components());
-  for (int a = 0; a < fields_; ++a) {
-    const double* const from = numbers(y) + a * padded_;
-    double* place = to.data() + node * fields_ + a;
-    for (int i = 0; i < system_.lattice().sites(); ++i, place += C) *place = from[i];
-  }
+void KickStepper::keep(std::int64_t row, int node) {
+  const std::size_t C = at(system_.components()), slot = static_cast<std::size_t>(row) % rows_.size();
+  for (const auto& [all, to] : {std::pair{&y_, &rows_[slot]}, {&low_, &low_rows_[slot]}})
+    for (int a = 0; a < fields_; ++a) {
+      const double* const from = numbers((*all)[at(node)]) + a * padded_;
+      double* place = to->data() + node * fields_ + a;
+      for (int i = 0; i < system_.lattice().sites(); ++i, place += C) *place = from[i];
+    }
 }
 
 void KickStepper::start(const std::vector<std::vector<double>>& rows) {
@@ -287,6 +297,8 @@ void KickStepper::start(const std::vector<std::vector<double>>& rows) {
     for (int i = 0; i < system_.lattice().sites(); ++i)
       for (int a = 0; a < fields_; ++a) numbers(y)[a * padded_ + i] = row[at(i * C + a)];
   };
+  for (Packs& low : low_) std::fill(low.begin(), low.end(), Pack(0.0));
+  for (auto& low : low_rows_) std::fill(low.begin(), low.end(), 0.0);
   for (std::size_t r = 0; r < rows.size(); ++r) ring(static_cast<std::int64_t>(r)) = rows[r];
   newest_ = static_cast<std::int64_t>(rows.size()) - 1;
   // P = M (y₁ − y₀)
@@ -304,8 +316,10 @@ void KickStepper::start_legendre(const std::vector<double>& row0, const std::vec
       numbers(y_[0])[a * padded_ + i] = row0[at(i * C + a)];
       numbers(momentum_)[a * padded_ + i] = system_.is_held(i, a) ? 0 : momenta[at(i * C + a)];
     }
+  std::fill(low_[0].begin(), low_[0].end(), Pack(0.0));
   newest_ = 0;
   ring(0) = row0;
+  std::fill(low_rows_[0].begin(), low_rows_[0].end(), 0.0);
   take_slab(alone_);
 }
 
@@ -325,7 +339,10 @@ Window KickStepper::window(int rows) const {
   std::vector<std::vector<double>> newest_rows;
   const std::int64_t first = newest_ - rows + 1;
   for (std::int64_t r = first; r <= newest_; ++r) newest_rows.push_back(ring(std::max<std::int64_t>(r, 0)));
-  return system_.window(first, std::move(newest_rows), turn_);
+  Window window = system_.window(first, std::move(newest_rows), turn_);
+  for (std::int64_t r = first; r <= newest_; ++r)
+    window.low.push_back(low_rows_[static_cast<std::size_t>(std::max<std::int64_t>(r, 0)) % rows_.size()]);
+  return window;
 }
 
 /// E = P below the row before the newest − P above it there, and at the nodes of the slab above ∂S/∂y_s.
@@ -354,9 +371,9 @@ std::size_t KickStepper::bytes_of(const Kick& kick) {
 StepReport KickStepper::report(bool /*residual*/) const {
   const std::size_t packs = sizeof(Pack) * momentum_.size();
   std::size_t rows = 0, kicks = bytes_of(alone_);
-  for (const auto& row : rows_) rows += 8 * row.size();
+  for (const auto& row : rows_) rows += 16 * row.size();
   for (const Kick& kick : kicks_) kicks += bytes_of(kick);
-  const std::size_t work = packs * (y_.size() + inverse_.size() + 1);
+  const std::size_t work = packs * (2 * y_.size() + inverse_.size() + 1);
   return {.starting_rows = 2,
           .behind = behind_,
           .iterates = false,
@@ -369,7 +386,9 @@ StepReport KickStepper::report(bool /*residual*/) const {
 void KickStepper::visit(SavedState& state) {
   state("newest", newest_);
   state("values", y_[0]), state("momentum", momentum_);
-  for (auto& row : rows_) state("row", row);
+  state("low parts of values", low_[0]);
+  for (auto* rows : {&rows_, &low_rows_})
+    for (auto& row : *rows) state("row", row);
 }
 
 }  // namespace delf

@@ -57,9 +57,9 @@ class KickStepper final : public StepMethod {
   KickStepper(const LatticeSystem&, const SolvePlan&, const StepOptions&, Parts);
   static Kick sum(const Kick&, const Kick&);
   static std::size_t bytes_of(const Kick&);
-  void kick_and_drift(const Kick&, const Packs& by_force, const Packs& y, Packs& next);
+  void kick_and_drift(const Kick&, int node);
   void take_slab(const Kick& first);
-  void keep(std::int64_t row, int node, const Packs& y);
+  void keep(std::int64_t row, int node);
   std::vector<double>& ring(std::int64_t row) { return rows_[static_cast<std::size_t>(row) % rows_.size()]; }
   const std::vector<double>& ring(std::int64_t row) const { return rows_[static_cast<std::size_t>(row) % rows_.size()]; }
 
@@ -70,9 +70,10 @@ class KickStepper final : public StepMethod {
   Kick alone_;                       ///< of row 0, which has no slab below it
   std::vector<Kick> kicks_;          ///< of each node: at a row those of both slabs
   std::vector<Packs> inverse_;       ///< M_s⁻¹; 0 where values are data
-  std::vector<Packs> y_;             ///< of the nodes of a slab, the last one too
+  std::vector<Packs> y_, low_;       ///< of the nodes of a slab, the last one too: values are y + low
   Packs momentum_;                   ///< P
   Pack largest_;
+  std::vector<std::vector<double>> low_rows_;  ///< what rounding has taken from rows_
   std::vector<std::vector<double>> rows_;  ///< a ring of the newest, [i·C + c]; nodes inside a slab are with the row below
   std::int64_t newest_ = -1;
 };

@@ -43,22 +43,6 @@ std::string MeshWatch::crossing_at(const SectionRing& ring, std::int64_t row) co
   return {};
 }
 
-bool MeshWatch::leaps(const SectionRing& ring, std::int64_t row) const {
-  const RowTimes& times = *system_.times();
-  const double stride = times.step(row - 1) / times.step(row - 2);
-  const double *const now = ring.row(row), *const before = ring.row(row - 1), *const first = ring.row(row - 2);
-  double way = 0, aside = 0;
-  const auto size = static_cast<std::size_t>(system_.components() * system_.lattice().sites());
-  for (std::size_t at = 0; at < size; ++at) {
-    const Component& c = system_.component(static_cast<int>(at) % system_.components());
-    if (c.role != Role::field && !c.position) continue;
-    const double line = stride * (before[at] - first[at]);
-    way = std::max(way, std::abs(line));
-    aside = std::max(aside, std::abs(now[at] - before[at] - line));
-  }
-  return aside > way;
-}
-
 std::string MeshWatch::narrowest_cell(const double* row) const {
   double least = std::numeric_limits<double>::infinity();
   int where = 0;

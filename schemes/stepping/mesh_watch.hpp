@@ -20,10 +20,6 @@ class MeshWatch {
   std::optional<int> crossing(const double* row) const;
   /// Whether cells have turned over in a row, or at a stage of the step that led there; in words, empty if not.
   std::string crossing_at(const SectionRing&, std::int64_t row) const;
-  /// The row leaves the straight line through the two before it by more than the way between these: another root than the
-  /// motion's. On a soliton that bounces roots of the motion leave it by up to 0.63 of that way, and others by 1.24 and
-  /// more.
-  bool leaps(const SectionRing&, std::int64_t row) const;
   /// "sites 5 and 6 are 0.0073 apart, closer than any others"
   std::string narrowest_cell(const double* row) const;
 

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "lattice/error.hpp"
+#include "schemes/solvers/newton.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 
@@ -44,8 +45,8 @@ class SlabProblem {
 
   /// y[n] is unknown n; stencils without an unknown give `known`, whatever the step. Multipliers are not asked whether they
   /// have converged: they have no scale of their own.
-  void list_unknowns(const LatticeSystem& system, const std::vector<double>& known) {
-    known_ = known;
+  void list_unknowns(const LatticeSystem& system, const SlabPast& past) {
+    known_ = past.known, momenta_ = past.momenta;
     for (int n = 0; n < equations_.size(); ++n) {
       places_[static_cast<std::size_t>(n)] = n;
       asked_.push_back(system.component(equations_.unknown(n).component).role != Role::multiplier);
@@ -58,12 +59,12 @@ class SlabProblem {
   /// ∂E/∂y
   const std::vector<double>& jacobian(const Vector& y) {
     make_(s_, y, ring_);
-    equations_.jacobian(ring_, J_, values_);
+    equations_.jacobian(ring_, J_, values_, momenta_);
     return values_;
   }
   const std::vector<double>& residual(const Vector& y) {
     make_(s_, y, ring_);
-    if (known_.empty()) equations_.residual(ring_, J_, E_);
+    if (known_.empty() || momenta_) equations_.residual(ring_, J_, E_, nullptr, momenta_);
     else equations_.residual_from(known_, ring_, J_, E_);
     E_.resize(static_cast<std::size_t>(equations_.size()));
     return E_;
@@ -95,119 +96,107 @@ class SlabProblem {
   std::vector<int> places_;  ///< of the unknowns in y
   std::vector<char> asked_;
   std::vector<double> known_, values_, E_;
+  const std::vector<double>* momenta_ = nullptr;
 };
 
-struct Newton {
+struct Root {
   bool converged = false;
-  /// Every correction is at most a share `tame_ratio` of the one before, and the determinant keeps its sign.
-  bool tame = true;
   int iterations = 0;
   Vector y;
-  int sign = 0;        ///< of the determinant at the root
+  int sign = 0;        ///< of the determinant there
   double reached = 0;  ///< the part of the step that the root was followed to
 };
 
-/// Whether corrections of this size say that the iteration has arrived. Those that stopped shrinking below a few hundred
-/// units of round-off have: the matrix is ill-conditioned, not the iteration lost.
-bool arrived(double size, double last, double absolute_tolerance, double round_off) {
-  return size <= absolute_tolerance || size <= round_off || (size > 0.5 * last && size <= 64 * round_off);
-}
-double round_off_of(double size) { return 8 * std::numeric_limits<double>::epsilon() * size; }
+/// The equations at y, with the Jacobian of each y.
+struct EveryJacobian {
+  SlabProblem& problem;
+  Vector y;
+  bool keeps_sign = true;  ///< where the determinant changes its sign from one y to the next it counts as singular
+  int sign = 0;
+  SparseLU lu = {};
 
-Newton newton(SlabProblem& problem, Vector y, double absolute_tolerance, int max_iterations,
-              double tame_ratio = 0.5) {
-  Newton result;
-  const Assembly& equations = problem.equations();
-  double last = std::numeric_limits<double>::infinity();
-  Matrix J(equations.size(), equations.size());
-  std::vector<Eigen::Triplet<double>> triplets;
-  for (int it = 1; it <= max_iterations; ++it) {
+  bool linearise(const NewtonProgress& at) {
+    const Assembly& equations = problem.equations();
     const std::vector<double>& values = problem.jacobian(y);
-    triplets.clear();
+    std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t n = 0; n < values.size(); ++n)
-      if (values[n] != 0) triplets.emplace_back(equations.places()[n].equation, equations.places()[n].unknown, values[n]);
-    J.setFromTriplets(triplets.begin(), triplets.end());
-    SparseLU lu;
-    result.iterations = it;
-    if (!factor(lu, J)) break;
-    const Vector change = lu.solve(as_vector(problem.residual(y)));
-    if (lu.info() != Eigen::Success || !change.allFinite()) break;
-    problem.take(y, as_row(change));
-    const int sign = static_cast<int>(lu.signDeterminant());
-    if (it > 1 && sign != result.sign) result.tame = false;
-    result.sign = sign;
-    const double size = problem.size(change), round_off = round_off_of(problem.size(y));
-    result.converged = arrived(size, last, absolute_tolerance, round_off);
-    if (result.converged) break;
-    if (size > tame_ratio * last && size > 64 * round_off) result.tame = false;
-    last = size;
+      if (values[n] != 0) entries.emplace_back(equations.places()[n].equation, equations.places()[n].unknown, values[n]);
+    Matrix J(equations.size(), equations.size());
+    J.setFromTriplets(entries.begin(), entries.end());
+    if (!factor(lu, J)) return false;
+    const int before = std::exchange(sign, static_cast<int>(lu.signDeterminant()));
+    return !keeps_sign || at.iteration == 1 || sign == before;
   }
-  result.y = std::move(y);
-  return result;
-}
-
-/// y ← y − J⁻¹E(y) with the Jacobian where it begins, while each correction is at most a tenth of the one before: then
-/// no other root is near. Not converged where it does not contract like that.
-Newton chord(SlabProblem& problem, Vector y, double absolute_tolerance, int max_iterations) {
-  Newton result;
-  const std::vector<double>& values = problem.jacobian(y);
-  std::vector<char> present;
-  for (const double value : values) present.push_back(value != 0);
-  BlockSolver solver = solver_of(problem.equations(), present);
-  if (!solver.factor(values)) return result;
-  double last = std::numeric_limits<double>::infinity();
-  std::vector<double> change;
-  for (int it = 1; it <= max_iterations && !result.converged; ++it) {
-    result.iterations = it;
-    solver.solve(problem.residual(y), change);
-    const double size = problem.size(as_vector(change));
-    if (!std::isfinite(size)) return result;
+  const std::vector<double>& residual() { return problem.residual(y); }
+  std::vector<double> solve(const std::vector<double>& E) const { return as_row(lu.solve(as_vector(E))); }
+  void apply(const std::vector<double>& change, NewtonProgress& at) {
+    at.finite = std::ranges::all_of(change, [](double x) { return std::isfinite(x); });
     problem.take(y, change);
-    const double round_off = round_off_of(problem.size(y));
-    result.converged = arrived(size, last, absolute_tolerance, round_off);
-    if (!result.converged && size > 0.1 * last && size > 64 * round_off) return result;
-    last = size;
+    at.take(problem.size(as_vector(change)), problem.size(y));
   }
-  result.y = std::move(y);
-  return result;
+};
+/// The same with the Jacobian where the iteration begins.
+struct FirstJacobian : EveryJacobian {
+  std::optional<BlockSolver> solver = {};
+
+  bool linearise(const NewtonProgress& at) {
+    if (at.iteration > 1) return true;
+    const std::vector<double>& values = problem.jacobian(y);
+    std::vector<char> present;
+    for (const double value : values) present.push_back(value != 0);
+    solver.emplace(solver_of(problem.equations(), present));
+    return solver->factor(values);
+  }
+  std::vector<double> solve(const std::vector<double>& E) const {
+    std::vector<double> change;
+    solver->solve(E, change);
+    return change;
+  }
+};
+
+/// Each correction is at most a `share` of the one before: then Newton's method goes to no other root than the nearest.
+template <class Equations>
+Root tame_root(Equations equations, double absolute_tolerance, int max_iterations, double share) {
+  NewtonProgress at;
+  const Stop stop = newton(equations, at, Overflows{}, Converged{.absolute = absolute_tolerance}, Rounding{}, Stalls{share},
+                           OutOfIterations{max_iterations});
+  return {has_root(stop), at.iteration, std::move(equations.y), equations.sign};
 }
 
 /// Newton's method, with one Jacobian where that is enough.
-Newton at_once(SlabProblem& problem, const Vector& predicted, double absolute_tolerance, int max_iterations) {
-  const Newton quick = chord(problem, predicted, absolute_tolerance, max_iterations);
+Root at_once(SlabProblem& problem, const Vector& predicted, double absolute_tolerance, int max_iterations) {
+  const Root quick = tame_root(FirstJacobian{{problem, predicted}}, absolute_tolerance, max_iterations, 0.1);
   if (quick.converged) return quick;
-  Newton direct = newton(problem, predicted, absolute_tolerance, max_iterations);
+  Root direct = tame_root(EveryJacobian{problem, predicted}, absolute_tolerance, max_iterations, 0.5);
   direct.iterations += quick.iterations;
-  direct.converged = direct.converged && direct.tame;
   return direct;
 }
 
 constexpr double next_to_nothing = 1. / 65536;  ///< of a step
 /// The root of a step of next to nothing, which need not be where it was predicted.
-Newton at_beginning(SlabProblem& problem, Vector predicted, double absolute_tolerance, int max_iterations) {
+Root at_beginning(SlabProblem& problem, Vector predicted, double absolute_tolerance, int max_iterations) {
   problem.set(next_to_nothing);
-  Newton at = newton(problem, std::move(predicted), absolute_tolerance, std::min(max_iterations, enough_iterations));
-  at.converged = at.converged && at.tame;
-  return at;
+  return tame_root(EveryJacobian{problem, std::move(predicted)}, absolute_tolerance,
+                   std::min(max_iterations, enough_iterations), 0.5);
 }
 
 /// Follows the root of the problem from s near 0 to s = 1. A stride is taken once and in two halves: both ways must
 /// be tame and end at the same root, because Newton's method may by accident arrive quickly at a root that is far
 /// away. Stops where the determinant changes sign, because there two roots meet. Where the root does not begin at its
 /// prediction (`from_root`) the first one is found alone, with a step of next to nothing.
-Newton follow(SlabProblem& problem, const std::function<Vector(double)>& predict, double absolute_tolerance,
+Root follow(SlabProblem& problem, const std::function<Vector(double)>& predict, double absolute_tolerance,
               int max_iterations, bool from_root = false) {
-  constexpr double first = 1. / 16, largest_stride = 1. / 8, least_stride = next_to_nothing, tame_ratio = 1. / 8;
+  constexpr double first = 1. / 16, largest_stride = 1. / 8, least_stride = next_to_nothing, share = 1. / 8;
   double s = 0, stride = first;
-  Newton at;
+  Root at;
   Vector offset = 0 * predict(0);  // of the root from its prediction
   int iterations = 0, sign = 0;
   const auto root_at = [&](double where, const Vector& off) {
     problem.set(where);
-    Newton found = newton(problem, predict(where) + off, absolute_tolerance,
-                          std::min(max_iterations, enough_iterations), tame_ratio);
+    Root found = tame_root(EveryJacobian{problem, predict(where) + off}, absolute_tolerance,
+                           std::min(max_iterations, enough_iterations), share);
     iterations += found.iterations;
-    found.converged = found.converged && found.tame && (sign == 0 || found.sign == sign);
+    found.converged = found.converged && (sign == 0 || found.sign == sign);
     return found;
   };
   if (from_root) {
@@ -218,11 +207,11 @@ Newton follow(SlabProblem& problem, const std::function<Vector(double)>& predict
   }
   while (s < 1) {
     const double next = std::min(1.0, s + stride), middle = (s + next) / 2;
-    Newton once = root_at(next, offset);
+    Root once = root_at(next, offset);
     bool same = false;
     if (once.converged)
-      if (const Newton half = root_at(middle, offset); half.converged)
-        if (const Newton twice = root_at(next, half.y - predict(middle)); twice.converged)
+      if (const Root half = root_at(middle, offset); half.converged)
+        if (const Root twice = root_at(next, half.y - predict(middle)); twice.converged)
           same = problem.size(twice.y - once.y) <= 1e-6 * (1e-300 + problem.size(once.y)) + 4 * absolute_tolerance &&
                  half.sign == once.sign;
     if (!same) {
@@ -244,7 +233,7 @@ Newton follow(SlabProblem& problem, const std::function<Vector(double)>& predict
   return at;
 }
 
-NewtonResult as_result(const Newton& found, int iterations) {
+NewtonResult as_result(const Root& found, int iterations) {
   NewtonResult result{found.converged, iterations, found.reached, {}};
   if (found.converged) result.row = as_row(found.y);
   return result;
@@ -277,7 +266,7 @@ NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, cons
                       });
   const auto predict = [&](double s) { return problem.moved(newest, s * increment); };
   const double absolute = tolerance * std::max(largest(newest), largest(predict(1)));
-  const Newton found = followed ? follow(problem, predict, absolute, max_iterations)
+  const Root found = followed ? follow(problem, predict, absolute, max_iterations)
                                 : at_once(problem, predict(1), absolute, max_iterations);
   return as_result(found, found.iterations);
 }
@@ -287,18 +276,16 @@ namespace {
 /// A slab from a step of next to nothing to its own: the problem, and where its unknowns go if they go on as before.
 class SlabPath {
  public:
-  SlabPath(const LatticeSystem& system, const SolvePlan& plan, const SlabPast& past)
+  SlabPath(const LatticeSystem& system, const SlabPast& past)
       : past_(past),
         components_(system.components()),
-        unknowns_(plan.slab(parity_of(plan, past.J)).unknowns),
+        unknowns_(past.parts.unknowns),
         base_(Vector::Zero(static_cast<Eigen::Index>(unknowns_.size()))),
         way_(base_) {
-    const int parity = parity_of(plan, past.J);
-    for (Node& unknown : unknowns_) unknown.site.time -= parity;
     find_way(system);
-    problem_.emplace(system, Assembly::slab(plan, parity, past.past, past.future, past.turn), past.J,
+    problem_.emplace(system, past.parts, past.J,
                      [this](double s, const Vector& y, SectionRing& ring) { make_rows(s, y, ring); });
-    problem_->list_unknowns(system, past.known);
+    problem_->list_unknowns(system, past);
     deep_ = system.height() > 1;
   }
   SlabPath(const SlabPath&) = delete;
@@ -344,13 +331,13 @@ class SlabPath {
   /// Stencils that reach further than one row see the rows before as far away as the same velocities put them.
   void make_rows(double s, const Vector& y, SectionRing& ring) {
     const std::size_t row_size = past_.rows.view().row_size();
-    for (std::int64_t r = past_.J - past_.past; r <= past_.J + past_.future && !copied_; ++r)
+    for (std::int64_t r = past_.J - past_.parts.past; r <= past_.J + past_.parts.future && !copied_; ++r)
       std::copy_n(past_.rows.row(r), row_size, ring.row(r));
     copied_ = true;
     for (std::size_t at = 0; at < row_size && deep_; ++at) {
       const std::size_t c = at % last_.size();
       const double newest = past_.rows.row(last_[c])[at];
-      for (std::int64_t r = past_.J - past_.past; r < last_[c] && is_field_[c] != 0; ++r)
+      for (std::int64_t r = past_.J - past_.parts.past; r < last_[c] && is_field_[c] != 0; ++r)
         ring.row(r)[at] = newest - s * (newest - past_.rows.row(r)[at]);
     }
     for (std::size_t n = 0; n < unknowns_.size(); ++n)
@@ -358,7 +345,7 @@ class SlabPath {
           y[static_cast<Eigen::Index>(n)];
   }
 
-  const SlabPast past_;
+  const SlabPast& past_;
   int components_;
   std::vector<Node> unknowns_;
   Vector base_, way_;
@@ -370,21 +357,20 @@ class SlabPath {
 
 }  // namespace
 
-NewtonResult follow_slab(const LatticeSystem& system, const SolvePlan& plan, const SlabPast& past, double tolerance,
-                         int max_iterations) {
-  SlabPath path(system, plan, past);
-  const Newton followed = follow(
+NewtonResult follow_slab(const LatticeSystem& system, const SlabPast& past, double tolerance, int max_iterations) {
+  SlabPath path(system, past);
+  const Root followed = follow(
       path.problem(), [&](double s) { return path.predict(s); }, tolerance * path.size(), max_iterations, true);
   return as_result(followed, followed.iterations);
 }
 
-bool turns_back(const LatticeSystem& system, const SolvePlan& plan, const SlabPast& past,
-                const std::vector<double>& unknowns, double tolerance) {
-  SlabPath path(system, plan, past);
+bool turns_back(const LatticeSystem& system, const SlabPast& past, const std::vector<double>& unknowns, double tolerance) {
+  SlabPath path(system, past);
   const double absolute = tolerance * path.size();
-  const Newton first = at_beginning(path.problem(), path.predict(next_to_nothing), absolute, enough_iterations);
+  const Root first = at_beginning(path.problem(), path.predict(next_to_nothing), absolute, enough_iterations);
   path.problem().set(1);
-  const Newton last = newton(path.problem(), as_vector(unknowns), absolute, enough_iterations);
+  const Root last = tame_root(EveryJacobian{.problem = path.problem(), .y = as_vector(unknowns), .keeps_sign = false},
+                              absolute, enough_iterations, NewtonProgress::unknown);
   return first.converged && last.converged && first.sign != last.sign;
 }
 
@@ -407,11 +393,11 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
   const double absolute = tolerance * std::max(largest(y0), largest(predict(1)));
   int iterations = 0;
   if (!followed) {
-    const Newton found = at_once(problem, predict(1), absolute, max_iterations);
+    const Root found = at_once(problem, predict(1), absolute, max_iterations);
     iterations = found.iterations;
     if (found.converged) return as_result(found, iterations);
   }
-  const Newton root = follow(problem, predict, absolute, max_iterations);
+  const Root root = follow(problem, predict, absolute, max_iterations);
   if (!root.converged)
     throw NoConvergence(
         "the starting row of initial.start = centred was not found: Newton's method did not converge; " +

@@ -30,19 +30,19 @@ struct NewtonResult {
 NewtonResult solve_slab(const LatticeSystem&, const SolvePlan&, const Window& past, double tolerance,
                         int max_iterations, bool followed = true);
 
-/// The rows J − past … J + future of a section, of which slab J is to be found; multipliers of slab J hold a prediction.
+/// The rows of a section, of which slab J is to be found; multipliers of slab J hold a prediction.
 struct SlabPast {
   const SectionRing& rows;
   std::int64_t J, slabs;  ///< `slabs` before it are known, with their inner nodes and multipliers
-  int past, future;
-  double turn;                       ///< φ(x + L) − φ(x)
+  Assembly::Parts parts;  ///< of the slab
   const std::vector<double>& known;  ///< the part of the equations that no unknown changes: momenta of the newest row
+  /// Of row 0, where slab 0 is solved from them: in place of `known`.
+  const std::vector<double>* momenta = nullptr;
 };
 /// The same for a slab of any kind: a small step begins at the newest row and its momenta, for stencils below keep their step.
-NewtonResult follow_slab(const LatticeSystem&, const SolvePlan&, const SlabPast&, double tolerance, int max_iterations);
+NewtonResult follow_slab(const LatticeSystem&, const SlabPast&, double tolerance, int max_iterations);
 /// True if the determinant has not the sign at this root that it has for a small step: between them two roots meet.
-bool turns_back(const LatticeSystem&, const SolvePlan&, const SlabPast&, const std::vector<double>& unknowns,
-                double tolerance);
+bool turns_back(const LatticeSystem&, const SlabPast&, const std::vector<double>& unknowns, double tolerance);
 
 /// Row 1 from row 0 and φ_t: the equation at row 0 with y₋₁ = y₁ − 2hφ_t. By Newton from y₀ + hφ_t at once; if that does
 /// not converge, or if it is to be `followed`, from a small h as above. Throws NoConvergence.

@@ -13,7 +13,7 @@ namespace delf {
 // pairs are, known where they are compiled: weights are then kept in registers.
 
 /// A strip of a row in a sub-step.
-struct Strip {
+struct PairStrip {
   int packs;
   const double* linear;
   double nonlinear, stride;
@@ -49,8 +49,8 @@ template <class Body>
 
 /// Pairs of up to R sites apart. `last` is the value before the strip, and then its last.
 template <int R>
-void step_strip(const Strip& given, Pack& last_value, Pack& largest_value) {
-  const Strip rows = given;  // stores cannot change it
+void step_strip(const PairStrip& given, Pack& last_value, Pack& largest_value) {
+  const PairStrip rows = given;  // stores cannot change it
   Pack weights[R];
   for (int j = 0; j < R; ++j) weights[j] = Pack(rows.linear[j]);
   Pack last = last_value, largest = largest_value;

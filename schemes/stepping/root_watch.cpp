@@ -2,7 +2,6 @@
 #include "schemes/stepping/root_watch.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace delf {
@@ -12,69 +11,94 @@ namespace {
 /// of elements, moving meshes and multipliers, by many methods and steps, those of the motion leave it by less than 4, but for
 /// discontinuous elements of one function, which are two oscillations at once: by 4.11 at the longest steps. Other roots were
 /// at 15.3 and more (Lotka–Volterra, h = 1/16), those of another branch of a constraint at 10¹⁶.
-constexpr double most = 6;
+constexpr double farthest = 6;
 constexpr double clearly = 0.25;   ///< a part of the way that no doubt begins below
 constexpr double rounding = 1e-8;  ///< of the values: differences of high order are rounding below
 
-using Maxima = std::array<double, RootWatch::most_rows + 1>;
+/// Corrections that go no further than this part of |y|, or that all shrink by four and more, leave no other root near
+/// (Kantorovich).
+constexpr double little = 1e-3, straight = 0.25;
 
 void raise(double& largest, double by) { largest = std::max(largest, std::abs(by)); }
 
 }  // namespace
 
-RootWatch::RootWatch(const LatticeSystem& system) : system_(system) {}
+RootWatch::RootWatch(const LatticeSystem& system) : system_(system), fields_(static_cast<std::size_t>(system.fields())) {
+  for (const Component& c : system.all_components()) {
+    field_.push_back(static_cast<std::size_t>(c.field));
+    moves_.push_back(c.role == Role::field || c.position);
+  }
+}
 
-RootWatch::Verdict RootWatch::judge(const SectionRing& ring, std::span<const Values> lists) const {
-  int rows = 0;
-  for (const Values& list : lists) rows = std::max(rows, std::min(list.rows, most_rows));
-  if (rows < 2) return Verdict::doubtful;
-  const auto fields = static_cast<std::size_t>(system_.fields());
+Stop RootWatch::judge(const NewtonProgress& at, const SectionRing& ring, std::int64_t J, std::int64_t solved,
+                      std::span<const Values> lists) {
+  if (at.travelled <= little * at.size) return Stop::converged;
+  const Stop stop = judge(ring, J, solved, lists);
+  return stop == Stop::doubtful_root && at.steepest <= straight ? Stop::converged : stop;
+}
+
+int RootWatch::rows(const Values& list, std::int64_t J, std::int64_t solved) const {
+  return static_cast<int>(std::min<std::int64_t>({list.is_field ? J + list.time : solved, list.held, most_rows}));
+}
+
+Stop RootWatch::judge(const SectionRing& ring, std::int64_t J, std::int64_t solved, std::span<const Values> lists) {
+  int most = 0;
+  for (const Values& list : lists) most = std::max(most, rows(list, J, solved));
+  if (most < 2) return Stop::doubtful_root;
   const int components = system_.components();
-  const auto field_of = [&](int place) { return static_cast<std::size_t>(system_.component(place % components).field); };
+  const auto each = [&](const auto& visit) {
+    for (const Values& list : lists) {
+      if (rows(list, J, solved) < most) continue;
+      const double* y[most_rows + 1];  // rows n+1, n, …
+      for (int m = 0; m <= most; ++m) y[m] = ring.row(J + list.time - m);
+      for (const int at : list.places) visit(fields_[field_[static_cast<std::size_t>(at % components)]], y, at);
+    }
+  };
+  std::ranges::fill(fields_, Field{});
   // Resolved motions leave the straight line by a small part of the way.
-  std::vector<double> way(fields, 0.0), aside(fields, 0.0);
-  for (const Values& list : lists) {
-    if (list.rows < rows) continue;
-    const double *const y = ring.row(list.row), *const y1 = ring.row(list.row - 1), *const y2 = ring.row(list.row - 2);
-    for (const int at : list.places) {
-      const double step = y1[at] - y2[at];
-      raise(way[field_of(at)], step), raise(aside[field_of(at)], y[at] - y1[at] - step);
-    }
-  }
-  bool all = true;
-  for (std::size_t f = 0; f < fields; ++f) all = all && aside[f] <= clearly * way[f];
-  if (all) return Verdict::near;
+  each([](Field& f, const double* const* y, int at) {
+    const double step = y[1][at] - y[2][at];
+    raise(f.way, step), raise(f.aside, y[0][at] - y[1][at] - step);
+  });
+  if (std::ranges::all_of(fields_, [](const Field& f) { return f.aside <= clearly * f.way; })) return Stop::converged;
 
-  std::vector<Maxima> leaves(fields, Maxima{}), differ(fields, Maxima{});  // |∇ᵖ y_{n+1}|, and what predictors differ by
-  std::vector<double> size(fields, 0.0);
-  for (const Values& list : lists) {
-    if (list.rows < rows) continue;
-    for (const int at : list.places) {
-      double difference[most_rows + 1];  // ∇ᵖ of rows n+1, n, …
-      for (int m = 0; m <= rows; ++m) difference[m] = ring.row(list.row - m)[at];
-      const std::size_t f = field_of(at);
-      raise(size[f], difference[1]);
-      for (int p = 1; p <= rows; ++p) {
-        if (p > 1) {
-          raise(differ[f][static_cast<std::size_t>(p)], difference[1]);
-          if (p < rows) raise(differ[f][static_cast<std::size_t>(p)], difference[2]);
-        }
-        for (int m = 0; m <= rows - p; ++m) difference[m] -= difference[m + 1];
-        raise(leaves[f][static_cast<std::size_t>(p)], difference[0]);
-      }
+  each([most](Field& f, const double* const* y, int at) {
+    double difference[most_rows + 1];  // ∇ᵖ of rows n+1, n, …
+    for (int m = 0; m <= most; ++m) difference[m] = y[m][at];
+    raise(f.size, difference[1]);
+    for (int p = 1; p <= most; ++p) {
+      const auto order = static_cast<std::size_t>(p);
+      if (p > 1) raise(f.differ[order], difference[1]);
+      if (p > 1 && p < most) raise(f.differ[order], difference[2]);
+      for (int m = 0; m <= most - p; ++m) difference[m] -= difference[m + 1];
+      raise(f.leaves[order], difference[0]);
     }
-  }
-  const std::size_t last = std::max<std::size_t>(2, static_cast<std::size_t>(rows) - 1);
-  Verdict verdict = Verdict::near;
-  for (std::size_t f = 0; f < fields; ++f) {
+  });
+  const std::size_t last = std::max<std::size_t>(2, static_cast<std::size_t>(most) - 1);
+  Stop stop = Stop::converged;
+  for (const Field& f : fields_) {
     std::size_t p = 2;
     for (std::size_t q = 3; q <= last; ++q)
-      if (differ[f][q] < differ[f][p]) p = q;
-    const double least = rounding * size[f];
-    if (leaves[f][p] > most * differ[f][p] + least) return Verdict::far;
-    if (rows < most_rows && leaves[f][p] > differ[f][p] + least) verdict = Verdict::doubtful;
+      if (f.differ[q] < f.differ[p]) p = q;
+    const double least = rounding * f.size;
+    if (f.leaves[p] > farthest * f.differ[p] + least) return Stop::other_root;
+    if (most < most_rows && f.leaves[p] > f.differ[p] + least) stop = Stop::doubtful_root;
   }
-  return verdict;
+  return stop;
+}
+
+bool RootWatch::leaps(const SectionRing& ring, std::int64_t row) const {
+  const RowTimes& times = *system_.times();
+  const double stride = times.step(row - 1) / times.step(row - 2);
+  const double *const now = ring.row(row), *const before = ring.row(row - 1), *const first = ring.row(row - 2);
+  double way = 0, aside = 0;
+  const std::size_t size = moves_.size() * static_cast<std::size_t>(system_.lattice().sites());
+  for (std::size_t at = 0; at < size; ++at) {
+    if (moves_[at % moves_.size()] == 0) continue;
+    const double line = stride * (before[at] - first[at]);
+    raise(way, line), raise(aside, now[at] - before[at] - line);
+  }
+  return aside > way;
 }
 
 }  // namespace delf

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "schemes/solvers/stopping.hpp"
 #include "schemes/system/assembly.hpp"
 
 namespace delf {
@@ -22,22 +24,39 @@ class RootWatch {
  public:
   explicit RootWatch(const LatticeSystem&);
 
-  /// The unknowns of a slab that lie in one row, site·C + component; `rows` before it are known.
+  /// The unknowns of a slab that lie in one row, site·C + component.
   struct Values {
-    std::int64_t row;
-    int rows;
+    int time;       ///< of the row, from J
+    int held;       ///< rows before it that the section has
+    bool is_field;  ///< known in all rows before; others in those of the slabs that were solved
     std::span<const int> places;
   };
-  /// Far: further than any resolved motion. Doubtful: in the first steps, where few rows or none are there to predict from,
-  /// further than the predictors of two orders differ by.
-  enum class Verdict { near, doubtful, far };
-  /// Each field is judged on its own, with its inner nodes and traces; the worst one counts.
-  Verdict judge(const SectionRing&, std::span<const Values>) const;
+  /// Judges the root of slab J, `solved` slabs before it, by where it lies and by how Newton's method has gone there.
+  /// Other root: further away than any resolved motion. Doubtful: in the first steps, where few rows or none are there to
+  /// predict from, further than the predictors of two orders differ by. Each field is judged on its own, with its inner nodes
+  /// and traces; the worst one counts.
+  Stop judge(const NewtonProgress&, const SectionRing&, std::int64_t J, std::int64_t solved, std::span<const Values>);
+  /// The fields and sites of a row leave the straight line through the two before it by more than the way between these:
+  /// another root than the motion's, where a predictor of low order has led to it. On a soliton that bounces on a moving mesh roots
+  /// of the motion leave it by up to 0.63 of that way, and others by 1.24 and more.
+  bool leaps(const SectionRing&, std::int64_t row) const;
 
   static constexpr int most_rows = 5;  ///< that are read before the new one
 
  private:
+  using Maxima = std::array<double, most_rows + 1>;
+  struct Field {
+    double way, aside;       ///< |∇y_n|, |∇²y_{n+1}|
+    double size;             ///< |y_n|
+    Maxima leaves, differ;   ///< by order p: |∇ᵖ y_{n+1}|, and what predictors differ by
+  };
+  Stop judge(const SectionRing&, std::int64_t J, std::int64_t solved, std::span<const Values>);
+  int rows(const Values& list, std::int64_t J, std::int64_t solved) const;
+
   const LatticeSystem& system_;
+  std::vector<std::size_t> field_;  ///< of each component
+  std::vector<char> moves_;         ///< components that are fields or positions of sites
+  std::vector<Field> fields_;
 };
 
 }  // namespace delf

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "schemes/solvers/newton.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
 
 namespace delf {
@@ -18,7 +19,6 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_iterations = 50;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -185,30 +185,45 @@ Vector on_unknowns(const LowerSide& side, std::span<const double> p) {
   return own;
 }
 
+/// p − ∂L/∂v(v) − C μ = 0 and r − J v = 0 for the velocities v and the forces μ.
+struct VelocityEquations {
+  const LowerSide& side;
+  const BoundRows& bound;
+  const Vector& wanted;
+  bool varies;  ///< the mass, with v
+  Vector v = Vector::Zero(wanted.size()), force = Vector::Zero(bound.J.rows());
+  Vector p = {};
+  Sparse mass = {};
+  SparseLU lu = {};
+
+  bool linearise(const NewtonProgress& at) {
+    const bool fresh = varies || at.iteration == 1;
+    p = side.momenta(v, fresh ? &mass : nullptr);
+    if (!fresh) return true;
+    const Sparse A = force.size() == 0 ? mass : bound.beside(mass);
+    return at.iteration == 1 ? factor(lu, A) : factor_again(lu, A);
+  }
+  Vector residual() const {
+    Vector gap(v.size() + force.size());
+    gap << wanted - p - bound.forces * force, bound.rates - bound.J * v;
+    return gap;
+  }
+  Vector solve(const Vector& gap) const { return lu.solve(gap); }
+  void apply(const Vector& change, NewtonProgress& at) {
+    v += change.head(v.size()), force += change.tail(force.size());
+    at.finite = change.allFinite();
+    at.take(change.head(v.size()).lpNorm<Eigen::Infinity>(), v.lpNorm<Eigen::Infinity>());
+  }
+};
+
 /// The velocities v that have the momenta p and keep the bonds; nothing where there are none.
 std::optional<Vector> velocities(const LowerSide& side, const BatchDensity& density, const Vector& wanted,
                                  const Bonds& bonds) {
   const BoundRows bound(side.places(), bonds);
-  const auto n = static_cast<Eigen::Index>(side.places().size()), m = bound.J.rows();
-  Vector v = Vector::Zero(n), force = Vector::Zero(m);
-  const bool varies = density.nonlinearity() == Nonlinearity::all;
-  Sparse mass;
-  SparseLU lu;
-  double before = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const bool fresh = varies || iteration == 0;
-    Vector gap(n + m);
-    gap << wanted - side.momenta(v, fresh ? &mass : nullptr) - bound.forces * force, bound.rates - bound.J * v;
-    if (fresh && !factor(lu, m == 0 ? mass : bound.beside(mass))) return std::nullopt;
-    const Vector change = lu.solve(gap);
-    if (!change.allFinite()) return std::nullopt;
-    v += change.head(n), force += change.tail(m);
-    const double size = change.head(n).lpNorm<Eigen::Infinity>(), scale = v.lpNorm<Eigen::Infinity>();
-    // corrections that no longer shrink are rounding, if they are small
-    if (size <= 4 * epsilon * scale || (size > 0.25 * before && size <= 512 * epsilon * scale)) return v;
-    before = size;
-  }
-  return std::nullopt;
+  VelocityEquations equations{side, bound, wanted, density.nonlinearity() == Nonlinearity::all};
+  NewtonProgress at;
+  const Stop stop = newton(equations, at, Overflows{}, Converged{}, Rounding{}, OutOfIterations{most_iterations});
+  return has_root(stop) ? std::optional(std::move(equations.v)) : std::nullopt;
 }
 
 /// ℓ = θ(φ)·φ_t − H(φ, φ_x)

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "jets/fibre.hpp"
@@ -43,10 +44,7 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
   const std::size_t row = static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_);
   ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row, true);
   for (int p = 0; p < plan.table.parities; ++p) {
-    Assembly equations(system, Assembly::slab(plan, p, past_, future_, options.turn));
-    BlockSolver solver = solver_of(equations);
-    std::vector<Unknowns> unknowns = list_unknowns(equations);
-    parities_.push_back({std::move(equations), std::move(solver), std::move(unknowns)});
+    parities_.push_back(parity_of(Assembly(system, Assembly::slab(plan, p, past_, future_, options.turn))));
     const bool follows = parities_.back().equations.keep_low(system);
     parities_.back().momentum_follows = follows && plan.table.parities == 1;
     parities_.back().has_constant = factor_constant(parities_.back());
@@ -54,6 +52,8 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
   }
   if (system.moves()) mesh_.emplace(system);
   predicted_.resize(row);
+  for (int points : {points_, least_points, 1})
+    if (predictors_.empty() || points < predictors_.back()) predictors_.push_back(points);
   // Made now, so that memory that is short is told at the start.
   for (std::vector<double>* numbers : {&E_, &known_E_, &change_}) numbers->reserve(unknowns() + 1);
   if (parities_[0].momentum_follows)
@@ -83,6 +83,16 @@ std::vector<SlabStepper::Unknowns> SlabStepper::list_unknowns(const Assembly& eq
   // Inner nodes that have no past take the value of their cell's vertex: fields come first.
   std::ranges::stable_partition(lists, &Unknowns::field);
   return lists;
+}
+
+SlabStepper::Parity SlabStepper::parity_of(Assembly equations) const {
+  BlockSolver solver = solver_of(equations);
+  std::vector<Unknowns> unknowns = list_unknowns(equations);
+  std::vector<RootWatch::Values> watched;
+  for (const Unknowns& list : unknowns)
+    if (list.role != Role::multiplier && list.role != Role::slaved)
+      watched.push_back({list.time, past_ + list.time, list.field(), list.places});
+  return {std::move(equations), std::move(solver), std::move(unknowns), std::move(watched)};
 }
 
 /// Where the equations are linear in the slab, or nearly, the matrix that stands for all Jacobians.
@@ -137,17 +147,18 @@ std::vector<SlabStepper::Level> SlabStepper::list_levels(const Parity& p, int pa
 }
 
 /// One solve a level, from the predictor. finish() corrects the slab as a whole, by its constant part.
-bool SlabStepper::solve_levels(Parity& p, std::int64_t J) {
-  ++iterations_;
-  left_ = infinity, last_change_ = 0;
+Stop SlabStepper::solve_levels(Parity& p, std::int64_t J) {
+  at_ = {};
+  ++at_.iteration, ++iterations_;
+  if (p.factored != Matrix::constant && !factor_constant(p)) return Stop::singular;
   for (const Level& level : p.levels) {
     level.equations.residual(*ring_, J, E_);
     level.solver.solve(E_, change_);
-    const Change c = take_change(level.unknowns, J);
-    if (!c.finite) return false;
-    last_change_ = std::max(last_change_, c.change);
+    take_change(level.unknowns, J, at_);
+    if (!at_.finite) return Stop::diverges;
   }
-  return true;
+  at_.left = NewtonProgress::unknown;
+  return finish(p, J, Stop::converged);
 }
 
 /// The largest |y| of the fields in a row: starting rows need not hold anything else.
@@ -211,15 +222,17 @@ void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vec
 bool SlabStepper::solve_slab_of_start(const std::vector<double>* momenta) {
   Assembly::Parts parts = first_slab(system_, Assembly::slab(plan_, 0, past_, future_, options_.turn), momenta);
   if (parts.equations.empty()) return false;
-  Assembly equations(system_, std::move(parts));
-  BlockSolver solver = solver_of(equations);
-  std::vector<Unknowns> unknowns = list_unknowns(equations);
-  Parity first{std::move(equations), std::move(solver), std::move(unknowns)};
+  Parity first = parity_of(Assembly(system_, std::move(parts)));
   // newton() begins with the row before, which here is row 0 itself
   std::ranges::copy(std::vector<double>(ring_->row(0), ring_->row(0) + predicted_.size()), ring_->row(-1));
   std::fill_n(ring_->low(-1), predicted_.size(), 0.0);
   iterations_ = 0;
-  if (const char* why = newton(first, 0, least_points, momenta)) fail(0, why);
+  Stop stop = newton(first, 0, least_points, momenta);
+  std::string crossed;
+  if (has_root(stop)) stop = watch(first, 0, least_points, momenta, crossed);
+  if (stop == Stop::doubtful_root) follow(first, 0, momenta, stop, values_of(first, 0));
+  else if (stop == Stop::other_root) follow(first, 0, momenta, stop, {});
+  else if (!has_root(stop)) fail(0, in_words(stop));
   return true;
 }
 
@@ -296,9 +309,7 @@ void SlabStepper::fail(std::int64_t J, const std::string& why, std::string remed
 }
 
 /// y −= change
-SlabStepper::Change SlabStepper::take_change(const std::vector<Unknowns>& lists, std::int64_t J) {
-  // A field that passes through zero has the scale that it had before.
-  Change result{.value = std::max(largest_[0], largest_[1])};
+void SlabStepper::take_change(const std::vector<Unknowns>& lists, std::int64_t J, NewtonProgress& at) {
   Pack most_change(0.0), most_y(0.0), most_asked(0.0);
   for (const Unknowns& unknowns : lists) {
     double *const row = ring_->row(J + unknowns.time), *const low = ring_->low(J + unknowns.time);
@@ -313,53 +324,111 @@ SlabStepper::Change SlabStepper::take_change(const std::vector<Unknowns>& lists,
       if (asked) most_change = largest_magnitude(most_change, by), most_asked = largest_magnitude(most_asked, y);
     }
   }
-  result.finite = !overflowed(max_or_nan(most_y));
-  result.change = max_or_nan(most_change);
-  result.value = std::max(result.value, max_or_nan(most_asked));
-  travelled_ += result.change, value_ = result.value;
-  return result;
+  at.finite = !overflowed(max_or_nan(most_y));
+  // A field that passes through zero has the scale that it had before.
+  at.take(max_or_nan(most_change), std::max({largest_[0], largest_[1], max_or_nan(most_asked)}));
 }
 
-double SlabStepper::wanted(const Change& c) const { return options_.tolerance * c.value; }
+/// The equations of a slab as Newton's method takes them, at the values in the section, with the matrix that the solver has.
+struct SlabStepper::Iteration {
+  SlabStepper& own;
+  Parity& p;
+  std::int64_t J;
+  bool estimates = true;  ///< what is left after a correction
 
-/// With one matrix for all iterations corrections shrink by a ratio ρ: what is left after this one is ρ/(1 − ρ) of it.
-/// Where finish() follows it looks once more: of linear equations one solve is enough for it, and of others a tenth of what is
-/// wanted, by the ratio of the last slab.
-bool SlabStepper::arrived(const Parity& p, const Change& c, double before) {
-  const double ratio = c.change / before;
-  left_ = before == infinity || ratio >= 0.5 ? infinity : ratio / (1 - ratio) * c.change;
-  if (!plan_.nonlinear_in_slab && p.factored == Matrix::constant) left_ = 1e3 * epsilon * c.change;
-  if (c.change <= wanted(c)) return true;
-  if (before == infinity && p.momentum_follows && p.factored == Matrix::constant)
-    return !plan_.nonlinear_in_slab || (p.contraction > 0 && 10 * p.contraction * c.change <= wanted(c));
-  if (before == infinity || (options_.tolerance < smallest_estimated && !p.momentum_follows)) return false;
-  return ratio < 0.5 && 2 * ratio / (1 - ratio) * c.change <= wanted(c);
-}
-/// Corrections that no longer shrink are rounding, if they are small.
-bool SlabStepper::is_rounding(const Change& c, double before) {
-  return c.change > 0.25 * before && c.change <= 512 * epsilon * c.value;
+  bool linearise(const NewtonProgress&) { return true; }
+  const std::vector<double>& residual() {
+    p.equations.residual_from(own.known_E_, *own.ring_, J, own.E_);
+    return own.E_;
+  }
+  const std::vector<double>& solve(const std::vector<double>& E) {
+    p.solver.solve(E, own.change_);
+    return own.change_;
+  }
+  /// With one matrix for all iterations corrections shrink by a ratio ρ: what is left after this one is ρ/(1 − ρ) of it.
+  void apply(const std::vector<double>&, NewtonProgress& at) {
+    own.take_change(p.unknowns, J, at);
+    const double ratio = at.ratio();
+    at.left = estimates && at.iteration > 1 && ratio < 0.5 ? 2 * ratio / (1 - ratio) * at.correction : NewtonProgress::unknown;
+  }
+};
+/// The constant part of the Jacobian. What finish() corrects once more need not have arrived: a tenth of what is wanted is
+/// enough for it, by the ratio of the last slab.
+struct SlabStepper::WithConstant : Iteration {
+  bool linearise(const NewtonProgress&) { return p.factored == Matrix::constant || own.factor_constant(p); }
+  void apply(const std::vector<double>& change, NewtonProgress& at) {
+    Iteration::apply(change, at);
+    if (at.iteration == 1 && p.momentum_follows && p.contraction > 0) at.left = 10 * p.contraction * at.correction;
+    if (!own.plan_.nonlinear_in_slab) at.left = 1e3 * epsilon * at.correction;
+  }
+};
+/// The Jacobian, made anew for each correction or where the last one has become slow.
+struct SlabStepper::WithJacobian : Iteration {
+  const std::vector<double>* momenta;
+  /// Small blocks cost less to factor than an iteration more, and a fresh Jacobian leaves no bias behind.
+  bool always = p.solver.largest_block() <= 24;
+  /// One that was kept and has become slow is not kept any longer.
+  bool refactor = always || momenta || p.factored != Matrix::jacobian || p.last_iterations > p.fresh_iterations + 1;
+  bool fresh = false;
+
+  bool linearise(const NewtonProgress&) {
+    if (!refactor) return true;
+    p.equations.jacobian(*own.ring_, J, own.jacobian_, momenta);
+    p.has_values = fresh = true;
+    p.factored = p.solver.factor(own.jacobian_) ? Matrix::jacobian : Matrix::none;
+    return p.factored == Matrix::jacobian;
+  }
+  const std::vector<double>& residual() {
+    if (!momenta) return Iteration::residual();
+    p.equations.residual(*own.ring_, J, own.E_, nullptr, momenta);
+    return own.E_;
+  }
+  void apply(const std::vector<double>& change, NewtonProgress& at) {
+    Iteration::apply(change, at);
+    p.last_iterations = at.iteration;
+    if (fresh) p.fresh_iterations = at.iteration;
+    refactor = always || at.correction > 0.1 * at.before || (at.iteration == 1 && !fresh && at.correction > 1e-3 * at.size);
+    if (!always) return;
+    // With a fresh matrix what is left is C correction², C as seen within the last eight slabs.
+    p.unseen = at.iteration > 1 ? 0 : p.unseen + 1;
+    if (at.iteration > 1) p.curvature = std::max(at.correction / (at.before * at.before), 0.5 * p.curvature);
+    at.left = estimates && p.curvature > 0 && p.unseen < 8 ? 4 * p.curvature * at.correction * at.correction : NewtonProgress::unknown;
+  }
+};
+/// A last correction with the matrix that is there, and what the slab adds to the known part of the next, from one evaluation:
+/// it takes the place of that of known() in the next step.
+struct SlabStepper::Finish : Iteration {
+  const std::vector<double>& residual() {
+    p.equations.residual_and_gain(own.known_E_, *own.ring_, J, own.E_, own.gain_);
+    return own.E_;
+  }
+  void apply(const std::vector<double>&, NewtonProgress& at) {
+    own.take_change(p.unknowns, J, at);
+    if (p.factored == Matrix::constant && at.before > 0) p.contraction = std::max(at.ratio(), 0.5 * p.contraction);
+  }
+};
+
+/// Tolerances below smallest_estimated are met by corrections alone, but where finish() adds one.
+bool SlabStepper::estimates(const Parity& p) const {
+  return options_.tolerance >= smallest_estimated || p.momentum_follows;
 }
 
-/// Simplified Newton with the constant part. False where it does not contract, or not fast enough.
-bool SlabStepper::iterate(Parity& p, std::int64_t J) {
-  if (p.factored != Matrix::constant && !factor_constant(p)) return false;
+/// Simplified Newton with the constant part, where it contracts fast enough.
+Stop SlabStepper::iterate(Parity& p, std::int64_t J) {
   predict(p, J, points_);
   find_known(p, J, nullptr);
-  travelled_ = 0;
   if (!p.levels.empty()) return solve_levels(p, J);
-  double before = infinity;
-  while (iterations_ < options_.max_iterations) {
-    ++iterations_;
-    p.equations.residual_from(known_E_, *ring_, J, E_);
-    p.solver.solve(E_, change_);
-    const Change c = take_change(p.unknowns, J);
-    last_change_ = c.change;
-    if (!c.finite) return false;
-    if (arrived(p, c, before)) return true;
-    if (c.change > 0.25 * before) return is_rounding(c, before);
-    before = c.change;
-  }
-  return false;
+  WithConstant equations{{*this, p, J, estimates(p)}};
+  at_ = {};
+  // Of linear equations one solve is enough for finish().
+  const auto linear = [&](const NewtonProgress&) {
+    return !plan_.nonlinear_in_slab && p.momentum_follows ? Stop::converged : Stop::no;
+  };
+  const Stop stop = delf::newton(equations, at_, Overflows{}, linear, Converged{options_.tolerance},
+                                 LittleLeft{options_.tolerance}, Rounding{}, Stalls{0.25},
+                                 OutOfIterations{options_.max_iterations});
+  iterations_ += at_.iteration;
+  return finish(p, J, stop);
 }
 
 /// Where the constant part has failed it is tried again after one step, then three, seven and so on up to 63.
@@ -370,60 +439,23 @@ bool SlabStepper::may_iterate(const Parity& p) {
   return false;
 }
 
-/// Newton's method from a polynomial through so many slabs, or from the values that are there if none. Why it failed, or nothing.
-const char* SlabStepper::newton(Parity& p, std::int64_t J, int points, const std::vector<double>* momenta) {
+/// Newton's method from a polynomial through so many slabs, or from the values that are there if none.
+Stop SlabStepper::newton(Parity& p, std::int64_t J, int points, const std::vector<double>* momenta) {
   if (points > 0) predict(p, J, points);
   find_known(p, J, momenta);
-  // Small blocks cost less to factor than an iteration more, and a fresh Jacobian leaves no bias behind.
-  const bool always = p.solver.largest_block() <= 24;
-  // One that was kept and has become slow is not kept any longer.
-  bool refactor = always || momenta || p.factored != Matrix::jacobian || p.last_iterations > p.fresh_iterations + 1;
-  bool fresh = false;
-  double before = infinity;
-  steepest_ = travelled_ = 0;
-  for (int iteration = 1;; ++iteration) {
-    ++iterations_;
-    if (iteration > options_.max_iterations) return "Newton's method does not converge";
-    if (refactor) {
-      p.equations.jacobian(*ring_, J, jacobian_, momenta);
-      p.has_values = true;
-      p.factored = p.solver.factor(jacobian_) ? Matrix::jacobian : Matrix::none;
-      if (p.factored == Matrix::none) return "their Jacobian is singular";
-      fresh = true;
-    }
-    if (momenta) p.equations.residual(*ring_, J, E_, nullptr, momenta);
-    else p.equations.residual_from(known_E_, *ring_, J, E_);
-    p.solver.solve(E_, change_);
-    const Change c = take_change(p.unknowns, J);
-    if (!c.finite) {
-      p.factored = Matrix::none;
-      return "Newton's method diverges";
-    }
-    last_change_ = c.change;
-    // Far from the polynomial another root may be nearer.
-    if (iteration == 1 && points > least_points && c.change > 1e-2 * c.value) return "the predictor is far away";
-    if (iteration > 1 && c.change > 64 * epsilon * c.value) steepest_ = std::max(steepest_, c.change / before);
-    p.last_iterations = iteration;
-    if (fresh) p.fresh_iterations = iteration;
-    if (always && iteration > 1) {
-      // With a fresh matrix what is left is C correction².
-      p.curvature = std::max(c.change / (before * before), 0.5 * p.curvature), p.unseen = 0;
-    } else {
-      ++p.unseen;
-    }
-    const bool seen =
-        always && (iteration > 1 || p.unseen < 8) && p.curvature > 0 &&
-        (options_.tolerance >= smallest_estimated || p.momentum_follows);
-    left_ = p.curvature > 0 ? p.curvature * c.change * c.change : infinity;
-    if (seen && 4 * p.curvature * c.change * c.change <= wanted(c)) break;
-    if (always ? c.change <= wanted(c) : arrived(p, c, before)) break;
-    if (is_rounding(c, before)) break;
-    const bool slow = c.change > 0.1 * before;
-    if (slow && fresh && iteration > 8 && c.change > before) return "Newton's method diverges";
-    refactor = always || slow || (iteration == 1 && !fresh && c.change > 1e-3 * c.value);
-    before = c.change;
-  }
-  return nullptr;
+  WithJacobian equations{{*this, p, J, estimates(p)}, momenta};
+  at_ = {};
+  // Far from the polynomial another root may be nearer.
+  const auto kept = std::pair{p.last_iterations, p.fresh_iterations};
+  const FarFromPredictor far{points > least_points ? 1e-2 : NewtonProgress::unknown};
+  const Stop stop =
+      delf::newton(equations, at_, Overflows{}, far, Converged{options_.tolerance}, LittleLeft{options_.tolerance},
+                   Rounding{}, Diverges{}, OutOfIterations{options_.max_iterations});
+  if (stop == Stop::diverges) p.factored = Matrix::none;
+  // A predictor that is not followed says nothing of the matrix.
+  if (stop == Stop::far_from_predictor) std::tie(p.last_iterations, p.fresh_iterations) = kept;
+  iterations_ += at_.iteration;
+  return finish(p, J, stop);
 }
 
 /// The part of the equations that the slab does not change, computed once and then carried from slab to slab.
@@ -439,28 +471,20 @@ void SlabStepper::find_known(const Parity& p, std::int64_t J, const std::vector<
   }
 }
 
-/// A last correction with the matrix that is there, and what the slab adds to the known part of the next, from one evaluation:
-/// it takes the place of that of known() in the next step. False if the iteration had not arrived, and does not now.
-bool SlabStepper::finish(Parity& p, std::int64_t J) {
-  if (!p.momentum_follows) return true;
-  for (;; ++iterations_) {
-    p.equations.residual_and_gain(known_E_, *ring_, J, E_, gain_);
-    // What is below rounding of the increment is not worth a solve.
-    if (p.factored == Matrix::none || left_ <= 1e-4 * epsilon * largest_[0]) return true;
-    p.solver.solve(E_, change_);
-    const Change c = take_change(p.unknowns, J);
-    if (!c.finite) return false;
-    if (p.factored == Matrix::constant && last_change_ > 0)
-      p.contraction = std::max(c.change / last_change_, 0.5 * p.contraction);
-    if (c.change <= wanted(c) || is_rounding(c, last_change_)) return true;
-    if (c.change > 0.25 * last_change_ || iterations_ >= options_.max_iterations) return false;
-    last_change_ = c.change;
+/// Corrects a root once more, and again if that shows that the iteration had not arrived.
+Stop SlabStepper::finish(Parity& p, std::int64_t J, Stop stop) {
+  if (!has_root(stop) || !p.momentum_follows) return stop;
+  Finish equations{{*this, p, J}};
+  // What is below rounding of the increment is not worth a solve.
+  if (at_.left <= 1e-4 * epsilon * largest_[0]) {
+    equations.residual();
+    return stop;
   }
-}
-
-const char* SlabStepper::newton_and_finish(Parity& p, std::int64_t J, int points, const std::vector<double>* momenta) {
-  if (const char* failed = newton(p, J, points, momenta)) return failed;
-  return finish(p, J) ? nullptr : "Newton's method does not converge";
+  const int before = at_.iteration + 1;
+  stop = delf::newton(equations, at_, Overflows{}, Converged{options_.tolerance}, Rounding{}, Stalls{0.25},
+                      OutOfIterations{options_.max_iterations + 1});
+  iterations_ += at_.iteration - before;
+  return stop;
 }
 
 void SlabStepper::carry(const Parity& p, std::int64_t J) {
@@ -469,19 +493,20 @@ void SlabStepper::carry(const Parity& p, std::int64_t J) {
   carried_slab_ = J + 1;
 }
 
-/// Newton's method has no doubt where it has gone straight to the unknowns.
-RootWatch::Verdict SlabStepper::judge(const Parity& p, std::int64_t J) const {
-  // Corrections that shrink by four and more at once leave no other root near (Kantorovich).
-  constexpr double little = 1e-3, straight = 0.25;
-  if (!plan_.nonlinear_in_slab || !p.levels.empty() || travelled_ <= little * value_) return RootWatch::Verdict::near;
-  std::vector<RootWatch::Values> lists;
-  for (const Unknowns& list : p.unknowns) {
-    if (list.role == Role::multiplier || list.role == Role::slaved) continue;
-    const std::int64_t rows = std::min<std::int64_t>(list.field() ? J + list.time : known_, past_ + list.time);
-    lists.push_back({J + list.time, static_cast<int>(std::min<std::int64_t>(rows, RootWatch::most_rows)), list.places});
+/// Judges the root that Newton's method has gone to from a polynomial through so many slabs; 0: by the constant part.
+Stop SlabStepper::watch(const Parity& p, std::int64_t J, int points, const std::vector<double>* momenta,
+                        std::string& crossed) {
+  if (const std::string tangled = mesh_ && J > 0 ? mesh_->crossing_at(*ring_, J - lag_) : ""; !tangled.empty()) {
+    if (crossed.empty()) crossed = tangled;
+    return Stop::tangled;
   }
-  const RootWatch::Verdict verdict = root_.judge(*ring_, lists);
-  return verdict == RootWatch::Verdict::doubtful && steepest_ <= straight ? RootWatch::Verdict::near : verdict;
+  if (mesh_ && points > 0 && points < points_ && J >= 2 && root_.leaps(*ring_, J - lag_)) return Stop::leaps;
+  if (!plan_.nonlinear_in_slab || !p.levels.empty()) return Stop::converged;
+  const Stop stop = root_.judge(at_, *ring_, J, known_, p.watched);
+  // No row tells where a first step goes.
+  if (points == 0 || J > 1 || !has_root(stop) || at_.travelled == 0) return stop;
+  find_known(p, J, momenta);
+  return turns_back(system_, past_of(J, momenta), values_of(p, J), options_.tolerance) ? Stop::other_root : stop;
 }
 
 std::vector<double> SlabStepper::values_of(const Parity& p, std::int64_t J) const {
@@ -489,29 +514,33 @@ std::vector<double> SlabStepper::values_of(const Parity& p, std::int64_t J) cons
   for (int n = 0; n < p.equations.size(); ++n) values.push_back(p.equations.value(*ring_, J, n));
   return values;
 }
-SlabPast SlabStepper::past_of(std::int64_t J) const {
-  return {*ring_, J, known_, past_, future_, options_.turn, known_E_};
+SlabPast SlabStepper::past_of(std::int64_t J, const std::vector<double>* momenta) const {
+  const Assembly::Parts whole =
+      Assembly::slab(plan_, static_cast<int>(J % plan_.table.parities), past_, future_, options_.turn);
+  if (J > 0) return {*ring_, J, known_, whole, known_E_};
+  return {*ring_, J, known_, first_slab(system_, whole, momenta), known_E_, momenta};
 }
 
-/// The root that a small step leads to, where Newton's method has found none or another: `why`. One that was only doubtful is
+/// The root that a small step leads to, where Newton's method has found another. One that was only doubtful is
 /// taken where that cannot be told, because not even a small step begins.
-void SlabStepper::follow(Parity& p, std::int64_t J, const std::vector<double>* momenta, const char* why,
+void SlabStepper::follow(Parity& p, std::int64_t J, const std::vector<double>* momenta, Stop why,
                          const std::vector<double>& doubtful) {
   predict(p, J, 1);
   find_known(p, J, momenta);
   const NewtonResult followed =
-      follow_slab(system_, plan_, past_of(J), options_.tolerance, options_.max_iterations);
+      follow_slab(system_, past_of(J, momenta), options_.tolerance, options_.max_iterations);
   iterations_ += followed.iterations;
   const bool is_doubtful = !followed.converged && followed.reached == 0 && !doubtful.empty();
   if (!followed.converged && !is_doubtful) {
     const bool begins = followed.reached > 0 && options_.max_iterations >= enough_iterations;
-    fail(J, begins ? fmt::format("{}; the one that a small step leads to ends at {:.2g} of this step", why, followed.reached)
-                   : fmt::format("{}, and none that a small step leads to", why),
+    fail(J, begins ? fmt::format("{}; the one that a small step leads to ends at {:.2g} of this step", in_words(why),
+                                 followed.reached)
+                   : fmt::format("{}, and none that a small step leads to", in_words(why)),
          begins ? fmt::format("reduce lattice.time_step below {:.2g}", followed.reached * system_.times()->step(J - 1)) : "");
   }
   for (int n = 0; n < p.equations.size(); ++n)
     p.equations.value(*ring_, J, n) = (is_doubtful ? doubtful : followed.row)[static_cast<std::size_t>(n)];
-  if (const char* failed = newton_and_finish(p, J, 0, momenta)) fail(J, failed);
+  if (const Stop stop = newton(p, J, 0, momenta); !has_root(stop)) fail(J, in_words(stop));
   if (!is_doubtful) continued_ = Continued::far;
 }
 
@@ -520,47 +549,32 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
   Parity& p = parity(J);
   iterations_ = 0;
   continued_ = Continued::no;
-  steepest_ = 0;
-  bool solved = false;
+  std::string crossed;
+  Stop stop = Stop::no;
   if (!momenta && may_iterate(p)) {
-    solved = iterate(p, J) && finish(p, J);
-    waiting_ = solved ? 0 : wait_;
-    wait_ = solved ? 1 : std::min(2 * wait_ + 1, 63);
+    stop = iterate(p, J);
+    waiting_ = has_root(stop) ? 0 : wait_;
+    wait_ = has_root(stop) ? 1 : std::min(2 * wait_ + 1, 63);
+    if (has_root(stop)) stop = watch(p, J, 0, momenta, crossed);
   }
-  std::string crossed = solved && mesh_ ? mesh_->crossing_at(*ring_, J - lag_) : "";
-  if (!solved || !crossed.empty() || judge(p, J) != RootWatch::Verdict::near) {
-    const char* why = nullptr;
+  if (!has_root(stop)) {
     std::vector<double> doubtful;
-    bool found = false, other = false;
+    bool other = false;
     // Rough sections are predicted better by a few slabs, and a tangled mesh, or a root that has left the motion, is one
     // that another predictor may avoid. What is extrapolated may lie where the density is not defined.
-    std::vector<int> tried{points_};
-    if (points_ > least_points) tried.push_back(least_points);
-    if (points_ > 1) tried.push_back(1);
-    for (const int points : tried) {
-      if (const char* failed = newton_and_finish(p, J, points, momenta)) {
-        why = failed;
-        continue;
-      }
-      const std::string tangled = mesh_ ? mesh_->crossing_at(*ring_, J - lag_) : "";
-      if (crossed.empty()) crossed = tangled;
-      if (!tangled.empty()) continue;
-      RootWatch::Verdict verdict = judge(p, J);
-      // No row tells where a first step goes.
-      if (J == 1 && verdict == RootWatch::Verdict::near && plan_.nonlinear_in_slab && travelled_ > 0) {
-        find_known(p, J, momenta);
-        if (turns_back(system_, plan_, past_of(J), values_of(p, J), options_.tolerance)) verdict = RootWatch::Verdict::far;
-      }
-      const bool leaps = mesh_ && points != points_ && J >= 2 && mesh_->leaps(*ring_, J - lag_);
-      found = verdict == RootWatch::Verdict::near && !leaps;
-      if (found) break;
-      doubtful = verdict == RootWatch::Verdict::doubtful ? values_of(p, J) : std::vector<double>();
-      other = other || !leaps;
-      why = "Newton's method finds no root but one that leaves the motion of the rows before";
+    Stop why = stop;
+    for (const int points : predictors_) {
+      stop = newton(p, J, points, momenta);
+      if (has_root(stop)) stop = watch(p, J, points, momenta, crossed);
+      if (has_root(stop)) break;
+      if (stop != Stop::tangled) why = stop;
+      if (stop != Stop::doubtful_root && stop != Stop::other_root) continue;
+      doubtful = stop == Stop::doubtful_root ? values_of(p, J) : std::vector<double>();
+      other = true;
     }
-    if (found) crossed.clear();
+    if (has_root(stop)) crossed.clear();
     // Where no predictor leads to any root the scheme is unstable, or has none: to follow one there would hide it.
-    else if (crossed.empty() && !other) fail(J, why);
+    else if (crossed.empty() && !other) fail(J, in_words(why));
     else if (crossed.empty()) follow(p, J, momenta, why, doubtful);
   }
   if (!crossed.empty())

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "lattice/plan/solve_plan.hpp"
+#include "schemes/solvers/newton.hpp"
 #include "schemes/stepping/mesh_watch.hpp"
 #include "schemes/stepping/newton.hpp"
 #include "schemes/stepping/root_watch.hpp"
@@ -60,6 +61,7 @@ class SlabStepper final : public StepMethod {
     Assembly equations;
     BlockSolver solver;
     std::vector<Unknowns> unknowns;
+    std::vector<RootWatch::Values> watched;         ///< of the unknowns those that move
     std::vector<Level> levels = {};                 ///< none where some unknown is not of that kind
     bool has_constant = false;                      ///< there is a constant part, and it has an inverse
     bool has_values = false;                        ///< the solver has had the values of a matrix, and keeps them
@@ -70,38 +72,35 @@ class SlabStepper final : public StepMethod {
     double contraction = 0;  ///< of corrections with the constant part, as seen last; 0: not yet
     bool momentum_follows = false;  ///< the known part of the next slab is this one's and what the slab adds to it
   };
-  struct Change {
-    double change = 0;  ///< the largest, multipliers apart
-    double value = 0;   ///< largest |y| of the new slab and of the two slabs before
-    bool finite = true;
-  };
+  struct Iteration;
+  struct WithConstant;
+  struct WithJacobian;
+  struct Finish;
   std::int64_t newest() const { return J_ - lag_; }
   Parity& parity(std::int64_t J) { return parities_[static_cast<std::size_t>(J) % parities_.size()]; }
   const Parity& parity(std::int64_t J) const { return parities_[static_cast<std::size_t>(J) % parities_.size()]; }
   std::vector<Unknowns> list_unknowns(const Assembly&) const;
+  Parity parity_of(Assembly) const;
   bool factor_constant(Parity&);
   std::vector<Level> list_levels(const Parity&, int parity) const;
-  bool solve_levels(Parity&, std::int64_t J);
+  Stop solve_levels(Parity&, std::int64_t J);
   bool by_levels() const { return !parities_.empty() && !parities_[0].levels.empty(); }
   void predict(const Parity&, std::int64_t J, int most_points);
   double weight_of_past(std::int64_t row, int m, int points) const;
   void predict_without_past(const Unknowns&, std::int64_t J);
   double largest_of(const double* row) const;
-  Change take_change(const std::vector<Unknowns>&, std::int64_t J);
-  double wanted(const Change&) const;
-  bool arrived(const Parity&, const Change&, double before);
-  static bool is_rounding(const Change&, double before);
-  bool iterate(Parity&, std::int64_t J);
+  void take_change(const std::vector<Unknowns>&, std::int64_t J, NewtonProgress&);
+  bool estimates(const Parity&) const;
+  Stop iterate(Parity&, std::int64_t J);
   bool may_iterate(const Parity&);
-  const char* newton(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
+  Stop newton(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
   void find_known(const Parity&, std::int64_t J, const std::vector<double>* momenta);
-  bool finish(Parity&, std::int64_t J);
-  const char* newton_and_finish(Parity&, std::int64_t J, int points, const std::vector<double>* momenta);
+  Stop finish(Parity&, std::int64_t J, Stop);
   void carry(const Parity&, std::int64_t J);
-  RootWatch::Verdict judge(const Parity&, std::int64_t J) const;
-  SlabPast past_of(std::int64_t J) const;
+  Stop watch(const Parity&, std::int64_t J, int points, const std::vector<double>* momenta, std::string& crossed);
+  SlabPast past_of(std::int64_t J, const std::vector<double>* momenta) const;
   std::vector<double> values_of(const Parity&, std::int64_t J) const;  ///< of the unknowns
-  void follow(Parity&, std::int64_t J, const std::vector<double>* momenta, const char* why,
+  void follow(Parity&, std::int64_t J, const std::vector<double>* momenta, Stop why,
               const std::vector<double>& doubtful);
   bool solve_slab_of_start(const std::vector<double>* momenta);
   void check_increments(std::int64_t J) const;
@@ -119,6 +118,7 @@ class SlabStepper final : public StepMethod {
   RootWatch root_;
   bool by_values_ = false;                   ///< runs begin with the values of row 0 alone
   int points_;                               ///< slabs that a predictor goes through, if there are as many
+  std::vector<int> predictors_;              ///< that, and what is tried after it
   std::vector<int> back_;  ///< of each component: rows that its newest value lies behind the newest field
   std::vector<Parity> parities_;
   std::unique_ptr<SectionRing> ring_;
@@ -126,9 +126,7 @@ class SlabStepper final : public StepMethod {
   std::int64_t known_ = 0;   ///< slabs whose every component is known
   bool by_momenta_ = false;  ///< the run began with the discrete Legendre transform
   int iterations_ = 0;
-  double last_change_ = 0, left_ = 0;  ///< of the iteration: its last correction, and what is left, by its estimate
-  double travelled_ = 0, value_ = 0;  ///< in the last slab the sum of all corrections, and the largest |y|
-  double steepest_ = 0;               ///< and the largest ratio of two corrections that follow each other
+  NewtonProgress at_;  ///< of the last iteration
   Continued continued_ = Continued::no;
   double largest_[2] = {0, 0};  ///< |y| of the newest two slabs, or of the starting rows
   int wait_ = 1,

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "schemes/solvers/newton.hpp"
 
 namespace delf {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_iterations = 50;
 
 /// A jet (q, q̇, 0, …) at x = 0, and what the density makes of it.
@@ -57,29 +57,37 @@ class PointJet {
   ScratchRows jet_, g_, H_;
 };
 
+/// p − ∂ℓ/∂q̇(q, q̇) = 0 for q̇.
+struct VelocityEquations {
+  PointJet jet;
+  Eigen::VectorXd wanted;
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(wanted.size());
+  Eigen::FullPivLU<Eigen::MatrixXd> mass = {};
+
+  bool linearise(const NewtonProgress&) {
+    jet.set_velocity(v);
+    mass.compute(jet.mass());
+    return mass.isInvertible();
+  }
+  Eigen::VectorXd residual() { return wanted - jet.momentum_and_density().head(wanted.size()); }
+  Eigen::VectorXd solve(const Eigen::VectorXd& gap) const { return mass.solve(gap); }
+  void apply(const Eigen::VectorXd& change, NewtonProgress& at) {
+    v += change;
+    at.finite = change.allFinite();
+    at.take(change.lpNorm<Eigen::Infinity>(), v.lpNorm<Eigen::Infinity>());
+  }
+};
+
 }  // namespace
 
 std::optional<std::vector<double>> velocity_of(const BatchDensity& density, std::span<const double> q,
                                                std::span<const double> p, double t) {
   const int d = density.components();
-  PointJet jet(density, q, t);
-  const Eigen::Map<const Eigen::VectorXd> wanted(p.data(), d);
-  Eigen::VectorXd v = Eigen::VectorXd::Zero(d);
-  double before = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    jet.set_velocity(v);
-    const Eigen::FullPivLU<Eigen::MatrixXd> mass(jet.mass());
-    if (!mass.isInvertible()) return std::nullopt;
-    const Eigen::VectorXd change = mass.solve(wanted - jet.momentum_and_density().head(d));
-    if (!change.allFinite()) return std::nullopt;
-    v += change;
-    const double size = change.lpNorm<Eigen::Infinity>(), scale = v.lpNorm<Eigen::Infinity>();
-    // corrections that no longer shrink are rounding, if they are small
-    if (size <= 4 * epsilon * scale || (size > 0.25 * before && size <= 512 * epsilon * scale))
-      return std::vector<double>(v.begin(), v.end());
-    before = size;
-  }
-  return std::nullopt;
+  VelocityEquations equations{PointJet(density, q, t), Eigen::Map<const Eigen::VectorXd>(p.data(), d)};
+  NewtonProgress at;
+  const Stop stop = newton(equations, at, Overflows{}, Converged{}, Rounding{}, OutOfIterations{most_iterations});
+  if (!has_root(stop)) return std::nullopt;
+  return std::vector<double>(equations.v.begin(), equations.v.end());
 }
 
 double energy_of(const BatchDensity& density, std::span<const double> q, std::span<const double> velocity, double t) {

@@ -8,8 +8,8 @@
 
 #include "schemes/theories/complex_klein_gordon.hpp"
 #include "schemes/theories/coupled_sine_gordon.hpp"
-#include "schemes/theories/kepler.hpp"
-#include "schemes/theories/pendulum.hpp"
+#include "schemes/theories/mechanics/kepler.hpp"
+#include "schemes/theories/mechanics/pendulum.hpp"
 #include "schemes/theories/wave_map.hpp"
 #include "tests/catch.hpp"
 #include "tests/jets/catalogue.hpp"

@@ -4,26 +4,31 @@
 set -euo pipefail
 
 rooms=(lattice jets schemes tools tests)
-lattice='lattice lattice/shapes lattice/plan lattice/complex'
+lattice='lattice lattice/shapes lattice/space lattice/plan lattice/complex'
 jets='jets jets/numbers jets/simd jets/tables'
 families="$lattice $jets jets/expressions schemes/families"
 system="$families schemes/system"
 stepping="$system schemes/solvers schemes/stepping"
 schemes="$stepping jets/expressions schemes schemes/theories schemes/methods schemes/states schemes/verify
-  schemes/stability schemes/complex schemes/diagnosis"
+  schemes/stability schemes/complex"
+results="$schemes tools/report tools/files tools/figures tools/scene tools/outcome"
+runs="$results tools/rows tools/measure tools/compare tools/warnings"
+commands="$runs tools/run tools/diagnosis tools/verify tools/complex tools/convergence tools/sweep tools/stability
+  tools/workprecision"
 
 declare -A may_include=(
-  [lattice]=''
+  [lattice]='lattice/space'  # a mesh is the space of a lattice
   [lattice/shapes]='lattice'
+  [lattice/space]='lattice'
   [lattice/plan]='lattice'
-  [lattice/complex]='lattice'
+  [lattice/complex]='lattice lattice/space'
   [jets]="lattice $jets"  # a density is defined by the numbers that it works for
   [jets/numbers]='lattice jets jets/simd'
   [jets/simd]='lattice jets'
-  [jets/tables]="lattice lattice/shapes jets jets/numbers jets/simd"
+  [jets/tables]="lattice lattice/shapes lattice/space jets jets/numbers jets/simd"
   [jets/expressions]="lattice $jets"
   [schemes/families]="$lattice $jets jets/expressions"  # monitors are text too
-  [schemes/system]="$families"
+  [schemes/system]="$families schemes/solvers"
   [schemes/solvers]="$lattice jets/simd"
   [schemes/stepping]="$system schemes/solvers schemes/stepping/rows schemes/stability"  # failures name ghosts
   [schemes/stepping/rows]="$stepping"
@@ -33,10 +38,30 @@ declare -A may_include=(
   [schemes/stability]="$system"
   [schemes/complex]="$system schemes/stepping schemes/verify"  # the state of a run, balances
   [schemes/verify]="$stepping schemes schemes/theories"  # time reversal steps a simulation, balances ask a theory
-  [schemes/diagnosis]="$stepping schemes schemes/theories schemes/methods schemes/verify"  # tries every method on rows
   [schemes]="$schemes"
-  [tools]="$schemes"
-  [tests]="$schemes schemes/stepping/rows tools"
+  [tools/report]="$schemes"
+  [tools/files]="$schemes tools/report"
+  [tools/figures]="$schemes tools/report tools/files"
+  [tools/scene]="$schemes tools/report tools/files tools/figures"
+  [tools/outcome]="$schemes tools/report tools/scene"
+  [tools/diagnosis]="$schemes"
+  [tools/rows]="$results tools/diagnosis"  # rows of a file may be reduced modulo 2π
+  [tools/measure]="$results"
+  [tools/compare]="$results tools/rows tools/measure"
+  [tools/warnings]="$results tools/rows tools/measure tools/compare"
+  [tools/run]="$runs"
+  [tools/verify]="$runs tools/diagnosis"
+  [tools/complex]="$runs tools/run tools/verify"
+  [tools/convergence]="$runs tools/complex"
+  [tools/sweep]="$runs tools/run tools/complex"
+  [tools/stability]="$runs tools/complex"
+  [tools/workprecision]="$runs tools/peers"
+  [tools/peers]="$schemes"
+  [tools/bench]="$schemes"
+  [tools/python]="$commands tools"
+  [tools/examples]="$schemes"
+  [tools]="$commands"
+  [tests]="$commands schemes/stepping/rows tools tools/bench tools/peers"
 )
 
 # Sets `folder` to the entry of the table that a path is in, or to nothing.
@@ -73,12 +98,24 @@ fail() {
 }
 
 # A folder that the table does not know would pass as part of its room.
-for room in lattice jets schemes; do
+for room in lattice jets schemes tools; do
   for path in "$1/$room"/*/; do
+    compgen -G "$path*.[hc]pp" >/dev/null || continue  # such as the shipped scenes
     path=${path#"$1/"}
     [ -n "${may_include[${path%/}]+x}" ] || fail "$path has no entry in tests/package/one_way_includes.sh"
   done
 done
+
+# Prints both folders of each pair in tools that the table lets include each other.
+pairs_both_ways() {
+  local one other
+  for one in "${!may_include[@]}"; do
+    for other in ${may_include[$one]}; do
+      [[ $one != tools* || $other != tools* || " ${may_include[$other]//$'\n'/ } " != *" $one "* ]] || echo "$one $other"
+    done
+  done
+}
+[ -z "$(pairs_both_ways)" ] || fail "$(pairs_both_ways)"$'\n'"these folders may include each other"
 
 wrong=$(against_the_arrows "$1")
 [ -z "$wrong" ] || fail "$wrong"$'\n'"these includes go against the arrows between folders"
@@ -102,6 +139,10 @@ done
 reported=$(against_the_arrows "$planted" | sed 's/ .*//' | sort)
 [ "$reported" = "$(sort <<<"${expected%$'\n'}")" ] || fail "planted includes were not reported as the table has them"
 for against in lattice:jets jets:schemes schemes:tools schemes/verify:schemes/stepping/rows \
-    schemes/solvers:schemes/system schemes/families:schemes/system; do
+    schemes/solvers:schemes/system schemes/families:schemes/system tools/run:tools/complex tools/scene:tools/verify \
+    tools/files:tools/run tools/figures:tools/scene tools/run:tools; do
   grep -qx "$against" <<<"$reported" || fail "$against should go against the arrows"
 done
+
+may_include[tools/files]+=' tools/run'
+[ -n "$(pairs_both_ways)" ] || fail "tools/files and tools/run include each other, and are not found"

@@ -3,7 +3,7 @@
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/refused.hpp"
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/keys.hpp"
 
 using namespace delf::testing;
@@ -29,7 +29,7 @@ TEST_CASE("the helps of all commands list every key") {
   std::string help;
   for (const char* command : {"run", "verify", "sweep", "convergence", "stability", "workprecision"})
     help += delf_program(folder, std::string("help ") + command).out;
-  for (const auto& key : delf::keys()) CHECK(contains(help, std::string(key.name)));
+  for (const auto& key : delf::keys()) CHECK(contains(help, key.key));
 }
 
 TEST_CASE("delf help run says what the energy is, and which methods have one of their own") {

@@ -6,7 +6,7 @@
 #include "schemes/stepping/stepper.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
-#include "tools/run/in_words.hpp"
+#include "tools/report/in_words.hpp"
 #include "tools/run/stepping.hpp"
 
 using namespace delf;

@@ -14,7 +14,7 @@
 #include "lattice/error.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/theories/solar_system.hpp"
+#include "schemes/theories/mechanics/solar_system.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/time_elements.hpp"
 

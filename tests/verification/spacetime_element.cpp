@@ -13,11 +13,11 @@
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/r_adaptive.hpp"
+#include "schemes/families/vertex_constraint.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "schemes/theories/wave_map.hpp"
-#include "schemes/families/vertex_constraint.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/patch.hpp"
 

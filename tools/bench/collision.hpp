@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "schemes/simulation.hpp"
-#include "tools/bench/textbook.hpp"
+#include "tools/bench/textbook/textbook.hpp"
 
 namespace delf::bench {
 

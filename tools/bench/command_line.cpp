@@ -12,7 +12,7 @@
 #include "lattice/error.hpp"
 #include "tools/bench/commands.hpp"
 #include "tools/bench/machine.hpp"
-#include "tools/bench/textbook.hpp"
+#include "tools/bench/textbook/textbook.hpp"
 
 namespace delf::bench {
 

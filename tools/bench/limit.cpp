@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
+#include "tools/bench/by_hand/leapfrog_by_hand.hpp"
 #include "tools/bench/commands.hpp"
-#include "tools/bench/leapfrog_by_hand.hpp"
 #include "tools/bench/machine_limits.hpp"
 #include "tools/bench/sides.hpp"
 #include "tools/bench/table.hpp"
-#include "tools/bench/textbook_autovectorised.hpp"
+#include "tools/bench/textbook/textbook_autovectorised.hpp"
 
 namespace delf::bench {
 

@@ -6,7 +6,7 @@
 #include "jets/simd/pack_math.hpp"
 #include "schemes/solvers/row_layout.hpp"
 #include "tools/bench/pairing.hpp"
-#include "tools/bench/textbook_autovectorised.hpp"
+#include "tools/bench/textbook/textbook_autovectorised.hpp"
 
 namespace delf::bench {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "schemes/simulation.hpp"
-#include "tools/bench/packed_systems.hpp"
+#include "tools/bench/by_hand/packed_systems.hpp"
 
 namespace delf::bench {
 

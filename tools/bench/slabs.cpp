@@ -8,12 +8,12 @@
 
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
+#include "tools/bench/by_hand/mechanics_by_hand.hpp"
+#include "tools/bench/by_hand/packed_systems.hpp"
+#include "tools/bench/by_hand/spacetime_by_hand.hpp"
 #include "tools/bench/commands.hpp"
-#include "tools/bench/mechanics_by_hand.hpp"
-#include "tools/bench/packed_systems.hpp"
 #include "tools/bench/sides.hpp"
 #include "tools/bench/slab_problems.hpp"
-#include "tools/bench/spacetime_by_hand.hpp"
 #include "tools/bench/table.hpp"
 
 namespace delf::bench {

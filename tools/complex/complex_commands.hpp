@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/complex/complex_scene.hpp"
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/run/run.hpp"
 
 namespace delf {

@@ -9,9 +9,9 @@
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_stepping.hpp"
 #include "tools/complex/static_field.hpp"
-#include "tools/run/energy_warnings.hpp"
+#include "tools/report/seconds_since.hpp"
 #include "tools/run/run_folder.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/warnings/energy_warnings.hpp"
 
 namespace delf {
 namespace {

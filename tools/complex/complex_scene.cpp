@@ -21,7 +21,7 @@
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/mesh_text.hpp"
-#include "tools/scene/exact_solution.hpp"
+#include "tools/rows/exact_solution.hpp"
 #include "tools/scene/key_warning.hpp"
 #include "tools/scene/steps_in_turn.hpp"
 #include "tools/scene/values.hpp"
@@ -264,7 +264,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
   Settings& settings = scene.settings;
   scene.name = settings.file().stem().string();
   const Values values(settings);
-  for (const Key& key : settings.all_keys()) values.check(key);
+  for (const Parameter& key : settings.all_keys()) values.check(key);
   try {
     Problem& p = scene.problem;
     p.theory = values.choice("theory.name");
@@ -376,7 +376,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
   return c;
 }
 
-bool ComplexScene::has_method() const { return scene.problem.method != find_key("scheme.method")->fallback; }
+bool ComplexScene::has_method() const { return scene.problem.method != fallback_of(*find_key("scheme.method")); }
 
 Problem ComplexScene::problem_on_mesh() const {
   Problem problem = scene.problem;
@@ -463,13 +463,13 @@ std::string resolved_text(const ComplexScene& c) {
   const Settings& settings = c.scene.settings;
   return fmt::format("{}{} understood it: `delf run scene.ini` gives the same rows to the bit.\n",
                      resolved_scene_begins, DELF_VERSION) +
-         sections_of(settings, [&](const Key& key) -> std::string {
+         sections_of(settings, [&](const Parameter& key) -> std::string {
            // of more steps the fallback is another
-           if (key.name == "output.every" && !c.is_one_problem()) return fmt::format("{}", c.scene.every);
-           const Setting* const given = settings.find(key.name);
+           if (key.key == "output.every" && !c.is_one_problem()) return fmt::format("{}", c.scene.every);
+           const Setting* const given = settings.find(key.key);
            if (!given) return {};
-           if (key.name == "lattice.mesh" && !c.mesh_file.empty()) return c.mesh_file.string();
-           if (key.name == "lattice.time_steps")
+           if (key.key == "lattice.mesh" && !c.mesh_file.empty()) return c.mesh_file.string();
+           if (key.key == "lattice.time_steps")
              return c.scene.problem.step_control ? given->value : fmt::format("{}", fmt::join(c.time_steps, ", "));
            return given->value;
          });

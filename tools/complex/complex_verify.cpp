@@ -17,9 +17,9 @@
 #include "tools/complex/row_steps.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/files/fields_reader.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/seconds_since.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/verify/verdict.hpp"
 

@@ -11,9 +11,9 @@
 #include "lattice/error.hpp"
 #include "tools/complex/mesh_evolution.hpp"
 #include "tools/complex/static_field.hpp"
-#include "tools/failure.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/report/failure.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/seconds_since.hpp"
 
 namespace delf {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include "tools/compare/convergence_table.hpp"
 #include "tools/complex/complex_scene.hpp"
-#include "tools/convergence/convergence_table.hpp"
 
 namespace delf {
 

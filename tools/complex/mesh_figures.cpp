@@ -12,7 +12,7 @@
 #include "tools/complex/mesh_files.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 
 namespace delf {
 namespace {
@@ -233,7 +233,5 @@ std::string draw_mesh(const ComplexScene& c, const MeshFilm& film, std::span<con
   if (missing.empty() && !line && mesh.cells() > most_cells) return of_many();
   return missing;
 }
-
-std::vector<std::string> mesh_figure_names() { return {"field", "levels", "updates"}; }
 
 }  // namespace delf

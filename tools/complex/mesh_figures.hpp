@@ -39,7 +39,5 @@ class MeshFilm {
 /// is missing, in one line, or an empty string.
 std::string draw_mesh(const ComplexScene&, const MeshFilm&, std::span<const int> levels,
                       const std::filesystem::path& folder);
-/// Their names, without ending.
-std::vector<std::string> mesh_figure_names();
 
 }  // namespace delf

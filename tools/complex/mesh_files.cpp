@@ -8,7 +8,7 @@
 #include <ranges>
 
 #include "schemes/stepping/saved_state.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 
 namespace delf {
 namespace {

@@ -7,9 +7,9 @@
 #include "tools/complex/mesh_evolution.hpp"
 #include "tools/complex/mesh_figures.hpp"
 #include "tools/complex/mesh_files.hpp"
+#include "tools/figures/trace.hpp"
 #include "tools/files/series_file.hpp"
 #include "tools/run/run_files.hpp"
-#include "tools/run/trace.hpp"
 
 namespace delf {
 

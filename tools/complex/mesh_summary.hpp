@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tools/complex/complex_scene.hpp"
-#include "tools/run/outcome.hpp"
+#include "tools/outcome/outcome.hpp"
 
 namespace delf {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/complex/complex_scene.hpp"
-#include "tools/run/energy_warnings.hpp"
+#include "tools/warnings/energy_warnings.hpp"
 
 namespace delf {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "schemes/complex/spacetime_complex.hpp"
-#include "tools/run/interrupt.hpp"
+#include "tools/report/interrupt.hpp"
 
 namespace delf {
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <type_traits>
@@ -15,16 +14,17 @@
 
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
+#include "tools/compare/convergence_table.hpp"
 #include "tools/complex/mesh_convergence.hpp"
 #include "tools/convergence/convergence_figure.hpp"
-#include "tools/convergence/convergence_table.hpp"
 #include "tools/convergence/convergence_verdict.hpp"
-#include "tools/engine.hpp"
 #include "tools/figures/drawing.hpp"
-#include "tools/run/in_words.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/outcome.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/outcome/findings_json.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/in_words.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/rows/engine.hpp"
 #include "tools/scene/values.hpp"
 
 namespace delf {
@@ -43,17 +43,6 @@ std::vector<double> drawn_orders(const OrderRequest& request, double measured) {
 }
 
 // What is missing, in one line. A figure that cannot be drawn does not fail the command.
-std::string drawn(const Scene& scene, const std::string& label, const ConvergenceTable& table,
-                  const std::vector<double>& orders, const fs::path& folder) {
-  remove_figures({convergence_figure}, folder);
-  if (!scene.figures) return {};
-  try {
-    return draw_convergence(scene, label, table, orders, folder);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-}
-
 // What the method declares.
 std::optional<int> order_of_scheme(const Problem& asked) {
   const Problem problem = completed(asked);
@@ -65,12 +54,12 @@ std::optional<int> order_of_scheme(const Problem& asked) {
 std::string floor_in_words(const Scene& scene, const ConvergenceTable& table) {
   if (!table.exact || table.all_sites || table.levels.empty()) return {};
   const double least = table.levels.back().linf;
-  const EndsOfLattice ends = off_at_ends(scene);
-  if (!(ends.off > 0.1 * least)) return {};
+  const EndChange ends = off_at_ends(scene);
+  if (!(ends.change > 0.1 * least)) return {};
   return fmt::format(
-      "  ends       the exact solution {}, and the last error is {:.2g}: finer lines will not fall below "
+      "  ends       the exact solution {}, by {:.2g}, and the last error is {:.2g}: finer lines will not fall below "
       "that; keep the pulse away from both ends of lattice.length\n",
-      ends.words, least);
+      ends.words, ends.change, least);
 }
 
 std::string number(const char* format, double value) {
@@ -101,10 +90,7 @@ std::string report(const Scene& scene, const std::string& label, const Convergen
 
 std::string json_of(const Scene& scene, const std::string& label, const OrderRequest& request,
                     const ConvergenceTable& table, const ConvergenceVerdict& verdict, bool passed) {
-  using Json = nlohmann::ordered_json;  // what is not a number becomes null
-  Json json;
-  json["version"] = DELF_VERSION;
-  json["scene"] = scene.name;
+  Json json = json_head(scene);
   json["scheme"] = label;
   json["status"] = table.status;
   json["error"] = table.exact ? "exact" : "difference";
@@ -113,8 +99,8 @@ std::string json_of(const Scene& scene, const std::string& label, const OrderReq
   json["order_of_scheme"] = request.of_scheme ? Json(*request.of_scheme) : Json();
   json["passed"] = passed;
   json["verdict"] = to_string(verdict.kind);
-  json["reason"] = verdict.reason.empty() ? Json() : Json(verdict.reason);
-  json["ended"] = table.ended.empty() ? Json() : Json(table.ended);
+  json["reason"] = text_or_null(verdict.reason);
+  json["ended"] = text_or_null(table.ended);
   auto& levels = json["levels"] = Json::array();
   for (const ConvergenceLevel& l : table.levels) {
     Json measures = Json::object();
@@ -128,7 +114,7 @@ std::string json_of(const Scene& scene, const std::string& label, const OrderReq
                       {"seconds", l.seconds},
                       {"measures", measures}});
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string csv_of(const ConvergenceTable& table) {
@@ -178,7 +164,9 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
   else if (std::isfinite(order))
     fmt::print("  order      {:.3f}, and the scheme declares none: convergence.order asks for one\n", order);
   if (!verdict.reason.empty()) fmt::print("  reason     {}\n", verdict.reason);
-  const std::string missing = drawn(scene, label, table, drawn_orders(request, order), folder);
+  remove_figures({convergence_figure}, folder);
+  const std::string missing =
+      scene.figures ? draw_convergence(scene, label, table, drawn_orders(request, order), folder) : std::string();
   std::error_code none;
   const fs::path figure =
       folder / "figures" / fmt::format("{}.{}", convergence_figure, scene.figure_form.formats.front());

@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/convergence/convergence_table.hpp"
+#include "tools/compare/convergence_table.hpp"
 
 namespace delf {
 

@@ -6,15 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/turn.hpp"
-#include "tools/engine.hpp"
-#include "tools/run/linear_limit.hpp"
-#include "tools/run/refined_scene.hpp"
-#include "tools/scene/initial_rows.hpp"
+#include "schemes/state.hpp"
+#include "tools/compare/refined_scene.hpp"
+#include "tools/rows/engine.hpp"
+#include "tools/rows/initial_rows.hpp"
+#include "tools/warnings/linear_limit.hpp"
 
 namespace delf {
 namespace {
@@ -98,70 +97,9 @@ const char* to_string(ConvergenceVerdict::Kind kind) {
   return "";
 }
 
-EndsOfLattice off_at_ends(const Scene& scene) {
-  const Lattice& lattice = scene.problem.lattice;
-  if (lattice.space() == Space::point || scene.from_file()) return {};
-  const auto state = make_state(scene.initial, lattice);
-  const double L = lattice.length(), end = scene.end(), acts = std::min(end, L),
-               turn = 2 * std::numbers::pi * state->winding() + gain_of(scene.problem.parameters);
-  const int times = state->exact() ? 9 : 1, points = lattice.is_circle() ? 2048 : 2;
-  const auto d = static_cast<std::size_t>(state->components());
-  EndsOfLattice result;
-  const auto take = [&](double off, const char* words) {
-    if (off > result.off) result = {off, fmt::format("{} by {:.2g}", words, off)};
-  };
-  using Points = std::vector<FieldPoint>;
-  std::vector<Points> first, row(static_cast<std::size_t>(points), Points(d));
-  const auto at = [&](double t, double x) {
-    Points values(d);
-    state->at(t, std::fmod(x, L), values);
-    for (FieldPoint& value : values) value.phi += x >= L ? turn : 0;
-    return values;
-  };
-  for (int n = 0; n < times; ++n) {
-    const double t = n == 0 ? 0 : end * n / (times - 1);
-    for (int i = 0; i < points; ++i)
-      state->at(t, lattice.is_circle() ? L * i / points : L * i, row[static_cast<std::size_t>(i)]);
-    if (n == 0) first = row;
-    for (std::size_t a = 0; a < d; ++a) {
-      if (lattice.is_circle()) {
-        // A pulse may have its seam anywhere. What stays of a difference where an interval is halved again and again:
-        const auto jump = [&](const auto& difference) {
-          double most = 0, from = 0, to = 0;
-          for (std::size_t i = 0; i < row.size(); ++i) {
-            FieldPoint next = row[(i + 1) % row.size()][a];
-            if (i + 1 == row.size()) next.phi += turn;
-            if (const double by = difference(row[i][a], next, L / points); by > most)
-              most = by, from = L * static_cast<double>(i) / points, to = from + L / points;
-          }
-          for (int halved = 0; halved < 30 && most > 0; ++halved) {
-            const double middle = (from + to) / 2;
-            const FieldPoint left = at(t, from)[a], here = at(t, middle)[a], right = at(t, to)[a];
-            const double below = difference(left, here, middle - from), above = difference(here, right, to - middle);
-            most = std::max(below, above);
-            (below > above ? to : from) = middle;
-          }
-          return most;
-        };
-        take(jump([](const FieldPoint& l, const FieldPoint& r, double apart) {
-               return std::abs(r.phi - l.phi - apart * (l.phi_x + r.phi_x) / 2);
-             }),
-             "jumps where the circle closes,");
-        take(acts * jump([](const FieldPoint& l, const FieldPoint& r, double) { return std::abs(r.phi_x - l.phi_x); }),
-             "has a corner where the circle closes, which moves it");
-        continue;
-      }
-      const auto at_wall = [&](Wall wall, const FieldPoint& now, const FieldPoint& before) {
-        if (wall == Wall::natural)
-          return take(std::abs(now.phi_x) * acts, "has a slope at a natural wall, which moves it");
-        take(std::abs(now.phi - before.phi), "moves at a fixed wall,");
-        if (times == 1) take(std::abs(now.phi_t) * acts, "has a rate at a fixed wall, which would move it");
-      };
-      at_wall(lattice.left(), row[0][a], first[0][a]);
-      at_wall(lattice.right(), row[1][a], first[1][a]);
-    }
-  }
-  return result;
+EndChange off_at_ends(const Scene& scene) {
+  if (scene.from_file()) return {};
+  return at_the_ends(scene, *make_state(scene.initial, scene.problem.lattice)).larger();
 }
 
 ConvergenceVerdict judge(const ConvergenceTable& table, const OrderRequest& request, const Scene* scene) {
@@ -183,11 +121,11 @@ ConvergenceVerdict judge(const ConvergenceTable& table, const OrderRequest& requ
   }
   if (!scene) return {Kind::missed, order, ""};
   const std::string subject = table.exact ? "the exact solution " : "the initial state ";
-  if (const EndsOfLattice ends = off_at_ends(*scene); ends.off > 0.1 * last_error(table))
+  if (const EndChange ends = off_at_ends(*scene); ends.change > 0.1 * last_error(table))
     return {Kind::not_measured, order,
-            fmt::format("{}{}, and the last {} is {:.2g}: it is that of the ends, and not the scheme's; keep the field "
-                        "away from both ends of lattice.length",
-                        subject, ends.words, table.exact ? "error" : "difference", last_error(table))};
+            fmt::format("{}{}, by {:.2g}, and the last {} is {:.2g}: it is that of the ends, and not the scheme's; keep "
+                        "the field away from both ends of lattice.length",
+                        subject, ends.words, ends.change, table.exact ? "error" : "difference", last_error(table))};
   const double own = order_of_differences(table), lines = table.levels[table.levels.size() - 2].apart;
   if (table.exact && own > 0.5 && last_error(table) > 4 * lines)
     return {

@@ -3,7 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "tools/convergence/convergence_table.hpp"
+#include "tools/compare/convergence_table.hpp"
+#include "tools/rows/at_the_ends.hpp"
 
 namespace delf {
 
@@ -35,13 +36,7 @@ const char* to_string(ConvergenceVerdict::Kind);
 /// `scene` is null for a mesh, of which rounding alone is known.
 ConvergenceVerdict judge(const ConvergenceTable&, const OrderRequest&, const Scene* scene);
 
-/// How far the state is from what the ends of the lattice make of it, in units of the field, and what it does there in
-/// words; at all times of the run where the state is a solution. Of a circle the jump where it closes; at a fixed wall the
-/// change of the value, at a natural one the slope times the time or the length that it acts on.
-struct EndsOfLattice {
-  double off = 0;
-  std::string words;
-};
-EndsOfLattice off_at_ends(const Scene&);
+/// What the ends of the lattice do to the state of a scene; nothing where its rows are of a file.
+EndChange off_at_ends(const Scene&);
 
 }  // namespace delf

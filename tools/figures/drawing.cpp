@@ -5,13 +5,15 @@
 
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/gnuplot.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 
 namespace delf {
 
 namespace fs = std::filesystem;
 
-std::string draw(const std::vector<Drawing>& drawings, const FigureForm& form, const fs::path& folder) {
+namespace {
+
+std::string drawn(const std::vector<Drawing>& drawings, const FigureForm& form, const fs::path& folder) {
   const ScratchFolder scratch(folder);
   std::string script;
   std::vector<std::string> names;
@@ -29,6 +31,16 @@ std::string draw(const std::vector<Drawing>& drawings, const FigureForm& form, c
         fs::rename(scratch.path() / file, folder / "figures" / file);
       else missing = missing.empty() ? "gnuplot ended well, and left no " + file : missing;
   return missing;
+}
+
+}  // namespace
+
+std::string draw(const std::vector<Drawing>& drawings, const FigureForm& form, const fs::path& folder) {
+  try {
+    return drawn(drawings, form, folder);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
 }
 
 void remove_figures(const std::vector<std::string>& names, const fs::path& folder) {

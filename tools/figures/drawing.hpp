@@ -16,7 +16,8 @@ struct Drawing {
   std::function<std::string(const std::filesystem::path& scratch)> body;
 };
 
-/// Draws them into `folder`/figures, in all formats of the form. Returns what is missing, in one line, or an empty string.
+/// Draws them into `folder`/figures, in all formats of the form. Returns what is missing, in one line, or an empty string: a figure
+/// that fails does not fail its command.
 std::string draw(const std::vector<Drawing>&, const FigureForm&, const std::filesystem::path& folder);
 
 /// Removes these figures of an earlier run, in any format.

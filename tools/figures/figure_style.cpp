@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/figures/gnuplot.hpp"
-#include "tools/files/text_columns.hpp"
+#include "tools/report/text_columns.hpp"
 
 namespace delf {
 

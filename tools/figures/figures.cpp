@@ -88,7 +88,7 @@ std::string subtitle(const FigureSource& source) {
 }
 
 std::vector<std::string> figure_names() {
-  std::vector<std::string> names;
+  std::vector<std::string> names{"field", "levels", "updates"};  // on a mesh
   for (const Figure& figure : all) names.emplace_back(figure.name);
   return names;
 }

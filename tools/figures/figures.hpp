@@ -9,8 +9,8 @@
 #include "schemes/state.hpp"
 #include "tools/figures/figure_form.hpp"
 #include "tools/figures/film.hpp"
-#include "tools/run/trace.hpp"
-#include "tools/scene/row_names.hpp"
+#include "tools/figures/trace.hpp"
+#include "tools/files/row_names.hpp"
 
 namespace delf {
 
@@ -60,7 +60,7 @@ std::string drawn_name(const FigureSource&, std::size_t component);
 /// How many frames, from the first one, have not blown up: a scale made for the others would hide these.
 int tame_frames(const FigureSource&);
 
-/// The names of the figures, without ending.
+/// The names of the figures of a run on a lattice or on a mesh, without ending.
 std::vector<std::string> figure_names();
 
 }  // namespace delf

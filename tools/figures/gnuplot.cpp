@@ -13,8 +13,8 @@
 #include <fstream>
 #include <thread>
 
-#include "tools/failure.hpp"
 #include "tools/figures/gnuplot_limit.hpp"
+#include "tools/report/failure.hpp"
 
 extern char** environ;
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/figures/figure_style.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 
 namespace delf {
 

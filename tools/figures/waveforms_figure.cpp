@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "tools/figures/figure_style.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 
 namespace delf {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

@@ -13,9 +13,9 @@
 #include <cerrno>
 #include <limits>
 
-#include "tools/failure.hpp"
 #include "tools/files/mark_closed.hpp"
 #include "tools/files/open_to_read.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

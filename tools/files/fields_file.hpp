@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "tools/files/hdf5_handle.hpp"
+#include "tools/files/record.hpp"
+#include "tools/files/row_names.hpp"
 #include "tools/files/written_part.hpp"
-#include "tools/run/record.hpp"
-#include "tools/scene/row_names.hpp"
 
 namespace delf {
 

@@ -8,7 +8,7 @@
 
 #include <cerrno>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <string_view>
 
 #include "lattice/error.hpp"
+#include "lattice/read_number.hpp"
 #include "tools/files/hdf5_handle.hpp"
 #include "tools/files/read_apart.hpp"
 #include "tools/files/written_storage.hpp"
@@ -34,9 +34,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 
 std::optional<double> number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size() ? std::optional(value) : std::nullopt;
+  return read_number<double>(word);
 }
 
 std::string plain_name(std::string_view name) {

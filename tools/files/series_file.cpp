@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/run/record.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/record.hpp"
+#include "tools/files/text_file.hpp"
 
 namespace delf {
 

@@ -104,7 +104,8 @@ class Frequency final : public AtAPlace {
     const double apart = static_cast<double>(apart_) * step_, m = spectrum_peak(values_, false);
     const double variance = squares_ / static_cast<double>(seen_) - std::pow(sum_ / static_cast<double>(seen_), 2);
     const double mean = std::sqrt(rates_ / static_cast<double>(seen_ - 1) / variance);
-    const bool is_resolved = mean * apart <= std::numbers::pi && mean * apart * static_cast<double>(n) >= 2 * std::numbers::pi;
+    const bool is_resolved =
+        mean * apart <= std::numbers::pi && mean * apart * static_cast<double>(n) >= 2 * std::numbers::pi;
     if (!is_resolved || !(m > 1)) return unknown;
     return 2 * std::numbers::pi * m / (static_cast<double>(n) * apart);
   }
@@ -138,26 +139,26 @@ class Frequency final : public AtAPlace {
   Sample first_, last_;
 };
 
-template <class Kind>
-std::unique_ptr<Measurement> make(const MeasuredField& field, const std::vector<double>& numbers) {
-  return std::make_unique<Kind>(field, numbers);
-}
-
 }  // namespace
 
-const MeasurementEntry value_measurement{"value", "x", "the field at x, in the last row", 1, 1, make<Last>};
-const MeasurementEntry minimum_measurement{"minimum", "x", "the least value at x, of all steps", 1, 1, make<Extreme<-1, false>>};
-const MeasurementEntry maximum_measurement{"maximum", "x", "the largest value at x, of all steps", 1, 1, make<Extreme<1, false>>};
-const MeasurementEntry minimum_time_measurement{"minimum_time",         "x", "when the field at x is least", 1, 1,
-                                                make<Extreme<-1, true>>};
-const MeasurementEntry maximum_time_measurement{"maximum_time",        "x", "when the field at x is largest", 1, 1,
-                                                make<Extreme<1, true>>};
+const MeasurementEntry value_measurement{"value", "x", "the field at x, in the last row", 1, 1, make_measurement<Last>};
+const MeasurementEntry minimum_measurement{"minimum", "x", "the least value at x, of all steps",
+                                           1,         1,   make_measurement<Extreme<-1, false>>};
+const MeasurementEntry maximum_measurement{"maximum", "x", "the largest value at x, of all steps",
+                                           1,         1,   make_measurement<Extreme<1, false>>};
+const MeasurementEntry minimum_time_measurement{
+    "minimum_time", "x", "when the field at x is least", 1, 1, make_measurement<Extreme<-1, true>>};
+const MeasurementEntry maximum_time_measurement{
+    "maximum_time", "x", "when the field at x is largest", 1, 1, make_measurement<Extreme<1, true>>};
 const MeasurementEntry crossings_measurement{
     "crossings", "x, level", "how often the field at x passes the level, from step to step",
-    2,           2,          make<Crossings>};
+    2,           2,          make_measurement<Crossings>};
 const MeasurementEntry frequency_measurement{
-    "frequency", "x",
+    "frequency",
+    "x",
     "2 pi/period of the strongest oscillation at x: the largest peak of its spectrum; none of less than a period",
-    1,           1,   make<Frequency>};
+    1,
+    1,
+    make_measurement<Frequency>};
 
 }  // namespace delf

@@ -134,11 +134,6 @@ class Speed final : public OneKink {
   }
 };
 
-template <class Kind>
-std::unique_ptr<Measurement> make(const MeasuredField& field, const std::vector<double>& numbers) {
-  return std::make_unique<Kind>(field, numbers);
-}
-
 }  // namespace
 
 const MeasurementEntry kinks_measurement{"kinks",
@@ -147,22 +142,22 @@ const MeasurementEntry kinks_measurement{"kinks",
                                          "level (pi modulo 2 pi for an angle, else 0)",
                                          0,
                                          1,
-                                         make<Count<false>>};
-const MeasurementEntry charge_measurement{"kink_charge",    "[level]", "kinks less antikinks in the last row", 0, 1,
-                                          make<Count<true>>};
+                                         make_measurement<Count<false>>};
+const MeasurementEntry charge_measurement{
+    "kink_charge", "[level]", "kinks less antikinks in the last row", 0, 1, make_measurement<Count<true>>};
 const MeasurementEntry position_measurement{
     "position",
     "n [, level]",
     "where kink n is in the last row: from the left 1, 2, ..., from the right -1, -2, ...",
     1,
     2,
-    make<Position>};
+    make_measurement<Position>};
 const MeasurementEntry speed_measurement{
     "speed",
     "n [, level]",
     "of kink n at the end: the slope of its positions in the last fifth of the time since the number of kinks changed",
     1,
     2,
-    make<Speed>};
+    make_measurement<Speed>};
 
 }  // namespace delf

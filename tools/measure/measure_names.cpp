@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "jets/expressions/parse.hpp"
-#include "tools/run/outcome.hpp"
+#include "tools/outcome/outcome.hpp"
 
 namespace delf {
 
@@ -23,7 +23,7 @@ nlohmann::json any_summary(const Scene& scene) {
 std::vector<std::string> measure_names(const Settings& settings) {
   std::vector<std::string> names;
   for (const DeclaredKey& own : settings.declared())
-    if (own.key.name.starts_with(section)) names.push_back(own.key.name.substr(section.size()));
+    if (own.parameter.key.starts_with(section)) names.push_back(own.parameter.key.substr(section.size()));
   return names;
 }
 

@@ -61,6 +61,11 @@ struct MeasurementEntry {
   bool reads_field = true;  ///< at places, so that sites must stay where they are
 };
 
+template <class Kind>
+std::unique_ptr<Measurement> make_measurement(const MeasuredField& field, const std::vector<double>& numbers) {
+  return std::make_unique<Kind>(field, numbers);
+}
+
 /// All measurements: a new one is a file and a line there.
 std::span<const MeasurementEntry> measurements();
 

@@ -6,15 +6,10 @@
 #include <vector>
 
 #include "tools/measure/measurement.hpp"
+#include "tools/outcome/named_number.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
-
-/// A number by the name that the scene gives it.
-struct NamedNumber {
-  std::string name;
-  double value;
-};
 
 /// The keys measure.NAME of a scene, each an expression of measurements: `2*speed(1)`, `kinks - value(L/2)`. Their
 /// arithmetic is that of densities as text, with the theory's parameters, L, and t, the time of the last row.

@@ -67,11 +67,6 @@ class ModeRate final : public Mode {
   double value() const override { return (now_ - before_) / field_.time_step; }
 };
 
-template <class Kind>
-std::unique_ptr<Measurement> make(const MeasuredField& field, const std::vector<double>& numbers) {
-  return std::make_unique<Kind>(field, numbers);
-}
-
 }  // namespace
 
 const MeasurementEntry mode_measurement{
@@ -80,8 +75,8 @@ const MeasurementEntry mode_measurement{
     "the amplitude of the standing mode n between walls, or of the n-th wave around a circle, in the last row",
     1,
     1,
-    make<ModeAmplitude>};
+    make_measurement<ModeAmplitude>};
 const MeasurementEntry mode_rate_measurement{"mode_rate", "n", "how fast mode(n) changes, half a step before that",
-                                             1,           1,   make<ModeRate>};
+                                             1,           1,   make_measurement<ModeRate>};
 
 }  // namespace delf

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "jets/simd/pack.hpp"
-#include "tools/failure.hpp"
 #include "tools/files/checkpoint_file.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

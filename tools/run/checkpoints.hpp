@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "schemes/stepping/saved_state.hpp"
-#include "tools/run/due.hpp"
+#include "tools/report/due.hpp"
 
 namespace delf {
 

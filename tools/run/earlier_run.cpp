@@ -8,10 +8,9 @@
 #include <system_error>
 #include <vector>
 
-#include "tools/complex/mesh_figures.hpp"
-#include "tools/failure.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figures.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
@@ -34,7 +33,6 @@ void remove_final_results(const fs::path& folder) {
   std::error_code none;
   for (const char* name : {"summary.json", "section.csv"}) fs::remove(folder / name, none);
   remove_figures(figure_names(), folder);
-  remove_figures(mesh_figure_names(), folder);
 }
 
 void remove_earlier_run(const fs::path& folder) {

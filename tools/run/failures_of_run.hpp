@@ -2,8 +2,8 @@
 #pragma once
 #include <exception>
 
-#include "tools/failure.hpp"
-#include "tools/run/outcome.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

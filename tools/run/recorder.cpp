@@ -28,7 +28,8 @@ Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, cons
 
 void Recorder::append(const Record& record, const RecordedRow& row, const RecordedDatasets& datasets,
                       std::span<const double> rates) {
-  series_->append(record);
+  if (seen_) seen_(record, row, datasets);
+  if (series_) series_->append(record);
   if (fields_) fields_->append(record.time, row, datasets);
   if (film_) film_->append(record.time, drawn(row), names_.drawn_mesh() ? std::span<const double>() : rates);
   watch(record.time, record.energy_error);
@@ -56,7 +57,7 @@ std::vector<double> Recorder::drawn(const RecordedRow& row) const {
 RunFiles::Written Recorder::flush(bool sync) {
   Written written;
   if (fields_) written.fields = fields_->flush(sync);
-  written.series = series_->flush(sync);
+  if (series_) written.series = series_->flush(sync);
   return written;
 }
 
@@ -71,10 +72,10 @@ void Recorder::close() {
   try {
     if (fields_) fields_->close();
   } catch (...) {
-    series_->close();
+    if (series_) series_->close();
     throw;
   }
-  series_->close();
+  if (series_) series_->close();
 }
 
 }  // namespace delf

@@ -1,29 +1,34 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "tools/figures/film.hpp"
+#include "tools/figures/trace.hpp"
 #include "tools/files/fields_file.hpp"
+#include "tools/files/record.hpp"
+#include "tools/files/row_names.hpp"
 #include "tools/files/series_file.hpp"
-#include "tools/run/record.hpp"
 #include "tools/run/run_files.hpp"
-#include "tools/run/trace.hpp"
-#include "tools/scene/row_names.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
 
-/// Where the recorded rows of a run go: series.csv; fields.h5 and the film for figures, if the scene wants them.
+/// Where the recorded rows of a run go: series.csv; fields.h5 and the film for figures, if the scene wants them. Or, in
+/// memory, to a function.
 class Recorder final : public RunFiles {
  public:
   /// With `kept`, the files of an earlier run are gone on with from there. Throws BadScene, and changes no file, where they
   /// do not hold that much, or other values.
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&, const std::optional<Written>& kept = {});
+  using Seen = std::function<void(const Record&, const RecordedRow&, const RecordedDatasets&)>;
+  /// Writes no file: each recorded row is given to `seen`.
+  Recorder(const RowNames& names, Seen seen) : names_(names), seen_(std::move(seen)) {}
 
   /// `rates`: of the fields, where they are known.
   void append(const Record&, const RecordedRow&, const RecordedDatasets&, std::span<const double> rates = {});
@@ -44,7 +49,8 @@ class Recorder final : public RunFiles {
 
   RowNames names_;
   std::optional<FieldsFile> fields_;
-  std::optional<SeriesFile> series_;  ///< always there; made when the rows are
+  std::optional<SeriesFile> series_;  ///< there unless rows are kept in memory; made when the rows are
+  Seen seen_;
   std::optional<Film> film_;
   Trace energy_errors_;
   double largest_energy_error_ = 0;

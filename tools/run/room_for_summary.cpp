@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 
 namespace delf {
 

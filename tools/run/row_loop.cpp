@@ -8,9 +8,9 @@
 
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/saved_state.hpp"
-#include "tools/failure.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/report/failure.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/seconds_since.hpp"
 
 namespace delf {
 namespace {

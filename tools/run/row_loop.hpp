@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/progress.hpp"
 #include "tools/run/checkpoints.hpp"
-#include "tools/run/outcome.hpp"
-#include "tools/run/progress.hpp"
 #include "tools/run/run_files.hpp"
 #include "tools/run/watched_rows.hpp"
 

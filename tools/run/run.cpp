@@ -11,17 +11,19 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/angles.hpp"
 #include "schemes/turn.hpp"
-#include "tools/engine.hpp"
+#include "tools/compare/estimate_error.hpp"
 #include "tools/figures/figures.hpp"
-#include "tools/files/text_columns.hpp"
-#include "tools/run/error_estimate.hpp"
-#include "tools/run/outcome.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/text_columns.hpp"
+#include "tools/rows/engine.hpp"
+#include "tools/rows/initial_rows.hpp"
+#include "tools/run/failures_of_run.hpp"
 #include "tools/run/recorder.hpp"
 #include "tools/run/run_folder.hpp"
+#include "tools/run/run_in_memory.hpp"
 #include "tools/run/stepping.hpp"
 #include "tools/run/tiny_steps.hpp"
-#include "tools/scene/initial_rows.hpp"
-#include "tools/scene/text_file.hpp"
 #include "tools/scene/values.hpp"
 
 namespace delf {
@@ -80,56 +82,81 @@ void refuse_ghost(const Scene& scene, const LatticeSystem& system) {
         "lattice.stencil", fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint));
 }
 
-ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resumed) {
-  const InitialRows initial(scene);
+// A run up to its first rows.
+struct Begun {
   Outcome outcome;
-  outcome.winding = initial.winding();
-  Simulation simulation = build(scene, outcome.winding);
-  require_determined(scene, simulation);
-  refuse_ghost(scene, simulation.evolution().system());
-  const bool estimated = Values(scene.settings).toggle("output.estimate");
-  if (estimated) require_estimable(scene, simulation.evolution().system());
-  outcome.state = initial.description();
-  outcome.start = initial.rule();
-  outcome.solve = simulation.solve_summary();
-  outcome.solve_kind = simulation.solve_kind();
+  const InitialRows initial;
+  Simulation simulation;
+  bool estimated = false;
+  RowNames names;
+  std::optional<OwnEnergy> own;
+  std::optional<Stepping> stepping;  ///< always there
 
-  RowNames names(simulation);
-  Problem problem = scene.problem;
-  problem.winding = outcome.winding;
-  const std::optional<OwnEnergy> own = own_energy(simulation, problem);
-  if (own) names.further.emplace_back("energy_own");
-  Stepping stepping(scene, initial, simulation, names, own, outcome);
+  explicit Begun(const Scene& scene) : initial(scene), simulation(build(scene, initial.winding())) {
+    outcome.winding = initial.winding();
+    require_determined(scene, simulation);
+    refuse_ghost(scene, simulation.evolution().system());
+    estimated = Values(scene.settings).toggle("output.estimate");
+    if (estimated) require_estimable(scene, simulation.evolution().system());
+    outcome.state = initial.description();
+    outcome.start = initial.rule();
+    outcome.solve = simulation.solve_summary();
+    outcome.solve_kind = simulation.solve_kind();
+    names = RowNames(simulation);
+    Problem problem = scene.problem;
+    problem.winding = outcome.winding;
+    own = own_energy(simulation, problem);
+    if (own) names.further.emplace_back("energy_own");
+    stepping.emplace(scene, initial, simulation, names, own, outcome);
+  }
+  Begun(const Begun&) = delete;
+  Begun& operator=(const Begun&) = delete;
+
+  void start(const Scene& scene) {
+    stepping->start();
+    if (simulation.newest() > 0) refuse_tiny_steps(scene, simulation.time(1) - simulation.time(0), "<phi_x^2>");
+    outcome.limit = limit_of(scene, simulation);
+  }
+  /// Steps, with each part tried after the first failure.
+  template <class Attempts>
+  void step(const Scene& scene, Recorder& recorder, Checkpoints& checkpoints, Attempts& attempts) {
+    attempts.attempt([&] { stepping->run(recorder, checkpoints); });
+    if (estimated)
+      attempts.attempt([&] {
+        outcome.error_estimate = estimate_error(scene, outcome, stepping->last_row());
+        if (outcome.error_estimate->interrupted) outcome.status = "interrupted";  // what was asked for is not all there
+      });
+    outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
+    attempts.attempt([&] { recorder.close(); });
+  }
+};
+
+ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resumed) {
+  Begun begun(scene);
+  Outcome& outcome = begun.outcome;
+  Stepping& stepping = *begun.stepping;
   std::optional<RunFiles::Written> kept;
   if (resumed.state) {
     (*resumed.state)("written", kept.emplace());
     stepping.visit(*resumed.state);
   } else {
-    stepping.start();
-    if (simulation.newest() > 0) refuse_tiny_steps(scene, simulation.time(1) - simulation.time(0), "<phi_x^2>");
-    outcome.limit = limit_of(scene, simulation);
+    begun.start(scene);
   }
 
   if (!resumed.state) refuse_own_rows(folder, scene);
   RunFolder run(folder, resumed, outcome);
   const std::string resolved = resolved_text(scene, outcome.start, outcome.state);
-  Recorder recorder(scene, folder, resolved, outcome.winding, names, kept);
+  Recorder recorder(scene, folder, resolved, outcome.winding, begun.names, kept);
   Checkpoints checkpoints = run.begin(recorder, scene, resolved);
-  run.attempt([&] { stepping.run(recorder, checkpoints); });
-  if (estimated)
-    run.attempt([&] {
-      outcome.error_estimate = estimate_error(scene, outcome, stepping.last_row());
-      if (outcome.error_estimate->interrupted) outcome.status = "interrupted";  // what was asked for is not all there
-    });
-  outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
-  run.attempt([&] { recorder.close(); });
+  begun.step(scene, recorder, checkpoints, run);
   DrawnSection section;
   if (const Section* points = stepping.section()) {
     section = {points->table(), points->title(), points->drawn_columns()};
     run.attempt([&] { write_text_file(folder / "section.csv", section.table); });
   }
   return run.end(subject_of(scene.problem), scene, [&] {
-    return drawn(scene, initial, simulation.theory(), names, recorder, outcome, std::move(section), folder);
+    return drawn(scene, begun.initial, begun.simulation.theory(), begun.names, recorder, outcome, std::move(section),
+                 folder);
   });
 }
 
@@ -137,6 +164,26 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
 
 ExitCode run(const Scene& scene, const fs::path& folder, Resumed resumed) {
   return with_memory_for(scene, [&] { return run_in(folder, scene, resumed); });
+}
+
+RunInMemory run_in_memory(const Scene& scene, const std::function<void(const RowNames&)>& begin,
+                          const Recorder::Seen& seen) {
+  RunInMemory result;
+  with_memory_for(scene, [&] {
+    Begun begun(scene);
+    begun.start(scene);
+    begin(begun.names);
+    FailuresOfRun failures(begun.outcome);
+    Recorder recorder(begun.names, seen);
+    Checkpoints checkpoints({}, {}, 0);
+    begun.step(scene, recorder, checkpoints, failures);
+    const Subject subject = subject_of(scene.problem);
+    result = {begun.outcome.status, summary_json(subject, scene, begun.outcome), report(subject, scene, begun.outcome),
+              resolved_text(scene, begun.outcome.start, begun.outcome.state),
+              begun.stepping->section() ? begun.stepping->section()->table() : "", failures.first()};
+    return ExitCode::done;
+  });
+  return result;
 }
 
 }  // namespace delf

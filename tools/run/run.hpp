@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "tools/failure.hpp"
 #include "tools/files/checkpoint_file.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/run/checkpoints.hpp"
 #include "tools/scene/scene.hpp"
 

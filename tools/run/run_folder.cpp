@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <exception>
 
+#include "tools/files/text_file.hpp"
 #include "tools/run/earlier_run.hpp"
-#include "tools/scene/text_file.hpp"
 
 namespace delf {
 

@@ -4,12 +4,12 @@
 #include <functional>
 #include <string>
 
-#include "tools/failure.hpp"
 #include "tools/files/folder_lock.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/failure.hpp"
+#include "tools/report/interrupt.hpp"
 #include "tools/run/checkpoints.hpp"
 #include "tools/run/failures_of_run.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/outcome.hpp"
 #include "tools/run/room_for_summary.hpp"
 #include "tools/run/run.hpp"
 #include "tools/run/run_files.hpp"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -14,6 +13,7 @@
 
 #include "jets/tables/line_basis.hpp"
 #include "lattice/error.hpp"
+#include "lattice/read_number.hpp"
 #include "lattice/text_parts.hpp"
 #include "schemes/stepping/saved_state.hpp"
 
@@ -30,13 +30,6 @@ std::string name_of(std::size_t place, std::size_t coordinates) {
   return coordinates == 1 ? letter : letter + std::to_string(place % coordinates + 1);
 }
 
-std::optional<double> number(const std::string& text) {
-  double value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value) ? std::optional(value)
-                                                                                          : std::nullopt;
-}
-
 SectionRequest::Term term_of(const std::string& text, std::size_t coordinates) {
   const auto refuse = [&](const std::string& why) {
     return BadInput("output.section",
@@ -45,7 +38,7 @@ SectionRequest::Term term_of(const std::string& text, std::size_t coordinates) {
   const auto at = text.find_first_of("=<>");
   if (at == std::string::npos) throw refuse("has none of =, < and >");
   const std::string name = trimmed(text.substr(0, at));
-  const auto value = number(trimmed(text.substr(at + 1)));
+  const auto value = read_finite(trimmed(text.substr(at + 1)));
   if (!value) throw refuse("has no number at its right");
   for (std::size_t place = 0; place < 2 * coordinates; ++place)
     if (name == name_of(place, coordinates)) return {place, text[at], *value};

@@ -11,7 +11,7 @@
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/angles.hpp"
 #include "schemes/without_value.hpp"
-#include "tools/run/placed_row.hpp"
+#include "tools/compare/placed_row.hpp"
 
 namespace delf {
 

@@ -2,11 +2,11 @@
 #pragma once
 #include "schemes/methods/own_energy.hpp"
 #include "tools/measure/measures.hpp"
+#include "tools/rows/initial_rows.hpp"
 #include "tools/run/recorder.hpp"
 #include "tools/run/row_loop.hpp"
 #include "tools/run/section.hpp"
-#include "tools/run/warnings.hpp"
-#include "tools/scene/initial_rows.hpp"
+#include "tools/warnings/warnings.hpp"
 
 namespace delf {
 

@@ -25,7 +25,7 @@ void declare(Settings& settings, const Parameter& p, DeclaredBy kind, const std:
   if (find_key(p.key) && declared_by(p.key).empty())
     throw BadScene(fmt::format("{}: {} has a meaning already; choose another name in the theory",
                                settings.file().string(), p.key));
-  settings.declare({key_of(p), kind, owner});
+  settings.declare({p, kind, owner});
 }
 
 const TheoryEntry* chosen_theory(Settings& settings) {
@@ -38,7 +38,7 @@ const TheoryEntry* chosen_theory(Settings& settings) {
       if (settings.find(key)) settings.imply(name, entry->name, key);
     }
   const Setting* given = settings.find(name);
-  const auto at = std::ranges::find(theory_entries(), given ? given->value : find_key(name)->fallback,
+  const auto at = std::ranges::find(theory_entries(), given ? given->value : fallback_of(*find_key(name)),
                                     [](const TheoryEntry* entry) { return entry->name; });
   return at == theory_entries().end() ? nullptr : *at;  // whoever reads theory.name says so
 }
@@ -92,7 +92,10 @@ void declare_measures(Settings& settings) {
   for (const Setting& s : settings.all())
     if (is_measure(s.key) && std::ranges::find(names, s.key) == names.end()) names.push_back(s.key);
   for (const std::string& name : names)
-    settings.declare({Key{name, KeyType::text, "", "none", "an expression of measurements; see `delf help measures`"},
+    settings.declare({{.key = name,
+                       .fallback = "",
+                       .help = "an expression of measurements; see `delf help measures`",
+                       .otherwise = "none"},
                       DeclaredBy::scene,
                       {}});
 }

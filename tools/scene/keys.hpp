@@ -9,35 +9,24 @@
 
 namespace delf {
 
-enum class KeyType { real, integer, toggle, choice, text, times };
-
-/// A key of a scene: how its value is read, what it means, and what holds when it is not given.
-struct Key {
-  std::string name;  ///< "lattice.sites"
-  KeyType type;
-  std::string fallback;   ///< the value in force when the key is not given, if there is one
-  std::string otherwise;  ///< if there is none: what holds then, in words
-  std::string meaning;
-  std::string unit = {};
-  Limits range = {};
-  std::vector<std::string> choices = {};
-};
+enum class KeyType { real, integer, toggle, choice, text };
+/// The type of a key, from its fallback and its choices.
+KeyType type_of(const Parameter&);
+/// The text in force when the key is not given; empty where there is none.
+std::string fallback_of(const Parameter&);
 
 /// "lattice" of "lattice.sites": a view of the name that is given.
 constexpr std::string_view section_of(std::string_view name) { return name.substr(0, name.find('.')); }
 
-/// The key that a parameter is.
-Key key_of(const Parameter&);
-
 /// Every key in the order of the sections, those that theories, methods and states declare at the end of theirs. Parsing,
 /// `delf help run`, the scene.ini of a run and the suggestions for unknown keys are all made from this table.
-std::span<const Key> keys();
+std::span<const Parameter> keys();
 /// The key of that name, as the first that declares it does; or null.
-const Key* find_key(std::string_view name);
+const Parameter* find_key(std::string_view name);
 /// The key that an unknown name was probably meant to be, or an empty string.
-std::string nearest_key(std::string_view unknown, std::span<const Key> known);
+std::string nearest_key(std::string_view unknown, std::span<const Parameter> known);
 /// Puts the key behind the last one of its section, or in place of the one of its name.
-void insert_key(std::vector<Key>& table, Key);
+void insert_key(std::vector<Parameter>& table, Parameter);
 
 /// scene: by a scene for itself, as measure.NAME.
 enum class DeclaredBy { theory, method, state, scene };

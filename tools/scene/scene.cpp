@@ -197,7 +197,7 @@ bool is_for_others(const Scene& scene, const Setting& given) {
 std::string why_not_read(const Scene& scene, std::string_view key) {
   std::optional<DeclaredBy> kind;
   for (const DeclaredKey& own : scene.settings.declared()) {
-    if (own.key.name != key) continue;
+    if (own.parameter.key != key) continue;
     if (own.kind == DeclaredBy::scene || chosen(scene, own.kind) == own.owner) return {};
     kind = own.kind;
   }
@@ -245,7 +245,7 @@ Scene read_scene(Settings given) {
   Settings& settings = scene.settings;
   scene.name = settings.file().stem().string();
   const Values values(settings);
-  for (const Key& key : settings.all_keys()) values.check(key);  // in the order of the table, whatever reads them below
+  for (const Parameter& key : settings.all_keys()) values.check(key);  // in the order of the table, whatever reads them below
   if (const Setting* space = settings.find("lattice.space"); space && space->value == "complex")
     throw settings.error(
         "lattice.space",
@@ -281,9 +281,9 @@ Scene read_scene(Settings given) {
   const auto warn = [&](const Setting& s, const std::string& why) {
     scene.warnings.push_back(key_warning(settings, s, why));
   };
-  for (const Key& key : settings.all_keys())
-    if (const Setting* s = settings.find(key.name))
-      if (const std::string why = why_without_effect(scene, key.name); !why.empty() && !is_for_others(scene, *s))
+  for (const Parameter& key : settings.all_keys())
+    if (const Setting* s = settings.find(key.key))
+      if (const std::string why = why_without_effect(scene, key.key); !why.empty() && !is_for_others(scene, *s))
         warn(*s, why);
   // A scene serves many methods, and may have the stencil of one; what is asked for beside it is meant.
   if (const Setting* s = settings.find("lattice.stencil");

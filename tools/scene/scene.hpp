@@ -76,6 +76,6 @@ inline constexpr std::string_view resolved_scene_begins = "# All that was in for
 /// The scene with all that is in force written out, to be run again to the same bits.
 std::string resolved_text(const Scene&, StartRule in_force, const std::string& state_in_words);
 /// Keys with their values as the sections of a scene; a key whose value is empty is left out.
-std::string sections_of(const Settings&, const std::function<std::string(const Key&)>& value);
+std::string sections_of(const Settings&, const std::function<std::string(const Parameter&)>& value);
 
 }  // namespace delf

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <memory>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

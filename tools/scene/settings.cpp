@@ -11,6 +11,7 @@
 
 #include "lattice/text_parts.hpp"
 #include "tools/scene/declared_keys.hpp"
+#include "tools/scene/made_settings.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/repeated_keys.hpp"
 #include "tools/scene/scene_text.hpp"
@@ -38,16 +39,16 @@ std::vector<int> lines_of_values(const std::string& text, const std::string& fil
 boost::program_options::parsed_options parsed(const std::string& text) {
   namespace po = boost::program_options;
   po::options_description known;
-  for (const Key& key : keys()) known.add_options()(std::string(key.name).c_str(), po::value<std::string>());
+  for (const Parameter& key : keys()) known.add_options()(key.key.c_str(), po::value<std::string>());
   std::istringstream in(text);
   return po::parse_config_file(in, known, true);  // unknown keys are kept, to be told with their line
 }
 
-std::string unknown_key(const std::string& key, std::span<const Key> known) {
+std::string unknown_key(const std::string& key, std::span<const Parameter> known) {
   if (constexpr std::string_view of_field = "exact."; key.starts_with(of_field)) {
     std::vector<std::string> names;
-    for (const Key& k : known)
-      if (std::string_view(k.name).starts_with(of_field)) names.emplace_back(k.name);
+    for (const Parameter& k : known)
+      if (std::string_view(k.key).starts_with(of_field)) names.emplace_back(k.key);
     if (!names.empty()) return fmt::format("unknown key; the fields of the theory have {}", fmt::join(names, ", "));
   }
   const std::string meant = nearest_key(key, known);
@@ -55,7 +56,7 @@ std::string unknown_key(const std::string& key, std::span<const Key> known) {
                        : fmt::format("unknown key; did you mean {}?", meant);
 }
 
-BadScene unknown_on_command_line(const std::string& key, std::span<const Key> known) {
+BadScene unknown_on_command_line(const std::string& key, std::span<const Parameter> known) {
   return BadScene(fmt::format("command line: --{}: {}", key, unknown_key(key, known)));
 }
 
@@ -108,15 +109,15 @@ void Settings::imply(std::string_view key, std::string_view value, std::string_v
   if (!find(key)) all_.push_back({std::string(key), std::string(value), reason ? reason->line : 0});
 }
 
-const Key* Settings::key(std::string_view name) const {
+const Parameter* Settings::key(std::string_view name) const {
   const auto own =
-      std::ranges::find(declared_, name, [](const DeclaredKey& d) -> const std::string& { return d.key.name; });
-  return own == declared_.end() ? find_key(name) : &own->key;
+      std::ranges::find(declared_, name, [](const DeclaredKey& d) -> const std::string& { return d.parameter.key; });
+  return own == declared_.end() ? find_key(name) : &own->parameter;
 }
 
-std::vector<Key> Settings::all_keys() const {
-  std::vector<Key> all(keys().begin(), keys().end());
-  for (const DeclaredKey& own : declared_) insert_key(all, own.key);
+std::vector<Parameter> Settings::all_keys() const {
+  std::vector<Parameter> all(keys().begin(), keys().end());
+  for (const DeclaredKey& own : declared_) insert_key(all, own.parameter);
   return all;
 }
 
@@ -160,9 +161,15 @@ Settings read_settings(const std::filesystem::path& file, const std::vector<Sett
   if (const Setting* again = given_twice(in_file, first))
     throw BadScene(fmt::format("{}:{}: {} = {}: line {} gives it already; keep one of them", file.string(), again->line,
                                again->key, again->value, first->line));
+  return made_settings(file, in_file, on_command_line);
+}
+
+Settings made_settings(const std::filesystem::path& file, const std::vector<Setting>& in_file,
+                       const std::vector<Setting>& on_command_line) {
+  check_command_line(on_command_line);
   Settings settings(file, in_file, on_command_line);
   declare_keys(settings);
-  const std::vector<Key> known = settings.all_keys();
+  const std::vector<Parameter> known = settings.all_keys();
   for (const Setting& s : in_file)
     if (!settings.key(s.key))
       throw BadScene(fmt::format("{}:{}: {}: {}", file.string(), s.line, s.key, unknown_key(s.key, known)));

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/keys.hpp"
 
 namespace delf {
@@ -18,7 +18,7 @@ struct Setting {
 
 /// A key that a scene declares, and the theory or state that reads it.
 struct DeclaredKey {
-  Key key;
+  Parameter parameter;
   DeclaredBy kind;
   std::string owner;
 };
@@ -43,9 +43,9 @@ class Settings {
   void declare(DeclaredKey key) { declared_.push_back(std::move(key)); }
   const std::vector<DeclaredKey>& declared() const { return declared_; }
   /// The key of that name as this scene declares it, or else as the table has it; or null.
-  const Key* key(std::string_view name) const;
+  const Parameter* key(std::string_view name) const;
   /// The table of keys with those that the scene declares behind the others of their sections.
-  std::vector<Key> all_keys() const;
+  std::vector<Parameter> all_keys() const;
 
   /// "FILE:LINE", "FILE" for a key that is not given, or "command line".
   std::string place(std::string_view key) const;

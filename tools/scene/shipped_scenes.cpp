@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 
 #include "lattice/text_parts.hpp"
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/suggestion.hpp"
 
 namespace delf {
@@ -16,7 +17,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* folders[] = {DELF_SCENES_SOURCE, DELF_SCENES_INSTALLED};
+// A package that may be installed anywhere names its own folder.
+std::vector<std::string> folders() {
+  std::vector<std::string> all{DELF_SCENES_SOURCE, DELF_SCENES_INSTALLED};
+  if (const char* own = std::getenv("DELF_SCENES")) all.insert(all.begin(), own);
+  return all;
+}
 
 std::string title_of(const fs::path& file) {
   std::ifstream in(file);
@@ -29,7 +35,7 @@ std::string title_of(const fs::path& file) {
 
 std::vector<ShippedScene> shipped_scenes() {
   std::vector<ShippedScene> scenes;
-  for (const char* folder : folders) {
+  for (const std::string& folder : folders()) {
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(folder, none))
       if (entry.path().extension() == ".ini")
@@ -46,7 +52,7 @@ fs::path find_scene(const std::string& scene) {
   const bool exists = fs::exists(path, none);
   if (exists && !fs::is_directory(path, none)) return path;
   const bool name_only = !scene.empty() && !path.has_parent_path();
-  for (const char* folder : folders) {  // without a look into the other scenes
+  for (const std::string& folder : folders()) {  // without a look into the other scenes
     const fs::path file = fs::path(folder) / (scene + ".ini");
     if (name_only && fs::is_regular_file(file, none)) return file;
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "jets/expressions/expression.hpp"
 #include "lattice/text_parts.hpp"
@@ -41,24 +42,24 @@ std::optional<std::string> Values::text(std::string_view key) const {
     if (s->value.empty()) throw settings_.error(key, "no value is given; give one, or remove the key");
     return s->value;
   }
-  const std::string fallback = known(key).fallback;
+  const std::string fallback = fallback_of(known(key));
   return fallback.empty() ? std::nullopt : std::optional(fallback);
 }
 
-Key Values::known(std::string_view name) const {
+Parameter Values::known(std::string_view name) const {
   for (const Declaration& declaration : declarations()) {
     const auto p = std::ranges::find(declaration.parameters, name, &Parameter::key);
     if (p == declaration.parameters.end()) continue;
     const std::string_view by = chosen_by(declaration.kind);
     const Setting* chosen = settings_.find(by);
-    if (declaration.name == (chosen ? chosen->value : find_key(by)->fallback)) return key_of(*p);
+    if (declaration.name == (chosen ? chosen->value : fallback_of(*find_key(by)))) return *p;
   }
   return *settings_.key(name);
 }
 
 std::string Values::required(std::string_view key) const {
   if (auto value = text(key)) return *value;
-  throw settings_.error(key, fmt::format("must be given ({})", known(key).meaning));
+  throw settings_.error(key, fmt::format("must be given ({})", known(key).help));
 }
 
 // 2*pi, 10*sqrt(2), m/2: anything with an operator or a bracket behind its first character, and names of numbers
@@ -66,8 +67,8 @@ std::optional<double> Values::formula(std::string_view key, std::string_view tex
   std::vector<std::pair<std::string, double>> parameters;
   if (!key.starts_with(of_theory))
     for (const DeclaredKey& own : settings_.declared())
-      if (own.kind == DeclaredBy::theory && own.key.type == KeyType::real)
-        parameters.emplace_back(own.key.name.substr(of_theory.size()), real(own.key.name));
+      if (own.kind == DeclaredBy::theory && type_of(own.parameter) == KeyType::real)
+        parameters.emplace_back(own.parameter.key.substr(of_theory.size()), real(own.parameter.key));
   const std::string_view name = text.starts_with('-') ? text.substr(1) : text;
   const bool is_name = name == "pi" || std::ranges::count(parameters, name, &std::pair<std::string, double>::first) > 0;
   if (!is_name && text.find_first_of("+-*/^(", 1) == std::string_view::npos) return std::nullopt;
@@ -78,19 +79,19 @@ std::optional<double> Values::formula(std::string_view key, std::string_view tex
   }
 }
 
-double Values::number(const Key& key, std::string_view text) const {
+double Values::number(const Parameter& key, std::string_view text) const {
   double value = 0;
   std::errc error = read(text, value);
   if (error == std::errc::invalid_argument)
-    if (const auto result = formula(key.name, text)) value = *result, error = {};
+    if (const auto result = formula(key.key, text)) value = *result, error = {};
   if (error == std::errc::result_out_of_range)
-    throw settings_.error(key.name, "is outside the range of double precision; use a number that is in it");
+    throw settings_.error(key.key, "is outside the range of double precision; use a number that is in it");
   if (error != std::errc())
-    throw settings_.error(key.name, "is not a number; write one like 0.125 or 1e-6, or a formula like 2*pi");
-  if (!std::isfinite(value)) throw settings_.error(key.name, "is not a finite number; give one");
+    throw settings_.error(key.key, "is not a number; write one like 0.125 or 1e-6, or a formula like 2*pi");
+  if (!std::isfinite(value)) throw settings_.error(key.key, "is not a finite number; give one");
   if (value < key.range.low || (key.range.open && value == key.range.low))
-    throw settings_.error(key.name, below(key.name, key.range, key.range.low));
-  if (value > key.range.high) throw settings_.error(key.name, above(key.name, key.range.high));
+    throw settings_.error(key.key, below(key.key, key.range, key.range.low));
+  if (value > key.range.high) throw settings_.error(key.key, above(key.key, key.range.high));
   return value;
 }
 
@@ -110,8 +111,9 @@ std::int64_t Values::integer(std::string_view key) const {
   if (error == std::errc::result_out_of_range) throw settings_.error(key, "is too large; use a smaller integer");
   if (error != std::errc()) throw settings_.error(key, "is not an integer; write one like 255");
   const Limits range = known(key).range;
-  const auto low = static_cast<std::int64_t>(std::max(range.low, -9e15));
-  const auto high = static_cast<std::int64_t>(std::min(range.high, 9.1e15));
+  constexpr int most = std::numeric_limits<int>::max();
+  const std::int64_t low = std::isfinite(range.low) ? static_cast<std::int64_t>(range.low) : -most;
+  const std::int64_t high = std::isfinite(range.high) ? static_cast<std::int64_t>(range.high) : most;
   if (number < low) throw settings_.error(key, below(key, range, low));
   if (number > high) throw settings_.error(key, above(key, high));
   return number;
@@ -152,29 +154,27 @@ std::vector<double> Values::times(std::string_view key) const {
 ParameterValue Values::parameter(const Parameter& p) const {
   if (std::holds_alternative<double>(p.fallback)) return real(p.key);
   if (std::holds_alternative<int>(p.fallback)) return static_cast<int>(integer(p.key));
+  if (type_of(p) == KeyType::toggle) return toggle(p.key) ? "on" : "off";
   return p.choices.empty() ? required(p.key) : choice(p.key);
 }
 
-void Values::check(const Key& key) const {
-  if (!given(key.name)) return;
-  switch (known(key.name).type) {
+void Values::check(const Parameter& key) const {
+  if (!given(key.key)) return;
+  switch (type_of(known(key.key))) {
     case KeyType::real:
-      real(key.name);
+      real(key.key);
       break;
     case KeyType::integer:
-      integer(key.name);
+      integer(key.key);
       break;
     case KeyType::toggle:
-      toggle(key.name);
+      toggle(key.key);
       break;
     case KeyType::choice:
-      choice(key.name);
-      break;
-    case KeyType::times:
-      times(key.name);
+      choice(key.key);
       break;
     case KeyType::text:
-      text(key.name);
+      text(key.key);
       break;
   }
 }

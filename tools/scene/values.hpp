@@ -33,13 +33,13 @@ class Values {
   std::optional<std::int64_t> maybe_integer(std::string_view key) const;
 
   /// Reads a key for its errors only.
-  void check(const Key&) const;
+  void check(const Parameter&) const;
 
  private:
   /// The key as the scene's own theory or method declares it.
-  Key known(std::string_view key) const;
+  Parameter known(std::string_view key) const;
   std::string required(std::string_view key) const;
-  double number(const Key&, std::string_view text) const;
+  double number(const Parameter&, std::string_view text) const;
   /// The value of a formula of numbers, pi and the parameters that the scene's theory declares; nothing if it is none.
   std::optional<double> formula(std::string_view key, std::string_view text) const;
   const Settings& settings_;

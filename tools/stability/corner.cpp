@@ -10,9 +10,9 @@
 #include "schemes/declared.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "tools/engine.hpp"
-#include "tools/run/seconds_since.hpp"
-#include "tools/scene/initial_rows.hpp"
+#include "tools/report/seconds_since.hpp"
+#include "tools/rows/engine.hpp"
+#include "tools/rows/initial_rows.hpp"
 
 namespace delf {
 

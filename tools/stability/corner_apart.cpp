@@ -10,9 +10,9 @@
 #include <cstdio>
 #include <cstring>
 
+#include "tools/report/interrupt.hpp"
+#include "tools/report/seconds_since.hpp"
 #include "tools/stability/corner.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
 
 namespace delf {
 

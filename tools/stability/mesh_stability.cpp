@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "schemes/methods/method_registry.hpp"
-#include "tools/files/text_columns.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/progress.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/report/text_columns.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/progress.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/stability/point_limits.hpp"
 

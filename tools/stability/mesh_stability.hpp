@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "tools/complex/complex_scene.hpp"
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

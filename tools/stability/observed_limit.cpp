@@ -10,7 +10,7 @@
 #include <random>
 
 #include "lattice/error.hpp"
-#include "tools/run/interrupt.hpp"
+#include "tools/report/interrupt.hpp"
 
 namespace delf {
 

@@ -13,7 +13,7 @@
 #include "schemes/stability/symbol.hpp"
 #include "schemes/state.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/report/seconds_since.hpp"
 
 namespace delf {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "schemes/simulation.hpp"
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {

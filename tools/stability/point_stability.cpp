@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "jets/tables/named_tables.hpp"
-#include "tools/files/text_columns.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/outcome.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/scene/suggestion.hpp"
-#include "tools/scene/text_file.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/stability/point_limits.hpp"
 #include "tools/stability/stability_request.hpp"

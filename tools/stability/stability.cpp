@@ -13,10 +13,10 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/turn.hpp"
 #include "tools/figures/drawing.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/progress.hpp"
-#include "tools/run/seconds_since.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/progress.hpp"
+#include "tools/report/seconds_since.hpp"
 #include "tools/stability/corner_list.hpp"
 #include "tools/stability/point_limits.hpp"
 #include "tools/stability/stability_figures.hpp"
@@ -116,17 +116,10 @@ ExitCode stability(const Scene& scene, const fs::path& folder) {
   make_results_folder(folder);  // earlier results stay until there are new ones
   write_text_file(folder / "stability.json", stability_json(scene, findings));
   remove_figures(stability_figure_names(findings.maps.size() + maps_in_a_figure), folder);
-  std::string missing;
-  if (scene.figures) {
-    try {
-      if (!request.own_waves) missing = draw_stability(findings, scene.name, scene.figure_form, folder);
-    } catch (const std::exception& error) {  // a failed figure does not fail the command
-      missing = error.what();
-    }
-  }
+  const bool draws = scene.figures && !request.own_waves;
+  const std::string missing = draws ? draw_stability(findings, scene.name, scene.figure_form, folder) : std::string();
   fmt::print("{}", stability_report(scene, findings));
-  fmt::print("{}: stability.json{}\n", folder.string(),
-             scene.figures && missing.empty() && !request.own_waves ? " figures" : "");
+  fmt::print("{}: stability.json{}\n", folder.string(), draws && missing.empty() ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
   if (findings.status == "interrupted") return ExitCode::interrupted;
   return findings.passed() ? ExitCode::done : ExitCode::check_failed;

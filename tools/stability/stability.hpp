@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/scene.hpp"
 #include "tools/stability/stability_findings.hpp"
 #include "tools/stability/stability_request.hpp"

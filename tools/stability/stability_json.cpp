@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/verify/findings_json.hpp"
+#include "tools/outcome/findings_json.hpp"
 #include "tools/stability/stability_findings.hpp"
 
 namespace delf {
@@ -7,34 +7,34 @@ namespace delf {
 namespace {
 
 Json json_of(const GhostMode& g) {
-  return {{"theta", number_or_null(g.theta)},
-          {"z", {number_or_null(g.z.real()), number_or_null(g.z.imag())}},
+  return {{"theta", g.theta},
+          {"z", {g.z.real(), g.z.imag()}},
           {"what", g.words}};
 }
 
 Json json_of(const Limit& l) {
   Json ghosts = Json::array(), stable = Json::array(), probes = Json::array(), unresolved = Json::array();
   for (const GhostMode& g : l.symbol.ghosts) ghosts.push_back(json_of(g));
-  for (const CourantInterval& i : l.symbol.stable) stable.push_back({number_or_null(i.from), number_or_null(i.to)});
+  for (const CourantInterval& i : l.symbol.stable) stable.push_back({i.from, i.to});
   for (const Probe& p : l.probes)
     probes.push_back({{"courant", p.courant},
                       {"theory", p.theory_stable ? "stable" : "unstable"},
                       {"observed", to_string(p.observed)},
                       {"sites", p.sites},
                       {"steps", p.steps},
-                      {"growth_theory", number_or_null(p.growth)},
+                      {"growth_theory", p.growth},
                       {"resolved", p.resolved}});
   for (const Unresolved& u : l.unresolved)
     unresolved.push_back({{"courant", u.courant},
                           {"theta", u.theta},
-                          {"growth_theory", number_or_null(u.growth)},
+                          {"growth_theory", u.growth},
                           {"sites", u.sites},
-                          {"steps_needed", number_or_null(u.steps)}});
+                          {"steps_needed", u.steps}});
   return {{"scheme", l.scheme},
           {"waves", l.waves},
           {"mass_step", l.mass_step ? Json(*l.mass_step) : Json()},
-          {"courant_theory", number_or_null(l.theory)},
-          {"courant_observed", number_or_null(l.observed)},
+          {"courant_theory", l.theory},
+          {"courant_observed", l.observed},
           {"agrees", l.left_out.empty() && !(l.agrees() && l.limit_unresolved) ? Json(l.agrees()) : Json()},
           {"left_out", text_or_null(l.left_out)},
           {"stable_courants", stable},
@@ -58,11 +58,11 @@ Json json_of(const CornerFinding& f) {
           {"parameters", parameters},
           {"verdict", to_string(r.verdict)},
           {"reason", text_or_null(r.reason)},
-          {"error_linf", number_or_null(r.error_linf)},
-          {"energy_error_max", number_or_null(r.energy_error_max)},
-          {"residual_max", number_or_null(r.residual_max)},
-          {"diverged_at", number_or_null(r.diverged_at)},
-          {"cut_at", number_or_null(r.cut_at)},
+          {"error_linf", r.error_linf},
+          {"energy_error_max", r.energy_error_max},
+          {"residual_max", r.residual_max},
+          {"diverged_at", r.diverged_at},
+          {"cut_at", r.cut_at},
           {"steps", r.steps},
           {"seconds", r.seconds}};
 }
@@ -87,7 +87,7 @@ Json json_of(const StabilityMap& m) {
 Json json_of(const DispersionCurve& c) {
   Json points = Json::array();
   for (const FrequencyPoint& p : c.points)
-    points.push_back({number_or_null(p.wave_number), number_or_null(p.numerical), number_or_null(p.exact)});
+    points.push_back({p.wave_number, p.numerical, p.exact});
   return {{"scheme", c.scheme}, {"qk_omegak_exact", points}};
 }
 
@@ -111,8 +111,8 @@ std::string stability_json(const Scene& scene, const StabilityFindings& f) {
   json["constraint_ghosts"] = json_list(f.constraints, of_each);
   json["corners"] = json_list(f.corners, of_each);
   json["maps"] = json_list(f.maps, of_each);
-  json["dispersion"] = {{"courant", number_or_null(f.dispersion_courant)},
-                        {"mass_space_step", number_or_null(f.dispersion_mass)},
+  json["dispersion"] = {{"courant", f.dispersion_courant},
+                        {"mass_space_step", f.dispersion_mass},
                         {"curves", json_list(f.dispersion, of_each)}};
   return json_text(json);
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
-#include "tools/run/interrupt.hpp"
+#include "tools/report/interrupt.hpp"
 
 namespace delf {
 

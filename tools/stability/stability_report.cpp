@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/files/text_columns.hpp"
-#include "tools/run/in_words.hpp"
+#include "tools/report/in_words.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/stability/stability_findings.hpp"
 
 namespace delf {

@@ -4,34 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include "jets/tables/named_tables.hpp"
 #include "schemes/stability/highest_frequency.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "schemes/unknown_name.hpp"
-#include "tools/run/vacuum_symbol.hpp"
+#include "tools/scene/lists.hpp"
 #include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/stability/corner_list.hpp"
+#include "tools/warnings/vacuum_symbol.hpp"
 
 namespace delf {
 
 namespace {
-
-std::vector<double> positive_numbers(const Scene& scene, const char* key, const std::vector<std::string>& words) {
-  std::vector<double> numbers;
-  for (const std::string& word : words) {
-    double x = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-    if (error != std::errc() || end != word.data() + word.size() || !(x > 0) || !std::isfinite(x))
-      throw scene.settings.error(key, fmt::format("{} is no positive number; write such as 0.1, 1, 2.3", word));
-    numbers.push_back(x);
-  }
-  return numbers;
-}
 
 bool has_own_waves(const Scene& scene, const BatchDensity& density) {
   if (scene.settings.find("stability.waves")) return Values(scene.settings).choice("stability.waves") == "own";
@@ -82,27 +69,9 @@ void add_once(std::vector<NamedScheme>& schemes, const NamedScheme& scheme) {
   if (std::ranges::find(schemes, scheme.name, &NamedScheme::name) == schemes.end()) schemes.push_back(scheme);
 }
 
-std::vector<std::string> names_in_list(const std::string& text) {
-  std::vector<std::string> names;
-  std::string name;
-  int depth = 0;
-  const auto finish = [&] {
-    const std::size_t first = name.find_first_not_of(" \t"), last = name.find_last_not_of(" \t");
-    if (first != std::string::npos) names.push_back(name.substr(first, last - first + 1));
-    name.clear();
-  };
-  for (const char c : text) {
-    depth += (c == '(') - (c == ')');
-    if (c == ',' && depth <= 0) finish();
-    else name += c;
-  }
-  finish();
-  return names;
-}
-
 std::vector<std::string> listed_names(const Scene& scene, const char* key) {
   const auto text = Values(scene.settings).text(key);
-  std::vector<std::string> names = names_in_list(text.value_or(""));
+  std::vector<std::string> names = names_in(text.value_or(""));
   if (text && names.empty()) throw scene.settings.error(key, "names nothing; write what you mean, separated by commas");
   return names;
 }
@@ -130,16 +99,6 @@ std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& asked, c
   return chosen;
 }
 
-const std::vector<std::string>& stability_waves() {
-  static const std::vector<std::string> all{"klein-gordon", "own"};
-  return all;
-}
-
-const std::vector<std::string>& stability_faults() {
-  static const std::vector<std::string> all{"none", "limit"};
-  return all;
-}
-
 StabilityRequest read_stability_request(const Scene& scene) {
   const Values values(scene.settings);
   const auto list = [&](const char* key) { return listed_names(scene, key); };
@@ -159,8 +118,7 @@ StabilityRequest read_stability_request(const Scene& scene) {
   } catch (const BadInput& bad) {
     throw scene.settings.located(bad);
   }
-  if (const auto masses = positive_numbers(scene, "stability.mass_steps", list("stability.mass_steps"));
-      !masses.empty())
+  if (const auto masses = positive_numbers(scene.settings, "stability.mass_steps"); !masses.empty())
     request.mass_steps = masses;
   request.corners = list("stability.corners");
   for (const std::string& group : request.corners)

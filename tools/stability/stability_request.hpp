@@ -22,20 +22,13 @@ struct StabilityRequest {
   bool map = true;
 };
 
-/// Names separated by commas; those between brackets do not count: "guo, spacetime (2,2) gauss".
-std::vector<std::string> names_in_list(const std::string& text);
-/// Those of a key of the scene; empty if it is not given. Throws BadScene if it is, and names none.
+/// The names of a key of the scene; empty if it is not given. Throws BadScene if it is, and names none.
 std::vector<std::string> listed_names(const Scene&, const char* key);
 /// Adds it, unless one of its name is there.
 void add_once(std::vector<NamedScheme>&, const NamedScheme&);
 /// The schemes of those names, once each, "all", or if there is no name the usual ones. Throws BadInput
 /// (stability.schemes).
 std::vector<NamedScheme> chosen_schemes(const std::vector<std::string>& names, const Problem& base);
-
-/// What stability.waves may be.
-const std::vector<std::string>& stability_waves();
-/// Faults that can be planted.
-const std::vector<std::string>& stability_faults();
 
 /// The [stability] keys of a scene. Throws BadScene.
 StabilityRequest read_stability_request(const Scene&);

@@ -20,11 +20,11 @@
 #include <map>
 
 #include "tools/complex/complex_commands.hpp"
-#include "tools/failure.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/progress.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/report/failure.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/progress.hpp"
 #include "tools/run/run.hpp"
-#include "tools/scene/text_file.hpp"
 
 namespace delf {
 

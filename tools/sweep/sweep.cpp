@@ -9,11 +9,11 @@
 
 #include "tools/figures/drawing.hpp"
 #include "tools/files/folder_lock.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/measure/measure_names.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/seconds_since.hpp"
 #include "tools/scene/suggestion.hpp"
-#include "tools/scene/text_file.hpp"
 #include "tools/sweep/sweep_outcome.hpp"
 
 namespace delf {
@@ -59,12 +59,7 @@ void write_tables(const SweepRequest& request, const SweepOutcome& outcome, cons
 void draw_and_report(const SweepRequest& request, const SweepOutcome& outcome, const FigureForm& form,
                      const fs::path& folder) {
   remove_figures({"sweep"}, folder);
-  std::string missing;
-  try {
-    missing = draw_sweep(request, outcome, form, folder);
-  } catch (const std::exception& error) {  // a failed figure does not fail the command
-    missing = error.what();
-  }
+  const std::string missing = draw_sweep(request, outcome, form, folder);
   fmt::print("{}", sweep_report(request, outcome));
   std::error_code none;
   const bool drawn = fs::exists(folder / "figures" / ("sweep." + form.formats.front()), none);

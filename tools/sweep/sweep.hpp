@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/settings.hpp"
 
 namespace delf {

@@ -8,12 +8,12 @@
 #include <optional>
 #include <set>
 
+#include "lattice/read_number.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/gnuplot.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/sweep/sweep_outcome.hpp"
-#include "tools/sweep/swept_number.hpp"
 
 namespace delf {
 
@@ -103,7 +103,7 @@ std::string draw_sweep(const SweepRequest& request, const SweepOutcome& outcome,
   if (outcome.rows.size() < 2 || outcome.number.empty()) return {};
   std::vector<std::size_t> numeric, worded;
   for (std::size_t a = 0; a < request.keys.size(); ++a) {
-    const bool all = std::ranges::all_of(outcome.values, [&](const auto& v) { return swept_number(v[a]).has_value(); });
+    const bool all = std::ranges::all_of(outcome.values, [&](const auto& v) { return read_finite(v[a]).has_value(); });
     (all ? numeric : worded).push_back(a);
   }
   if (numeric.empty()) return {};
@@ -112,7 +112,7 @@ std::string draw_sweep(const SweepRequest& request, const SweepOutcome& outcome,
   std::vector<Point> points;
   for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
     Point p{{}, {}, outcome.rows[i].number(outcome.number)};
-    for (std::size_t a = 0; a < axes; ++a) p.at.push_back(*swept_number(outcome.values[i][numeric[a]]));
+    for (std::size_t a = 0; a < axes; ++a) p.at.push_back(*read_finite(outcome.values[i][numeric[a]]));
     for (const std::size_t a : worded)
       p.words += (p.words.empty() ? "" : ", ") + request.keys[a].substr(request.keys[a].find('.') + 1) + " = " +
                  outcome.values[i][a];

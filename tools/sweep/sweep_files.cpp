@@ -4,20 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/run/in_words.hpp"
+#include "tools/files/csv_cell.hpp"
+#include "tools/outcome/findings_json.hpp"
+#include "tools/report/in_words.hpp"
 #include "tools/sweep/sweep_outcome.hpp"
 
 namespace delf {
 
 namespace {
-
-// As a table of comma-separated values has it: text with a comma, a quote or a line break stands in quotes.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
 
 // The numbers of all rows, in the order in which they first come.
 std::vector<std::string> all_numbers(const std::vector<SweepRow>& rows) {
@@ -39,10 +33,6 @@ std::string warnings_in_words(const std::vector<SweepRow>& rows) {
     if (runs++ == 0) first = warnings->front();
   }
   return runs == 0 ? "" : fmt::format("  warnings   of {} runs, in sweep.json; the first: {}\n", runs, first);
-}
-
-nlohmann::ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
 }  // namespace
@@ -67,27 +57,26 @@ std::string usual_number(const std::vector<SweepRow>& rows) {
 std::string sweep_csv(const SweepRequest& request, const SweepOutcome& outcome) {
   const std::vector<std::string> numbers = all_numbers(outcome.rows);
   std::string text;
-  for (const std::string& key : request.keys) text += cell(key) + ",";
+  for (const std::string& key : request.keys) text += csv_cell(key) + ",";
   text += "status";
-  for (const std::string& name : numbers) text += "," + cell(name);
+  for (const std::string& name : numbers) text += "," + csv_cell(name);
   text += ",failure\n";
   for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
-    for (const std::string& value : outcome.values[i]) text += cell(value) + ",";
+    for (const std::string& value : outcome.values[i]) text += csv_cell(value) + ",";
     text += outcome.rows[i].status;
     for (const std::string& name : numbers) text += fmt::format(",{}", outcome.rows[i].number(name));
-    text += "," + cell(outcome.rows[i].failure) + "\n";
+    text += "," + csv_cell(outcome.rows[i].failure) + "\n";
   }
   return text;
 }
 
 std::string sweep_json(const SweepRequest& request, const SweepOutcome& outcome) {
-  using Json = nlohmann::ordered_json;
   Json json;
   json["version"] = DELF_VERSION;
   json["scene"] = outcome.scene;
   json["status"] = outcome.status;
   json["keys"] = request.keys;
-  json["number"] = outcome.number.empty() ? Json() : Json(outcome.number);
+  json["number"] = text_or_null(outcome.number);
   json["jobs"] = request.jobs;
   json["seconds"] = outcome.seconds;
   json["runs_asked"] = outcome.asked;
@@ -99,9 +88,9 @@ std::string sweep_json(const SweepRequest& request, const SweepOutcome& outcome)
                          {"low", t->low},
                          {"high", t->high},
                          {"number", outcome.number},
-                         {"level", number_or_null(t->level)},
-                         {"at_low", number_or_null(t->at_low)},
-                         {"at_high", number_or_null(t->at_high)}};
+                         {"level", t->level},
+                         {"at_low", t->at_low},
+                         {"at_high", t->at_high}};
   auto& runs = json["runs"] = Json::array();
   for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
     const SweepRow& row = outcome.rows[i];
@@ -109,11 +98,11 @@ std::string sweep_json(const SweepRequest& request, const SweepOutcome& outcome)
     for (std::size_t a = 0; a < request.keys.size(); ++a) settings[request.keys[a]] = outcome.values[i][a];
     runs.push_back({{"settings", settings},
                     {"status", row.status},
-                    {"failure", row.failure.empty() ? Json() : Json(row.failure)},
-                    {"folder", row.folder.empty() ? Json() : Json(row.folder)},
+                    {"failure", text_or_null(row.failure)},
+                    {"folder", text_or_null(row.folder)},
                     {"summary", row.summary}});
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string sweep_report(const SweepRequest& request, const SweepOutcome& outcome) {

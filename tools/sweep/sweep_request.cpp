@@ -8,11 +8,11 @@
 #include <fstream>
 #include <thread>
 
+#include "lattice/read_number.hpp"
 #include "lattice/text_parts.hpp"
 #include "tools/complex/complex_scene.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/values.hpp"
-#include "tools/sweep/swept_number.hpp"
 
 namespace delf {
 
@@ -36,7 +36,7 @@ std::vector<std::string> range(const Setting& s, double from, double to, double 
 
 // Text, lists of times and regions hold commas and colons of their own.
 bool may_be_swept(const Setting& s) {
-  if (const Key* key = find_key(s.key)) return key->type != KeyType::text && key->type != KeyType::times;
+  if (const Parameter* key = find_key(s.key)) return type_of(*key) != KeyType::text;
   return s.key.starts_with("theory.");  // a parameter that the scene declares
 }
 
@@ -91,14 +91,14 @@ void read_bisection(const Scene& scene, const Values& values, SweepRequest& requ
   const std::vector<std::string> ends =
       equals == std::string::npos ? std::vector<std::string>() : parts_of(text.substr(equals + 1), ':');
   std::optional<double> low, high;
-  if (ends.size() == 2) low = swept_number(ends[0]), high = swept_number(ends[1]);
+  if (ends.size() == 2) low = read_finite(ends[0]), high = read_finite(ends[1]);
   if (!low || !high || !(*low < *high))
     throw scene.settings.error("sweep.bisect", "write KEY=a:b with a < b, such as initial.speed=0.2:0.3");
   if (!request.keys.empty())
     throw scene.settings.error("sweep.bisect",
                                fmt::format("{} has several values; give one of both", request.keys.front()));
   request.keys = {trimmed(text.substr(0, equals))};
-  if (const Key* key = scene.settings.key(request.keys[0]); !key || key->type != KeyType::real)
+  if (const Parameter* key = scene.settings.key(request.keys[0]); !key || type_of(*key) != KeyType::real)
     throw scene.settings.error(
         "sweep.bisect", fmt::format("{} is no key with real values; choose one of `delf help run`", request.keys[0]));
   request.bisection =
@@ -117,7 +117,7 @@ std::vector<std::string> swept_values(const Setting& s) {
   if (!may_be_swept(s)) return {s.value};
   const std::vector<std::string> ends = parts_of(s.value, ':');
   if (ends.size() == 3) {
-    const auto from = swept_number(ends[0]), to = swept_number(ends[1]), step = swept_number(ends[2]);
+    const auto from = read_finite(ends[0]), to = read_finite(ends[1]), step = read_finite(ends[2]);
     if (!from || !to || !step || *step == 0) throw wrong(s, "is no range; write from:to:step, such as 0.1:0.5:0.05");
     return range(s, *from, *to, *step);
   }

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <memory>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 
 namespace delf {
 

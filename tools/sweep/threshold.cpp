@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tools/run/interrupt.hpp"
+#include "tools/report/interrupt.hpp"
 
 namespace delf {
 

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <set>
 
 #include "lattice/error.hpp"
+#include "lattice/read_number.hpp"
 #include "lattice/region.hpp"
 
 namespace delf {
@@ -20,14 +20,12 @@ constexpr std::int64_t most_sites = 100000;  // a projection onto first variatio
 
 // "2:5" or "7", which is 7:7
 bool read_range(std::string_view text, Range& range) {
-  const auto integer = [](std::string_view t, int& value) {
-    const auto [end, error] = std::from_chars(t.data(), t.data() + t.size(), value);
-    return error == std::errc() && end == t.data() + t.size();
-  };
   const std::size_t colon = text.find(':');
-  if (colon == std::string_view::npos) return integer(text, range.first) && integer(text, range.last);
-  return integer(text.substr(0, colon), range.first) && integer(text.substr(colon + 1), range.last) &&
-         range.first <= range.last;
+  const auto first = read_number<int>(text.substr(0, colon));
+  const auto last = colon == std::string_view::npos ? first : read_number<int>(text.substr(colon + 1));
+  if (!first || !last) return false;
+  range.first = *first, range.last = *last;
+  return range.first <= range.last;
 }
 
 }  // namespace

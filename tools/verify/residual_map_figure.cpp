@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/figures/figure_style.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/verify/verdict_figures.hpp"
 
 namespace delf {

@@ -9,7 +9,7 @@
 
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/gnuplot.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/verify/verdict_figures.hpp"
 
 namespace delf {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tools/figures/figure_style.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/verify/verdict_figures.hpp"
 
 namespace delf {

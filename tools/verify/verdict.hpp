@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "schemes/diagnosis/finding.hpp"
 #include "schemes/verify/check.hpp"
 #include "schemes/verify/force_share.hpp"
+#include "tools/diagnosis/finding.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {

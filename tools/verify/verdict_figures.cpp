@@ -5,7 +5,7 @@
 
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
-#include "tools/files/text_columns.hpp"
+#include "tools/report/text_columns.hpp"
 
 namespace delf {
 

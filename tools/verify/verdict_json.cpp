@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "tools/verify/findings_json.hpp"
+#include "tools/outcome/findings_json.hpp"
 #include "tools/verify/verdict.hpp"
 
 namespace delf {

@@ -6,9 +6,9 @@
 #include <regex>
 #include <vector>
 
-#include "tools/files/text_columns.hpp"
-#include "tools/run/in_words.hpp"
-#include "tools/run/outcome.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/in_words.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/verify/verdict.hpp"
 
 namespace delf {

@@ -12,8 +12,6 @@
 #include <span>
 
 #include "jets/expressions/expression.hpp"
-#include "schemes/diagnosis/diagnosis.hpp"
-#include "schemes/diagnosis/unwrap.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/step_density.hpp"
@@ -23,13 +21,15 @@
 #include "schemes/verify/flux_check.hpp"
 #include "schemes/verify/newton_order.hpp"
 #include "schemes/verify/wrong_sign.hpp"
-#include "tools/engine.hpp"
-#include "tools/run/further_runs.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/progress.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/diagnosis/diagnosis.hpp"
+#include "tools/diagnosis/unwrap.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/progress.hpp"
+#include "tools/report/seconds_since.hpp"
+#include "tools/rows/engine.hpp"
 #include "tools/scene/recorded_scene.hpp"
 #include "tools/verify/energy_history.hpp"
+#include "tools/verify/further_runs.hpp"
 
 namespace delf {
 

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "schemes/diagnosis/evidence.hpp"
-#include "schemes/diagnosis/rounded_values.hpp"
 #include "schemes/methods/own_energy.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -18,10 +16,12 @@
 #include "schemes/verify/nearby_check.hpp"
 #include "schemes/verify/noether_check.hpp"
 #include "schemes/verify/stress_balance.hpp"
-#include "tools/files/recorded_section.hpp"
-#include "tools/run/nearby_rows.hpp"
-#include "tools/scene/initial_rows.hpp"
-#include "tools/scene/section_source.hpp"
+#include "tools/diagnosis/evidence.hpp"
+#include "tools/diagnosis/rounded_values.hpp"
+#include "tools/rows/initial_rows.hpp"
+#include "tools/rows/nearby_rows.hpp"
+#include "tools/rows/recorded_section.hpp"
+#include "tools/rows/section_source.hpp"
 #include "tools/verify/residual_bins.hpp"
 #include "tools/verify/verdict.hpp"
 #include "tools/verify/verify_request.hpp"

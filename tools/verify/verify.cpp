@@ -5,12 +5,12 @@
 
 #include <cstdio>
 
-#include "tools/engine.hpp"
 #include "tools/figures/drawing.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/outcome.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/rows/engine.hpp"
 #include "tools/scene/brick_rows.hpp"
-#include "tools/scene/text_file.hpp"
 #include "tools/verify/momenta_verification.hpp"
 #include "tools/verify/verdict_figures.hpp"
 #include "tools/verify/verification.hpp"
@@ -52,14 +52,9 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   write_text_file(folder / "verify.json", verdict_json(scene, verdict));
   write_tables(folder, verdict);
   remove_figures(verdict_figure_names(), folder);
-  std::string missing;
-  if (scene.figures) {
-    try {
-      missing = draw_verdict(verdict, scene.name, scheme_in_words(scene.problem), scene.figure_form, folder);
-    } catch (const std::exception& error) {  // a failed figure does not fail the command
-      missing = error.what();
-    }
-  }
+  const std::string missing =
+      scene.figures ? draw_verdict(verdict, scene.name, scheme_in_words(scene.problem), scene.figure_form, folder)
+                    : std::string();
   fmt::print("{}", verdict_report(scene, verdict));
   fmt::print("{}: verify.json{}\n", folder.string(), scene.figures && missing.empty() ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);

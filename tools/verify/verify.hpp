@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/failure.hpp"
+#include "tools/report/failure.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {

@@ -6,25 +6,12 @@
 #include <algorithm>
 
 #include "jets/expressions/generator.hpp"
+#include "tools/scene/lists.hpp"
 #include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/verify/region_text.hpp"
 
 namespace delf {
-
-namespace {
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find_first_of(", \t", begin), text.size());
-    if (end > begin) words.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return words;
-}
-
-}  // namespace
 
 bool VerifyRequest::wants(std::string_view check) const { return std::ranges::find(checks, check) != checks.end(); }
 
@@ -34,15 +21,10 @@ const std::vector<std::string>& verify_checks() {
   return all;
 }
 
-const std::vector<std::string>& verify_faults() {
-  static const std::vector<std::string> all{"none", "variation", "sign", "field"};
-  return all;
-}
-
 VerifyRequest read_verify_request(const Scene& scene) {
   const Values values(scene.settings);
   VerifyRequest request;
-  for (const std::string& word : words_of(values.text("verify.regions").value_or(""))) {
+  for (const std::string& word : words_in(values.text("verify.regions").value_or(""))) {
     const auto& kinds = region_kinds();
     const auto kind = std::ranges::find_if(kinds, [&](RegionKind k) { return word == to_string(k); });
     if (kind != kinds.end()) request.regions.push_back({word, *kind, {}});
@@ -64,7 +46,7 @@ VerifyRequest read_verify_request(const Scene& scene) {
   if (request.regions.empty())
     for (const RegionKind kind : region_kinds()) request.regions.push_back({to_string(kind), kind, {}});
 
-  request.checks = words_of(values.text("verify.checks").value_or(""));
+  request.checks = words_in(values.text("verify.checks").value_or(""));
   request.chosen = !request.checks.empty();
   for (const std::string& check : request.checks)
     if (std::ranges::find(verify_checks(), check) == verify_checks().end())

@@ -31,8 +31,6 @@ struct VerifyRequest {
 
 /// What can be checked: forms, equations, noether, balance, reversal, derivatives, newton.
 const std::vector<std::string>& verify_checks();
-/// Faults that can be planted.
-const std::vector<std::string>& verify_faults();
 
 /// Throws BadScene.
 VerifyRequest read_verify_request(const Scene&);

@@ -12,9 +12,9 @@
 #include "schemes/stepping/force_evaluations.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "tools/engine.hpp"
-#include "tools/run/placed_row.hpp"
-#include "tools/scene/initial_rows.hpp"
+#include "tools/compare/placed_row.hpp"
+#include "tools/rows/engine.hpp"
+#include "tools/rows/initial_rows.hpp"
 #include "tools/workprecision/contestant.hpp"
 
 namespace delf {

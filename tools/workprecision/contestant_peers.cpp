@@ -48,28 +48,9 @@ double potential(const WaveEquation& e, double phi) {
   }
 }
 
-class PeerRacer final : public Racer {
+/// A program of the peers, from the first values and rates of a scene on.
+class PeerRacer : public Racer {
  public:
-  PeerRacer(const Scene& scene, const WaveEquation& equation, const peers::PeerInfo& info, const Resolution& r)
-      : equation_(equation),
-        h_(r.time_step),
-        forces_(equation.potential == WaveEquation::Potential::none ? WorkPrecisionRun::unknown
-                                                                    : static_cast<double>(info.forces)),
-        phi_(static_cast<std::size_t>(r.sites)),
-        phi_t_(phi_.size()) {
-    equation_.sites = r.sites;
-    const Lattice lattice = lattice_of(scene, r.sites);
-    const auto state = make_state(scene.initial, lattice);
-    state->values(0, lattice, phi_);
-    state->velocities(0, lattice, phi_t_);
-    first_ = phi_, first_t_ = phi_t_;
-    try {
-      peer_ = info.make(equation_);
-    } catch (const std::invalid_argument& error) {
-      throw BadInput("", error.what());
-    }
-    PeerRacer::restart();
-  }
   void restart() override {
     peer_->start(first_, first_t_);
     peer_->advance(h_, 0);  // a processor is no step
@@ -78,9 +59,8 @@ class PeerRacer final : public Racer {
   std::int64_t newest() const override { return newest_; }
   void advance(std::int64_t steps, const RunLimit& limit) override {
     // in one call, unless it takes so long that Ctrl-C would have to wait
-    const std::int64_t most = std::max<std::int64_t>(1, 4000000 / equation_.sites);
     while (steps > 0 && !limit.reached()) {
-      const std::int64_t now = std::min(steps, most);
+      const std::int64_t now = std::min(steps, most_in_a_call_);
       peer_->advance(h_, now);
       newest_ += now, steps -= now;
     }
@@ -90,10 +70,50 @@ class PeerRacer final : public Racer {
     for (const double v : out)
       if (!std::isfinite(v)) throw NotFinite("the field is no longer finite");
   }
+
+ protected:
+  PeerRacer(const Scene& scene, const Lattice& lattice, double h, std::int64_t most_in_a_call)
+      : h_(h), most_in_a_call_(most_in_a_call) {
+    const auto state = make_state(scene.initial, lattice);
+    for (std::vector<double>* row : {&phi_, &phi_t_, &first_, &first_t_})
+      row->resize(static_cast<std::size_t>(lattice.sites() * state->components()));
+    state->values(0, lattice, first_);
+    state->velocities(0, lattice, first_t_);
+  }
+  void start(std::unique_ptr<peers::Peer> peer) {
+    peer_ = std::move(peer);
+    PeerRacer::restart();
+  }
+  /// Values and rates of the newest row, phi_ and phi_t_.
+  void fetch() const { peer_->copy(phi_, phi_t_); }
+
+  mutable std::vector<double> phi_, phi_t_;
+
+ private:
+  double h_;
+  std::int64_t most_in_a_call_, newest_ = 0;
+  std::vector<double> first_, first_t_;
+  std::unique_ptr<peers::Peer> peer_;
+};
+
+class FieldRacer final : public PeerRacer {
+ public:
+  FieldRacer(const Scene& scene, const WaveEquation& equation, const peers::PeerInfo& info, const Resolution& r)
+      : PeerRacer(scene, lattice_of(scene, r.sites), r.time_step, std::max<std::int64_t>(1, 4000000 / r.sites)),
+        equation_(equation),
+        forces_(equation.potential == WaveEquation::Potential::none ? WorkPrecisionRun::unknown
+                                                                    : static_cast<double>(info.forces)) {
+    equation_.sites = r.sites;
+    try {
+      start(info.make(equation_));
+    } catch (const std::invalid_argument& error) {
+      throw BadInput("", error.what());
+    }
+  }
   double forces() const override { return forces_; }
   // k Σ ½φ_t² + ½φ_x² + V, with φ_x by central differences of order eight
   double energy() const override {
-    peer_->copy(phi_, phi_t_);
+    fetch();
     constexpr double weights[] = {4. / 5, -1. / 5, 4. / 105, -1. / 280};
     const int N = equation_.sites;
     const double k = equation_.length / N;
@@ -113,58 +133,26 @@ class PeerRacer final : public Racer {
 
  private:
   WaveEquation equation_;
-  double h_, forces_;
-  mutable std::vector<double> phi_, phi_t_;
-  std::vector<double> first_, first_t_;
-  std::unique_ptr<peers::Peer> peer_;
-  std::int64_t newest_ = 0;
+  double forces_;
 };
 
-class BodyRacer final : public Racer {
+class BodyRacer final : public PeerRacer {
  public:
   BodyRacer(const Scene& scene, peers::BodyPeerInfo info, const Resolution& r)
-      : info_(std::move(info)), mass_(mass_of(scene)), h_(r.time_step), peer_(info_.make(mass_)) {
-    const auto state = make_state(scene.initial, scene.problem.lattice);
-    for (std::vector<double>* row : {&q_, &q_t_, &first_, &first_t_})
-      row->resize(static_cast<std::size_t>(state->components()));
-    state->values(0, scene.problem.lattice, first_);
-    state->velocities(0, scene.problem.lattice, first_t_);
-    BodyRacer::restart();
-  }
-  static double mass_of(const Scene& scene) {
-    return scene.problem.parameters.maybe<double>("theory.mass").value_or(1);
-  }
-  void restart() override {
-    peer_->start(first_, first_t_);
-    newest_ = 0;
-  }
-  std::int64_t newest() const override { return newest_; }
-  void advance(std::int64_t steps, const RunLimit& limit) override {
-    constexpr std::int64_t between_interrupts = 1 << 20;
-    while (steps > 0 && !limit.reached()) {
-      const std::int64_t now = std::min(steps, between_interrupts);
-      peer_->advance(h_, now);
-      newest_ += now, steps -= now;
-    }
-  }
-  void copy(std::span<double> out) const override {
-    peer_->copy(out, q_t_);
-    for (const double q : out)
-      if (!std::isfinite(q)) throw NotFinite("the body is no longer at a finite place");
+      : PeerRacer(scene, scene.problem.lattice, r.time_step, 1 << 20),
+        info_(std::move(info)),
+        mass_(scene.problem.parameters.maybe<double>("theory.mass").value_or(1)) {
+    start(info_.make(mass_));
   }
   double forces() const override { return static_cast<double>(info_.forces); }
   double energy() const override {
-    peer_->copy(q_, q_t_);
-    return info_.energy(mass_, q_, q_t_);
+    fetch();
+    return info_.energy(mass_, phi_, phi_t_);
   }
 
  private:
   peers::BodyPeerInfo info_;
-  double mass_, h_;
-  std::unique_ptr<peers::Peer> peer_;
-  mutable std::vector<double> q_, q_t_;
-  std::vector<double> first_, first_t_;
-  std::int64_t newest_ = 0;
+  double mass_;
 };
 
 std::vector<Contestant> body_contestants(const Scene& scene) {
@@ -187,7 +175,7 @@ std::vector<Contestant> peer_contestants(const Scene& scene) {
   for (const peers::PeerInfo& info : peers::peers())
     all.push_back({info.name, true, info.processed, false, 1, 0, false,
                    [&scene, &info, equation = *equation](const Resolution& r) {
-                     return std::unique_ptr<Racer>(new PeerRacer(scene, equation, info, r));
+                     return std::unique_ptr<Racer>(new FieldRacer(scene, equation, info, r));
                    }});
   return all;
 }

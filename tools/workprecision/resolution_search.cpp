@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "lattice/error.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/seconds_since.hpp"
 
 namespace delf {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/compare/solution_error.hpp"
 #include "tools/workprecision/contestant.hpp"
-#include "tools/run/solution_error.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {

@@ -3,9 +3,9 @@
 #include <chrono>
 #include <limits>
 
-#include "tools/run/interrupt.hpp"
-#include "tools/run/seconds_since.hpp"
-#include "tools/workprecision/step_clock.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/seconds_since.hpp"
+#include "tools/report/step_clock.hpp"
 
 namespace delf {
 

@@ -7,14 +7,14 @@
 #include <chrono>
 #include <cstdio>
 
-#include "tools/engine.hpp"
 #include "tools/figures/drawing.hpp"
-#include "tools/run/interrupt.hpp"
-#include "tools/run/progress.hpp"
-#include "tools/run/reference_run.hpp"
-#include "tools/run/seconds_since.hpp"
-#include "tools/scene/text_file.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/report/interrupt.hpp"
+#include "tools/report/progress.hpp"
+#include "tools/report/seconds_since.hpp"
+#include "tools/rows/engine.hpp"
 #include "tools/workprecision/lower_envelope.hpp"
+#include "tools/workprecision/reference_run.hpp"
 #include "tools/workprecision/timed_rounds.hpp"
 
 namespace delf {
@@ -41,16 +41,10 @@ ExitCode workprecision_in(const fs::path& folder, const Scene& scene) {
   write_text_file(folder / "workprecision.csv", workprecision_csv(outcome));
   write_text_file(folder / "workprecision.md", workprecision_markdown(scene, request, outcome));
   write_text_file(folder / "workprecision.tex", workprecision_latex(scene, request, outcome));
-  std::string missing;
   std::error_code none;
   remove_figures({"workprecision"}, folder);
-  if (scene.figures && !outcome.runs.empty()) {
-    try {
-      missing = draw_workprecision(scene, outcome, folder);
-    } catch (const std::exception& error) {  // a failed figure does not fail the command
-      missing = error.what();
-    }
-  }
+  const std::string missing =
+      scene.figures && !outcome.runs.empty() ? draw_workprecision(scene, outcome, folder) : std::string();
   fmt::print("{}", workprecision_report(scene, request, outcome));
   const bool drawn = fs::exists(folder / "figures" / ("workprecision." + scene.figure_form.formats.front()), none);
   fmt::print("{}: workprecision.json workprecision.csv workprecision.md workprecision.tex{}\n", folder.string(),

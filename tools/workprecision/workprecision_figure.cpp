@@ -8,9 +8,9 @@
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/gnuplot.hpp"
-#include "tools/files/text_columns.hpp"
-#include "tools/scene/text_file.hpp"
-#include "tools/workprecision/step_clock.hpp"
+#include "tools/files/text_file.hpp"
+#include "tools/report/step_clock.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {

@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "tools/verify/findings_json.hpp"
-#include "tools/workprecision/step_clock.hpp"
+#include "tools/files/csv_cell.hpp"
+#include "tools/outcome/findings_json.hpp"
+#include "tools/report/step_clock.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {
@@ -41,11 +42,6 @@ Json winner(const WorkPrecisionOutcome& o, const std::optional<std::size_t>& ind
           {"time_step", r.time_step},
           {"error_linf", r.error_linf},
           {"seconds", r.seconds}};
-}
-
-// A field of a line of CSV; names of schemes hold commas.
-std::string quoted(const std::string& text) {
-  return text.find_first_of(",\"") == std::string::npos ? text : "\"" + text + "\"";
 }
 
 }  // namespace
@@ -96,7 +92,7 @@ std::string workprecision_csv(const WorkPrecisionOutcome& o) {
       "scheme,peer,sites,time_step,steps,error_linf,error_l2,energy_error_max,position_error,velocity_error,seconds,"
       "seconds_min,seconds_max,seconds_setup,repeats,on_envelope,forces_per_step\n";
   for (const WorkPrecisionRun& r : o.runs)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.scheme), r.peer ? 1 : 0,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(r.scheme), r.peer ? 1 : 0,
                         r.sites, r.time_step, r.steps, r.error_linf, r.error_l2, r.energy_error_max, r.position_error,
                         r.velocity_error, r.seconds, r.seconds_min, r.seconds_max, r.seconds_setup, r.repeats,
                         r.on_envelope ? 1 : 0, r.forces_per_step);

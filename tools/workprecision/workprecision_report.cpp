@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/files/text_columns.hpp"
-#include "tools/run/in_words.hpp"
-#include "tools/workprecision/step_clock.hpp"
+#include "tools/report/in_words.hpp"
+#include "tools/report/step_clock.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {

@@ -21,9 +21,6 @@ struct WorkPrecisionRequest {
   std::uint64_t seed = 1;  ///< of the order in which runs are timed
 };
 
-/// Names apart at the commas that no parentheses hold: "triangle, spacetime (2,2) gauss".
-std::vector<std::string> names_in(const std::string& text);
-
 /// Throws BadScene.
 WorkPrecisionRequest read_workprecision_request(const Scene&);
 

@@ -47,7 +47,7 @@ class Contraction {
   const RowEquations& equations_;
   std::vector<std::vector<double>> gains_;
   double size_ = -1, within_ = 0;
-  double along_ = std::numeric_limits<double>::infinity();  ///< q of the last step that was looked at along its way
+  double along_ = std::numeric_limits<double>::infinity();  ///< q of the last step that was checked along its way
 };
 
 }  // namespace delf

@@ -8,14 +8,14 @@
 namespace delf {
 
 KeptRows::KeptRows(const LatticeSystem& system, const RowLayout& layout, const RowEquations& equations, RowTable& table,
-                   int history, double turn)
+                   int history, double monodromy)
     : system_(system),
       layout_(layout),
       equations_(equations),
       table_(table),
       d_(system.components()),
       history_(history),
-      turn_(turn) {}
+      monodromy_(monodromy) {}
 
 void KeptRows::start(const std::vector<std::vector<double>>& rows) {
   leave_place();
@@ -30,7 +30,7 @@ void KeptRows::set(int back, const std::vector<double>& values) {
   for (int a = 0; a < d_; ++a) {
     for (std::size_t i = 0; i < one.size(); ++i)
       one[i] = values[i * static_cast<std::size_t>(d_) + static_cast<std::size_t>(a)];
-    layout_.scatter(one, table_[equations_.y().row(back, a)], turn_);
+    layout_.scatter(one, table_[equations_.y().row(back, a)], monodromy_);
   }
 }
 
@@ -42,8 +42,16 @@ void KeptRows::find_increment(int back) {
   }
 }
 
-void KeptRows::turn() {
-  table_.turn(equations_.y()), table_.turn(equations_.v());
+void KeptRows::extrapolate() {
+  for (int a = 0; a < d_; ++a) {
+    const double *const y = table_[equations_.y().row(1, a)], *const v = table_[equations_.v().row(1, a)];
+    double *const new_y = table_[equations_.y().row(0, a)], *const new_v = table_[equations_.v().row(0, a)];
+    for (std::size_t i = 0; i < layout_.doubles(); ++i) new_v[i] = v[i], new_y[i] = y[i] + v[i];
+  }
+}
+
+void KeptRows::advance() {
+  table_.advance(equations_.y()), table_.advance(equations_.v());
   ++n_;
   known_ = std::min(known_ + 1, history_ + 1);
 }
@@ -66,7 +74,7 @@ double KeptRows::largest(int back) const {
 }
 
 Window KeptRows::window(int rows) const {
-  Window result{&system_.lattice(), d_, turn_, n_ - rows + 1, {}};
+  Window result{&system_.lattice(), d_, monodromy_, n_ - rows + 1, {}};
   for (int back = rows; back >= 1; --back) result.rows.push_back(values(number(back)));
   return result;
 }
@@ -92,7 +100,7 @@ void KeptRows::go_in_place() {
     }
 }
 
-void KeptRows::turn_in_place() {
+void KeptRows::advance_in_place() {
   ++n_;
   known_ = 1;
 }
@@ -108,7 +116,7 @@ void KeptRows::leave_place() {
 
 void KeptRows::go_back_to_kept() {
   leave_place();
-  table_.turn_back(equations_.y()), table_.turn_back(equations_.v());
+  table_.go_back(equations_.y()), table_.go_back(equations_.v());
   n_ = kept_row_;
   known_ = 1;
 }

@@ -14,8 +14,8 @@ namespace delf {
 /// row n + 1 is made. Steps in place make it over row n; the row before the first of them stays.
 class KeptRows {
  public:
-  /// For equations that read `history` rows; φ(x + L) = φ(x) + turn.
-  KeptRows(const LatticeSystem&, const RowLayout&, const RowEquations&, RowTable&, int history, double turn);
+  /// For equations that read `history` rows; φ(x + L) = φ(x) + monodromy.
+  KeptRows(const LatticeSystem&, const RowLayout&, const RowEquations&, RowTable&, int history, double monodromy);
 
   /// The newest `history` of these rows, and the increments between them.
   void start(const std::vector<std::vector<double>>& rows);
@@ -23,8 +23,10 @@ class KeptRows {
   void set(int back, const std::vector<double>& values);
   /// Increments of number `back`, from its row and the row before.
   void find_increment(int back);
+  /// y_{n+1} = y_n + v_n
+  void extrapolate();
   /// Row n + 1 has been made.
-  void turn();
+  void advance();
 
   std::int64_t newest() const { return n_; }
   std::int64_t start_row() const { return started_; }  ///< the increment to the row before it is not known
@@ -42,7 +44,7 @@ class KeptRows {
   bool in_place() const { return !beside_.empty(); }
   /// From here on row n + 1 takes the place of row n.
   void go_in_place();
-  void turn_in_place();
+  void advance_in_place();
   void leave_place();
   /// Back to the row before the first step in place.
   void go_back_to_kept();
@@ -58,7 +60,7 @@ class KeptRows {
   const RowEquations& equations_;
   RowTable& table_;
   int d_, history_;
-  double turn_;
+  double monodromy_;
   std::int64_t n_ = -1, started_ = -1, kept_row_ = -1;
   int known_ = 0;
   std::vector<double*> beside_;  ///< where row n + 1 is made when steps are not in place; empty if they are not

@@ -20,8 +20,8 @@ constexpr int sites_in_cache = 1 << 15;
 
 }  // namespace
 
-int Predictor::rows_for(int seed_order, int sites) {
-  return std::clamp(seed_order, 1, sites <= sites_in_cache ? most_order : 3);
+int Predictor::rows_for(int wanted, int sites) {
+  return std::clamp(wanted, 1, sites <= sites_in_cache ? most_order : 3);
 }
 
 Predictor::Predictor(const RowEquations& equations, const RowLayout& layout, int most_rows)

@@ -16,8 +16,8 @@ namespace delf {
 /// whose error was ∇^p g_n a step ago. The order is chosen anew from time to time by what the rows show.
 class Predictor {
  public:
-  /// The most rows worth keeping for a start value of `seed_order` rows: few where rows outgrow the cache.
-  static int rows_for(int seed_order, int sites);
+  /// The most rows worth keeping for predictions of the `wanted` order at most: few where rows outgrow the cache.
+  static int rows_for(int wanted, int sites);
 
   Predictor(const RowEquations&, const RowLayout&, int most_rows);
 

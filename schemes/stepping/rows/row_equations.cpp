@@ -27,11 +27,11 @@ RowTable::Ring RowTable::add(const RowLayout& layout, int held, int width) {
   if (held == 0) rows_.resize(rows_.size() + at(width), nullptr);
   return ring;
 }
-void RowTable::turn(const Ring& ring) {
+void RowTable::advance(const Ring& ring) {
   const auto first = rows_.begin() + ring.first, last = first + ring.held * ring.width;
   std::rotate(first, last - ring.width, last);
 }
-void RowTable::turn_back(const Ring& ring) {
+void RowTable::go_back(const Ring& ring) {
   const auto first = rows_.begin() + ring.first;
   std::rotate(first, first + ring.width, first + ring.held * ring.width);
 }
@@ -142,7 +142,7 @@ void RowEquations::build_rows(RowTable& table, int source_rows) {
                      !has_walls();
       const int held = std::max(newest - oldest + 1, row.reads_unknown ? source_rows * row.stride + 1 : 1);
       row.ring = table.add(layout_, row.is_local ? 0 : held);
-      if (row.reads_unknown) row.change = table.add(layout_, 1).first;
+      if (row.reads_unknown) row.correction = table.add(layout_, 1).first;
       row.outputs = terms.outputs_per_group;
       if (std::max(terms.groups[at(row.group)].inputs.size(), at(row.outputs)) > most_values)
         throw NoConvergence("source terms of so many values go slab by slab");
@@ -263,31 +263,23 @@ double prediction_weight(int p, int j) {
   return j % 2 == 0 ? -ways : ways;
 }
 
-void RowEquations::add_sources(RowSum& sum, const Term& t, double c, Taking taking) const {
+void RowEquations::add_sources(RowSum& sum, const Term& t, double c, Solving solving) const {
   const SourceRow& row = source_of(t);
   const bool unknown = row.reads_unknown && t.age == row.newest;
-  if (taking.changes) {
-    if (unknown) sum.add(row.change, t.shift, c);
-  } else if (!unknown || taking.predicted_from == 0) {
-    sum.add(known_row(t), t.shift, c);
-  } else {
-    for (int j = 1; j <= taking.predicted_from; ++j)
-      sum.add(row.ring.row(j * row.stride), t.shift, c * prediction_weight(taking.predicted_from, j));
-  }
+  if (solving == Solving::step) sum.add(known_row(t), t.shift, c);
+  else if (unknown) sum.add(row.correction, t.shift, c);
 }
 
 void RowEquations::build_sums() {
   measured_ = v_.row(v_.held);
   for (const SourceRow& row : sources_)
-    measured_ = std::max({measured_, row.ring.row(std::max(1, row.ring.held)), row.change + 1});
-  known_.resize(static_cast<std::size_t>(iterates_ ? most_rows_ + 1 : 1));
+    measured_ = std::max({measured_, row.ring.row(std::max(1, row.ring.held)), row.correction + 1});
   for (int a = 0; a < d_; ++a) {
     const EquationTerms& equation = equations_.bulk[at(a)];
     for (int parity = 0; parity < (bricks_ ? 2 : 1); ++parity) {
       const double sign = parity == 0 ? 1 : -1;
       const double constant = equation.constant + sign * equation.constant_alternating;
-      std::vector<RowSum> known(known_.size());
-      RowSum correction, all;
+      RowSum known, correction, all;
       for (const Term& t : equation.terms) {
         if (bricks_ && !brick_exists(t, equation.shift, parity)) continue;
         const double c = t.coefficient + sign * t.alternating;
@@ -296,74 +288,69 @@ void RowEquations::build_sums() {
         if (t.source == Source::increment && t.shift != 0) reads_increments_beside_ = true;
         if (t.source == Source::difference) all.add_difference(measured_row(t), t.shift, c);
         else all.add(measured_row(t), t.shift, c);
-        if (t.source == Source::output) add_sources(correction, t, c, {0, true});
-        for (std::size_t p = 0; p < known.size(); ++p) {
-          if (t.source == Source::output) add_sources(known[p], t, c, {static_cast<int>(p), false});
-          else if (t.source == Source::difference) known[p].add_difference(known_row(t), t.shift, c);
-          else if (t.source != Source::unknown) known[p].add(known_row(t), t.shift, c);
-        }
+        if (t.source == Source::output)
+          add_sources(known, t, c, Solving::step), add_sources(correction, t, c, Solving::correction);
+        else if (t.source == Source::difference) known.add_difference(known_row(t), t.shift, c);
+        else if (t.source != Source::unknown) known.add(known_row(t), t.shift, c);
       }
       const auto finish = [this, a](RowSum& sum) { sum.scale(-scale_of(a)), sum.pair_up(); };
       all.add_constant(constant);
       all_.push_back(std::move(all));
       finish(correction);
       correction_.push_back(std::move(correction));
-      for (std::size_t p = 0; p < known.size(); ++p) {
-        known[p].add_constant(constant);
-        finish(known[p]);
-        known_[p].push_back(std::move(known[p]));
-      }
+      known.add_constant(constant);
+      finish(known);
+      known_.push_back(std::move(known));
     }
   }
   for (const SourceRow& row : sources_) {
     predictions_.emplace_back(static_cast<std::size_t>(most_rows_ + 1));
     for (int p = 0; p <= most_rows_ && row.reads_unknown; ++p) {
       RowSum& sum = predictions_.back()[static_cast<std::size_t>(p)];
-      if (p == 0) sum.add(row.ring.row(0), 0, 1);
       for (int j = 1; j <= p; ++j) sum.add(row.ring.row(j * row.stride), 0, prediction_weight(p, j));
     }
   }
 }
 
-void RowEquations::right_side(const RowTable& table, std::int64_t n, int a, Taking taking, int from, int to,
+void RowEquations::right_side(const RowTable& table, std::int64_t n, int a, Solving solving, int from, int to,
                               double* w) const {
-  if (!bricks_) return sum_of(a, 0, taking).evaluate(table.data(), layout_.at(from), layout_.at(to), lanes, w);
+  if (!bricks_) return sum_of(a, 0, solving).evaluate(table.data(), layout_.at(from), layout_.at(to), lanes, w);
   // Packs of even and odd sites take turns; site + row of the equation tells which sum is theirs.
   const int row_parity = static_cast<int>((n + 1 - equations_.bulk[at(a)].shift) & 1);
   for (int half = 0; half < 2; ++half)
-    sum_of(a, ((from + half) & 1) ^ row_parity, taking)
+    sum_of(a, ((from + half) & 1) ^ row_parity, solving)
         .evaluate(table.data(), layout_.at(from + half), layout_.at(to), 2 * lanes, w);
 }
 
-void RowEquations::right_sides(const RowTable& table, std::int64_t n, Taking taking, int from, int to,
+void RowEquations::right_sides(const RowTable& table, std::int64_t n, Solving solving, int from, int to,
                                double* const* w) const {
-  for (int a = 0; a < d_; ++a) right_side(table, n, a, taking, from, to, w[a]);
+  for (int a = 0; a < d_; ++a) right_side(table, n, a, solving, from, to, w[a]);
   for (const SiteEquation& special : equations_.exceptional) {
-    const double E = value_at(special, table, n, &taking, nullptr);
+    const double E = value_at(special, table, n, &solving, nullptr);
     for (int slot : layout_.slots_of(special.site)) w[special.component][slot] = -E;
   }
 }
 
-/// E at one site, by its own terms: what a right side takes of it, or, without `taking`, all of it at row n + 1.
-double RowEquations::value_at(const SiteEquation& special, const RowTable& table, std::int64_t n, const Taking* taking,
+/// E at one site, by its own terms: the part of it that is the right side, or, if `solving` is null, all of it at row n + 1.
+double RowEquations::value_at(const SiteEquation& special, const RowTable& table, std::int64_t n, const Solving* solving,
                               double* absolute) const {
   const int own = layout_.slot(special.site), a = special.component;
-  const bool changes = taking && taking->changes;
+  const bool corrects = solving && *solving == Solving::correction;
   if (special.fixed)  // v_{n+1} = v_n + w = 0
-    return changes ? 0 : wall_scale_ * table[v_.row(taking ? 1 : 0, a)][own];
+    return corrects ? 0 : wall_scale_ * table[v_.row(solving ? 1 : 0, a)][own];
   const EquationTerms& equation = special.equation;
   const double sign = (n + 1 - equation.shift + special.site) % 2 == 0 ? 1 : -1;
-  double value = changes ? 0 : equation.constant + sign * equation.constant_alternating;
+  double value = corrects ? 0 : equation.constant + sign * equation.constant_alternating;
   for (const Term& t : equation.terms) {
     const int beside = layout_.slot(std::clamp(special.site + t.shift, 0, layout_.sites() - 1));
     const double c = t.coefficient + sign * t.alternating;
     double x = 0;
-    if (taking && t.source == Source::output) {
+    if (solving && t.source == Source::output) {
       RowSum sum;
-      add_sources(sum, t, c, *taking);
+      add_sources(sum, t, c, *solving);
       x = sum.at(table.data(), beside - t.shift * lanes);
-    } else if (!taking || (!changes && t.source != Source::unknown)) {
-      const double* const row = table[taking ? known_row(t) : measured_row(t)];
+    } else if (!solving || (!corrects && t.source != Source::unknown)) {
+      const double* const row = table[solving ? known_row(t) : measured_row(t)];
       x = c * (row[beside] - (t.source == Source::difference ? row[own] : 0));
     }
     value += x;

@@ -7,6 +7,7 @@
 
 #include "schemes/solvers/linear_solver.hpp"
 #include "schemes/solvers/row_sum.hpp"
+#include "schemes/stepping/rows/row_operations.hpp"
 #include "schemes/system/equation_terms.hpp"
 
 namespace delf {
@@ -22,8 +23,9 @@ class RowTable {
   };
   /// `held` = 0: a place for a row that is elsewhere.
   Ring add(const RowLayout& layout, int held, int width = 1);
-  void turn(const Ring& ring);
-  void turn_back(const Ring& ring);
+  /// The oldest row becomes number 0; or number 0 the oldest.
+  void advance(const Ring& ring);
+  void go_back(const Ring& ring);
   double*& operator[](int row) { return rows_[static_cast<std::size_t>(row)]; }
   double* operator[](int row) const { return rows_[static_cast<std::size_t>(row)]; }
   const double* const* data() const { return rows_.data(); }
@@ -47,7 +49,7 @@ struct SourceRow {
   bool reads_back = false;       ///< it reads rows before n too
   int first_pack = 0, last_pack = 0;  ///< equations read it in these packs: all, or those near a wall
   int stride = 1;                ///< of bricks, those of the row before stand elsewhere: 2
-  int change = -1;               ///< row: its last change by an iteration
+  int correction = -1;           ///< row of δ, by which the last evaluation has changed it
 };
 
 /// The field equations of one slab for whole rows. With y_{n+1} = y_n + v_n + w,
@@ -71,18 +73,12 @@ class RowEquations {
   const LinearSolver& solver(std::int64_t n) const { return solver_[1] ? *solver_[n & 1] : *solver_[0]; }
   int reach() const { return reach_; }  ///< so many sites to either side right sides read y
 
-  /// What a right side takes for the source terms of the unknown row: number 0 of their rings, predictions from so many
-  /// rows, or what they have changed by.
-  struct Taking {
-    int predicted_from = 0;
-    bool changes = false;
-  };
   /// The right side of component a, times the solver's scale, for the packs from … to, into w.
-  void right_side(const RowTable&, std::int64_t n, int a, Taking, int from, int to, double* w) const;
+  void right_side(const RowTable&, std::int64_t n, int a, Solving, int from, int to, double* w) const;
   /// Of all components, w[a], and at walls.
-  void right_sides(const RowTable&, std::int64_t n, Taking, int from, int to, double* const* w) const;
+  void right_sides(const RowTable&, std::int64_t n, Solving, int from, int to, double* const* w) const;
   /// Of a component as a sum of rows, for all packs; null for bricks, whose packs take turns.
-  const RowSum* right_side(int a, Taking taking) const { return bricks_ ? nullptr : &sum_of(a, 0, taking); }
+  const RowSum* right_side(int a, Solving solving) const { return bricks_ ? nullptr : &sum_of(a, 0, solving); }
   /// The prediction of number 0 of a source row's ring.
   const RowSum& prediction(const SourceRow& row, int predicted_from) const {
     return predictions_[static_cast<std::size_t>(&row - sources_.data())][static_cast<std::size_t>(predicted_from)];
@@ -132,13 +128,12 @@ class RowEquations {
   const SourceRow& source_of(const Term&) const;
   int measured_count() const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
-  void add_sources(RowSum&, const Term&, double coefficient, Taking) const;
+  void add_sources(RowSum&, const Term&, double coefficient, Solving) const;
   std::size_t index_of(int a, int parity) const { return static_cast<std::size_t>(bricks_ ? 2 * a + parity : a); }
-  const RowSum& sum_of(int a, int parity, Taking taking) const {
-    return taking.changes ? correction_[index_of(a, parity)]
-                          : known_[static_cast<std::size_t>(taking.predicted_from)][index_of(a, parity)];
+  const RowSum& sum_of(int a, int parity, Solving solving) const {
+    return (solving == Solving::correction ? correction_ : known_)[index_of(a, parity)];
   }
-  double value_at(const SiteEquation&, const RowTable&, std::int64_t n, const Taking*, double* absolute) const;
+  double value_at(const SiteEquation&, const RowTable&, std::int64_t n, const Solving*, double* absolute) const;
   double scale_of(int a) const { return has_walls() ? 1 : solver_[0]->right_side_scale(a); }
 
   const LatticeSystem& system_;
@@ -153,8 +148,7 @@ class RowEquations {
   std::vector<SourceRow> sources_;
   std::vector<Inputs> inputs_;  ///< of each source row that is the first of its group
   int most_rows_;  ///< that predictions are made from
-  std::vector<std::vector<RowSum>> known_;  ///< [rows that predictions are made from][component, parity]
-  std::vector<RowSum> correction_, all_;
+  std::vector<RowSum> known_, correction_, all_;  ///< of each component and parity
   std::vector<std::vector<RowSum>> predictions_;  ///< [source row][rows that they are made from]
   std::unique_ptr<LinearSolver> solver_[2];  ///< the second only if bricks of odd rows differ
   RowBuffer positions_, measured_rows_;

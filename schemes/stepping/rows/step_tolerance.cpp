@@ -19,10 +19,10 @@ std::vector<std::vector<double>> gains_of(int d, const RowEquations& equations, 
   for (const SourceRow& source : equations.sources()) {
     std::vector<double>& gain = gains.emplace_back(static_cast<std::size_t>(d), 0.0);
     if (!source.reads_unknown) continue;
-    double* const delta = table[source.change];
+    double* const delta = table[source.correction];
     // Two sites in the middle: a source term at a wall, or between bricks, is read by no equation.
     for (const SourceRow& other : equations.sources())
-      if (other.reads_unknown) std::fill_n(table[other.change], layout.doubles(), 0.0);
+      if (other.reads_unknown) std::fill_n(table[other.correction], layout.doubles(), 0.0);
     for (const int site : {layout.sites() / 2 - 1, layout.sites() / 2}) {
       std::fill_n(delta, layout.doubles(), 0.0);
       for (const int slot : layout.slots_of(site)) delta[slot] = 1;
@@ -30,7 +30,7 @@ std::vector<std::vector<double>> gains_of(int d, const RowEquations& equations, 
       RowBuffer memory(layout, d);
       std::vector<double*> w;
       for (int a = 0; a < d; ++a) w.push_back(memory.row(a));
-      equations.right_sides(table, first_step, {0, true}, 0, layout.packs(), w.data());
+      equations.right_sides(table, first_step, Solving::correction, 0, layout.packs(), w.data());
       equations.solver(first_step).solve(w.data());
       std::vector<double> sites(static_cast<std::size_t>(layout.sites()));
       for (std::size_t a = 0; a < gain.size(); ++a) {

@@ -73,6 +73,8 @@ struct Solving {
     const double* const table[]{right()};
     std::vector<int> seen(static_cast<std::size_t>(layout.packs()));
     solution.assign(layout.doubles(), std::numeric_limits<double>::quiet_NaN());
+    RowBuffer zeros(layout.doubles()), made(layout.doubles(), 2);
+    RowUpdate update{zeros.row(0), zeros.row(0), made.row(0), made.row(1), 0.0, 1.0, 0.0};
     for (int end = 0; end < layout.packs();) {
       const int begin = end;
       end = std::min(layout.packs(), end + strip);
@@ -83,10 +85,11 @@ struct Solving {
         sweeps->forward(work(), end);
       }
       for (;;) {
-        const PackRange ready = sweeps->backward(work());
+        const PackRange ready = sweeps->ready();
         if (ready.first >= ready.last) break;
+        sweeps->backward(work(), update);
         for (int v = ready.first; v < ready.last; ++v) ++seen[static_cast<std::size_t>(v)];
-        std::copy(work() + layout.at(ready.first), work() + layout.at(ready.last),
+        std::copy(made.row(1) + layout.at(ready.first), made.row(1) + layout.at(ready.last),
                   solution.data() + layout.at(ready.first));
       }
     }

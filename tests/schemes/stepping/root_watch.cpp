@@ -92,9 +92,10 @@ Problem on_a_point(const std::string& theory, const std::string& method, double 
   p.theory = theory, p.method = method, p.lattice = Lattice::point(), p.time_step = h;
   return p;
 }
-Problem elements(const std::string& theory, const std::string& tableau, double h) {
+Problem elements(const std::string& theory, const std::string& tableau, double h,
+                 const std::string& continuity = "shared") {
   Problem p = on_a_point(theory, "cgvi", h);
-  p.parameters["scheme.tableau"] = tableau;
+  p.parameters["scheme.tableau"] = tableau, p.parameters["scheme.continuity"] = continuity;
   return p;
 }
 /// At every node of the first step the value of the vertex.
@@ -122,11 +123,12 @@ struct Motion {
   Lagrangian L;
   Numbers q, v;
   int steps = 30;
+  std::string continuity = "shared";
 };
 /// Steps of a body, each held against the root that a small step leads to.
 void add(Count& count, const Motion& motion) {
   MidpointBody by_hand(motion.L, motion.h, motion.q, motion.v);
-  Simulation simulation(elements(motion.theory, "midpoint", motion.h));
+  Simulation simulation(elements(motion.theory, "midpoint", motion.h, motion.continuity));
   for (int n = 0; n < motion.steps; ++n) {
     const auto right = by_hand.continued();
     try {
@@ -216,6 +218,22 @@ double distance(const std::vector<Numbers>& orbit, const std::vector<Numbers>& r
 }
 
 }  // namespace
+
+TEST_CASE("the first step is watched where multipliers join the steps, though the start has solved for it") {
+  Random random(83);
+  Count all;
+  for (const double h : {1.5, 2.0, 2.5, 3.0, 4.0}) {
+    Count count;
+    for (int n = 0; n < 12; ++n)
+      add(count, {"pendulum", h, pendulum, numbers({random(2.4, 3.0)}), numbers({random(-0.5, 0.5)}), 1, "multipliers"});
+    CAPTURE(h, count.solved, count.refused);
+    CHECK(count.other_root == 0);
+    CHECK(count.no_path == 0);
+    all.solved += count.solved, all.refused += count.refused;
+  }
+  CHECK(all.solved >= 12);
+  CHECK(all.refused >= 12);
+}
 
 TEST_CASE("discontinuous elements whose traces alternate stay on the orbit that shorter steps have") {
   // From step 13 on h = 1/16 went on from another root, with q1 = 0.11 in place of 0.50.

@@ -11,7 +11,7 @@
 #include "schemes/state.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/mirrored_in_time.hpp"
-#include "schemes/verify/time_reversal.hpp"
+#include "schemes/verify/reversal/time_reversal.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/r_adaptive_rows.hpp"
 

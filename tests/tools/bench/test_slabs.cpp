@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "tests/catch.hpp"
-#include "tools/bench/mechanics_by_hand.hpp"
+#include "tools/bench/by_hand/mechanics_by_hand.hpp"
+#include "tools/bench/by_hand/spacetime_by_hand.hpp"
 #include "tools/bench/slab_problems.hpp"
-#include "tools/bench/spacetime_by_hand.hpp"
 
 using namespace delf;
 using namespace delf::bench;

@@ -5,7 +5,7 @@
 #include "tests/catch.hpp"
 #include "tools/bench/collision.hpp"
 #include "tools/bench/command_line.hpp"
-#include "tools/bench/textbook_autovectorised.hpp"
+#include "tools/bench/textbook/textbook_autovectorised.hpp"
 
 using delf::bench::Collision;
 using delf::bench::Textbook;

@@ -6,14 +6,14 @@
 #include "tests/tools/program.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/film.hpp"
-#include "tools/run/trace.hpp"
+#include "tools/figures/trace.hpp"
 
 using namespace delf::testing;
 using delf::Film;
 using delf::Trace;
 
 TEST_CASE("figures are drawn as PNG and as SVG, and nothing else is left beside them") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   const Folder folder;
   const auto scene = GENERATE(as<std::string>(), "collision --run.until=30", "phi4-kink --run.until=5",
                               "kink --run.until=2 --output.times=0,1,1.7 --output.every=3",
@@ -34,7 +34,7 @@ TEST_CASE("figures are drawn as PNG and as SVG, and nothing else is left beside 
 }
 
 TEST_CASE("the figure of the energy error says which energy that is") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   const Folder folder;
   REQUIRE(delf_program(folder, "run kink --run.until=1 --out here").code == 0);
   const std::string svg = read(folder / "here/figures/energy.svg");
@@ -47,7 +47,7 @@ TEST_CASE("the figure of the energy error says which energy that is") {
 }
 
 TEST_CASE("figures name what they draw: the field, the density of a text, what colours stand for") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   const Folder folder;
   REQUIRE(delf_program(folder, "run kdv --run.until=0.5 --out kdv").code == 0);
   const std::string waves = read(folder / "kdv/figures/waveforms.svg");
@@ -67,7 +67,7 @@ TEST_CASE("figures name what they draw: the field, the density of a text, what c
 }
 
 TEST_CASE("waveforms are drawn over the exact solution, as long as there is one") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   const Folder folder;
   REQUIRE(delf_program(folder, "run soliton-bounce --run.until=0.2 --out exact").code == 0);
   CHECK(contains(read(folder / "exact/figures/waveforms.svg"), "grey: exact"));
@@ -125,7 +125,7 @@ TEST_CASE("frames farther apart than the motion lasts are aliased, whatever thei
 }
 
 TEST_CASE("a map that shows what is not there says so, in its title and in the report") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   const Folder folder;
   // the two collide every 25.29
   const auto [every, aliased] = GENERATE(table<std::string, bool>({{"13", false}, {"640", true}}));

@@ -52,7 +52,7 @@ constexpr double near = 0.2;
 }  // namespace
 
 TEST_CASE("the figures of a run look as they did, seen coarsely") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   const Folder folder;
   const std::string keys = " --output.format=png --output.titles=off --output.fields=off --out ";
   REQUIRE(delf_program(folder, "run breather --lattice.sites=129 --run.until=40" + keys + "breather").code == 0);
@@ -69,7 +69,7 @@ TEST_CASE("the figures of a run look as they did, seen coarsely") {
 }
 
 TEST_CASE("figures have the formats and the titles that are asked for") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   const Folder folder;
   const std::string run = "run kink --run.until=2 --out here ";
   REQUIRE(delf_program(folder, run).code == 0);

@@ -11,7 +11,7 @@
 #include "tests/tools/refused.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/files/hdf5_handle.hpp"
-#include "tools/scene/rows_table.hpp"
+#include "tools/files/rows_table.hpp"
 
 using namespace delf::testing;
 using delf::Hdf5Handle;
@@ -235,7 +235,7 @@ TEST_CASE("a table of rows is read in any order, and its errors are reported wit
 }
 
 TEST_CASE("figures of a point are a trajectory, and of two coordinates an orbit") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   struct Case {
     const char* scene;
     std::vector<std::string> drawn, not_drawn;

@@ -89,7 +89,8 @@ TEST_CASE("delf plan prints the density and its equations, and LaTeX of them alo
   CHECK(contains(latex.out, "\\varphi_{tt} - \\varphi_{xx} + \\frac{m\\,\\varphi^{3}}{10} = 0"));
   CHECK(latex.out.ends_with("\\]\n"));
   CHECK(contains(delf_program(folder, "plan collision").out, "equations  φ_tt − φ_xx + m² sin φ = 0"));
-  check_refused(delf_program(folder, "plan collision --latex"), {"theory.name = sine-gordon: is compiled"});
+  CHECK(contains(delf_program(folder, "plan collision --latex").out, "\\varphi_{tt} - \\varphi_{xx} + m^{2}\\,"));
+  check_refused(delf_program(folder, "plan solar-system --latex"), {"theory.name = solar-system: is compiled"});
   check_refused(delf_program(folder, "run own.ini --latex"), {"--latex: `run` prints no formulas"});
 }
 

@@ -6,7 +6,7 @@
 #include "tests/catch.hpp"
 #include "tests/tools/figures/has_gnuplot.hpp"
 #include "tests/tools/program.hpp"
-#include "tools/files/text_columns.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/verify/verdict.hpp"
 #include "tools/verify/verdict_figures.hpp"
 
@@ -145,7 +145,7 @@ TEST_CASE("text is wrapped at blanks, by columns and not by bytes, and words tha
 }
 
 TEST_CASE("the figures of a verdict are drawn as PNG and as SVG, and those without data are not") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   const Folder folder;
   CHECK(draw_verdict(verdict(), "the user's", "hexagon, N = 254", {}, folder.path()).empty());
   CHECK(verdict_figure_names().size() == 6);

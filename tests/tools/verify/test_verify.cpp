@@ -435,10 +435,10 @@ TEST_CASE("help verify lists every key of its section") {
   CHECK(ran.code == 0);
   int keys = 0;
   for (const auto& key : delf::keys())
-    if (key.name.starts_with("verify.")) {
+    if (key.key.starts_with("verify.")) {
       ++keys;
-      CHECK(contains(ran.out, std::string(key.name)));
-      CHECK(contains(ran.out, std::string(key.meaning)));
+      CHECK(contains(ran.out, std::string(key.key)));
+      CHECK(contains(ran.out, std::string(key.help)));
     }
   CHECK(keys == 10);
 }

@@ -309,15 +309,15 @@ TEST_CASE("help workprecision lists every key of its section") {
   CHECK(ran.code == 0);
   int keys = 0;
   for (const auto& key : delf::keys())
-    if (key.name.starts_with("workprecision.")) {
+    if (key.key.starts_with("workprecision.")) {
       ++keys;
-      CHECK(contains(ran.out, std::string(key.name)));
+      CHECK(contains(ran.out, std::string(key.key)));
     }
   CHECK(keys == 7);
 }
 
 TEST_CASE("workprecision draws its figure, with a line for each scheme and its slope") {
-  if (!has_gnuplot()) return;
+  REQUIRE(has_gnuplot());  // tools/setup installs it
   const WithScene folder;
   const Ran ran = delf_program(folder, "workprecision small.ini" + two + "--output.figures=on --out out");
   INFO(ran.err);

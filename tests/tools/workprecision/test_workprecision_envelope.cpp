@@ -4,8 +4,9 @@
 #include <numeric>
 
 #include "tests/catch.hpp"
+#include "tools/compare/solution_error.hpp"
+#include "tools/scene/lists.hpp"
 #include "tools/workprecision/lower_envelope.hpp"
-#include "tools/run/solution_error.hpp"
 #include "tools/workprecision/timed_rounds.hpp"
 
 using namespace delf;
@@ -148,7 +149,7 @@ TEST_CASE("repeats are shared so that the longest runs have the fewest, and each
 TEST_CASE("names are apart at commas outside parentheses") {
   CHECK(names_in("triangle, spacetime (2,2) gauss ,, hexagon") ==
         std::vector<std::string>{"triangle", "spacetime (2,2) gauss", "hexagon"});
-  CHECK(names_in("").empty());
+  CHECK(names_in(" ").empty());
 }
 
 TEST_CASE("a row of a finer lattice is read off between its sites, around the circle and its winding") {

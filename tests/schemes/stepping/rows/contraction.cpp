@@ -75,7 +75,7 @@ struct Iterations {
   Row advance() {
     RowBuffer w(layout, 1);
     double* const rows[]{w.row(0)};
-    equations.right_side(table, n, 0, {}, 0, layout.packs(), rows[0]);
+    equations.right_side(table, n, 0, Solving::step, 0, layout.packs(), rows[0]);
     equations.solver(0).solve(rows);
     Row change(static_cast<std::size_t>(sites)), increment(change), value(change);
     layout.gather(w.row(0), change);

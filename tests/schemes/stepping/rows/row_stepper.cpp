@@ -98,6 +98,21 @@ TEST_CASE("a step in place has the bits of one beside, whatever the length of ro
       }
 }
 
+TEST_CASE("recurrences along a long row of a linear theory are not shared by threads") {
+  const int N = 5120 * lanes - 5;  // threads that shared them wrote beyond their rows
+  std::vector<std::vector<double>> rows;
+  for (const int threads : {1, 3}) {
+    StepOptions options;
+    options.threads = threads;
+    Evolution evolution =
+        evolution_of(problem_of("wave"), "rectangle-symmetric", Lattice::circle(N, N * k), h, options);
+    evolution.stepper().start(waves(2, N, 1));
+    evolution.stepper().steps(3);
+    rows.push_back(evolution.stepper().row(0));
+  }
+  CHECK(rows[0] == rows[1]);
+}
+
 TEST_CASE("a step in place leaves no row before it, and no residual") {
   const int N = 5120 * lanes - 5;
   for (const std::string scheme : {"triangle-vertex", "rectangle-symmetric"}) {

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/theories/mechanics/henon_heiles.hpp"
+
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
+
+namespace delf {
+
+extern const TheoryEntry henon_heiles_theory;
+const TheoryEntry henon_heiles_theory{"henon-heiles",
+                                      "q₁_tt + q₁ + 2q₁q₂ = 0, q₂_tt + q₂ + q₁² − q₂² = 0",
+                                      {},
+                                      [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
+                                        return std::make_unique<TheoryOf<HenonHeiles>>(HenonHeiles{});
+                                      }};
+
+}  // namespace delf

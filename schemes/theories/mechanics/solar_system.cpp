@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/theories/mechanics/solar_system.hpp"
+
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
+
+namespace delf {
+
+extern const TheoryEntry solar_system_theory;
+const TheoryEntry solar_system_theory{"solar-system",
+                                      "q_i,tt = Σ_j G m_j (q_j − q_i)/|q_j − q_i|³: the Sun, Jupiter to Pluto",
+                                      {},
+                                      [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
+                                        return std::make_unique<TheoryOf<SolarSystem>>(SolarSystem{});
+                                      }};
+
+}  // namespace delf

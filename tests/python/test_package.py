@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""The module of the build tree, beyond what `python3 -m delf test` checks of an installed one (those checks run too)."""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import delf
+from delf import _delf, _selftest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.parametrize("check", _selftest.CHECKS, ids=lambda check: check.__name__)
+def test_of_installed_package(check):
+    check()
+
+
+@pytest.mark.parametrize("scene", ["collision", "kink", "breather", "phi4-kink", "interval", "coupled-sine-gordon",
+                                   "wave-map", "toda-chain", "pendulum", "beam"])
+def test_rows_are_those_of_the_program_to_the_bit(scene, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    run = delf.run(scene, steps=60, every=1, output_figures=False)
+    subprocess.run([delf.program(), "run", scene, "--run.steps=60", "--output.every=1", "--output.figures=off", "--out",
+                    tmp_path], check=True, capture_output=True)
+    loaded = delf.load(tmp_path)
+    for name in run.fields:
+        assert np.array_equal(run.fields[name].ravel(), loaded.fields[name].ravel(), equal_nan=True), name
+    for name in run.series.dtype.names:
+        assert np.array_equal(run.series[name], loaded.series[name], equal_nan=True), name
+    ours, theirs = dict(run.summary), dict(loaded.summary)
+    for timing in ("seconds", "ns_per_site_step"):
+        ours.pop(timing), theirs.pop(timing)
+    assert ours == theirs
+    assert run.text == (tmp_path / "scene.ini").read_text()
+
+
+def test_every_key_of_help_run_is_reachable():
+    text = subprocess.run([delf.program(), "help", "run"], check=True, capture_output=True, text=True).stdout
+    listed, section = set(), ""
+    for line in text.splitlines():
+        if match := re.match(r"^\s*\[([a-z]+)\]", line):
+            section = match[1]
+        elif match := re.match(r"^\s{1,4}([a-z]+\.[a-z_]\w*)\b", line):
+            listed.add(match[1])
+        elif section and (match := re.match(r"^\s{1,4}([a-z_]\w*)\s{2,}", line)):
+            listed.add(f"{section}.{match[1]}")
+    assert len(listed) > 60
+    known = {key["name"] for key in delf.keys()}
+    assert listed <= known, listed - known
+    scene = delf.Scene("collision")
+    for key in listed:
+        scene[key]  # a value or None; an unknown key raises
+
+
+def test_an_interrupt_ends_a_run_within_a_second_and_keeps_its_rows():
+    program = """
+import delf, sys, time
+print("begun", flush=True)
+try:
+    delf.run("collision", until=1e7, at_record=lambda r: None)
+except KeyboardInterrupt as interrupted:
+    print(len(interrupted.run.series) > 1, interrupted.run.status)
+"""
+    child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    child.stdout.readline()
+    time.sleep(1.5)
+    began = time.monotonic()
+    child.send_signal(signal.SIGINT)
+    out, _ = child.communicate(timeout=20)
+    assert out.split() == ["True", "interrupted"]
+    print(f"{time.monotonic() - began:.2f} s from the signal to the end of the process")
+
+
+def test_the_lock_is_released_while_stepping():
+    evolution = _selftest.pair(2000)
+    counted = [0]
+    over = threading.Event()
+
+    def count():
+        while not over.is_set():
+            counted[0] += 1
+    thread = threading.Thread(target=count)
+    thread.start()
+    evolution.step(5000)
+    over.set()
+    thread.join()
+    assert counted[0] > 1000
+
+
+def test_threads_may_share_an_evolution():
+    evolution = _selftest.pair()
+    rows = []
+
+    def work():
+        for _ in range(200):
+            evolution.step()
+            rows.append(evolution.row())
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    [t.start() for t in threads], [t.join() for t in threads]
+    assert evolution.newest == 801 and all(np.isfinite(row).all() for row in rows)
+
+
+def test_a_row_outlives_its_evolution_by_a_million_steps():
+    evolution = _selftest.pair(20)
+    row = evolution.row()
+    values = row.tolist()
+    evolution.step(1_000_000)
+    del evolution
+    assert row.tolist() == values
+
+
+def test_a_failing_run_can_be_shown_failing(tmp_path):
+    with pytest.raises(delf.BadInput):
+        delf.load(tmp_path)
+    with pytest.raises(delf.BadInput):
+        delf.check(np.zeros(3), density="0.5*phi_t^2", h=1, length=1)
+    with pytest.raises(delf.BadInput):
+        _selftest.pair().row(7)
+    with pytest.raises(delf.BadInput):
+        delf.Scheme("0.5*phi_t^2 -").on(delf.circle(20, 1.0), 0.1)
+
+
+def test_a_folder_is_gone_on_with(tmp_path):
+    run = delf.run("kink", out=tmp_path / "a", until=2, output_figures=False)
+    longer = run.resume(until=4)
+    straight = delf.run("kink", until=4)
+    assert longer.folder and np.array_equal(longer.series["energy"][-1], straight.series["energy"][-1])
+    assert np.array_equal(delf.run("kink", until=2).resume(until=4).series["energy"], straight.series["energy"])
+
+
+def test_no_memory_is_lost():
+    def resident():
+        return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
+    scene = delf.Scene("collision", steps=10)
+    for _ in range(200):
+        delf.run(scene)
+    before = resident()
+    for _ in range(int(os.environ.get("DELF_LEAK_RUNS", "500"))):
+        delf.run(scene)
+    grown = resident() - before
+    print(f"RSS grew by {grown} bytes")
+    assert grown < 8 << 20
+
+
+def test_types_are_complete():
+    pytest.importorskip("mypy")
+    package = pathlib.Path(delf.__file__).parent
+    done = subprocess.run([sys.executable, "-m", "mypy", "--ignore-missing-imports", "--follow-imports=silent",
+                           *map(str, sorted((ROOT / "tools/examples/python").glob("*[a-z].py")))],
+                          capture_output=True, text=True, env={**os.environ, "MYPYPATH": str(package.parent)})
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("name", ["first_steps", "own_leapfrog", "resonance_windows"])
+def test_notebooks_run(name, tmp_path):
+    for needed in ("nbclient", "ipykernel") + (("matplotlib",) if name == "resonance_windows" else ()):
+        pytest.importorskip(needed)
+    folder = ROOT / "tools/examples/python"
+    done = subprocess.run([sys.executable, folder / "execute.py", folder / f"{name}.py", tmp_path / "made.ipynb"],
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    made = json.loads((tmp_path / "made.ipynb").read_text())
+    kept = json.loads((folder / f"{name}.ipynb").read_text())
+    assert [cell["source"] for cell in made["cells"]] == [cell["source"] for cell in kept["cells"]]
+    print(done.stdout)

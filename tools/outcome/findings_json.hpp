@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+// Common parts of the files in JSON: summary, verify, sweep, convergence, stability and workprecision.
+
+/// What is not a finite number is written as null.
+using Json = nlohmann::ordered_json;
+
+inline Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+/// The head: which version found it, of which scene.
+inline Json json_head(const Scene& scene) { return {{"version", DELF_VERSION}, {"scene", scene.name}}; }
+
+/// Of each element what `json_of` makes of it.
+template <class Element, class JsonOf>
+Json json_list(const std::vector<Element>& all, JsonOf json_of) {
+  Json list = Json::array();
+  for (const Element& one : all) list.push_back(json_of(one));
+  return list;
+}
+
+/// As a file has it; bytes that are no UTF-8 are replaced.
+inline std::string json_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace delf

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+
+#include "schemes/state.hpp"
+#include "tools/scene/scene.hpp"
+
+namespace delf {
+
+/// By how much the ends of space change a state, in units of the field, and what it does there.
+struct EndChange {
+  double change = 0;
+  std::string words;  ///< "jumps where the circle closes"
+};
+
+/// How far a state is from what the ends of space make of it; at all times of the run where it is a solution.
+struct AtTheEnds {
+  EndChange value;  ///< the jump where a circle closes, or the motion of a fixed wall
+  EndChange slope;  ///< slopes at natural walls, corners of a circle, rates at fixed walls: times the time that they act
+  const EndChange& larger() const { return slope.change > value.change ? slope : value; }
+};
+AtTheEnds at_the_ends(const Scene&, const State&);
+
+}  // namespace delf

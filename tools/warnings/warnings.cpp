@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+#include "tools/warnings/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <set>
+
+#include "lattice/error.hpp"
+#include "schemes/methods/method_registry.hpp"
+#include "schemes/smooth_state.hpp"
+#include "schemes/stability/linear_stability.hpp"
+#include "schemes/states/state_registry.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/stepping/saved_state.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "tools/compare/solution_error.hpp"
+#include "tools/rows/at_the_ends.hpp"
+#include "tools/rows/exact_solution.hpp"
+#include "tools/warnings/energy_warnings.hpp"
+#include "tools/warnings/exact_energy.hpp"
+#include "tools/warnings/linear_limit.hpp"
+#include "tools/warnings/vacuum_symbol.hpp"
+
+namespace delf {
+
+namespace {
+
+constexpr double one_percent = 0.01;
+
+// The scene gives the solution itself.
+bool is_formula(const State* exact) { return dynamic_cast<const SmoothState*>(exact) != nullptr; }
+
+struct Range {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  void add(double x) { least = std::min(least, x), most = std::max(most, x); }
+  double width() const { return std::max(0.0, most - least); }
+};
+
+// The largest range of a component, of so many rows of the solution until `end`.
+double range_of(const State& state, const Lattice& lattice, double end) {
+  const auto d = static_cast<std::size_t>(state.components()), N = static_cast<std::size_t>(lattice.sites());
+  const int times = std::clamp(2048 / lattice.sites(), 2, 64);
+  std::vector<double> row(N * d);
+  std::vector<Range> ranges(d);
+  for (int n = 0; n < times; ++n) {
+    state.values(end * n / (times - 1), lattice, row);
+    for (std::size_t at = 0; at < row.size(); ++at) ranges[at % d].add(row[at]);
+  }
+  double most = 0;
+  for (const Range& range : ranges) most = std::max(most, range.width());
+  return most;
+}
+
+}  // namespace
+
+Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulation& simulation)
+    : scene_(scene), initial_(initial), simulation_(simulation) {
+  if (initial.state()) width_ = width_of(scene.initial, scene.problem.lattice);
+  const double end = scene.end();
+  has_pulse_ = initial.exact() && std::isfinite(width_);
+  if (!has_pulse_ || end > initial.exact()->exact_until()) return;
+  // The last stretch of time in which the solution's pulse moves by some cells: it is slower than light.
+  const Lattice& lattice = scene.problem.lattice;
+  const double at_end = exact_centre(end), some_cells = 5 * lattice.space_step();
+  for (double stretch = some_cells; stretch <= end && !std::isfinite(late_); stretch *= 1.3)
+    if (std::abs(separation(lattice, at_end, exact_centre(end - stretch))) > some_cells) late_ = end - stretch;
+}
+
+/// What makes steps finer, in keys.
+std::string Warnings::finer() const {
+  return scene_.problem.lattice.space() == Space::point ? "reduce lattice.time_step"
+                                                        : "raise lattice.sites, unless the lattice itself is the model";
+}
+/// Elements have several, and are as fine as their nodes.
+int Warnings::nodes_in_cell() const {
+  std::set<double> places;
+  for (const Component& component : simulation_.components()) places.insert(component.at.space);
+  return static_cast<int>(places.size());
+}
+double Warnings::turn() const { return initial_.turn(); }
+double Warnings::centre(std::span<const double> fields) const {
+  return gradient_centre(scene_.problem.lattice, fields, simulation_.count(Role::field), turn());
+}
+double Warnings::exact_centre(double time) const {
+  const State& state = *initial_.exact();
+  std::vector<double> row(static_cast<std::size_t>(scene_.problem.lattice.sites() * state.components()));
+  state.values(time, scene_.problem.lattice, row);
+  return gradient_centre(scene_.problem.lattice, row, state.components(), turn());
+}
+
+void Warnings::see(double time, std::span<const double> fields, std::span<const double> monitors) {
+  constexpr double larger = 1.01;
+  largest_.resize(monitors.size()), rises_.resize(monitors.size());
+  for (std::size_t m = 0; m < monitors.size(); ++m) {
+    if (!(monitors[m] > largest_[m].value)) continue;
+    largest_[m] = {time, monitors[m]};
+    if (rises_[m].empty() || monitors[m] > larger * rises_[m].back().value) rises_[m].push_back(largest_[m]);
+  }
+  if (has_pulse_) centres_.push_back({time, centre(fields)});
+}
+
+void Warnings::visit(SavedState& state) {
+  state("centres of the pulse", centres_);
+  state("largest values of monitors", largest_), state("rises of monitors", rises_);
+  turn_.visit(state);
+}
+
+std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energy_errors,
+                                      std::span<const double> last_row) const {
+  std::vector<std::string> all;
+  for (Found& found :
+       std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row), energy(outcome),
+                          energy_off_band(energy_errors, "reduce lattice.time_step, or run less far"), error(outcome),
+                           ends(outcome), without_solution(), pinned(outcome, last_row), phase(outcome, last_row)})
+    if (found) all.push_back(std::move(*found));
+  std::ranges::move(grown(), std::back_inserter(all));
+  std::ranges::move(continued(outcome), std::back_inserter(all));
+  return all;
+}
+
+Found Warnings::narrow_pulse() const {
+  const State* state = initial_.state();
+  const double two_cells = 2 * scene_.problem.lattice.space_step() / nodes_in_cell();
+  if (!state || !(width_ < two_cells) || scene_.problem.lattice.space() == Space::point) return {};
+  if (simulation_.evolution().system().moves()) return {};  // cells are narrow where the pulse is
+  return fmt::format("a pulse of the initial state is {:.3g} wide, less than two cells, or {:.3g}; {}", width_,
+                     two_cells, finer());
+}
+
+Found Warnings::linear_limit(const Outcome& outcome) const {
+  return beyond_linear_limit(scene_, simulation_, outcome.steps);
+}
+
+/// A mode that the scheme has and the theory has not, as far as it is there in the last row.
+Found Warnings::spurious_mode(std::span<const double> last_row) const {
+  const Lattice& lattice = scene_.problem.lattice;
+  if (!lattice.is_circle() || lattice.sites() % 2 != 0) return {};
+  // The amplitude a of (−1)ⁱ a: Σ (−1)ⁱ (y_{i−1} − 2y_i + y_{i+1}) = −4 N a, in which a winding plays no part.
+  const int N = lattice.sites(), d = simulation_.count(Role::field);
+  double largest = 0, range = 0;
+  for (int c = 0; c < d; ++c) {
+    const auto y = [&](int i) {
+      return last_row[static_cast<std::size_t>(lattice.wrapped(i) * d + c)] + (i < 0 ? -turn() : i >= N ? turn() : 0);
+    };
+    double sum = 0;
+    Range values;
+    for (int i = 0; i < N; ++i) sum += (i % 2 == 0 ? 1 : -1) * (y(i - 1) - 2 * y(i) + y(i + 1)), values.add(y(i));
+    largest = std::max(largest, std::abs(sum) / (4 * N));
+    range = std::max(range, values.width());
+  }
+  if (!(largest > one_percent * range)) return {};
+  const auto symbol = symbol_of(scene_, simulation_);
+  if (!symbol) return {};
+  for (const Ghost& ghost : linear_stability(*symbol, 3).ghosts)
+    if (std::abs(ghost.theta - std::numbers::pi) < 1e-6)
+      return fmt::format("the last row has {:.2g} of a mode that the theory has not, {}; take lattice.sites odd",
+                         largest, ghost.words);
+  return {};
+}
+
+Found Warnings::energy(const Outcome& outcome) const {
+  const State* state = initial_.state();
+  // The energy is taken from vertices alone: of an element it says little.
+  if (!state || nodes_in_cell() > 1) return {};
+  const auto exact = exact_energy(*state, simulation_.theory().density(), scene_.problem.lattice, width_, 0);
+  if (!exact) return {};
+  return energy_off_start(outcome, *exact, one_percent, finer());
+}
+
+Found Warnings::error(const Outcome& outcome) const {
+  if (!(outcome.error_linf > 0)) return {};
+  const double range = range_of(*initial_.exact(), scene_.problem.lattice, outcome.time);
+  return error_beyond_range(outcome, range, finer());
+}
+
+/// A formula on the line is compared with a run on a circle, or between walls.
+Found Warnings::ends(const Outcome& outcome) const {
+  if (!(outcome.error_linf > 0) || !is_formula(initial_.exact())) return {};
+  const EndChange ends = at_the_ends(scene_, *initial_.exact()).value;
+  if (!(ends.change > 0.1 * outcome.error_linf)) return {};
+  return fmt::format("the exact solution {}, by {:.2g}, and the error is {:.2g}: it is not the scheme's alone; {}",
+                     ends.words, ends.change, outcome.error_linf,
+                     scene_.problem.lattice.is_circle()
+                         ? "keep the pulse away from both ends of lattice.length"
+                         : "give a solution that keeps its value there, or a longer lattice.length");
+}
+
+Found Warnings::without_solution() const {
+  if (!is_formula(initial_.exact())) return {};
+  const std::string found = delf::without_value(scene_, *initial_.exact());
+  if (found.empty()) return {};
+  return fmt::format("the exact solution {}: no error is known there; correct it, or run less far", found);
+}
+
+Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row) const {
+  const auto late = std::ranges::find_if(centres_, [&](const Moment& m) { return m.time >= late_; });
+  if (late == centres_.end() || !(outcome.time > late->time)) return {};
+  const Lattice& lattice = scene_.problem.lattice;
+  const double k = lattice.space_step(), now = centre(last_row);
+  const double moved = separation(lattice, now, late->value);
+  const double wanted = separation(lattice, exact_centre(outcome.time), exact_centre(late->time));
+  if (!(std::abs(wanted) > 4 * k && std::abs(moved) < k)) return {};
+  return fmt::format(
+      "the pulse has stood still at x = {:.4g} since t = {:.4g}, and ought to have moved by {:.3g}: pinned "
+      "by the lattice; {}",
+      now < 0 ? now + lattice.length() : now, late->time, wanted, finer());
+}
+
+/// Where the copies end before the run does, what they tell of its end is a guess: it must be a fifth more.
+Found Warnings::phase(const Outcome& outcome, std::span<const double> last_row) const {
+  constexpr double thirty_percent = 0.3, little = 0.02;
+  const double turn = turn_.value();
+  if (static_cast<double>(outcome.steps) * turn * turn * turn / 12 < little) return {};
+  if (outcome.status != "done" || !outcome.continued.empty()) return {};
+  const auto found = step_error(scene_, initial_, simulation_, outcome.steps, last_row);
+  if (!found || (found->error <= thirty_percent && found->at_end <= 1.2 * thirty_percent)) return {};
+  return fmt::format("half the step moves the field by {:.2g} of its range until t = {:.4g}{}: its phase is off; reduce "
+                     "lattice.time_step",
+                     found->error, found->time,
+                     found->at_end > found->error ? fmt::format(", and so by {:.2g} in the end", found->at_end) : "");
+}
+
+/// A monitor that passes a limit of 1; and one that ends a hundred times above all that it is in the first tenth of the run.
+std::vector<std::string> Warnings::grown() const {
+  std::vector<std::string> all;
+  const std::vector<Monitor>& monitors = find_method(scene_.problem.method).monitors;
+  for (std::size_t m = 0; m < std::min(monitors.size(), largest_.size()); ++m) {
+    const Moment& most = largest_[m];
+    if (monitors[m].when_above_1 && most.value > 1)
+      all.push_back(fmt::format("{} is {:.3g} at t = {:.4g}, and should stay below 1: {}", monitors[m].name, most.value,
+                                most.time, monitors[m].when_above_1));
+    const auto after = std::ranges::find_if(rises_[m], [&](const Moment& r) { return r.time > scene_.end() / 10; });
+    if (!monitors[m].when_it_grows || after == rises_[m].begin()) continue;
+    const Moment& early = *std::prev(after);
+    if (!(most.value > 100 * early.value)) continue;
+    all.push_back(fmt::format("{} grows from {:.2g} at t = {:.4g} to {:.2g} at t = {:.4g}, like exp({:.3g} t): {}",
+                              monitors[m].name, early.value, early.time, most.value, most.time,
+                              std::log(most.value / early.value) / (most.time - early.time),
+                              monitors[m].when_it_grows));
+  }
+  return all;
+}
+
+std::vector<std::string> Warnings::continued(const Outcome& outcome) const {
+  std::vector<std::string> all;
+  for (const auto& [why, steps] : outcome.continued)
+    all.push_back(
+        fmt::format("{} of {} steps took Newton's method, which is {} times as dear: {}; {}", steps,
+                    outcome.steps_taken,
+                    why == Continued::stiff || why == Continued::far ? "a thousand" : "a hundred to a thousand",
+                    in_words(why),
+                    why == Continued::out_of_iterations
+                        ? fmt::format("raise scheme.max_iterations, which is {}", scene_.problem.max_iterations)
+                        : "reduce lattice.time_step"));
+  return all;
+}
+
+}  // namespace delf
