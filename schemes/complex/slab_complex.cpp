@@ -29,7 +29,7 @@ std::vector<std::shared_ptr<const JetFamily>> densities_of(const LatticeSystem& 
 
 /// The points of a table with the numbers of one stencil in their weights.
 std::vector<TablePoint> points_of(const JetFamily& family, int stencil) {
-  const auto own = [&](int n) { return n < 0 ? 1.0 : family.own_weights().numbers[at(n)][at(stencil)]; };
+  const auto own = [&](int number) { return family.own_number(number, stencil); };
   std::vector<TablePoint> points = family.table().points;
   for (TablePoint& point : points) {
     point.weight *= own(point.own.weight);

@@ -413,7 +413,7 @@ std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
   const auto hessian = [&](int row, int column) {
     return has_sources_ && row < d_ && column < d_ ? 0.0 : density_->constant_hessian()[at(row * m + column)];
   };
-  const auto own = [&](int number) { return number < 0 ? 1.0 : own_.numbers[at(number)][at(cell.stencil)]; };
+  const auto own = [&](int number) { return own_number(number, cell.stencil); };
   for (std::size_t q = 0; q < points_.size(); ++q) {
     const double w = area * table_.points[q].weight * own(table_.points[q].own.weight);
     for (const int i : points_[q].values)
@@ -495,9 +495,9 @@ bool JetFamily::momentum(const Cell& cell, std::span<const double> phi, std::spa
     add_up(JetSlot::phi, 0, phi, 1);
     add_up(JetSlot::phi, 1, phi_t, 1);
     add_up(JetSlot::phi_x, 2, phi, 1 / cell.space_step);
-    const auto own = [&](int n) { return own_.numbers[at(n)][at(cell.stencil)]; };
-    const double weight_of_point = point.own.weight < 0 ? point.weight : point.weight * own(point.own.weight);
-    std::fill_n(x[0], lanes, point.own.place < 0 ? cell.x + point.space * cell.space_step : own(point.own.place));
+    const double weight_of_point = point.weight * own_number(point.own.weight, cell.stencil);
+    std::fill_n(x[0], lanes,
+                point.own.place < 0 ? cell.x + point.space * cell.space_step : own_number(point.own.place, cell.stencil));
     density_->gradient({lanes, jet.data(), cell.t, x[0]}, g.data());
     for (const auto& [vertex, weight] : point[JetSlot::phi])
       for (int a = 0; a < d_; ++a) p[at(vertex * d_ + a)] += cell.space_step * weight_of_point * weight * g[d_ + a][0];
