@@ -285,8 +285,8 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     if (method.on_meshes) read(p.parameters, values, method.parameters);
     refuse_unread(settings, entry, parameters, method, c.theory->fields(), values.choice("lattice.time") == "none",
                   c.stencils != nullptr);
-    const bool rows_alone = c.has_method();
-    if (rows_alone && !method.on_meshes)
+    const bool by_method = c.has_method();
+    if (by_method && !method.on_meshes)
       throw settings.error("scheme.method", "needs a regular lattice; leave it out on a mesh, or use " +
                                                 names_of_methods_on_meshes());
     double edge = 1;  // of the mesh as it is given
@@ -301,14 +301,14 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
              : time == "none"  ? MeshTime::none
              : time == "cells" ? MeshTime::cells
                                : MeshTime::rows;
-    if (rows_alone && c.time != MeshTime::rows)
+    if (by_method && c.time != MeshTime::rows)
       throw settings.error("scheme.method", "is for lattice.time = rows; leave it out");
     if (c.theory->constraint() && c.time != MeshTime::rows && c.time != MeshTime::none)
       throw BadInput("theory.name", "theory.name = " + p.theory +
                                         ": a constraint on a mesh is for lattice.time = rows or none; choose one of "
                                         "these");
     p.circle_valued = values.choice("theory.fibre") == "S1";
-    if (p.circle_valued && rows_alone)
+    if (p.circle_valued && by_method)
       throw settings.error("theory.fibre", "S1 on a mesh is for the usual method; leave scheme.method out, or use R");
     if (p.circle_valued && (c.time != MeshTime::rows || c.theory->fields().size() > 1))
       throw settings.error("theory.fibre", "S1 on a mesh is for one field with lattice.time = rows; use R");
@@ -330,7 +330,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     }
 
     p.step_control = read_step_control(settings, values);
-    if (rows_alone && values.given("lattice.time_steps"))
+    if (by_method && values.given("lattice.time_steps"))
       throw settings.error("lattice.time_steps", "are of the usual method on a mesh; leave scheme.method out");
     if (p.step_control && c.time == MeshTime::cells)
       throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
