@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -133,9 +132,8 @@ KickStepper::Kick KickStepper::Parts::kick(int node) const {
   auto next = entries[at(node)].begin();
   for (int place = 0; place < fields * padded; ++place) {
     kick.first.push_back(static_cast<std::int32_t>(kick.column.size()));
-    for (; next != entries[at(node)].end() && next->first.first == place; ++next) {
+    for (; next != entries[at(node)].end() && next->first.first == place; ++next)
       kick.column.push_back(next->first.second), kick.value.push_back(next->second);
-    }
   }
   kick.first.push_back(static_cast<std::int32_t>(kick.column.size()));
   kick.constant.resize(at(fields * padded / lanes));
@@ -220,6 +218,7 @@ KickStepper::KickStepper(const LatticeSystem& system, const SolvePlan& plan, con
   y_.assign(at(nodes_ + 1), Packs(packs, Pack(0.0)));
   low_ = y_;
   momentum_.assign(packs, Pack(0.0));
+  inputs_.resize(at(fields_));
 }
 
 /// P ← P + K y + c + w N′(y),   y′ = y + M⁻¹ P, strip by strip.
@@ -228,10 +227,6 @@ void KickStepper::kick_and_drift(const Kick& kick, int node) {
                      *const constant = numbers(kick.constant), *const drift = numbers(inverse_[at(node)]);
   double *const P = numbers(momentum_), *const to = numbers(y_[at(node + 1)]), *const to_low = numbers(low_[at(node + 1)]);
   const ScratchRows slope(fields_, strip);
-  std::array<const double*, 8> inputs_of_few;
-  std::vector<const double*> inputs_of_many;
-  const double** inputs = inputs_of_few.data();
-  if (fields_ > 8) inputs_of_many.resize(at(fields_)), inputs = inputs_of_many.data();
   const std::int32_t* const column = kick.column.data();
   const double* const value = kick.value.data();
   for (int first = 0; first < padded_; first += strip) {
@@ -243,10 +238,10 @@ void KickStepper::kick_and_drift(const Kick& kick, int node) {
         for (std::int32_t e = kick.first[at(i)]; e < kick.first[at(i) + 1]; ++e) sum += value[e] * from[column[e]];
         P[i] += sum;
       }
-      inputs[a] = from + begin;
+      inputs_[at(a)] = from + begin;
     }
     for (const Source& source : kick.sources) {
-      source.family->evaluate_sources(source.group, {count, inputs}, slope.data());
+      source.family->evaluate_sources(source.group, {count, inputs_.data()}, slope.data());
       for (int a = 0; a < fields_; ++a) {
         const int begin = a * padded_ + first;
         const double* const weight = numbers(source.weights) + begin;
@@ -289,14 +284,17 @@ void KickStepper::keep(std::int64_t row, int node) {
     }
 }
 
+/// The fields of a row [i·C + c] as the values at a node. Packs are padded with copies of the last site, where the density has
+/// a value: at 0 it need not have one.
+void KickStepper::read(const std::vector<double>& row, Packs& y) const {
+  const int C = system_.components(), last = system_.lattice().sites() - 1;
+  for (int i = 0; i < padded_; ++i)
+    for (int a = 0; a < fields_; ++a) numbers(y)[a * padded_ + i] = row[at(std::min(i, last) * C + a)];
+}
+
 void KickStepper::start(const std::vector<std::vector<double>>& rows) {
   if (nodes_ > 1)
     throw BadInput("initial.start", "initial.start = exact: sub-steps begin from a row and its momenta; use legendre");
-  const int C = system_.components();
-  const auto read = [&](const std::vector<double>& row, Packs& y) {
-    for (int i = 0; i < system_.lattice().sites(); ++i)
-      for (int a = 0; a < fields_; ++a) numbers(y)[a * padded_ + i] = row[at(i * C + a)];
-  };
   for (Packs& low : low_) std::fill(low.begin(), low.end(), Pack(0.0));
   for (auto& low : low_rows_) std::fill(low.begin(), low.end(), 0.0);
   for (std::size_t r = 0; r < rows.size(); ++r) ring(static_cast<std::int64_t>(r)) = rows[r];
@@ -310,12 +308,10 @@ void KickStepper::start(const std::vector<std::vector<double>>& rows) {
 }
 
 void KickStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
-  const int C = system_.components();
+  read(row0, y_[0]), read(momenta, momentum_);
   for (int i = 0; i < system_.lattice().sites(); ++i)
-    for (int a = 0; a < fields_; ++a) {
-      numbers(y_[0])[a * padded_ + i] = row0[at(i * C + a)];
-      numbers(momentum_)[a * padded_ + i] = system_.is_held(i, a) ? 0 : momenta[at(i * C + a)];
-    }
+    for (int a = 0; a < fields_; ++a)
+      if (system_.is_held(i, a)) numbers(momentum_)[a * padded_ + i] = 0;
   std::fill(low_[0].begin(), low_[0].end(), Pack(0.0));
   newest_ = 0;
   ring(0) = row0;

@@ -58,6 +58,7 @@ class KickStepper final : public StepMethod {
   static Kick sum(const Kick&, const Kick&);
   static std::size_t bytes_of(const Kick&);
   void kick_and_drift(const Kick&, int node);
+  void read(const std::vector<double>& row, Packs& y) const;
   void take_slab(const Kick& first);
   void keep(std::int64_t row, int node);
   std::vector<double>& ring(std::int64_t row) { return rows_[static_cast<std::size_t>(row) % rows_.size()]; }
@@ -72,6 +73,7 @@ class KickStepper final : public StepMethod {
   std::vector<Packs> inverse_;       ///< M_s⁻¹; 0 where values are data
   std::vector<Packs> y_, low_;       ///< of the nodes of a slab, the last one too: values are y + low
   Packs momentum_;                   ///< P
+  std::vector<const double*> inputs_;  ///< of a source, in kick_and_drift()
   Pack largest_;
   std::vector<std::vector<double>> low_rows_;  ///< what rounding has taken from rows_
   std::vector<std::vector<double>> rows_;  ///< a ring of the newest, [i·C + c]; nodes inside a slab are with the row below

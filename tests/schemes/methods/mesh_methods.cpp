@@ -258,3 +258,19 @@ TEST_CASE("a mesh whose every point keeps its value, and a stencil with neighbou
   OnMesh spacetime(icosahedral_sphere(0), "spacetime", {});
   CHECK_THROWS_AS(spacetime.started(0.1), BadInput);
 }
+
+TEST_CASE("a splitting steps a body whose potential has no value at 0") {
+  Problem p;
+  p.theory = "kepler", p.method = "composition", p.lattice = Lattice::point(), p.time_step = 0.01;
+  Simulation simulation(p);
+  Values row, momenta;
+  for (const Component& c : simulation.components()) {
+    row.push_back(c.field == 0 ? 1 : 0);
+    momenta.push_back(c.role == Role::field && c.field == 1 ? 1 : 0);
+  }
+  simulation.start_momenta(row, momenta);
+  simulation.steps(99);
+  const Values q = OnMesh::fields(simulation);  // a circle of radius 1, once around in 2π
+  CHECK(q[0] == Approx(std::cos(1.0)).epsilon(1e-8));
+  CHECK(q[1] == Approx(std::sin(1.0)).epsilon(1e-8));
+}
