@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -58,6 +59,14 @@ std::vector<std::string> lines(const std::string& text) {
 }
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::string complaints(const Ran& ran) {
+  static const std::regex progress("[0-9]+ %: \\w+ [0-9]+ of [0-9]+ after .* left");
+  std::string all;
+  for (const std::string& line : lines(ran.err))
+    if (!std::regex_match(line, progress)) all += line + "\n";
+  return all;
+}
 
 std::string small_scene(const std::string& more) {
   return "[theory]\nname = sine-gordon\n[lattice]\nlength = 20\nsites = 64\ncourant = 0.5\n"

@@ -42,6 +42,8 @@ Ran delf_program(const Folder&, const std::string& arguments, const std::string&
 std::string read(const std::filesystem::path&);
 std::vector<std::string> lines(const std::string& text);
 bool contains(const std::string& text, const std::string& part);
+/// Stderr without the lines of progress, which a slow machine prints: warnings and errors.
+std::string complaints(const Ran&);
 
 /// A small scene that runs in no time: 100 steps of sine-Gordon.
 std::string small_scene(const std::string& more = "");

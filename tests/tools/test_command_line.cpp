@@ -16,7 +16,7 @@ TEST_CASE("help, version and lists go to stdout and succeed") {
     const Ran ran = delf_program(folder, arguments);
     INFO(arguments);
     CHECK(ran.code == 0);
-    CHECK(ran.err.empty());
+    CHECK(complaints(ran) == "");
     CHECK_FALSE(ran.out.empty());
   }
   CHECK(delf_program(folder, "--version").out == "delf " DELF_VERSION "\n");
@@ -102,4 +102,10 @@ TEST_CASE("every kind of failure has its exit code") {
   CHECK(lines(error_line(SystemFailure("two\nlines"))).size() == 1);
   CHECK(lines(error_line(BadInput("", "two\n  lines\r\n  more"))).size() == 1);
   CHECK(contains(error_line(SystemFailure("red \033[31m")), "red ?[31m"));
+}
+
+TEST_CASE("lines of progress are no complaints, and every other line is one") {
+  CHECK(complaints({0, "", "22 %: step 4 of 18 after 14 s, 48 s left\n"}) == "");
+  CHECK(complaints({0, "", "warning: 22 %: step 4 of 18\n9 %: run 1 of 9 after 11 s, 2 min left\n"}) ==
+        "warning: 22 %: step 4 of 18\n");
 }

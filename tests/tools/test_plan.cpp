@@ -85,7 +85,7 @@ TEST_CASE("threads that steps cannot use are reported by the plan and by a run")
 
   const Folder folder;
   const Ran ran = delf_program(folder, "run collision" + loop);
-  CHECK(ran.err.empty());
+  CHECK(complaints(ran) == "");
   CHECK(contains(ran.out, "  threads    1 of 2: each takes "));
 }
 

@@ -28,7 +28,7 @@ TEST_CASE("a run leaves its scene, series, summary and fields, and a report on s
   folder.write("small.ini", small_scene("every = 30\n"));
   const Ran ran = delf_program(folder, "run small.ini");
   CHECK(ran.code == 0);
-  CHECK(ran.err.empty());
+  CHECK(complaints(ran) == "");
   CHECK(contains(ran.out, "ns per site and step"));
   CHECK(contains(ran.out, "results/small: summary.json series.csv scene.ini fields.h5\n"));
 
@@ -78,7 +78,7 @@ TEST_CASE("the resolved scene runs again to the same bits") {
   const Ran again = delf_program(folder, "run first/scene.ini --out second");
   INFO(again.err);
   REQUIRE(again.code == 0);
-  CHECK(again.err.empty());
+  CHECK(complaints(again) == "");
   CHECK(read(folder / "first/scene.ini") == read(folder / "second/scene.ini"));
   CHECK(read(folder / "first/series.csv") == read(folder / "second/series.csv"));
   CHECK(rows(folder / "first/fields.h5") == rows(folder / "second/fields.h5"));
