@@ -24,6 +24,7 @@ struct Problem {
   int max_iterations = 50;                  ///< scheme.max_iterations
   int threads = 1;                          ///< run.threads: that explicit steps are shared by
   std::optional<double> step_control = {};  ///< s of steps that the rows choose; time_step is ε then
+  std::vector<double> time_steps = {};      ///< lengths of the steps, over and over; empty: all are time_step
 };
 
 /// The problem with the fallbacks of all parameters that its theory and its method read. Throws BadInput for unknown

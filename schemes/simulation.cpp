@@ -57,7 +57,7 @@ Evolution make_evolution(SchemeParts parts, const Problem& p) {
           std::move(parts.families),
           p.time_step,
           {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real, turn_of(p),
-           p.threads, std::move(parts.processor), p.step_control.has_value()},
+           p.threads, std::move(parts.processor), p.step_control || !p.time_steps.empty()},
           std::move(parts.components)};
 }
 
@@ -88,6 +88,19 @@ struct Simulation::Impl {
         monitors(problem, *theory, symmetries, evolution),
         starts(problem, *theory, system) {
     if (p.step_control) take_step_control();
+    else if (!p.time_steps.empty()) require_steps_of_any_length();
+  }
+
+  void require_steps_of_any_length() {
+    const SlabExtent extent = slab_extent(system, evolution.plan());
+    if (system.height() != 1 || extent.field_lag != 0 || extent.above != 0)
+      throw BadInput("lattice.time_steps",
+                     fmt::format("lattice.time_steps: scheme.method = {} has steps of one length; leave it out", method.name));
+    begin_times();
+  }
+  /// Steps in turn begin with the first of their list.
+  void begin_times() {
+    if (!problem.time_steps.empty()) system.times()->begin(problem.time_steps.front());
   }
 
   void take_step_control() {
@@ -114,6 +127,7 @@ struct Simulation::Impl {
     if (chosen_steps)
       system.times()->begin(density ? chosen_steps->go_on_from(*density)
                                     : chosen_steps->first(row_density(row0, momenta)));
+    else begin_times();
     stepper.start_legendre(row0, momenta);
   }
   void step_by(double h, bool looked_at) {
@@ -126,6 +140,10 @@ struct Simulation::Impl {
     }
   }
   void step(bool looked_at) {
+    if (!problem.time_steps.empty()) {
+      const auto n = static_cast<std::size_t>(stepper.newest()) % problem.time_steps.size();
+      return step_by(problem.time_steps[n], looked_at);
+    }
     if (!chosen_steps) return with_reasons([&] { stepper.step(looked_at); });
     const StepDensity before = *chosen_steps;
     try {
@@ -172,6 +190,7 @@ void Simulation::start(const std::vector<std::vector<double>>& given, std::optio
                      "initial.start: steps that the rows choose begin from row 0 and its rates; use legendre");
     impl_->system.times()->begin(impl_->chosen_steps->go_on_from(*density));
   }
+  impl_->begin_times();
   for (const auto& row : given) impl_->stepper.require_row(row.size());
   std::vector<std::vector<double>> rows = given;
   for (auto& row : rows) impl_->starts.hold_walls(row, false);
@@ -190,12 +209,13 @@ void Simulation::start_centred(std::span<const double> row0, std::span<const dou
 void Simulation::step(bool looked_at) { impl_->step(looked_at); }
 void Simulation::step_by(double time_step) { impl_->step_by(time_step, true); }
 void Simulation::steps(int count) {
-  if (!impl_->chosen_steps) return impl_->with_reasons([&] { impl_->stepper.steps(count); });
+  if (impl_->system.times()->uniform()) return impl_->with_reasons([&] { impl_->stepper.steps(count); });
   for (; count > 0; --count) impl_->step(false);
 }
 void Simulation::visit(SavedState& state) {
   impl_->stepper.visit(state);
-  if (impl_->chosen_steps) impl_->system.times()->visit(state), impl_->chosen_steps->visit(state);
+  if (!impl_->system.times()->uniform()) impl_->system.times()->visit(state);
+  if (impl_->chosen_steps) impl_->chosen_steps->visit(state);
 }
 std::int64_t Simulation::newest() const { return impl_->stepper.newest(); }
 double Simulation::time(std::int64_t row) const { return impl_->system.times()->time(row); }

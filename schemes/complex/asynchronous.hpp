@@ -11,6 +11,8 @@
 
 namespace delf {
 
+class SavedState;
+
 /// An asynchronous variational integrator (Lew, Marsden, Ortiz, West, Arch. Rational Mech. Anal. 167, 2003): each cell K has
 /// a step h_K of its own, in any ratio, and acts at the times n h_K; a site moves freely between the updates of its cells,
 ///

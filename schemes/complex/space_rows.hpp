@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "jets/symmetry.hpp"
 #include "lattice/space/mesh_space.hpp"
-#include "schemes/complex/complex_solver.hpp"
+#include "schemes/complex/complex_system.hpp"
 #include "schemes/complex/constraint_density.hpp"
 #include "schemes/complex/space_tables.hpp"
 
 namespace delf {
-
-class SavedState;
 
 /// A mesh of space and a density on it, with what rows of any steps have in common.
 struct CellSpace : MeshSpace {
@@ -96,68 +91,6 @@ class SpaceRows {
   std::vector<int> gradient_;         ///< family by number of corners
   std::vector<int> gradient_tables_;  ///< by cell
   std::vector<int> part_of_row_, part_of_motion_, first_of_motion_;
-};
-
-/// Steps a field on an irregular space, row by row, each a complex of three rows whose plan is found once.
-class SpaceEvolution {
- public:
-  SpaceEvolution(const CellSpace&, double time_step, ComplexSolver::Options = {});
-
-  /// Row 0 and its rate, by the discrete Legendre transform: ∂T/∂φ_t(φ_t) A = A ∂T/∂φ_t((y¹ − y⁰)/h) − ½h ∂V/∂y⁰.
-  /// The first step may have a length of its own, as any other.
-  void start(std::span<const double> values, std::span<const double> rates,
-             std::optional<double> time_step = std::nullopt);
-  /// One step, of another length if it is given. Throws NumericalFailure; the last two rows are then as before.
-  void step(std::optional<double> time_step = std::nullopt);
-
-  /// Saves or restores what further steps depend on; what is restored needs no start.
-  void visit(SavedState&);
-
-  /// Exchanges the last two rows: further steps, of the same lengths, go back.
-  void turn_back();
-
-  std::int64_t newest() const { return newest_; }
-  double time() const { return time_; }
-  double time_step() const { return h_; }
-  /// Between the last two rows.
-  double last_step() const { return before_; }
-  /// The fields of the newest row, or of the one `back` rows before: 0 or 1.
-  std::span<const double> row(int back = 0) const;
-  /// λ of the row before the newest, which were found with the newest; none without a constraint.
-  std::span<const double> multipliers() const;
-  const ComplexPlan& plan() const { return solver_->plan(); }
-  bool is_direct() const { return solver_->is_direct(); }
-  const ComplexSolver::Report& report() const { return report_; }
-  std::size_t bytes() const;
-
-  /// Σ_i A_i [φ_t ∂T/∂φ_t − T] − ½[V(row) + V(row before)], at the half step between the last two rows.
-  double energy() const;
-  /// The same of one row with such rates, all at one time.
-  double energy(std::span<const double> values, std::span<const double> rates) const;
-  /// Σ_i A_i ∂T/∂φ_t · ξ(φ_i) between the last two rows, which natural boundaries and closed surfaces keep where ξ is a
-  /// symmetry of the density: its sum, and that of its absolute terms.
-  Balance momentum(const LinearSymmetry&) const;
-  /// Of the equations behind the newest row: see largest_residual(). Not a number after a step that failed.
-  double residual() const;
-  /// The longest step that a linear wave can take, 2/ω of the fastest mode about φ = 0; none if nothing oscillates.
-  std::optional<double> largest_step() const;
-
- private:
-  void set_steps(const std::array<double, 3>& now);
-  void take(double below, double above, double row_measure);
-  void put_back();
-  /// Of two rows, with the measures that energy_rows_ has.
-  double energy_of(std::span<const double> y) const;
-
-  const CellSpace& space_;
-  double h_, before_, time_ = 0, direction_ = 1;
-  std::int64_t newest_ = 0;
-  SpaceRows rows_;
-  mutable SpaceRows energy_rows_;  ///< two rows, measured for energies
-  std::unique_ptr<ComplexSolver> solver_;
-  std::array<double, 3> steps_{};  ///< below and above, and the row's measure, that the solver has been made for
-  std::vector<double> y_;
-  ComplexSolver::Report report_;
 };
 
 }  // namespace delf

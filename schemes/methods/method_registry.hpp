@@ -101,7 +101,8 @@ struct MethodEntry {
   std::string (*limit)(const RowsInTime&) = nullptr;
   std::vector<Dataset> datasets = {};
   /// Of the newest row and its momenta, [i·C + c]: what steps of lattice.time_steps = reversible are in proportion to, of a
-  /// strength s; null: its steps are all the same. For elements in time of one step, that start from momenta.
+  /// strength s; null: its steps are all the same. For elements in time of one step, that start from momenta. A method that
+  /// reads lattice.stencil has it on meshes alone.
   RowDensity (*row_density)(const RowsInTime&, std::span<const double> momenta, double strength) = nullptr;
   /// Of sites that move: where they start for a field of row 0, (φ, φ_t, φ_x) at any x; null: where the lattice has them.
   MovingSites (*place_sites)(const Problem&, int components,

@@ -20,6 +20,7 @@
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/wall_families.hpp"
+#include "schemes/methods/mesh_rows.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -227,6 +228,11 @@ std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheo
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
+  if (p.lattice.mesh()) return rows_on_mesh(theory, p);
+  if (p.step_control || !p.time_steps.empty())
+    throw BadInput("lattice.time_steps",
+                   "lattice.time_steps: scheme.method = multisymplectic has steps of one length but on a mesh; use "
+                   "scheme.method = r-adaptive with reversible steps, or leave it out");
   const bool own = p.stencil == stencil_as_text;
   SchemeParts parts{own ? on_own_stencil(theory, p) : std::vector{theory.variational(p.stencil)}, theory.fields(),
                     theory.symmetries()};
@@ -302,7 +308,9 @@ const MethodEntry multisymplectic_method{
                     .help = "phi_x that a clamped right wall keeps, a number for each field",
                     .otherwise = "that of the initial state"}},
     .reads_stencil = true,
-    .label = [](const Problem& p) { return p.stencil; },
+    .on_meshes = true,
+    .label = [](const Problem& p) { return p.lattice.mesh() ? "Stormer-Verlet" : p.stencil; },
+    .row_density = density_of_mesh_rows,
     .variants = variants,
     .order = order};
 

@@ -5,16 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "jets/fibre.hpp"
 #include "jets/simd/exact_sum.hpp"
+#include "jets/simd/pack_gather.hpp"
 #include "jets/simd/scratch_rows.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/momenta.hpp"
-#include "schemes/system/slab_extent.hpp"
 
 namespace delf {
 namespace {
@@ -59,7 +62,8 @@ struct KickStepper::Parts {
   bool add(const LatticeSystem&, const StencilFamily&, int anchor, const std::vector<Value>&);
   bool add_sources(const LatticeSystem&, const StencilFamily&, int anchor, const std::vector<Value>&,
                    std::map<std::pair<int, int>, std::size_t>& known);
-  Kick kick(int node) const;
+  Kick kick(std::initializer_list<int> nodes) const;
+  bool is_symmetric() const;
 };
 
 bool KickStepper::Parts::add(const LatticeSystem& system, const StencilFamily& family, int anchor,
@@ -118,6 +122,8 @@ bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilF
         // N′ of component c kicks the same one, there
         if (v.node != inputs[at(c)].node || v.place != inputs[at(c)].place) return false;
         if (v.data) continue;
+        if (family.is_placed() && group.time != family.site(i).time + system.component(family.values()[at(i)].component).at.time)
+          return false;
         std::vector<Source>& list = sources[at(v.node)];
         const auto [found, fresh] = known.try_emplace({v.node, g}, list.size());
         if (fresh) list.push_back({&family, g, Packs(at(fields * padded / lanes), Pack(0.0))});
@@ -127,44 +133,56 @@ bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilF
   return true;
 }
 
-KickStepper::Kick KickStepper::Parts::kick(int node) const {
+/// The kick of some nodes that are one: of the slab below and the slab above a row.
+KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const {
   Kick kick;
-  auto next = entries[at(node)].begin();
-  for (int place = 0; place < fields * padded; ++place) {
-    kick.first.push_back(static_cast<std::int32_t>(kick.column.size()));
-    for (; next != entries[at(node)].end() && next->first.first == place; ++next)
-      kick.column.push_back(next->first.second), kick.value.push_back(next->second);
+  std::map<std::pair<int, int>, double> K;
+  kick.constant.assign(at(fields * padded / lanes), Pack(0.0));
+  for (const int node : of) {
+    for (const auto& [place, value] : entries[at(node)]) K[place] += value;
+    for (int n = 0; n < fields * padded; ++n) numbers(kick.constant)[n] += constant[at(node)][at(n)];
+    for (const Source& source : sources[at(node)]) {
+      // The functions of a family are those of its density, whatever the group.
+      const auto same = std::ranges::find(kick.sources, source.family, &Source::family);
+      if (same == kick.sources.end()) kick.sources.push_back(source);
+      else
+        for (std::size_t p = 0; p < source.weights.size(); ++p) same->weights[p] += source.weights[p];
+    }
   }
-  kick.first.push_back(static_cast<std::int32_t>(kick.column.size()));
-  kick.constant.resize(at(fields * padded / lanes));
-  std::ranges::copy(constant[at(node)], numbers(kick.constant));
-  kick.sources = sources[at(node)];
+  auto next = K.begin();
+  for (int pack = 0; pack < fields * padded; pack += lanes) {
+    const auto begin = static_cast<int>(kick.value.size());
+    kick.first.push_back(begin);
+    for (int lane = 0; lane < lanes; ++lane)
+      for (int e = begin; next != K.end() && next->first.first == pack + lane; ++next, ++e) {
+        if (e == static_cast<int>(kick.value.size())) {
+          kick.value.emplace_back(0.0);
+          kick.column.insert(kick.column.end(), at(lanes), pack);  // rows with fewer entries read a value and take nothing of it
+        }
+        kick.column[at(e * lanes + lane)] = next->first.second;
+        numbers(kick.value)[e * lanes + lane] = next->second;
+      }
+  }
+  kick.first.push_back(static_cast<std::int32_t>(kick.value.size()));
   return kick;
 }
 
-KickStepper::Kick KickStepper::sum(const Kick& a, const Kick& b) {
-  Kick sum;
-  const std::size_t rows = a.first.size() - 1;
-  std::map<std::int32_t, double> row;
-  for (std::size_t r = 0; r < rows; ++r) {
-    row.clear();
-    for (const Kick* kick : {&a, &b})
-      for (auto e = kick->first[r]; e < kick->first[r + 1]; ++e) row[kick->column[at(e)]] += kick->value[at(e)];
-    sum.first.push_back(static_cast<std::int32_t>(sum.column.size()));
-    for (const auto& [column, value] : row) sum.column.push_back(column), sum.value.push_back(value);
-  }
-  sum.first.push_back(static_cast<std::int32_t>(sum.column.size()));
-  sum.constant = a.constant;
-  for (std::size_t p = 0; p < sum.constant.size(); ++p) sum.constant[p] += b.constant[p];
-  sum.sources = a.sources;
-  for (const Source& source : b.sources) {
-    // The functions of a family are those of its density, whatever the group.
-    const auto same = std::ranges::find(sum.sources, source.family, &Source::family);
-    if (same == sum.sources.end()) sum.sources.push_back(source);
-    else
-      for (std::size_t p = 0; p < source.weights.size(); ++p) same->weights[p] += source.weights[p];
-  }
-  return sum;
+/// A row's kick from below is its kick from above.
+bool KickStepper::Parts::is_symmetric() const {
+  const Kick below = kick({nodes}), above = kick({0});
+  const auto equal = [](const Packs& a, const Packs& b) {
+    double most = 0, apart = 0;
+    if (a.size() != b.size()) return false;
+    for (std::size_t n = 0; n < a.size() * lanes; ++n) {
+      most = std::max(most, std::abs(numbers(a)[n]));
+      apart = std::max(apart, std::abs(numbers(a)[n] - numbers(b)[n]));
+    }
+    return apart <= 1e-14 * most;
+  };
+  return below.column == above.column && equal(below.value, above.value) && equal(below.constant, above.constant) &&
+         std::ranges::equal(below.sources, above.sources, [&](const Source& a, const Source& b) {
+           return a.family == b.family && equal(a.weights, b.weights);
+         });
 }
 
 std::unique_ptr<StepMethod> KickStepper::make(const LatticeSystem& system, const SolvePlan& plan,
@@ -179,7 +197,7 @@ std::unique_ptr<StepMethod> KickStepper::make(const LatticeSystem& system, const
   if (C % d != 0) return nullptr;
   Parts parts(d, C / d, N);
   for (const auto& family : system.families()) {
-    if (!family->is_variational() || family->is_placed()) return nullptr;
+    if (!family->is_variational()) return nullptr;
     std::map<std::pair<int, int>, std::size_t> known;
     std::vector<Parts::Value> values(at(family->size()));
     for (int anchor = 0; anchor < system.anchors(*family); ++anchor) {
@@ -194,66 +212,78 @@ std::unique_ptr<StepMethod> KickStepper::make(const LatticeSystem& system, const
     for (int i = 0; i < N; ++i)
       for (int a = 0; a < d; ++a)
         if (!system.is_held(i, a) && !(std::abs(mass[at(parts.place(i, a))]) > 0)) return nullptr;
-  return std::unique_ptr<StepMethod>(new KickStepper(system, plan, options, std::move(parts)));
+  if (options.steps_vary && !parts.is_symmetric()) return nullptr;
+  return std::unique_ptr<StepMethod>(new KickStepper(system, options, std::move(parts)));
 }
 
-KickStepper::KickStepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options, Parts parts)
+KickStepper::KickStepper(const LatticeSystem& system, const StepOptions& options, Parts parts)
     : system_(system),
       turn_(options.turn),
       fields_(parts.fields),
       nodes_(parts.nodes),
       padded_(parts.padded),
-      behind_(slab_extent(system, plan).behind),
-      low_rows_(rows_held, std::vector<double>(at(parts.sites * system.components()), 0.0)),
-      rows_(rows_held, std::vector<double>(at(parts.sites * system.components()), 0.0)) {
+      slots_(at(rows_held)) {
   const std::size_t packs = at(fields_ * padded_ / lanes);
-  alone_ = parts.kick(0);
-  kicks_.push_back(sum(parts.kick(nodes_), alone_));
-  for (int node = 1; node < nodes_; ++node) kicks_.push_back(parts.kick(node));
+  for (const Component& c : system.all_components()) behind_.push_back(c.role == Role::field ? 0 : 1);
+  alone_ = parts.kick({0});
+  kicks_.push_back(parts.kick({nodes_, 0}));
+  for (int node = 1; node < nodes_; ++node) kicks_.push_back(parts.kick({node}));
   for (int node = 0; node < nodes_; ++node) {
     inverse_.emplace_back(packs, Pack(0.0));
     for (int place = 0; place < fields_ * padded_; ++place)
       if (const double M = parts.mass[at(node)][at(place)]; M != 0) numbers(inverse_.back())[place] = 1 / M;
   }
-  y_.assign(at(nodes_ + 1), Packs(packs, Pack(0.0)));
-  low_ = y_;
+  if (std::ranges::any_of(system.families(), [](const auto& family) { return family->is_placed(); })) {
+    x_.assign(at(padded_ / lanes), Pack(0.0));
+    for (int i = 0; i < padded_; ++i) numbers(x_)[i] = system.lattice().position(std::min(i, parts.sites - 1));
+  }
+  ring_.assign(at(rows_held * nodes_), {Packs(packs, Pack(0.0)), Packs(packs, Pack(0.0))});
+  std::iota(slots_.begin(), slots_.end(), 0);
   momentum_.assign(packs, Pack(0.0));
   inputs_.resize(at(fields_));
 }
 
-/// P ← P + K y + c + w N′(y),   y′ = y + M⁻¹ P, strip by strip.
-void KickStepper::kick_and_drift(const Kick& kick, int node) {
-  const double *const from = numbers(y_[at(node)]), *const from_low = numbers(low_[at(node)]),
-                     *const constant = numbers(kick.constant), *const drift = numbers(inverse_[at(node)]);
-  double *const P = numbers(momentum_), *const to = numbers(y_[at(node + 1)]), *const to_low = numbers(low_[at(node + 1)]);
+/// Rows that are no longer there are those next to them that are.
+std::size_t KickStepper::index(std::int64_t row, int node) const {
+  const auto back = std::clamp<std::int64_t>(newest_ - row, 0, std::max(held_ - 1, 0));
+  return at(slots_[static_cast<std::size_t>(back)] * nodes_ + node);
+}
+
+/// P ← P + κ (K y + c + w N′(y)),   y′ = y + δ M⁻¹ P, strip by strip, with κ and δ as they are given.
+void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double of_drift, double t, Node& next) {
+  const Node& here = node(newest_, n);
+  const double *const from = numbers(here.y), *const from_low = numbers(here.low), *const constant = numbers(kick.constant),
+                     *const drift = numbers(inverse_[at(n)]), *const value = numbers(kick.value),
+                     *const x = x_.empty() ? nullptr : numbers(x_);
+  double *const P = numbers(momentum_), *const to = numbers(next.y), *const to_low = numbers(next.low);
   const ScratchRows slope(fields_, strip);
   const std::int32_t* const column = kick.column.data();
-  const double* const value = kick.value.data();
   for (int first = 0; first < padded_; first += strip) {
     const int count = std::min(strip, padded_ - first);
     for (int a = 0; a < fields_; ++a) {
       const int begin = a * padded_ + first;
-      for (int i = begin; i < begin + count; ++i) {
-        double sum = constant[i];
-        for (std::int32_t e = kick.first[at(i)]; e < kick.first[at(i) + 1]; ++e) sum += value[e] * from[column[e]];
-        P[i] += sum;
+      for (int i = begin; i < begin + count; i += lanes) {
+        Pack sum = Pack::load(constant + i);
+        const int end = kick.first[at(i / lanes + 1)];
+        for (int e = kick.first[at(i / lanes)]; e < end; ++e) sum += Pack::load(value + e * lanes) * gather(from, column + e * lanes);
+        (Pack::load(P + i) + of_kick * sum).store(P + i);
       }
       inputs_[at(a)] = from + begin;
     }
     for (const Source& source : kick.sources) {
-      source.family->evaluate_sources(source.group, {count, inputs_.data()}, slope.data());
+      source.family->evaluate_sources(source.group, {count, inputs_.data(), t, x ? x + first : nullptr}, slope.data());
       for (int a = 0; a < fields_; ++a) {
         const int begin = a * padded_ + first;
         const double* const weight = numbers(source.weights) + begin;
         for (int i = 0; i < count; i += lanes)
-          (Pack::load(P + begin + i) + Pack::load(weight + i) * Pack::load(slope[a] + i)).store(P + begin + i);
+          (Pack::load(P + begin + i) + of_kick * Pack::load(weight + i) * Pack::load(slope[a] + i)).store(P + begin + i);
       }
     }
     for (int a = 0; a < fields_; ++a) {
       const int begin = a * padded_ + first;
       for (int i = begin; i < begin + count; i += lanes) {
         Pack moved = Pack::load(from + i), low = Pack::load(from_low + i);
-        add_exactly(moved, low, Pack::load(drift + i) * Pack::load(P + i));
+        add_exactly(moved, low, of_drift * Pack::load(drift + i) * Pack::load(P + i));
         moved.store(to + i), low.store(to_low + i);
         largest_ = largest_magnitude(largest_, moved);
       }
@@ -261,27 +291,43 @@ void KickStepper::kick_and_drift(const Kick& kick, int node) {
   }
 }
 
-void KickStepper::take_slab(const Kick& first) {
+/// `share_below` of the kick at the row is of the slab below it. A row that is not looked at takes the place of the one before
+/// the newest.
+void KickStepper::take_slab(const Kick& first, double share_below, bool looked_at) {
   const FlushDenormals guard;
   largest_ = Pack(0.0);
-  for (int node = 0; node < nodes_; ++node)
-    kick_and_drift(node == 0 ? first : kicks_[at(node)], node);
-  if (overflowed(max_or_nan(largest_)))
+  const RowTimes& times = *system_.times();
+  const double h = system_.time_step(), above = times.step(newest_) / h,
+               below = newest_ > 0 ? times.step(newest_ - 1) / h : above;
+  const int slot = looked_at || held_ < 2 ? slots_.back() : slots_[1];
+  for (int n = 0; n < nodes_; ++n) {
+    const double kick = n == 0 ? share_below * below + (1 - share_below) * above : above;
+    const double t = times.time(newest_) + system_.component(n * fields_).at.time * times.step(newest_);
+    Node& next = n + 1 < nodes_ ? node(newest_, n + 1) : ring_[at(slot * nodes_)];
+    kick_and_drift(n == 0 ? first : kicks_[at(n)], n, kick, above, t, next);
+  }
+  if (overflowed(max_or_nan(largest_))) {
+    if (slot != slots_.back()) held_ = 1;
     throw NotFinite(fmt::format("step {}, t = {:.6g}: the field is not finite; reduce lattice.time_step or lattice.courant",
-                                newest_ + 1, system_.times()->time(newest_ + 1)));
-  for (int node = 1; node < nodes_; ++node) keep(newest_, node);
-  std::swap(y_.front(), y_.back()), std::swap(low_.front(), low_.back());
-  keep(++newest_, 0);
+                                newest_ + 1, times.time(newest_ + 1)));
+  }
+  const auto place = std::ranges::find(slots_, slot);
+  std::rotate(slots_.begin(), place, place + 1);
+  held_ = looked_at || held_ < 2 ? std::min(held_ + 1, rows_held) : 2;
+  ++newest_;
 }
 
-void KickStepper::keep(std::int64_t row, int node) {
-  const std::size_t C = at(system_.components()), slot = static_cast<std::size_t>(row) % rows_.size();
-  for (const auto& [all, to] : {std::pair{&y_, &rows_[slot]}, {&low_, &low_rows_[slot]}})
+std::vector<double> KickStepper::row_of(std::int64_t row, bool low) const {
+  const int C = system_.components(), N = system_.lattice().sites();
+  std::vector<double> values(at(N * C));
+  for (int n = 0; n < nodes_; ++n) {
+    const Node& from = node(row, n);
     for (int a = 0; a < fields_; ++a) {
-      const double* const from = numbers((*all)[at(node)]) + a * padded_;
-      double* place = to->data() + node * fields_ + a;
-      for (int i = 0; i < system_.lattice().sites(); ++i, place += C) *place = from[i];
+      const double* const field = numbers(low ? from.low : from.y) + a * padded_;
+      for (int i = 0; i < N; ++i) values[at(i * C + n * fields_ + a)] = field[i];
     }
+  }
+  return values;
 }
 
 /// The fields of a row [i·C + c] as the values at a node. Packs are padded with copies of the last site, where the density has
@@ -295,55 +341,58 @@ void KickStepper::read(const std::vector<double>& row, Packs& y) const {
 void KickStepper::start(const std::vector<std::vector<double>>& rows) {
   if (nodes_ > 1)
     throw BadInput("initial.start", "initial.start = exact: sub-steps begin from a row and its momenta; use legendre");
-  for (Packs& low : low_) std::fill(low.begin(), low.end(), Pack(0.0));
-  for (auto& low : low_rows_) std::fill(low.begin(), low.end(), 0.0);
-  for (std::size_t r = 0; r < rows.size(); ++r) ring(static_cast<std::int64_t>(r)) = rows[r];
-  newest_ = static_cast<std::int64_t>(rows.size()) - 1;
-  // P = M (y₁ − y₀)
-  read(rows[rows.size() - 2], y_[1]), read(rows.back(), y_[0]);
+  newest_ = static_cast<std::int64_t>(rows.size()) - 1, held_ = 2;
+  for (Node& any : ring_) std::ranges::fill(any.low, Pack(0.0));
+  Packs &newest = node(newest_, 0).y, &before = node(newest_ - 1, 0).y;
+  read(rows.back(), newest), read(rows[rows.size() - 2], before);
+  // P = M (y₁ − y₀) h/h₀
+  const double longer = system_.times()->step(newest_ - 1) / system_.time_step();
   for (int n = 0; n < fields_ * padded_; ++n) {
     const double inverse = numbers(inverse_[0])[n];
-    numbers(momentum_)[n] = inverse == 0 ? 0 : (numbers(y_[0])[n] - numbers(y_[1])[n]) / inverse;
+    numbers(momentum_)[n] = inverse == 0 ? 0 : (numbers(newest)[n] - numbers(before)[n]) / (inverse * longer);
   }
 }
 
 void KickStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
-  read(row0, y_[0]), read(momenta, momentum_);
+  newest_ = 0, held_ = 1;
+  Node& first = node(0, 0);
+  read(row0, first.y), read(momenta, momentum_);
+  std::ranges::fill(first.low, Pack(0.0));
   for (int i = 0; i < system_.lattice().sites(); ++i)
     for (int a = 0; a < fields_; ++a)
       if (system_.is_held(i, a)) numbers(momentum_)[a * padded_ + i] = 0;
-  std::fill(low_[0].begin(), low_[0].end(), Pack(0.0));
-  newest_ = 0;
-  ring(0) = row0;
-  std::fill(low_rows_[0].begin(), low_rows_[0].end(), 0.0);
-  take_slab(alone_);
+  take_slab(alone_, 0, true);
 }
 
-void KickStepper::step(bool /*looked_at*/) { take_slab(kicks_[0]); }
+void KickStepper::step(bool looked_at) { take_slab(kicks_[0], 0.5, looked_at); }
 
 std::vector<double> KickStepper::row(int back) const {
-  std::vector<double> result(ring(newest_).size());
+  std::vector<double> result;
   const std::size_t C = at(system_.components());
-  for (std::size_t c = 0; c < C; ++c) {
-    const std::vector<double>& from = ring(std::max<std::int64_t>(0, newest_ - back - behind_[c]));
-    for (std::size_t n = c; n < result.size(); n += C) result[n] = from[n];
-  }
+  std::map<int, std::vector<double>> rows;
+  for (const int behind : behind_)
+    if (!rows.contains(behind)) rows[behind] = row_of(std::max<std::int64_t>(0, newest_ - back - behind), false);
+  result = rows.begin()->second;
+  for (std::size_t n = 0; n < result.size(); ++n) result[n] = rows[behind_[n % C]][n];
   return result;
 }
 
 Window KickStepper::window(int rows) const {
-  std::vector<std::vector<double>> newest_rows;
+  std::vector<std::vector<double>> newest_rows, low_rows;
   const std::int64_t first = newest_ - rows + 1;
-  for (std::int64_t r = first; r <= newest_; ++r) newest_rows.push_back(ring(std::max<std::int64_t>(r, 0)));
+  for (std::int64_t r = first; r <= newest_; ++r) {
+    newest_rows.push_back(row_of(std::max<std::int64_t>(r, 0), false));
+    low_rows.push_back(row_of(std::max<std::int64_t>(r, 0), true));
+  }
   Window window = system_.window(first, std::move(newest_rows), turn_);
-  for (std::int64_t r = first; r <= newest_; ++r)
-    window.low.push_back(low_rows_[static_cast<std::size_t>(std::max<std::int64_t>(r, 0)) % rows_.size()]);
+  window.low = std::move(low_rows);
   return window;
 }
 
 /// E = P below the row before the newest − P above it there, and at the nodes of the slab above ∂S/∂y_s.
 double KickStepper::residual() const {
   if (newest_ < 2) return 0;  // of row 0 there are no equations
+  if (held_ < 3) return std::numeric_limits<double>::quiet_NaN();
   const Window rows = window(3);
   std::vector<double> size_below, size_above;
   const std::vector<double> below = half_equations(system_, rows, newest_ - 1, Side::below, &size_below),
@@ -359,32 +408,28 @@ double KickStepper::residual() const {
 }
 
 std::size_t KickStepper::bytes_of(const Kick& kick) {
-  std::size_t sum = 4 * (kick.first.size() + kick.column.size()) + 8 * kick.value.size() + sizeof(Pack) * kick.constant.size();
+  std::size_t sum = 4 * (kick.first.size() + kick.column.size()) + sizeof(Pack) * (kick.value.size() + kick.constant.size());
   for (const Source& source : kick.sources) sum += sizeof(Pack) * source.weights.size();
   return sum;
 }
 
 StepReport KickStepper::report(bool /*residual*/) const {
-  const std::size_t packs = sizeof(Pack) * momentum_.size();
-  std::size_t rows = 0, kicks = bytes_of(alone_);
-  for (const auto& row : rows_) rows += 16 * row.size();
+  const std::size_t packs = sizeof(Pack) * momentum_.size(), rows = 2 * packs * ring_.size();
+  std::size_t kicks = bytes_of(alone_);
   for (const Kick& kick : kicks_) kicks += bytes_of(kick);
-  const std::size_t work = packs * (2 * y_.size() + inverse_.size() + 1);
+  const std::size_t work = packs * (inverse_.size() + 1) + sizeof(Pack) * x_.size();
   return {.starting_rows = 2,
           .behind = behind_,
           .iterates = false,
           .solver = nodes_ > 1 ? "a sparse product and a division a sub-step" : "a sparse product and a division a row",
           .bytes = rows + kicks + work,
-          .memory = fmt::format("rows of the section {} B, kicks {} B, work space {} B", rows, kicks,
-                                work)};
+          .memory = fmt::format("rows of the section {} B, kicks {} B, work space {} B", rows, kicks, work)};
 }
 
 void KickStepper::visit(SavedState& state) {
-  state("newest", newest_);
-  state("values", y_[0]), state("momentum", momentum_);
-  state("low parts of values", low_[0]);
-  for (auto* rows : {&rows_, &low_rows_})
-    for (auto& row : *rows) state("row", row);
+  state("newest", newest_), state("rows held", held_), state("places of rows", slots_);
+  state("momentum", momentum_);
+  for (Node& node : ring_) state("values", node.y), state("low parts", node.low);
 }
 
 }  // namespace delf

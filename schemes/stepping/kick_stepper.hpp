@@ -12,15 +12,16 @@
 namespace delf {
 
 /// Steps a mesh, or mechanics, whose slab is a chain of nodes in time (rows, and the sub-steps between them) that are joined by
-/// a lumped kinetic term alone:
+/// a lumped kinetic term alone. With h_s the step of the slab that node s lies in, and h the step that M, K, c and w are of,
 ///
-///     S = Σ_s ½ (y_{s+1} − y_s)ᵀ M_s (y_{s+1} − y_s) + Σ_s [½ y_sᵀ K_s y_s + c_sᵀ y_s + Σ_i w_{s,i} N(y_{s,i})]
+///     S = Σ_s (h/h_s) ½ (y_{s+1} − y_s)ᵀ M_s (y_{s+1} − y_s) + Σ_s (h_s/h) [½ y_sᵀ K_s y_s + c_sᵀ y_s + Σ_i w_{s,i} N(y_{s,i})]
 ///
-///     kick     P ← P + K_s y_s + c_s + w_s N′(y_s)            ∂S/∂y_s = 0, with P = M_{s−1} (y_s − y_{s−1}) before it
-///     drift    y_{s+1} = y_s + M_s⁻¹ P
+///     kick     P ← P + (h_s/h) (K_s y_s + c_s + w_s N′(y_s))   ∂S/∂y_s = 0, with P = M_{s−1} (y_s − y_{s−1}) h/h_{s−1} before it
+///     drift    y_{s+1} = y_s + (h_s/h) M_s⁻¹ P
 ///
-/// with M diagonal. K is a sparse matrix, and that of a row is the sum of those of the slabs below it and above it. All of it
-/// comes from the constant parts and the source terms of the families.
+/// with M diagonal, K a sparse matrix and N′ a function of t and x too, if the density reads them. A row has the kicks of the slabs
+/// below it and above it, at once where these are alike: (h_s/h) is then the mean of both slabs'. All of it comes from the constant
+/// parts and the source terms of the families.
 class KickStepper final : public StepMethod {
  public:
   /// Null where the equations are of another kind.
@@ -30,7 +31,7 @@ class KickStepper final : public StepMethod {
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool looked_at) override;
 
-  StepState state() const override { return {newest_, 0, Continued::no}; }
+  StepState state() const override { return {newest_, 0, Continued::no, held_}; }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   double residual() const override;
@@ -47,22 +48,29 @@ class KickStepper final : public StepMethod {
   };
   /// Of the values at a node: y[a·padded + i], a field after the other.
   struct Kick {
-    std::vector<std::int32_t> first, column;  ///< of the rows of K, and the end
-    std::vector<double> value;
+    /// Of each pack of rows of K its entries, and the end; an entry has a column and a value for each lane.
+    std::vector<std::int32_t> first, column;
+    Packs value;
     Packs constant;
     std::vector<Source> sources;
   };
+  /// Values are y + low.
+  struct Node {
+    Packs y, low;
+  };
   struct Parts;
 
-  KickStepper(const LatticeSystem&, const SolvePlan&, const StepOptions&, Parts);
-  static Kick sum(const Kick&, const Kick&);
+  KickStepper(const LatticeSystem&, const StepOptions&, Parts);
   static std::size_t bytes_of(const Kick&);
-  void kick_and_drift(const Kick&, int node);
+  Node& node(std::int64_t row, int node) { return ring_[index(row, node)]; }
+  const Node& node(std::int64_t row, int node) const { return ring_[index(row, node)]; }
+  std::size_t index(std::int64_t row, int node) const;
+  /// At node n of the newest row, `kick` and `drift` times what they are in a step h, to the next node.
+  void kick_and_drift(const Kick&, int n, double kick, double drift, double t, Node& next);
   void read(const std::vector<double>& row, Packs& y) const;
-  void take_slab(const Kick& first);
-  void keep(std::int64_t row, int node);
-  std::vector<double>& ring(std::int64_t row) { return rows_[static_cast<std::size_t>(row) % rows_.size()]; }
-  const std::vector<double>& ring(std::int64_t row) const { return rows_[static_cast<std::size_t>(row) % rows_.size()]; }
+  void take_slab(const Kick& first, double share_below, bool looked_at);
+  /// The row as it is held, or of low parts.
+  std::vector<double> row_of(std::int64_t row, bool low) const;
 
   const LatticeSystem& system_;
   double turn_;
@@ -71,13 +79,14 @@ class KickStepper final : public StepMethod {
   Kick alone_;                       ///< of row 0, which has no slab below it
   std::vector<Kick> kicks_;          ///< of each node: at a row those of both slabs
   std::vector<Packs> inverse_;       ///< M_s⁻¹; 0 where values are data
-  std::vector<Packs> y_, low_;       ///< of the nodes of a slab, the last one too: values are y + low
+  Packs x_;                          ///< of the sites, if a density reads x
+  std::vector<Node> ring_;           ///< rows with the nodes above them
+  std::vector<int> slots_;           ///< where the newest row stands in the ring, and those before it
   Packs momentum_;                   ///< P
   std::vector<const double*> inputs_;  ///< of a source, in kick_and_drift()
   Pack largest_;
-  std::vector<std::vector<double>> low_rows_;  ///< what rounding has taken from rows_
-  std::vector<std::vector<double>> rows_;  ///< a ring of the newest, [i·C + c]; nodes inside a slab are with the row below
   std::int64_t newest_ = -1;
+  int held_ = 0;  ///< rows that are there
 };
 
 }  // namespace delf

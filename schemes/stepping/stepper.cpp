@@ -15,7 +15,10 @@ namespace {
 
 std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan& plan, StepOptions options) {
   options.tolerance = std::max(options.tolerance, smallest_tolerance);
-  if (options.steps_vary) return std::make_unique<SlabStepper>(system, plan, options);
+  if (options.steps_vary) {
+    if (auto stepper = KickStepper::make(system, plan, options)) return stepper;
+    return std::make_unique<SlabStepper>(system, plan, options);
+  }
   const bool processed = !options.processor.empty();
   const bool mirrored = std::ranges::any_of(
       system.families(), [](const auto& family) { return family->pattern().placement == Placement::left_mirror; });

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/system/mesh_energy.hpp"
 
+#include <algorithm>
+#include <array>
 #include <limits>
+#include <numeric>
 #include <utility>
 
+#include "jets/simd/scratch_rows.hpp"
 #include "jets/tables/cell_points.hpp"
 #include "jets/tables/space_table.hpp"
 #include "schemes/families/mesh_families.hpp"
@@ -16,29 +20,64 @@ MeshEnergy::MeshEnergy(std::shared_ptr<const BatchDensity> density, const MeshSp
       masses_(lumped_masses(space.mesh)),
       cells_(mesh_families(point_space(), density_, space)) {  // a table of one row, without φ_t
   cells_.erase(cells_.begin());                                // the sites
+  for (const Mesh::Point& p : space.mesh.points) places_.push_back(p[0]);
 }
 
 double MeshEnergy::of_cells(std::span<const double> values, double t) const {
   const auto d = static_cast<std::size_t>(density_->components());
+  constexpr int most = 64;  // cells at once
+  const ScratchRows x(1, most), L(1, most);
+  std::fill_n(x[0], most, 0.0);  // cells have places of their own
   double sum = 0;
-  std::vector<double> y;
-  for (const auto& family : cells_)
-    for (int s = 0; s < family->listed()->size(); ++s) {
-      y.clear();
+  for (const auto& family : cells_) {
+    const int cells = family->listed()->size();
+    for (int first = 0; first < cells; first += most) {
+      const int own = std::min(most, cells - first), count = (own + lanes - 1) / lanes * lanes;
+      std::array<int, most> numbers{};
+      for (int s = 0; s < count; ++s) numbers[static_cast<std::size_t>(s)] = first + std::min(s, own - 1);
+      const ScratchRows y(family->size(), count);
       for (int i = 0; i < family->size(); ++i)
-        y.push_back(values[static_cast<std::size_t>(family->column(s, i)) * d + static_cast<std::size_t>(i) % d]);
-      sum += family->lagrangian({1, 1, t, 0, s}, y).value();
+        for (int s = 0; s < count; ++s)
+          y[i][s] = values[static_cast<std::size_t>(family->column(numbers[static_cast<std::size_t>(s)], i)) * d +
+                           static_cast<std::size_t>(i) % d];
+      family->lagrangian(StencilBatch{{1, 1, t, 0}, count, x[0], y[0], nullptr, numbers.data()}, L[0]);
+      sum += std::accumulate(L[0], L[0] + own, 0.0);
     }
+  }
   return sum;
 }
 
 double MeshEnergy::operator()(std::span<const double> values, std::span<const double> rates, double t) const {
-  const auto d = static_cast<std::size_t>(density_->components());
+  const int d = density_->components(), sites = static_cast<int>(masses_.size());
+  constexpr int most = 64;  // sites at once
+  const ScratchRows jet(density_->variables(), most), slope(density_->variables(), most), l(1, most), x(1, most);
+  for (int v = 0; v < density_->variables(); ++v) std::fill_n(jet[v], most, 0.0);
   double sum = 0;
-  for (std::size_t i = 0; i < masses_.size(); ++i)
-    sum += masses_[i] * energy_of(*density_, values.subspan(i * d, d), rates.subspan(i * d, d), t);
+  for (int first = 0; first < sites; first += most) {
+    const int own = std::min(most, sites - first), count = (own + lanes - 1) / lanes * lanes;
+    for (int s = 0; s < count; ++s) {
+      const int i = first + std::min(s, own - 1);  // the last one fills whole packs
+      x[0][s] = places_[static_cast<std::size_t>(i)];
+      for (int a = 0; a < d; ++a) {
+        jet[a][s] = values[static_cast<std::size_t>(i * d + a)];
+        jet[d + a][s] = rates[static_cast<std::size_t>(i * d + a)];
+      }
+    }
+    density_->gradient({count, jet.data(), t, x[0]}, slope.data(), l[0]);
+    for (int s = 0; s < own; ++s) {
+      double energy = -l[0][s];
+      for (int a = 0; a < d; ++a) energy += jet[d + a][s] * slope[d + a][s];
+      sum += masses_[static_cast<std::size_t>(first + s)] * energy;
+    }
+  }
   // ℓ(0, 0, 0) is in the gradients too, where it is no energy.
   return sum - of_cells(values, t) + of_cells(std::vector<double>(values.size(), 0.0), t);
+}
+
+double MeshEnergy::between(std::span<const double> before, std::span<const double> y, double h, double t) const {
+  std::vector<double> rates(y.size());
+  for (std::size_t n = 0; n < y.size(); ++n) rates[n] = (y[n] - before[n]) / h;
+  return 0.5 * ((*this)(before, rates, t - h) + (*this)(y, rates, t));
 }
 
 std::vector<double> MeshEnergy::rates(std::span<const double> values, std::span<const double> momenta,

@@ -21,6 +21,9 @@ class MeshEnergy {
 
   /// Of fields and their rates, both [i·d + a], at a time.
   double operator()(std::span<const double> values, std::span<const double> rates, double t) const;
+  /// At the half step between two rows, with the rates (y − before)/h that join them: the mean of both rows' energies. It is
+  /// what the rows of the usual method keep.
+  double between(std::span<const double> before, std::span<const double> y, double h, double t) const;
   /// The rates of momenta p_i = A_i ∂ℓ/∂φ_t, [i·d + a]; not numbers where there are none.
   std::vector<double> rates(std::span<const double> values, std::span<const double> momenta, double t) const;
 
@@ -28,7 +31,7 @@ class MeshEnergy {
   double of_cells(std::span<const double> values, double t) const;
 
   std::shared_ptr<const BatchDensity> density_;
-  std::vector<double> masses_;
+  std::vector<double> masses_, places_;  ///< A_i, x_i
   std::vector<std::shared_ptr<const StencilFamily>> cells_;
 };
 

@@ -5,6 +5,8 @@
 
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/stability/mesh_frequency.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/static_field.hpp"
@@ -86,25 +88,17 @@ ExitCode plan(const ComplexScene& c) {
           least, largest, updates, static_cast<double>(c.scene.steps) * static_cast<double>(steps.size()));
       fmt::print("  solve      explicit, in the order of a priority queue\n");
       say_memory(AsynchronousEvolution(space, steps).bytes(), 2 * values);
-    } else if (c.has_method()) {
-      const Simulation simulation(c.problem_on_mesh());
-      fmt::print("  steps      {} of h = {:.6g}\n{}", c.scene.steps, c.scene.problem.time_step,
-                 simulation.plan_report());
     } else {
-      const SpaceEvolution evolution(space, c.time_step(0));
+      const Simulation simulation(c.problem_on_mesh());
       fmt::print("  steps      {} of {}\n", c.scene.steps,
                  c.step_control()
                      ? fmt::format("h = {:.6g}/sqrt(1 + {:.6g}^2 <phi_t^2>), reversible; about so many, or more",
                                    c.scene.problem.time_step, *c.step_control())
                  : c.time_steps.empty() ? fmt::format("h = {:.6g}", c.scene.problem.time_step)
                                         : fmt::format("{} lengths in turn", c.time_steps.size()));
-      fmt::print("  stencils   a row has {} of motion, {} of sites, {} of cells\n", space.sites(), space.sites(),
-                 space.mesh.cells());
-      fmt::print("  solve      {}{}\n", evolution.plan().describe(),
-                 evolution.is_direct() ? ": explicit, one sparse product a row" : ": Newton steps");
-      if (const auto most = evolution.largest_step())
+      if (const auto most = c.has_method() ? std::nullopt : longest_step(simulation.evolution().system()))
         fmt::print("  stable     h below {:.6g}, by linear theory about 0\n", *most);
-      say_memory(evolution.bytes(), 3 * values);
+      fmt::print("{}", simulation.plan_report());
     }
   } catch (const BadInput& bad) {
     throw c.scene.settings.located(bad);

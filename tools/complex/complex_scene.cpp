@@ -48,10 +48,13 @@ const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "latt
                                                    "lattice.step_control", "run.until",         "run.steps",
                                                    "output.every"};
 
+/// Keys of stencils are of regular lattices.
+bool has_keys_on_meshes(const MethodEntry& method) { return method.on_meshes && !method.reads_stencil; }
+
 void refuse_unread(const Settings& settings, const TheoryEntry& theory, const ParameterValues& parameters,
                    const MethodEntry& method, const std::vector<Component>& fields, bool still, bool spacetime) {
   std::set<std::string, std::less<>> known = read_keys;
-  if (method.on_meshes)
+  if (has_keys_on_meshes(method))
     for (const Parameter& p : method.parameters) known.insert(p.key);
   for (const Parameter& p : parameters_of(theory, parameters)) known.insert(p.key);
   for (const Component& field : fields)
@@ -88,7 +91,7 @@ ParameterValues read_parameters(const Values& values, const TheoryEntry& theory)
 std::string names_of_methods_on_meshes() {
   std::vector<std::string> names;
   for (const MethodEntry* entry : method_entries())
-    if (entry->on_meshes) names.push_back(entry->name);
+    if (has_keys_on_meshes(*entry)) names.push_back(entry->name);
   return fmt::format("{}", fmt::join(names, " or "));
 }
 
@@ -282,7 +285,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     p.method = values.choice("scheme.method");
     const MethodEntry& method = find_method(p.method);
     p.parameters = parameters;
-    if (method.on_meshes) read(p.parameters, values, method.parameters);
+    if (has_keys_on_meshes(method)) read(p.parameters, values, method.parameters);
     refuse_unread(settings, entry, parameters, method, c.theory->fields(), values.choice("lattice.time") == "none",
                   c.stencils != nullptr);
     const bool by_method = c.has_method();
@@ -330,8 +333,9 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     }
 
     p.step_control = read_step_control(settings, values);
-    if (by_method && values.given("lattice.time_steps"))
-      throw settings.error("lattice.time_steps", "are of the usual method on a mesh; leave scheme.method out");
+    if (p.step_control && !method.row_density)
+      throw settings.error("lattice.time_steps",
+                           "reversible steps are of the usual method on a mesh; leave scheme.method out, or give a list");
     if (p.step_control && c.time == MeshTime::cells)
       throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
     if (p.step_control && c.theory->constraint())
@@ -382,6 +386,8 @@ Problem ComplexScene::problem_on_mesh() const {
   Problem problem = scene.problem;
   problem.lattice = Lattice::on(std::shared_ptr<const MeshSpace>(std::shared_ptr<const MeshSpace>(), space.get()));
   problem.stencil = Problem().stencil;
+  problem.time_steps = time_steps;
+  problem.circle_valued = false;  // values() are lifted to real numbers
   return problem;
 }
 

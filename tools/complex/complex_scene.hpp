@@ -49,11 +49,11 @@ struct ComplexScene {
     return time_steps.empty() ? scene.problem.time_step
                               : time_steps[static_cast<std::size_t>(step) % time_steps.size()];
   }
-  /// The method that is not the rows' own: steps as lattices have them, by its families on the sites and cells.
+  /// A method that is not the usual one.
   bool has_method() const;
-  /// The problem on the mesh as the space of a lattice, for such a method.
+  /// The problem on the mesh as the space of a lattice.
   Problem problem_on_mesh() const;
-  /// Steps that the field chooses: ReversibleSteps of this strength, with time_step for ε.
+  /// Steps that the field chooses (schemes/methods/mesh_rows.hpp): of this strength, with time_step for ε.
   const std::optional<double>& step_control() const { return scene.problem.step_control; }
   /// Solved at once: there are no steps.
   bool is_one_problem() const { return time == MeshTime::none || time == MeshTime::sites; }

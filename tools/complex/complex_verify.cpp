@@ -11,10 +11,11 @@
 #include "schemes/complex/slab_complex.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/system/mesh_energy.hpp"
+#include "schemes/theories/mirrored_in_time.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_checks.hpp"
 #include "tools/complex/mesh_evolution.hpp"
-#include "tools/complex/row_steps.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/files/text_file.hpp"
@@ -212,41 +213,48 @@ class MeshVerification {
   }
 
   void look_at_rows() {
-    SpaceEvolution evolution(*scene_.space, scene_.time_step(0),
-                             {scene_.scene.problem.tolerance, scene_.scene.problem.max_iterations});
-    const std::vector<double> start = scene_.values();
-    RowSteps row_steps(scene_);
-    row_steps.start(evolution);
+    Simulation simulation(scene_.problem_on_mesh());
+    const RowTimes& times_of_rows = *simulation.evolution().system().times();
+    const MeshEnergy energy_of(scene_.theory->shared_density(), *scene_.space);
+    start(scene_, simulation);
     const std::int64_t steps = std::max<std::int64_t>(rows_of_run(), window);
-    std::vector<double> rows, times;
-    const auto keep = [&](std::span<const double> row, double t) {
+    std::vector<double> rows, times, before(scene_.values()), row(before.size());
+    const auto keep = [&](double t) {
       if (times.size() == window)
         rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(row.size())), times.erase(times.begin());
       rows.insert(rows.end(), row.begin(), row.end());
       times.push_back(t);
     };
-    keep(start, 0), keep(evolution.row(), evolution.time());
-    const bool own_steps = !scene_.time_steps.empty() || scene_.step_control();
-    const double energy = evolution.energy();
+    const auto energy = [&] {
+      const std::int64_t newest = simulation.newest();
+      return energy_of.between(before, row, times_of_rows.step(newest - 1), times_of_rows.time(newest));
+    };
+    row = before, keep(0);
+    simulation.copy_row(0, row), keep(times_of_rows.time(1));
+    lengths_ = {times_of_rows.step(0)};
+    const bool own_steps = !times_of_rows.uniform();
+    const double first_energy = energy();
     int moment = 0;
-    while (evolution.newest() < steps && !Interrupt::asked()) {
-      row_steps.step(evolution);
-      if (own_steps) measure_energy(evolution.energy(), energy, evolution.newest());
+    while (simulation.newest() < steps && !Interrupt::asked()) {
+      simulation.step();
+      before = row, simulation.copy_row(0, row);
+      lengths_.push_back(times_of_rows.step(simulation.newest() - 1));
+      if (own_steps) measure_energy(energy(), first_energy, simulation.newest());
       const std::int64_t next =
           std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_);  // the last row of the next window
-      if (evolution.newest() > next - window) keep(evolution.row(), evolution.time());
-      if (evolution.newest() < next) continue;
+      if (simulation.newest() > next - window) keep(times_of_rows.time(simulation.newest()));
+      if (simulation.newest() < next) continue;
       look_at_rows_of(SpaceRows(*scene_.space, times), rows, {},
-                      fmt::format("rows {} to {}", evolution.newest() - window + 1, evolution.newest()));
+                      fmt::format("rows {} to {}", simulation.newest() - window + 1, simulation.newest()));
       if (own_steps && !scene_.theory->constraint())
-        look_at_first_step(times, rows, fmt::format("rows from {}", evolution.newest() - window + 1));
+        look_at_first_step(times, rows, fmt::format("rows from {}", simulation.newest() - window + 1));
       while (moment < moments_ &&
-             std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_) <= evolution.newest())
+             std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_) <= simulation.newest())
         ++moment;
     }
     if (energy_) verdict_.measured.push_back(*energy_);
     if (Interrupt::asked()) verdict_.status = "interrupted";
-    else reverse(evolution, row_steps, start);
+    else reverse(simulation);
   }
 
   /// Rows of steps of their own, and one more as long as the first of them: Marsden–Patrick–Shkoller (6.6).
@@ -276,32 +284,35 @@ class MeshVerification {
   // Where the field chooses the steps only a run tells how many there are.
   std::int64_t rows_of_run() const {
     if (!scene_.scene.until) return scene_.scene.steps;
-    SpaceEvolution evolution(*scene_.space, scene_.time_step(0),
-                             {scene_.scene.problem.tolerance, scene_.scene.problem.max_iterations});
-    RowSteps row_steps(scene_);
-    row_steps.start(evolution);
-    while (!scene_.scene.is_over(evolution.newest(), evolution.time()) && !Interrupt::asked())
-      row_steps.step(evolution);
-    return evolution.newest();
+    Simulation simulation(scene_.problem_on_mesh());
+    start(scene_, simulation);
+    while (!scene_.scene.is_over(simulation.newest(), simulation.time(simulation.newest())) && !Interrupt::asked())
+      simulation.step();
+    return simulation.newest();
   }
 
-  // Rows n, n − 1 in exchange, and back to rows 1, 0. The time step between them has been the last one.
-  void reverse(SpaceEvolution& evolution, RowSteps& row_steps, const std::vector<double>& start) {
-    const std::int64_t there = evolution.newest(), back = std::min<std::int64_t>(there - 1, 200);
-    std::vector<double> goal(start);
+  // Rows n, n − 1 in exchange, and back to rows 1, 0, by steps as long as those forth; if the field chooses them, by those
+  // that it chooses again.
+  void reverse(const Simulation& forth) {
+    const std::int64_t there = forth.newest(), back = std::min<std::int64_t>(there - 1, 200);
+    Problem problem = scene_.problem_on_mesh();
+    if (forth.evolution().system().families().front()->is_placed())
+      problem = mirrored_in_time(std::move(problem), forth.time(there));
+    if (!problem.time_steps.empty()) problem.time_steps.assign(lengths_.rbegin(), lengths_.rend());
+    Simulation again(problem);
+    again.start({forth.evolution().stepper().row(0), forth.evolution().stepper().row(1)}, forth.step_density());
+    for (std::int64_t n = 0; n < back; ++n) again.step();
+    std::vector<double> goal(scene_.values()), reached(goal.size());
     if (back < there - 1) {  // a long way: over the last steps alone
-      SpaceEvolution again(*scene_.space, scene_.time_step(0),
-                           {scene_.scene.problem.tolerance, scene_.scene.problem.max_iterations});
-      RowSteps again_steps(scene_);
-      again_steps.start(again);
-      while (again.newest() < there - 1 - back) again_steps.step(again);
-      goal.assign(again.row().begin(), again.row().end());
+      Simulation once_more(scene_.problem_on_mesh());
+      start(scene_, once_more);
+      while (once_more.newest() < there - 1 - back) once_more.step();
+      once_more.copy_row(0, goal);
     }
-    row_steps.turn_back(evolution);
-    for (std::int64_t n = 0; n < back; ++n) row_steps.step(evolution);
+    again.copy_row(0, reached);
     double distance = 0, size = 0;
     for (std::size_t n = 0; n < goal.size(); ++n)
-      distance = std::max(distance, std::abs(goal[n] - evolution.row()[n])), size = std::max(size, std::abs(goal[n]));
+      distance = std::max(distance, std::abs(goal[n] - reached[n])), size = std::max(size, std::abs(goal[n]));
     Balance balance{distance, std::max(size, 1e-300), static_cast<std::int64_t>(goal.size())};
     reversal_.take(balance, fmt::format("{} steps back", back));
     if (!reversal_.passed()) reversal_.failure = "the steps back do not retrace the steps forth";
@@ -312,6 +323,7 @@ class MeshVerification {
   int moments_;
   Check reversal_, order_, first_step_;
   std::optional<Measured> energy_;
+  std::vector<double> lengths_;  ///< of the steps
   Verdict verdict_;
 };
 

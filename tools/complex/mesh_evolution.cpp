@@ -6,13 +6,15 @@
 #include <algorithm>
 
 #include "schemes/complex/asynchronous.hpp"
+#include "schemes/complex/circle_fibre.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/stability/mesh_frequency.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/stepping/step_density.hpp"
 #include "schemes/system/mesh_energy.hpp"
 #include "schemes/system/momenta.hpp"
 #include "tools/complex/complex_commands.hpp"
-#include "tools/complex/row_steps.hpp"
 
 namespace delf {
 namespace {
@@ -21,85 +23,54 @@ class AllSites final : public MeshEvolution {
  public:
   explicit AllSites(const ComplexScene& c)
       : c_(c),
-        evolution_(*c.space, c.time_step(0), {c.scene.problem.tolerance, c.scene.problem.max_iterations}),
-        steps_(c) {}
-
-  void start() override { steps_.start(evolution_); }
-  std::int64_t newest() const override { return evolution_.newest(); }
-  double time() const override { return evolution_.time(); }
-  double last_step() const override { return evolution_.last_step(); }
-  std::optional<double> own_length() const override {
-    return c_.time_steps.empty() && !c_.step_control() ? std::nullopt : std::optional(evolution_.last_step());
-  }
-  std::optional<double> first_lengths() const override { return steps_.first_lengths(evolution_); }
-  double energy_of_start() const override {
-    // rates are projected onto the surface of a constraint, where there is one
-    return c_.space->constraint ? Outcome::unknown : evolution_.energy(c_.values(), c_.rates());
-  }
-  void step() override { steps_.step(evolution_); }
-  int iterations() const override { return evolution_.is_direct() ? 0 : evolution_.report().iterations; }
-  MeshRow row(std::int64_t row) override {
-    const bool newest = row >= evolution_.newest();
-    MeshRow now{row,
-                newest ? evolution_.time() : 0,
-                evolution_.row(newest ? 0 : 1),
-                evolution_.energy(),
-                newest ? evolution_.report().iterations : 0,
-                newest && row > 0 ? evolution_.residual() : 0};
-    for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(evolution_.momentum(symmetry));
-    if (c_.space->constraint) now.constraint = c_.space->largest_constraint(now.values);
-    if (newest) now.multipliers = evolution_.multipliers();
-    return now;
-  }
-  void visit(SavedState& state) override {
-    evolution_.visit(state);
-    steps_.visit(state);
-  }
-  void describe(Outcome& o) const override {
-    o.solve = evolution_.plan().describe() + (evolution_.is_direct() ? " (explicit)" : "");
-    o.solve_kind = evolution_.is_direct() ? "explicit" : "sparse";
-    o.bytes = evolution_.bytes();
-    if (const auto most = evolution_.largest_step(); most && *most < c_.scene.problem.time_step)
-      o.warnings.push_back(fmt::format("waves on this mesh grow at h = {:.4g} by linear theory; take h below {:.4g}",
-                                       c_.scene.problem.time_step, *most));
-  }
-
- private:
-  const ComplexScene& c_;
-  SpaceEvolution evolution_;
-  RowSteps steps_;
-};
-
-/// The lattice's own steps, by a method's families on the sites and cells.
-class ByMethod final : public MeshEvolution {
- public:
-  explicit ByMethod(const ComplexScene& c)
-      : c_(c),
         simulation_(c.problem_on_mesh()),
         energy_(c.theory->shared_density(), *c.space),
-        values_(c.space->fields_of_row()) {}
+        values_(c.space->fields_of_row()),
+        before_(values_) {}
 
-  void start() override { delf::start(c_, simulation_); }
+  void start() override {
+    delf::start(c_, simulation_);
+    check_angles();
+  }
   std::int64_t newest() const override { return simulation_.newest(); }
   double time() const override { return simulation_.time(newest()); }
-  double last_step() const override { return c_.scene.problem.time_step; }
-  void step() override { simulation_.step(); }
+  double last_step() const override { return steps().step(newest() - 1); }
+  std::optional<double> own_length() const override {
+    return steps().uniform() ? std::nullopt : std::optional(last_step());
+  }
+  std::optional<double> first_lengths() const override {
+    if (!c_.step_control()) return {};
+    return std::min(last_step(), c_.scene.problem.time_step / simulation_.row_density().density);
+  }
+  double energy_of_start() const override {
+    // rates are projected onto the surface of a constraint, where there is one
+    if (c_.has_method() || c_.space->constraint) return Outcome::unknown;
+    std::vector<double> rates = c_.rates();
+    for (std::size_t n = 0; n < rates.size(); ++n)
+      if (c_.space->fixed[n / c_.fields.size()]) rates[n] = 0;
+    return energy_(c_.values(), rates, 0);
+  }
+  void step(bool looked_at) override {
+    simulation_.step(looked_at || c_.scene.problem.circle_valued);
+    check_angles();
+  }
   int iterations() const override { return simulation_.iterations(); }
   MeshRow row(std::int64_t row) override {
-    const bool is_newest = row >= newest();
+    const bool is_newest = row >= newest(), is_whole = simulation_.evolution().stepper().held() > 1;
     const int back = is_newest ? 0 : 1;
     const double t = is_newest ? time() : 0;
     simulation_.copy_row(back, values_);
-    const std::vector<double> p = momenta(back);
-    MeshRow now{row, t, values_, energy_(values_, energy_.rates(values_, p, t), t), is_newest ? iterations() : 0,
-                is_newest && row > 0 ? simulation_.residual() : 0};
-    for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(sum(symmetry, p));
-    if (c_.space->constraint) now.constraint = c_.space->largest_constraint(now.values);
-    if (simulation_.count(Role::multiplier) == 1 && is_newest) {
-      multipliers_.resize(static_cast<std::size_t>(c_.sites()));
-      simulation_.copy_row(0, multipliers_, Role::multiplier);
-      now.multipliers = multipliers_;
+    MeshRow now{row, t, values_, Outcome::unknown, is_newest ? iterations() : 0, 0};
+    if (is_newest && row > 0) now.residual = is_whole ? simulation_.residual() : Outcome::unknown;
+    if (is_whole) {
+      const std::vector<double> p = momenta(back);
+      now.energy = c_.has_method() ? energy_(values_, energy_.rates(values_, p, t), t) : energy_between();
+      for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(sum(symmetry, p));
+    } else {
+      now.momenta.resize(c_.theory->symmetries().size(), {Outcome::unknown, 0, 0});
     }
+    if (c_.space->constraint) now.constraint = c_.space->largest_constraint(now.values);
+    if (simulation_.count(Role::multiplier) == 1 && is_newest) now.multipliers = multipliers();
     return now;
   }
   void visit(SavedState& state) override { simulation_.visit(state); }
@@ -107,9 +78,25 @@ class ByMethod final : public MeshEvolution {
     o.solve = simulation_.solve_summary();
     o.solve_kind = simulation_.solve_kind();
     o.bytes = simulation_.bytes();
+    if (c_.has_method()) return;
+    if (const auto most = longest_step(simulation_.evolution().system()); most && *most < c_.scene.problem.time_step)
+      o.warnings.push_back(fmt::format("waves on this mesh grow at h = {:.4g} by linear theory; take h below {:.4g}",
+                                       c_.scene.problem.time_step, *most));
   }
 
  private:
+  const RowTimes& steps() const { return *simulation_.evolution().system().times(); }
+  void check_angles() {
+    if (!c_.scene.problem.circle_valued) return;
+    simulation_.copy_row(0, values_), simulation_.copy_row(1, before_);
+    check_wrapped_differences(c_.space->mesh, values_, before_);
+  }
+  /// Of the last two rows, whichever of them is asked for.
+  double energy_between() {
+    std::vector<double> newest(values_.size());
+    simulation_.copy_row(0, newest), simulation_.copy_row(1, before_);
+    return energy_.between(before_, newest, last_step(), time());
+  }
   /// Of the fields at the newest row, or the one before it, [i·d + a]: the half of their equations.
   std::vector<double> momenta(int back) const {
     const Evolution& evolution = simulation_.evolution();
@@ -118,9 +105,19 @@ class ByMethod final : public MeshEvolution {
                                                    back == 0 ? Side::below : Side::above);
     const std::size_t C = simulation_.components().size(), d = c_.fields.size();
     std::vector<double> p;
-    for (std::size_t n = 0; n < all.size(); n += C) p.insert(p.end(), all.begin() + static_cast<std::ptrdiff_t>(n),
-                                                             all.begin() + static_cast<std::ptrdiff_t>(n + d));
+    for (std::size_t n = 0; n < all.size(); n += C)
+      p.insert(p.end(), all.begin() + static_cast<std::ptrdiff_t>(n), all.begin() + static_cast<std::ptrdiff_t>(n + d));
     return p;
+  }
+  /// λ of the row before, where the action has A_i ½(h_below + h_above) λ_i G(y_i): its stencils have λ_i G(y_i) alone.
+  std::span<const double> multipliers() {
+    multipliers_.resize(static_cast<std::size_t>(c_.sites()));
+    simulation_.copy_row(0, multipliers_, Role::multiplier);
+    const std::int64_t row = newest() - 1;
+    const double above = steps().step(row), below = row > 0 ? steps().step(row - 1) : above;
+    for (std::size_t i = 0; i < multipliers_.size(); ++i)
+      multipliers_[i] /= 0.5 * (below + above) * c_.space->masses[i];
+    return multipliers_;
   }
   /// Σ_i p_i · ξ(φ_i)
   Balance sum(const LinearSymmetry& symmetry, const std::vector<double>& p) const {
@@ -138,7 +135,7 @@ class ByMethod final : public MeshEvolution {
   const ComplexScene& c_;
   Simulation simulation_;
   MeshEnergy energy_;
-  std::vector<double> values_, multipliers_;
+  std::vector<double> values_, before_, multipliers_;
 };
 
 /// Row n is at n h, with h = scene.problem.time_step.
@@ -150,7 +147,7 @@ class OwnSteps final : public MeshEvolution {
   std::int64_t newest() const override { return newest_; }
   double time() const override { return static_cast<double>(newest_) * c_.scene.problem.time_step; }
   double last_step() const override { return c_.scene.problem.time_step; }
-  void step() override { evolution_.advance(static_cast<double>(newest_ + 1) * last_step()), ++newest_; }
+  void step(bool) override { evolution_.advance(static_cast<double>(newest_ + 1) * last_step()), ++newest_; }
   MeshRow row(std::int64_t row) override {
     values_ = evolution_.values(time());
     MeshRow now{row, time(), values_, evolution_.energy(time()), 0, Outcome::unknown, evolution_.node_times()};
@@ -191,7 +188,6 @@ void start(const ComplexScene& c, Simulation& simulation) {
 
 std::unique_ptr<MeshEvolution> make_mesh_evolution(const ComplexScene& c) {
   if (c.time == MeshTime::cells) return std::make_unique<OwnSteps>(c);
-  if (c.has_method()) return std::make_unique<ByMethod>(c);
   return std::make_unique<AllSites>(c);
 }
 

@@ -47,8 +47,8 @@ class MeshEvolution {
   virtual std::optional<double> first_lengths() const { return {}; }
   /// Of the given values and rates, where that is not the energy of row 0 by definition; else not a number.
   virtual double energy_of_start() const { return Outcome::unknown; }
-  /// To the next row.
-  virtual void step() = 0;
+  /// To the next row; row() is for one that is looked at.
+  virtual void step(bool looked_at = true) = 0;
   /// Of Newton's method in the last step; 0 if it is one solve.
   virtual int iterations() const { return 0; }
   /// The newest row; or row 0 where that is held still.
@@ -59,7 +59,7 @@ class MeshEvolution {
   virtual void describe(Outcome&) const = 0;
 };
 
-/// Rows 0 and 1 of a method of lattices, from the scene's fields and rates.
+/// Rows 0 and 1, from the scene's fields and rates.
 void start(const ComplexScene&, Simulation&);
 
 /// Of a scene whose time is rows or cells.

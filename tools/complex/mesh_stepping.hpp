@@ -18,7 +18,7 @@ class MeshStepping final : public RowLoop {
   std::int64_t newest_row() const override { return evolution_.newest(); }
   double time(std::int64_t row) const override;
   std::optional<double> own_length() const override { return evolution_.own_length(); }
-  void step(bool) override { evolution_.step(); }
+  void step(bool looked_at) override { evolution_.step(looked_at); }
   int iterations() const override { return evolution_.iterations(); }
   void record(std::int64_t row) override;
   void watch() override;

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "schemes/complex/complex_solver.hpp"
 #include "tools/complex/complex_scene.hpp"
 #include "tools/outcome/outcome.hpp"
 

@@ -252,7 +252,8 @@ void InitialRows::start(Simulation& simulation) const {
                         "lattice.time_step = {:.12g}, {}or record with output.every = 1, or start from values "
                         "and rates by initial.time_step = {:.12g}",
                         scene_.initial_frame + j - 1, scene_.initial_frame + j, *step, h, *step,
-                        find_method(scene_.problem.method).row_density
+                        find_method(scene_.problem.method).row_density &&
+                                !find_method(scene_.problem.method).reads_stencil
                             ? "lattice.time_steps = reversible if the field chose the steps of the file, "
                             : "",
                         *step));

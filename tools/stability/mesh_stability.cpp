@@ -12,6 +12,9 @@
 #include <vector>
 
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/stability/mesh_frequency.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "tools/report/text_columns.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/progress.hpp"
@@ -69,7 +72,7 @@ std::vector<NamedScheme> schemes_of(const ComplexScene& c) {
   if (c.has_method()) schemes.push_back({scheme_label(point), point});
   point.parameters = {};
   for (const NamedScheme& scheme : named_schemes(point))
-    if (find_method(scheme.problem.method).on_meshes) schemes.push_back(scheme);
+    if (const MethodEntry& m = find_method(scheme.problem.method); m.on_meshes && !m.reads_stencil) schemes.push_back(scheme);
   return schemes;
 }
 
@@ -90,7 +93,9 @@ ExitCode mesh_stability(const ComplexScene& c, const std::filesystem::path& fold
   request.agreement = values.real("stability.agreement");
   request.steps = static_cast<int>(values.integer("stability.steps"));
   if (values.choice("stability.fault") == "limit") request.theory_factor = 1.05;
-  const auto longest = SpaceEvolution(*c.space, c.time_step(0)).largest_step();
+  Problem usual = c.problem_on_mesh();
+  usual.method = Problem().method;
+  const auto longest = longest_step(Simulation(usual).evolution().system());
   if (!longest)
     throw c.scene.settings.error("theory.name", "nothing oscillates about phi = 0; choose a theory whose vacuum is there");
   const double omega = 2 / *longest;

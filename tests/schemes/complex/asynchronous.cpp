@@ -7,10 +7,12 @@
 #include "jets/expressions/expression.hpp"
 #include "schemes/complex/complex_form.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/mesh_rows.hpp"
 
 namespace {
 
 using namespace delf;
+using delf::testing::MeshRows;
 
 /// An interval with cells that shrink towards its right end, and steps of no common multiple.
 struct Case {
@@ -64,7 +66,7 @@ TEST_CASE("asynchronous steps are a complex with the same order, and the form fo
 TEST_CASE("asynchronous steps converge with order 2 on a mesh, and their energy does not drift") {
   const Case fine(0.4);
   const double h = 0.001;
-  SpaceEvolution reference(fine.space, h);
+  MeshRows reference(fine.space, h);
   reference.start(fine.values, fine.rates);
   while (reference.newest() < 4000) reference.step();
   const auto error = [&](double courant) {
@@ -89,7 +91,7 @@ TEST_CASE("asynchronous steps of one length are leapfrog rows") {
   const double h = 0.05;
   AsynchronousEvolution evolution(c.space, std::vector<double>(c.steps.size(), h));
   evolution.start(c.values, c.rates);
-  SpaceEvolution rows(c.space, h);
+  MeshRows rows(c.space, h);
   rows.start(c.values, c.rates);
   while (rows.newest() < 40) rows.step();
   evolution.advance(40 * h);

@@ -8,10 +8,12 @@
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/mesh_rows.hpp"
 
 namespace {
 
 using namespace delf;
+using delf::testing::MeshRows;
 
 const LinearSymmetry rotation{"rotation", {0, -1, 1, 0}, {0, 0}};
 
@@ -85,7 +87,7 @@ TEST_CASE("Noether's theorem holds on connected sets of a sphere and a plane reg
 TEST_CASE("rows keep the total momentum of a symmetry where nothing holds their boundary") {
   const auto change = [](bool fixed, const char* potential) {
     const CellSpace space(rectangle_mesh(2, 1, 12, 6, false), of_two(potential), fixed);
-    SpaceEvolution evolution(space, 0.02);
+    MeshRows evolution(space, 0.02);
     const Start start(space.mesh);
     evolution.start(start.values, start.rates);
     const Balance first = evolution.momentum(rotation);

@@ -6,15 +6,17 @@
 #include "lattice/error.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_form.hpp"
-#include "schemes/complex/reversible_steps.hpp"
+#include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/wave_map.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/mesh_rows.hpp"
 
 namespace {
 
 using namespace delf;
+using delf::testing::MeshRows;
 
 CellSpace sphere_valued(Mesh mesh, bool fixed) {
   const TheoryOf<WaveMap> theory{WaveMap{}};
@@ -45,13 +47,12 @@ double distance(const CellSpace& space, std::span<const double> a, std::span<con
 double error_of(Mesh mesh, const Map& u) {
   const CellSpace space = sphere_valued(std::move(mesh), false);
   const int steps = static_cast<int>(std::ceil(1 / (0.3 * shortest_edge(space.mesh))));
-  SpaceEvolution evolution(space, 1.0 / steps);
-  CHECK(evolution.plan().blocks() == space.sites());
-  CHECK(evolution.plan().largest == 4);
+  MeshRows evolution(space, 1.0 / steps, TheoryOf<WaveMap>{WaveMap{}}.constraint());
+  CHECK(evolution.evolution().plan().blocks == space.sites());
   evolution.start(at_points(space.mesh, u, 0), rates_at(space.mesh, u));
   while (evolution.newest() < steps) {
     evolution.step();
-    CHECK(evolution.report().iterations < 8);
+    CHECK(evolution.evolution().stepper().iterations() < 8);
   }
   CHECK(space.largest_constraint(evolution.row()) < 1e-13);
   CHECK(evolution.residual() < 1e-13);
@@ -88,7 +89,7 @@ TEST_CASE("wave maps into the sphere converge with order 2 on plane regions, blo
 TEST_CASE("on a sphere a wave map keeps constraint, energy and momenta, with equal steps and others") {
   const CellSpace space = sphere_valued(icosahedral_sphere(1), false);
   const auto band = [&](double h, bool equal) {
-    SpaceEvolution evolution(space, h);
+    MeshRows evolution(space, h, TheoryOf<WaveMap>{WaveMap{}}.constraint());
     std::vector<double> values, rates;
     for (const Mesh::Point& p : space.mesh.points) {
       const double a = 0.7 * p[2] + 0.3 * p[0], b = 0.5 * p[1];
@@ -194,10 +195,9 @@ TEST_CASE("a constant map into the sphere has the residual 0, though all its ter
   CHECK(largest_residual(rows.system(), y) > 0.1);
 }
 
-TEST_CASE("cells and reversible steps refuse a constraint") {
+TEST_CASE("cells refuse a constraint") {
   const CellSpace space = sphere_valued(icosahedral_sphere(0), false);
   CHECK_THROWS_AS(AsynchronousEvolution(space, std::vector<double>(20, 0.1)), BadInput);
-  CHECK_THROWS_AS(ReversibleSteps(space, 0.1, 1), BadInput);
 }
 
 }  // namespace

@@ -12,14 +12,19 @@
 #include "lattice/error.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_form.hpp"
+#include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/first_and_last_step.hpp"
-#include "schemes/complex/reversible_steps.hpp"
+#include "schemes/simulation.hpp"
+#include "schemes/stability/mesh_frequency.hpp"
+#include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/mesh_rows.hpp"
 
 namespace {
 
 using namespace delf;
+using delf::testing::MeshRows;
 
 std::shared_ptr<const BatchDensity> wave() { return expression("0.5*phi_t^2 - 0.5*phi_x^2"); }
 std::shared_ptr<const BatchDensity> sine_gordon() { return expression("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)"); }
@@ -37,11 +42,11 @@ double error_of(Mesh mesh, std::shared_ptr<const BatchDensity> density, bool fix
                 bool direct = true) {
   const CellSpace space(std::move(mesh), std::move(density), fixed);
   const int steps = static_cast<int>(std::ceil(1 / (courant * shortest_edge(space.mesh))));
-  SpaceEvolution evolution(space, 1.0 / steps);
+  MeshRows evolution(space, 1.0 / steps);
   std::vector<double> rates;
   for (const Mesh::Point& p : space.mesh.points) rates.push_back((f(1e-6, p) - f(-1e-6, p)) / 2e-6);
   evolution.start(at_points(space.mesh, f, 0), rates);
-  CHECK(evolution.is_direct() == direct);
+  CHECK((evolution.evolution().plan().kind == SolveKind::explicit_) == direct);
   while (evolution.newest() < steps) evolution.step();
   const std::vector<double> exact = at_points(space.mesh, f, 1);
   double error = 0;
@@ -110,14 +115,14 @@ TEST_CASE("the form formula holds on irregular spaces with steps of their own, a
 TEST_CASE("momenta on rows with steps of their own: a uniform shift of a wave goes on") {
   // φ ↦ φ + ε is a symmetry: Σ A_i (y^{j+1} − y^j)/h_j is the same in every step, whatever the steps are
   const CellSpace space(icosahedral_sphere(1), wave(), false);
-  SpaceEvolution evolution(space, 0.05);
+  MeshRows evolution(space, 0.05);
   std::vector<double> values, rates;
   for (const Mesh::Point& p : space.mesh.points) values.push_back(std::sin(3 * p[0])), rates.push_back(1 + p[1] * p[2]);
   evolution.start(values, rates);
   const auto momentum = [&] {
     double sum = 0;
     for (std::size_t i = 0; i < values.size(); ++i)
-      sum += space.masses[i] * (evolution.row(0)[i] - evolution.row(1)[i]);
+      sum += space.masses[i] * (evolution.row()[i] - evolution.before()[i]);
     return sum;
   };
   const double first = momentum() / 0.05;
@@ -153,22 +158,34 @@ TEST_CASE("a solver whose matrices are scaled to other steps solves what a new o
   }
 }
 
+/// sine-Gordon on a mesh, with steps that the field chooses.
+std::unique_ptr<Simulation> of_chosen_steps(const CellSpace& space, double longest, double strength,
+                                            std::span<const double> values, std::span<const double> rates) {
+  Problem problem{.theory = "sine-gordon",
+                  .lattice = Lattice::on(std::shared_ptr<const MeshSpace>(std::shared_ptr<const MeshSpace>(), &space)),
+                  .time_step = longest,
+                  .step_control = strength};
+  auto simulation = std::make_unique<Simulation>(problem);
+  if (!values.empty()) simulation->start_legendre(values, rates);
+  return simulation;
+}
+void step(Simulation& simulation, bool reversible, double longest) {
+  if (reversible) simulation.step();
+  else simulation.step_by(longest / simulation.row_density().density);  // the plain step, which is not reversible
+}
+std::vector<double> row_of(const Simulation& simulation, int back = 0) { return simulation.evolution().stepper().row(back); }
+
 TEST_CASE("steps that the field chooses run back to where they began, and plain ones do not") {
   const CellSpace space(icosahedral_sphere(1), sine_gordon(), false);
   std::vector<double> start, rates;
   for (const Mesh::Point& p : space.mesh.points) start.push_back(2 * p[0] + 1), rates.push_back(1 + p[1] * p[2]);
   const auto distance = [&](bool reversible) {
-    ReversibleSteps steps(space, 0.2, 1);
-    SpaceEvolution evolution(space, 0.2);
-    evolution.start(start, rates, steps.first(start, rates));
-    const auto go = [&](int count) {
-      for (int n = 0; n < count; ++n) evolution.step(reversible ? steps.next(evolution) : steps.plain(evolution));
-    };
-    go(100);
-    evolution.turn_back();
-    go(100);
+    const auto forth = of_chosen_steps(space, 0.2, 1, start, rates), back = of_chosen_steps(space, 0.2, 1, {}, {});
+    for (int n = 0; n < 100; ++n) step(*forth, reversible, 0.2);
+    back->start({row_of(*forth), row_of(*forth, 1)}, forth->step_density());
+    for (int n = 0; n < 100; ++n) step(*back, reversible, 0.2);
     double most = 0;
-    for (std::size_t i = 0; i < start.size(); ++i) most = std::max(most, std::abs(evolution.row()[i] - start[i]));
+    for (std::size_t i = 0; i < start.size(); ++i) most = std::max(most, std::abs(row_of(*back)[i] - start[i]));
     return most;
   };
   CHECK(distance(true) < 1e-10);
@@ -180,38 +197,37 @@ TEST_CASE("steps that the field chooses have order 2, and keep the energy withou
   const CellSpace space(icosahedral_sphere(0), sine_gordon(), false);
   const std::vector<double> start(12, 2.9), rest(12, 0.0);
   const auto error = [&](double longest) {
-    ReversibleSteps steps(space, longest, 1.5);
-    SpaceEvolution evolution(space, longest);
-    evolution.start(start, rest, steps.first(start, rest));
+    const auto evolution = of_chosen_steps(space, longest, 1.5, start, rest);
     // the pendulum by Runge-Kutta steps of order 4, a tenth as long
     double q = 2.9, v = 0, t = 0, most = 0;
-    for (; t < 20; evolution.step(steps.next(evolution))) {
-      const double h = (evolution.time() - t) / 10;
+    for (; t < 20; evolution->step()) {
+      const double h = (evolution->time(evolution->newest()) - t) / 10;
       for (int n = 0; n < 10; ++n) {
         const double k1 = v, l1 = -std::sin(q), k2 = v + h / 2 * l1, l2 = -std::sin(q + h / 2 * k1);
         const double k3 = v + h / 2 * l2, l3 = -std::sin(q + h / 2 * k2), k4 = v + h * l3, l4 = -std::sin(q + h * k3);
         q += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), v += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
       }
-      t = evolution.time();
-      most = std::max(most, std::abs(evolution.row()[0] - q));
+      t = evolution->time(evolution->newest());
+      most = std::max(most, std::abs(row_of(*evolution)[0] - q));
     }
     return most;
   };
   CHECK(std::log2(error(0.1) / error(0.05)) == Approx(2).margin(0.2));
 
+  const MeshEnergy energy_of(sine_gordon(), space);
   const auto drift = [&](bool reversible) {
-    ReversibleSteps steps(space, 0.25, 1.5);
-    SpaceEvolution evolution(space, 0.25);
-    evolution.start(start, rest, steps.first(start, rest));
-    const double energy = evolution.energy();
+    const auto evolution = of_chosen_steps(space, 0.25, 1.5, start, rest);
+    const auto last_step = [&] { return evolution->evolution().system().times()->step(evolution->newest() - 1); };
+    const auto energy_now = [&] { return energy_of.between(row_of(*evolution, 1), row_of(*evolution), last_step(), 0); };
+    const double energy = energy_now();
     double shortest = 1, longest = 0;
     std::array<double, 2> mean{};  // of the energy's change, over the first and the last fifth
     constexpr int count = 4000, part = count / 5;
     for (int n = 0; n < count; ++n) {
-      evolution.step(reversible ? steps.next(evolution) : steps.plain(evolution));
-      shortest = std::min(shortest, evolution.last_step()), longest = std::max(longest, evolution.last_step());
-      if (n < part) mean[0] += (evolution.energy() / energy - 1) / part;
-      if (n >= count - part) mean[1] += (evolution.energy() / energy - 1) / part;
+      step(*evolution, reversible, 0.25);
+      shortest = std::min(shortest, last_step()), longest = std::max(longest, last_step());
+      if (n < part) mean[0] += (energy_now() / energy - 1) / part;
+      if (n >= count - part) mean[1] += (energy_now() / energy - 1) / part;
     }
     INFO("steps from " << shortest << " to " << longest);
     CHECK(longest > 2 * shortest);
@@ -221,9 +237,18 @@ TEST_CASE("steps that the field chooses have order 2, and keep the energy withou
   CAPTURE(reversible, plain);
   CHECK(reversible < 1e-3);
   CHECK(plain > 20 * reversible);
-  CHECK_THROWS_AS(
-      ReversibleSteps(CellSpace(icosahedral_sphere(0), expression("phi_t^2 + phi_t^4 - phi_x^2"), false), 1, 1),
-      BadInput);
+}
+
+TEST_CASE("steps that the field chooses need a density quadratic in the rates") {
+  const CellSpace space(icosahedral_sphere(0), sine_gordon(), false);
+  Problem problem{.theory = "lagrangian",
+                  .lattice = Lattice::on(std::shared_ptr<const MeshSpace>(std::shared_ptr<const MeshSpace>(), &space)),
+                  .time_step = 0.1,
+                  .step_control = 1.0};
+  problem.parameters["theory.density"] = std::string("phi_t^2 + phi_t^4 - phi_x^2");
+  Simulation simulation(problem);
+  const std::vector<double> zero(12, 0.0), one(12, 1.0);
+  CHECK_THROWS_AS(simulation.start_legendre(zero, one), BadInput);
 }
 
 TEST_CASE("one 2-form is kept if the last step is as long as the first, and only then") {
@@ -249,8 +274,8 @@ TEST_CASE("one 2-form is kept if the last step is as long as the first, and only
 TEST_CASE("the energy of a wave on a sphere stays in a band that shrinks with the square of the step") {
   const auto band = [](double h) {
     const CellSpace space(icosahedral_sphere(2), sine_gordon(), false);
-    SpaceEvolution evolution(space, h);
-    CHECK(evolution.largest_step() == Approx(0.2).margin(0.07));
+    MeshRows evolution(space, h);
+    CHECK(longest_step(evolution.evolution().system()) == Approx(0.2).margin(0.07));
     std::vector<double> values;
     for (const Mesh::Point& p : space.mesh.points) values.push_back(2 * std::exp(-6 * (1 - p[2])));
     evolution.start(values, std::vector<double>(values.size(), 0.0));

@@ -12,6 +12,7 @@
 #include "jets/tables/pair_element.hpp"
 #include "jets/tables/splitting.hpp"
 #include "lattice/error.hpp"
+#include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/methods/method_registry.hpp"
@@ -21,10 +22,12 @@
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/mesh_rows.hpp"
 
 namespace {
 
 using namespace delf;
+using delf::testing::MeshRows;
 using Values = std::vector<double>;
 
 ParameterValues keys(std::initializer_list<std::pair<const char*, ParameterValue>> given) {
@@ -97,13 +100,17 @@ double distance(const Values& a, const Values& b) {
 
 const ParameterValues verlet = keys({{"scheme.tableau", std::string("stormer-verlet")}});
 
-/// Rows of the mesh's own steps, to compare with.
-Values own_rows(const OnMesh& on, const std::shared_ptr<const BatchDensity>& density, bool fixed, double h, int steps) {
+/// Row `steps` of the complex of all rows at once, from rows 0 and 1.
+Values rows_as_complex(const OnMesh& on, const std::shared_ptr<const BatchDensity>& density, bool fixed, double h, int steps,
+                       const Values& row0, const Values& row1) {
   const CellSpace space(on.space->mesh, density, fixed);
-  SpaceEvolution evolution(space, h);
-  evolution.start(on.pulse(1, false), on.pulse(1, true));
-  while (evolution.newest() < steps) evolution.step();
-  return {evolution.row().begin(), evolution.row().end()};
+  Values times;
+  for (int n = 0; n <= steps; ++n) times.push_back(n * h);
+  const SpaceRows rows(space, times);
+  Values y;
+  for (int n = 0; n <= steps; ++n) y.insert(y.end(), n == 0 ? row0.begin() : row1.begin(), n == 0 ? row0.end() : row1.end());
+  ComplexSolver(rows.system()).solve(y);
+  return {y.end() - static_cast<std::ptrdiff_t>(row0.size()), y.end()};
 }
 
 /// The same by lattices' families and stepper, for a density that no registry has.
@@ -132,7 +139,7 @@ Values rows_by_families(const OnMesh& on, const std::shared_ptr<const BatchDensi
 
 }  // namespace
 
-TEST_CASE("families of a time table on a mesh have the rows of the mesh's own steps") {
+TEST_CASE("families of a time table on a mesh have the rows of a finite complex of the same stencils") {
   const Mesh clipped = [] {  // triangles and quadrilaterals side by side
     Mesh mesh{.points = {}, .vertices = {}};
     for (int j = 0; j <= 6; ++j)
@@ -152,16 +159,18 @@ TEST_CASE("families of a time table on a mesh have the rows of the mesh's own st
       const auto density = expression(text);
       for (const Mesh& mesh : {clipped, graded_interval(2, 21, 1.1), icosahedral_sphere(1)}) {
         if (fixed && boundary_points(mesh).empty()) continue;
-        // A gradient that reads x does so at Gauss's points of a quadrilateral, and in the mesh's own steps at its middle.
+        // A gradient that reads x does so at Gauss's points of a quadrilateral, and in the complex at its middle.
         if (std::string(text).find("x^2)") != std::string::npos && mesh.cells() == clipped.cells()) continue;
         const OnMesh on(mesh, "cgvi", verlet, fixed);
-        CHECK(distance(own_rows(on, density, fixed, 0.02, 40), rows_by_families(on, density, 0.02, 40)) < 1e-12);
+        const Values row1 = rows_by_families(on, density, 0.02, 1), row40 = rows_by_families(on, density, 0.02, 40);
+        CHECK(distance(rows_as_complex(on, density, fixed, 0.02, 40, on.pulse(1, false), row1), row40) < 1e-12);
       }
     }
   // A mass that is another's is seen.
   const OnMesh on(clipped, "cgvi", verlet), other(icosahedral_sphere(1), "cgvi", verlet);
   const auto half = expression("0.25*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)");
-  CHECK(distance(own_rows(on, expression("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)"), false, 0.02, 40),
+  CHECK(distance(rows_as_complex(on, expression("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)"), false, 0.02, 40, on.pulse(1, false),
+                                 rows_by_families(on, half, 0.02, 1)),
                  rows_by_families(on, half, 0.02, 40)) > 1e-3);
 }
 
@@ -273,4 +282,37 @@ TEST_CASE("a splitting steps a body whose potential has no value at 0") {
   const Values q = OnMesh::fields(simulation);  // a circle of radius 1, once around in 2π
   CHECK(q[0] == Approx(std::cos(1.0)).epsilon(1e-8));
   CHECK(q[1] == Approx(std::sin(1.0)).epsilon(1e-8));
+}
+
+TEST_CASE("the nodes between two rows are those below the newest row, whether rows before it were looked at or not") {
+  for (const bool looked_at : {true, false}) {
+    CAPTURE(looked_at);
+    Problem problem{.theory = "pendulum", .lattice = Lattice::point(), .method = "composition", .time_step = 0.01};
+    Simulation simulation(problem);
+    const Values start(simulation.components().size(), 1.0), rates(start.size(), 2.0);
+    simulation.start_legendre(start, rates);
+    for (int n = 0; n < 20; ++n) simulation.step(looked_at || n == 19);
+    Values newest(1), before(1), nodes(static_cast<std::size_t>(simulation.count(Role::inner)));
+    simulation.copy_row(0, newest), simulation.copy_row(1, before), simulation.copy_row(0, nodes, Role::inner);
+    REQUIRE_FALSE(nodes.empty());
+    const double step = newest[0] - before[0];
+    for (const double node : nodes) CHECK(std::abs(node - (newest[0] + before[0]) / 2) < 1.5 * std::abs(step));
+    // six rows before they are elsewhere
+    CHECK(std::abs(newest[0] - start[0]) > 10 * std::abs(step));
+  }
+}
+
+TEST_CASE("rows of steps in turn on a mesh are those of the steps by themselves, and end where they are to") {
+  OnMesh on(icosahedral_sphere(1), "multisymplectic", {});
+  on.problem.time_steps = {0.03, 0.05, 0.02};
+  const auto simulation = on.started(0.03);
+  while (simulation->newest() < 60) simulation->step(simulation->newest() % 7 == 0);
+  CHECK(simulation->time(60) == Approx(2).epsilon(1e-13));
+  const CellSpace space(on.space->mesh, expression("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)"), false);
+  MeshRows rows(space, 0.03);
+  rows.start(on.pulse(1, false), on.pulse(1, true));
+  while (rows.newest() < 60) rows.step(on.problem.time_steps[static_cast<std::size_t>(rows.newest()) % 3]);
+  CHECK(distance(OnMesh::fields(*simulation), rows.row()) < 1e-13);
+  on.problem.time_steps = {};
+  CHECK(distance(OnMesh::fields(*simulation), on.at_one(60)) > 1e-3);
 }

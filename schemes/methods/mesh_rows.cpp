@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/methods/mesh_rows.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "jets/tables/cell_points.hpp"
+#include "jets/tables/named_tables.hpp"
+#include "lattice/error.hpp"
+#include "schemes/families/mesh_families.hpp"
+#include "schemes/problem.hpp"
+#include "schemes/stepping/step_density.hpp"
+#include "schemes/system/momenta.hpp"
+#include "schemes/theories/field_theory.hpp"
+
+namespace delf {
+namespace {
+
+/// (∂²T/∂φ_t∂φ_t)⁻¹
+Eigen::MatrixXd inverse_mass(const BatchDensity& density) {
+  const int d = density.components();
+  Eigen::MatrixXd mass(d, d);
+  bool constant = true;
+  for (int a = 0; a < d; ++a)
+    for (int b = 0; b < d; ++b) {
+      constant = constant && density.is_constant(d + a, d + b);
+      mass(a, b) = density.constant_hessian()[static_cast<std::size_t>((d + a) * density.variables() + d + b)];
+    }
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(mass);
+  if (!constant || !lu.isInvertible())
+    throw BadInput("lattice.time_steps",
+                   "lattice.time_steps: reversible steps need a density quadratic in phi_t; give a list of steps");
+  return lu.inverse();
+}
+
+}  // namespace
+
+SchemeParts rows_on_mesh(const FieldTheory& theory, const Problem& p) {
+  const StencilTable& trapezoidal = std::ranges::find(named_tables(), "trapezoidal", &NamedTable::name)->table;
+  SchemeParts parts{mesh_families(trapezoidal, theory.shared_density(), *p.lattice.mesh()), theory.fields(),
+                    theory.symmetries()};
+  if (auto constraint = theory.constraint()) {
+    parts.families.push_back(std::move(constraint));
+    parts.components.push_back({"lambda", Role::multiplier, {}});
+  }
+  return parts;
+}
+
+RowDensity density_of_mesh_rows(const RowsInTime& rows, std::span<const double> momenta, double strength) {
+  if (rows.theory.constraint())
+    throw BadInput("lattice.time_steps",
+                   "lattice.time_steps: reversible steps are for theories without a constraint; give a list of steps");
+  const LatticeSystem& system = rows.system;
+  const int d = rows.theory.components();
+  const Eigen::MatrixXd inverse = inverse_mass(rows.theory.density());
+  const std::vector<double> masses = lumped_masses(system.lattice().mesh()->mesh);
+  // −½ h ∂V/∂φ is the momentum that a row has from the slab above it, if the field rests there.
+  const std::vector<double>& row = rows.rows.rows.back();
+  const std::vector<double> above =
+      half_equations(system, system.window(rows.newest, {row, row}, 0), rows.newest, Side::above);
+  const double h = system.times()->step(rows.newest);
+  double square = 0, product = 0, area = 0;  // Σ A φ_t², Σ A φ_t·φ_tt, Σ A
+  for (int i = 0; i < system.lattice().sites(); ++i) {
+    const double A = masses[static_cast<std::size_t>(i)];
+    area += A;
+    if (system.lattice().is_fixed(i)) continue;
+    const Eigen::Map<const Eigen::VectorXd> p(momenta.data() + i * d, d), of_force(above.data() + i * d, d);
+    const Eigen::VectorXd rate = inverse * p / A, acceleration = inverse * of_force * (-2 / (h * A));
+    square += A * rate.squaredNorm();
+    product += A * rate.dot(acceleration);
+  }
+  const double s2 = strength * strength, of_path = 1 + s2 * square / area;
+  return {std::sqrt(of_path), s2 * product / area / of_path};
+}
+
+}  // namespace delf
