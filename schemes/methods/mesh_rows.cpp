@@ -2,12 +2,10 @@
 #include "schemes/methods/mesh_rows.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "jets/tables/cell_points.hpp"
-#include "jets/tables/named_tables.hpp"
 #include "lattice/error.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/problem.hpp"
@@ -37,9 +35,18 @@ Eigen::MatrixXd inverse_mass(const BatchDensity& density) {
 
 }  // namespace
 
+const StencilTable& time_of_mesh_rows() {
+  static const StencilTable table = [] {
+    TablePoint lower{.weight = 0.5, .time = 0, .slots = {}}, upper{.weight = 0.5, .time = 1, .slots = {}},
+        middle{.weight = 1, .time = 0.5, .slots = {}};
+    lower.set(JetSlot::phi, {1, 0}), upper.set(JetSlot::phi, {0, 1}), middle.set(JetSlot::phi_t, {-1, 1});
+    return StencilTable{.pattern = StencilPattern({{0, 0}, {1, 0}}), .points = {lower, upper, middle}};
+  }();
+  return table;
+}
+
 SchemeParts rows_on_mesh(const FieldTheory& theory, const Problem& p) {
-  const StencilTable& trapezoidal = std::ranges::find(named_tables(), "trapezoidal", &NamedTable::name)->table;
-  SchemeParts parts{mesh_families(trapezoidal, theory.shared_density(), *p.lattice.mesh()), theory.fields(),
+  SchemeParts parts{mesh_families(time_of_mesh_rows(), theory.shared_density(), *p.lattice.mesh()), theory.fields(),
                     theory.symmetries()};
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));

@@ -2,16 +2,18 @@
 #pragma once
 #include <span>
 
+#include "jets/tables/stencil_table.hpp"
 #include "schemes/methods/method_registry.hpp"
 
 namespace delf {
 
-/// The usual method on a mesh: the trapezoidal rule in time on its sites and cells,
+/// The usual method on a mesh: a table of time on its sites and cells, T in the middle of each step, and V at its ends,
 ///
 ///     S = Σ_j Σ_i A_i h_j T((y_i^{j+1} − y_i^j)/h_j) + Σ_j ½ h_j [V(y^j) + V(y^{j+1})],
 ///
 /// explicit where T is quadratic. A constraint holds at every row, λ_j G(y^j): SHAKE on a mesh (Ryckaert, Ciccotti,
 /// Berendsen, J. Comput. Phys. 23, 327, 1977).
+const StencilTable& time_of_mesh_rows();
 SchemeParts rows_on_mesh(const FieldTheory&, const Problem&);
 
 /// Steps that the field chooses and that a run back chooses again (StepDensity), h ≈ ε σ with

@@ -22,7 +22,7 @@
 namespace delf {
 namespace {
 
-constexpr int rows_held = 6, strip = 256;
+constexpr int rows_held = 5, strip = 256;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 double* numbers(std::vector<Pack>& packs) { return reinterpret_cast<double*>(packs.data()); }
@@ -291,29 +291,25 @@ void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double
   }
 }
 
-/// `share_below` of the kick at the row is of the slab below it. A row that is not looked at takes the place of the one before
-/// the newest.
-void KickStepper::take_slab(const Kick& first, double share_below, bool looked_at) {
+/// `share_below` of the kick at the row is of the slab below it.
+void KickStepper::take_slab(const Kick& first, double share_below) {
   const FlushDenormals guard;
   largest_ = Pack(0.0);
   const RowTimes& times = *system_.times();
   const double h = system_.time_step(), above = times.step(newest_) / h,
                below = newest_ > 0 ? times.step(newest_ - 1) / h : above;
-  const int slot = looked_at || held_ < 2 ? slots_.back() : slots_[1];
+  const int slot = slots_.back();
   for (int n = 0; n < nodes_; ++n) {
     const double kick = n == 0 ? share_below * below + (1 - share_below) * above : above;
     const double t = times.time(newest_) + system_.component(n * fields_).at.time * times.step(newest_);
     Node& next = n + 1 < nodes_ ? node(newest_, n + 1) : ring_[at(slot * nodes_)];
     kick_and_drift(n == 0 ? first : kicks_[at(n)], n, kick, above, t, next);
   }
-  if (overflowed(max_or_nan(largest_))) {
-    if (slot != slots_.back()) held_ = 1;
+  if (overflowed(max_or_nan(largest_)))
     throw NotFinite(fmt::format("step {}, t = {:.6g}: the field is not finite; reduce lattice.time_step or lattice.courant",
                                 newest_ + 1, times.time(newest_ + 1)));
-  }
-  const auto place = std::ranges::find(slots_, slot);
-  std::rotate(slots_.begin(), place, place + 1);
-  held_ = looked_at || held_ < 2 ? std::min(held_ + 1, rows_held) : 2;
+  std::ranges::rotate(slots_, slots_.end() - 1);
+  held_ = std::min(held_ + 1, rows_held);
   ++newest_;
 }
 
@@ -361,10 +357,10 @@ void KickStepper::start_legendre(const std::vector<double>& row0, const std::vec
   for (int i = 0; i < system_.lattice().sites(); ++i)
     for (int a = 0; a < fields_; ++a)
       if (system_.is_held(i, a)) numbers(momentum_)[a * padded_ + i] = 0;
-  take_slab(alone_, 0, true);
+  take_slab(alone_, 0);
 }
 
-void KickStepper::step(bool looked_at) { take_slab(kicks_[0], 0.5, looked_at); }
+void KickStepper::step(bool /*looked_at*/) { take_slab(kicks_[0], 0.5); }
 
 std::vector<double> KickStepper::row(int back) const {
   std::vector<double> result;

@@ -29,7 +29,7 @@ class KickStepper final : public StepMethod {
 
   void start(const std::vector<std::vector<double>>& rows) override;
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
-  void step(bool looked_at) override;
+  void step(bool) override;
 
   StepState state() const override { return {newest_, 0, Continued::no, held_}; }
   std::vector<double> row(int back) const override;
@@ -68,7 +68,7 @@ class KickStepper final : public StepMethod {
   /// At node n of the newest row, `kick` and `drift` times what they are in a step h, to the next node.
   void kick_and_drift(const Kick&, int n, double kick, double drift, double t, Node& next);
   void read(const std::vector<double>& row, Packs& y) const;
-  void take_slab(const Kick& first, double share_below, bool looked_at);
+  void take_slab(const Kick& first, double share_below);
   /// The row as it is held, or of low parts.
   std::vector<double> row_of(std::int64_t row, bool low) const;
 

@@ -66,7 +66,8 @@ class AllSites final : public MeshEvolution {
       const std::vector<double> p = momenta(back);
       now.energy = c_.has_method() ? energy_(values_, energy_.rates(values_, p, t), t) : energy_between();
       for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(sum(symmetry, p));
-    } else {
+    } else {  // a start that failed left row 0 alone
+      now.energy = energy_of_start();
       now.momenta.resize(c_.theory->symmetries().size(), {Outcome::unknown, 0, 0});
     }
     if (c_.space->constraint) now.constraint = c_.space->largest_constraint(now.values);

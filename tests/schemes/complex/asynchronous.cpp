@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/complex/asynchronous.hpp"
+#include "schemes/complex/complex_solver.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,7 @@
 
 #include "jets/expressions/expression.hpp"
 #include "schemes/complex/asynchronous.hpp"
+#include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/complex/mesh_rows.hpp"

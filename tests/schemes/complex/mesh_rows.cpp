@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "jets/simd/scratch_rows.hpp"
-#include "jets/tables/named_tables.hpp"
 #include "schemes/families/mesh_families.hpp"
+#include "schemes/methods/mesh_rows.hpp"
 #include "schemes/system/conserved.hpp"
 
 namespace delf::testing {
@@ -13,8 +13,7 @@ namespace {
 
 std::vector<std::shared_ptr<const StencilFamily>> families_of(const CellSpace& space,
                                                               std::shared_ptr<const StencilFamily> constraint) {
-  const StencilTable& time = std::ranges::find(named_tables(), "trapezoidal", &NamedTable::name)->table;
-  auto families = mesh_families(time, space.density, space);
+  auto families = mesh_families(time_of_mesh_rows(), space.density, space);
   if (constraint) families.push_back(std::move(constraint));
   return families;
 }
