@@ -30,10 +30,10 @@ struct TablePoint {
   double time = 0, space = 0;  ///< where it lies, from the anchor, in steps
   std::array<std::vector<Entry>, jet_slots> slots;
   /// On a space where stencils do not repeat, each has numbers of its own (schemes/families/own_weights.hpp): the number that
-  /// multiplies the point's weight, the one that is the place x, and those that multiply the entries of a slot; −1, or no
-  /// list: none.
+  /// multiplies the point's weight, those that are the place x and the time t, from the batch's, and those that multiply the
+  /// entries of a slot; −1, or no list: none. A batch has one time: with times of their own a batch is one stencil.
   struct Own {
-    int weight = -1, place = -1;
+    int weight = -1, place = -1, time = -1;
     std::array<std::vector<int>, jet_slots> slots = {};
   };
   Own own = {};

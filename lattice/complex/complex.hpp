@@ -41,7 +41,6 @@ class Complex {
   int add_shape(ComplexShape);
   /// Throws BadInput for a site that is not there, or that the stencil names twice.
   int add_stencil(int shape, std::span<const int> sites);
-  void set_time(int site, double t) { positions_[static_cast<std::size_t>(site)][0] = t; }
   void set_role(int site, SiteRole role) { roles_[static_cast<std::size_t>(site)] = role; }
 
   int sites() const { return static_cast<int>(positions_.size()); }

@@ -14,10 +14,9 @@ namespace delf {
 
 /// Some equations of a complex. What is proved linear is a sparse matrix,
 ///
-///     E = r(0) + A y + Σ nonlinear stencils,    A = Σ_parts |Δ|/h²ᵖ A_part,    r(0) = Σ_parts |Δ|/hᵖ r_part(0):
+///     E = r(0) + A y + Σ nonlinear stencils.
 ///
-/// where the measures and steps of parts change, as they do with the step of rows, A and r(0) are summed anew from what was
-/// assembled once. y is of the nodes that the stencils read, and columns of A are their places there. Only for sources of this
+/// y is of the nodes that the stencils read, and columns of A are their places there. Only for sources of this
 /// folder, which are compiled alike: it has matrices of Eigen.
 class AssembledEquations {
  public:
@@ -42,8 +41,6 @@ class AssembledEquations {
   /// No derivative by an unknown varies: with data given, the equations are linear.
   bool is_direct() const { return direct_; }
   std::size_t bytes() const;
-  /// To be called when parts of the system have changed.
-  void scale();
 
   /// What does not depend on y, and A.
   const Vector& at_zero() const { return at_zero_; }
@@ -70,25 +67,17 @@ class AssembledEquations {
     std::vector<std::int32_t> list, places;
     std::vector<int> rows, columns;
   };
-  /// Of a part, with weights of one power of the time step: what its factors multiply, and where that stands.
-  struct Scaled {
-    int part, power;
-    Vector at_zero;
-    std::vector<int> places, places_of_unknowns;
-    std::vector<double> values, values_of_unknowns;
-  };
-
   void assemble();
 
   /// use(value, r), or use(value, value, ∂r/∂y), for values with an equation; values are numbers in `rows`. Derivatives that
   /// are 0 at this y and need not be at others are among them: a matrix has one pattern at every y.
   template <class Use>
-  void each(const Stencils& stencils, const Vector& y, const Use& use, bool unscaled = false) const {
-    constexpr auto most = static_cast<std::size_t>(PlacedFamily::most);
+  void each(const Stencils& stencils, const Vector& y, const Use& use) const {
+    constexpr auto most = static_cast<std::size_t>(ComplexSystem::most);
     constexpr bool of_residual = std::is_invocable_v<Use, std::size_t, double>;
     std::size_t begin = 0;  // of the batch, in values of stencils
     const auto visit = [&](ComplexSystem::Stencils batch, const double* out) {
-      const PlacedFamily& family = system_.family_of(batch[0]);
+      const ComplexSystem::Family& family = system_.family_of(batch[0]);
       const auto size = static_cast<std::size_t>(family.size());
       for (std::size_t s = 0; s < batch.size(); ++s)
         for (std::size_t i = 0; i < size; ++i) {
@@ -104,8 +93,8 @@ class AssembledEquations {
       begin += batch.size() * size;
     };
     const std::span<const double> here{y.data(), nodes_.size()};
-    if constexpr (of_residual) system_.each_residual(stencils.list, here, visit, {stencils.places, unscaled});
-    else system_.each_jacobian(stencils.list, here, visit, {stencils.places, unscaled});
+    if constexpr (of_residual) system_.each_residual(stencils.list, here, visit, {stencils.places});
+    else system_.each_jacobian(stencils.list, here, visit, {stencils.places});
   }
 
   const ComplexSystem& system_;
@@ -113,7 +102,6 @@ class AssembledEquations {
   bool direct_ = true;
   std::vector<std::size_t> nodes_;
   Stencils linear_, nonlinear_;  ///< the linear ones until they are assembled
-  std::vector<Scaled> parts_;
   Vector at_zero_;
   Rows matrix_;
   Matrix of_unknowns_;

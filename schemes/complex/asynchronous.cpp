@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <numeric>
 
 #include "lattice/error.hpp"
 #include "schemes/complex/complex_noether.hpp"
@@ -14,12 +16,29 @@ namespace delf {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr auto most = static_cast<std::size_t>(PlacedFamily::most);
+constexpr auto most = static_cast<std::size_t>(ComplexSystem::most);
+
+/// V_K of cells as stencils of a complex, a family for each number of corners.
+class CellFamilies {
+ public:
+  CellFamilies(const CellSpace& space, ComplexSystem& system) : space_(space), system_(system) {}
+  void add(int cell, std::span<const int> sites, double measure) {
+    const auto corners = static_cast<int>(sites.size());
+    if (!families_.contains(corners)) families_[corners] = system_.add_family(space_.tables.cell(corners));
+    const int family = families_[corners];
+    system_.add_stencil(family, sites, system_.add_table(family, space_.tables.cell_table(space_.mesh, cell)), measure);
+  }
+
+ private:
+  const CellSpace& space_;
+  ComplexSystem& system_;
+  std::map<int, int> families_;
+};
 
 }  // namespace
 
 AsynchronousEvolution::AsynchronousEvolution(const CellSpace& space, std::vector<double> steps)
-    : space_(space), d_(space.density->components()), steps_(std::move(steps)), done_(steps_.size(), 0) {
+    : space_(space), d_(space.density->components()), steps_(std::move(steps)), done_(steps_.size(), 0), potentials_(d_) {
   if (space.constraint)
     throw BadInput("theory.name",
                    "theory.name: cells with steps of their own have no constraints; choose lattice.time = rows");
@@ -34,11 +53,9 @@ AsynchronousEvolution::AsynchronousEvolution(const CellSpace& space, std::vector
     }
   const Eigen::MatrixXd inverse = mass.inverse();
   inverse_mass_.assign(inverse.data(), inverse.data() + inverse.size());
-  for (int c = 0; c < space.mesh.cells(); ++c) {
-    const auto corners = static_cast<int>(space.mesh.cell(c).size());
-    const auto family = families_.try_emplace(corners, space.tables.cell(corners)).first;
-    tables_.push_back(family->second.add_table(space.tables.cell_table(space.mesh, c)));
-  }
+  for (const Mesh::Point& p : space.mesh.points) potentials_.add_site({0, p[0], p[1], p[2]});
+  CellFamilies families(space, potentials_);
+  for (int c = 0; c < space.mesh.cells(); ++c) families.add(c, space.mesh.cell(c), 1);
 }
 
 void AsynchronousEvolution::start(std::span<const double> values, std::span<const double> rates) {
@@ -80,34 +97,17 @@ void AsynchronousEvolution::visit(SavedState& state) {
   if (state.restores()) fill_queue();
 }
 
-template <class Use>
-void AsynchronousEvolution::with_cell(int cell, double t, std::span<const double> y, double measure,
-                                      const Use& use) const {
-  const auto corners = space_.mesh.cell(cell);
-  const PlacedFamily& family = families_.at(static_cast<int>(corners.size()));
-  alignas(64) std::array<double, 16 * most> values;
-  alignas(64) std::array<double, 4 * most> times, places;
-  const auto size = at(family.size());
-  if (size > 16) throw BadInput("theory.name", "theory.name: asynchronous steps are for up to four fields");
-  for (std::size_t n = 0; n < size; ++n)
-    values[n * most] = y[static_cast<std::size_t>(corners[n / at(d_)]) * at(d_) + n % at(d_)];
-  for (std::size_t l = 0; l < corners.size(); ++l)
-    times[l * most] = t, places[l * most] = space_.mesh.points[static_cast<std::size_t>(corners[l])][0];
-  const double step = 1;
-  use(family, PlacedBatch{1, &tables_[at(cell)], &measure, &step, values.data(), times.data(), places.data()});
-}
-
 void AsynchronousEvolution::kick(int cell, double t, std::span<const double> y, double factor,
                                  std::vector<double>& momenta) const {
   const auto corners = space_.mesh.cell(cell);
-  alignas(64) std::array<double, 16 * most> r;
-  with_cell(cell, t, y, factor * steps_[at(cell)], [&](const PlacedFamily& family, const PlacedBatch& batch) {
-    family.residual(batch, r.data());
-    for (std::size_t n = 0; n < at(family.size()); ++n) {
-      const auto site = static_cast<std::size_t>(corners[n / at(d_)]);
-      if (!space_.fixed[site]) momenta[site * at(d_) + n % at(d_)] += r[n * most];
-    }
-  });
+  potentials_.each_residual(
+      {&cell, 1}, y,
+      [&](ComplexSystem::Stencils, const double* r) {
+        for (std::size_t n = 0; n < corners.size() * at(d_); ++n)
+          if (const auto site = static_cast<std::size_t>(corners[n / at(d_)]); !space_.fixed[site])
+            momenta[site * at(d_) + n % at(d_)] += factor * steps_[at(cell)] * r[n * most];
+      },
+      {.places = {}, .time = t});
 }
 
 void AsynchronousEvolution::drift(int site, double t) {
@@ -160,11 +160,11 @@ double AsynchronousEvolution::energy(double t) const {
   for (int c = 0; c < space_.mesh.cells(); ++c) {
     const double last = static_cast<double>(done_[at(c)]) * steps_[at(c)];
     kick(c, t, now, (t - last) / steps_[at(c)] - 0.5, momenta);
-    double L = 0;
-    with_cell(c, t, now, 1,
-              [&](const PlacedFamily& family, const PlacedBatch& batch) { family.lagrangian(batch, &L); });
-    potential -= L;
   }
+  potentials_.each_lagrangian(
+      potentials_.all_stencils(), now,
+      [&](ComplexSystem::Stencils batch, const double* L) { potential -= std::accumulate(L, L + batch.size(), 0.0); },
+      {.places = {}, .time = t});
   double kinetic = 0;  // ½ p M⁻¹ p/A
   for (int i = 0; i < space_.sites(); ++i)
     for (int a = 0; a < d_; ++a)
@@ -183,7 +183,7 @@ Balance AsynchronousEvolution::momentum(const LinearSymmetry& symmetry) const {
 }
 
 std::size_t AsynchronousEvolution::bytes() const {
-  return 8 * (2 * y_.size() + times_.size()) + steps_.size() * (8 + 8 + 4 + 16) + at(space_.mesh.cells()) * 12 * 8;
+  return 8 * (2 * y_.size() + times_.size()) + steps_.size() * (8 + 8 + 4 + 16) + potentials_.bytes();
 }
 
 void AsynchronousEvolution::open_window() {
@@ -198,8 +198,7 @@ AsynchronousEvolution::Window AsynchronousEvolution::window() const {
   Window made{ComplexSystem(d_), {}};
   ComplexSystem& system = made.system;
   const int motion = system.add_family(space_.tables.motion());
-  std::map<int, int> families;
-  for (const auto& [corners, family] : families_) families[corners] = system.add_family(family);
+  CellFamilies families(space_, system);
   std::vector<int> first(events_.size());
   for (std::size_t i = 0; i < events_.size(); ++i) {
     const Mesh::Point& p = space_.mesh.points[i];
@@ -224,8 +223,7 @@ AsynchronousEvolution::Window AsynchronousEvolution::window() const {
       const auto later = std::ranges::upper_bound(events, kept.time, {}, &SiteEvent::time);
       sites[l] = first[static_cast<std::size_t>(corners[l])] + static_cast<int>(later - events.begin()) - 1;
     }
-    system.add_stencil(families[static_cast<int>(corners.size())], {sites.data(), corners.size()},
-                       tables_[at(kept.cell)], steps_[at(kept.cell)]);
+    families.add(kept.cell, {sites.data(), corners.size()}, steps_[at(kept.cell)]);
   }
   return made;
 }

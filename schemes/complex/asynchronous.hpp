@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
-#include <map>
 #include <queue>
 #include <span>
 #include <utility>
@@ -74,16 +73,12 @@ class AsynchronousEvolution {
   void drift(int site, double t);
   /// h_K ∂L/∂y at the corners of a cell at time t, added to the momenta, times a factor.
   void kick(int cell, double t, std::span<const double> y, double factor, std::vector<double>& momenta) const;
-  /// Calls use(family, batch) with one cell as a batch.
-  template <class Use>
-  void with_cell(int cell, double t, std::span<const double> y, double measure, const Use&) const;
 
   const CellSpace& space_;
   int d_;
   std::vector<double> steps_;
   std::vector<std::int64_t> done_;  ///< of each cell: updates after t = 0
-  std::map<int, PlacedFamily> families_;
-  std::vector<std::int32_t> tables_;
+  ComplexSystem potentials_;  ///< V_K: stencil K is cell K, whose sites are the points of the mesh
   std::vector<double> inverse_mass_;  ///< of T, d × d
   using Next = std::pair<double, int>;
   std::priority_queue<Next, std::vector<Next>, std::greater<>> queue_;

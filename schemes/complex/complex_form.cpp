@@ -90,7 +90,7 @@ ComplexForm::ComplexForm(const ComplexSystem& system, ComplexRegion region, std:
     for (int a = 0; a < d; ++a) at_boundary_[place(site) * at(d) + at(a)] = 1;
   system.each_jacobian(region_.stencils(), y, [&](ComplexSystem::Stencils batch, const double* J) {
     const auto size = at(system.family_of(batch[0]).size());
-    constexpr auto most = static_cast<std::size_t>(PlacedFamily::most);
+    constexpr auto most = static_cast<std::size_t>(ComplexSystem::most);
     for (std::size_t s = 0; s < batch.size(); ++s) {
       Local local{{}, std::vector<double>(size * size)};
       for (const int site : complex.vertices(batch[s]))

@@ -11,14 +11,14 @@ namespace delf {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr auto most = static_cast<std::size_t>(PlacedFamily::most);
+constexpr auto most = static_cast<std::size_t>(ComplexSystem::most);
 
 /// use(stencil, its r or its J, ξ) for some stencils.
 template <class Use>
 auto with_generator(const ComplexSystem& system, std::span<const double> y, const LinearSymmetry& symmetry,
                     const Use& use) {
   return [&system, &symmetry, y, use](ComplexSystem::Stencils batch, const double* out) {
-    const PlacedFamily& family = system.family_of(batch[0]);
+    const ComplexSystem::Family& family = system.family_of(batch[0]);
     std::vector<double> local(at(family.size())), xi;
     for (std::size_t s = 0; s < batch.size(); ++s) {
       for (int i = 0; i < family.size(); ++i) local[at(i)] = y[system.node(batch[s], i)];
@@ -30,26 +30,14 @@ auto with_generator(const ComplexSystem& system, std::span<const double> y, cons
 
 }  // namespace
 
-void generator(const PlacedFamily& family, const LinearSymmetry& symmetry, std::span<const double> y,
+void generator(const ComplexSystem::Family& family, const LinearSymmetry& symmetry, std::span<const double> y,
                std::vector<double>& xi) {
-  const std::size_t d = symmetry.shift.size(), of_vertex = at(family.density().components());
+  const std::size_t d = symmetry.shift.size(), of_vertex = at(family.size() / family.vertices());
   xi.assign(y.size(), 0.0);
   for (std::size_t i = 0; i < y.size(); ++i) {
     const std::size_t a = i % of_vertex;
     if (a < d) xi[i] = generator_at(symmetry, a, y.data() + i - a);  // and 0 of a multiplier
   }
-}
-
-Balance momentum_across(const ComplexSystem& system, ComplexSystem::Stencils motion, std::span<const double> y,
-                        const LinearSymmetry& symmetry) {
-  Balance balance;
-  system.each_residual(motion, y,
-                       with_generator(system, y, symmetry,
-                                      [&](int, const PlacedFamily&, const double* r, const std::vector<double>& xi) {
-                                        for (std::size_t i = xi.size() / 2; i < xi.size(); ++i)
-                                          balance.add(r[i * most] * xi[i]);
-                                      }));
-  return balance;
 }
 
 ComplexNoether::ComplexNoether(std::vector<LinearSymmetry> symmetries, double tolerance, bool forced, bool wrong_sign)
@@ -80,7 +68,7 @@ Balance ComplexNoether::invariance(const ComplexSystem& system, const LinearSymm
     system.each_residual(
         stencils, y,
         with_generator(system, y, symmetry,
-                       [&](int, const PlacedFamily& of, const double* r, const std::vector<double>& xi) {
+                       [&](int, const ComplexSystem::Family& of, const double* r, const std::vector<double>& xi) {
                          Balance balance;
                          for (std::size_t i = 0; i < xi.size(); ++i)
                            balance.add((wrong_sign_ && of.size() > 1 && i == 0 ? -r[0] : r[i * most]) * xi[i]);
@@ -99,7 +87,7 @@ Balance ComplexNoether::sum(const ComplexSystem& system, const ComplexRegion& re
   system.each_residual(
       region.stencils(), y,
       with_generator(system, y, symmetry,
-                     [&](int stencil, const PlacedFamily& of, const double* r, const std::vector<double>& xi) {
+                     [&](int stencil, const ComplexSystem::Family& of, const double* r, const std::vector<double>& xi) {
                        for (std::size_t i = 0; i < xi.size(); ++i)
                          if (std::ranges::binary_search(
                                  region.boundary(), static_cast<int>(system.node(stencil, static_cast<int>(i)) / d)))
@@ -116,7 +104,7 @@ double ComplexNoether::rounding(const ComplexSystem& system, const ComplexRegion
   system.each_jacobian(
       region.stencils(), y,
       with_generator(
-          system, y, symmetry, [&](int stencil, const PlacedFamily&, const double* J, const std::vector<double>& xi) {
+          system, y, symmetry, [&](int stencil, const ComplexSystem::Family&, const double* J, const std::vector<double>& xi) {
             const std::size_t n = xi.size();
             for (std::size_t i = 0; i < n; ++i) {
               const std::size_t node = system.node(stencil, static_cast<int>(i));

@@ -44,11 +44,7 @@ inline double generator_at(const LinearSymmetry& symmetry, std::size_t a, const 
   for (std::size_t b = 0; b < d; ++b) xi += symmetry.matrix[a * d + b] * phi[b];
   return xi;
 }
-/// ξ at the values of a stencil of the family, with y as in PlacedBatch.
-void generator(const PlacedFamily&, const LinearSymmetry&, std::span<const double> y, std::vector<double>& xi);
-
-/// What flows across a cut between two rows: Σ ∂L/∂y · ξ over the upper site of stencils of motion; and Σ |terms|.
-Balance momentum_across(const ComplexSystem&, ComplexSystem::Stencils motion, std::span<const double> y,
-                        const LinearSymmetry&);
+/// ξ at the values of a stencil of the family, vertex by vertex.
+void generator(const ComplexSystem::Family&, const LinearSymmetry&, std::span<const double> y, std::vector<double>& xi);
 
 }  // namespace delf

@@ -85,10 +85,6 @@ int ComplexSolver::shared_levels() const {
   return count;
 }
 
-void ComplexSolver::rescale() {
-  for_each(0, parts_.size(), [&](std::size_t p, std::size_t) { parts_[p]->rescale(); });
-}
-
 template <class Do>
 void ComplexSolver::for_each(std::size_t first, std::size_t last, const Do& one) const {
   const FlushDenormals guard;  // as in the threads of a team

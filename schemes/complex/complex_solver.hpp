@@ -54,8 +54,6 @@ class ComplexSolver {
   bool is_direct() const;
   /// Levels in several parts.
   int shared_levels() const;
-  /// To be called when measures or time steps of the system's parts have changed.
-  void rescale();
   /// Throws NoConvergence or NotFinite; y is then what it was before the level that failed.
   Report solve(std::span<double> y) const;
 

@@ -6,39 +6,127 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <stdexcept>
+#include <set>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "lattice/error.hpp"
 
 namespace delf {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+/// Where a point lies, as weights of its vertices.
+std::vector<TablePoint::Entry> place_of(const TablePoint& point) {
+  if (!point[JetSlot::phi].empty()) return point[JetSlot::phi];
+  std::set<int> vertices;
+  for (const auto& slot : point.slots)
+    for (const auto& [vertex, weight] : slot) vertices.insert(vertex);
+  std::vector<TablePoint::Entry> mean;
+  for (const int vertex : vertices) mean.push_back({vertex, 1 / static_cast<double>(vertices.size())});
+  return mean;
+}
+
 }  // namespace
 
-int ComplexSystem::add_family(PlacedFamily family) {
+ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int vertices, const std::vector<TablePoint>& form)
+    : density_(std::move(density)), vertices_(vertices), form_(form) {
+  const int d = density_->components();
+  StencilTable table{.pattern = {}, .points = {}};
+  for (int l = 0; l < vertices; ++l) table.pattern.vertices.push_back({.time = 0, .space = l});
+  coupled_.assign(at(vertices * d) * at(vertices * d), 0), varying_ = coupled_;
+  // The numbers of a stencil are those of its table, point after point, and the place and the time of each point.
+  int numbers = 0;
+  for (const TablePoint& given : form) {
+    TablePoint point{.slots = {}};
+    point.own = {.weight = numbers++, .slots = {}};
+    for (std::size_t slot = 0; slot < at(density_->slots()); ++slot)
+      for (const TablePoint::Entry& e : given.slots[slot]) {
+        point.slots[slot].push_back({e.vertex, 1.0}), point.own.slots[slot].push_back(numbers++);
+        for (int a = 0; a < d && is_placed(); ++a)
+          reads_time_ = reads_time_ || !density_->is_zero(static_cast<int>(slot) * d + a, density_->variables());
+      }
+    table.points.push_back(std::move(point));
+    places_.push_back(place_of(given));
+  }
+  for (TablePoint& point : table.points)
+    if (is_placed()) point.own.place = numbers++, point.own.time = numbers++;
+  for (const TablePoint& point : table.points)
+    for (std::size_t s = 0; s < point.slots.size(); ++s)
+      for (std::size_t r = 0; r < point.slots.size(); ++r)
+        for (const auto& [l, left] : point.slots[s])
+          for (const auto& [m, right] : point.slots[r])
+            for (int a = 0; a < d; ++a)
+              for (int b = 0; b < d; ++b) {
+                const int i = static_cast<int>(s) * d + a, j = static_cast<int>(r) * d + b;
+                if (density_->is_zero(i, j)) continue;
+                const std::size_t entry = at((l * d + a) * vertices * d + m * d + b);
+                coupled_[entry] = 1;
+                if (density_->is_constant(i, j)) continue;
+                varying_[entry] = 1;
+                linear_ = false;
+              }
+  linear_ = linear_ && !reads_time_;
+  OwnWeights own{std::make_shared<ListedStencils>(vertices, std::vector<std::int32_t>(), 0), {}};
+  own.numbers.resize(at(numbers));
+  family_ = jets_ = std::make_shared<JetFamily>(std::move(table), density_, false, std::move(own));
+}
+
+ComplexSystem::Family::Family(std::shared_ptr<const StencilFamily> family) : vertices_(1), family_(std::move(family)), linear_(false) {
+  coupled_.assign(at(size()) * at(size()), 1), varying_ = coupled_;
+}
+
+ComplexShape ComplexSystem::Family::shape(int values_of_site) const {
+  const int sites = size() / values_of_site;
+  ComplexShape shape{sites, std::vector<char>(at(sites * sites), 0)};
+  for (int i = 0; i < size(); ++i)
+    for (int m = 0; m < size(); ++m)
+      if (coupled_[at(i * size() + m)] != 0) shape.couples[at(i / values_of_site * sites + m / values_of_site)] = 1;
+  return shape;
+}
+
+int ComplexSystem::Family::add_table(std::span<const TablePoint> points) {
+  bool same = points.size() == form_.size();
+  std::vector<double> numbers;
+  for (std::size_t q = 0; same && q < points.size(); ++q) {
+    numbers.push_back(points[q].weight);
+    for (std::size_t slot = 0; slot < at(density_->slots()); ++slot) {
+      const auto &given = points[q].slots[slot], &form = form_[q].slots[slot];
+      same = same && std::ranges::equal(given, form, {}, &TablePoint::Entry::vertex, &TablePoint::Entry::vertex);
+      for (const TablePoint::Entry& e : given) numbers.push_back(e.weight);
+    }
+  }
+  if (!same)
+    throw BadInput("lattice.mesh", "a table of another form than the first of its family; make it one more family");
+  if (!is_placed()) return jets_->add_own(numbers);
+  tables_.push_back(std::move(numbers));
+  return static_cast<int>(tables_.size()) - 1;
+}
+
+int ComplexSystem::Family::add_numbers(int table, std::span<const Complex::Position> vertices) {
+  if (!jets_ || !is_placed()) return table;
+  std::vector<double> numbers = tables_[at(table)];
+  for (const auto& weights : places_)
+    for (const std::size_t coordinate : {1U, 0U}) {
+      double place = 0;
+      for (const auto& [vertex, weight] : weights) place += weight * vertices[at(vertex)][coordinate];
+      numbers.push_back(place);
+    }
+  return jets_->add_own(numbers);
+}
+
+int ComplexSystem::add_family(Family family) {
   complex_.add_shape(family.shape(components_));
   families_.push_back(std::move(family));
   return static_cast<int>(families_.size()) - 1;
 }
 
-int ComplexSystem::add_part() {
-  parts_.emplace_back();
-  return parts() - 1;
-}
-
-double ComplexSystem::factor(int part, int power) const {
-  const auto [measure, time_step] = parts_[at(part)];
-  return measure / std::pow(time_step, power);
-}
-
-int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step,
-                               int part) {
-  if (part != 0 && !this->family(family).time_power())
-    throw std::logic_error("weights of phi_t beside others in a part of a complex");
-  part_of_.push_back(part);
-  tables_.push_back(table);
+int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step) {
+  Family& of = families_[at(family)];
+  std::vector<Complex::Position> positions;
+  const std::size_t per_vertex = sites.size() / at(of.vertices_);
+  for (std::size_t l = 0; of.is_placed() && l < sites.size(); l += per_vertex) positions.push_back(complex_.position(sites[l]));
+  numbers_.push_back(of.add_numbers(table, positions));
   measures_.push_back(measure);
   time_steps_.push_back(time_step);
   return complex_.add_stencil(family, sites);
@@ -60,56 +148,67 @@ template <class Evaluate>
 void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power, const Evaluate& evaluate,
                          const Visit& visit, const StencilReading& reading) const {
   std::size_t begin = 0;  // of a stencil, in places
-  constexpr int most = PlacedFamily::most;
-  std::array<std::int32_t, most> tables;
-  std::array<double, most> measures, steps;
+  std::array<int, most> numbers;
+  const ScratchRows x(1, most);
+  std::fill_n(x[0], most, 0.0);  // points have places of their own
   for (std::size_t first = 0; first < stencils.size();) {
     const int shape = complex_.shape_number(stencils[first]);
-    const int number = part_of(stencils[first]);
-    const PlacedFamily& of = family(shape);
-    const Part part = reading.unscaled ? Part{} : parts_[at(number)];
-    std::size_t end = first;
+    const Family& of = family(shape);
+    const auto size = at(of.size());
+    // A batch has one time step, and one time.
+    const double step = time_steps_[at(stencils[first])];
+    std::size_t end = first + 1;
     while (end < stencils.size() && end - first < most && complex_.shape_number(stencils[end]) == shape &&
-           part_of(stencils[end]) == number)
+           time_steps_[at(stencils[end])] == step && !of.reads_time())
       ++end;
     const Stencils batch = stencils.subspan(first, end - first);
-    const ScratchRows values(of.size(), most), places(of.is_placed() ? 2 * of.vertices() : 0, most);
-    const ScratchRows numbers(power == 0 ? 1 : power == 1 ? of.size() : of.size() * of.size(), most);
-    for (std::size_t s = 0; s < batch.size(); ++s) {
-      const auto stencil = at(batch[s]);
-      tables[s] = tables_[stencil];
-      measures[s] = part.measure * measures_[stencil], steps[s] = part.time_step * time_steps_[stencil];
-      for (int i = 0; i < of.size(); ++i)
-        values[i][s] = y[reading.places.empty() ? node(batch[s], i) : at(reading.places[begin + at(i)])];
-      begin += at(of.size());
-      for (int l = 0; l < of.vertices() && of.is_placed(); ++l) {
-        const Complex::Position& position = complex_.position(complex_.vertices(batch[s])[at(l)]);
-        places[l][s] = position[0], places[of.vertices() + l][s] = position[1];
-      }
+    const std::size_t count = (batch.size() + lanes - 1) / lanes * lanes, rows = power == 0 ? 1 : power == 1 ? size : size * size;
+    const ScratchRows values(of.size(), static_cast<int>(count)), results(static_cast<int>(rows), static_cast<int>(count)),
+        out(static_cast<int>(rows), most);
+    for (std::size_t s = 0; s < count; ++s) {  // the last one fills whole packs
+      const std::size_t n = std::min(s, batch.size() - 1);
+      numbers[s] = numbers_[at(batch[n])];
+      for (std::size_t i = 0; i < size; ++i)
+        values[static_cast<int>(i)][s] = y[reading.places.empty() ? node(batch[n], static_cast<int>(i))
+                                                                    : at(reading.places[begin + n * size + i])];
     }
-    PlacedBatch placed{static_cast<int>(batch.size()), tables.data(), measures.data(), steps.data(), values[0]};
-    if (of.is_placed()) placed.t = places[0], placed.x = places[of.vertices()];
-    evaluate(of, placed, numbers[0]);
-    visit(batch, numbers[0]);
+    begin += batch.size() * size;
+    evaluate(of, StencilBatch{{step, 1, reading.time.value_or(0), 0}, static_cast<int>(count), x[0], values[0], nullptr, numbers.data()},
+             results[0]);
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t s = 0; s < batch.size(); ++s)  // |Δ| in place of the area h k of the table
+        out[static_cast<int>(r)][s] = measures_[at(batch[s])] / (of.jets_ ? step : 1) * results[static_cast<int>(r)][s];
+    visit(batch, out[0]);
     first = end;
   }
 }
 
-void ComplexSystem::each_lagrangian(Stencils s, std::span<const double> y, const Visit& visit) const {
-  each(s, y, 0, [](const auto& family, const auto& batch, double* out) { family.lagrangian(batch, out); }, visit, {});
+void ComplexSystem::each_lagrangian(Stencils s, std::span<const double> y, const Visit& visit,
+                                    const StencilReading& reading) const {
+  each(
+      s, y, 0, [](const Family& of, const StencilBatch& batch, double* out) { of.family_->lagrangian(batch, out); }, visit,
+      reading);
 }
 void ComplexSystem::each_energy(Stencils s, std::span<const double> y, const Visit& visit) const {
-  each(s, y, 0, [](const auto& family, const auto& batch, double* out) { family.energy(batch, out); }, visit, {});
+  each(
+      s, y, 0, [](const Family& of, const StencilBatch& batch, double* out) { of.jets_->energy(batch, out); }, visit, {});
 }
 void ComplexSystem::each_residual(Stencils s, std::span<const double> y, const Visit& visit,
                                   const StencilReading& reading) const {
   each(
-      s, y, 1, [](const auto& family, const auto& batch, double* out) { family.residual(batch, out); }, visit, reading);
+      s, y, 1, [](const Family& of, const StencilBatch& batch, double* out) { of.family_->residual(batch, out); }, visit,
+      reading);
 }
 void ComplexSystem::each_jacobian(Stencils s, std::span<const double> y, const Visit& visit,
                                   const StencilReading& reading) const {
   each(
-      s, y, 2, [](const auto& family, const auto& batch, double* out) { family.jacobian(batch, out); }, visit, reading);
+      s, y, 2,
+      [](const Family& of, const StencilBatch& batch, double* out) {
+        std::vector<int> all(at(of.size()));
+        std::iota(all.begin(), all.end(), 0);
+        of.family_->jacobian(batch, all, all, out);
+      },
+      visit, reading);
 }
 
 std::vector<Balance> ComplexSystem::residual(std::span<const double> y) const {
@@ -117,7 +216,7 @@ std::vector<Balance> ComplexSystem::residual(std::span<const double> y) const {
   each_residual(all_stencils(), y, [&](Stencils batch, const double* r) {
     const int size = family_of(batch[0]).size();
     for (std::size_t s = 0; s < batch.size(); ++s)
-      for (int i = 0; i < size; ++i) E[node(batch[s], i)].add(r[at(i) * PlacedFamily::most + s]);
+      for (int i = 0; i < size; ++i) E[node(batch[s], i)].add(r[at(i) * most + s]);
   });
   return E;
 }
@@ -129,7 +228,7 @@ std::vector<double> ComplexSystem::sizes(std::span<const double> y) const {
     for (std::size_t s = 0; s < batch.size(); ++s)
       for (int i = 0; i < count; ++i)
         for (int m = 0; m < count; ++m)
-          size[node(batch[s], i)] += std::abs(J[at((i * count + m) * PlacedFamily::most) + s] * y[node(batch[s], m)]);
+          size[node(batch[s], i)] += std::abs(J[at((i * count + m) * most) + s] * y[node(batch[s], m)]);
   });
   return size;
 }

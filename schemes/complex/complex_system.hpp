@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "lattice/complex/complex.hpp"
-#include "schemes/complex/placed_family.hpp"
+#include "schemes/families/jet_family.hpp"
 #include "schemes/verify/check.hpp"
 
 namespace delf {
@@ -14,7 +16,7 @@ namespace delf {
 struct StencilReading {
   /// Not empty: y holds some nodes alone, and here each value of each stencil.
   std::span<const std::int32_t> places = {};
-  bool unscaled = false;  ///< as if the measures and time steps of all parts were 1
+  std::optional<double> time = {};  ///< of all of them, in place of that of their sites
 };
 
 /// The field equations of a complex of stencils,
@@ -24,50 +26,86 @@ struct StencilReading {
 /// with their Jacobian, and the action. Stencils are evaluated in batches of a family.
 class ComplexSystem {
  public:
+  static constexpr int most = 64;  ///< stencils at once
+
+  /// Stencils that lie anywhere: a family whose tables differ from stencil to stencil in their numbers, and not in their form.
+  /// L has the measure |Δ| of the stencil as a factor; weights of φ_t are per its time step, and those of φ_x of the coordinates
+  /// themselves.
+  class Family {
+   public:
+    /// A density on tables: value l·d + a is component a at vertex l. A density that reads t and x does so, at each point, where
+    /// the point has φ: at the mean of the vertices with the weights of φ; and where the point has derivatives alone, at the mean
+    /// of the vertices that it reads. A pair of sites in time thus has its middle, a site its own place, and a cell its centroid,
+    /// or a Gauss point of it: the action is of second order.
+    Family(std::shared_ptr<const BatchDensity>, int vertices, const std::vector<TablePoint>& form);
+    /// A function of the values at a vertex, such as a constraint: a family without tables.
+    explicit Family(std::shared_ptr<const StencilFamily>);
+
+    /// The number of a table. Throws BadInput where its slots have not the vertices of the form.
+    int add_table(std::span<const TablePoint>);
+
+    int vertices() const { return vertices_; }
+    int size() const { return family_->size(); }
+    const std::shared_ptr<const BatchDensity>& density() const { return density_; }  ///< null: no jets
+    /// Which values feel each other, where a site of the complex holds so many of them.
+    ComplexShape shape(int values_of_site) const;
+    /// ∂r/∂y is proved to be the same at all y: the equations of these stencils are linear.
+    bool is_linear() const { return linear_; }
+    /// The equations of the stencils depend on t.
+    bool reads_time() const { return reads_time_; }
+    /// ∂r/∂y of value m in the equation of value i is not proved to be the same at all y.
+    bool is_varying(int i, int m) const { return varying_[static_cast<std::size_t>(i * size() + m)] != 0; }
+
+   private:
+    friend class ComplexSystem;
+    bool is_placed() const { return density_ && density_->is_placed(); }
+    /// Numbers of a stencil, those of a table and the places of its points.
+    int add_numbers(int table, std::span<const Complex::Position> vertices);
+
+    std::shared_ptr<const BatchDensity> density_;
+    int vertices_;
+    std::shared_ptr<JetFamily> jets_;  ///< null: no tables
+    std::shared_ptr<const StencilFamily> family_;
+    std::vector<std::vector<TablePoint::Entry>> places_;  ///< of the points: weights of the vertices
+    std::vector<TablePoint> form_;
+    std::vector<std::vector<double>> tables_;  ///< of a density that is placed: numbers that stencils have besides their places
+    std::vector<char> coupled_, varying_;      ///< [i·size + m]
+    bool linear_ = true, reads_time_ = false;
+  };
+
   explicit ComplexSystem(int components) : components_(components) {}
 
   /// So many are to be added: see Complex.
   void reserve(std::size_t sites, std::size_t stencils, std::size_t vertices) {
     complex_.reserve(sites, stencils, vertices);
-    tables_.reserve(stencils), part_of_.reserve(stencils), measures_.reserve(stencils), time_steps_.reserve(stencils);
+    numbers_.reserve(stencils), measures_.reserve(stencils), time_steps_.reserve(stencils);
   }
   int add_site(const Complex::Position& position, SiteRole role = SiteRole::free) {
     return complex_.add_site(position, role);
   }
   void set_role(int site, SiteRole role) { complex_.set_role(site, role); }
-  void set_time(int site, double t) { complex_.set_time(site, t); }
-  int add_family(PlacedFamily);
+  int add_family(Family);
   int add_table(int family, std::span<const TablePoint> points) {
     return families_[static_cast<std::size_t>(family)].add_table(points);
   }
-  /// A part is a set of stencils whose measures and time steps change together: those of a stencil are its own times those
-  /// of its part. Part 0 keeps both at 1. Of the other parts either all weights of a family are of φ_t, or none.
-  int add_part();
-  void set_part(int part, double measure, double time_step) {
-    parts_[static_cast<std::size_t>(part)] = {measure, time_step};
-  }
-  int add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step = 1,
-                  int part = 0);
+  /// `table` is not read of a family without tables.
+  int add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step = 1);
 
   const Complex& complex() const { return complex_; }
   int components() const { return components_; }
   std::size_t nodes() const {
     return static_cast<std::size_t>(complex_.sites()) * static_cast<std::size_t>(components_);
   }
-  const PlacedFamily& family(int number) const { return families_[static_cast<std::size_t>(number)]; }
+  const Family& family(int number) const { return families_[static_cast<std::size_t>(number)]; }
   int families() const { return static_cast<int>(families_.size()); }
-  const PlacedFamily& family_of(int stencil) const { return family(complex_.shape_number(stencil)); }
-  int parts() const { return static_cast<int>(parts_.size()); }
-  int part_of(int stencil) const { return part_of_[static_cast<std::size_t>(stencil)]; }
-  /// What multiplies ∂L/∂y of a part's stencils: |Δ|/hᵖ, and ∂²L/∂y∂y if p is twice as much.
-  double factor(int part, int power) const;
+  const Family& family_of(int stencil) const { return family(complex_.shape_number(stencil)); }
   std::size_t bytes() const;
 
-  /// All stencils, or those of a list, in batches of one family and one part: visit(stencils of the batch, its
-  /// numbers[i·most + s]).
+  /// All stencils, or those of a list, in batches of one family: visit(stencils of the batch, its numbers[i·most + s]).
   using Stencils = std::span<const std::int32_t>;
   using Visit = std::function<void(Stencils, const double*)>;
-  void each_lagrangian(Stencils, std::span<const double> y, const Visit&) const;
+  void each_lagrangian(Stencils, std::span<const double> y, const Visit&, const StencilReading& = {}) const;
+  /// φ_t ∂ℓ/∂φ_t − ℓ of each stencil, with its measure and weights; of families with tables.
   void each_energy(Stencils, std::span<const double> y, const Visit&) const;
   void each_residual(Stencils, std::span<const double> y, const Visit&, const StencilReading& = {}) const;
   void each_jacobian(Stencils, std::span<const double> y, const Visit&, const StencilReading& = {}) const;
@@ -88,14 +126,10 @@ class ComplexSystem {
   template <class Evaluate>
   void each(Stencils, std::span<const double> y, int power, const Evaluate&, const Visit&, const StencilReading&) const;
 
-  struct Part {
-    double measure = 1, time_step = 1;
-  };
   int components_;
   Complex complex_;
-  std::vector<PlacedFamily> families_;  ///< its number is the number of its shape
-  std::vector<Part> parts_ = std::vector<Part>(1);
-  std::vector<std::int32_t> tables_, part_of_;  ///< of each stencil
+  std::vector<Family> families_;        ///< its number is the number of its shape
+  std::vector<std::int32_t> numbers_;   ///< of each stencil: where its own are
   std::vector<double> measures_, time_steps_;
 };
 

@@ -22,7 +22,7 @@ Rows linearised(const ComplexSystem& system, std::span<const double> y) {
     for (std::size_t s = 0; s < batch.size(); ++s)
       for (int i = 0; i < size; ++i)
         for (int m = 0; m < size; ++m)
-          if (const double value = J[static_cast<std::size_t>((i * size + m) * PlacedFamily::most) + s]; value != 0)
+          if (const double value = J[static_cast<std::size_t>((i * size + m) * ComplexSystem::most) + s]; value != 0)
             entries.emplace_back(static_cast<int>(system.node(batch[s], i)), static_cast<int>(system.node(batch[s], m)),
                                  value);
   });
@@ -72,13 +72,12 @@ Balance form_of_first_step(const CellSpace& space, std::span<const double> times
   for (const int first : {last - 1, 0}) {
     const auto begin = static_cast<std::size_t>(first * n);
     system.each_jacobian(
-        system.all_stencils(), y.subspan(begin, system.nodes()), [&](ComplexSystem::Stencils batch, const double* J) {
+        step.motion(0), y.subspan(begin, system.nodes()), [&](ComplexSystem::Stencils batch, const double* J) {
           const auto size = static_cast<std::size_t>(system.family_of(batch[0]).size());
-          if (system.family_of(batch[0]).time_power() != 1) return;
           for (std::size_t s = 0; s < batch.size(); ++s) {
             std::vector<double> local(size * size), V(size), W(size);
             for (std::size_t k = 0; k < size * size; ++k)
-              local[k] = J[k * static_cast<std::size_t>(PlacedFamily::most) + s];
+              local[k] = J[k * static_cast<std::size_t>(ComplexSystem::most) + s];
             for (std::size_t i = 0; i < size; ++i) {
               const auto node = static_cast<Eigen::Index>(begin + system.node(batch[s], static_cast<int>(i)));
               V[i] = variations[0][node], W[i] = variations[1][node];

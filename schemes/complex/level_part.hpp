@@ -71,12 +71,6 @@ class ComplexSolver::LevelPart {
            8 * static_cast<std::size_t>(y_.size() + diagonal_.size() + sources_.size());
   }
 
-  /// Other measures and time steps of the system's parts.
-  void rescale() {
-    equations_->scale();
-    refresh();
-  }
-
   /// Finds the unknowns from the other values of y, without writing them there: other parts may read y.
   Report find(std::span<const double> y, const Options& options) {
     equations_->read(y, y_);

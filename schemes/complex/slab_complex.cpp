@@ -66,7 +66,7 @@ SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
   for (const auto& family : families) {
     const std::vector<Site>& pattern = family->pattern().vertices;
     const int placed = made.system.add_family(
-        PlacedFamily(family->shared_density(), static_cast<int>(pattern.size()), points_of(*family, 0)));
+        ComplexSystem::Family(family->shared_density(), static_cast<int>(pattern.size()), points_of(*family, 0)));
     for (int s = 0; s < family->listed()->size(); ++s) {
       const int table = made.system.add_table(placed, points_of(*family, s));
       for (int row = 0; row + 1 < count; ++row) {

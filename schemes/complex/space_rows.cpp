@@ -20,7 +20,7 @@ CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, b
                      std::shared_ptr<const StencilFamily> constraint_)
     : MeshSpace{std::move(mesh_), {}},
       density(std::move(density_)),
-      constraint(constraint_ ? std::make_shared<const ConstraintDensity>(std::move(constraint_)) : nullptr),
+      constraint(std::move(constraint_)),
       tables(density),
       masses(lumped_masses(mesh)) {
   fixed.assign(mesh.points.size(), 0);
@@ -28,9 +28,21 @@ CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, b
     for (const auto p : boundary_points(mesh)) fixed[static_cast<std::size_t>(p)] = 1;
 }
 
+void CellSpace::each_constraint(std::span<const double> values, const UseConstraint& use) const {
+  const auto d = at(fields());
+  std::vector<double> y(d + 1), r(d + 1);
+  for (std::size_t i = 0; i * d < values.size(); ++i) {
+    // L = λ G(φ), here with λ = 1
+    std::ranges::copy(values.subspan(i * d, d), y.begin());
+    y[d] = 1;
+    constraint->residual({1, 1, 0, 0}, y, r);
+    use(i, r[d], {r.data(), d});
+  }
+}
+
 double CellSpace::largest_constraint(std::span<const double> values) const {
   double most = 0;
-  constraint->each(values, [&](std::size_t, double G, std::span<const double>) {
+  each_constraint(values, [&](std::size_t, double G, std::span<const double>) {
     if (!(std::abs(G) <= most)) most = std::abs(G);
   });
   return most;
@@ -42,7 +54,7 @@ SpaceRows::SpaceRows(const CellSpace& space)
       per_row_(space.sites() * (space.constraint ? per_point_ + 1 : 1)),
       is_still_(true),
       system_(space.constraint ? 1 : space.fields()) {
-  add_row(0);
+  add_row(0, 1);
 }
 
 SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
@@ -58,16 +70,14 @@ SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
                   rows * (values * (sites + space.mesh.vertices.size()) + (values + 1) * constraints) +
                       2 * (rows - 1) * values * sites);
   for (std::size_t j = 0; j < times.size(); ++j) {
-    add_row(system_.add_part());
+    const double below = j == 0 ? 0 : times[j] - times[j - 1], above = j + 1 == times.size() ? 0 : times[j + 1] - times[j];
+    add_row(times[j], 0.5 * (below + above));
     if (j == 0) continue;
     if (j == 1) motion_ = system_.add_family(space.tables.motion());
-    part_of_motion_.push_back(system_.add_part());
     first_of_motion_.push_back(system_.complex().stencils());
     for (std::int32_t i = 0; i < n; ++i)
-      system_.add_stencil(motion_, sites_of({rows_ - 2, rows_ - 1}, {&i, 1}), 0, space.masses[at(i)], 1,
-                          part_of_motion_.back());
+      system_.add_stencil(motion_, sites_of({rows_ - 2, rows_ - 1}, {&i, 1}), 0, space.masses[at(i)] * below, below);
   }
-  set_times(times);
   const int fields = n * per_point_, last = rows_ - 1;
   for (int j = 0; j < rows_; ++j)
     for (int s = 0; s < per_row_; ++s) {
@@ -89,12 +99,12 @@ std::span<const int> SpaceRows::sites_of(std::initializer_list<int> rows, std::s
   return sites_;
 }
 
-void SpaceRows::add_row(int part) {
+void SpaceRows::add_row(double t, double measure) {
   const int n = space_.sites(), row = rows_;
   for (int s = 0; s < per_row_; ++s) {
     const int i = s < n * per_point_ ? s / per_point_ : s - n * per_point_;
     const Mesh::Point& p = space_.mesh.points[at(i)];
-    system_.add_site({0, p[0], p[1], p[2]}, space_.fixed[at(i)] ? SiteRole::given : SiteRole::free);
+    system_.add_site({t, p[0], p[1], p[2]}, space_.fixed[at(i)] ? SiteRole::given : SiteRole::free);
   }
   if (rows_++ == 0) {
     site_ = system_.add_family(space_.tables.site());
@@ -106,21 +116,19 @@ void SpaceRows::add_row(int part) {
       gradient_tables_.push_back(system_.add_table(families[corners], space_.tables.gradient_table(space_.mesh, c)));
     }
     if (space_.constraint) {
-      const std::vector<TablePoint> table = space_.tables.site_table();
-      constraint_ = system_.add_family(PlacedFamily(space_.constraint, 1, table));
-      system_.add_table(constraint_, table);
+      constraint_ = system_.add_family(ComplexSystem::Family(space_.constraint));
     }
   }
-  part_of_row_.push_back(part);
+  measures_.push_back(measure);
   for (std::int32_t i = 0; i < n; ++i)
-    system_.add_stencil(site_, sites_of({row}, {&i, 1}), 0, space_.masses[at(i)], 1, part);
+    system_.add_stencil(site_, sites_of({row}, {&i, 1}), 0, space_.masses[at(i)] * measure);
   for (int c = 0; c < space_.mesh.cells(); ++c)
-    system_.add_stencil(gradient_[at(c)], sites_of({row}, space_.mesh.cell(c)), gradient_tables_[at(c)], 1, 1, part);
+    system_.add_stencil(gradient_[at(c)], sites_of({row}, space_.mesh.cell(c)), gradient_tables_[at(c)], measure);
   for (std::int32_t i = 0; i < n && space_.constraint; ++i) {
     if (space_.fixed[at(i)]) continue;
     sites_of({row}, {&i, 1});
     sites_.push_back(row * per_row_ + n * per_point_ + i);
-    system_.add_stencil(constraint_, sites_, 0, weight_of_constraint(i), 1, part);
+    system_.add_stencil(constraint_, sites_, 0, weight_of_constraint(i) * measure);
   }
 }
 
@@ -150,7 +158,7 @@ std::vector<double> SpaceRows::with_multipliers(std::span<const double> fields) 
   std::vector<double> y = with_multipliers(fields, std::vector<double>(at(rows_) * at(space_.sites()), 0.0));
   const std::vector<Balance> E = system_.residual(y);
   for (int j = 0; j < rows_; ++j)
-    space_.constraint->each(
+    space_.each_constraint(
         fields.subspan(at(j) * of_fields, of_fields), [&](std::size_t i, double, std::span<const double> slopes) {
           const std::size_t row = at(j) * of_row;
           if (!system_.complex().has_equation(static_cast<int>(row + i * d))) return;
@@ -160,31 +168,10 @@ std::vector<double> SpaceRows::with_multipliers(std::span<const double> fields) 
             product += E[row + i * d + a].sum * slopes[a];
             square += slopes[a] * slopes[a];
           }
-          const double measure = weight_of_constraint(static_cast<int>(i)) * system_.factor(part_of_row_[at(j)], 0);
+          const double measure = weight_of_constraint(static_cast<int>(i)) * measures_[at(j)];
           if (square > 0) y[row + of_fields + i] = -product / square / measure;
         });
   return y;
-}
-
-void SpaceRows::set_times(std::span<const double> times) {
-  for (int j = 0; j < rows_; ++j) {
-    const double below = j == 0 ? 0 : times[at(j)] - times[at(j - 1)];
-    const double above = j == rows_ - 1 ? 0 : times[at(j) + 1] - times[at(j)];
-    set_row_measure(j, 0.5 * (below + above));
-    if (j + 1 < rows_) set_motion(j, above, above);
-  }
-  move_to(times);
-}
-
-void SpaceRows::move_to(std::span<const double> times) {
-  for (int j = 0; j < rows_; ++j)
-    for (int s = 0; s < per_row_; ++s) system_.set_time(j * per_row_ + s, times[at(j)]);
-}
-
-bool SpaceRows::reads_time() const {
-  for (int f = 0; f < system_.families(); ++f)
-    if (system_.family(f).reads_time()) return true;
-  return false;
 }
 
 }  // namespace delf

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -8,7 +9,6 @@
 
 #include "lattice/space/mesh_space.hpp"
 #include "schemes/complex/complex_system.hpp"
-#include "schemes/complex/constraint_density.hpp"
 #include "schemes/complex/space_tables.hpp"
 
 namespace delf {
@@ -25,11 +25,14 @@ struct CellSpace : MeshSpace {
   /// Values of a row: the fields, point by point; and behind them the multipliers, where there is a constraint.
   std::size_t fields_of_row() const { return mesh.points.size() * static_cast<std::size_t>(fields()); }
   std::size_t values_of_row() const { return fields_of_row() + (constraint ? mesh.points.size() : 0); }
+  /// use(i, G, ∂G/∂φ) at fields[i·d + a], site after site.
+  using UseConstraint = std::function<void(std::size_t i, double G, std::span<const double> slopes)>;
+  void each_constraint(std::span<const double> fields, const UseConstraint& use) const;
   /// The largest |G(φ)| of some fields.
   double largest_constraint(std::span<const double> fields) const;
 
   std::shared_ptr<const BatchDensity> density;
-  std::shared_ptr<const ConstraintDensity> constraint;  ///< null: none
+  std::shared_ptr<const StencilFamily> constraint;  ///< of d + 1 values at one vertex, λ the last of them; null: none
   SpaceTables tables;
   std::vector<double> masses;  ///< A_i
 };
@@ -53,10 +56,6 @@ class SpaceRows {
 
   const ComplexSystem& system() const { return system_; }
   int rows() const { return rows_; }
-  /// The rows lie at these times, which a density may read; measures and steps are left as they are.
-  void move_to(std::span<const double> times);
-  /// An equation depends on t.
-  bool reads_time() const;
   /// The stencils that join a row and the next one.
   std::vector<std::int32_t> motion(int row) const;
   /// Rows of fields alone with the multipliers that fit their equations best, 0 where none holds: the component of E along
@@ -64,22 +63,14 @@ class SpaceRows {
   std::vector<double> with_multipliers(std::span<const double> fields) const;
   /// The same with these, [row·sites + i].
   std::vector<double> with_multipliers(std::span<const double> fields, std::span<const double> multipliers) const;
-  /// Of the stencils in a row.
-  void set_row_measure(int row, double measure) {
-    system_.set_part(part_of_row_[static_cast<std::size_t>(row)], measure, 1);
-  }
-  /// Of the stencils that join a row and the next one.
-  void set_motion(int row, double measure, double time_step) {
-    system_.set_part(part_of_motion_[static_cast<std::size_t>(row)], measure, time_step);
-  }
 
  private:
-  void add_row(int part);
+  /// A row at a time, whose stencils have this measure.
+  void add_row(double t, double measure);
   /// A_i; or 1 without time, where the line search weighs G against forces, which do not shrink with the mesh.
   double weight_of_constraint(int point) const;
   /// The sites of the complex that hold the fields of some points, one after the other.
   std::span<const int> sites_of(std::initializer_list<int> rows, std::span<const std::int32_t> points);
-  void set_times(std::span<const double> times);
 
   const CellSpace& space_;
   int per_point_, per_row_;  ///< sites of the complex: of the fields of a point, and of a row
@@ -90,7 +81,8 @@ class SpaceRows {
   std::vector<int> sites_;
   std::vector<int> gradient_;         ///< family by number of corners
   std::vector<int> gradient_tables_;  ///< by cell
-  std::vector<int> part_of_row_, part_of_motion_, first_of_motion_;
+  std::vector<int> first_of_motion_;
+  std::vector<double> measures_;  ///< of the stencils of each row
 };
 
 }  // namespace delf

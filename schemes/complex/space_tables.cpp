@@ -104,13 +104,13 @@ std::vector<TablePoint> SpaceTables::cell_table(const Mesh& mesh, int cell) cons
   return points;
 }
 
-PlacedFamily SpaceTables::motion() const {
-  PlacedFamily family(density_, 2, motion_table());
+ComplexSystem::Family SpaceTables::motion() const {
+  ComplexSystem::Family family(density_, 2, motion_table());
   family.add_table(motion_table());
   return family;
 }
-PlacedFamily SpaceTables::site() const {
-  PlacedFamily family(density_, 1, site_table());
+ComplexSystem::Family SpaceTables::site() const {
+  ComplexSystem::Family family(density_, 1, site_table());
   family.add_table(site_table());
   return family;
 }
@@ -127,9 +127,9 @@ Mesh cell_of(int corners) {
 
 }  // namespace
 
-PlacedFamily SpaceTables::gradient(int corners) const {
+ComplexSystem::Family SpaceTables::gradient(int corners) const {
   return {density_, corners, gradient_table(cell_of(corners), 0)};
 }
-PlacedFamily SpaceTables::cell(int corners) const { return {density_, corners, cell_table(cell_of(corners), 0)}; }
+ComplexSystem::Family SpaceTables::cell(int corners) const { return {density_, corners, cell_table(cell_of(corners), 0)}; }
 
 }  // namespace delf

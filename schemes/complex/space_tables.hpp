@@ -28,9 +28,9 @@ class SpaceTables {
   /// Throws BadInput "theory.name" for a density of another form.
   explicit SpaceTables(std::shared_ptr<const BatchDensity>);
 
-  PlacedFamily motion() const;
-  PlacedFamily site() const;
-  PlacedFamily gradient(int corners) const;
+  ComplexSystem::Family motion() const;
+  ComplexSystem::Family site() const;
+  ComplexSystem::Family gradient(int corners) const;
 
   std::vector<TablePoint> motion_table() const;
   std::vector<TablePoint> site_table() const;
@@ -38,7 +38,7 @@ class SpaceTables {
   std::vector<TablePoint> gradient_table(const Mesh&, int cell) const;
   /// The potential of a cell, its sites and gradient in one: for cells with a time step of their own.
   std::vector<TablePoint> cell_table(const Mesh&, int cell) const;
-  PlacedFamily cell(int corners) const;
+  ComplexSystem::Family cell(int corners) const;
 
  private:
   std::shared_ptr<const BatchDensity> density_;

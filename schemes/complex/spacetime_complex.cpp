@@ -41,7 +41,7 @@ class Families {
       }
     auto& family = families_[{e.shape, form}];
     if (!family.number)
-      family.number = system_.add_family(PlacedFamily(density_, static_cast<int>(e.sites.size()), points));
+      family.number = system_.add_family(ComplexSystem::Family(density_, static_cast<int>(e.sites.size()), points));
     // equal steps have equal tables: the last one is kept at hand
     if (!same(family.last, points)) family.table = system_.add_table(*family.number, points), family.last = points;
     system_.add_stencil(*family.number, e.sites, family.table, e.share.value_or(table.measure));

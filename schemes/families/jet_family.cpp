@@ -112,7 +112,8 @@ struct JetFamily::Jets {
     if (const double* const place = own(p.own.place)) std::copy_n(place, count, x[0]);
     else
       for (int i = 0; i < count; ++i) x[0][i] = batch_.x[first + i] + p.space * batch_.cell.space_step;
-    return {count, jets.data(), batch_.cell.t + p.time * batch_.cell.time_step, x[0]};
+    const double* const time = own(p.own.time);
+    return {count, jets.data(), batch_.cell.t + p.time * batch_.cell.time_step + (time ? *time : 0), x[0]};
   }
   /// A number of each stencil, from the first on; null for −1.
   const double* own(int number) { return number < 0 ? nullptr : numbers[number]; }
@@ -282,6 +283,30 @@ bool JetFamily::lagrangian(const StencilBatch& batch, double* L) const {
     }
   }
   return true;
+}
+
+void JetFamily::energy(const StencilBatch& batch, double* E) const {
+  Jets jets(*this, batch);
+  const ScratchRows l(1, Jets::most), g(jets.variables, Jets::most), sum(1, Jets::most);
+  fill_zero(E, batch.count);
+  for (int first = 0; first < batch.count; first += Jets::most) {
+    const int count = std::min(Jets::most, batch.count - first);
+    jets.look_at(first, count);
+    for (const TablePoint& p : table_.points) {
+      const JetBatch jet = jets.at_point(p, first, count);
+      density_->gradient(jet, g.data(), l[0]);
+      for (int s = 0; s < count; ++s) {
+        sum[0][s] = -l[0][s];
+        for (int a = d_; a < 2 * d_; ++a) sum[0][s] += jet.slots[a][s] * g[a][s];
+      }
+      add(E + first, jets.area * p.weight, {jets.own(p.own.weight)}, sum[0], count);
+    }
+  }
+}
+
+int JetFamily::add_own(std::span<const double> numbers) {
+  for (std::size_t n = 0; n < numbers.size(); ++n) own_.numbers[n].push_back(numbers[n]);
+  return static_cast<int>(own_.numbers.front().size()) - 1;
 }
 
 bool JetFamily::adds_to(const Point& point, std::span<const int> equations) const {

@@ -25,8 +25,8 @@ class JetFamily final : public StencilFamily {
   const StencilTable& table() const { return table_; }
   const BatchDensity& density() const { return *density_; }
   const std::shared_ptr<const BatchDensity>& shared_density() const { return density_; }
-  /// Of listed stencils; else without any.
-  const OwnWeights& own_weights() const { return own_; }
+  /// Of listed stencils: one more row of numbers of their own. Returns what a batch calls it.
+  int add_own(std::span<const double> numbers);
 
   using StencilFamily::jacobian;
   using StencilFamily::lagrangian;
@@ -35,6 +35,8 @@ class JetFamily final : public StencilFamily {
   void jacobian(const StencilBatch&, std::span<const int> equations, std::span<const int> unknowns,
                 double* J) const override;
   bool lagrangian(const StencilBatch&, double* L) const override;
+  /// |Δ| Σ_q w_q (φ_t ∂ℓ/∂φ_t − ℓ)
+  void energy(const StencilBatch&, double* E) const;
   bool is_constant(int i, int m) const override;
   std::optional<ConstantPart> constant_part(const Cell&) const override;
 

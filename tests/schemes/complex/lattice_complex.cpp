@@ -1,67 +1,55 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/complex/lattice_complex.hpp"
+#include "tests/schemes/complex/lattice_complex.hpp"
 
-#include "jets/tables/named_tables.hpp"
-#include "schemes/complex/complex_form.hpp"
-#include "schemes/complex/complex_solver.hpp"
-#include "tests/catch.hpp"
-#include "tests/schemes/complex/lattice_values.hpp"
-#include "tests/schemes/support.hpp"
+#include <algorithm>
+#include <vector>
+
+#include "lattice/stencil.hpp"
+
+namespace delf {
 
 namespace {
 
-using namespace delf;
-using namespace delf::testing;
-
-TEST_CASE("a regular lattice given as a complex has the same plan, rows and forms") {
-  Problem problem;
-  problem.theory = "sine-gordon";
-  const auto theory = theory_named(problem);
-  for (const NamedTable& named : named_tables()) {
-    if (named.is_for_point()) continue;
-    for (const bool circle : {true, false}) {
-      if (!circle && (named.name == "hexagon" || named.name == "six-tuple" || named.name == "nine-tuple")) continue;
-      CAPTURE(named.name, circle);
-      // (−1)ⁱ on an even circle is a null mode of the nine-tuple; a brick wall needs an even one
-      const int N = named.name == "hexagon" ? 14 : 15, steps = 5;
-      const Lattice lattice =
-          circle ? Lattice::circle(N, 0.5 * N) : Lattice::interval(N, 0.5 * (N - 1), Wall::fixed, Wall::fixed);
-      const double h = 0.4 * lattice.space_step();
-      Evolution evolution(lattice, {theory->variational(named.name)}, h);
-      const SolvePlan& plan = evolution.plan();
-      Random random(3);
-      std::vector<Row> rows = random_rows(random, evolution.stepper().starting_rows(), N, 1.0);
-      if (!circle)
-        for (Row& row : rows) row.front() = rows[0].front(), row.back() = rows[0].back();
-      evolution.stepper().start(rows);
-
-      const int count = plan.history + steps;
-      const LatticeComplex whole(lattice, plan, named.table, theory->shared_density(), h, count);
-      const ComplexSystem& system = whole.system;
-      const ComplexSolver solver(system);
-      CHECK(solver.plan().blocks() == steps * plan.blocks);
-      CHECK(static_cast<long long>(solver.plan().unknowns.size()) == steps * plan.unknowns);
-      CHECK((solver.plan().largest == 1) == (plan.blocks == plan.unknowns));
-      if (plan.kind == SolveKind::explicit_) CHECK(solver.plan().levels == steps);
-
-      std::vector<double> y = first_values(whole, rows, count);
-      solver.solve(y);
-      for (int j = plan.history; j < count; ++j) {
-        evolution.stepper().step();
-        const Row row = evolution.stepper().row(0);
-        for (std::size_t i = 0; i < row.size(); ++i)
-          CHECK(std::abs(y[static_cast<std::size_t>(whole.site(j, static_cast<int>(i)))] - row[i]) < 1e-13);
-      }
-
-      std::mt19937_64 seed(1);
-      const Touching touching(system.complex());
-      const ComplexForm form(
-          system, ComplexRegion::around(system.complex(), touching, draw_centres(system.complex(), touching, 9, seed)),
-          y);
-      const auto V = form.first_variations(2, seed);
-      CHECK(form.form_formula(V[0], V[1]).relative() < 1e-13);
-    }
-  }
+/// An equation at a row of all its stencils reaches this far; what cancels between them, and less far, is the plan's.
+int height(const StencilPattern& pattern) {
+  const auto [low, high] = std::ranges::minmax(pattern.vertices, {}, &Site::time);
+  return high.time - low.time;
 }
 
 }  // namespace
+
+LatticeComplex::LatticeComplex(const Lattice& lattice, const SolvePlan& plan, const StencilTable& table,
+                               std::shared_ptr<const BatchDensity> density, double time_step, int rows)
+    : sites(lattice.sites()),
+      outer(std::max(0, height(table.pattern) - std::min(plan.backward, plan.forward))),
+      system(density->components()) {
+  for (int j = -outer; j < rows + outer; ++j) {
+    const bool is_data = j < plan.history || j >= rows, has_equation = plan.backward <= j && j < rows - plan.forward;
+    const SiteRole role = is_data        ? has_equation ? SiteRole::initial : SiteRole::given
+                          : has_equation ? SiteRole::free
+                                         : SiteRole::final;
+    for (int i = 0; i < sites; ++i)
+      system.add_site({j * time_step, lattice.position(i), 0, 0}, lattice.is_fixed(i) ? SiteRole::given : role);
+  }
+  // |Δ| = measure · h k, and the weights of φ_x per length, of φ_xx per its square
+  std::vector<TablePoint> points = table.points;
+  for (TablePoint& p : points)
+    for (std::size_t slot = 0; slot < p.slots.size(); ++slot)
+      for (TablePoint::Entry& e : p.slots[slot])
+        for (int n = 0; n < slot_powers[slot].space; ++n) e.weight /= lattice.space_step();
+  const int family = system.add_family(ComplexSystem::Family(std::move(density), table.pattern.size(), points));
+  const int number = system.add_table(family, points);
+  const Stencils stencils(lattice, {table.pattern});
+  const auto is_there = [&](const Site& s) { return -outer <= s.time && s.time < rows + outer; };
+  std::vector<int> vertices;
+  for (int j = -outer - 2; j < rows + outer + 2; ++j)
+    for (int i = lattice.is_circle() ? 0 : -1; i < sites + (lattice.is_circle() ? 0 : 1); ++i) {
+      const auto stencil = stencils.find(0, {j, i});
+      if (!stencil || !std::ranges::all_of(stencil->sites, is_there)) continue;
+      vertices.clear();
+      for (const Site& s : stencil->sites) vertices.push_back(site(s.time, s.space));
+      system.add_stencil(family, vertices, number, table.measure * time_step * lattice.space_step(), time_step);
+    }
+}
+
+}  // namespace delf

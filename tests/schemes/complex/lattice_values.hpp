@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "schemes/complex/lattice_complex.hpp"
+#include "tests/schemes/complex/lattice_complex.hpp"
 #include "tests/schemes/support.hpp"
 
 namespace delf::testing {

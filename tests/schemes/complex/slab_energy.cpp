@@ -2,7 +2,7 @@
 #include "schemes/complex/slab_energy.hpp"
 
 #include "jets/tables/named_tables.hpp"
-#include "schemes/complex/lattice_complex.hpp"
+#include "tests/schemes/complex/lattice_complex.hpp"
 #include "schemes/complex/refined_piece.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "tests/catch.hpp"

@@ -8,7 +8,7 @@
 #include "jets/tables/named_tables.hpp"
 #include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_solver.hpp"
-#include "schemes/complex/lattice_complex.hpp"
+#include "tests/schemes/complex/lattice_complex.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/complex/lattice_values.hpp"
