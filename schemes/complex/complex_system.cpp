@@ -72,7 +72,8 @@ ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int v
   family_ = jets_ = std::make_shared<JetFamily>(std::move(table), density_, false, std::move(own));
 }
 
-ComplexSystem::Family::Family(std::shared_ptr<const StencilFamily> family) : vertices_(1), family_(std::move(family)), linear_(false) {
+ComplexSystem::Family::Family(std::shared_ptr<const StencilFamily> family)
+    : vertices_(family->pattern().size()), family_(std::move(family)), linear_(false), reads_time_(family_->is_placed()) {
   coupled_.assign(at(size()) * at(size()), 1), varying_ = coupled_;
 }
 
@@ -173,7 +174,8 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
                                                                     : at(reading.places[begin + n * size + i])];
     }
     begin += batch.size() * size;
-    evaluate(of, StencilBatch{{step, 1, reading.time.value_or(0), 0}, static_cast<int>(count), x[0], values[0], nullptr, numbers.data()},
+    const double first_time = of.jets_ ? 0 : complex_.position(complex_.vertices(batch[0])[0])[0];
+    evaluate(of, StencilBatch{{step, 1, reading.time.value_or(first_time), 0}, static_cast<int>(count), x[0], values[0], nullptr, numbers.data()},
              results[0]);
     for (std::size_t r = 0; r < rows; ++r)
       for (std::size_t s = 0; s < batch.size(); ++s)  // |Δ| in place of the area h k of the table

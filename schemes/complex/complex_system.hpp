@@ -38,7 +38,7 @@ class ComplexSystem {
     /// of the vertices that it reads. A pair of sites in time thus has its middle, a site its own place, and a cell its centroid,
     /// or a Gauss point of it: the action is of second order.
     Family(std::shared_ptr<const BatchDensity>, int vertices, const std::vector<TablePoint>& form);
-    /// A function of the values at a vertex, such as a constraint: a family without tables.
+    /// A family of a lattice: L of its stencils as it is, with their numbers in the place of tables, and t that of the first site.
     explicit Family(std::shared_ptr<const StencilFamily>);
 
     /// The number of a table. Throws BadInput where its slots have not the vertices of the form.

@@ -2,81 +2,57 @@
 #include "schemes/complex/slab_complex.hpp"
 
 #include <algorithm>
-#include <map>
 #include <memory>
-#include <span>
 
 #include "lattice/error.hpp"
 #include "lattice/space/mesh_space.hpp"
-#include "schemes/families/jet_family.hpp"
 
 namespace delf {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-std::vector<std::shared_ptr<const JetFamily>> densities_of(const LatticeSystem& system) {
-  std::vector<std::shared_ptr<const JetFamily>> families;
-  for (const auto& family : system.families()) {
-    families.push_back(std::dynamic_pointer_cast<const JetFamily>(family));
-    if (!families.back() || !family->is_variational() || !family->listed())
-      throw BadInput("scheme.method",
-                     "scheme.method: on a mesh delf verify checks methods whose action is a density on tables: "
-                     "composition, or cgvi with shared end nodes and no constraint; use one of these");
-  }
-  return families;
-}
-
-/// The points of a table with the numbers of one stencil in their weights.
-std::vector<TablePoint> points_of(const JetFamily& family, int stencil) {
-  const auto own = [&](int number) { return family.own_number(number, stencil); };
-  std::vector<TablePoint> points = family.table().points;
-  for (TablePoint& point : points) {
-    point.weight *= own(point.own.weight);
-    for (std::size_t slot = 0; slot < point.slots.size(); ++slot)
-      for (std::size_t e = 0; e < point.own.slots[slot].size(); ++e)
-        point.slots[slot][e].weight *= own(point.own.slots[slot][e]);
-  }
-  return points;
-}
-
 }  // namespace
 
 SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
-  const auto families = densities_of(system);
+  if (!is_variational(system))
+    throw BadInput("scheme.method",
+                   "scheme.method: on a mesh delf verify checks methods that have an action: composition or cgvi; use one of these");
   const Lattice& lattice = system.lattice();
-  const int d = families.front()->density().components(), nodes = system.components() / d, N = lattice.sites();
-  SlabComplex made{ComplexSystem(d), {}};
+  const auto& components = system.all_components();
+  // With multipliers every value is a site of its own: equations of one point are not matched with its own unknowns.
+  const bool by_value = std::ranges::any_of(components, [](const Component& c) { return c.role == Role::multiplier; });
+  const int together = by_value ? 1 : system.fields(), nodes = system.components() / together, N = lattice.sites();
+  SlabComplex made{ComplexSystem(together), {}};
   const auto count = static_cast<int>(rows.rows.size());
   std::vector<int> sites(at(count * N * nodes), -1);
   const auto number = [&](int row, int i, int node) -> int& { return sites[at((row * N + i) * nodes + node)]; };
   for (int row = 0; row < count; ++row)
     for (int i = 0; i < N; ++i)
-      for (int node = 0; node < (row + 1 < count ? nodes : 1); ++node) {
+      for (int node = 0; node < nodes; ++node) {
+        const Component& component = components[at(node * together)];
+        const bool in_row = component.at.time == 0, last = row + 1 == count;
+        if (last && component.role != Role::field) continue;  // of the slab above
         const std::int64_t r = rows.first_row + row;
-        const double t = system.times()->time(r) + system.component(node * d).at.time * system.times()->step(r);
+        const double t = system.times()->time(r) + component.at.time * system.times()->step(r);
         const auto& [x, y, z] = lattice.mesh()->mesh.points[at(i)];
-        const SiteRole role = lattice.is_fixed(i) || (node == 0 && row == 0) ? SiteRole::given
-                              : node == 0 && row + 1 == count               ? SiteRole::final
-                                                                            : SiteRole::free;
+        const SiteRole role = lattice.is_fixed(i) || (in_row && row == 0) ? SiteRole::given
+                              : in_row && last                           ? SiteRole::final
+                                                                         : SiteRole::free;
         number(row, i, node) = made.system.add_site({t, x, y, z}, role);
-        for (int a = 0; a < d; ++a) made.values.push_back(rows(r, i, node * d + a));
+        for (int a = 0; a < together; ++a) made.values.push_back(rows(r, i, node * together + a));
       }
   std::vector<int> vertices;
-  for (const auto& family : families) {
-    const std::vector<Site>& pattern = family->pattern().vertices;
-    const int placed = made.system.add_family(
-        ComplexSystem::Family(family->shared_density(), static_cast<int>(pattern.size()), points_of(*family, 0)));
-    for (int s = 0; s < family->listed()->size(); ++s) {
-      const int table = made.system.add_table(placed, points_of(*family, s));
-      for (int row = 0; row + 1 < count; ++row) {
+  for (const auto& family : system.families()) {
+    const int placed = made.system.add_family(ComplexSystem::Family(family));
+    for (int row = 0; row + 1 < count; ++row)
+      for (int s = 0; s < system.anchors(*family); ++s) {
+        if (!system.has_stencil(*family, rows.first_row + row, s)) continue;
         vertices.clear();
-        for (const Site& v : pattern)
-          vertices.push_back(number(row + v.time, family->listed()->site(s, v.space), v.node));
-        const double h = system.times()->step(rows.first_row + row);
-        made.system.add_stencil(placed, vertices, table, family->table().measure * h, h);
+        for (int i = 0; i < family->size(); i += together)
+          vertices.push_back(number(row + family->site(i).time, family->column(s, i), family->values()[at(i)].component / together));
+        made.system.add_stencil(placed, vertices, s, 1, system.times()->step(rows.first_row + row));
       }
-    }
   }
   return made;
 }

@@ -154,7 +154,7 @@ void require_tiling(ComplexScene& c) {
 void require_constraint(const ComplexScene& c) {
   const std::vector<double> values = c.values();
   const std::string& name = c.fields.front().name;
-  c.space->constraint->each(values, [&](std::size_t i, double G, std::span<const double> slopes) {
+  c.space->each_constraint(values, [&](std::size_t i, double G, std::span<const double> slopes) {
     if (c.time == MeshTime::none && !c.space->fixed[i]) return;
     double terms = 0;  // Σ |∂G/∂φ φ|
     for (std::size_t a = 0; a < slopes.size(); ++a) terms += std::abs(slopes[a] * values[i * slopes.size() + a]);

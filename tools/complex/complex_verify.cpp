@@ -195,7 +195,7 @@ class MeshVerification {
     if (Interrupt::asked()) verdict_.status = "interrupted";
   }
 
-  /// Slabs of a method of lattices, with the nodes inside them.
+  /// Slabs of another method than the usual one, with the nodes inside them.
   void look_at_slabs() {
     constexpr int rows = 4;
     Simulation simulation(scene_.problem_on_mesh());
@@ -206,6 +206,11 @@ class MeshVerification {
       while (simulation.newest() < next && !Interrupt::asked()) simulation.step();
       if (Interrupt::asked()) break;
       const SlabComplex slabs = slab_complex(system, simulation.evolution().stepper().window(rows));
+      if (scene_.theory->constraint()) {
+        std::vector<double> row(scene_.space->fields_of_row());
+        simulation.copy_row(0, row);
+        checks_.look_at_constraint(row, fmt::format("row {}", next));
+      }
       checks_.look_at(slabs.system, slabs.values, fmt::format("rows {} to {}", next - rows + 1, next));
     }
     verdict_.left_out.push_back("time reversal: not for methods of lattices on a mesh");

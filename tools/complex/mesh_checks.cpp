@@ -120,7 +120,7 @@ std::string MeshChecks::name_of(const ComplexSystem& system, int site) const {
 void MeshChecks::look_at_constraint(std::span<const double> fields, const std::string& where) {
   if (!scene_.theory->constraint()) return;
   const auto d = scene_.fields.size();
-  scene_.space->constraint->each(fields, [&](std::size_t n, double G, std::span<const double> slopes) {
+  scene_.space->each_constraint(fields, [&](std::size_t n, double G, std::span<const double> slopes) {
     Balance balance{G, 0, 1};
     for (std::size_t a = 0; a < d; ++a) balance.absolute += std::abs(slopes[a] * fields[n * d + a]);
     const std::size_t sites = scene_.space->mesh.points.size();

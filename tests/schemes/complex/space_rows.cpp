@@ -132,31 +132,6 @@ TEST_CASE("momenta on rows with steps of their own: a uniform shift of a wave go
   CHECK(evolution.residual() < 1e-12);
 }
 
-TEST_CASE("a solver whose matrices are scaled to other steps solves what a new one does") {
-  for (const char* text : {"0.5*phi_t^2 - 0.5*phi_x^2 + 0.3*phi", "0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)",
-                           "0.5*phi_t^2 + 0.1*phi_t^4 - 0.5*(1 + phi^2)*phi_x^2"}) {
-    const CellSpace space(icosahedral_sphere(1), expression(text), false);
-    SpaceRows rows(space, std::array{0.0, 0.1, 0.2});
-    const SpaceRows other(space, std::array{0.0, 0.05, 0.13});
-    ComplexSolver solver(rows.system());
-    std::mt19937_64 random(5);
-    std::normal_distribution<double> normal;
-    std::vector<double> start(rows.system().nodes());
-    for (double& value : start) value = 0.1 * normal(random);
-    const auto distance = [&] {
-      std::vector<double> here = start, there = start;
-      solver.solve(here), ComplexSolver(other.system()).solve(there);
-      double most = 0;
-      for (std::size_t n = 0; n < here.size(); ++n) most = std::max(most, std::abs(here[n] - there[n]));
-      return most;
-    };
-    rows.set_motion(0, 0.05, 0.05), rows.set_motion(1, 0.08, 0.08), rows.set_row_measure(1, 0.065);
-    if (solver.is_direct()) CHECK(distance() > 1e-3);  // it is still that of the steps before
-    solver.rescale();
-    CHECK(distance() < 1e-14);
-  }
-}
-
 /// sine-Gordon on a mesh, with steps that the field chooses.
 std::unique_ptr<Simulation> of_chosen_steps(const CellSpace& space, double longest, double strength,
                                             std::span<const double> values, std::span<const double> rates) {

@@ -98,13 +98,33 @@ TEST_CASE("limits of methods on a mesh are those of its highest oscillator, and 
 
 TEST_CASE("methods on a mesh keep the form, and planted faults are found") {
   const Folder folder;
-  for (const std::string method : {"composition", "cgvi --scheme.tableau=gauss2", "cgvi --scheme.tableau=lobatto3"}) {
-    CAPTURE(method);
-    const std::string scene = "verify " + sphere + " --verify.moments=2 --scheme.method=" + method + " --out out";
+  for (const std::string run :
+       {sphere + " --scheme.method=composition", sphere + " --scheme.method=cgvi --scheme.tableau=gauss2",
+        sphere + " --scheme.method=cgvi --scheme.tableau=lobatto3", std::string("turning-soliton --scheme.method=cgvi --scheme.tableau=lobatto3 --run.steps=12")}) {
+    CAPTURE(run);
+    const std::string scene = "verify " + run + " --verify.moments=2 --out out";
     const Ran ran = delf_program(folder, scene);
     CAPTURE(ran.out, ran.err);
     CHECK(ran.code == 0);
+    CHECK(contains(ran.out, "constraint") == run.starts_with("turning"));
     for (const std::string fault : {"sign", "field", "variation"})
       CHECK(delf_program(folder, scene + " --verify.fault=" + fault).code == 1);
+  }
+}
+
+TEST_CASE("every method on a mesh takes steps in turn, and ends at their time") {
+  const Folder folder;
+  const auto last = [&](const std::string& method, const std::string& steps) {
+    const Ran ran = delf_program(folder, "run sphere --lattice.mesh=icosahedron:1 --output.every=0 --output.figures=off --out out " + method + steps);
+    CAPTURE(ran.out, ran.err);
+    REQUIRE(ran.code == 0);
+    return nlohmann::json::parse(read(folder / "out/summary.json"));
+  };
+  for (const std::string method : {"", "--scheme.method=composition ", "--scheme.method=cgvi "}) {
+    CAPTURE(method);
+    const auto turns = last(method, "--run.until=1.2 --lattice.time_steps=0.05,0.03");
+    CHECK(turns["time"].get<double>() == Approx(1.2));
+    CHECK(turns["steps"] == 30);
+    CHECK(turns["residual_max"].get<double>() < 1e-13);
   }
 }
