@@ -56,7 +56,7 @@ class BatchDensity {
   /// ∂ℓ/∂t and ∂ℓ/∂x at given (t, x), for densities that depend on them: l_t[i], l_x[i].
   virtual void place_gradient(const JetBatch&, double* l_t, double* l_x) const = 0;
 
-  /// Whether the density declares T difference_quotient(const T& a, const T& b): (N(a) − N(b))/(a − b) for its potential
+  /// True if the density declares T difference_quotient(const T& a, const T& b): (N(a) − N(b))/(a − b) of its potential
   /// N(φ) = ℓ(φ, 0, 0), also where a = b; of several components an array. q[c][i], from the d components of a and those
   /// of b in `slots`; and its derivatives d[c·2d + j][i].
   bool has_difference_quotient() const { return has_difference_quotient_; }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int second = 5;  // the slot of φ_xx
 
-/// What is proved of ∂ℓ/∂φᵃ: a function of the values that it depends on, affine where their entries are constant.
+/// The structure of ∂ℓ/∂φᵃ: a function of the values that it depends on, affine where their entries are constant.
 Abstract slope_of(const BatchDensity& density, int a) {
   const int d = density.components();
   Abstract slope;
@@ -20,7 +20,7 @@ Abstract slope_of(const BatchDensity& density, int a) {
     if (density.is_zero(a, b)) continue;
     slope = slope + (density.is_constant(a, b) ? Abstract::variable(b) : unknown_function(Abstract::variable(b)));
   }
-  // Whether it is a sum of functions of one value each is not known.
+  // It may be no sum of functions of one value each: nothing proves it.
   if (std::uint64_t all = slope.depends; all != 0)
     for (int b = 0; b < d; ++b)
       if (!density.is_zero(a, b) && !density.is_constant(a, b))

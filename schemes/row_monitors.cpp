@@ -120,7 +120,7 @@ void RowMonitors::find_conserved(Simulation::Monitors& monitors) const {
   }
 }
 
-/// What monitors look at, where steps do not go by rows.
+/// Copies the rows that monitors read, where steps do not go by rows.
 void RowMonitors::copy_newest_pair() {
   const int C = system_.components(), d = theory_.components();
   if (stepper_.is_processed()) return copy_observed_pair();

@@ -18,8 +18,8 @@ RowsInTime newest_rows(const FieldTheory&, const Evolution&);
 /// The components of one role of the row `back` rows before the newest, site by site.
 std::vector<double> row_of(const Evolution&, Role, int back);
 
-/// What a run watches in its newest rows: energy, momentum and charge, constraints, Noether's sums, and what the method
-/// declares. All that is given is kept by reference; work space is allocated when it is first asked.
+/// The quantities watched in the newest rows of a run: energy, momentum and charge, constraints, Noether's sums, and
+/// those of the method. Arguments are kept by reference; work space is allocated when it is first asked.
 class RowMonitors {
  public:
   RowMonitors(const Problem&, const FieldTheory&, const std::vector<LinearSymmetry>&, const Evolution&);
@@ -28,7 +28,7 @@ class RowMonitors {
   /// Noether's conserved quantities; none for stencils of more than two rows, which would need rows that are not held.
   const std::vector<std::string>& conserved_names() const { return conserved_names_; }
   std::size_t bytes() const;
-  /// What bytes() will be once it was asked.
+  /// The value that bytes() will have once monitors were asked.
   std::size_t bytes_of_run() const;
 
  private:

@@ -11,7 +11,7 @@ namespace delf {
 
 class FieldTheory;
 
-/// What rows must be before a scheme starts from them. All that is given is kept by reference; rows are [i·C + c].
+/// The conditions on rows that a scheme starts from. Arguments are kept by reference; rows are [i·C + c].
 class StartingRows {
  public:
   StartingRows(const Problem& problem, const FieldTheory& theory, const LatticeSystem& system)

@@ -190,7 +190,7 @@ std::string own_energies() {
   return names.empty() ? "" : fmt::format(" Methods with one of their own: {}.", fmt::join(names, ", "));
 }
 
-// What energy_own is.
+// The definition of energy_own.
 std::string own_energies_of_rows() {
   std::string text =
       "\nThe rows of some schemes have an energy of their own: energy_own of series.csv, and in `delf verify`.";

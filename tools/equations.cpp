@@ -63,7 +63,7 @@ std::string equations_in_words(const Problem& p, const Simulation& simulation) {
   const StencilTable* table = table_of(p, simulation);
   std::string text;
   if (table && p.stencil == stencil_as_text) {
-    // As it is given: the family of a density of t and x may have cut its points.
+    // The stencil as it is given: the family of a density of t and x may have cut its points.
     constexpr auto sites = "stencil.sites", point = "stencil.point";
     const StencilTable given =
         stencil_of(p.parameters.get<std::string>(sites), p.parameters.get<std::string>(point), sites, point);

@@ -34,7 +34,7 @@ class FieldEquations::Form {
 
 namespace {
 
-/// By the rules of differentiation, of a density as text.
+/// The equations of a density as text, by the rules of differentiation.
 class OfText final : public FieldEquations::Form {
  public:
   explicit OfText(const SymbolicDensity& density)
@@ -87,7 +87,7 @@ class OfText final : public FieldEquations::Form {
   std::vector<Evaluation> G_;  ///< G, ∂G/∂φ_a; empty: no constraint
 };
 
-/// By the Hessian of a compiled density of first order.
+/// The equations of a compiled density of first order, by its Hessian.
 class OfHessian final : public FieldEquations::Form {
  public:
   explicit OfHessian(const BatchDensity& density) : Form(2), density_(density) {}

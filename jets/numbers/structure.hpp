@@ -132,20 +132,20 @@ struct Abstract {
   }
 };
 
-/// Which components of the jet a density is nonlinear in.
+/// The components of the jet in which a density is nonlinear.
 enum class Nonlinearity {
   none,    ///< the gradient is linear in the jet with constant coefficients: bands say everything
   values,  ///< ∂ℓ/∂φ is anything, φ_t and φ_x enter linearly with constant coefficients
   all      ///< anything
 };
 
-/// What is proved of a density. Variables in the order of slots, φ¹ … φᵈ, φ_t¹ …, φ_x¹ …, then t, x.
+/// The structure proved of a density. Variables in the order of slots, φ¹ … φᵈ, φ_t¹ …, φ_x¹ …, then t, x.
 struct DensityStructure {
   Nonlinearity nonlinearity = Nonlinearity::all;
   Abstract of_density;  ///< the density's own abstract value
 };
 
-/// Of a density of m variables, d of them values, from its abstract value.
+/// The structure of a density of m variables, d of them values, from its abstract value.
 inline DensityStructure structure_of(const Abstract& density, int m, int d) {
   DensityStructure s;
   s.of_density = density;

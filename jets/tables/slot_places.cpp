@@ -20,7 +20,7 @@ double monomial(double x, int n) {
   return value;
 }
 
-/// What a density couples, slot by slot.
+/// The couplings of a density, slot by slot.
 struct Coupling {
   const BatchDensity& density;
 

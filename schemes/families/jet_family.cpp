@@ -166,7 +166,7 @@ void JetFamily::find_columns() {
     const Site& v = pattern_.vertices[at(l)];
     return v.space + table_.nodes[at(v.node)].space;
   };
-  // Where there are tests, the residuals of the rows alone add up to momenta.
+  // Tables with tests have residuals whose rows alone add up to momenta.
   const auto adds_up = [&](int l) {
     return table_.tests.empty() || table_.nodes[at(pattern_.vertices[at(l)].node)].time == 0;
   };
@@ -403,7 +403,7 @@ bool JetFamily::is_constant(int i, int m) const {
   return true;
 }
 
-/// Where ∂ℓ/∂φ varies it is a source term as a whole, the constant entries of its Hessian with it.
+/// A varying ∂ℓ/∂φ is a source term as a whole, the constant entries of its Hessian with it.
 std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
   const int n = size(), m = density_->variables();
   const auto scales = slot_scales(cell);

@@ -19,13 +19,13 @@ namespace delf {
 /// stencils are listed, w_q and M_q have numbers of each stencil's own as factors.
 class JetFamily final : public StencilFamily {
  public:
-  /// Where ∂ℓ/∂φ is linear it is part of the constant part, or a source term if `values_are_sources`.
+  /// A linear ∂ℓ/∂φ is part of the constant part, or a source term if `values_are_sources`.
   JetFamily(StencilTable, std::shared_ptr<const BatchDensity>, bool values_are_sources = false, OwnWeights = {});
 
   const StencilTable& table() const { return table_; }
   const BatchDensity& density() const { return *density_; }
   const std::shared_ptr<const BatchDensity>& shared_density() const { return density_; }
-  /// Of listed stencils; else without any.
+  /// The weights of listed stencils; empty for others.
   const OwnWeights& own_weights() const { return own_; }
 
   using StencilFamily::jacobian;
@@ -49,7 +49,7 @@ class JetFamily final : public StencilFamily {
                 std::span<double> p) const override;
 
  private:
-  /// What the value at a vertex weighs in a slot of a point's jet, with h = k = 1.
+  /// The weight of a vertex value in a slot of a point's jet, with h = k = 1.
   struct Weight {
     int slot;
     double weight;
@@ -62,8 +62,8 @@ class JetFamily final : public StencilFamily {
   };
   struct Jets;
 
-  /// Of one stencil, its points as lanes of packs, so many at once: what the value at a vertex weighs in a slot of their
-  /// jets, and what ∂ℓ/∂j there weighs in its residual. Lanes left over repeat the last point, with nothing in a residual.
+  /// The weights of one stencil, its points as lanes of packs, so many at once: those of a vertex value in a slot of
+  /// their jets, and of ∂ℓ/∂j there in its residual. Lanes left over repeat the last point, with nothing in a residual.
   struct Lanes {
     struct Entry {
       int slot, vertex;

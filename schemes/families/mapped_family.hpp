@@ -39,7 +39,7 @@ class MappedFamily : public StencilFamily {
     int value;
     double weight;
   };
-  /// How wide the map's cell is: a sum of own values. None: there is no cell.
+  /// The width of the map's cell as a sum of own values. Empty: there is no cell.
   const std::vector<Entry>& cell() const { return cell_; }
   double cell_time() const { return cell_time_; }
 
@@ -51,7 +51,7 @@ class MappedFamily : public StencilFamily {
                 double* J) const override;
   bool lagrangian(const StencilBatch&, double* L) const override;
   std::optional<ConstantPart> constant_part(const Cell&) const override;
-  /// That of the family: for maps whose values at row 0 are the family's, in the same order.
+  /// The momentum of the family, for maps whose values at row 0 are the family's, in the same order.
   bool momentum(const Cell&, std::span<const double> phi, std::span<const double> phi_t,
                 std::span<double> p) const override;
 
@@ -67,7 +67,7 @@ class MappedFamily : public StencilFamily {
   std::vector<std::vector<Entry>> map_;            ///< rows of M, by own values
   /// Columns of M and rows of N, by the family's values; N has rows of sums() too.
   std::vector<std::vector<Entry>> reads_, tests_;
-  /// By the family's values: a sum of increments in time, whose weights add up to zero.
+  /// True for values of the family that are sums of increments in time, whose weights add up to zero.
   std::vector<char> is_rate_;
   std::vector<Entry> cell_;
   double cell_time_ = 0;

@@ -31,7 +31,7 @@ class MeshConstraint final : public MappedFamily {
     return facts_.monitor.change(left, centre, right);
   }
 
-  /// How far the fields of a row, y[i·stride + a], are from having no mesh, as a part of the length: cells with
+  /// The distance of the fields of a row, y[i·stride + a], from having no mesh, as a part of the length: cells with
   /// α² Δφ² + δ² = c, c ≥ α² max Δφ², fill the length if and only if
   ///
   ///     m = X_max − α Σ_e √(max Δφ² − Δφ_e²) > 0

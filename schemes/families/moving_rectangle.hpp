@@ -12,7 +12,7 @@ namespace delf {
 /// An action on sites that move, in closed form: of a whole step by the trapezoidal rule, and of one point of any element.
 class MovingAction : public StencilFamily {
  public:
-  /// Of values (φ, X) at both ends of a cell, then of h (φ_t, X_t).
+  /// The action at one point of an element, with its weight: it reads (φ, X) at both ends of a cell, then h (φ_t, X_t).
   virtual std::shared_ptr<const StencilFamily> stage(double weight) const = 0;
 
  protected:

@@ -30,7 +30,7 @@ bool is_level(const BatchDensity& density, JetSlot slot) {
     for (int l = 0; l < lanes; ++l) {
       double size = 0;
       for (int a = 0; a < m; ++a) size = std::max(size, std::abs(g[a][l]));
-      // Where the density is not defined, the comparison is false.
+      // The comparison is false for densities that are not defined here.
       for (int a = first; a < first + d; ++a)
         if (std::abs(g[a][l]) > 1e-13 * size) return false;
     }

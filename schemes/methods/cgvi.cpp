@@ -165,7 +165,7 @@ std::vector<Parameter> keys() {
   return list;
 }
 
-/// Of polynomials of degree S − 1 the order is 2(S − 1), if the rule of R points has it: 2R of Gauss's, 2R − 2 of Lobatto's.
+/// The order for polynomials of degree S − 1: 2(S − 1), if the rule of R points has it, 2R of Gauss, 2R − 2 of Lobatto.
 std::optional<int> order(const Problem& p) {
   const TimeElementKeys keys(p.parameters);
   if (keys.basis_name == "b-spline" || (keys.quadrature != "gauss" && keys.quadrature != "lobatto"))

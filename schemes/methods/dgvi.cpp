@@ -92,7 +92,7 @@ std::vector<Component> traces(const char* name, int d) {
   return list;
 }
 
-/// What the vertex observes of its traces, and with what multipliers κ; both are in nobody else's way: κ = 0.
+/// The observation of a vertex from its traces, with multipliers κ that nothing else reads, so that κ = 0.
 ///
 ///     straight lines   κ·(½(q⁻ + q⁺) − q)
 ///     one-sided        κ·(θ(q) − θ(q⁻)) and κ·(x⁺ − x): the phase space is (x⁺, θ_x(q⁻))
@@ -123,7 +123,7 @@ void observe(SchemeParts& parts, const FieldTheory& theory, const Keys& keys, co
   std::ranges::move(kappa, std::back_inserter(parts.components));
 }
 
-/// Where nodes are sites, and no walls cut their masses in half.
+/// Refuses a space whose nodes are no sites, and walls that cut masses in half.
 void require_own_mass(const Problem& p) {
   const std::string space = p.parameters.maybe<std::string>("scheme.space").value_or("lumped");
   if (space == "linear" || space == "spectral")

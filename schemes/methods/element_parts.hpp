@@ -20,8 +20,8 @@ struct Traces {
 /// node · d + a. With traces, λ_n and μ_{n+1} of every node in space follow.
 SchemeParts element_parts(const FieldTheory&, const StencilTable& element, const std::optional<Traces>& traces = {});
 
-/// The same on a mesh, where the space is one: the action of a time table on its sites and cells in place of the parts' first
-/// family, which is of this table on a point.
+/// Takes elements to a mesh, where the space is one: the action of a time table on its sites and cells replaces the
+/// parts' first family, which is of this table on a point.
 void take_to_mesh(SchemeParts&, const FieldTheory&, const Problem&, const StencilTable& time,
                   bool values_are_sources = false);
 

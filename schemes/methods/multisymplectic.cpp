@@ -28,7 +28,7 @@
 namespace delf {
 namespace {
 
-/// What a wall does to a scheme that its stencils cannot see.
+/// Refuses walls whose effect on a scheme its stencils cannot see.
 void check_walls(const Problem& p, const StencilFamily& family) {
   const auto [least, most] = std::ranges::minmax(family.pattern().vertices, {}, &Site::space);
   const int width = most.space - least.space;
@@ -83,8 +83,8 @@ WallSlopes slopes_of(const FieldTheory& theory, const Problem& p) {
 constexpr auto sites_key = "stencil.sites", point_key = "stencil.point", lagrangian_key = "theory.lagrangian",
                first_row_key = "lattice.first_row";
 
-/// Where row 0 is an odd row of a brick wall, a brick lies one site further on. Its vertices move to the left of the anchor,
-/// so that the first column still has one:
+/// The bricks where row 0 is an odd row of a brick wall: they lie one site further on, and their vertices move to the
+/// left of the anchor, so that the first column still has one:
 ///
 ///     {0, 1, 2} where i + j is even   →   {−1, 0, 1} where i + j is even,  that is {0, 1, 2} where i + j is odd
 ///

@@ -18,11 +18,11 @@ struct OwnEnergy {
   std::function<double(const RowsInTime&)> value;
 };
 
-/// What a method offers: one constant of this type stands in the file of the method, or beside it.
+/// The offer of a method: one constant of this type is in the file of the method, or beside it.
 struct OwnEnergyEntry {
   std::string method;   ///< a MethodEntry's name
   std::string formula;  ///< for `delf help`
-  /// Of the problem's theory and equations; nothing where there is none.
+  /// The energy for the problem's theory and equations; nothing where there is none.
   std::optional<OwnEnergy> (*make)(const FieldTheory&, const LatticeSystem&, const Problem&);
 };
 /// A new one adds a line there.
@@ -34,8 +34,8 @@ std::optional<OwnEnergy> own_energy(const Simulation&, const Problem&);
 /// Its value at the newest row; not a number as long as there is one row only.
 double newest_own_energy(const OwnEnergy&, const Simulation&);
 
-/// Of linear variational equations over two rows, A y₊ + B y + Aᵀ y₋ + c = 0, the difference of the products of the
-/// equation with y₊ and with y₋ telescopes: I = y₊ᵀA y₊ + yᵀB y₊ + yᵀA y + cᵀ(y + y₊) is kept, and so is E = −I/2h. With
+/// The quadratic invariant of linear variational equations over two rows, A y₊ + B y + Aᵀ y₋ + c = 0: products of the
+/// equation with y₊ and y₋ telescope, so I = y₊ᵀA y₊ + yᵀB y₊ + yᵀA y + cᵀ(y + y₊) is kept, and so is E = −I/2h. With
 /// v = y₊ − y, m = ½(y + y₊) and Aₛ = ½(A + Aᵀ),
 ///
 ///     E = vᵀ (B − 2Aₛ)/(8h) v − mᵀ (B + 2Aₛ)/(2h) m − cᵀm/h

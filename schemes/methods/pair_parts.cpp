@@ -89,7 +89,7 @@ bool is_of_leapfrog(const Splitting& splitting) {
   return true;
 }
 
-/// What sub-steps do for any density that is nonlinear in φ alone, they do for others under conditions.
+/// Checks the conditions under which sub-steps serve densities that are nonlinear in more than φ.
 void check_density(const BatchDensity& density, const Problem& p, const Splitting& splitting) {
   if (density.nonlinearity() != Nonlinearity::all) return;
   if (!splitting.processor.empty())

@@ -194,7 +194,7 @@ const MeshConstraint* constraint_of(const RowsInTime& rows) {
 }
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// How far the newest row is from having no mesh.
+/// The distance of the newest row from having no mesh.
 double mesh_margin(const RowsInTime& rows) {
   const MeshConstraint* constraint = constraint_of(rows);
   if (!constraint) return unknown;

@@ -88,7 +88,7 @@ class CompositionStepper final : public StepMethod {
   void set(RowBuffer& rows, const std::vector<double>& section, double turn);
   void save();
   [[noreturn]] void fail();
-  /// Of the rows that the residual is worked out in: the others are those of a slab that is not held any more.
+  /// The number of rows to work out the residual in, which those of a slab no longer held do not give.
   int scratch_rows() const { return S_ < 3 ? 3 - S_ : 0; }
   void require(int slabs) const;
 
@@ -107,7 +107,7 @@ class CompositionStepper final : public StepMethod {
   double scale_ = 1;         ///< K: velocities are P/K
   RowLayout layout_, ends_;  ///< with the halo of differences, and of rows: one pack
   std::size_t size_;         ///< of a row of d components
-  // Of an interval: images of differences and of what lies at sites, the slots of fixed walls with their values, and natural walls.
+  // The images of differences and of values beyond an interval, slots of fixed walls with values, natural walls.
   std::vector<Image> differences_beyond_, values_beyond_;
   struct Held {
     int slot;

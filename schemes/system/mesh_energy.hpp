@@ -19,7 +19,7 @@ class MeshEnergy {
  public:
   MeshEnergy(std::shared_ptr<const BatchDensity>, const MeshSpace&);
 
-  /// Of fields and their rates, both [i·d + a], at a time.
+  /// The energy of fields and their rates, both [i·d + a], at a time.
   double operator()(std::span<const double> values, std::span<const double> rates, double t) const;
   /// The rates of momenta p_i = A_i ∂ℓ/∂φ_t, [i·d + a]; not numbers where there are none.
   std::vector<double> rates(std::span<const double> values, std::span<const double> momenta, double t) const;

@@ -12,7 +12,7 @@ class RowTimes {
   explicit RowTimes(double step) : step_(step) {}
 
   bool uniform() const { return rows_.empty(); }
-  /// From a row to the next one. Rows beyond those that are known continue the first step or the last.
+  /// The step from a row to the next one. Rows beyond those that are known continue the first step or the last.
   double step(std::int64_t row) const { return uniform() ? step_ : at(row).step; }
   double time(std::int64_t row) const { return uniform() ? static_cast<double>(row) * step_ : own_time(row); }
 

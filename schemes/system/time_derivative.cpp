@@ -22,7 +22,7 @@ void require_time_derivative(const LatticeSystem& system) {
   int d = 0;
   for (const auto& family : system.families()) {
     if (const BatchDensity* density = density_of(*family)) d = std::max(d, density->components());
-    // Of other families that reach from row to row nothing is proved: they may be the kinetic term.
+    // Other families that reach from row to row may be the kinetic term: nothing is proved of them.
     else if (!std::ranges::all_of(family->pattern().vertices, [](const Site& v) { return v.time == 0; })) return;
   }
   FieldMotion fields(d);

@@ -65,12 +65,12 @@ class ForceShare {
   std::optional<Judged> check() const;
   /// |c| of the signal that is followed best, beside how far c of a stretch falls below it; nothing of few rows.
   std::optional<Check> average() const;
-  /// Of the row that was looked at last: what the errors of the values make of |E|, relative as EquationCheck::newest.
+  /// The bound by errors of the values on |E| of the row checked last, relative as EquationCheck::newest.
   double relative_bound() const { return relative_bound_; }
   /// max|E| / max|F| over all rows and sites; and the site whose share is largest, if an error is more than rounding. Of
   /// fields that rest, nothing.
   std::vector<Measured> measured() const;
-  /// Of each site that has an equation, and of each field there.
+  /// The severities of all sites that have an equation, and of each field there.
   std::vector<SiteSeverity> sites() const;
   /// |E| of the row that was looked at last, [i·C + c]; not a number where there is no equation of a field.
   const std::vector<double>& errors() const { return errors_; }

@@ -15,8 +15,8 @@ struct CanonicalRow {
   std::vector<double> q, p;
 };
 
-/// What a program's one-step map (q, p) ↦ (q₊, p₊) keeps, whatever scheme it is of: dq ∧ dp on the differences V, W of
-/// nearby solutions, from row to row, and p·ξ(q) for symmetries.
+/// The quantities that a program's one-step map (q, p) ↦ (q₊, p₊) keeps, by any scheme: dq ∧ dp on the differences V, W
+/// of nearby solutions, from row to row, and p·ξ(q) for symmetries.
 ///
 ///     ω(V, W) = Σ (V_q W_p − W_q V_p),          J = Σ_i p_i · ξ(q_i)
 ///

@@ -53,7 +53,7 @@ Simulation build(const Scene& scene, int winding) {
 
 namespace {
 
-// What a run takes for each site, measured on one of the same cells and fewer sites; 0 where there is none.
+// The bytes that a run takes for each site, measured on one of the same cells and fewer sites; 0 where there is none.
 double bytes_of_a_site(const Scene& scene) {
   constexpr int few = 1 << 14;
   const Lattice& lattice = scene.problem.lattice;

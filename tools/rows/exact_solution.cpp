@@ -25,7 +25,7 @@ struct PointOfTime {
   double t, x;
 };
 
-/// The same ones each time.
+/// Random points of spacetime, the same ones each time.
 std::vector<PointOfTime> random_points(const Scene& scene) {
   constexpr int count = 256;
   std::mt19937_64 random(1);

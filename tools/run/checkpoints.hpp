@@ -11,7 +11,7 @@
 
 namespace delf {
 
-/// What a checkpoint says of its run before the state itself.
+/// The head of a checkpoint, which describes its run before the state itself.
 struct CheckpointHead {
   std::string version, instructions;
   std::string scene;  ///< the text of scene.ini

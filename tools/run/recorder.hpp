@@ -18,12 +18,12 @@
 
 namespace delf {
 
-/// Where the recorded rows of a run go: series.csv; fields.h5 and the film for figures, if the scene wants them. Or, in
+/// The writer of a run's recorded rows: series.csv; fields.h5 and the film for figures, if the scene wants them. Or, in
 /// memory, to a function.
 class Recorder final : public RunFiles {
  public:
-  /// With `kept`, the files of an earlier run are gone on with from there. Throws BadScene, and changes no file, where they
-  /// do not hold that much, or other values.
+  /// Opens the files; those of an earlier run, `kept`, are continued from there. Throws BadScene, and changes no file,
+  /// where they do not hold that much, or other values.
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&, const std::optional<Written>& kept = {});
   using Seen = std::function<void(const Record&, const RecordedRow&, const RecordedDatasets&)>;
@@ -41,7 +41,7 @@ class Recorder final : public RunFiles {
 
   const Film* film() const noexcept { return film_ ? &*film_ : nullptr; }
   const Trace& energy_errors() const noexcept { return energy_errors_; }
-  /// Of the rows that were recorded or watched.
+  /// The largest error of the energy over the rows that were recorded or watched.
   double largest_energy_error() const noexcept { return largest_energy_error_; }
 
  private:

@@ -66,7 +66,7 @@ std::string drawn(const Scene& scene, const InitialRows& initial, const FieldThe
                       folder);
 }
 
-// Of the step, where the first rows tell.
+// The limit of the step, where the first rows tell.
 std::string limit_of(const Scene& scene, const Simulation& simulation) {
   const auto limit = find_method(scene.problem.method).limit;
   const Stepper& stepper = simulation.evolution().stepper();

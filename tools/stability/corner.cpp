@@ -48,7 +48,7 @@ Extent extent_of(const std::vector<double>& row, std::size_t components) {
   return e;
 }
 
-// What the residual may be: differences of rounded values are good to ε|φ|/|Δφ|, and numbers below 1e-308 are 0.
+// The residual that is allowed: differences of rounded values are good to ε|φ|/|Δφ|, and numbers below 1e-308 are 0.
 double solved_to(const Extent& e) {
   return solved + 64 * std::numeric_limits<double>::epsilon() * e.largest / e.difference +
          1e3 * std::numeric_limits<double>::min() / e.difference;

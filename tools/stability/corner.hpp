@@ -60,8 +60,8 @@ std::vector<Setting> keys_of(const Corner&);
 /// Steps it here, for at most `budget` seconds and a step, and catches everything that is thrown. `report` is called with
 /// what there is so far, before the first step and some fifty times on the way.
 CornerResult run_corner(const Corner&, double budget, const std::function<void(const CornerResult&)>& report = {});
-/// The same in a process of its own, so that a crash or a hang is a verdict too. A step that outlasts the budget by
-/// another budget and a second is ended, and the result is what was reported before it.
+/// Runs the case in a process of its own, so that a crash or a hang is a verdict too. A step that outlasts the budget
+/// by another budget and a second is ended, and the result is what was reported before it.
 CornerResult run_corner_apart(const Corner&, double budget);
 
 }  // namespace delf

@@ -12,7 +12,7 @@
 
 namespace delf {
 
-/// What is asked of the schemes of mechanics.
+/// The question asked of the schemes of mechanics.
 struct PointRequest {
   std::vector<NamedScheme> schemes;
   double most = 8;           ///< ωh is looked at up to this

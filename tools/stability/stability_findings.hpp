@@ -64,7 +64,7 @@ struct StabilityFindings {
 
 /// stability.json; what is not a finite number is null.
 std::string stability_json(const Scene&, const StabilityFindings&);
-/// The same for people: tables within 120 columns.
+/// The findings for people: tables within 120 columns.
 std::string stability_report(const Scene&, const StabilityFindings&);
 
 }  // namespace delf

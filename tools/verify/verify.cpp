@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What tables there are of rows and sites; those of an earlier time go.
+// Writes the tables of rows and sites that there are; those of an earlier time go.
 void write_tables(const fs::path& folder, const Verdict& verdict) {
   const auto write = [&](const char* name, const char* head, const std::string& lines) {
     std::error_code none;

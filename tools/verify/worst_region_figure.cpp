@@ -124,7 +124,7 @@ std::string plots(const std::vector<DrawnSite>& sites, const Frame& frame, const
   return text + "\n";
 }
 
-// What a ring or a bar and a disc stand for, above the colours.
+// The legend above the colours: the meaning of a ring, or of a bar and a disc.
 std::string legend(bool dense) {
   const auto circle = [](int number, double y, double radius, const char* colour) {
     return fmt::format("set object {} circle at screen 0.82,{} size screen {} front fs solid noborder fc rgb '{}'\n",

@@ -37,9 +37,9 @@ class Racer {
   virtual void advance(std::int64_t steps, const RunLimit&) = 0;
   /// The fields of the newest row: out[i·d + a].
   virtual void copy(std::span<double> out) const = 0;
-  /// Where its sites are in the newest row; empty: on the lattice.
+  /// The places of its sites in the newest row; empty: on the lattice.
   virtual std::vector<double> positions() const { return {}; }
-  /// Of the newest row; not a number if there is none.
+  /// The energy of the newest row; not a number if there is none.
   virtual double energy() const = 0;
   /// Evaluations of the force at each site in the last step; not a number if that is not known.
   virtual double forces() const = 0;
@@ -58,8 +58,8 @@ struct Contestant {
   std::function<std::unique_ptr<Racer>(const Resolution&)> start;
 };
 
-/// Those that the request names, the engine's first: every scheme of the registry, and the peers that the scene has an
-/// equation for. They refer to the scene. Throws BadScene for names that there are none of.
+/// The entries that the request names, the engine's first: every scheme of the registry, and the peers that the scene
+/// has an equation for. They refer to the scene. Throws BadScene for names that there are none of.
 std::vector<Contestant> contestants(const Scene&, const WorkPrecisionRequest&);
 
 /// All schemes of the engine, the scene's own among them, under a name of its own if it is none of the named ones.

@@ -141,7 +141,7 @@ void ResolutionSearch::run_cheapest(Clock::time_point until, const std::function
   }
 }
 
-// What fails at a coarse resolution may run at a finer one: a smaller step, or more sites up to those of the scene.
+// Tries a finer resolution after a failure at a coarse one: a smaller step, or more sites up to those of the scene.
 void ResolutionSearch::retry(const Next& next, const Resolution& r, double cost) {
   if (next.sites) return;
   cost = std::max(1.5 * next.cost, refined(1) * cost);

@@ -38,9 +38,9 @@ class ResolutionSearch {
   /// Until there is nothing left to run, `until` has come, or Ctrl-C. `at` is called after each run.
   void run(Clock::time_point until, const std::function<void()>& at);
 
-  /// Those to be timed: all of a given ladder; of a chosen one, those that no other of the scheme clearly beats.
+  /// The runs to be timed: all of a given ladder; of a chosen one, those that no other of the scheme clearly beats.
   std::vector<TriedRun> worth_timing() const;
-  /// How many resolutions were run.
+  /// The number of resolutions that were run.
   std::size_t tried() const { return tried_.size(); }
   /// Schemes without any run worth timing, and why.
   std::vector<WorkPrecisionOutcome::LeftOut> left_out() const;

@@ -48,7 +48,7 @@ bool is_symmetric(const StencilTable& table) {
   });
 }
 
-/// Whether the nodes of a cell that constraints hold, the lower end counted for both, lie at τ and 1 − τ.
+/// True if the nodes of a cell that constraints hold, the lower end counted for both, lie at τ and 1 − τ.
 bool are_symmetric(const std::vector<double>& times) {
   return std::ranges::all_of(times, [&](double time) {
     return time == 0 || std::ranges::any_of(times, [&](double other) { return std::abs(time + other - 1) < rounding; });

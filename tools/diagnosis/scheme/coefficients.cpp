@@ -53,7 +53,7 @@ std::string percent(double share) {
   return share < 1e-5 ? fmt::format("{:.1e}", share) : fmt::format("{:.2g} %", 100 * share);
 }
 
-/// What coefficients other than 1, 1, 0 mean; empty if they are these.
+/// The meaning of coefficients other than 1, 1, 0; empty if they are these.
 std::string meaning(const Fit& fit, const Problem& p) {
   // Differences below what remains are not told.
   const double blur = std::max(fit.to_rounding ? 1e-9 : 2 * fit.remains, 1e-9);
