@@ -61,7 +61,7 @@ inline constexpr double largest_reduced = 3e6;
 // a fused multiply–add, or is spoiled by one.
 inline constexpr double pi_1 = 0x1.921fb544p+1, pi_2 = 0x1.0b4611a626331p-33, over_pi = 0x1.45f306dc9c883p-2;
 
-/// Several packs keep the order of what works them out and what needs them (jets/near_packs.hpp); one has no other.
+/// A pack as it is: types of several packs may overload this to keep their operations in order.
 inline Pack side_by_side(Pack x) { return x; }
 /// Σ_j c_j s^j, the highest coefficient first.
 template <class P, class... Lower>
