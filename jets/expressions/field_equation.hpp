@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// The field equations of a density at one point of a given field, to be told of a field whether it solves them:
+/// The field equations of a density at one point of a given field, to check that it solves them:
 ///
 ///     E_a = D_t ∂ℓ/∂φ_t + D_x ∂ℓ/∂φ_x − ∂ℓ/∂φ − D_t² ∂ℓ/∂φ_tt − …
 ///

@@ -46,8 +46,8 @@ std::vector<StencilTable> at_both_walls(const StencilTable& table, const Lattice
 
 namespace {
 
-/// ℓ = ½ Σ M_ab(x) φ_a,t φ_b,t + U(t, x, φ, φ_x): a sub-step is a kick, of U where the row is, and a drift. M is looked at where
-/// it is not proved constant: at two jets in every place.
+/// ℓ = ½ Σ M_ab(x) φ_a,t φ_b,t + U(t, x, φ, φ_x): a sub-step is a kick, of U where the row is, and a drift. M is
+/// checked where it is not proved constant: at two jets in every place.
 bool is_quadratic_in_rates(const BatchDensity& density) {
   const int d = density.components(), m = density.variables(), t = m;
   bool proved = true;

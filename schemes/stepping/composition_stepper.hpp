@@ -21,7 +21,7 @@ namespace delf {
 /// where all numbers come from the constant part of the element's Jacobian. A second family, the squares of the force at
 /// node 0, adds its gradient there. Where rows are those of a kernel, its processor gives the first one, and is undone on
 /// copies of rows that are observed. A step that no one looks at writes rows over
-/// each other; one that is looked at keeps those between its sub-steps.
+/// each other; one that is checked keeps those between its sub-steps.
 ///
 /// On an interval the families with the placement of a mirror say that the field goes on beyond the walls as its mirror image:
 /// steps take the equations of the first family everywhere, and halos are mirror images.

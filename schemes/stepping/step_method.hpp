@@ -53,7 +53,7 @@ struct StepState {
   std::int64_t newest = -1;  ///< row of the fields
   int iterations = 0;        ///< of the last step: evaluations of the nonlinear part; 0 if it was solved at once
   Continued continued = Continued::no;  ///< of the last step
-  int held = 2;  ///< newest rows that are there at least: a step that is not looked at leaves fewer
+  int held = 2;  ///< newest rows that are there at least: a step that is not checked leaves fewer
 };
 
 /// The properties of a stepper.

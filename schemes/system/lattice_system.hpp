@@ -128,7 +128,7 @@ class LatticeSystem {
   /// The pattern that the plan is made of.
   SystemPattern pattern() const;
 
-  /// Rows of all components, to be looked at: `turn` is φ(x + L) − φ(x).
+  /// Rows of all components, to be checked: `turn` is φ(x + L) − φ(x).
   Window window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const;
 
   /// True if a family has a stencil at (row, site), whose row matters by its parity.

@@ -6,7 +6,7 @@
 
 namespace delf {
 
-/// When the rows of a section are: t_n = n h, or, where steps have lengths of their own, as they were told.
+/// When the rows of a section are: t_n = n h, or, where steps have lengths of their own, as they were given.
 class RowTimes {
  public:
   explicit RowTimes(double step) : step_(step) {}

@@ -28,7 +28,7 @@ class PhaseSpaceCheck {
   /// One row after the other, with the same row of pairs of nearby solutions: (A, B) at one size, further pairs at others.
   void at(std::int64_t row, const CanonicalRow&, const std::vector<CanonicalRow>& nearby);
   std::vector<Check> checks() const;
-  /// ω could not be told: the differences are too large, or rounding.
+  /// ω could not be found: the differences are too large, or rounding.
   bool too_far() const { return tried_ && !symplectic_; }
 
  private:

@@ -48,7 +48,7 @@ int Tangent::least_rows(const LatticeSystem& system, const SolvePlan& plan) {
 }
 
 Range Tangent::solved_rows(const LatticeSystem& system, const SolvePlan& plan, int rows) {
-  // Slabs past … rows − 1 − above are solved, and an equation at row j is in one of slabs j − lead … j + lag.
+  // Slabs past … rows − 1 − above are solved, and an equation at row j is in one of slabs j − lead … j + delay.
   const SlabExtent extent = slab_extent(system, plan);
   return {extent.past() + extent.equation_lead, rows - 1 - extent.above - extent.equation_lag};
 }

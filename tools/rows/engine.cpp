@@ -63,7 +63,7 @@ double bytes_of_a_site(const Scene& scene) {
                                   : Lattice::interval(few, (few - 1) * lattice.space_step());
   try {
     const Simulation simulation(p);
-    // the rows that a start is made of, twice, and those that are looked at
+    // the rows that a start is made of, twice, and those that are checked
     const double rows = 2.0 * simulation.starting_rows() + 2;
     return static_cast<double>(simulation.bytes_of_run({})) / few +
            rows * static_cast<double>(simulation.components().size() * sizeof(double));

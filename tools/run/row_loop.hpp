@@ -46,7 +46,7 @@ class RowLoop {
   virtual double time(std::int64_t row) const = 0;
   /// The length of the newest step, where steps have lengths of their own.
   virtual std::optional<double> own_length() const = 0;
-  /// A row that is not looked at is neither recorded nor the last.
+  /// A row that is not checked is neither recorded nor the last.
   virtual void step(bool looked_at) = 0;
   virtual bool looks_at_all() const { return false; }
   /// The iterations of the newest step; 0 if it is one solve.

@@ -126,7 +126,7 @@ struct Begun {
         outcome.error_estimate = estimate_error(scene, outcome, stepping->last_row());
         if (outcome.error_estimate->interrupted) outcome.status = "interrupted";  // what was asked for is not all there
       });
-    outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
+    outcome.bytes = simulation.bytes();  // only now is everything there that rows are checked with
     attempts.attempt([&] { recorder.close(); });
   }
 };

@@ -61,7 +61,7 @@ class Settings {
 };
 
 /// Reads the scene `file` by Boost.Program_options. Throws BadScene for whatever is no scene, for unknown keys and for
-/// keys given twice; values are not looked at.
+/// keys given twice; values are not checked.
 Settings read_settings(const std::filesystem::path& file, const std::vector<Setting>& on_command_line);
 
 /// Throws BadScene for an unknown key on the command line, one given twice, or a value that no scene could hold.

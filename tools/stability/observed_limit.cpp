@@ -178,13 +178,13 @@ bool unresolved_between(Runs& runs, const Limit& limit, const LimitRequest& requ
 }
 
 void compare_limits(Runs& runs, Limit& limit, const LimitRequest& request) {
-  const auto told = [](double courant) { return std::isfinite(courant) ? fmt::format("{:.6g}", courant) : "none"; };
+  const auto shown = [](double courant) { return std::isfinite(courant) ? fmt::format("{:.6g}", courant) : "none"; };
   const double observed = std::min(limit.observed, request.most), theory = std::min(limit.theory, request.most);
   if (std::abs(observed - theory) <= request.agreement * std::max(observed, theory)) return;
   limit.limit_unresolved = unresolved_between(runs, limit, request);
   if (!limit.limit_unresolved)
     limit.disagreements.push_back(fmt::format("{}, {}: theory's limit is {}, and runs find {}", limit.scheme,
-                                              limit.waves, told(limit.theory), told(limit.observed)));
+                                              limit.waves, shown(limit.theory), shown(limit.observed)));
 }
 
 void compare(Runs& runs, Limit& limit, const Place& place) {

@@ -165,8 +165,8 @@ bool stays(const Mechanics& scheme, double z, int steps) {
   }
 }
 
-/// Finds the limit by running, near the one of theory, if it is there. Where stability returns soon, runs are looked at in
-/// the middle of the interval between, and are as long as its growth asks for, within reason.
+/// Finds the limit by running, near the one of theory, if it is there. Where stability returns soon, runs are checked
+/// in the middle of the interval between, and are as long as its growth asks for, within reason.
 void observe_limit(const Mechanics& scheme, double again, const PointRequest& request, PointFinding& f) {
   constexpr double folds = 20, longest = 100;
   double in = f.theory * (1 - request.agreement);

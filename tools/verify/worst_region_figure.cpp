@@ -30,7 +30,7 @@ struct Frame {
   double left = 0;                       // beside the numbers of the rows
   double width = 0, height = 0;          // of a mark, in units of x and t
   double dot_width = 0, dot_height = 0;  // of the largest round mark, in the same units
-  bool dense = false;                    // too small for a ring to be told from a disc: boundary sites are bars
+  bool dense = false;  // too small for a ring to be distinguished from a disc: boundary sites are bars
 
   explicit Frame(const std::vector<DrawnSite>& sites) {
     int nodes = 1;

@@ -17,7 +17,7 @@ struct WorkPrecisionRun {
 
   std::string scheme;
   bool peer = false;  ///< another program
-  bool processed = false, tuned = false, own = false;  ///< as of the contestant
+  bool processed = false, tuned = false, own = false;  ///< as of the entry
   int sites = 0;
   double space_step = 1, time_step = 0;
   std::int64_t steps = 0;
