@@ -205,7 +205,7 @@ TEST_CASE("B-splines of degree p are of order 2p with Gauss's rule on every span
   CHECK(refusal(p).starts_with("scheme.degree"));
 }
 
-TEST_CASE("elements step a rotor on S1 as on the line, and refuse increments that cannot be distinguished") {
+TEST_CASE("elements step a rotor on S1 as on the line, and refuse increments that cannot be told apart") {
   for (const char* tableau : {"midpoint", "gauss3", "lobatto3"}) {
     Problem line = problem_of("pendulum", 0.25, tableau), circle = line;
     circle.circle_valued = true;

@@ -171,7 +171,7 @@ TEST_CASE("a long subtitle is smaller, or on several lines, and never cut") {
   }
 }
 
-TEST_CASE("curves that cannot be distinguished are said to, and a spike does not flatten the axis") {
+TEST_CASE("curves that cannot be told apart are said to, and a spike does not flatten the axis") {
   std::vector<std::vector<double>> curves(3, std::vector<double>(1000));
   for (std::size_t i = 0; i < 1000; ++i) {
     const double x = 0.01 * static_cast<double>(i);
