@@ -37,7 +37,7 @@ Abstract slope_of(const BatchDensity& density, int a) {
 }  // namespace
 
 ForceSquared::ForceSquared(std::shared_ptr<const BatchDensity> of, double scale)
-    : of_(std::move(of)), derivatives_(dynamic_cast<const ValueDerivatives*>(of_.get())), scale_(scale) {
+    : of_(std::move(of)), derivatives_(of_->value_derivatives()), scale_(scale) {
   const int d = of_->components(), m = of_->variables();
   const auto refuse = [](const char* why) {
     throw BadInput("theory.name", std::string("theory.name: a force gradient takes densities that are nonlinear in phi "

@@ -4,10 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "schemes/methods/method_registry.hpp"
-#include "schemes/simulation.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/solvers/row_layout.hpp"
-#include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/assembled_row.hpp"
 
@@ -43,6 +41,7 @@ class RowMonitors {
 
   const Problem& problem_;
   const MethodEntry& method_;
+  EnergyOfRows energy_;  ///< the method's; none: that of the symmetric rectangle
   const FieldTheory& theory_;
   const std::vector<LinearSymmetry>& symmetries_;
   const Evolution& evolution_;

@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "schemes/methods/method_registry.hpp"
-#include "schemes/methods/own_energy.hpp"
-#include "schemes/stepping/energy.hpp"
+#include "schemes/methods/energies.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/convergence/convergence.hpp"
 #include "tools/files/plain_rows.hpp"
@@ -198,8 +197,8 @@ std::string own_energies_of_rows() {
     const char* begin = "\n  ";
     for (const std::string& line : wrapped(of + ": " + formula, 112)) text += begin + line, begin = "\n    ";
   };
-  add("linear theories on two rows", quadratic_invariant_formula);
-  for (const OwnEnergyEntry* entry : own_energy_entries()) add(entry->method, entry->formula);
+  for (const EnergyEntry* entry : energy_entries())
+    if (!entry->rows.empty()) add(entry->rows, entry->formula);
   return text;
 }
 

@@ -27,6 +27,7 @@ struct BesidesDensity {
 /// A density that knows the text it is made of.
 class SymbolicDensity : public BatchDensity {
  public:
+  const SymbolicDensity* formula() const override { return this; }
   const std::string& text() const { return text_; }
   const ExpressionNames& names() const { return names_; }
   /// The innermost part of the density, or of its gradient, that has no value at a jet, the variables in the order of a

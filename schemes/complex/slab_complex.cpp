@@ -6,31 +6,27 @@
 #include <memory>
 #include <span>
 
+#include "jets/tables/density_on_table.hpp"
 #include "lattice/error.hpp"
 #include "lattice/space/mesh_space.hpp"
-#include "schemes/families/jet_family.hpp"
 
 namespace delf {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-std::vector<std::shared_ptr<const JetFamily>> densities_of(const LatticeSystem& system) {
-  std::vector<std::shared_ptr<const JetFamily>> families;
-  for (const auto& family : system.families()) {
-    families.push_back(std::dynamic_pointer_cast<const JetFamily>(family));
-    if (!families.back() || !family->is_variational() || !family->listed())
+void require_densities(const LatticeSystem& system) {
+  for (const auto& family : system.families())
+    if (!family->made_of() || !family->is_variational() || !family->listed())
       throw BadInput("scheme.method",
                      "scheme.method: on a mesh delf verify checks methods whose action is a density on tables: "
                      "composition, or cgvi with shared end nodes and no constraint; use one of these");
-  }
-  return families;
 }
 
 /// The points of a table with the numbers of one stencil in their weights.
-std::vector<TablePoint> points_of(const JetFamily& family, int stencil) {
+std::vector<TablePoint> points_of(const StencilFamily& family, int stencil) {
   const auto own = [&](int number) { return family.own_number(number, stencil); };
-  std::vector<TablePoint> points = family.table().points;
+  std::vector<TablePoint> points = family.made_of()->table.points;
   for (TablePoint& point : points) {
     point.weight *= own(point.own.weight);
     for (std::size_t slot = 0; slot < point.slots.size(); ++slot)
@@ -43,9 +39,10 @@ std::vector<TablePoint> points_of(const JetFamily& family, int stencil) {
 }  // namespace
 
 SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
-  const auto families = densities_of(system);
+  require_densities(system);
+  const auto families = system.families();
   const Lattice& lattice = system.lattice();
-  const int d = families.front()->density().components(), nodes = system.components() / d, N = lattice.sites();
+  const int d = families.front()->made_of()->density->components(), nodes = system.components() / d, N = lattice.sites();
   SlabComplex made{ComplexSystem(d), {}};
   const auto count = static_cast<int>(rows.rows.size());
   std::vector<int> sites(at(count * N * nodes), -1);
@@ -66,7 +63,7 @@ SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
   for (const auto& family : families) {
     const std::vector<Site>& pattern = family->pattern().vertices;
     const int placed = made.system.add_family(
-        PlacedFamily(family->shared_density(), static_cast<int>(pattern.size()), points_of(*family, 0)));
+        PlacedFamily(family->made_of()->density, static_cast<int>(pattern.size()), points_of(*family, 0)));
     for (int s = 0; s < family->listed()->size(); ++s) {
       const int table = made.system.add_table(placed, points_of(*family, s));
       for (int row = 0; row + 1 < count; ++row) {
@@ -74,7 +71,7 @@ SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
         for (const Site& v : pattern)
           vertices.push_back(number(row + v.time, family->listed()->site(s, v.space), v.node));
         const double h = system.times()->step(rows.first_row + row);
-        made.system.add_stencil(placed, vertices, table, family->table().measure * h, h);
+        made.system.add_stencil(placed, vertices, table, family->made_of()->table.measure * h, h);
       }
     }
   }

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "jets/simd/pack.hpp"
-#include "jets/tables/stencil_table.hpp"
+#include "jets/tables/density_on_table.hpp"
 #include "schemes/families/own_weights.hpp"
 #include "schemes/families/stencil_family.hpp"
 
@@ -22,11 +22,7 @@ class JetFamily final : public StencilFamily {
   /// Where ∂ℓ/∂φ is linear it is part of the constant part, or a source term if `values_are_sources`.
   JetFamily(StencilTable, std::shared_ptr<const BatchDensity>, bool values_are_sources = false, OwnWeights = {});
 
-  const StencilTable& table() const { return table_; }
-  const BatchDensity& density() const { return *density_; }
-  const std::shared_ptr<const BatchDensity>& shared_density() const { return density_; }
-  /// Of listed stencils; else without any.
-  const OwnWeights& own_weights() const { return own_; }
+  const DensityOnTable* made_of() const override { return &of_; }
 
   using StencilFamily::jacobian;
   using StencilFamily::lagrangian;
@@ -44,9 +40,6 @@ class JetFamily final : public StencilFamily {
   }
   void evaluate_sources(int group, const JetBatch& inputs, double* const* g) const override;
   void differentiate_sources(int group, const JetBatch& inputs, double* const* d) const override;
-
-  bool momentum(const Cell&, std::span<const double> phi, std::span<const double> phi_t,
-                std::span<double> p) const override;
 
  private:
   /// What the value at a vertex weighs in a slot of a point's jet, with h = k = 1.
@@ -78,9 +71,8 @@ class JetFamily final : public StencilFamily {
   bool residual_of_one(const StencilBatch&, std::span<const int> equations, double* r) const;
   bool adds_to(const Point&, std::span<const int> equations) const;  ///< to one of them
 
-  StencilTable table_;
-  std::shared_ptr<const BatchDensity> density_;
   OwnWeights own_;
+  DensityOnTable of_;
   int d_;
   bool has_sources_;
   bool own_values_ = false;  ///< stencils have weights of φ of their own, and no groups of the same inputs

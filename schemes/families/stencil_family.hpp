@@ -12,6 +12,10 @@
 
 namespace delf {
 
+struct DensityOnTable;
+struct MeshConstraint;
+struct MovingCell;
+
 /// Some stencils of one family, whose cells differ in x alone. Arrays are aligned to packs.
 struct StencilBatch {
   Cell cell;        ///< t, h and k of all of them
@@ -118,12 +122,12 @@ class StencilFamily {
   /// ∂g_c/∂m_j: d[c·inputs + j][i]
   virtual void differentiate_sources(int /*group*/, const JetBatch& /*inputs*/, double* const* /*d*/) const {}
 
-  /// Elements: the momenta ∫ ∂ℓ/∂φ_t of the values at the element's lowest row (site(i).time = 0), in their order, for
-  /// the fields φ and φ_t there: what a start by the discrete Legendre transform needs. False for other families.
-  virtual bool momentum(const Cell&, std::span<const double> /*phi*/, std::span<const double> /*phi_t*/,
-                        std::span<double> /*p*/) const {
-    return false;
-  }
+  /// The density and the table whose jets the residual is made of; null: it is made of something else.
+  virtual const DensityOnTable* made_of() const { return nullptr; }
+  /// The cell of a mesh that moves, at the stage of a step that the family stands for; null: it has none.
+  virtual const MovingCell* moving_cell() const { return nullptr; }
+  /// The constraint that holds the sites of a mesh at their rows; null: the family is something else.
+  virtual const MeshConstraint* mesh_constraint() const { return nullptr; }
 
   /// For one stencil: r, ∂r/∂y row by row, one of its rows, and L.
   virtual void residual(const Cell&, std::span<const double> y, std::span<double> r) const;

@@ -88,6 +88,7 @@ std::optional<int> order(const Problem& p) {
 
 }  // namespace
 
+extern const EnergyEntry composition_energy;
 extern const MethodEntry composition_method;
 const MethodEntry composition_method{
     .name = "composition",
@@ -107,6 +108,7 @@ const MethodEntry composition_method{
     .on_meshes = true,
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,
+    .own_energy = &composition_energy,
     .variants = variants,
     .order = order};
 

@@ -15,15 +15,13 @@
 #include "jets/tables/time_element.hpp"
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
-#include "schemes/families/jet_family.hpp"
 #include "schemes/families/trace_stencil.hpp"
 #include "schemes/methods/element_keys.hpp"
 #include "schemes/methods/element_parts.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/space_keys.hpp"
 #include "schemes/simulation.hpp"
-#include "schemes/stepping/energy.hpp"
-#include "schemes/system/stress_energy.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
@@ -172,36 +170,6 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   return parts;
 }
 
-/// H = −ℓ(q, 0, q_x) of the newest row's q, by the rule of the table of space, and the momentum −Σ q_x·θ(q).
-EnergyMomentum energy(const RowsInTime& rows) {
-  const auto& element = dynamic_cast<const JetFamily&>(*rows.system.families().front());
-  const BatchDensity& density = element.density();
-  const Lattice& lattice = rows.system.lattice();
-  const auto d = static_cast<std::size_t>(density.components());
-  const double k = lattice.space_step(), t = static_cast<double>(rows.newest) * rows.time_step;
-  EnergyMomentum sum;
-  std::vector<double> jet(static_cast<std::size_t>(density.variables()));
-  for (int cell = 0; cell < lattice.sites(); ++cell) {
-    if (!rows.system.has_stencil(element, rows.newest, cell)) continue;
-    for (const TablePoint& point : element.table().lower_side) {
-      std::ranges::fill(jet, 0.0);
-      // its vertices are the first of the element's
-      const auto add = [&](JetSlot slot, double per) {
-        for (const auto& [vertex, weight] : point[slot])
-          for (std::size_t a = 0; a < d; ++a)
-            jet[static_cast<std::size_t>(slot) * d + a] +=
-                per * weight *
-                rows.rows(rows.newest, cell + element.table().pattern.vertices[static_cast<std::size_t>(vertex)].space,
-                          static_cast<int>(a));
-      };
-      add(JetSlot::phi, 1), add(JetSlot::phi_x, 1 / k);
-      const StressEnergy at = stress_energy(density, jet.data(), t, lattice.position(cell) + point.space * k);
-      sum.energy += k * point.weight * at.energy, sum.momentum += k * point.weight * at.momentum;
-    }
-  }
-  return sum;
-}
-
 /// max |q⁺ − q⁻|, as twice the distance of q⁻ from the observed q: a nodal flux finds q⁺ with the next row.
 double jump(const RowsInTime& rows) {
   double most = 0;
@@ -261,7 +229,7 @@ const MethodEntry dgvi_method{
     .label = label,
     .starts = {StartRule::values},
     .start = StartRule::values,
-    .energy = energy,
+    .energy = &hamiltonian_of_row,
     .monitors = {{.name = "jump",
                   .value = jump,
                   .when_it_grows = "a mode of the doubled phase space takes over, and the energy does not show it; run "

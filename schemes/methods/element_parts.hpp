@@ -6,6 +6,7 @@
 
 #include "jets/tables/stencil_table.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/stepping/energy.hpp"
 
 namespace delf {
 
@@ -25,10 +26,10 @@ SchemeParts element_parts(const FieldTheory&, const StencilTable& element, const
 void take_to_mesh(SchemeParts&, const FieldTheory&, const Problem&, const StencilTable& time,
                   bool values_are_sources = false);
 
-/// The energy of such a scheme at the newest row: H of the momenta there and of the rows, summed over space. And the
-/// momentum −Σ φ_x ∂ℓ/∂φ_t, at the same points.
-EnergyMomentum element_energy(const RowsInTime&);
-/// The rates that have these momenta at the newest row, [i·C + c].
-std::vector<double> element_rates(const RowsInTime&, std::span<const double> momenta);
+/// The energy at the newest row, H of its fields and of the momenta of the step below, and the momentum −Σ φ_x ∂ℓ/∂φ_t, both
+/// by the quadrature of the lower side of the elements (LegendreTransform).
+EnergyMomentum row_energy(const RowsInTime&);
+/// The rates that have these momenta at the newest row, [i·C + c]; not numbers where there are none.
+std::vector<double> row_rates(const RowsInTime&, std::span<const double> momenta);
 
 }  // namespace delf

@@ -17,7 +17,7 @@
 namespace delf {
 
 class FieldTheory;
-struct EnergyMomentum;
+struct EnergyEntry;
 struct FieldPoint;
 struct NamedScheme;
 struct Problem;
@@ -94,8 +94,9 @@ struct MethodEntry {
   /// When the scene gives none; empty: exact where the second row is known, or else centred.
   std::optional<StartRule> start = {};
 
-  /// The energy and momentum of the newest two rows; null: the theory's, on the jets of the symmetric rectangle.
-  EnergyMomentum (*energy)(const RowsInTime&) = nullptr;
+  /// What a run records of the newest two rows; null: the theory's, on the jets of the symmetric rectangle.
+  const EnergyEntry* energy = nullptr;
+  const EnergyEntry* own_energy = nullptr;  ///< that its rows keep beside it
   std::vector<Monitor> monitors = {};
   /// What the newest row says of the longest stable step, in words; empty where nothing limits it.
   std::string (*limit)(const RowsInTime&) = nullptr;

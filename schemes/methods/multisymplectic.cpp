@@ -15,9 +15,9 @@
 #include "jets/expressions/field_equation.hpp"
 #include "jets/expressions/stencil_expression.hpp"
 #include "jets/expressions/stencil_text.hpp"
+#include "jets/tables/density_on_table.hpp"
 #include "jets/tables/named_tables.hpp"
 #include "lattice/error.hpp"
-#include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/wall_families.hpp"
 #include "schemes/methods/method_registry.hpp"
@@ -40,8 +40,8 @@ void check_walls(const Problem& p, const StencilFamily& family) {
                              : fmt::format("lattice.stencil = {}: is for mechanics and couples no neighbours; use "
                                            "rectangle-symmetric, or lattice.space = point",
                                            p.stencil));
-  const auto* jets = dynamic_cast<const JetFamily*>(&family);
-  if (p.lattice.space() == Space::interval && !(jets ? fits_between_walls(jets->table()) : width < 2))
+  const DensityOnTable* jets = family.made_of();
+  if (p.lattice.space() == Space::interval && !(jets ? fits_between_walls(jets->table) : width < 2))
     throw BadInput(
         "lattice.stencil",
         fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
@@ -89,9 +89,9 @@ constexpr auto sites_key = "stencil.sites", point_key = "stencil.point", lagrang
 ///     {0, 1, 2} where i + j is even   →   {−1, 0, 1} where i + j is even,  that is {0, 1, 2} where i + j is odd
 ///
 std::shared_ptr<const StencilFamily> from_odd_row(const FieldTheory& theory, const StencilFamily& even) {
-  const auto* family = dynamic_cast<const JetFamily*>(&even);
-  if (!family || even.pattern().placement != Placement::brick_wall) return nullptr;
-  StencilTable table = family->table();
+  const DensityOnTable* jets = even.made_of();
+  if (!jets || even.pattern().placement != Placement::brick_wall) return nullptr;
+  StencilTable table = jets->table;
   for (Site& vertex : table.pattern.vertices) --vertex.space;
   for (TablePoint& point : table.points) --point.space;
   return theory.on_table(std::move(table));
@@ -221,9 +221,7 @@ std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheo
   if (const auto lagrangian = p.parameters.maybe<std::string>(lagrangian_key))
     return {on_values(theory, p, *lagrangian, sites)};
   const std::string points = text_of(point_key);
-  const auto family =
-      std::static_pointer_cast<const JetFamily>(theory.on_table(stencil_of(sites, points, sites_key, point_key)));
-  return {family};
+  return {theory.on_table(stencil_of(sites, points, sites_key, point_key))};
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
@@ -238,8 +236,8 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                                  "brick wall such as hexagon",
                                  p.stencil));
   check_walls(p, *parts.families[0]);
-  if (const auto* jets = dynamic_cast<const JetFamily*>(parts.families[0].get()))
-    for (auto& term : wall_families(jets->table(), theory.shared_density(), p.lattice, slopes_of(theory, p)))
+  if (const DensityOnTable* jets = parts.families[0]->made_of())
+    for (auto& term : wall_families(jets->table, theory.shared_density(), p.lattice, slopes_of(theory, p)))
       parts.families.push_back(std::move(term));
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));

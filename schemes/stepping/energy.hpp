@@ -3,6 +3,7 @@
 #include "jets/batch_density.hpp"
 #include "schemes/solvers/row_layout.hpp"
 #include "schemes/system/cell_jet.hpp"
+#include "schemes/system/energy_momentum.hpp"
 
 namespace delf {
 
@@ -19,10 +20,6 @@ struct RowPair {
 inline constexpr const char* energy_formula =
     "k Σ (φ_t ∂ℓ/∂φ_t − ℓ), jets of the symmetric rectangle on the last two rows, whatever the scheme; order 2 in h "
     "and k";
-
-struct EnergyMomentum {
-  double energy = 0, momentum = 0;
-};
 
 /// Energy and momentum between two rows, over the symmetric rectangle's jets whatever the scheme,
 ///

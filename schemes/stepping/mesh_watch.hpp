@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "schemes/families/mapped_family.hpp"
 #include "schemes/system/assembly.hpp"
 
 namespace delf {
@@ -25,7 +24,7 @@ class MeshWatch {
 
  private:
   const LatticeSystem& system_;
-  std::vector<const MappedFamily*> stages_;  ///< that have cells
+  std::vector<const StencilFamily*> stages_;  ///< that have cells
 };
 
 }  // namespace delf

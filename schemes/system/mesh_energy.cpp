@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/system/mesh_energy.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "jets/tables/space_table.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/system/legendre.hpp"
+#include "schemes/system/stress_energy.hpp"
 
 namespace delf {
 
@@ -35,23 +38,23 @@ double MeshEnergy::of_cells(std::span<const double> values, double t) const {
 double MeshEnergy::operator()(std::span<const double> values, std::span<const double> rates, double t) const {
   const auto d = static_cast<std::size_t>(density_->components());
   double sum = 0;
-  for (std::size_t i = 0; i < masses_.size(); ++i)
-    sum += masses_[i] * energy_of(*density_, values.subspan(i * d, d), rates.subspan(i * d, d), t);
+  std::vector<double> jet(static_cast<std::size_t>(density_->variables()), 0.0);
+  for (std::size_t i = 0; i < masses_.size(); ++i) {
+    std::ranges::copy(values.subspan(i * d, d), jet.begin());
+    std::ranges::copy(rates.subspan(i * d, d), jet.begin() + static_cast<std::ptrdiff_t>(d));
+    sum += masses_[i] * stress_energy(*density_, jet.data(), t, 0).energy;
+  }
   // ℓ(0, 0, 0) is in the gradients too, where it is no energy.
   return sum - of_cells(values, t) + of_cells(std::vector<double>(values.size(), 0.0), t);
 }
 
 std::vector<double> MeshEnergy::rates(std::span<const double> values, std::span<const double> momenta,
                                       double t) const {
-  const auto d = static_cast<std::size_t>(density_->components());
-  std::vector<double> rates, p(d);
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
-    for (std::size_t a = 0; a < d; ++a) p[a] = momenta[i * d + a] / masses_[i];
-    const auto found = velocity_of(*density_, values.subspan(i * d, d), p, t);
-    for (std::size_t a = 0; a < d; ++a)
-      rates.push_back(found ? (*found)[a] : std::numeric_limits<double>::quiet_NaN());
-  }
-  return rates;
+  const std::size_t d = momenta.size() / masses_.size();
+  std::vector<double> p(momenta.begin(), momenta.end());
+  for (std::size_t n = 0; n < p.size(); ++n) p[n] /= masses_[n / d];
+  const auto found = velocity_of(*density_, values, p, t);
+  return found ? *found : std::vector(p.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace delf

@@ -29,9 +29,10 @@ struct TheoryEntry {
   std::vector<std::string> chosen_by = {};
   /// Parameters that the values of those above declare; null: none.
   std::vector<Parameter> (*further)(const ParameterValues&) = nullptr;
-  /// Its action on rectangles whose sites move, in closed form: fields, then X, piecewise linear in space, and the
-  /// trapezoidal rule in time. Null: by quadrature.
+  /// Its action on cells whose sites move, in closed form, fields and then X piecewise linear in space: of a whole step by
+  /// the trapezoidal rule, and of one point of an element, of (φ, X) at both ends, then of h (φ_t, X_t). Null: by quadrature.
   std::shared_ptr<const StencilFamily> (*moving_rectangle)(const ParameterValues&) = nullptr;
+  std::shared_ptr<const StencilFamily> (*moving_stage)(const ParameterValues&, double weight) = nullptr;
 };
 
 /// m and λ, which several theories have.

@@ -84,7 +84,7 @@ void require_solution(const Scene& scene, const State& exact) {
   if (!smooth || (!method.order && !method.energy)) return;
   const auto theory = make_theory(find_theory(scene.problem.theory), scene.problem.parameters);
   const auto equations = FieldEquations::of(theory->density());
-  if (!equations || (theory->constraint() && !dynamic_cast<const SymbolicDensity*>(&theory->density()))) return;
+  if (!equations || (theory->constraint() && !theory->density().formula())) return;
   std::vector<TriedPoint> points;
   for (const auto& [t, x] : random_points(scene)) {
     const auto jet = smooth->jet(t, x, equations->order());

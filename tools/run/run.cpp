@@ -5,9 +5,8 @@
 
 #include <utility>
 
-#include "schemes/methods/method_registry.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
-#include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/angles.hpp"
 #include "schemes/turn.hpp"
@@ -40,15 +39,8 @@ void refuse_own_rows(const fs::path& folder, const Scene& scene) {
       throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
 }
 
-// energy_formula on a point.
-constexpr auto energy_of_point =
-    "q_t ∂ℓ/∂q_t − ℓ, midway between the last two rows, q_t = (q⁺ − q)/h, whatever the scheme; order 2 in h";
-
 std::string energy_in_words(const Problem& problem) {
-  if (find_method(problem.method).energy)
-    return fmt::format("H of the last row, with the momenta and the quadrature of scheme.method = {} itself",
-                       problem.method);
-  return problem.lattice.space() == Space::point ? energy_of_point : energy_formula;
+  return fmt::format(fmt::runtime(energy_of_run(problem).formula), problem.method);
 }
 
 // Figures of the rows that the recorder kept.

@@ -119,7 +119,7 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
     outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   if (own)
     outcome.conserved.push_back(
-        {names.further.back() + ", " + own->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+        {names.further.back() + ", " + own->entry->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   outcome.iterates = simulation.evolution().stepper().iterates();
   outcome.threads = threads_in_words(simulation, scene.problem.threads);
 }

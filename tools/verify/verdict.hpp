@@ -40,7 +40,7 @@ struct ResidualMap {
   std::vector<double> log10;        ///< rows × columns: of the largest |E| / normaliser; NaN if no equation is there
 };
 
-/// The energy that the rows have for themselves (schemes/methods/own_energy.hpp), row by row.
+/// The energy that the rows have for themselves (schemes/methods/energies.hpp), row by row.
 struct EnergyHistory {
   std::string name, meaning;
   std::vector<double> time, value;

@@ -128,7 +128,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   Problem problem = scene_.problem;
   problem.winding = winding_;
   if (request_.wants("equations")) energy_ = own_energy(simulation_, problem);
-  if (energy_) verdict_.energy.name = energy_->name, verdict_.energy.meaning = energy_->meaning;
+  if (energy_) verdict_.energy.name = energy_->entry->name, verdict_.energy.meaning = energy_->entry->formula;
   if (fields) open_nearby(*fields, nearby);
 }
 
@@ -261,7 +261,7 @@ bool Verification::scheme_has(const LinearSymmetry& symmetry) const {
 
 std::vector<LinearSymmetry> Verification::symmetries() {
   std::vector<LinearSymmetry> all = simulation_.symmetries();
-  if (const auto* density = dynamic_cast<const SymbolicDensity*>(&simulation_.theory().density()))
+  if (const SymbolicDensity* density = simulation_.theory().density().formula())
     for (const LinearSymmetry& symmetry : density->up_to_divergence()) {
       if (scheme_has(symmetry)) all.push_back(symmetry);
       else
@@ -380,14 +380,15 @@ void Verification::look_at_energy(std::int64_t j) {
   if (!energy_ || j < 1 || held_.rows.size() < 2) return;
   verdict_.energy.time.push_back(static_cast<double>(j) * scene_.problem.time_step);
   verdict_.energy.value.push_back(
-      energy_->value({simulation_.theory(), system_, window(j - 1, j), j, scene_.problem.time_step}));
+      energy_->value({simulation_.theory(), system_, window(j - 1, j), j, scene_.problem.time_step}).energy);
 }
 
 // Where steps differ the energy is what there is to be kept.
 void Verification::measure_energy(std::int64_t j) {
-  const auto energy = find_method(scene_.problem.method).energy;
-  if (!energy) return;
+  const EnergyEntry* entry = find_method(scene_.problem.method).energy;
+  if (!entry) return;
   const LatticeSystem& right = simulation_.evolution().system();  // a planted fault hides what its families are
+  const EnergyOfRows energy = entry->make(simulation_.theory(), right, scene_.problem);
   const EnergyMomentum now = energy({simulation_.theory(), right, window(j - 1, j), j, right.times()->step(j - 1)});
   if (j == 1) first_energy_ = now.energy;
   if (!energy_change_)
