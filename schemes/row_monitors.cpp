@@ -23,7 +23,8 @@ RowsInTime newest_rows(const FieldTheory& theory, const Evolution& evolution) {
 
 std::vector<double> row_of(const Evolution& evolution, Role role, int back) {
   const LatticeSystem& system = evolution.system();
-  const std::vector<double> row = evolution.stepper().row(back);
+  std::vector<double> row = evolution.stepper().row(back);
+  if (std::ranges::all_of(system.all_components(), [&](const Component& c) { return c.role == role; })) return row;
   std::vector<double> values;
   for (std::size_t at = 0; at < row.size(); ++at)
     if (system.component(static_cast<int>(at) % system.components()).role == role) values.push_back(row[at]);

@@ -131,14 +131,7 @@ ExitCode carry_out_verify(const Arguments& arguments) {
     const ComplexScene mesh = complex_scene_of(std::move(settings));
     return verify(mesh, arguments.out.value_or("results/" + mesh.scene.name), arguments.fields);
   }
-  if (arguments.fields) {  // a scene of rows needs no start, and no end
-    if (!settings.find("initial.state")) {
-      settings.imply("initial.state", "file", "theory.name");
-      settings.imply("initial.file", std::filesystem::absolute(file_of_rows(*arguments.fields)).string(),
-                     "theory.name");
-    }
-    if (!settings.find("run.until")) settings.imply("run.steps", "0", "theory.name");
-  }
+  if (arguments.fields) imply_rows(settings, *arguments.fields);
   const Scene scene = scene_of(std::move(settings));
   return verify(scene, arguments.out.value_or("results/" + scene.name), arguments.fields, arguments.nearby);
 }

@@ -27,8 +27,9 @@ class Recorder final : public RunFiles {
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&, const std::optional<Written>& kept = {});
   using Seen = std::function<void(const Record&, const RecordedRow&, const RecordedDatasets&)>;
-  /// Writes no file: each recorded row is given to `seen`.
-  Recorder(const RowNames& names, Seen seen) : names_(names), seen_(std::move(seen)) {}
+  /// Writes no file: each recorded row is given to `seen`, after those that were `kept` of an earlier run.
+  Recorder(const RowNames& names, Seen seen, const Written& kept)
+      : names_(names), seen_(std::move(seen)), seen_records_(kept.series.size) {}
 
   /// `rates`: of the fields, where they are known.
   void append(const Record&, const RecordedRow&, const RecordedDatasets&, std::span<const double> rates = {});
@@ -51,6 +52,7 @@ class Recorder final : public RunFiles {
   std::optional<FieldsFile> fields_;
   std::optional<SeriesFile> series_;  ///< there unless rows are kept in memory; made when the rows are
   Seen seen_;
+  std::uint64_t seen_records_ = 0;
   std::optional<Film> film_;
   Trace energy_errors_;
   double largest_energy_error_ = 0;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "schemes/methods/method_registry.hpp"
@@ -13,6 +14,7 @@
 #include "schemes/turn.hpp"
 #include "tools/compare/estimate_error.hpp"
 #include "tools/figures/figures.hpp"
+#include "tools/files/state_in_memory.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/text_columns.hpp"
@@ -166,21 +168,36 @@ ExitCode run(const Scene& scene, const fs::path& folder, Resumed resumed) {
   return with_memory_for(scene, [&] { return run_in(folder, scene, resumed); });
 }
 
-RunInMemory run_in_memory(const Scene& scene, const std::function<void(const RowNames&)>& begin,
-                          const Recorder::Seen& seen) {
+RunInMemory run_in_memory(const Scene& given, const std::string& state, const SeenInMemory& seen) {
+  Scene scene = given;
+  std::optional<StateReader> earlier;
+  CheckpointHead head;
+  RunFiles::Written kept;
+  if (!state.empty()) {
+    head.visit(earlier.emplace(state));
+    (*earlier)("written", kept);
+    if (scene.until) scene.steps = std::max(scene.steps, head.row + 1);  // their number is a guess where the field chooses
+    if (head.row >= scene.steps)
+      throw BadInput("run.steps", fmt::format("resume: the run is at row {}, and run.steps = {}; raise run.until or "
+                                              "run.steps, as steps={}",
+                                              head.row, scene.steps, 2 * std::max<std::int64_t>(1, head.row)));
+  }
   RunInMemory result;
   with_memory_for(scene, [&] {
     Begun begun(scene);
-    begun.start(scene);
-    begin(begun.names);
+    if (earlier) begun.stepping->visit(*earlier);
+    else begun.start(scene);
+    seen.begin(begun.names, kept.series.size);
     FailuresOfRun failures(begun.outcome);
-    Recorder recorder(begun.names, seen);
-    Checkpoints checkpoints({}, {}, 0);
+    Recorder recorder(begun.names, seen.record, kept);
+    if (earlier) recorder.visit(*earlier);
+    Checkpoints checkpoints(result.state);
     begun.step(scene, recorder, checkpoints, failures);
     const Subject subject = subject_of(scene.problem);
     result = {begun.outcome.status, summary_json(subject, scene, begun.outcome), report(subject, scene, begun.outcome),
               resolved_text(scene, begun.outcome.start, begun.outcome.state),
-              begun.stepping->section() ? begun.stepping->section()->table() : "", failures.first()};
+              begun.stepping->section() ? begun.stepping->section()->table() : "", std::move(result.state),
+              failures.first()};
     return ExitCode::done;
   });
   return result;

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
+import re
 import sys
-import tempfile
 import threading
 import time
 from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Union
@@ -68,9 +67,9 @@ class Fields(Mapping[str, Any]):
 
     def __init__(self, load: Callable[[], Dict[str, Any]]) -> None:
         self._load = load
-        self._arrays: Optional[Dict[str, Any]] = None
+        self._arrays: Optional[Dict[str, "np.ndarray[Any, Any]"]] = None
 
-    def _all(self) -> Dict[str, Any]:
+    def _all(self) -> "Dict[str, np.ndarray[Any, Any]]":
         if self._arrays is None:
             self._arrays = self._load()
         return self._arrays
@@ -104,8 +103,10 @@ class Run:
     """
 
     def __init__(self, scene: Scene, summary: Dict[str, Any], series: "np.ndarray[Any, Any]", fields: Fields,
-                 report: str = "", text: str = "", folder: Optional[str] = None, section: str = "") -> None:
+                 report: str = "", text: str = "", folder: Optional[str] = None, section: str = "",
+                 state: bytes = b"") -> None:
         self.scene, self.summary, self.series, self.fields = scene, Summary(summary), series, fields
+        self._made_of, self._state = scene.copy(), state
         self.report, self.folder = report, folder
         self.text = text  #: scene.ini: the scene with all that was in force
         self.section = section  #: section.csv, if output.section asks for it
@@ -146,19 +147,30 @@ class Run:
                         out.write(data)
             return found
 
-    def resume(self, until: Optional[float] = None, steps: Optional[int] = None) -> "Run":
-        """The run to a later time. Of a folder it goes on from its checkpoint, to the same bits; in memory it is run again."""
+    def resume(self, until: Optional[float] = None, steps: Optional[int] = None, *,
+               at_record: Optional[Callable[[Record], Any]] = None) -> "Run":
+        """The run to a later time, from where it is, to the same bits as a run that goes there at once.
+
+        A run in a folder goes on there, from its checkpoint; of a run in memory the result is a new one, with the records of
+        both. Runs on meshes in memory begin again.
+        """
         if (until is None) == (steps is None):
             raise BadInput("resume: give until or steps", "run.until")
         key, value = ("run.until", until) if until is not None else ("run.steps", steps)
         if self.folder is not None:
             _program.call(["resume", self.folder, f"--{key}={value!r}"])
             return load(self.folder)
-        scene = self.scene.copy()
+        scene = self._made_of.copy()
         for other in ("run.until", "run.steps"):
             scene._given.pop(other, None)
         scene[key] = value
-        return run(scene)
+        if scene.settings().on_mesh:
+            return run(scene)
+        if every := re.search(r"^every = (\d+)$", self.text, re.M):
+            scene["output.every"] = int(every[1])  # by default it follows from the end
+        if not self._state:
+            raise BadInput(f"resume: the run ended as {self.status}, and cannot go on; run the scene again")
+        return _in_memory(scene, at_record, self)
 
     def _tree(self) -> str:
         s = self.summary
@@ -263,7 +275,7 @@ def _series(done: Mapping[str, Any]) -> "np.ndarray[Any, Any]":
     return series
 
 
-def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]]) -> Run:
+def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]], earlier: Optional[Run] = None) -> Run:
     progress = _Progress(scene) if _Progress.wanted() else None
 
     def see(*record: Any) -> bool:
@@ -274,16 +286,24 @@ def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]]) -> Ru
 
     main = threading.current_thread() is threading.main_thread()
     try:
-        done = _delf.run(scene.settings(), scene.name, see if at_record or progress else None, main)
+        done = _delf.run(scene.settings(), scene.name, see if at_record or progress else None, main,
+                         earlier._state if earlier else b"")
     finally:
         if progress:
             progress.close()
     summary = json.loads(done["summary"])
     if done["status"] == "stopped":
         summary["status"] = "stopped"
-    series = _series(done)
-    arrays = {"time": series["time"], "space": done["space"], **done["rows"]}
-    result = Run(scene, summary, series, Fields(lambda: arrays), done["report"], done["scene"], section=done["section"])
+    series, rows = _series(done), done["rows"]
+    if earlier:
+        before = done["records_before"]
+        series = np.concatenate([earlier.series[:before], series])
+        rows = {name: np.concatenate([earlier.fields[name][:before], row]) for name, row in rows.items()}
+    arrays = {"time": series["time"], "space": done["space"], **rows}
+    for array in (series, *arrays.values()):
+        array.flags.writeable = False
+    result = Run(scene, summary, series, Fields(lambda: arrays), done["report"], done["scene"], section=done["section"],
+                 state=done["state"])
     for line in summary["warnings"]:
         _program.warn(line)
     if done["interrupted"] and main:
@@ -297,8 +317,7 @@ def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]]) -> Ru
     return result
 
 
-def run(scene: SceneLike = None, *, out: Union[str, "os.PathLike[str]", None] = None,
-        at_record: Optional[Callable[[Record], Any]] = None, **keys: Any) -> Run:
+def run(scene: SceneLike = None, *, out: Any = None, at_record: Any = None, **keys: Any) -> Run:
     """Steps a scene: a name, a file, a Scene, or keys alone; run("collision", **{"lattice.sites": 401}, until=20).
 
     In memory, unless `out` names a folder for all files of `delf run`. at_record: called with a Record at each recorded
