@@ -19,7 +19,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from . import _delf
-from ._errors import BadInput, CheckFailed, Error, NumericsFailed, SystemFailed
+from ._errors import BadInput, CheckFailed, Error, NumericsFailed, SystemFailed, here
 from ._scene import Scene, scene_of, texts_of
 
 # Options beside **keys take Any: a dictionary of keys, **{"lattice.sites": 401}, might hold any of them to a type checker.
@@ -41,7 +41,7 @@ def program() -> str:
 
 
 def warn(line: str) -> None:
-    warnings.warn(line, UserWarning, stacklevel=4)
+    warnings.warn(here(line), UserWarning, stacklevel=4)
 
 
 _FAILURES = {1: CheckFailed, 2: BadInput, 3: NumericsFailed, 4: SystemFailed}
@@ -254,6 +254,8 @@ class Plan:
         return structured([{"name": name, "value": value} for name, value in self.lines.items()])
 
     def __getitem__(self, name: str) -> str:
+        if name not in self.lines:
+            raise BadInput(f"{name}: no such line of this plan; there are {', '.join(self.lines)}")
         return self.lines[name]
 
     def __str__(self) -> str:
@@ -384,7 +386,7 @@ def check(rows: Any, *, density: Any = None, stencil: str = "rectangle-symmetric
         try:
             result = verify(scene, fields=path, **given)
         except BadInput as error:  # in the words of this call
-            raise BadInput(str(error).replace(f"command line: --fields {path}", "check: rows"), error.key or "") from None
+            raise BadInput(str(error).replace(f"fields {path}", "check: rows"), error.key or "") from None
         result.text = result.text.replace(path, "an array")
         result.data["subject"] = "rows of an array"
     finally:

@@ -8,7 +8,7 @@ import re
 import sys
 import threading
 import time
-from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from ._errors import BadInput, Error
 from ._scene import Scene, scene_of
 
 SceneLike = Union[Scene, str, "os.PathLike[str]", None]
+Arrays = Dict[str, "np.ndarray[Any, Any]"]
+Components = Mapping[str, List[str]]  # names of the last axis of a dataset
 
 
 class Record(NamedTuple):
@@ -62,28 +64,39 @@ class Summary(Mapping[str, Any]):
 class Fields(Mapping[str, Any]):
     """The recorded rows: time, space and field as arrays; further datasets, such as multiplier, as items.
 
-    field: frames × sites × fields. Of a folder the arrays are read when they are asked for.
+    field: frames × sites × fields. Each field and multiplier by its own name is frames × sites: fields.phi. Of a folder the
+    arrays are read when they are asked for.
     """
 
-    def __init__(self, load: Callable[[], Dict[str, Any]]) -> None:
+    def __init__(self, load: "Callable[[], Tuple[Arrays, Components]]") -> None:
         self._load = load
-        self._arrays: Optional[Dict[str, "np.ndarray[Any, Any]"]] = None
+        self._loaded: "Optional[Tuple[Arrays, Components]]" = None
 
-    def _all(self) -> "Dict[str, np.ndarray[Any, Any]]":
-        if self._arrays is None:
-            self._arrays = self._load()
-        return self._arrays
+    def _both(self) -> "Tuple[Arrays, Components]":
+        if self._loaded is None:
+            self._loaded = self._load()
+        return self._loaded
+
+    def _all(self) -> "Arrays":
+        return self._both()[0]
 
     def __getitem__(self, name: str) -> "np.ndarray[Any, Any]":
-        return self._all()[name]
+        arrays, components = self._both()
+        if name not in arrays:
+            for dataset, names in components.items():
+                if name in names:
+                    return arrays[dataset][..., names.index(name)]
+        return arrays[name]
 
     def __getattr__(self, name: str) -> "np.ndarray[Any, Any]":
         if name.startswith("_"):
             raise AttributeError(name)
         try:
-            return self._all()[name]
+            return self[name]
         except KeyError:
-            raise AttributeError(f"no dataset {name}; there are {', '.join(self._all())}") from None
+            arrays, components = self._both()
+            known = [*arrays, *(one for names in components.values() for one in names)]
+            raise AttributeError(f"no dataset {name}; there are {', '.join(known)}") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._all())
@@ -110,6 +123,13 @@ class Run:
         self.report, self.folder = report, folder
         self.text = text  #: scene.ini: the scene with all that was in force
         self.section = section  #: section.csv, if output.section asks for it
+
+    def __getattr__(self, name: str) -> Any:
+        if not name.startswith("_"):
+            where = (f'series["{name}"]' if name in (self.series.dtype.names or ()) else f"summary.{name}"
+                     if name in self.summary else f"fields.{name}" if name in self.fields else "")
+            raise AttributeError(f"a run has no {name}" + (f"; did you mean {where}?" if where else ""))
+        raise AttributeError(name)
 
     @property
     def status(self) -> str:
@@ -197,13 +217,15 @@ class Run:
         return text + first.decode("utf-8", "replace")
 
 
-def _read_fields(path: str) -> Dict[str, Any]:
+def _read_fields(path: str) -> "Tuple[Arrays, Components]":
     try:
         import h5py
     except ImportError:
         raise BadInput(f"{path}: reading it takes h5py; install python3-h5py, or run in memory") from None
     with h5py.File(path) as file:
-        return {name: file[name][()] for name in ("time", "space", *sorted(set(file) - {"time", "space"}))}
+        arrays = {name: file[name][()] for name in ("time", "space", *sorted(set(file) - {"time", "space"}))}
+        names = {name: file[name].attrs.get("components", b"") for name in arrays}
+        return arrays, {name: text.decode().split(",") for name, text in names.items() if text}
 
 
 def load(folder: Union[str, "os.PathLike[str]"]) -> Run:
@@ -302,7 +324,7 @@ def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]], earli
     arrays = {"time": series["time"], "space": done["space"], **rows}
     for array in (series, *arrays.values()):
         array.flags.writeable = False
-    result = Run(scene, summary, series, Fields(lambda: arrays), done["report"], done["scene"], section=done["section"],
+    result = Run(scene, summary, series, Fields(lambda: (arrays, done["components"])), done["report"], done["scene"], section=done["section"],
                  state=done["state"])
     for line in summary["warnings"]:
         _program.warn(line)

@@ -78,6 +78,7 @@ def series_have_columns() -> None:
 def fields_have_shapes() -> None:
     run = delf.run("collision", until=5, **{"lattice.sites": 101})
     assert run.fields.field.shape == (len(run.series), 101, 1) and run.fields.space.shape == (101,)
+    assert np.array_equal(run.fields.phi, run.fields.field[..., 0])
     assert not run.fields.field.flags.writeable
 
 
@@ -113,13 +114,16 @@ def a_scene_needs_no_file() -> None:
 @holds
 def an_unknown_key_suggests() -> None:
     error = raises(delf.BadInput, lambda: delf.Scene("collision", **{"lattice.site": 3}))
-    assert "did you mean lattice.sites?" in str(error) and error.key == "lattice.site"
+    assert str(error) == "lattice.site: unknown key; did you mean lattice.sites?" and error.key == "lattice.site"
 
 
 @holds
 def an_unknown_attribute_suggests() -> None:
     assert "mass" in str(raises(AttributeError, lambda: delf.Scene("collision").theory.mas))
-    assert "energy_final" in str(raises(AttributeError, lambda: delf.run("kink", until=1).summary.energy_finl))
+    run = delf.run("kink", until=1)
+    assert "energy_final" in str(raises(AttributeError, lambda: run.summary.energy_finl))
+    assert 'series["energy"]' in str(raises(AttributeError, lambda: run.energy))
+    assert "phi" in str(raises(AttributeError, lambda: run.fields.ph))
 
 
 @holds
