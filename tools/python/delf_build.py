@@ -92,7 +92,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         for name, data in files.items():
             entry = zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0))
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = (0o755 if name.startswith("delf/prefix/bin/") or name.endswith(".so") else 0o644) << 16
+            executable = name.startswith("delf/prefix/bin/") or name.endswith(".so")
+            entry.external_attr = (0o100755 if executable else 0o100644) << 16  # pip reads them of regular files alone
             archive.writestr(entry, data)
     return wheel
 
