@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The module of the build tree, beyond what `python3 -m delf test` checks of an installed one (those checks run too)."""
+import io
 import json
 import os
 import pathlib
@@ -208,6 +209,47 @@ def test_memory_of_a_row_is_used_again_only_if_nobody_views_it():
         evolution.step()
         addresses.add(evolution.row().ctypes.data)
     assert len(addresses) <= 3
+
+
+def test_tables_are_frames_where_pandas_is():
+    pytest.importorskip("pandas")
+    table = delf.convergence("kink", until=1, convergence_levels=2)
+    assert list(table.frame.columns) == list(table.table.dtype.names) and len(table.frame) == len(table) == 2
+
+
+def test_symmetries_as_text_have_their_sums():
+    evolution = delf.Scheme("0.5*(u_t^2 + v_t^2) - 0.5*(u_x^2 + v_x^2)", "rectangle", fields="u, v",
+                            symmetry="-v, u").on(delf.circle(41, 2 * np.pi), 0.05)
+    evolution.start(lambda x: (np.cos(x), np.sin(x)), lambda x: (np.sin(x), 0.3 * np.cos(x)))
+    before = evolution.monitors["symmetry"]
+    evolution.step(200)
+    assert abs(before) > 0.1 and abs(evolution.monitors["symmetry"] - before) < 1e-11 * abs(before)
+
+
+@pytest.mark.parametrize("with_tqdm", [True, False])
+def test_progress_is_shown_in_terminals_alone(with_tqdm, monkeypatch):
+    from delf import _run
+    if with_tqdm:
+        pytest.importorskip("tqdm")
+    else:
+        monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    assert not _run._Progress.wanted()
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    assert _run._Progress.wanted()
+    progress = _run._Progress(delf.Scene("collision", until=10))
+    progress(delf.Record(1, 2.5, 0.0, np.zeros(1)))
+    assert terminal.getvalue() == ""  # a run of a moment
+    progress.began -= 9
+    progress.shown -= 9
+    progress(delf.Record(100, 2.5, 0.0, np.zeros(1)))
+    progress.close()
+    assert re.search(r"25 ?%", terminal.getvalue())
 
 
 def test_no_memory_is_lost():
