@@ -3,8 +3,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 namespace delf {
+namespace {
+
+/// ℓ is even in some variables if it is quadratic in them, and entries that couple them to others cancel: (φ_t − φ_x)(φ_t + φ_x).
+bool is_even_form(const BatchDensity& density, Reflection r) {
+  const int m = density.variables();
+  const auto is_reflected = [&](int a) {
+    return a < m && (Abstract::variable(a, a / density.components()).odd >> static_cast<int>(r) & 1) != 0;
+  };
+  for (int a = 0; a < m; ++a) {
+    if (!is_reflected(a)) continue;
+    if (density.constant_gradient()[static_cast<std::size_t>(a)] != 0) return false;
+    for (int b = 0; b < m + 2; ++b) {  // t and x are the last
+      if (density.is_zero(a, b)) continue;
+      if (b >= m || !density.is_constant(a, b)) return false;
+      if (!is_reflected(b) && density.constant_hessian()[static_cast<std::size_t>(a * m + b)] != 0) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
 
 /// Constant entries are the same wherever they are taken: at zero, or where the density has a value if it has none there.
 void BatchDensity::find_constants() {
@@ -40,8 +63,10 @@ void BatchDensity::find_constants() {
       for (std::size_t b = 0; b < m; ++b) constant_gradient_[a] -= constant_hessian_[a * m + b] * jet[b][0];
       finite = finite && std::isfinite(constant_gradient_[a]);
     }
-    if (finite) return;
+    if (finite) break;
   }
+  for (int r = 0; r <= static_cast<int>(Reflection::in_time); ++r)
+    if (is_even_form(*this, static_cast<Reflection>(r))) structure_.of_density.even |= static_cast<std::uint8_t>(1u << r);
 }
 
 }  // namespace delf

@@ -8,6 +8,10 @@
 
 namespace delf {
 
+class ForceSquared;
+class SymbolicDensity;
+class ValueDerivatives;
+
 /// n jets as separate arrays, aligned to packs: slots[s·d + a][i] is component a of slot s (φ, φ_t, φ_x, and φ_tt,
 /// φ_tx, φ_xx for densities of second order) of jet i.
 struct JetBatch {
@@ -39,6 +43,8 @@ class BatchDensity {
   bool is_zero(int a, int b) const {
     return !bit(structure_.of_density.nonzero[a], b);
   }
+  /// A reflection of jets is proved to leave ℓ as it is.
+  bool is_even(Reflection r) const { return bit(structure_.of_density.even, static_cast<int>(r)); }
   /// The Hessian with all entries zero that are not proved constant, [a·variables + b].
   const std::vector<double>& constant_hessian() const { return constant_hessian_; }
   /// ∂ℓ/∂(variable) less what the constant Hessian makes of it, where that is a number: at the jet 0.
@@ -56,7 +62,14 @@ class BatchDensity {
   /// ∂ℓ/∂t and ∂ℓ/∂x at given (t, x), for densities that depend on them: l_t[i], l_x[i].
   virtual void place_gradient(const JetBatch&, double* l_t, double* l_x) const = 0;
 
-  /// Whether the density declares T difference_quotient(const T& a, const T& b): (N(a) − N(b))/(a − b) for its potential
+  /// The formula that the density was made of; null: it was compiled.
+  virtual const SymbolicDensity* formula() const { return nullptr; }
+  /// The density as the square of another one's force; null: it is none.
+  virtual const ForceSquared* squared_force() const { return nullptr; }
+  /// Derivatives in φ that force gradients take; null: they are not known.
+  virtual const ValueDerivatives* value_derivatives() const { return nullptr; }
+
+  /// True if the density declares T difference_quotient(const T& a, const T& b): (N(a) − N(b))/(a − b) of its potential
   /// N(φ) = ℓ(φ, 0, 0), also where a = b; of several components an array. q[c][i], from the d components of a and those
   /// of b in `slots`; and its derivatives d[c·2d + j][i].
   bool has_difference_quotient() const { return has_difference_quotient_; }

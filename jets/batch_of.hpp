@@ -26,6 +26,7 @@ class BatchOf final : public BatchDensity, public ValueDerivatives {
     find_constants();
   }
   const D& density() const { return density_; }
+  const ValueDerivatives* value_derivatives() const override { return this; }
 
   void value(const JetBatch& batch, double* l) const override {
     for_each_pack(batch, [&](int at) {

@@ -8,21 +8,21 @@
 
 namespace delf {
 
-/// How many real components the field has on which a density works: D::components, or 1.
+/// The number of real components of the field on which a density works: D::components, or 1.
 template <class D>
 constexpr int components_of() {
   if constexpr (requires { D::components; }) return D::components;
   else return 1;
 }
 
-/// Whether ℓ depends on t and x besides the field, which it says by `static constexpr bool placed = true;`.
+/// True if ℓ depends on t and x besides the field, which it says by `static constexpr bool placed = true;`.
 template <class D>
 constexpr bool is_placed() {
   if constexpr (requires { D::placed; }) return D::placed;
   else return false;
 }
 
-/// How many slots of the jet ℓ depends on: 3, or 6 with second derivatives, which it says by
+/// The number of slots of the jet that ℓ depends on: 3, or 6 with second derivatives, which it says by
 /// `static constexpr int jet_order = 2;`.
 template <class D>
 constexpr int slots_of() {
@@ -58,7 +58,7 @@ concept Density = requires(const D& density, const JetFor<double, D>& numbers, c
   { density(packs) } -> std::same_as<Dual<Pack, 1>>;    // … many sites at a time: no `if` on the field
 };
 
-/// The same, told in one line where a program hands over what is none: static_assert(is_density<D>()).
+/// The concept as a function that says what is missing, in one line: static_assert(is_density<D>()).
 template <class D>
 consteval bool is_density() {
   static_assert(Density<D>,

@@ -8,7 +8,7 @@
 
 namespace delf {
 
-/// Where a stencil lies and how large its cells are: what L_Δ depends on besides the vertex values.
+/// The place of a stencil and the size of its cell: all that L_Δ depends on besides the vertex values.
 struct Cell {
   double time_step = 1;   ///< h; negative in a sub-step that goes back, and the measure with it
   double space_step = 1;  ///< k

@@ -5,7 +5,7 @@
 
 namespace delf {
 
-/// Where a field takes its values. ℝⁿ is n components in ℝ; on S¹ = ℝ/2π only differences modulo 2π mean anything.
+/// The space of a field's values. ℝⁿ is n components in ℝ; on S¹ = ℝ/2π only differences modulo 2π mean anything.
 enum class Fibre { real, circle };
 
 /// The representative of a difference modulo 2π that lies in [−π, π].

@@ -6,7 +6,7 @@
 
 namespace delf {
 
-/// What densities prove of d fields: which occur in field equations, which there have derivatives in time, and which are
+/// The facts proved of d fields: which occur in field equations, which there have derivatives in time, and which are
 /// coupled. A field that nothing moves has no equation that a step could solve for it.
 struct FieldMotion {
   std::vector<bool> present, moving;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int second = 5;  // the slot of φ_xx
 
-/// What is proved of ∂ℓ/∂φᵃ: a function of the values that it depends on, affine where their entries are constant.
+/// The structure of ∂ℓ/∂φᵃ: a function of the values that it depends on, affine where their entries are constant.
 Abstract slope_of(const BatchDensity& density, int a) {
   const int d = density.components();
   Abstract slope;
@@ -20,7 +20,7 @@ Abstract slope_of(const BatchDensity& density, int a) {
     if (density.is_zero(a, b)) continue;
     slope = slope + (density.is_constant(a, b) ? Abstract::variable(b) : unknown_function(Abstract::variable(b)));
   }
-  // Whether it is a sum of functions of one value each is not known.
+  // It may be no sum of functions of one value each: nothing proves it.
   if (std::uint64_t all = slope.depends; all != 0)
     for (int b = 0; b < d; ++b)
       if (!density.is_zero(a, b) && !density.is_constant(a, b))
@@ -37,7 +37,7 @@ Abstract slope_of(const BatchDensity& density, int a) {
 }  // namespace
 
 ForceSquared::ForceSquared(std::shared_ptr<const BatchDensity> of, double scale)
-    : of_(std::move(of)), derivatives_(dynamic_cast<const ValueDerivatives*>(of_.get())), scale_(scale) {
+    : of_(std::move(of)), derivatives_(of_->value_derivatives()), scale_(scale) {
   const int d = of_->components(), m = of_->variables();
   const auto refuse = [](const char* why) {
     throw BadInput("theory.name", std::string("theory.name: a force gradient takes densities that are nonlinear in phi "

@@ -25,6 +25,7 @@ class ForceSquared final : public BatchDensity {
   void curvature(const JetBatch& phi, double* const* c) const override;
   void place_gradient(const JetBatch&, double* l_t, double* l_x) const override;
 
+  const ForceSquared* squared_force() const override { return this; }
   /// gradient() without the rows that are zero: g[a] by φᵃ, g[d + a] by φ_xxᵃ, from φ in slots[a] and φ_xx in second[a]; and
   /// g[2d + a] = ∂ℓ/∂φᵃ, which it takes anyway.
   const BatchDensity& of() const { return *of_; }

@@ -134,7 +134,7 @@ void Reparametrised::value(const JetBatch& batch, double* l) const {
     (Pack::load(inner.l[0] + i) * Pack::load(batch.slots[J] + i)).store(l + i);
 }
 
-/// With g the gradient of ℓ, and its jet (φ, τ, χ):
+/// The chain rule, with g the gradient of ℓ and its jet (φ, τ, χ):
 ///
 ///     ∂ℓ̃/∂φ = X_x g_φ,   ∂ℓ̃/∂φ_t = X_x g_τ,   ∂ℓ̃/∂φ_x = g_χ − X_t g_τ,
 ///     ∂ℓ̃/∂X_t = −Σ φ_x g_τ,   ∂ℓ̃/∂X_x = ℓ − Σ χ (g_χ − X_t g_τ)

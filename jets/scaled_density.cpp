@@ -22,6 +22,8 @@ ScaledDensity::ScaledDensity(std::shared_ptr<const BatchDensity> of, double c, d
   structure_.nonlinearity = of_->nonlinearity();
   Abstract& known = structure_.of_density;
   known.constant.reset();
+  for (int r = 0; r <= static_cast<int>(Reflection::in_time); ++r)
+    if (of_->is_even(static_cast<Reflection>(r))) known.even |= static_cast<std::uint8_t>(1u << r);
   for (int a = 0; a < variables(); ++a) {
     if (of_->depends_on(a)) known.depends |= std::uint64_t{1} << a;
     for (int b = 0; b < variables(); ++b) {

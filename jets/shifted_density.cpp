@@ -25,6 +25,7 @@ ShiftedDensity::ShiftedDensity(std::shared_ptr<const BatchDensity> of, std::vect
     : BatchDensity(*of), of_(std::move(of)), by_(std::move(by)) {
   has_difference_quotient_ = false;
   symmetries_.clear();
+  structure_.of_density.even = 0;  // a reflection is one about another jet
   find_constants();
 }
 

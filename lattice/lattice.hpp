@@ -26,7 +26,7 @@ class Lattice {
   static Lattice point();
   /// The points of a mesh, whose stencils are listed (ListedStencils): L = N, k = 1, and x_i the first coordinate.
   static Lattice on(std::shared_ptr<const MeshSpace>);
-  /// The same lattice with site 0 at x₀, for the positions of nodes inside the cells.
+  /// A copy of the lattice with site 0 at x₀, for the positions of nodes inside the cells.
   Lattice shifted(double x_0) const {
     Lattice other = *this;
     other.origin_ = x_0;

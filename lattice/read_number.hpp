@@ -15,7 +15,7 @@ std::optional<Number> read_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
-/// The same of finite numbers.
+/// A number as read_number() reads it, if it is finite.
 inline std::optional<double> read_finite(std::string_view text) {
   const auto value = read_number<double>(text);
   return value && std::isfinite(*value) ? value : std::nullopt;

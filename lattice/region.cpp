@@ -11,7 +11,7 @@
 namespace delf {
 namespace {
 
-/// How many vertices of stencils of the lattice lie on a site.
+/// The number of vertices of stencils of the lattice at a site.
 int vertices_at(const Stencils& all, Site site) {
   int count = 0;
   for (int family = 0; family < static_cast<int>(all.families().size()); ++family)

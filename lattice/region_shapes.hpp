@@ -21,7 +21,7 @@ enum class RegionKind {
 const char* to_string(RegionKind);
 const std::vector<RegionKind>& region_kinds();
 
-/// Where centres may lie.
+/// The range of places for centres.
 struct RegionFrame {
   Range rows;                           ///< of the centres
   int reach_time = 1, reach_space = 1;  ///< how far apart two sites of one equation are

@@ -23,11 +23,11 @@ struct Stencil {
   friend bool operator==(const Stencil&, const Stencil&) = default;
 };
 
-/// Whether stencils of this pattern are anchored in a column, in some of its rows or in all of them: all their vertices
+/// True if stencils of this pattern are anchored in a column, in some of its rows or in all of them: all their vertices
 /// lie in the lattice, and those of a natural wall stand there.
 bool has_column(const Lattice&, const StencilPattern&, int column);
 
-/// Whether there is a stencil of this pattern at `anchor`: it is placed there, and all its vertices lie in the lattice.
+/// True if there is a stencil of this pattern at `anchor`: it is placed there, and all its vertices lie in the lattice.
 bool has_stencil(const Lattice&, const StencilPattern&, Site anchor);
 
 /// X^Δ: all the stencils of some families on a lattice. A stencil exists if its family places one at the anchor and

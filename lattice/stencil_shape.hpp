@@ -34,7 +34,7 @@ struct Offsets {
   constexpr Site vertex(int l) const { return vertices[static_cast<std::size_t>(l)]; }
 };
 
-/// What a stencil shape must offer: `size()`, `vertex(l)` for l = 0 … size()−1, and a `placement`. A list of offsets,
+/// The concept of a stencil shape: `size()`, `vertex(l)` for l = 0 … size()−1, and a `placement`. A list of offsets,
 /// `delf::Offsets<n>{{{{time, space}, …}}}`, has them all.
 template <class S>
 concept StencilShape = requires(const S& shape) {
@@ -55,7 +55,7 @@ struct StencilPattern {
     for (int l = 0; l < S::size(); ++l) vertices.push_back(shape.vertex(l));
   }
   int size() const { return static_cast<int>(vertices.size()); }
-  /// Whether a stencil of this pattern is anchored at `site`, without regard to walls.
+  /// True if a stencil of this pattern is anchored at `site`, without regard to walls.
   bool placed_at(Site site) const {
     return placement != Placement::brick_wall || (site.time + site.space) % 2 == 0;
   }

@@ -6,9 +6,9 @@
 
 namespace delf {
 
-/// Without the white space around it.
+/// The text without the white space around it.
 std::string trimmed(std::string_view);
-/// What stands between separators, each part trimmed: one more than there are separators, so an empty text has one part.
+/// The parts between separators, each trimmed: one more than there are separators, so an empty text has one part.
 std::vector<std::string> parts_of(std::string_view text, char separator = ',');
 
 }  // namespace delf

@@ -56,7 +56,7 @@ class ParameterValues {
       if (const int* value = std::get_if<int>(&at->second)) return *value;
     throw std::logic_error(at->first + ": the value is of another type than the one asked for");
   }
-  /// The same; throws std::logic_error if there is none.
+  /// The value of a parameter that must be there; throws std::logic_error if there is none.
   template <class T>
   T get(std::string_view key) const {
     if (auto value = maybe<T>(key)) return *value;

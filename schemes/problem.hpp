@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// What a scene states, in the engine's words.
+/// The contents of a scene, in the engine's words.
 struct Problem {
   std::string theory = "sine-gordon";
   bool circle_valued = false;  ///< theory.fibre = S1
@@ -45,7 +45,7 @@ struct NamedScheme {
 /// says so when it is built.
 std::vector<NamedScheme> named_schemes(const Problem& base);
 
-// What there is to name: for `delf list`.
+// The lists of names, for `delf list`.
 
 struct TheoryInfo {
   std::string name, formula;

@@ -23,7 +23,8 @@ RowsInTime newest_rows(const FieldTheory& theory, const Evolution& evolution) {
 
 std::vector<double> row_of(const Evolution& evolution, Role role, int back) {
   const LatticeSystem& system = evolution.system();
-  const std::vector<double> row = evolution.stepper().row(back);
+  std::vector<double> row = evolution.stepper().row(back);
+  if (std::ranges::all_of(system.all_components(), [&](const Component& c) { return c.role == role; })) return row;
   std::vector<double> values;
   for (std::size_t at = 0; at < row.size(); ++at)
     if (system.component(static_cast<int>(at) % system.components()).role == role) values.push_back(row[at]);
@@ -43,7 +44,8 @@ RowMonitors::RowMonitors(const Problem& problem, const FieldTheory& theory,
       has_constraints_(std::ranges::count(system_.all_components(), Role::multiplier, &Component::role) > 0),
       field_lag_(has_constraints_ ? slab_extent(system_, evolution.plan()).field_lag : 0),
       turn_(turn_of(problem)) {
-  if (!method_.energy && system_.fields() != theory.components())
+  if (method_.energy) energy_ = method_.energy->make(theory, system_, problem);
+  if (!energy_ && system_.fields() != theory.components())
     throw std::logic_error("scheme.method = " + method_.name + ": has other fields than the theory, and no energy");
   for (const LinearSymmetry& s : symmetries)
     if (system_.height() <= 1) conserved_names_.push_back(s.name);
@@ -62,7 +64,7 @@ Simulation::Monitors RowMonitors::now() {
 }
 
 EnergyMomentum RowMonitors::energy_momentum() const {
-  if (method_.energy) return method_.energy(newest_rows(theory_, evolution_));
+  if (energy_) return energy_(newest_rows(theory_, evolution_));
   const double h = problem_.time_step;
   const double t = (static_cast<double>(stepper_.newest()) - (stepper_.is_processed() ? 0.5 : 1)) * h;
   if (theory_.density().slots() > 3) {
@@ -120,7 +122,7 @@ void RowMonitors::find_conserved(Simulation::Monitors& monitors) const {
   }
 }
 
-/// What monitors look at, where steps do not go by rows.
+/// Copies the rows that monitors read, where steps do not go by rows.
 void RowMonitors::copy_newest_pair() {
   const int C = system_.components(), d = theory_.components();
   if (stepper_.is_processed()) return copy_observed_pair();

@@ -4,10 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "schemes/methods/method_registry.hpp"
-#include "schemes/simulation.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/solvers/row_layout.hpp"
-#include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/assembled_row.hpp"
 
@@ -18,8 +16,8 @@ RowsInTime newest_rows(const FieldTheory&, const Evolution&);
 /// The components of one role of the row `back` rows before the newest, site by site.
 std::vector<double> row_of(const Evolution&, Role, int back);
 
-/// What a run watches in its newest rows: energy, momentum and charge, constraints, Noether's sums, and what the method
-/// declares. All that is given is kept by reference; work space is allocated when it is first asked.
+/// The quantities watched in the newest rows of a run: energy, momentum and charge, constraints, Noether's sums, and
+/// those of the method. Arguments are kept by reference; work space is allocated when it is first asked.
 class RowMonitors {
  public:
   RowMonitors(const Problem&, const FieldTheory&, const std::vector<LinearSymmetry>&, const Evolution&);
@@ -28,7 +26,7 @@ class RowMonitors {
   /// Noether's conserved quantities; none for stencils of more than two rows, which would need rows that are not held.
   const std::vector<std::string>& conserved_names() const { return conserved_names_; }
   std::size_t bytes() const;
-  /// What bytes() will be once it was asked.
+  /// The value that bytes() will have once monitors were asked.
   std::size_t bytes_of_run() const;
 
  private:
@@ -43,6 +41,7 @@ class RowMonitors {
 
   const Problem& problem_;
   const MethodEntry& method_;
+  EnergyOfRows energy_;  ///< the method's; none: that of the symmetric rectangle
   const FieldTheory& theory_;
   const std::vector<LinearSymmetry>& symmetries_;
   const Evolution& evolution_;

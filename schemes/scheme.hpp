@@ -41,7 +41,7 @@ class Scheme {
  public:
   template <JetMap Map>
   Scheme(Map, D density) : Scheme(stencil_table(Map::table), std::move(density)) {}
-  /// With a table made at run time. Throws BadInput if its weights are not consistent.
+  /// A scheme with a table made at run time. Throws BadInput if its weights are not consistent.
   Scheme(StencilTable table, D density) : table_(std::move(table)), density_(std::move(density)) {
     if (!is_consistent(table_))
       throw BadInput("lattice.stencil",

@@ -113,7 +113,7 @@ struct Simulation::Impl {
     chosen_steps.emplace(problem.time_step);
     system.times()->begin(problem.time_step);
   }
-  /// What row 0 and its momenta, or the newest row, ask of the steps.
+  /// The density of steps that row 0 and its momenta, or the newest row, ask for.
   RowDensity row_density(const std::vector<double>& row0, std::span<const double> momenta) const {
     return method.row_density({*theory, system, system.window(0, {row0}, turn_of(problem)), 0, problem.time_step},
                               momenta, *problem.step_control);

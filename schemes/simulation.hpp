@@ -31,12 +31,12 @@ class Simulation {
   const std::vector<Component>& components() const;
   int count(Role) const;  ///< components of this role
 
-  // What checks look at: the equations with their plan and rows, the theory, and the symmetries that the scheme has of it.
+  // The objects of checks: the equations with their plan and rows, the theory, and the scheme's symmetries of it.
   const Evolution& evolution() const;
   const FieldTheory& theory() const;
   const std::vector<LinearSymmetry>& symmetries() const;
 
-  /// How many rows a start needs: 2 for every scheme of Marsden–Patrick–Shkoller.
+  /// The number of rows that a start needs: 2 for every scheme of Marsden–Patrick–Shkoller.
   int starting_rows() const;
   /// Rows 0, 1, …, starting_rows() − 1, of all components; the multipliers' entries are not read.
   /// `density` of the rows that a run back repeats, where steps are reversible.
@@ -48,7 +48,7 @@ class Simulation {
   /// an element scheme. Throws BadInput for other schemes.
   void start_legendre(std::span<const double> row0, std::span<const double> velocity);
 
-  /// The same with the momenta at row 0 themselves, of all components [i·C + c]; those of multipliers and inner nodes are
+  /// Starts from the momenta at row 0 themselves, of all components [i·C + c]; those of multipliers and inner nodes are
   /// not read. For schemes that start_legendre() is for. `density` of the rows that a run back repeats, where steps are
   /// reversible.
   void start_momenta(std::span<const double> row0, std::span<const double> momenta,
@@ -61,7 +61,7 @@ class Simulation {
   void step(bool looked_at = true);
   /// One step of this length, where steps are reversible: it leaves their density alone.
   void step_by(double time_step);
-  /// The same as so many step(false), for less where rows outgrow the cache.
+  /// Takes `count` steps as step(false) does, for less where rows outgrow the cache.
   void steps(int count);
 
   /// Saves or restores all that the next steps depend on: they have the same bits then. What is restored was made for
@@ -72,14 +72,14 @@ class Simulation {
   std::int64_t newest() const;
   /// t of the newest rows, and beyond them as if the last step went on.
   double time(std::int64_t row) const;
-  /// Of reversible steps: ρ of the last one, and what the newest row asks for (schemes/stepping/step_density.hpp).
+  /// The density ρ of the last reversible step, and that of the newest row (schemes/stepping/step_density.hpp).
   std::optional<double> step_density() const;
   RowDensity row_density() const;
   /// The components of one role of the row `back` rows before the newest, back < starting_rows(): out[i·count + a].
   /// Multipliers and inner nodes are those that were found together with the row.
   void copy_row(int back, std::span<double> out, Role = Role::field) const;
-  /// What a run records of the fields at that row: as copy_row() gives them, or, where rows are those of a kernel, with the
-  /// processor undone.
+  /// The fields that a run records at that row: as copy_row() gives them, or, where rows are those of a kernel, with
+  /// the processor undone.
   void observe(int back, std::span<double> out) const;
   /// Rows are those of a kernel. The checks and the form formula are for these.
   bool is_processed() const;
@@ -87,7 +87,7 @@ class Simulation {
   /// there (schemes/system/momenta.hpp). Throws BadInput for a scheme without a Lagrangian.
   std::vector<double> momenta(int back = 0) const;
 
-  /// What the method declares that fields.h5 has beside the components (schemes/methods/method_registry.hpp).
+  /// The data sets that the method declares for fields.h5 (schemes/methods/method_registry.hpp).
   struct DatasetInfo {
     std::string name, meaning;
     std::vector<std::string> components;  ///< names of the values at a site
@@ -118,12 +118,12 @@ class Simulation {
   std::string plan_report() const;     ///< what `delf plan` prints
   /// Allocated now for rows, matrices, work space, and monitors once they are asked for.
   std::size_t bytes() const;
-  /// What is asked of rows while a run goes on: monitors() and residual().
+  /// The questions asked of rows while a run goes on: monitors() and residual().
   struct Looks {
     bool monitors = true, residual = true;
   };
-  /// What bytes() will be at the end of a run that starts, takes some twenty steps or more, and looks at its rows like
-  /// that. What depends on the data is not foreseen: the sparse LU of a slab that nothing else solves, and full Newton
+  /// The value of bytes() at the end of a run that starts, takes some twenty steps or more, and asks this of its rows.
+  /// Memory that depends on the data is not foreseen: the sparse LU of a slab that nothing else solves, and full Newton
   /// steps, which keep nothing.
   std::size_t bytes_of_run(Looks) const;
 

@@ -10,6 +10,7 @@
 #include "jets/fibre.hpp"
 #include "lattice/error.hpp"
 #include "schemes/families/mirror_check.hpp"
+#include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/turn.hpp"
 
@@ -74,36 +75,14 @@ void StartingRows::check_mirrors(const std::vector<double>& row) const {
 
 std::optional<std::vector<double>> StartingRows::momenta(std::span<const double> row0,
                                                          std::span<const double> velocity) const {
-  const Lattice& lattice = system_.lattice();
-  const int C = system_.components(), N = lattice.sites();
-  const double turn = turn_of(problem_);
-  std::vector<double> momenta(row0.size(), 0.0), phi, phi_t, p;
-  bool any = false;
-  for (const auto& family : system_.families()) {
-    for (int cell = 0; cell < system_.anchors(*family); ++cell) {
-      if (!system_.has_stencil(*family, 0, cell)) continue;
-      std::vector<std::size_t> places;
-      phi.clear(), phi_t.clear();
-      for (int i = 0; i < family->size(); ++i) {
-        const int c = family->values()[static_cast<std::size_t>(i)].component;
-        if (family->site(i).time != 0 || system_.component(c).at.time != 0) continue;
-        if (system_.component(c).role == Role::slaved && !system_.component(c).position) continue;  // a rate
-        const int x = family->column(cell, i), home = lattice.home(x);
-        places.push_back(static_cast<std::size_t>(home * C + c));
-        phi.push_back(row0[places.back()] + (x - home) / N * turn);
-        phi_t.push_back(velocity[places.back()]);
-      }
-      p.resize(places.size());
-      // constraints and trace stencils have none
-      const double place = family->listed() ? 0 : lattice.position(cell);
-      if (!family->momentum({problem_.time_step, lattice.space_step(), 0, place, cell}, phi, phi_t, p))
-        break;
-      any = true;
-      for (std::size_t n = 0; n < places.size(); ++n)
-        if (system_.component(static_cast<int>(places[n]) % C).role != Role::slaved) momenta[places[n]] += p[n];
-    }
-  }
-  return any ? std::optional(momenta) : std::nullopt;
+  const Window window = system_.window(0, {{row0.begin(), row0.end()}}, turn_of(problem_));
+  const LegendreTransform row(system_, window, 0);
+  if (!row.has_row()) return std::nullopt;
+  std::vector<double> momenta = row.momenta(velocity);
+  const auto C = static_cast<std::size_t>(system_.components());
+  for (std::size_t n = 0; n < momenta.size(); ++n)
+    if (system_.component(static_cast<int>(n % C)).role == Role::slaved) momenta[n] = 0;
+  return momenta;
 }
 
 }  // namespace delf

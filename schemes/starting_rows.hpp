@@ -11,15 +11,15 @@ namespace delf {
 
 class FieldTheory;
 
-/// What rows must be before a scheme starts from them. All that is given is kept by reference; rows are [i·C + c].
+/// The conditions on rows that a scheme starts from. Arguments are kept by reference; rows are [i·C + c].
 class StartingRows {
  public:
   StartingRows(const Problem& problem, const FieldTheory& theory, const LatticeSystem& system)
       : problem_(problem), theory_(theory), system_(system) {}
 
   /// S¹: chooses for every value the representative next to its neighbour, so that the section is continuous; from there
-  /// on differences are those of real numbers, and Stepper watches that they stay small enough to be told apart. Throws
-  /// NotFinite for rows that jump, BadInput for those of another winding number.
+  /// on differences are those of real numbers, and Stepper watches that they stay small enough to be distinguished.
+  /// Throws NotFinite for rows that jump, BadInput for those of another winding number.
   std::vector<std::vector<double>> lifted(std::vector<std::vector<double>> rows) const;
   /// A fixed wall does not move: the nodes of a step on it have the value of its vertex, and no velocity.
   void hold_walls(std::vector<double>& row, bool velocity) const;

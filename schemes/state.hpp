@@ -14,7 +14,7 @@
 
 namespace delf {
 
-/// What a scene says of its initial state; a parameter that is not given takes the state's own default.
+/// The initial state as a scene asks for it; a parameter that is not given takes the state's own default.
 struct StateRequest {
   std::string name;                 ///< as in `delf list states`
   std::string theory;               ///< theory.name

@@ -6,7 +6,7 @@
 
 namespace delf {
 
-/// What the fields gain around a circle beside 2π·winding, in their own units: a parameter of the problem, and of a state.
+/// The gain of the fields around a circle beside 2π·winding, in their own units: a parameter of problem and state.
 inline constexpr auto gain_key = "boundary.gain";
 
 inline double gain_of(const ParameterValues& values) { return values.maybe<double>(gain_key).value_or(0); }

@@ -6,21 +6,21 @@
 #include <cmath>
 
 #include "jets/expressions/expression.hpp"
-#include "schemes/families/jet_family.hpp"
+#include "jets/tables/density_on_table.hpp"
 
 namespace delf {
 namespace {
 
 /// The jet at a quadrature point of the stencil at (row, cell), in the order of a JetBatch.
-std::vector<double> jet_at(const JetFamily& family, const TablePoint& point, const Window& rows, std::int64_t row,
+std::vector<double> jet_at(const DensityOnTable& jets, const TablePoint& point, const Window& rows, std::int64_t row,
                            int cell, double h, double k) {
-  const int d = family.density().components();
-  std::vector<double> jet(static_cast<std::size_t>(family.density().variables()), 0.0);
-  for (int slot = 0; slot * d < family.density().variables(); ++slot) {
+  const int d = jets.density->components();
+  std::vector<double> jet(static_cast<std::size_t>(jets.density->variables()), 0.0);
+  for (int slot = 0; slot < jets.density->slots(); ++slot) {
     const auto s = static_cast<std::size_t>(slot);
     const double scale = std::pow(h, slot_powers[s].time) * std::pow(k, slot_powers[s].space);
     for (const TablePoint::Entry& entry : point.slots[s]) {
-      const Site v = family.pattern().vertices[static_cast<std::size_t>(entry.vertex)];
+      const Site v = jets.table.pattern.vertices[static_cast<std::size_t>(entry.vertex)];
       for (int a = 0; a < d; ++a)
         jet[static_cast<std::size_t>(slot * d + a)] +=
             entry.weight / scale * rows(row + v.time, cell + v.space, v.node * d + a);
@@ -43,12 +43,12 @@ std::string without_value(const LatticeSystem& system, Window rows) {
   const double h = system.time_step(), k = system.lattice().space_step();
   for (std::int64_t row = last - 1; row <= last; ++row)
     for (const auto& family : system.families()) {
-      const auto* jets = dynamic_cast<const JetFamily*>(family.get());
-      const auto* density = jets ? dynamic_cast<const SymbolicDensity*>(&jets->density()) : nullptr;
+      const DensityOnTable* jets = family->made_of();
+      const SymbolicDensity* density = jets ? jets->density->formula() : nullptr;
       if (!density) continue;
       for (int cell = 0; cell < system.lattice().sites(); ++cell) {
         if (!system.has_stencil(*family, row, cell)) continue;
-        for (const TablePoint& point : jets->table().points) {
+        for (const TablePoint& point : jets->table.points) {
           const double t = (static_cast<double>(row) + point.time) * h,
                        x = system.lattice().position(cell) + point.space * k;
           const std::string part = density->without_value(jet_at(*jets, point, rows, row, cell, h, k), t, x);

@@ -6,8 +6,8 @@
 
 namespace delf {
 
-/// Where a density that is given as text has no value on the last rows, or on the row that they lead to: the part of the
-/// text, and the jet there, "log(phi) has no value at site 3 near t = 1.2, where phi = -0.1". Empty if it has values
+/// The part of a density's text that has no value on the last rows, or on the row that they lead to, and the jet there:
+/// "log(phi) has no value at site 3 near t = 1.2, where phi = -0.1". Empty if it has values
 /// everywhere, and for densities that are compiled.
 std::string without_value(const LatticeSystem&, Window last_rows);
 

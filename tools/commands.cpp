@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "schemes/methods/method_registry.hpp"
-#include "schemes/methods/own_energy.hpp"
-#include "schemes/stepping/energy.hpp"
+#include "schemes/methods/energies.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/convergence/convergence.hpp"
 #include "tools/files/plain_rows.hpp"
@@ -131,14 +130,7 @@ ExitCode carry_out_verify(const Arguments& arguments) {
     const ComplexScene mesh = complex_scene_of(std::move(settings));
     return verify(mesh, arguments.out.value_or("results/" + mesh.scene.name), arguments.fields);
   }
-  if (arguments.fields) {  // a scene of rows needs no start, and no end
-    if (!settings.find("initial.state")) {
-      settings.imply("initial.state", "file", "theory.name");
-      settings.imply("initial.file", std::filesystem::absolute(file_of_rows(*arguments.fields)).string(),
-                     "theory.name");
-    }
-    if (!settings.find("run.until")) settings.imply("run.steps", "0", "theory.name");
-  }
+  if (arguments.fields) imply_rows(settings, *arguments.fields);
   const Scene scene = scene_of(std::move(settings));
   return verify(scene, arguments.out.value_or("results/" + scene.name), arguments.fields, arguments.nearby);
 }
@@ -190,7 +182,7 @@ std::string own_energies() {
   return names.empty() ? "" : fmt::format(" Methods with one of their own: {}.", fmt::join(names, ", "));
 }
 
-// What energy_own is.
+// The definition of energy_own.
 std::string own_energies_of_rows() {
   std::string text =
       "\nThe rows of some schemes have an energy of their own: energy_own of series.csv, and in `delf verify`.";
@@ -198,8 +190,8 @@ std::string own_energies_of_rows() {
     const char* begin = "\n  ";
     for (const std::string& line : wrapped(of + ": " + formula, 112)) text += begin + line, begin = "\n    ";
   };
-  add("linear theories on two rows", quadratic_invariant_formula);
-  for (const OwnEnergyEntry* entry : own_energy_entries()) add(entry->method, entry->formula);
+  for (const EnergyEntry* entry : energy_entries())
+    if (!entry->rows.empty()) add(entry->rows, entry->formula);
   return text;
 }
 

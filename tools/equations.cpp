@@ -5,8 +5,8 @@
 
 #include "jets/expressions/equations.hpp"
 #include "jets/expressions/stencil_text.hpp"
+#include "jets/tables/density_on_table.hpp"
 #include "lattice/error.hpp"
-#include "schemes/families/jet_family.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -21,13 +21,14 @@ using expressions::Notation;
 /// The table of the stencil that the method solves the equations of; null for methods that do not read lattice.stencil.
 const StencilTable* table_of(const Problem& p, const Simulation& simulation) {
   if (!find_method(p.method).reads_stencil) return nullptr;
-  const auto* family = dynamic_cast<const JetFamily*>(simulation.evolution().system().families()[0].get());
-  return family ? &family->table() : nullptr;
+  const DensityOnTable* jets = simulation.evolution().system().families()[0]->made_of();
+  return jets ? &jets->table : nullptr;
 }
 
 /// The density as text: that of the scene, or the text of a built-in theory; null if there is none.
 std::shared_ptr<const SymbolicDensity> text_of(const Problem& p, const Simulation& simulation) {
-  if (auto own = std::dynamic_pointer_cast<const SymbolicDensity>(simulation.theory().shared_density())) return own;
+  const std::shared_ptr<const BatchDensity>& density = simulation.theory().shared_density();
+  if (const SymbolicDensity* own = density->formula()) return {density, own};
   return text_of(p.theory, p.parameters);
 }
 
@@ -63,7 +64,7 @@ std::string equations_in_words(const Problem& p, const Simulation& simulation) {
   const StencilTable* table = table_of(p, simulation);
   std::string text;
   if (table && p.stencil == stencil_as_text) {
-    // As it is given: the family of a density of t and x may have cut its points.
+    // The stencil as it is given: the family of a density of t and x may have cut its points.
     constexpr auto sites = "stencil.sites", point = "stencil.point";
     const StencilTable given =
         stencil_of(p.parameters.get<std::string>(sites), p.parameters.get<std::string>(point), sites, point);

@@ -9,7 +9,7 @@ namespace delf {
 /// The equations of a problem for `delf plan`: of a theory that is given as text its density, its field equations, and the
 /// discrete ones of the stencil, as formulas; of others the line of their entry.
 std::string equations_in_words(const Problem&, const Simulation&);
-/// The same as LaTeX, a displayed formula each. Throws BadInput for a theory that has no text.
+/// The equations as LaTeX, a displayed formula each. Throws BadInput for a theory that has no text.
 std::string equations_in_latex(const Problem&, const Simulation&);
 
 }  // namespace delf

@@ -27,7 +27,7 @@ std::string values_of(const Parameter& key) {
   return low ? "; " + from : high ? fmt::format("; at most {}", key.range.high) : "";
 }
 
-// Of a command with a section of its own those, of others all that belong to no such command.
+// A command with a section of its own lists that section's keys; other commands list the keys that all share.
 void print_keys(std::string_view only) {
   std::string_view section;
   for (const Parameter& key : keys()) {
@@ -141,7 +141,7 @@ recorded rows (output.every); without an answer there is null. Their numbers, an
 lagrangians`, of theory.NAME as NAME, L, pi, and t, the time of the last row.
 )page";
 
-// From the table of measurements.
+// The measures, from the table of measurements.
 std::string measures() {
   std::string text = measures_head;
   for (const MeasurementEntry& m : measurements())
@@ -149,7 +149,7 @@ std::string measures() {
   return text + measures_foot;
 }
 
-/// What help explains besides commands.
+/// A subject that help explains besides commands.
 struct Topic {
   const char *name, *summary;
   std::string (*text)();

@@ -244,7 +244,7 @@ class Program:
     def mapped(self, *words):
         """Bytes of its heap at their most, and how many libraries it has loaded, when it is about to end.
 
-        What it prints last goes into a pipe that is full already, so that it waits there to be looked at. glibc's
+        What it prints last goes into a pipe that is full already, so that it waits there to be checked. glibc's
         tunables have everything allocated from the heap, which then grows by pages and never shrinks.
         """
         tunables = {"mmap_max": 0, "top_pad": 0, "trim_threshold": 1 << 40}
@@ -266,7 +266,7 @@ class Program:
         finally:
             os.close(reading)
             if process.wait() != 0 or not maps:
-                raise Refused(f"delf {' '.join(words)}: could not be looked at when it was about to end")
+                raise Refused(f"delf {' '.join(words)}: could not be checked when it was about to end")
         return mapped(maps)
 
     def files(self, *words):

@@ -64,7 +64,7 @@ Trial step_for(double limit, std::int64_t most, Simulation& simulation) {
   return trial;
 }
 
-// What the steps of a run will cost, from the first of them.
+// The cost of the steps of a run, from the first of them.
 std::string cost(const Scene& scene, const InitialRows& initial, Simulation& simulation) {
   constexpr std::int64_t warming_steps = 16;  // predictors have reached their order, caches and pages are warm
   constexpr double limit = 0.05;
@@ -85,7 +85,7 @@ std::string cost(const Scene& scene, const InitialRows& initial, Simulation& sim
   }
 }
 
-// What linear theory says of the scheme, with these steps, about a constant field.
+// The verdict of linear theory on the scheme, with these steps, about a constant field.
 std::string waves_in_words(const Scene& scene, const Simulation& simulation) {
   const auto symbol = symbol_of(scene, simulation);
   if (!symbol) return {};

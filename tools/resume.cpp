@@ -98,7 +98,7 @@ ExitCode resume(const fs::path& folder, const std::vector<Setting>& on_command_l
                          scene.steps));
   };
   Settings settings = read_settings(folder / "scene.ini", on_command_line);
-  // Where the field chooses the steps their number is a guess, and the time tells whether the run is over.
+  // The number of steps is a guess where the field chooses them, and the time tells if the run is over.
   if (is_on_mesh(settings)) {
     ComplexScene mesh = read_complex_scene(std::move(settings));
     if (mesh.scene.until) mesh.scene.steps = std::max(mesh.scene.steps, head.row + 1);

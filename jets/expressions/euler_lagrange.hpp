@@ -33,7 +33,7 @@ struct JetVariables {
   Derivative of(int variable) const;
   bool is_derivative(int variable) const { return variable < slots * d; }
 
-  /// What a text may name: fields, their derivatives up to second order, x, t, and parameters.
+  /// The names that a text may use: fields, their derivatives up to second order, x, t, and parameters.
   Names names;
 };
 

@@ -46,7 +46,9 @@ Names names_of(const ExpressionNames& given) {
 /// The expression on abstract numbers: x and t follow the slots that occur.
 Abstract abstract_value(const Graph& graph, int root, const Numbering& number, int m) {
   return Evaluation(graph, root).operator()<Abstract>([&](int variable) {
-    return Abstract::variable(variable == number.t() ? m : variable == number.x() ? m + 1 : variable);
+    if (variable == number.t() || variable == number.x())
+      return Abstract::variable(variable == number.t() ? m : m + 1, std::nullopt);
+    return Abstract::variable(variable, variable / number.d);
   });
 }
 
@@ -97,6 +99,7 @@ class ExpressionDensity final : public SymbolicDensity, public ValueDerivatives 
   void differentiate_quotient(const JetBatch& ab, double* const* d) const override {
     quotient_.derivatives(ab, d[0], d[1]);
   }
+  const ValueDerivatives* value_derivatives() const override { return this; }
   void place_gradient(const JetBatch& batch, double* l_t, double* l_x) const override {
     const std::array<double*, 2> out{l_t, l_x};
     run(by_place_, batch, out.data());

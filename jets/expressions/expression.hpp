@@ -12,13 +12,13 @@
 
 namespace delf {
 
-/// What the names in the text of a density stand for.
+/// The meanings of the names in the text of a density.
 struct ExpressionNames {
   std::vector<std::string> fields = {"phi"};  ///< each with its derivatives: phi_t, phi_x, phi_tt, …
   std::vector<std::pair<std::string, double>> parameters = {};
 };
 
-/// What a text states besides a density: symmetries, which require_symmetry() tells apart, and a constraint on the fields.
+/// The other statements of a text: symmetries, which require_symmetry() tells apart, and a constraint on the fields.
 struct BesidesDensity {
   std::vector<LinearSymmetry> symmetries = {}, up_to_divergence = {};
   std::string constraint = {};
@@ -27,6 +27,7 @@ struct BesidesDensity {
 /// A density that knows the text it is made of.
 class SymbolicDensity : public BatchDensity {
  public:
+  const SymbolicDensity* formula() const override { return this; }
   const std::string& text() const { return text_; }
   const ExpressionNames& names() const { return names_; }
   /// The innermost part of the density, or of its gradient, that has no value at a jet, the variables in the order of a

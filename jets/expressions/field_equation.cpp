@@ -9,7 +9,7 @@
 #include "jets/expressions/evaluate.hpp"
 #include "jets/expressions/expression.hpp"
 #include "jets/expressions/parse.hpp"
-#include "jets/simd/scratch_rows.hpp"
+#include "jets/one_jet.hpp"
 
 namespace delf {
 
@@ -34,7 +34,7 @@ class FieldEquations::Form {
 
 namespace {
 
-/// By the rules of differentiation, of a density as text.
+/// The equations of a density as text, by the rules of differentiation.
 class OfText final : public FieldEquations::Form {
  public:
   explicit OfText(const SymbolicDensity& density)
@@ -87,14 +87,14 @@ class OfText final : public FieldEquations::Form {
   std::vector<Evaluation> G_;  ///< G, ∂G/∂φ_a; empty: no constraint
 };
 
-/// By the Hessian of a compiled density of first order.
+/// The equations of a compiled density of first order, by its Hessian.
 class OfHessian final : public FieldEquations::Form {
  public:
   explicit OfHessian(const BatchDensity& density) : Form(2), density_(density) {}
 
   std::vector<FieldEquations::Value> values(std::span<const double> jet, double t, double x) const override {
     const int d = density_.components(), m = density_.variables();
-    const std::vector<double> g = gradient(jet, t, x), H = hessian(jet, t, x);
+    const std::vector<double> g = gradient_at(density_, jet, t, x), H = hessian_at(density_, jet, t, x);
     // D_t and D_x of φ, φ_t, φ_x are φ_t, φ_tt, φ_tx and φ_x, φ_tx, φ_xx
     constexpr int by_t[] = {1, 3, 4}, by_x[] = {2, 4, 5};
     std::vector<FieldEquations::Value> E(at(d));
@@ -112,8 +112,8 @@ class OfHessian final : public FieldEquations::Form {
     constexpr double step = 1e-4;
     for (const bool in_t : {true, false}) {
       const double by = step * std::max(1.0, std::abs(in_t ? t : x));
-      const auto above = gradient(jet, in_t ? t + by : t, in_t ? x : x + by),
-                 below = gradient(jet, in_t ? t - by : t, in_t ? x : x - by);
+      const auto above = gradient_at(density_, jet, in_t ? t + by : t, in_t ? x : x + by),
+                 below = gradient_at(density_, jet, in_t ? t - by : t, in_t ? x : x - by);
       for (int a = 0; a < d; ++a) {
         const int v = (in_t ? d : 2 * d) + a;
         const double term = (above[at(v)] - below[at(v)]) / (2 * by);
@@ -124,34 +124,13 @@ class OfHessian final : public FieldEquations::Form {
   }
 
  private:
-  /// The first of a pack of equal jets.
-  template <class Function>
-  std::vector<double> at_jet(std::span<const double> jet, double t, double x, int results,
-                             const Function& function) const {
-    const int m = density_.variables();
-    const ScratchRows in(m + 1, lanes), out(results, lanes);
-    for (int v = 0; v <= m; ++v) std::fill_n(in[v], lanes, v < m ? jet[at(v)] : x);
-    function(JetBatch{lanes, in.data(), t, in[m]}, out.data());
-    std::vector<double> first;
-    for (int r = 0; r < results; ++r) first.push_back(out[r][0]);
-    return first;
-  }
-  std::vector<double> gradient(std::span<const double> jet, double t, double x) const {
-    return at_jet(jet, t, x, density_.variables(),
-                  [&](const JetBatch& batch, double* const* g) { density_.gradient(batch, g); });
-  }
-  std::vector<double> hessian(std::span<const double> jet, double t, double x) const {
-    return at_jet(jet, t, x, density_.variables() * density_.variables(),
-                  [&](const JetBatch& batch, double* const* H) { density_.hessian(batch, H); });
-  }
-
   const BatchDensity& density_;
 };
 
 }  // namespace
 
 std::optional<FieldEquations> FieldEquations::of(const BatchDensity& density) {
-  if (const auto* text = dynamic_cast<const SymbolicDensity*>(&density)) try {
+  if (const SymbolicDensity* text = density.formula()) try {
       return FieldEquations(std::make_shared<const OfText>(*text));
     } catch (const TooLarge&) {
       return std::nullopt;

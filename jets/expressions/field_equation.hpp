@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// The field equations of a density at one point of a given field, to be told of a field whether it solves them:
+/// The field equations of a density at one point of a given field, to check that it solves them:
 ///
 ///     E_a = D_t ∂ℓ/∂φ_t + D_x ∂ℓ/∂φ_x − ∂ℓ/∂φ − D_t² ∂ℓ/∂φ_tt − …
 ///
@@ -19,7 +19,7 @@ class FieldEquations {
   /// Nothing for a compiled density of second derivatives, and for a text whose equations are too large.
   static std::optional<FieldEquations> of(const BatchDensity&);
 
-  /// Of the derivatives that they read: 2, or 4 of densities of second order.
+  /// The order of the highest derivative that the equations read: 2, or 4 for densities of second order.
   int order() const;
 
   struct Value {
@@ -28,7 +28,7 @@ class FieldEquations {
   /// `jet` has ∂ᵐ⁺ⁿφ_a/∂tᵐ∂xⁿ at (o (o + 1)/2 + n) d + a with o = m + n, from φ to all of that order. The density is to live
   /// as long.
   std::vector<Value> operator()(std::span<const double> jet, double t, double x) const;
-  /// How much rounding of the jet, each number of it by the relative amount `rounding`, may change the sums.
+  /// Bounds the change of the sums when each number of the jet is rounded by the relative amount `rounding`.
   std::vector<double> rounding(std::span<const double> jet, double t, double x, double rounding) const;
 
   class Form;

@@ -16,7 +16,7 @@ namespace {
 
 using namespace expressions;
 
-/// What stands between commas that are in no brackets.
+/// Splits a text at the commas that are in no brackets.
 std::vector<std::string_view> between_commas(std::string_view text) {
   std::vector<std::string_view> parts;
   std::size_t begin = 0;

@@ -90,7 +90,7 @@ class Equations {
     for (int n = 0; n < in_x; ++n) node = total_derivative(graph_, node, jets_, false);
     return node;
   }
-  /// What stands before ∂ᵐ_t ∂ⁿ_x δu_b in Σ (−∂)^MN (c_ba^MN δu_b), by Leibniz's rule.
+  /// The coefficients of ∂ᵐ_t ∂ⁿ_x δu_b in Σ (−∂)^MN (c_ba^MN δu_b), by Leibniz's rule.
   std::vector<int> adjoint_terms(int a, int b, Order order) {
     constexpr int binomial[3][3] = {{1, 0, 0}, {1, 1, 0}, {1, 2, 1}};
     std::vector<int> terms;

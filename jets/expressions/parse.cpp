@@ -151,7 +151,7 @@ class Builder {
   }
 
  private:
-  /// What would end the line, or move the cursor, as question marks.
+  /// Shows control characters, which would end the line or move the cursor, as question marks.
   static std::string shown(std::string_view part) {
     std::string text(part);
     std::ranges::replace_if(
@@ -280,7 +280,7 @@ int parse_sum(Builder& make, At first, At last) {
   }
 }
 
-/// What the grammar must not meet: texts that are too long, or nested too deep; bytes that are no ASCII text.
+/// Refuses texts that are too long, or nested too deep, and bytes that are no ASCII text.
 void check_bounds(const Builder& make, std::string_view text, const std::string& key) {
   if (text.size() > most_bytes)
     throw BadInput(key, key + ": has " + std::to_string(text.size()) + " characters, more than " +

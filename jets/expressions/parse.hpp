@@ -9,7 +9,7 @@
 
 namespace delf::expressions {
 
-/// What names in a text stand for, besides functions and pi.
+/// The meanings of names in a text, besides functions and pi.
 struct Names {
   std::vector<std::pair<std::string, int>> variables;     ///< by number
   std::vector<std::pair<std::string, double>> constants;  ///< parameters

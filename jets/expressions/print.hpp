@@ -13,7 +13,7 @@ enum class Notation {
   latex
 };
 
-/// How variables are written, and which terms come first.
+/// The spelling of variables, and the order of terms.
 struct Naming {
   std::function<std::string(int variable)> name;
   std::function<int(int variable)> rank = [](int) { return 0; };  ///< the highest first

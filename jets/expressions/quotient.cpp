@@ -34,7 +34,7 @@ struct Quotient::Lanes {
     if (is_near()) return N[0] + d2 * (N[2] / 24 + d2 * (N[4] / 1920 + d2 * (N[6] / 322560)));
     return (at_a[0] - at_b[0]) / delta;
   }
-  /// By a and by b: ½∂/∂m ± ∂/∂δ of the series.
+  /// The derivatives by a and by b: ½∂/∂m ± ∂/∂δ of the series.
   std::array<double, 2> slopes() const {
     const double d2 = delta * delta;
     if (is_near()) {

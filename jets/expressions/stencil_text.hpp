@@ -7,7 +7,7 @@
 
 namespace delf {
 
-/// What lattice.stencil is called where a scene gives the stencil itself.
+/// The name of lattice.stencil where a scene gives the stencil itself.
 inline constexpr const char* stencil_as_text = "text";
 
 /// A stencil as text: its sites as (time, space), and the jets at its points, one after the other, separated by |:

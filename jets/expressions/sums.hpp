@@ -47,7 +47,7 @@ class Sums {
   Sum with_common_factors(Sum);
   bool take_out(Sum&, int atom_number);
   bool over_one_denominator(Sum&, int atom_number);
-  /// As one term: the term itself, or an atom to the first power.
+  /// A sum as one term: the term itself, or an atom to the first power.
   Term as_term(const Sum&, double exponent);
   int intern(Atom);
   bool is_scale(const Term&) const;

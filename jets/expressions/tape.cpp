@@ -126,7 +126,7 @@ class Tape::Compiler {
     return {.code = Code::function, .function = n.operation, .a = u, .k = k, .l = l};
   }
 
-  /// With nodes in place of rows.
+  /// Instruction i with nodes in place of rows.
   Instruction instruction(int i) const {
     const Node& n = graph_[i];
     const auto value = [this](int u) { return graph_[u].value; };

@@ -11,7 +11,7 @@ namespace delf::expressions {
 /// sum reads is fused with it.
 class Tape {
  public:
-  /// Of the variables 0 … variables − 1, the last of which is t.
+  /// The tape of the variables 0 … variables − 1, the last of which is t.
   Tape(const Graph&, const std::vector<int>& outputs, int variables);
   Tape() = default;
 

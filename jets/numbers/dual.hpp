@@ -64,7 +64,7 @@ struct Dual {
     for (int i = 0; i < n; ++i) r.d[i] = (a.d[i] - r.value * b.d[i]) * inverse;
     return r;
   }
-  // With plain numbers: no derivatives are touched that need not be.
+  // A plain number touches no derivatives that it need not.
   friend Dual operator+(Dual a, double b) { a.value = a.value + T(b); return a; }
   friend Dual operator+(double a, Dual b) { b.value = T(a) + b.value; return b; }
   friend Dual operator-(Dual a, double b) { a.value = a.value - T(b); return a; }

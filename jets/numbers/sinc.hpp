@@ -86,7 +86,7 @@ inline Pack sinc_curvature(Pack x) {
     });
   return near;
 }
-/// What a Hessian by Dual of Dual needs.
+/// The operations that a Hessian by Dual of Dual needs.
 template <class T, int n>
 Dual<T, n> sinc_slope(const Dual<T, n>& u) {
   return chain(u, sinc_slope(u.value), sinc_curvature(u.value));

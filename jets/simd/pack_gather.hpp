@@ -17,7 +17,7 @@ namespace delf {
 // Lane by lane: the processors' own instructions for packs take longer.
 
 namespace detail {
-// As one list: lanes that are set one after the other wait for each other.
+// All lanes are listed at once: lanes that are set one after the other wait for each other.
 template <int... l>
 [[gnu::always_inline]] inline Pack gather(const double* from, const int* index, std::integer_sequence<int, l...>) {
   return {Pack::Vector{from[index[l]]...}};

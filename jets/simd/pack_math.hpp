@@ -52,7 +52,7 @@ inline Pack times_sign(Pack x, Pack sign) {
   return {reinterpret_cast<Pack::Vector>(reinterpret_cast<Pack::Bits>(x.v) ^ reinterpret_cast<Pack::Bits>(sign.v))};
 }
 
-/// Where reduction by two parts of π is as good as exact; beyond it the library's sine is used in that lane.
+/// The largest argument at which reduction by two parts of π is as good as exact; lanes beyond use the library's sine.
 inline constexpr double largest_reduced = 3e6;
 
 // π = π₁ + π₂ + 7e-27, π₁ of 32 bits. For |x| ≤ 3e6 the n below has at most 21 bits (a half included), so nπ₁ is exact,
@@ -61,7 +61,7 @@ inline constexpr double largest_reduced = 3e6;
 // a fused multiply–add, or is spoiled by one.
 inline constexpr double pi_1 = 0x1.921fb544p+1, pi_2 = 0x1.0b4611a626331p-33, over_pi = 0x1.45f306dc9c883p-2;
 
-/// Several packs keep the order of what works them out and what needs them (jets/near_packs.hpp); one has no other.
+/// A pack as it is: types of several packs may overload this to keep their operations in order.
 inline Pack side_by_side(Pack x) { return x; }
 /// Σ_j c_j s^j, the highest coefficient first.
 template <class P, class... Lower>
@@ -155,7 +155,7 @@ inline P cosine_in_reach(P x) {
   const P r = (n * pi_1 - magnitude) + n * pi_2;
   return sine_near_zero(r, P(r * r), sign_of_parity(shifted));
 }
-/// What was found in reach, but f in lanes beyond.
+/// Returns `near`, with f(x) in the lanes where |x| exceeds the bound.
 template <class Function>
 [[gnu::always_inline]] inline Pack asked(Pack x, Pack near, double bound, Function f) {
   if (any_above(abs(x), bound)) [[unlikely]]
@@ -189,7 +189,7 @@ inline Pack cosm1(Pack x) {
 /// cos x where sin x is wanted too, whose derivative it is: from the same multiple of π, which compilers then find once.
 /// Error below 3e-16 absolute.
 inline Pack cosine_beside_sine(Pack x) { return cosm1(x) + 1.0; }
-/// Of other numbers there is no cheaper way.
+/// The cosine beside a known sine; numbers other than packs have no cheaper way.
 inline auto cosine_beside_sine(const auto& x) { return cos(x); }
 
 namespace detail {
@@ -204,7 +204,7 @@ struct ExpParts {
   Pack shifted, n, r, even, cubic;  ///< shifted: n + round_magic
 };
 
-/// By polynomials of degree 10 and 11, minimax on |r| ≤ ½ log 2 and rounded as the sine's above; the error of the even
+/// Polynomials of degree 10 and 11, minimax on |r| ≤ ½ log 2 and rounded as the sine's above; the error of the even
 /// part is 3.6e-18, that of the odd one 2.7e-19 of r. Always inline: a product that it returns is rounded then nowhere, or
 /// everywhere, where what it is added to may be fused with it.
 [[gnu::always_inline]] inline ExpParts exp_parts(Pack x) {
@@ -261,7 +261,7 @@ inline Pack sinh_in_reach(Pack x) { return times_sign(hyperbolic(abs(x)).sinh, s
 
 /// eˣ = 2ⁿ eʳ. Relative error below 2e-16; 0 and infinity where std::exp has them.
 inline Pack exp(Pack x) {
-  // From these bounds on eˣ is 0 or infinity anyway. A NaN stays.
+  // Beyond these bounds eˣ is 0 or infinity anyway. A NaN stays.
   constexpr double lowest = -746, highest = 710;
   const detail::ExpParts e = detail::exp_parts(detail::smaller(highest, detail::larger(lowest, x)));
   return detail::times_power_of_2(((e.even + e.cubic) + e.r) + 1.0, e.n);

@@ -15,7 +15,7 @@ double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] 
 Vector scaled(const Vector& a, double s) { return {s * a[0], s * a[1], s * a[2]}; }
 Vector unit(const Vector& a) { return scaled(a, 1 / std::sqrt(dot(a, a))); }
 
-/// From N_l and its derivatives by the cell's own coordinates ξ, η. With tangents g_ξ = Σ x_l ∂_ξN_l and g_η:
+/// The point with N_l and its derivatives by the cell's own coordinates ξ, η. With tangents g_ξ = Σ x_l ∂_ξN_l and g_η:
 /// e₁ = g_ξ/|g_ξ|, e₂ ⟂ e₁; ∂_aN = Σ_b (G⁻¹)_ba ∂_bN, G_ba = g_b·e_a.
 CellPoint placed(const Mesh& mesh, std::span<const std::int32_t> corners, double weight, std::vector<double> value,
                  const std::vector<std::vector<double>>& by_own) {

@@ -12,7 +12,7 @@ struct CellPoint {
   std::vector<double> value;
   std::vector<std::vector<double>> slopes;  ///< [a][l]
 };
-/// Those of linear (P1) and bilinear (Q1) cells: one in a segment or a triangle, Gauss's four in a quadrilateral.
+/// The points of linear (P1) and bilinear (Q1) cells: one in a segment or a triangle, Gauss's four in a quadrilateral.
 std::vector<CellPoint> cell_points(const Mesh&, int cell);
 
 /// ∫ N of each corner over the cell: the shares of its measure.

@@ -20,7 +20,7 @@ struct FluxPoint {
 ///     J(q⁻, q⁺) = Σ_i β_i θ(μ⁻_i q⁻ + μ⁺_i q⁺)·(α⁻_i q⁻ + α⁺_i q⁺)
 ///
 struct NamedFlux {
-  /// What is of the highest order: ½(q⁻ + q⁺); the point (x⁺, y) whose momentum θ_x(x⁺, y) is that of q⁻; the value q.
+  /// The observed value, of the highest order: ½(q⁻ + q⁺); (x⁺, y) whose momentum θ_x(x⁺, y) is that of q⁻; or q.
   enum class Observed { average, momentum, vertex };
   std::string name;
   std::vector<FluxPoint> points;

@@ -37,7 +37,7 @@ struct JetTable {
   constexpr const QuadraturePoint<n>& point(int q) const { return quadrature[static_cast<std::size_t>(q)]; }
 };
 
-/// Whether the weights of a table make sense: those of the quadrature sum to 1, and on an affine field
+/// True if the weights of a table make sense: those of the quadrature sum to 1, and on an affine field
 /// φ = α + βt + γx every point finds φ_t = β and φ_x = γ.
 template <int n, int Q>
 constexpr bool is_consistent(const JetTable<n, Q>& table) {
@@ -77,7 +77,7 @@ concept JetMap = requires {
   requires is_consistent(M::table);  // weights: sum to 1 (quadrature, phi); exact on affine fields (phi_t, phi_x)
 };
 
-/// Where a quadrature point lies relative to the anchor, in steps: ξ = Σ_l phi[l] · (space offset of l).
+/// The place of a quadrature point relative to the anchor, in steps: ξ = Σ_l phi[l] · (space offset of l).
 template <int n>
 constexpr double space_offset(const Offsets<n>& shape, const QuadraturePoint<n>& point) {
   double xi = 0;

@@ -30,7 +30,7 @@ struct LineBasis {
   std::vector<double> knots = {};  ///< inside (0, 1), ascending: a rule goes from one to the next
 
   int size() const { return static_cast<int>(places.size()); }
-  /// Whether the first coefficient is the value at 0, and the last one that at 1: both can be shared with neighbours.
+  /// True if the first coefficient is the value at 0, and the last one that at 1: both can be shared with neighbours.
   bool has_end_nodes() const;
 };
 
@@ -45,7 +45,7 @@ LineBasis b_spline_basis(int S, int degree);
 struct NamedLineBasis {
   std::string name;
   LineBasis (*make)(int S);
-  /// Where the degree is not S − 1: of that degree. Null for polynomials.
+  /// Makes the basis of a degree that is not S − 1. Null for polynomials.
   LineBasis (*of_degree)(int S, int degree) = nullptr;
   int fewest = 2;  ///< functions
 };

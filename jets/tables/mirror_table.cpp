@@ -52,7 +52,7 @@ PointAtWall turned(const PointAtWall& p) {
   return q;
 }
 
-/// With the sites within in place of their mirror images.
+/// The point with sites within in place of their mirror images.
 PointAtWall folded(const PointAtWall& p, Mirror mirror) {
   PointAtWall q{p.weight, p.time, p.space, {}};
   for (std::size_t s = 0; s < p.slots.size(); ++s) {
@@ -78,7 +78,7 @@ MirrorTable mirror_table(const StencilTable& table, Placement wall, Mirror mirro
   const auto [low, high] = std::ranges::minmax(table.pattern.vertices, {}, &Site::time);
   const int from = left ? first.space : -last.space, to = left ? last.space : -first.space;
 
-  // Of the stencils that are not whole, anchored at from + anchor < 0 ≤ to + anchor as seen from the wall.
+  // The stencils that are not whole have anchors with from + anchor < 0 ≤ to + anchor as seen from the wall.
   std::vector<PointAtWall> points;
   for (int anchor = -to; anchor + from < 0; ++anchor)
     for (const TablePoint& given : table.points) {

@@ -7,8 +7,8 @@
 
 namespace delf {
 
-/// How a field goes on beyond a wall: oddly about the wall's own value, y_{−j} = 2y₀ − y_j, whether it is fixed or not; or evenly,
-/// y_{−j} = y_j − 2jks, where its slope φ_x = s at the wall is kept or, with s = 0, natural.
+/// The image of a field beyond a wall: odd about the wall's own value, y_{−j} = 2y₀ − y_j, whether it is fixed or not;
+/// or even, y_{−j} = y_j − 2jks, where its slope φ_x = s at the wall is kept or, with s = 0, natural.
 enum class Mirror { odd, even };
 
 struct MirrorTable {
@@ -17,7 +17,7 @@ struct MirrorTable {
   std::vector<std::array<double, jet_slots>> of_slope;
 };
 
-/// What the action of a wide table, without nodes inside its cells, has at a wall, in one stencil with the placement `wall`:
+/// The action of a wide table, without nodes inside its cells, at a wall, in one stencil with the placement `wall`:
 /// a mirror, or a wall. A field that goes on beyond its walls as its mirror image is one on a circle of 2(N − 1) sites, and half
 /// of the circle's action is a function of the sites of the interval,
 ///

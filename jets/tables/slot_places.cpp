@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "jets/simd/scratch_rows.hpp"
+#include "jets/one_jet.hpp"
 
 namespace delf {
 namespace {
@@ -20,7 +20,7 @@ double monomial(double x, int n) {
   return value;
 }
 
-/// What a density couples, slot by slot.
+/// The couplings of a density, slot by slot.
 struct Coupling {
   const BatchDensity& density;
 
@@ -61,13 +61,10 @@ struct Coupling {
 /// The density has a value where all derivatives of a set are 0: beside a quotient by one of them it has not.
 bool has_value_without(const BatchDensity& density, const std::vector<int>& set) {
   constexpr double usual = 0.7;
-  const int d = density.components(), m = density.variables();
-  const ScratchRows jet(m + 1, lanes), g(m, lanes);
-  for (int v = 0; v <= m; ++v) std::fill_n(jet[v], lanes, std::ranges::count(set, v / d) > 0 && v < m ? 0 : usual);
-  density.gradient({lanes, jet.data(), usual, jet[m]}, g.data());
-  for (int v = 0; v < m; ++v)
-    if (!std::isfinite(g[v][0])) return false;
-  return true;
+  std::vector<double> jet;
+  for (int v = 0; v < density.variables(); ++v)
+    jet.push_back(std::ranges::count(set, v / density.components()) > 0 ? 0 : usual);
+  return std::ranges::all_of(gradient_at(density, jet, usual, usual), [](double g) { return std::isfinite(g); });
 }
 
 /// Σ_q w_q (p − c_s) over the points that have the slot is not zero.

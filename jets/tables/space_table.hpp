@@ -26,7 +26,7 @@ StencilTable linear_space();
 
 /// Pairs of sites as far apart as this make space of order 20.
 inline constexpr int widest_pair = 10;
-/// What the pairs {i, i + m}, m = 1 … p, weigh in the action of order 2p:
+/// The weights of the pairs {i, i + m}, m = 1 … p, in the action of order 2p:
 ///
 ///     m² β_m = 2 (−1)^{m+1} p!² / ((p − m)! (p + m)!),    Σ_m m² β_m = 1
 ///

@@ -10,7 +10,7 @@
 
 namespace delf {
 
-/// What makes a kernel accurate: kicks and drifts by turns, kicks[0], drifts[0], kicks[1], …, as fractions of h, one kick
+/// The correction of a kernel: kicks and drifts by turns, kicks[0], drifts[0], kicks[1], …, as fractions of h, one kick
 /// more than drifts. Applied once to φ and its rate, they give the first row of the kernel, with the momenta below that
 /// row; undone on a copy of a row, the same with signs turned in reverse order, they give φ and its rate there.
 struct Processor {

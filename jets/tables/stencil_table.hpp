@@ -48,12 +48,12 @@ struct TablePoint {
   const std::vector<Entry>& operator[](JetSlot slot) const { return slots[static_cast<std::size_t>(slot)]; }
 };
 
-/// Where a node of the unit cell lies in the cell, as fractions of h and k. Node 0 is the vertex (0, 0).
+/// The place of a node of the unit cell in the cell, as fractions of h and k. Node 0 is the vertex (0, 0).
 struct NodePosition {
   double time = 0, space = 0;
 };
 
-/// What tells one scheme from another: the vertices that a stencil reads and the jets that their values stand for,
+/// The data of one scheme: the vertices that a stencil reads and the jets that their values stand for,
 ///
 ///     L_Δ = |Δ| Σ_q w_q ℓ(t_q, x_q, j_q),    j_q = M_q y_Δ,    |Δ| = measure · h k.
 ///
@@ -66,13 +66,13 @@ struct StencilTable {
   /// Elements: the quadrature of the lower side, where a step starts: weights, and φ and φ_x of the vertices there
   /// (time and node's time 0), in their order. φ_t has the weights of φ.
   std::vector<TablePoint> lower_side = {};
-  /// Of methods that are not variational, what a point's ∂ℓ/∂j adds to the residuals in place of M_qᵀ: as many as points.
+  /// The functions that take the place of M_qᵀ in methods that are not variational: ∂ℓ/∂j enters residuals by them.
   std::vector<TablePoint> tests = {};
 
   const TablePoint& test(std::size_t point) const { return tests.empty() ? points[point] : tests[point]; }
 };
 
-/// Whether the weights of every point are exact on affine fields and those of the points sum to 1: the rule that
+/// True if the weights of every point are exact on affine fields and those of the points sum to 1: the rule that
 /// built-in tables are checked by when they are compiled (is_consistent of a JetTable).
 bool is_consistent(const StencilTable&);
 

@@ -42,7 +42,7 @@ std::vector<double> suited_pairs(int p, double decay) {
   std::vector<double> best = pair_weights(p);
   if (p == 1) return best;
   double least = weighted_defect(best, decay);
-  // From the weights of maximal order, with corrections that leave their sum: rows θ, columns m = 2 … p.
+  // The basis of corrections to the weights of maximal order that leave their sum: rows θ, columns m = 2 … p.
   Eigen::MatrixXd basis(points, p - 1);
   Eigen::VectorXd defect(points);
   for (int j = 0; j < points; ++j) {

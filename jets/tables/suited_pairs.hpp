@@ -14,7 +14,7 @@ double pair_symbol(const std::vector<double>& pairs, double theta);
 ///
 /// by Lawson's reweighted least squares: C. L. Lawson, thesis, UCLA (1961).
 std::vector<double> suited_pairs(int p, double decay);
-/// That maximum.
+/// The largest weighted defect of these pairs.
 double weighted_defect(const std::vector<double>& pairs, double decay);
 
 }  // namespace delf

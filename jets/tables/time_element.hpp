@@ -6,7 +6,7 @@
 
 namespace delf {
 
-/// What makes the pieces of a trajectory one: nodes that neighbours share, or multipliers at the ends of broken elements.
+/// The link between pieces of a trajectory: nodes that neighbours share, or multipliers at the ends of broken elements.
 enum class Continuity { shared, multipliers };
 
 /// An element of time on one site: q = Σ_j φ_j(t/h) x_j, with a quadrature rule on every span between the basis's knots.

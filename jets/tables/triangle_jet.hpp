@@ -17,7 +17,7 @@ inline constexpr struct Triangle {
       shapes::triangle, 1, {{{1, {1. / 3, 1. / 3, 1. / 3}, {-1, 1, 0}, {0, -1, 1}}}}};
 } triangle;
 
-/// The same with the value of the first vertex in the nonlinear term (their footnote 3): an explicit scheme.
+/// TriangleCentre with the value of the first vertex in the nonlinear term (their footnote 3): an explicit scheme.
 ///
 /// The field equation of ℓ = ½φ_t² − ½φ_x² + cos φ − 1:
 ///

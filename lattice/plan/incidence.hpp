@@ -11,7 +11,7 @@
 
 namespace delf {
 
-/// Whether an unknown enters an equation with a constant coefficient.
+/// The way an unknown enters an equation: with a constant coefficient or not.
 enum class Dependence { linear, nonlinear };
 
 /// An unknown that an equation contains: `offset` is from the equation's own site, and is never wrapped.

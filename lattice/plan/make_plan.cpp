@@ -15,7 +15,7 @@ namespace {
 
 int positive_mod(int a, int n) { return ((a % n) + n) % n; }
 
-/// How the sites of a lattice are mapped to those of its quotient.
+/// The map from the sites of a lattice to those of its quotient.
 SolvePlan::Table frame(const Lattice& lattice, const Quotient& quotient) {
   SolvePlan::Table table;
   table.circle = quotient.circle;
@@ -131,7 +131,7 @@ struct Analysed {
 
 enum class Agreement { none, rows, all };
 
-/// Whether further periods between the walls change only the number of sites there.
+/// Agree if further periods between the walls change only the number of sites there.
 Agreement compare(const Analysed& shorter, const Analysed& longer) {
   SolvePlan::Table extended = shorter.table;
   extended.lattice_sites = longer.quotient.sites;
@@ -147,7 +147,7 @@ Agreement compare(const Analysed& shorter, const Analysed& longer) {
   return agreement;
 }
 
-/// Whether each (site, component) that is not data has one unknown and one equation in every slab.
+/// True if each (site, component) that is not data has one unknown and one equation in every slab.
 bool regular(const Quotient& quotient, const StructuralAnalysis& analysis) {
   if (quotient.parities == 1) return true;
   for (int n = 0; n < quotient.nodes(); n += 2) {
@@ -226,7 +226,7 @@ SolvePlan planned_on_mesh(const Lattice& lattice, const SystemPattern& system, S
   return plan;
 }
 
-/// Whether each of the two periods adds the same number of blocks.
+/// True if each of the two periods adds the same number of blocks.
 bool grow_evenly(const Analysed& a, const Analysed& longer, const Analysed& longest) {
   return longer.blocks[0] - a.blocks[0] == longest.blocks[0] - longer.blocks[0] &&
          longer.blocks[1] - a.blocks[1] == longest.blocks[1] - longer.blocks[1];
@@ -246,7 +246,7 @@ SolvePlan planned(const Lattice& lattice, const SystemPattern& system, const Ana
   plan.table.regular = regular(quotient, a.analysis);
   plan.table.matched = !longest || compare(a, *longest) == Agreement::all;
   measure_rows(quotient, a.analysis, plan);
-  // Where there are only walls, one without a kinetic term may lie within its row.
+  // An interval may be all walls; one without a kinetic term may then lie within its row.
   const bool has_bulk = lattice.space() != Space::interval || lattice.sites() > 2 * system.width;
   if (has_bulk && std::ranges::all_of(quotient.edges, [](const Quotient::Edge& e) { return e.time == 0; }) &&
       std::ranges::all_of(quotient.reach, [](int time) { return time == 0; }))

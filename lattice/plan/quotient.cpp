@@ -36,7 +36,7 @@ std::vector<Coupling> checked(const SystemPattern& system, const Lattice& lattic
   return equation;
 }
 
-/// Which of several equally good unknowns an equation is solved for: that of its own site and component, else a near
+/// The preference among equally good unknowns of an equation: its own site and component first, else a near
 /// one. The last digits differ for all offsets, so that the best matching is unique and repeats along the lattice.
 long long farness(const Quotient& quotient, const Quotient::Edge& edge) {
   const long long steps = std::abs(edge.space) * quotient.components +

@@ -33,7 +33,7 @@ class Quotient {
   int parity(int node) const { return node % parities; }
   /// site·components + component, without bounds
   int place(int node, int space) const { return (site(node) + space) * components + component(node); }
-  /// In whole cells of a circle: how far a site is from the cell's own.
+  /// The distance of a site from the cell's own, in whole cells of a circle.
   int cell(int shifted_site) const { return circle ? (shifted_site - wrapped(shifted_site)) / sites : 0; }
   int wrapped(int shifted_site) const { return ((shifted_site % sites) + sites) % sites; }
   /// A site as far from both walls as possible that keeps its place in its period in longer intervals.
@@ -73,7 +73,7 @@ struct SlabGraph {
 };
 /// `cells` is the number of cells of the circle; 1 for an interval.
 SlabGraph slab_graph(const Quotient&, const StructuralAnalysis&, int cells);
-/// How many strongly connected components the slabs of a parity have, on the whole circle or interval.
+/// The number of strongly connected components that the slabs of a parity have, on the whole circle or interval.
 long long count_blocks(const Quotient&, const StructuralAnalysis&, const SlabGraph&, int cells, int slab_parity);
 
 }  // namespace delf

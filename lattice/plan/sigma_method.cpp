@@ -41,8 +41,8 @@ StructuralAnalysis analyse(int size, const std::vector<Occurrence>& occurrences)
   return analysis;
 }
 
-// With c_e = d_u − σ(e, u) on the matching, d_v ≥ c_e + σ(e, v) bounds the difference of two d. Raising or lowering
-// them to the bound finds longest paths, and terminates: a cycle that gained rows would be a better matching.
+// The bounds on d: with c_e = d_u − σ(e, u) on the matching, d_v ≥ c_e + σ(e, v) bounds the difference of two. Moving
+// d to the bound finds longest paths, and terminates: a cycle that gained rows would be a better matching.
 
 void raise_offsets(StructuralAnalysis& analysis, const std::vector<Occurrence>& occurrences, std::vector<int> least) {
   std::vector<int>& d = analysis.d = std::move(least);

@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// How the unknowns of a slab are coupled.
+/// The coupling of the unknowns of a slab.
 enum class SolveKind {
   explicit_,    ///< each equation contains its own unknown of the slab and no other: all sites at once
   chain,        ///< one direction only, on an interval: a sweep (rightwards if lower > 0, leftwards if upper > 0)
@@ -32,8 +32,8 @@ struct Slab {
   bool matched = true;  ///< equations[n] is the one that is matched with unknowns[n]; if not, both are merely listed
 };
 
-/// Which equation is solved when, and for what. In slab J the unknown (i, c) sits at row J + offset(i, c), and the
-/// equation (i, c) at row J − shift(i, c). The bulk unknowns of component 0 have offset 0.
+/// The order of solving: which equation is solved when, and for what. In slab J the unknown (i, c) sits at row
+/// J + offset(i, c), the equation (i, c) at row J − shift(i, c). The bulk unknowns of component 0 have offset 0.
 struct SolvePlan {
   SolveKind kind = SolveKind::explicit_;
   /// Over all equations of a slab: the largest of ±(place of the matched unknown − place of another unknown of the
@@ -75,7 +75,7 @@ struct SolvePlan {
 
   /// One line in words: "cyclic band, width 1+1, 255 unknowns a slab, one block".
   std::string describe() const;
-  /// Which equation determines what, where, and how: a few lines.
+  /// Says in a few lines which equation determines which unknown, where, and how.
   std::string report() const;
 
   /// The plan of one (site, component, parity of the row), as unknown and as equation.

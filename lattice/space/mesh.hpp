@@ -38,7 +38,7 @@ struct Mesh {
     vertices.insert(vertices.end(), corners.begin(), corners.end());
     first.push_back(static_cast<std::int32_t>(vertices.size()));
   }
-  /// How many of x, y, z the points need: 1, 2 or 3.
+  /// The number of x, y, z that the points need: 1, 2 or 3.
   int coordinates() const;
 };
 
@@ -46,12 +46,12 @@ struct Mesh {
 double measure(const Mesh&, int cell);
 /// Length of the shortest side of all cells.
 double shortest_edge(const Mesh&);
-/// Of one of them.
+/// The shortest edge of one cell.
 double shortest_edge(const Mesh&, int cell);
 /// Points on the boundary, each once, in order: ends of curves, and points of sides that only one cell has.
 std::vector<std::int32_t> boundary_points(const Mesh&);
 
-/// What is wrong with a mesh, and on which line of its file (0: none).
+/// The fault of a mesh, and the line of its file that has it (0: none).
 struct MeshFault {
   int line = 0;
   std::string what;

@@ -20,7 +20,7 @@ class Parts {
     there_[at(a)] = there_[at(b)] = 1;
     parent_[root(at(a))] = root(at(b));
   }
-  /// Of the points that were joined with any.
+  /// The number of sets among the points that were joined with any.
   int count() {
     int sets = 0;
     for (std::size_t p = 0; p < parent_.size(); ++p) sets += there_[p] && root(p) == p;

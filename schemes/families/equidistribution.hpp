@@ -13,7 +13,7 @@
 
 namespace delf {
 
-/// What a mesh has the same share of in each of its cells. Of a cell with Δφ and δ = ΔX, Tyranowski–Desbrun §2.4:
+/// The quantity that a mesh shares equally among its cells. For a cell with Δφ and δ = ΔX, Tyranowski–Desbrun §2.4:
 ///
 ///     arclength   F = α² Σ Δφ² + δ²                              (28), its square
 ///     saturated   F = δ² (1 + α² Σ Δφ²/(δ² + β² Σ Δφ²))          δ stays above β/α of the arclength's
@@ -51,7 +51,7 @@ struct MeshMonitor {
   T change(std::span<const T> left, std::span<const T> centre, std::span<const T> right) const {
     return (*this)(centre, right) - (*this)(left, centre);
   }
-  /// The same of sites one after the other.
+  /// The sum for sites that are stored one after the other.
   template <class T>
   T change(std::span<const T> q) const {
     const std::size_t n = q.size() / 3;

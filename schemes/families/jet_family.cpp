@@ -52,9 +52,9 @@ struct JetFamily::Jets {
 
   Jets(const JetFamily& family, const StencilBatch& batch)
       : d(family.d_),
-        variables(family.density_->variables()),
+        variables(family.of_.density->variables()),
         scales(slot_scales(batch.cell)),
-        area(family.table_.measure * batch.cell.time_step * batch.cell.space_step),
+        area(family.of_.table.measure * batch.cell.time_step * batch.cell.space_step),
         jets(variables, std::min(batch.count, most)),
         increments(batch.low != nullptr ? family.size() : 0, std::min(batch.count, most)),
         x(1, std::min(batch.count, most)),
@@ -132,17 +132,16 @@ struct JetFamily::Jets {
 JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> density, bool values_are_sources,
                      OwnWeights own)
     : StencilFamily(table.pattern, values_at_every_vertex(table.pattern, density->components()), table.tests.empty()),
-      table_(own.stencils ? std::move(table) : with_slot_places(std::move(table), *density)),
-      density_(std::move(density)),
       own_(std::move(own)),
-      d_(density_->components()),
-      has_sources_(density_->nonlinearity() == Nonlinearity::values ||
-                   (values_are_sources && density_->nonlinearity() == Nonlinearity::none)) {
-  placed_ = density_->is_placed();
+      of_{own_.stencils ? std::move(table) : with_slot_places(std::move(table), *density), density},
+      d_(of_.density->components()),
+      has_sources_(of_.density->nonlinearity() == Nonlinearity::values ||
+                   (values_are_sources && of_.density->nonlinearity() == Nonlinearity::none)) {
+  placed_ = of_.density->is_placed();
   listed_ = own_.stencils;
   const auto by_vertex = [this](const TablePoint& p) {
     std::vector<std::vector<Weight>> weights(at(pattern_.size()));
-    for (int s = 0; s < density_->slots(); ++s)
+    for (int s = 0; s < of_.density->slots(); ++s)
       for (std::size_t e = 0; e < p.slots[at(s)].size(); ++e) {
         const auto& [vertex, weight] = p.slots[at(s)][e];
         const std::vector<int>& numbers = p.own.slots[at(s)];
@@ -150,8 +149,8 @@ JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> den
       }
     return weights;
   };
-  for (std::size_t q = 0; q < table_.points.size(); ++q) {
-    Point point{by_vertex(table_.points[q]), by_vertex(table_.test(q)), {}};
+  for (std::size_t q = 0; q < of_.table.points.size(); ++q) {
+    Point point{by_vertex(of_.table.points[q]), by_vertex(of_.table.test(q)), {}};
     for (int i = 0; i < size(); ++i)
       if (!point.of_vertex[at(i / d_)].empty() || !point.of_test[at(i / d_)].empty()) point.values.push_back(i);
     points_.push_back(std::move(point));
@@ -165,13 +164,13 @@ void JetFamily::find_columns() {
   std::vector<double> places;
   const auto place = [&](int l) {
     const Site& v = pattern_.vertices[at(l)];
-    return v.space + table_.nodes[at(v.node)].space;
+    return v.space + of_.table.nodes[at(v.node)].space;
   };
-  // Where there are tests, the residuals of the rows alone add up to momenta.
+  // Tables with tests have residuals whose rows alone add up to momenta.
   const auto adds_up = [&](int l) {
-    return table_.tests.empty() || table_.nodes[at(pattern_.vertices[at(l)].node)].time == 0;
+    return of_.table.tests.empty() || of_.table.nodes[at(pattern_.vertices[at(l)].node)].time == 0;
   };
-  if (std::ranges::any_of(pattern_.vertices, [&](const Site& v) { return at(v.node) >= table_.nodes.size(); })) return;
+  if (std::ranges::any_of(pattern_.vertices, [&](const Site& v) { return at(v.node) >= of_.table.nodes.size(); })) return;
   first_.resize(at(pattern_.size()));
   for (int l = 0; l < pattern_.size(); ++l) {
     const auto column = static_cast<std::size_t>(std::ranges::find(places, place(l)) - places.begin());
@@ -189,7 +188,7 @@ void JetFamily::find_columns() {
   bool has_rates = false;
   for (const Point& point : points_)
     for (const auto& column : columns_)
-      for (int s = 0; s < density_->slots(); ++s) {
+      for (int s = 0; s < of_.density->slots(); ++s) {
         if (!is_rate(s)) continue;
         if (!none_left(point.of_vertex, column, s)) return columns_.clear();
         for (const int l : column)
@@ -212,7 +211,7 @@ void JetFamily::find_columns() {
   for (auto& column : columns_) std::erase_if(column, [&](int l) { return !adds_up(l) || !is_tested(l); });
   for (const Point& point : points_)
     for (const auto& column : columns_)
-      for (int s = 0; s < density_->slots(); ++s)
+      for (int s = 0; s < of_.density->slots(); ++s)
         if (is_rate(s) && !none_left(point.of_test, column, s)) return columns_.clear();
   for (const auto& column : columns_)
     for (int a = 0; a < d_; ++a) {
@@ -222,7 +221,7 @@ void JetFamily::find_columns() {
   for (Point& point : points_)
     for (const auto& column : columns_) {
       std::vector<Weight> all;
-      for (int s = 0; s < density_->slots(); ++s) {
+      for (int s = 0; s < of_.density->slots(); ++s) {
         Weight sum{s, 0, -1};
         for (const int l : column)
           for (const Weight& w : point.of_test[at(l)])
@@ -250,11 +249,11 @@ void JetFamily::find_lanes() {
       if (first + lane >= Q) continue;
       for (std::size_t l = 0; l < points_[q].of_test.size(); ++l)
         for (const Weight& w : points_[q].of_test[l])
-          entry(of.tests, w.slot, static_cast<int>(l)).v[lane] = table_.points[q].weight * w.weight;
+          entry(of.tests, w.slot, static_cast<int>(l)).v[lane] = of_.table.points[q].weight * w.weight;
     }
     // Rounded weights of a rate leave a rest that every step would add to the momentum: the smallest one takes it.
     for (const auto& column : columns_)
-      for (int s = 0; s < density_->slots(); ++s)
+      for (int s = 0; s < of_.density->slots(); ++s)
         for (int lane = 0; is_rate(s) && lane < lanes; ++lane) {
           double rest = 0, low = 0, *smallest = nullptr;
           for (Lanes::Entry& e : of.tests)
@@ -277,8 +276,8 @@ bool JetFamily::lagrangian(const StencilBatch& batch, double* L) const {
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
     jets.look_at(first, count);
-    for (const TablePoint& p : table_.points) {
-      density_->value(jets.at_point(p, first, count), l[0]);
+    for (const TablePoint& p : of_.table.points) {
+      of_.density->value(jets.at_point(p, first, count), l[0]);
       add(L + first, jets.area * p.weight, {jets.own(p.own.weight)}, l[0], count);
     }
   }
@@ -292,9 +291,9 @@ void JetFamily::energy(const StencilBatch& batch, double* E) const {
   for (int first = 0; first < batch.count; first += Jets::most) {
     const int count = std::min(Jets::most, batch.count - first);
     jets.look_at(first, count);
-    for (const TablePoint& p : table_.points) {
+    for (const TablePoint& p : of_.table.points) {
       const JetBatch jet = jets.at_point(p, first, count);
-      density_->gradient(jet, g.data(), l[0]);
+      of_.density->gradient(jet, g.data(), l[0]);
       for (int s = 0; s < count; ++s) {
         sum[0][s] = -l[0][s];
         for (int a = d_; a < 2 * d_; ++a) sum[0][s] += jet.slots[a][s] * g[a][s];
@@ -327,10 +326,10 @@ bool JetFamily::residual_of_one(const StencilBatch& batch, std::span<const int> 
     return (batch.y[i * lanes] - batch.y[from * lanes]) + (batch.low[i * lanes] - batch.low[from * lanes]);
   };
 
-  const int m = density_->variables();
+  const int m = of_.density->variables();
   const ScratchRows jets(m, lanes), g(m, lanes);
   const auto scales = slot_scales(batch.cell);
-  const double area = table_.measure * batch.cell.time_step * batch.cell.space_step;
+  const double area = of_.table.measure * batch.cell.time_step * batch.cell.space_step;
   fill_zero(r, static_cast<int>(equations.size()) * lanes);
   thread_local std::vector<int> place;  // of a value, or a sum, among the equations
   place.assign(values_.size() + sums_.size(), -1);
@@ -344,7 +343,7 @@ bool JetFamily::residual_of_one(const StencilBatch& batch, std::span<const int> 
         const double value = batch.low != nullptr && is_rate(slot) ? increment(i) : batch.y[i * lanes];
         (Pack::load(to) + (scales[at(slot)] * value) * weight).store(to);
       }
-    density_->gradient({lanes, jets.data(), batch.cell.t, batch.x}, g.data());
+    of_.density->gradient({lanes, jets.data(), batch.cell.t, batch.x}, g.data());
     for (const auto& [slot, vertex, weight] : points.tests)
       for (int a = 0; a < d_; ++a) {
         const int e = place[at(vertex * d_ + a)];
@@ -370,8 +369,8 @@ void JetFamily::residual(const StencilBatch& batch, std::span<const int> equatio
     jets.look_at(first, count);
     for (std::size_t q = 0; q < points_.size(); ++q) {
       if (!adds_to(points_[q], equations)) continue;
-      const TablePoint& p = table_.points[q];
-      density_->gradient(jets.at_point(p, first, count), g.data());
+      const TablePoint& p = of_.table.points[q];
+      of_.density->gradient(jets.at_point(p, first, count), g.data());
       // r += |Δ| w_q M_qᵀ ∂ℓ/∂j
       for (std::size_t e = 0; e < equations.size(); ++e)
         for (const auto& [slot, weight, own] : points_[q].of_test[at(equations[e] / d_)])
@@ -394,8 +393,8 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
     jets.look_at(first, count);
     for (std::size_t q = 0; q < points_.size(); ++q) {
       if (!adds_to(points_[q], equations)) continue;
-      const TablePoint& p = table_.points[q];
-      density_->hessian(jets.at_point(p, first, count), H.data());
+      const TablePoint& p = of_.table.points[q];
+      of_.density->hessian(jets.at_point(p, first, count), H.data());
       // J += |Δ| w_q M_qᵀ ∂²ℓ/∂j∂j M_q
       for (std::size_t e = 0; e < equations.size(); ++e)
         for (std::size_t u = 0; u < unknowns.size(); ++u) {
@@ -405,7 +404,7 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
           for (const Weight& left : points_[q].of_test[at(equations[e] / d_)])
             for (const Weight& right : points_[q].of_vertex[at(unknowns[u] / d_)]) {
               const int row = left.slot * d_ + a, column = right.slot * d_ + b;
-              if (density_->is_zero(row, column)) continue;
+              if (of_.density->is_zero(row, column)) continue;
               add(to,
                   jets.area * p.weight * jets.scales[at(left.slot)] * left.weight * jets.scales[at(right.slot)] *
                       right.weight,
@@ -421,31 +420,31 @@ bool JetFamily::is_constant(int i, int m) const {
     for (const Weight& left : point.of_test[at(i / d_)])
       for (const Weight& right : point.of_vertex[at(m / d_)]) {
         const int row = left.slot * d_ + i % d_, column = right.slot * d_ + m % d_;
-        if (has_sources_ && row < d_ && column < d_ ? !density_->is_zero(row, column)
-                                                     : !density_->is_constant(row, column))
+        if (has_sources_ && row < d_ && column < d_ ? !of_.density->is_zero(row, column)
+                                                     : !of_.density->is_constant(row, column))
           return false;
       }
   return true;
 }
 
-/// Where ∂ℓ/∂φ varies it is a source term as a whole, the constant entries of its Hessian with it.
+/// A varying ∂ℓ/∂φ is a source term as a whole, the constant entries of its Hessian with it.
 std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
-  const int n = size(), m = density_->variables();
+  const int n = size(), m = of_.density->variables();
   const auto scales = slot_scales(cell);
-  const double area = table_.measure * cell.time_step * cell.space_step;
+  const double area = of_.table.measure * cell.time_step * cell.space_step;
   ConstantPart part{std::vector<double>(at(n * n), 0.0), std::vector<double>(at(n), 0.0),
-                    density_->nonlinearity() == Nonlinearity::none && !has_sources_};
+                    of_.density->nonlinearity() == Nonlinearity::none && !has_sources_};
   const auto hessian = [&](int row, int column) {
-    return has_sources_ && row < d_ && column < d_ ? 0.0 : density_->constant_hessian()[at(row * m + column)];
+    return has_sources_ && row < d_ && column < d_ ? 0.0 : of_.density->constant_hessian()[at(row * m + column)];
   };
   const auto own = [&](int number) { return own_number(number, cell.stencil); };
   for (std::size_t q = 0; q < points_.size(); ++q) {
-    const double w = area * table_.points[q].weight * own(table_.points[q].own.weight);
+    const double w = area * of_.table.points[q].weight * own(of_.table.points[q].own.weight);
     for (const int i : points_[q].values)
       for (const Weight& left : points_[q].of_test[at(i / d_)]) {
         const double to = w * scales[at(left.slot)] * left.weight * own(left.own);
         const int row = left.slot * d_ + i % d_;
-        if (!(has_sources_ && row < d_)) part.r0[at(i)] += to * density_->constant_gradient()[at(row)];
+        if (!(has_sources_ && row < d_)) part.r0[at(i)] += to * of_.density->constant_gradient()[at(row)];
         for (const int k : points_[q].values)
           for (const Weight& right : points_[q].of_vertex[at(k / d_)])
             part.J[at(i * n + k)] +=
@@ -462,8 +461,8 @@ void JetFamily::find_sources() {
   if (!has_sources_) return;
   sources_.outputs_per_group = d_;
   std::vector<const TablePoint*> representatives;
-  for (std::size_t q = 0; q < table_.points.size(); ++q) {
-    const TablePoint& p = table_.points[q];
+  for (std::size_t q = 0; q < of_.table.points.size(); ++q) {
+    const TablePoint& p = of_.table.points[q];
     if (listed_ && p[JetSlot::phi].empty()) continue;
     own_values_ = own_values_ || !p.own.slots[at(static_cast<int>(JetSlot::phi))].empty();
     const auto same = [&p](const TablePoint* other) {
@@ -485,49 +484,19 @@ void JetFamily::find_sources() {
       sources_.groups.push_back(std::move(made));
       sources_.weights.resize(sources_.groups.size() * at(d_ * size()), 0.0);
     }
-    for (const auto& [vertex, weight] : table_.test(q)[JetSlot::phi])
+    for (const auto& [vertex, weight] : of_.table.test(q)[JetSlot::phi])
       for (int a = 0; a < d_; ++a)
         sources_.weights[(group * at(d_) + at(a)) * at(size()) + at(vertex * d_ + a)] +=
-            table_.measure * p.weight * weight;
+            of_.table.measure * p.weight * weight;
   }
 }
 
 const SourceTerms* JetFamily::sources() const {
-  return density_->nonlinearity() == Nonlinearity::all || own_values_ ? nullptr : &sources_;
+  return of_.density->nonlinearity() == Nonlinearity::all || own_values_ ? nullptr : &sources_;
 }
-void JetFamily::evaluate_sources(int, const JetBatch& inputs, double* const* g) const { density_->slope(inputs, g); }
+void JetFamily::evaluate_sources(int, const JetBatch& inputs, double* const* g) const { of_.density->slope(inputs, g); }
 void JetFamily::differentiate_sources(int, const JetBatch& inputs, double* const* d) const {
-  density_->curvature(inputs, d);
-}
-
-/// One cell's part of the semi-discrete momenta at its lower side, from φ and φ_t at the nodes there:
-///
-///     p_b = k Σ_q w_q φ_q,b ∂ℓ/∂φ_t(j_q)     with φ_q = Σ_b φ_q,b y_b
-///
-bool JetFamily::momentum(const Cell& cell, std::span<const double> phi, std::span<const double> phi_t,
-                         std::span<double> p) const {
-  if (table_.lower_side.empty()) return false;
-  std::ranges::fill(p, 0.0);
-  const int m = density_->variables();
-  const ScratchRows jet(m, lanes), g(m, lanes), x(1, lanes);
-  for (const TablePoint& point : table_.lower_side) {
-    for (int i = 0; i < m; ++i) fill_zero(jet[i], lanes);
-    const auto add_up = [&](JetSlot slot, int to, std::span<const double> values, double scale) {
-      for (const auto& [vertex, weight] : point[slot])
-        for (int a = 0; a < d_; ++a)
-          for (int l = 0; l < lanes; ++l) jet[to * d_ + a][l] += weight * scale * values[at(vertex * d_ + a)];
-    };
-    add_up(JetSlot::phi, 0, phi, 1);
-    add_up(JetSlot::phi, 1, phi_t, 1);
-    add_up(JetSlot::phi_x, 2, phi, 1 / cell.space_step);
-    const double weight_of_point = point.weight * own_number(point.own.weight, cell.stencil);
-    std::fill_n(x[0], lanes,
-                point.own.place < 0 ? cell.x + point.space * cell.space_step : own_number(point.own.place, cell.stencil));
-    density_->gradient({lanes, jet.data(), cell.t, x[0]}, g.data());
-    for (const auto& [vertex, weight] : point[JetSlot::phi])
-      for (int a = 0; a < d_; ++a) p[at(vertex * d_ + a)] += cell.space_step * weight_of_point * weight * g[d_ + a][0];
-  }
-  return true;
+  of_.density->curvature(inputs, d);
 }
 
 }  // namespace delf

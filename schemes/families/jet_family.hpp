@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "jets/simd/pack.hpp"
-#include "jets/tables/stencil_table.hpp"
+#include "jets/tables/density_on_table.hpp"
 #include "schemes/families/own_weights.hpp"
 #include "schemes/families/stencil_family.hpp"
 
@@ -19,13 +19,11 @@ namespace delf {
 /// stencils are listed, w_q and M_q have numbers of each stencil's own as factors.
 class JetFamily final : public StencilFamily {
  public:
-  /// Where ∂ℓ/∂φ is linear it is part of the constant part, or a source term if `values_are_sources`.
+  /// A linear ∂ℓ/∂φ is part of the constant part, or a source term if `values_are_sources`.
   JetFamily(StencilTable, std::shared_ptr<const BatchDensity>, bool values_are_sources = false, OwnWeights = {});
 
-  const StencilTable& table() const { return table_; }
-  const BatchDensity& density() const { return *density_; }
-  const std::shared_ptr<const BatchDensity>& shared_density() const { return density_; }
-  /// Of listed stencils: one more row of numbers of their own. Returns what a batch calls it.
+  const DensityOnTable* made_of() const override { return &of_; }
+  /// Adds one more row of numbers of listed stencils' own. Returns what a batch calls it.
   int add_own(std::span<const double> numbers);
 
   using StencilFamily::jacobian;
@@ -47,11 +45,8 @@ class JetFamily final : public StencilFamily {
   void evaluate_sources(int group, const JetBatch& inputs, double* const* g) const override;
   void differentiate_sources(int group, const JetBatch& inputs, double* const* d) const override;
 
-  bool momentum(const Cell&, std::span<const double> phi, std::span<const double> phi_t,
-                std::span<double> p) const override;
-
  private:
-  /// What the value at a vertex weighs in a slot of a point's jet, with h = k = 1.
+  /// The weight of a vertex value in a slot of a point's jet, with h = k = 1.
   struct Weight {
     int slot;
     double weight;
@@ -64,8 +59,8 @@ class JetFamily final : public StencilFamily {
   };
   struct Jets;
 
-  /// Of one stencil, its points as lanes of packs, so many at once: what the value at a vertex weighs in a slot of their
-  /// jets, and what ∂ℓ/∂j there weighs in its residual. Lanes left over repeat the last point, with nothing in a residual.
+  /// The weights of one stencil, its points as lanes of packs, so many at once: those of a vertex value in a slot of
+  /// their jets, and of ∂ℓ/∂j there in its residual. Lanes left over repeat the last point, with nothing in a residual.
   struct Lanes {
     struct Entry {
       int slot, vertex;
@@ -80,9 +75,8 @@ class JetFamily final : public StencilFamily {
   bool residual_of_one(const StencilBatch&, std::span<const int> equations, double* r) const;
   bool adds_to(const Point&, std::span<const int> equations) const;  ///< to one of them
 
-  StencilTable table_;
-  std::shared_ptr<const BatchDensity> density_;
   OwnWeights own_;
+  DensityOnTable of_;
   int d_;
   bool has_sources_;
   bool own_values_ = false;  ///< stencils have weights of φ of their own, and no groups of the same inputs

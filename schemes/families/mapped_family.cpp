@@ -59,7 +59,8 @@ MappedFamily::MappedFamily(std::shared_ptr<const StencilFamily> family, const Ma
     : StencilFamily(std::move(own.first), std::move(own.second), family->is_variational() && map.tests.empty()),
       family_(std::move(family)),
       reads_(values_.size()),
-      tests_(values_.size()) {
+      tests_(values_.size()),
+      mesh_(map.mesh) {
   placed_ = family_->is_placed();
   const auto fill = [&](const std::vector<Sum>& sums, std::vector<std::vector<Entry>>& entries) {
     for (std::size_t value = 0; value < sums.size(); ++value)
@@ -74,12 +75,12 @@ MappedFamily::MappedFamily(std::shared_ptr<const StencilFamily> family, const Ma
   for (const auto& entries : tests_) varied_.push_back(!entries.empty());
   find_rates();
   if (!map.cell) return;
-  cell_time_ = map.time;
+  cell_.time = map.time;
   for (int i = 0; i < size(); ++i) {
     double weight = 0;
     for (const Entry& entry : reads_[at(i)])
       weight += entry.value == map.cell->second ? entry.weight : entry.value == map.cell->first ? -entry.weight : 0.0;
-    if (weight != 0) cell_.push_back({i, weight});
+    if (weight != 0) cell_.width.push_back({i, weight});
   }
 }
 
@@ -210,11 +211,6 @@ std::optional<ConstantPart> MappedFamily::constant_part(const Cell& cell) const 
           part.J[at(i * n + k)] += left * right * inner->J[at(row * m + column)];
     }
   return part;
-}
-
-bool MappedFamily::momentum(const Cell& cell, std::span<const double> phi, std::span<const double> phi_t,
-                            std::span<double> p) const {
-  return family_->momentum(cell, phi, phi_t, p);
 }
 
 }  // namespace delf

@@ -10,6 +10,16 @@
 
 namespace delf {
 
+/// The width of a cell whose ends are sites that move, at a stage of a step: a sum of a family's values.
+struct MovingCell {
+  struct Part {
+    int value;
+    double weight;
+  };
+  std::vector<Part> width;
+  double time = 0;  ///< of the stage, as a fraction of the step
+};
+
 /// A family read through a linear map: its values are ŷ = M y, sums of values y at sites and nodes of the lattice, and its
 /// residuals r̂ are tested by other sums,
 ///
@@ -18,7 +28,7 @@ namespace delf {
 /// Variational for N = Mᵀ. A stage of an element in time is such a map of a density on one row; an N without the rows of a
 /// field reads that field without varying it; an N that moves r̂ to another value makes a constraint the equation of what it
 /// determines, in place of its multiplier.
-class MappedFamily : public StencilFamily {
+class MappedFamily final : public StencilFamily {
  public:
   struct Part {
     Site site;
@@ -32,16 +42,13 @@ class MappedFamily : public StencilFamily {
     /// Values of the family of which the first must stay below the second: the ends of a cell at a stage.
     std::optional<std::pair<int, int>> cell = {};
     double time = 0;  ///< of the stage, as a fraction of the step
+    std::shared_ptr<const MeshConstraint> mesh = {};  ///< the family is this constraint at the rows
   };
   MappedFamily(std::shared_ptr<const StencilFamily>, const Map&);
 
-  struct Entry {
-    int value;
-    double weight;
-  };
-  /// How wide the map's cell is: a sum of own values. None: there is no cell.
-  const std::vector<Entry>& cell() const { return cell_; }
-  double cell_time() const { return cell_time_; }
+  using Entry = MovingCell::Part;
+  const MovingCell* moving_cell() const override { return cell_.width.empty() ? nullptr : &cell_; }
+  const MeshConstraint* mesh_constraint() const override { return mesh_.get(); }
 
   using StencilFamily::jacobian;
   using StencilFamily::lagrangian;
@@ -51,9 +58,6 @@ class MappedFamily : public StencilFamily {
                 double* J) const override;
   bool lagrangian(const StencilBatch&, double* L) const override;
   std::optional<ConstantPart> constant_part(const Cell&) const override;
-  /// That of the family: for maps whose values at row 0 are the family's, in the same order.
-  bool momentum(const Cell&, std::span<const double> phi, std::span<const double> phi_t,
-                std::span<double> p) const override;
 
  private:
   struct Mapped;
@@ -67,10 +71,10 @@ class MappedFamily : public StencilFamily {
   std::vector<std::vector<Entry>> map_;            ///< rows of M, by own values
   /// Columns of M and rows of N, by the family's values; N has rows of sums() too.
   std::vector<std::vector<Entry>> reads_, tests_;
-  /// By the family's values: a sum of increments in time, whose weights add up to zero.
+  /// True for values of the family that are sums of increments in time, whose weights add up to zero.
   std::vector<char> is_rate_;
-  std::vector<Entry> cell_;
-  double cell_time_ = 0;
+  MovingCell cell_;
+  std::shared_ptr<const MeshConstraint> mesh_;
 };
 
 }  // namespace delf

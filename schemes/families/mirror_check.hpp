@@ -7,8 +7,8 @@
 
 namespace delf {
 
-/// Whether a density is what mirror images beyond a wall ask for (mirror_table), at random jets and to 1e-6: ℓ(φ, φ_t, −φ_x) = ℓ(φ, φ_t, φ_x),
-/// and, where the image is odd about the wall's value, ℓ(2φ_wall − φ, φ_t, φ_x) = ℓ(φ, φ_t, φ_x).
+/// True if a density allows mirror images beyond a wall (mirror_table), at random jets and to 1e-6:
+/// ℓ(φ, φ_t, −φ_x) = ℓ(φ, φ_t, φ_x), and ℓ(2φ_wall − φ, φ_t, φ_x) = ℓ(φ, φ_t, φ_x) if the image is odd about φ_wall.
 bool has_mirror_images(const BatchDensity&, Mirror, std::span<const double> wall);
 
 }  // namespace delf

@@ -53,7 +53,7 @@ struct MovingRectangle {
   }
 };
 
-/// The same at one point of an element in time, of a weight: (φ, X) at the ends of the cell, then h (φ_t, X_t) there.
+/// The moving cell at one weighted point of an element in time: (φ, X) at the ends of the cell, then h (φ_t, X_t).
 struct MovingStage {
   MovingRectangle rectangle;
   double weight = 1;

@@ -68,7 +68,7 @@ class RateFamily final : public StencilFamily {
         for (int i = first; i < last; ++i) y[at(i)].value.d[at(i - first)] = Along(0.0);
       }
   }
-  /// What is proved constant of ∂²L is so of ∂²L̇/∂y∂ẏ.
+  /// Entries proved constant in ∂²L are constant in ∂²L̇/∂y∂ẏ.
   std::optional<ConstantPart> constant_part(const Cell& cell) const override {
     const auto of = of_.constant_part(cell);
     if (!of) return std::nullopt;
@@ -95,12 +95,12 @@ class RateFamily final : public StencilFamily {
     y.d[0] = Pack::load(batch.y + (m_ + i) * batch.count + s);
     return y;
   }
-  /// Where values stand in a list; −1: nowhere.
+  /// Finds the places of values in a list; −1: not in it.
   void find(std::span<const int> list, std::vector<int>& place) const {
     place.assign(values_.size(), -1);
     for (std::size_t n = 0; n < list.size(); ++n) place[at(list[n])] = static_cast<int>(n);
   }
-  /// Whether values of L, or their rates, are in a list.
+  /// True if values of L, or their rates, are in a list.
   bool meets(std::span<const int> list, int first, int last) const {
     return std::ranges::any_of(list, [&](int i) { return i % m_ >= first && i % m_ < last; });
   }

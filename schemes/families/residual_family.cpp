@@ -76,7 +76,7 @@ void ResidualFamily::jacobian(const StencilBatch& batch, std::span<const int> eq
   std::vector<const double*> inputs(at(2 * d_));
   const auto columns = static_cast<std::ptrdiff_t>(unknowns.size());
   std::fill_n(J, static_cast<std::ptrdiff_t>(equations.size()) * columns * n, 0.0);
-  // What E of component a has for value l·d + b, in entries of J that are asked for.
+  // The entries of J that are asked for, as E of component a has them for value l·d + b.
   const auto for_each_entry = [&](const auto& visit) {
     for (std::size_t e = 0; e < equations.size(); ++e)
       for (std::size_t u = 0; u < unknowns.size(); ++u)
@@ -101,7 +101,7 @@ void ResidualFamily::jacobian(const StencilBatch& batch, std::span<const int> eq
   }
 }
 
-/// Where ℓ is quadratic its difference quotients are linear.
+/// Difference quotients of a quadratic ℓ are linear.
 std::optional<ConstantPart> ResidualFamily::constant_part(const Cell& cell) const {
   ConstantPart part{std::vector<double>(at(size() * size()), 0.0), std::vector<double>(at(size()), 0.0), is_linear()};
   if (is_linear()) {

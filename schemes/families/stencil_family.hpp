@@ -12,13 +12,17 @@
 
 namespace delf {
 
+struct DensityOnTable;
+struct MeshConstraint;
+struct MovingCell;
+
 /// Some stencils of one family, whose cells differ in x alone. Arrays are aligned to packs.
 struct StencilBatch {
   Cell cell;        ///< t, h and k of all of them
   int count;        ///< a multiple of `lanes`
   const double* x;  ///< [s]: of the anchors
   const double* y;  ///< [i·count + s]: value i of stencil s
-  /// The same of what rounding has taken from y: the values are y + low. Null: nothing is known of it.
+  /// The low parts, which rounding has taken from y: the values are y + low. Null: nothing is known of them.
   const double* low = nullptr;
   const int* numbers = nullptr;  ///< [s]: of stencils that are listed; else null
 };
@@ -31,7 +35,7 @@ struct ConstantPart {
   bool is_all = false;     ///< there is nothing else
 };
 
-/// What a residual adds to its constant part, where that is a sum of functions of a few quadrature values:
+/// The source terms of a residual, beside its constant part, where they are functions of a few quadrature values:
 ///
 ///     r(y) = r0 + J y + hk Σ_c weights(c, ·) g_c(m),        m = Σ weight · y(vertex)
 ///
@@ -70,10 +74,10 @@ class StencilFamily {
   virtual ~StencilFamily() = default;
 
   const StencilPattern& pattern() const { return pattern_; }
-  /// What y[i] and r[i] belong to: a vertex of the pattern and a component of the section, in the order of vertices.
+  /// The vertex of the pattern and the component of the section that y[i] and r[i] belong to, in the order of vertices.
   const std::vector<VertexValue>& values() const { return values_; }
   int size() const { return static_cast<int>(values_.size()); }
-  /// Where y[i] lies, from the anchor.
+  /// The site of y[i], from the anchor.
   Site site(int i) const {
     return pattern_.vertices[static_cast<std::size_t>(values_[static_cast<std::size_t>(i)].vertex)];
   }
@@ -110,7 +114,7 @@ class StencilFamily {
   /// Nothing where it is not finite.
   virtual std::optional<ConstantPart> constant_part(const Cell&) const;
 
-  /// What r has besides its constant part; null if it is not of that form. And the functions g_c of a group.
+  /// The part of r besides its constant part; null if it is not of that form. And the functions g_c of a group.
   virtual const SourceTerms* sources() const { return nullptr; }
   /// A number of a listed stencil's own (SourceTerms::Group::own); 1 for none.
   virtual double own_number(int /*number*/, int /*stencil*/) const { return 1; }
@@ -118,14 +122,14 @@ class StencilFamily {
   /// ∂g_c/∂m_j: d[c·inputs + j][i]
   virtual void differentiate_sources(int /*group*/, const JetBatch& /*inputs*/, double* const* /*d*/) const {}
 
-  /// Elements: the momenta ∫ ∂ℓ/∂φ_t of the values at the element's lowest row (site(i).time = 0), in their order, for
-  /// the fields φ and φ_t there: what a start by the discrete Legendre transform needs. False for other families.
-  virtual bool momentum(const Cell&, std::span<const double> /*phi*/, std::span<const double> /*phi_t*/,
-                        std::span<double> /*p*/) const {
-    return false;
-  }
+  /// The density and the table whose jets the residual is made of; null: it is made of something else.
+  virtual const DensityOnTable* made_of() const { return nullptr; }
+  /// The cell of a mesh that moves, at the stage of a step that the family stands for; null: it has none.
+  virtual const MovingCell* moving_cell() const { return nullptr; }
+  /// The constraint that holds the sites of a mesh at their rows; null: the family is something else.
+  virtual const MeshConstraint* mesh_constraint() const { return nullptr; }
 
-  /// For one stencil: r, ∂r/∂y row by row, one of its rows, and L.
+  /// The values of one stencil: r, ∂r/∂y row by row, one of its rows, and L.
   virtual void residual(const Cell&, std::span<const double> y, std::span<double> r) const;
   virtual void jacobian(const Cell&, std::span<const double> y, std::span<double> J) const;
   void jacobian_row(int equation, const Cell&, std::span<const double> y, std::span<double> J) const;

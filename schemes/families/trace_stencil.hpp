@@ -42,16 +42,16 @@ class TraceStencil {
       : TraceStencil(end, d, ends, 0) {
     tied_ = std::move(tied);
   }
-  /// In a lattice of space, with `fields` at each node of the unit cell, d at all nodes of a row: values are read at their
-  /// nodes, as the element reads them. Those at nodes inside a cell of space stand where there is a cell: not at the right
-  /// end of an interval.
+  /// The stencil in a lattice of space, with `fields` at each node of the unit cell, d at all nodes of a row: values
+  /// are read at their nodes, as the element reads them. Those at nodes inside a cell of space are where there is a
+  /// cell: not at the right end of an interval.
   TraceStencil(End end, int d, const std::vector<double>& ends, std::vector<std::pair<int, int>> tied, int fields,
                bool in_cell)
       : TraceStencil(end, d, ends, std::move(tied)) {
     fields_ = fields, in_cell_ = in_cell;
   }
 
-  /// The same where every value has a node of its own, and component = node · d + a, as in the tables of fluxes.
+  /// The stencil with a node for every value, and component = node · d + a, as in the tables of fluxes.
   TraceStencil with_own_nodes() && {
     fields_ = d_, own_nodes_ = true;
     return std::move(*this);

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 #include <utility>
 
 #include "jets/shifted_density.hpp"
-#include "jets/simd/scratch_rows.hpp"
 #include "jets/tables/mirror_table.hpp"
 #include "jets/tables/wall_tables.hpp"
 #include "lattice/error.hpp"
@@ -16,29 +14,19 @@
 namespace delf {
 namespace {
 
-/// ∂ℓ/∂(slot) = 0 where that slot is 0, at some jets of several sizes.
+/// ∂ℓ/∂(slot) = 0 is proved where that slot is 0: ℓ is even in it, or ∂ℓ/∂(slot) a function of it alone that is 0 there.
 bool is_level(const BatchDensity& density, JetSlot slot) {
-  const int d = density.components(), m = density.variables(), first = static_cast<int>(slot) * d;
-  const ScratchRows jet(m, lanes), g(m, lanes), x(1, lanes);
-  std::mt19937_64 engine(20250901);
-  const auto number = [&] { return 2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0; };
-  for (double amplitude = 2; amplitude > 1e-3; amplitude /= 10) {
-    for (int a = 0; a < m; ++a)
-      for (int l = 0; l < lanes; ++l) jet[a][l] = a < first ? amplitude * number() : 0;
-    for (int l = 0; l < lanes; ++l) x[0][l] = amplitude * number();
-    density.gradient({lanes, jet.data(), amplitude, x[0]}, g.data());
-    for (int l = 0; l < lanes; ++l) {
-      double size = 0;
-      for (int a = 0; a < m; ++a) size = std::max(size, std::abs(g[a][l]));
-      // Where the density is not defined, the comparison is false.
-      for (int a = first; a < first + d; ++a)
-        if (std::abs(g[a][l]) > 1e-13 * size) return false;
-    }
+  if (density.is_even(static_cast<Reflection>(slot))) return true;
+  const int d = density.components(), t = density.variables(), first = static_cast<int>(slot) * d;
+  for (int a = first; a < first + d; ++a) {
+    if (density.constant_gradient()[static_cast<std::size_t>(a)] != 0) return false;
+    for (int b = 0; b < t + 2; ++b)
+      if ((b < first || b >= first + d) && !density.is_zero(a, b)) return false;
   }
   return true;
 }
 
-/// A natural wall has ∂ℓ/∂φ_x = 0. Whether that holds where φ_x = 0.
+/// A natural wall has ∂ℓ/∂φ_x = 0: there φ_x = 0 is right if it holds where φ_x is 0.
 bool has_level_walls(const BatchDensity& density) { return is_level(density, JetSlot::phi_x); }
 
 /// A hinged or free end has ∂ℓ/∂φ_xx = 0. Half a cell with φ_xx = 0 is right if that is where it holds, or if nothing else feels

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,16 +11,15 @@
 #include "jets/tables/time_tableau.hpp"
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
-#include "schemes/families/relabelled_family.hpp"
+#include "schemes/families/mapped_family.hpp"
 #include "schemes/methods/element_parts.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/space_keys.hpp"
 #include "schemes/methods/time_element_keys.hpp"
 #include "schemes/simulation.hpp"
-#include "schemes/stepping/energy.hpp"
 #include "schemes/system/legendre.hpp"
 #include "schemes/system/momenta.hpp"
-#include "schemes/system/tangent_momentum.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
@@ -48,9 +46,14 @@ void add_constraints(SchemeParts& parts, const FieldTheory& theory, const TimeEl
   if (nodes.front() != 0 || nodes.back() != last) refuse();
   nodes.pop_back();  // the next row's own
   for (const int node : nodes) {
-    std::vector<int> components(static_cast<std::size_t>(d) + 1, static_cast<int>(parts.components.size()));
-    std::iota(components.begin(), components.end() - 1, node * d);
-    parts.families.push_back(std::make_shared<RelabelledFamily>(theory.constraint(), components));
+    const int multiplier = static_cast<int>(parts.components.size());
+    const auto constraint = theory.constraint();
+    MappedFamily::Map map;
+    for (int i = 0; i < constraint->size(); ++i) {
+      const int c = constraint->values()[static_cast<std::size_t>(i)].component;
+      map.reads.push_back({{constraint->site(i), c < d ? node * d + c : multiplier, 1}});
+    }
+    parts.families.push_back(std::make_shared<MappedFamily>(constraint, map));
     const NodePosition at = element.nodes[static_cast<std::size_t>(node)];
     parts.components.push_back({node == 0 ? "lambda" : fmt::format("lambda at {:.4g}", at.time), Role::multiplier, at});
   }
@@ -86,36 +89,25 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   return parts;
 }
 
-std::vector<double> q_of(const RowsInTime& rows, std::int64_t row) {
-  std::vector<double> q;
-  for (int a = 0; a < rows.theory.components(); ++a) q.push_back(rows.rows(row, 0, a));
-  return q;
-}
-
 /// p = ∂L/∂q of what lies below the row; at the start, where nothing does, −∂L/∂q of what lies above it. Under a
-/// constraint the part along its surface.
+/// constraint p is known up to the force of the row itself: it is the one whose velocity keeps the constraint,
+///
+///     ∂G/∂q·q̇ = 0,    ∂ℓ/∂q̇(q, q̇) = p + μ ∂G/∂q
 std::vector<double> momentum(const RowsInTime& rows, std::int64_t row) {
-  const std::vector<double> all = momenta(rows.system, rows.rows, row, row == rows.newest ? Side::below : Side::above);
+  std::vector<double> all = momenta(rows.system, rows.rows, row, row == rows.newest ? Side::below : Side::above);
+  if (rows.theory.constraint()) {
+    const LegendreTransform transform(rows.system, rows.rows, row);
+    if (const auto v = transform.velocities(all)) all = transform.momenta(*v);
+  }
   std::vector<double> p;  // at each site the fields come first
   for (auto site = all.begin(); site != all.end(); site += rows.system.components())
     p.insert(p.end(), site, site + rows.theory.components());
-  if (const auto constraint = rows.theory.constraint())
-    return tangent_momentum(rows.theory.density(), *constraint, q_of(rows, row), std::move(p),
-                            static_cast<double>(row) * rows.time_step);
   return p;
 }
 std::vector<std::string> momentum_names(const FieldTheory& theory) {
   std::vector<std::string> names;
   for (const Component& field : fields(theory.components())) names.push_back("p of " + field.name);
   return names;
-}
-
-/// H(q, p) at the newest row: an observable of the scheme's own phase space.
-EnergyMomentum energy(const RowsInTime& rows) {
-  if (rows.system.lattice().space() != Space::point) return element_energy(rows);
-  return {hamiltonian(rows.theory.density(), q_of(rows, rows.newest), momentum(rows, rows.newest),
-                      static_cast<double>(rows.newest) * rows.time_step),
-          0};
 }
 
 /// Fields: with each space; spectral ones are scheme.method = spacetime.
@@ -165,7 +157,7 @@ std::vector<Parameter> keys() {
   return list;
 }
 
-/// Of polynomials of degree S − 1 the order is 2(S − 1), if the rule of R points has it: 2R of Gauss's, 2R − 2 of Lobatto's.
+/// The order for polynomials of degree S − 1: 2(S − 1), if the rule of R points has it, 2R of Gauss, 2R − 2 of Lobatto.
 std::optional<int> order(const Problem& p) {
   const TimeElementKeys keys(p.parameters);
   if (keys.basis_name == "b-spline" || (keys.quadrature != "gauss" && keys.quadrature != "lobatto"))
@@ -186,7 +178,7 @@ const MethodEntry cgvi_method{
     .label = label,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
-    .energy = energy,
+    .energy = &hamiltonian_of_row,
     .datasets = {{.name = "momentum",
                   .meaning = "p = dL/dq of the step below the row: the momenta of q",
                   .components = momentum_names,

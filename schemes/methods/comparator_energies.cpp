@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "jets/simd/scratch_rows.hpp"
-#include "schemes/methods/own_energy.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
@@ -113,21 +113,21 @@ double vu_quoc_li(const RowsInTime& rows) {
   return k * (0.5 * kinetic + 0.5 * gradients(rows, j, j) / (k * k) - N);
 }
 
+template <double (*energy)(const RowsInTime&)>
+EnergyOfRows make(const FieldTheory& theory, const LatticeSystem& system, const Problem&) {
+  if (!has_energy(theory, system.lattice())) return nullptr;
+  return [](const RowsInTime& rows) { return EnergyMomentum{energy(rows)}; };
+}
+
 }  // namespace
 
-extern const OwnEnergyEntry guo_energy, vu_quoc_li_energy;
-const OwnEnergyEntry guo_energy{
-    "guo", "E = k sum (dy/h)^2/2 + (Dy)(Dy+)/2 - (N + N+)/2, dy = y+ - y, D over a cell by k: kept to round-off",
-    [](const FieldTheory& theory, const LatticeSystem& system, const Problem&) -> std::optional<OwnEnergy> {
-      if (!has_energy(theory, system.lattice())) return std::nullopt;
-      return OwnEnergy{"energy of (5.15)", guo_energy.formula, true, guo};
-    }};
-const OwnEnergyEntry vu_quoc_li_energy{
-    "vu-quoc-li",
+extern const EnergyEntry guo_energy, vu_quoc_li_energy;
+const EnergyEntry guo_energy{
+    "energy of (5.15)", "E = k sum (dy/h)^2/2 + (Dy)(Dy+)/2 - (N + N+)/2, dy = y+ - y, D over a cell by k: kept to round-off",
+    "Guo and others, (5.15)", "guo", make<guo>};
+const EnergyEntry vu_quoc_li_energy{
+    "energy of (5.14)",
     "E = k sum v^2/2 + (Dy)^2/2 - N, v = (y+ - y)/h + (h/2)(D2(y + y+)/2 + (N+ - N)/(y+ - y)) at y+: kept to round-off",
-    [](const FieldTheory& theory, const LatticeSystem& system, const Problem&) -> std::optional<OwnEnergy> {
-      if (!has_energy(theory, system.lattice())) return std::nullopt;
-      return OwnEnergy{"energy of (5.14)", vu_quoc_li_energy.formula, true, vu_quoc_li};
-    }};
+    "Vu-Quoc and Li, (5.14)", "vu-quoc-li", make<vu_quoc_li>};
 
 }  // namespace delf

@@ -54,16 +54,19 @@ std::optional<int> second(const Problem&) { return 2; }
 
 }  // namespace
 
+extern const EnergyEntry guo_energy, vu_quoc_li_energy;
 extern const MethodEntry vu_quoc_li_method, guo_method, damped_method;
 const MethodEntry vu_quoc_li_method{
     .name = "vu-quoc-li",
     .formula = "comparator (5.14): conserves an energy, is not multisymplectic",
     .build = [](const FieldTheory& theory, const Problem& p) { return build(theory, p, vu_quoc_li()); },
+    .own_energy = &vu_quoc_li_energy,
     .order = second};
 const MethodEntry guo_method{
     .name = "guo",
     .formula = "comparator (5.15): conserves an energy, is not multisymplectic",
     .build = [](const FieldTheory& theory, const Problem& p) { return build(theory, p, guo()); },
+    .own_energy = &guo_energy,
     .order = second};
 const MethodEntry damped_method{
     .name = "damped",

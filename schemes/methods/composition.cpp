@@ -36,7 +36,7 @@ Splitting splitting_of(const Problem& p) {
   return splitting;
 }
 
-/// Without a value of its own where there are no pairs.
+/// The parameter, without a value of its own where there are no pairs.
 Parameter unless_given(Parameter parameter) {
   parameter.otherwise = "4, on a circle or an interval";
   return parameter;
@@ -77,7 +77,7 @@ std::vector<NamedScheme> variants(const Problem& base) {
   return schemes;
 }
 
-/// Of space and time, the less.
+/// The lower one of the orders in space and in time.
 std::optional<int> order(const Problem& p) {
   const auto name = p.parameters.maybe<std::string>("scheme.splitting");
   const int time = name ? std::ranges::find(named_splittings(), *name, &NamedSplitting::name)->order
@@ -88,6 +88,7 @@ std::optional<int> order(const Problem& p) {
 
 }  // namespace
 
+extern const EnergyEntry composition_energy;
 extern const MethodEntry composition_method;
 const MethodEntry composition_method{
     .name = "composition",
@@ -107,6 +108,7 @@ const MethodEntry composition_method{
     .on_meshes = true,
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,
+    .own_energy = &composition_energy,
     .variants = variants,
     .order = order};
 

@@ -15,15 +15,13 @@
 #include "jets/tables/time_element.hpp"
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
-#include "schemes/families/jet_family.hpp"
 #include "schemes/families/trace_stencil.hpp"
 #include "schemes/methods/element_keys.hpp"
 #include "schemes/methods/element_parts.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/space_keys.hpp"
 #include "schemes/simulation.hpp"
-#include "schemes/stepping/energy.hpp"
-#include "schemes/system/stress_energy.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
@@ -92,7 +90,7 @@ std::vector<Component> traces(const char* name, int d) {
   return list;
 }
 
-/// What the vertex observes of its traces, and with what multipliers κ; both are in nobody else's way: κ = 0.
+/// The observation of a vertex from its traces, with multipliers κ that nothing else reads, so that κ = 0.
 ///
 ///     straight lines   κ·(½(q⁻ + q⁺) − q)
 ///     one-sided        κ·(θ(q) − θ(q⁻)) and κ·(x⁺ − x): the phase space is (x⁺, θ_x(q⁻))
@@ -123,7 +121,7 @@ void observe(SchemeParts& parts, const FieldTheory& theory, const Keys& keys, co
   std::ranges::move(kappa, std::back_inserter(parts.components));
 }
 
-/// Where nodes are sites, and no walls cut their masses in half.
+/// Refuses a space whose nodes are no sites, and walls that cut masses in half.
 void require_own_mass(const Problem& p) {
   const std::string space = p.parameters.maybe<std::string>("scheme.space").value_or("lumped");
   if (space == "linear" || space == "spectral")
@@ -170,36 +168,6 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   parts.families.push_back(theory.on_table(flux_table(jump, {nodes.minus, 0, nodes.plus})));
   observe(parts, theory, keys, nodes);
   return parts;
-}
-
-/// H = −ℓ(q, 0, q_x) of the newest row's q, by the rule of the table of space, and the momentum −Σ q_x·θ(q).
-EnergyMomentum energy(const RowsInTime& rows) {
-  const auto& element = dynamic_cast<const JetFamily&>(*rows.system.families().front());
-  const BatchDensity& density = element.density();
-  const Lattice& lattice = rows.system.lattice();
-  const auto d = static_cast<std::size_t>(density.components());
-  const double k = lattice.space_step(), t = static_cast<double>(rows.newest) * rows.time_step;
-  EnergyMomentum sum;
-  std::vector<double> jet(static_cast<std::size_t>(density.variables()));
-  for (int cell = 0; cell < lattice.sites(); ++cell) {
-    if (!rows.system.has_stencil(element, rows.newest, cell)) continue;
-    for (const TablePoint& point : element.table().lower_side) {
-      std::ranges::fill(jet, 0.0);
-      // its vertices are the first of the element's
-      const auto add = [&](JetSlot slot, double per) {
-        for (const auto& [vertex, weight] : point[slot])
-          for (std::size_t a = 0; a < d; ++a)
-            jet[static_cast<std::size_t>(slot) * d + a] +=
-                per * weight *
-                rows.rows(rows.newest, cell + element.table().pattern.vertices[static_cast<std::size_t>(vertex)].space,
-                          static_cast<int>(a));
-      };
-      add(JetSlot::phi, 1), add(JetSlot::phi_x, 1 / k);
-      const StressEnergy at = stress_energy(density, jet.data(), t, lattice.position(cell) + point.space * k);
-      sum.energy += k * point.weight * at.energy, sum.momentum += k * point.weight * at.momentum;
-    }
-  }
-  return sum;
 }
 
 /// max |q⁺ − q⁻|, as twice the distance of q⁻ from the observed q: a nodal flux finds q⁺ with the next row.
@@ -261,7 +229,7 @@ const MethodEntry dgvi_method{
     .label = label,
     .starts = {StartRule::values},
     .start = StartRule::values,
-    .energy = energy,
+    .energy = &hamiltonian_of_row,
     .monitors = {{.name = "jump",
                   .value = jump,
                   .when_it_grows = "a mode of the doubled phase space takes over, and the energy does not show it; run "

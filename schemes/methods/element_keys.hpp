@@ -24,7 +24,7 @@ struct ElementKeys {
 
  protected:
   ElementKeys() = default;
-  /// Those that are given, but for the points.
+  /// Reads the keys that are given, but for the points.
   void read(const ParameterValues&);
   /// Throws that BadInput.
   const NamedLineBasis& named_basis() const;

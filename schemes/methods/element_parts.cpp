@@ -5,17 +5,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "schemes/families/jet_family.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/families/trace_stencil.hpp"
 #include "schemes/problem.hpp"
-#include "schemes/stepping/energy.hpp"
-#include "schemes/stepping/semi_discrete.hpp"
+#include "schemes/system/legendre.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
 
@@ -69,15 +68,14 @@ void take_to_mesh(SchemeParts& parts, const FieldTheory& theory, const Problem& 
   parts.families.insert(parts.families.begin(), families.begin(), families.end());
 }
 
-EnergyMomentum element_energy(const RowsInTime& rows) {
-  const auto& family = dynamic_cast<const JetFamily&>(*rows.system.families().front());
-  return semi_discrete_energy(family, rows.system, rows.rows, rows.newest,
-                              half_equations(rows.system, rows.rows, rows.newest, Side::below));
+EnergyMomentum row_energy(const RowsInTime& rows) {
+  return LegendreTransform(rows.system, rows.rows, rows.newest)
+      .energy(half_equations(rows.system, rows.rows, rows.newest, Side::below));
 }
 
-std::vector<double> element_rates(const RowsInTime& rows, std::span<const double> momenta) {
-  const auto& family = dynamic_cast<const JetFamily&>(*rows.system.families().front());
-  return semi_discrete_rates(family, rows.system, rows.rows, rows.newest, momenta);
+std::vector<double> row_rates(const RowsInTime& rows, std::span<const double> momenta) {
+  const auto v = LegendreTransform(rows.system, rows.rows, rows.newest).velocities(momenta);
+  return v ? *v : std::vector(momenta.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace delf

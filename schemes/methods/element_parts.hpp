@@ -6,6 +6,7 @@
 
 #include "jets/tables/stencil_table.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/stepping/energy.hpp"
 
 namespace delf {
 
@@ -20,15 +21,15 @@ struct Traces {
 /// node · d + a. With traces, λ_n and μ_{n+1} of every node in space follow.
 SchemeParts element_parts(const FieldTheory&, const StencilTable& element, const std::optional<Traces>& traces = {});
 
-/// The same on a mesh, where the space is one: the action of a time table on its sites and cells in place of the parts' first
-/// family, which is of this table on a point.
+/// Takes elements to a mesh, where the space is one: the action of a time table on its sites and cells replaces the
+/// parts' first family, which is of this table on a point.
 void take_to_mesh(SchemeParts&, const FieldTheory&, const Problem&, const StencilTable& time,
                   bool values_are_sources = false);
 
-/// The energy of such a scheme at the newest row: H of the momenta there and of the rows, summed over space. And the
-/// momentum −Σ φ_x ∂ℓ/∂φ_t, at the same points.
-EnergyMomentum element_energy(const RowsInTime&);
-/// The rates that have these momenta at the newest row, [i·C + c].
-std::vector<double> element_rates(const RowsInTime&, std::span<const double> momenta);
+/// The energy at the newest row, H of its fields and of the momenta of the step below, and the momentum −Σ φ_x ∂ℓ/∂φ_t, both
+/// by the quadrature of the lower side of the elements (LegendreTransform).
+EnergyMomentum row_energy(const RowsInTime&);
+/// The rates that have these momenta at the newest row, [i·C + c]; not numbers where there are none.
+std::vector<double> row_rates(const RowsInTime&, std::span<const double> momenta);
 
 }  // namespace delf

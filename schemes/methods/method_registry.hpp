@@ -17,13 +17,13 @@
 namespace delf {
 
 class FieldTheory;
-struct EnergyMomentum;
+struct EnergyEntry;
 struct FieldPoint;
 struct NamedScheme;
 struct Problem;
 struct RowDensity;
 
-/// What a scheme is made of: stencil families over one lattice, and the components that they read.
+/// The parts of a scheme: stencil families over one lattice, and the components that they read.
 struct SchemeParts {
   std::vector<std::shared_ptr<const StencilFamily>> families;
   std::vector<Component> components;
@@ -33,8 +33,8 @@ struct SchemeParts {
   std::vector<std::string> remarks = {};  ///< lines for `delf plan`
 };
 
-/// What gives row 1: the known solution; the field equation at row 0; the discrete Legendre transform there; a step of a
-/// scheme of first order in time, which needs no more than the values of row 0.
+/// The rule for row 1: the known solution; the field equation at row 0; the discrete Legendre transform there; a step
+/// of a scheme of first order in time, which needs no more than the values of row 0.
 enum class StartRule { exact, centred, legendre, values };
 inline constexpr std::array all_start_rules{StartRule::exact, StartRule::centred, StartRule::legendre,
                                             StartRule::values};
@@ -55,23 +55,23 @@ struct Monitor {
   double (*value)(const RowsInTime&);
   /// A run warns by these words, what it means and a remedy, if the value grows far beyond what it is early; null: never.
   const char* when_it_grows = nullptr;
-  /// Of the recorded rows, summary.json has the least value; false: the largest.
+  /// The value of recorded rows that summary.json has: true for the least, false for the largest.
   bool least = false;
   const char* when_above_1 = nullptr;  ///< a run warns by these words if the value passes 1; null: never
 };
 
-/// What fields.h5 has of every recorded row beside the components, frames × sites × values: declared, as data, by a
-/// method. It is found where a row is recorded, and costs nothing elsewhere.
+/// A data set of fields.h5 beside the components, frames × sites × values for every recorded row, which a method
+/// declares. It is found where a row is recorded, and costs nothing elsewhere.
 struct Dataset {
   std::string name;     ///< of the dataset: "momentum" is /momentum; not the name of a role
   std::string meaning;  ///< its attribute `meaning`
   /// The names of the values at a site.
   std::vector<std::string> (*components)(const FieldTheory&);
-  /// Of one row, [i · components + a]: the newest, or at the start of a run one below it.
+  /// The values of one row, [i · components + a]: the newest, or at the start of a run one below it.
   std::vector<double> (*values)(const RowsInTime&, std::int64_t row);
 };
 
-/// Where the sites of a mesh that moves start, and how fast they go.
+/// The places at which the sites of a mesh that moves start, and their speeds.
 struct MovingSites {
   std::vector<double> X, X_t;
 };
@@ -94,17 +94,18 @@ struct MethodEntry {
   /// When the scene gives none; empty: exact where the second row is known, or else centred.
   std::optional<StartRule> start = {};
 
-  /// The energy and momentum of the newest two rows; null: the theory's, on the jets of the symmetric rectangle.
-  EnergyMomentum (*energy)(const RowsInTime&) = nullptr;
+  /// What a run records of the newest two rows; null: the theory's, on the jets of the symmetric rectangle.
+  const EnergyEntry* energy = nullptr;
+  const EnergyEntry* own_energy = nullptr;  ///< that its rows keep beside it
   std::vector<Monitor> monitors = {};
-  /// What the newest row says of the longest stable step, in words; empty where nothing limits it.
+  /// The bound that the newest row puts on the step, in words; empty where nothing limits it.
   std::string (*limit)(const RowsInTime&) = nullptr;
   std::vector<Dataset> datasets = {};
-  /// Of the newest row and its momenta, [i·C + c]: what steps of lattice.time_steps = reversible are in proportion to, of a
-  /// strength s; null: its steps are all the same. For elements in time of one step, that start from momenta. A method that
-  /// reads lattice.stencil has it on meshes alone.
+  /// The density of steps, of a strength s, that lattice.time_steps = reversible follows, from the newest row and its
+  /// momenta, [i·C + c]; null: its steps are all the same. For elements in time of one step, that start from momenta.
+  /// A method that reads lattice.stencil has it on meshes alone.
   RowDensity (*row_density)(const RowsInTime&, std::span<const double> momenta, double strength) = nullptr;
-  /// Of sites that move: where they start for a field of row 0, (φ, φ_t, φ_x) at any x; null: where the lattice has them.
+  /// Places the sites that move for a field of row 0, (φ, φ_t, φ_x) at any x; null: they stay on the lattice.
   MovingSites (*place_sites)(const Problem&, int components,
                              const std::function<void(double x, std::span<FieldPoint>)>&) = nullptr;
 

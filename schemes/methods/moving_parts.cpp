@@ -20,8 +20,6 @@
 #include "schemes/families/mapped_family.hpp"
 #include "schemes/families/mesh_constraint.hpp"
 #include "schemes/families/rate_family.hpp"
-#include "schemes/stepping/semi_discrete.hpp"
-#include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
@@ -51,9 +49,7 @@ StencilTable stage_table(const TablePoint& point, const StencilTable& space) {
   TablePoint stage{.weight = point.weight, .time = point.time, .slots = {}};
   stage.set(JetSlot::phi, {1.0, 0.0}), stage.set(JetSlot::phi_t, {0.0, 1.0});
   time.points.push_back(std::move(stage));
-  StencilTable table = product(time, space);
-  for (TablePoint& lower : table.lower_side) lower.weight *= point.weight;  // Σ of all points is the semi-discrete p
-  return table;
+  return product(time, space);
 }
 
 /// Where the values of a scheme stand among its components, and the maps from them to the points of time.
@@ -117,14 +113,12 @@ class Layout {
     return sum;
   }
   MappedFamily::Sum slaved(int point, int space, bool rate) const {
-    // X of row 0 is listed in any case: momentum() has it among the values there.
-    const MappedFamily::Part row{{0, space}, d_, 0};
-    if (rate) return {{{0, space}, stages_[at(point)].rate, 1}, row};
+    if (rate) return {{{0, space}, stages_[at(point)].rate, 1}};
     // Between rows X is its chord and what lies beside that: so the plan has X of the new row in the same slab.
     const double c = time_.points[at(point)].time;
     if (const int beside = stages_[at(point)].position; beside >= 0)
       return {{{0, space}, d_, 1 - c}, {{1, space}, d_, c}, {{0, space}, beside, 1}};
-    return {{{static_cast<int>(time_.points[at(point)].time), space}, d_, 1}, row};
+    return {{{static_cast<int>(time_.points[at(point)].time), space}, d_, 1}};
   }
 
   int d_;
@@ -155,7 +149,7 @@ void add_action(SchemeParts& parts, const FieldTheory& theory, const MovingSchem
   }
   const bool variational = scheme.varied && scheme.time.tests.empty();
   std::vector<DensityPart> density(1);
-  if (!scheme.stages) density = density_parts(theory, scheme.points);
+  if (!scheme.stage) density = density_parts(theory, scheme.points);
   for (const DensityPart& part : density)
     for (std::size_t i = 0; i < scheme.time.points.size(); ++i) {
       const int point = static_cast<int>(i);
@@ -168,7 +162,7 @@ void add_action(SchemeParts& parts, const FieldTheory& theory, const MovingSchem
           }
       map.cell = {d, D + d}, map.time = scheme.time.points[i].time;
       std::shared_ptr<const StencilFamily> stage;
-      if (scheme.stages) stage = scheme.stages->stage(scheme.time.points[i].weight);
+      if (scheme.stage) stage = scheme.stage(scheme.time.points[i].weight);
       else stage = std::make_shared<const JetFamily>(stage_table(scheme.time.points[i], part.space), part.density);
       parts.families.push_back(std::make_shared<const MappedFamily>(std::move(stage), map));
     }
@@ -176,10 +170,11 @@ void add_action(SchemeParts& parts, const FieldTheory& theory, const MovingSchem
 
 /// G of the three sites around each: of rows for point = −1, or else at a point of time. Its multiplier is `multiplier`; or
 /// it determines the component `slaved`, one of the two.
-void add_constraint(SchemeParts& parts, const MeshConstraint::Facts& facts, const Layout& layout, int point,
+void add_constraint(SchemeParts& parts, const std::shared_ptr<const MeshConstraint>& mesh, const Layout& layout, int point,
                     std::optional<int> multiplier, std::optional<int> slaved) {
-  const int d = facts.d;
+  const int d = mesh->d;
   MappedFamily::Map map;
+  if (point < 0) map.mesh = mesh;
   for (int space = -1; space <= 1; ++space) {
     for (int c = 0; c <= d; ++c)
       map.reads.push_back(point < 0 ? MappedFamily::Sum{{{0, space}, c, 1}} : layout.value(point, c, space, false));
@@ -191,24 +186,24 @@ void add_constraint(SchemeParts& parts, const MeshConstraint::Facts& facts, cons
     map.tests.resize(map.reads.size());
     map.tests[at(2 * (d + 1))] = {{{0, 0}, *slaved, 1}};
   }
-  parts.families.push_back(std::make_shared<const MeshConstraint>(
-      facts, std::make_shared<const LagrangianFamily<Equidistribution>>(Equidistribution{d, facts.monitor}), map));
+  parts.families.push_back(std::make_shared<const MappedFamily>(
+      std::make_shared<const LagrangianFamily<Equidistribution>>(Equidistribution{d, mesh->monitor}), map));
 }
 
 /// τ X_t = G of a step, which determines X of its upper row.
-void add_delayed(SchemeParts& parts, const MeshConstraint::Facts& facts, const MovingScheme& scheme) {
-  const int d = facts.d;
+void add_delayed(SchemeParts& parts, const std::shared_ptr<const MeshConstraint>& mesh, const MovingScheme& scheme) {
+  const int d = mesh->d;
   MappedFamily::Map map;
+  map.mesh = mesh;
   for (int row = 0; row < 2; ++row)
     for (int space = -1; space <= 1; ++space)
       for (int c = 0; c <= d; ++c) map.reads.push_back({{{row, space}, c, 1}});
   map.reads.emplace_back();
   map.tests.resize(map.reads.size());
   map.tests.back() = {{{1, 0}, d, 1}};
-  parts.families.push_back(std::make_shared<const MeshConstraint>(
-      facts,
+  parts.families.push_back(std::make_shared<const MappedFamily>(
       std::make_shared<const LagrangianFamily<DelayedEquidistribution>>(
-          DelayedEquidistribution{d, facts.monitor, facts.delay, scheme.time.points.size() == 1}),
+          DelayedEquidistribution{d, mesh->monitor, mesh->delay, scheme.time.points.size() == 1}),
       map));
 }
 
@@ -274,56 +269,12 @@ void add_slack(SchemeParts& parts, int d, const MovingScheme& scheme, Layout& la
   }
 }
 
-/// Dg·(φ̇, Ẋ) = 0 at a row.
-void bind(const RowsInTime& rows, const MeshConstraint& constraint, Bonds& bonds) {
-  const LatticeSystem& system = rows.system;
-  const int d = rows.theory.components(), C = system.components();
-  // the equation of λ, or of X
-  int equation = 0;
-  for (int i = 0; i < constraint.size(); ++i) {
-    const Role role = system.component(constraint.values()[at(i)].component).role;
-    if (constraint.is_varied(i) && (role == Role::multiplier || role == Role::slaved)) equation = i;
-  }
-  std::vector<double> y(at(constraint.size())), J(y.size());
-  for (int i = 1; i + 1 < system.lattice().sites(); ++i) {
-    const auto place = [&](int m) { return i + constraint.site(m).space; };
-    const auto component = [&](int m) { return constraint.values()[at(m)].component; };
-    for (int m = 0; m < constraint.size(); ++m) y[at(m)] = rows.rows(rows.newest, place(m), component(m));
-    constraint.jacobian_row(equation, {rows.time_step, system.lattice().space_step(), 0, 0}, y, J);
-    for (int m = 0; m < constraint.size(); ++m)
-      if (component(m) <= d && J[at(m)] != 0)
-        bonds.entries.push_back({i * C + d, place(m) * C + component(m), J[at(m)]});
-  }
-}
-
-/// Ẋ = G/τ at a row.
-void bind_delayed(const RowsInTime& rows, const MeshConstraint& constraint, double delay, Bonds& bonds) {
-  const int d = rows.theory.components(), C = rows.system.components();
-  const auto q = [&](int i) {
-    std::vector<double> values;
-    for (int c = 0; c <= d; ++c) values.push_back(rows.rows(rows.newest, i, c));
-    return values;
-  };
-  for (int i = 1; i + 1 < rows.system.lattice().sites(); ++i) {
-    bonds.entries.push_back({i * C + d, i * C + d, 1});
-    bonds.rates[i * C + d] = constraint.G(q(i - 1), q(i), q(i + 1)) / delay;
-  }
-}
-
-/// What binds the velocities at the newest row.
-Bonds bonds_of(const RowsInTime& rows) {
-  Bonds bonds{.slaved = rows.system.component(rows.theory.components()).role == Role::slaved};
-  const auto& constraint = dynamic_cast<const MeshConstraint&>(*rows.system.families().front());
-  if (const double delay = constraint.facts().delay; delay > 0) bind_delayed(rows, constraint, delay, bonds);
-  else bind(rows, constraint, bonds);
-  return bonds;
-}
-
-/// The density, or a part of it, on a row of the moving cells.
-JetFamily family_of_row(const FieldTheory& theory, Reparametrised::Part part, int points) {
-  StencilTable table = linear_elements(points);
+/// The density on a row of the moving cells.
+std::shared_ptr<const StencilFamily> family_of_row(const FieldTheory& theory) {
+  StencilTable table = linear_elements(10);
   table.lower_side = table.points;
-  return {table, std::make_shared<const Reparametrised>(theory.shared_density(), part)};
+  return std::make_shared<const JetFamily>(
+      table, std::make_shared<const Reparametrised>(theory.shared_density(), Reparametrised::Part::whole));
 }
 
 }  // namespace
@@ -332,15 +283,15 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
   const int d = theory.components(), points = static_cast<int>(scheme.time.points.size());
   Layout layout(theory, scheme);
   SchemeParts parts;
-  // First, where moving_energy() finds it.
-  const MeshConstraint::Facts facts{d, scheme.monitor, stable_step(theory, scheme), scheme.delay};
+  const auto mesh = std::make_shared<const MeshConstraint>(
+      MeshConstraint{d, scheme.monitor, stable_step(theory, scheme), scheme.delay, family_of_row(theory)});
   if (scheme.varied) {
     const int lambda = layout.add("lambda", Role::multiplier, {});
-    add_constraint(parts, facts, layout, -1, lambda, {});
+    add_constraint(parts, mesh, layout, -1, lambda, {});
   } else if (scheme.delay > 0) {
-    add_delayed(parts, facts, scheme);
+    add_delayed(parts, mesh, scheme);
   } else {
-    add_constraint(parts, facts, layout, -1, {}, d);
+    add_constraint(parts, mesh, layout, -1, {}, d);
   }
   add_action(parts, theory, scheme, layout);
   for (int i = 0; i < points; ++i) {
@@ -348,16 +299,16 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
     if (scheme.varied) {
       if (Layout::is_row(here.time) || points == 1) continue;
       const int lambda = layout.add(fmt::format("lambda at {:.4g}", here.time), Role::multiplier, here);
-      add_constraint(parts, facts, layout, i, lambda, {});
+      add_constraint(parts, mesh, layout, i, lambda, {});
     } else if (!layout.by_element()) {
-      if (layout.position(i) >= 0) add_constraint(parts, facts, layout, i, {}, layout.position(i));
+      if (layout.position(i) >= 0) add_constraint(parts, mesh, layout, i, {}, layout.position(i));
       add_rate(parts, d, scheme.monitor, layout, i, {layout.rate(i), 1}, true);
     }
   }
   if (scheme.varied) add_slack(parts, d, scheme, layout);
   parts.components = layout.components;
   parts.remarks.push_back(
-      scheme.action || scheme.stages
+      scheme.action || scheme.stage
           ? "space: linear functions of the moving cells; the action is their exact integral, in closed form"
       : Reparametrised::has_parts(theory.density())
           ? fmt::format("space: linear functions of the moving cells; the quadratic part of the density is integrated "
@@ -366,24 +317,10 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
           : fmt::format("space: linear functions of the moving cells; the density is integrated by Gauss's rule of {} "
                         "points",
                         scheme.points));
-  if (std::isfinite(facts.stable_step))
+  if (std::isfinite(mesh->stable_step))
     parts.remarks.push_back(
-        fmt::format("limit: by linear theory h must stay below {:.3g} of the narrowest cell", facts.stable_step));
+        fmt::format("limit: by linear theory h must stay below {:.3g} of the narrowest cell", mesh->stable_step));
   return parts;
-}
-
-EnergyMomentum moving_energy(const RowsInTime& rows) {
-  return semi_discrete_energy(family_of_row(rows.theory, Reparametrised::Part::whole, 10), rows.system, rows.rows,
-                              rows.newest, half_equations(rows.system, rows.rows, rows.newest, Side::below),
-                              bonds_of(rows));
-}
-
-std::vector<double> moving_rates(const RowsInTime& rows, std::span<const double> momenta) {
-  // The potential has no part in momenta, and two points are exact for the rest.
-  const JetFamily row = Reparametrised::has_parts(rows.theory.density())
-                            ? family_of_row(rows.theory, Reparametrised::Part::quadratic, 2)
-                            : family_of_row(rows.theory, Reparametrised::Part::whole, 10);
-  return semi_discrete_rates(row, rows.system, rows.rows, rows.newest, momenta, bonds_of(rows));
 }
 
 }  // namespace delf

@@ -7,7 +7,6 @@
 
 #include "jets/tables/stencil_table.hpp"
 #include "schemes/families/equidistribution.hpp"
-#include "schemes/families/moving_rectangle.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/state.hpp"
 
@@ -28,18 +27,12 @@ struct MovingScheme {
   /// The whole action of this element in closed form, without points; null: none.
   std::shared_ptr<const StencilFamily> action = {};
   /// That of one of its points, where there is no such action of the whole.
-  std::shared_ptr<const MovingAction> stages = {};
+  std::function<std::shared_ptr<const StencilFamily>(double weight)> stage = {};
 };
 
 /// Families and components: φ, X, the nodes inside a step; then multipliers, or the slaved positions and rates at the
 /// points of time.
 SchemeParts moving_parts(const FieldTheory&, const MovingScheme&);
-
-/// At a row, from the momenta of φ: energy and momentum of the field, with the velocities (φ_t, X_t) that have those
-/// momenta and keep the constraint.
-EnergyMomentum moving_energy(const RowsInTime&);
-/// Those velocities, of any momenta of φ at the newest row, [i·C + c].
-std::vector<double> moving_rates(const RowsInTime&, std::span<const double> momenta);
 
 /// The field at a point x of row 0.
 using Profile = std::function<void(double x, std::span<FieldPoint>)>;

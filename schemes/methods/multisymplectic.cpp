@@ -15,9 +15,9 @@
 #include "jets/expressions/field_equation.hpp"
 #include "jets/expressions/stencil_expression.hpp"
 #include "jets/expressions/stencil_text.hpp"
+#include "jets/tables/density_on_table.hpp"
 #include "jets/tables/named_tables.hpp"
 #include "lattice/error.hpp"
-#include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/wall_families.hpp"
 #include "schemes/methods/mesh_rows.hpp"
@@ -29,7 +29,7 @@
 namespace delf {
 namespace {
 
-/// What a wall does to a scheme that its stencils cannot see.
+/// Refuses walls whose effect on a scheme its stencils cannot see.
 void check_walls(const Problem& p, const StencilFamily& family) {
   const auto [least, most] = std::ranges::minmax(family.pattern().vertices, {}, &Site::space);
   const int width = most.space - least.space;
@@ -41,8 +41,8 @@ void check_walls(const Problem& p, const StencilFamily& family) {
                              : fmt::format("lattice.stencil = {}: is for mechanics and couples no neighbours; use "
                                            "rectangle-symmetric, or lattice.space = point",
                                            p.stencil));
-  const auto* jets = dynamic_cast<const JetFamily*>(&family);
-  if (p.lattice.space() == Space::interval && !(jets ? fits_between_walls(jets->table()) : width < 2))
+  const DensityOnTable* jets = family.made_of();
+  if (p.lattice.space() == Space::interval && !(jets ? fits_between_walls(jets->table) : width < 2))
     throw BadInput(
         "lattice.stencil",
         fmt::format("lattice.stencil = {}: on an interval stencils wider than a cell leave part of the cells "
@@ -84,15 +84,15 @@ WallSlopes slopes_of(const FieldTheory& theory, const Problem& p) {
 constexpr auto sites_key = "stencil.sites", point_key = "stencil.point", lagrangian_key = "theory.lagrangian",
                first_row_key = "lattice.first_row";
 
-/// Where row 0 is an odd row of a brick wall, a brick lies one site further on. Its vertices move to the left of the anchor,
-/// so that the first column still has one:
+/// The bricks where row 0 is an odd row of a brick wall: they lie one site further on, and their vertices move to the
+/// left of the anchor, so that the first column still has one:
 ///
 ///     {0, 1, 2} where i + j is even   →   {−1, 0, 1} where i + j is even,  that is {0, 1, 2} where i + j is odd
 ///
 std::shared_ptr<const StencilFamily> from_odd_row(const FieldTheory& theory, const StencilFamily& even) {
-  const auto* family = dynamic_cast<const JetFamily*>(&even);
-  if (!family || even.pattern().placement != Placement::brick_wall) return nullptr;
-  StencilTable table = family->table();
+  const DensityOnTable* jets = even.made_of();
+  if (!jets || even.pattern().placement != Placement::brick_wall) return nullptr;
+  StencilTable table = jets->table;
   for (Site& vertex : table.pattern.vertices) --vertex.space;
   for (TablePoint& point : table.points) --point.space;
   return theory.on_table(std::move(table));
@@ -222,17 +222,15 @@ std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheo
   if (const auto lagrangian = p.parameters.maybe<std::string>(lagrangian_key))
     return {on_values(theory, p, *lagrangian, sites)};
   const std::string points = text_of(point_key);
-  const auto family =
-      std::static_pointer_cast<const JetFamily>(theory.on_table(stencil_of(sites, points, sites_key, point_key)));
-  return {family};
+  return {theory.on_table(stencil_of(sites, points, sites_key, point_key))};
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   if (p.lattice.mesh()) return rows_on_mesh(theory, p);
   if (p.step_control || !p.time_steps.empty())
     throw BadInput("lattice.time_steps",
-                   "lattice.time_steps: scheme.method = multisymplectic has steps of one length but on a mesh; use "
-                   "scheme.method = r-adaptive with reversible steps, or leave it out");
+                   "lattice.time_steps: scheme.method = multisymplectic has steps of one length; use scheme.method = r-adaptive with "
+                   "reversible steps, or a mesh, or leave it out");
   const bool own = p.stencil == stencil_as_text;
   SchemeParts parts{own ? on_own_stencil(theory, p) : std::vector{theory.variational(p.stencil)}, theory.fields(),
                     theory.symmetries()};
@@ -244,8 +242,8 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                                  "brick wall such as hexagon",
                                  p.stencil));
   check_walls(p, *parts.families[0]);
-  if (const auto* jets = dynamic_cast<const JetFamily*>(parts.families[0].get()))
-    for (auto& term : wall_families(jets->table(), theory.shared_density(), p.lattice, slopes_of(theory, p)))
+  if (const DensityOnTable* jets = parts.families[0]->made_of())
+    for (auto& term : wall_families(jets->table, theory.shared_density(), p.lattice, slopes_of(theory, p)))
       parts.families.push_back(std::move(term));
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));

@@ -46,8 +46,8 @@ std::vector<StencilTable> at_both_walls(const StencilTable& table, const Lattice
 
 namespace {
 
-/// ℓ = ½ Σ M_ab(x) φ_a,t φ_b,t + U(t, x, φ, φ_x): a sub-step is a kick, of U where the row is, and a drift. M is looked at where
-/// it is not proved constant: at two jets in every place.
+/// ℓ = ½ Σ M_ab(x) φ_a,t φ_b,t + U(t, x, φ, φ_x): a sub-step is a kick, of U where the row is, and a drift. M is
+/// checked where it is not proved constant: at two jets in every place.
 bool is_quadratic_in_rates(const BatchDensity& density) {
   const int d = density.components(), m = density.variables(), t = m;
   bool proved = true;
@@ -89,7 +89,7 @@ bool is_of_leapfrog(const Splitting& splitting) {
   return true;
 }
 
-/// What sub-steps do for any density that is nonlinear in φ alone, they do for others under conditions.
+/// Checks the conditions under which sub-steps serve densities that are nonlinear in more than φ.
 void check_density(const BatchDensity& density, const Problem& p, const Splitting& splitting) {
   if (density.nonlinearity() != Nonlinearity::all) return;
   if (!splitting.processor.empty())

@@ -10,7 +10,7 @@ namespace delf {
 
 /// lattice.space_order, 2, 4, …, 2 · widest_pair.
 Parameter space_order_parameter();
-/// The same of a problem, 4 if it is not given.
+/// The order in space of a problem, 4 if it is not given.
 int space_order_of(const Problem&);
 /// Checks lattice.space_order, an even number, and gives the number of pairs p.
 int pairs_of_order(const Problem&, const char* key, int order);
@@ -20,7 +20,7 @@ int pairs_of_order(const Problem&, const char* key, int order);
 /// of an interval follow. Throws BadInput for what there is no scheme for.
 SchemeParts pair_parts(const FieldTheory&, const Problem&, const Splitting&, const std::vector<double>& pairs);
 
-/// Of both walls of an interval, what a table of one row has there (mirror_table); none on a circle.
+/// The tables of one row at both walls of an interval (mirror_table); none on a circle.
 std::vector<StencilTable> at_both_walls(const StencilTable&, const Lattice&);
 
 }  // namespace delf

@@ -112,7 +112,7 @@ std::vector<NamedScheme> variants(const Problem& base) {
   return schemes;
 }
 
-/// Of kernel and pairs, the less; pairs suited to a solution have an order at a finer k only.
+/// The lower one of the orders of kernel and pairs; pairs suited to a solution have an order at a finer k only.
 std::optional<int> order(const Problem& p) {
   if (p.parameters.get<std::string>("lattice.pairs") == "suited" || !has_processor(p)) return std::nullopt;
   const int time = p.parameters.get<std::string>("scheme.kernel") == "ti4" ? 4 : 6;

@@ -22,12 +22,12 @@
 #include "schemes/declared.hpp"
 #include "schemes/families/mesh_constraint.hpp"
 #include "schemes/methods/element_parts.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/moving_parts.hpp"
 #include "schemes/methods/slope_steps.hpp"
 #include "schemes/methods/time_element_keys.hpp"
 #include "schemes/simulation.hpp"
-#include "schemes/stepping/energy.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
@@ -153,11 +153,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                       .delay = delay_of(p, time),
                       .most_phase = time.most_phase,
                       .points = points};
-  if (const auto rectangle = find_theory(p.theory).moving_rectangle; rectangle && !asked) {
-    scheme.action = rectangle(p.parameters);
-    scheme.stages = std::dynamic_pointer_cast<const MovingAction>(scheme.action);
-    if (!time.rectangle) scheme.action = nullptr;
-    else scheme.stages = nullptr;
+  if (const TheoryEntry& theory_entry = find_theory(p.theory); theory_entry.moving_stage && !asked) {
+    if (time.rectangle) scheme.action = theory_entry.moving_rectangle(p.parameters);
+    else scheme.stage = [&](double weight) { return theory_entry.moving_stage(p.parameters, weight); };
   }
   return moving_parts(theory, scheme);
 }
@@ -169,13 +167,8 @@ MovingSites place_sites(const Problem& p, int components, const Profile& profile
   return sites;
 }
 
-EnergyMomentum energy(const RowsInTime& rows) {
-  return rows.system.moves() ? moving_energy(rows) : element_energy(rows);
-}
-
 RowDensity row_density(const RowsInTime& rows, std::span<const double> momenta, double strength) {
-  return density_of_slopes(rows, rows.system.moves() ? moving_rates(rows, momenta) : element_rates(rows, momenta),
-                           strength);
+  return density_of_slopes(rows, row_rates(rows, momenta), strength);
 }
 
 /// δ, the narrowest cell of the newest row: it limits the step of what is explicit.
@@ -189,32 +182,29 @@ double narrowest_cell(const RowsInTime& rows) {
     least = std::min(least, rows.rows(rows.newest, i + 1, X) - rows.rows(rows.newest, i, X));
   return least;
 }
-const MeshConstraint* constraint_of(const RowsInTime& rows) {
-  return rows.system.moves() ? dynamic_cast<const MeshConstraint*>(rows.system.families().front().get()) : nullptr;
-}
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// How far the newest row is from having no mesh.
+/// The distance of the newest row from having no mesh.
 double mesh_margin(const RowsInTime& rows) {
-  const MeshConstraint* constraint = constraint_of(rows);
-  if (!constraint) return unknown;
+  const MeshConstraint* mesh = find_mesh(rows.system.families());
+  if (!mesh) return unknown;
   std::vector<double> y;
   const auto d = static_cast<std::size_t>(rows.theory.components());
   for (int i = 0; i < rows.system.lattice().sites(); ++i)
     for (std::size_t a = 0; a < d; ++a) y.push_back(rows.rows(rows.newest, i, static_cast<int>(a)));
-  return constraint->margin(y, d, rows.system.lattice().length()).value_or(unknown);
+  return mesh->margin(y, d, rows.system.lattice().length()).value_or(unknown);
 }
 /// h over what is stable on the narrowest cell.
 double step_over_limit(const RowsInTime& rows) {
-  const MeshConstraint* constraint = constraint_of(rows);
-  if (!constraint || std::isinf(constraint->facts().stable_step)) return unknown;
-  return rows.time_step / (constraint->facts().stable_step * narrowest_cell(rows));
+  const MeshConstraint* mesh = find_mesh(rows.system.families());
+  if (!mesh || std::isinf(mesh->stable_step)) return unknown;
+  return rows.time_step / (mesh->stable_step * narrowest_cell(rows));
 }
 /// "h below 0.0764, 0.816 of the narrowest cell, which is 0.0936 wide, by linear theory"
 std::string limit(const RowsInTime& rows) {
-  const MeshConstraint* constraint = constraint_of(rows);
-  if (!constraint || std::isinf(constraint->facts().stable_step)) return {};
-  const double of_width = constraint->facts().stable_step, cell = narrowest_cell(rows);
+  const MeshConstraint* mesh = find_mesh(rows.system.families());
+  if (!mesh || std::isinf(mesh->stable_step)) return {};
+  const double of_width = mesh->stable_step, cell = narrowest_cell(rows);
   return fmt::format("h below {:.3g}, {:.3g} of the narrowest cell, which is {:.3g} wide, by linear theory",
                      of_width * cell, of_width, cell);
 }
@@ -282,7 +272,7 @@ const MethodEntry r_adaptive_method{
     .label = label,
     .starts = {StartRule::legendre, StartRule::exact},
     .start = StartRule::legendre,
-    .energy = energy,
+    .energy = &hamiltonian_of_row,
     .monitors = {{.name = "mesh_min_spacing", .value = narrowest_cell, .least = true},
                  {.name = "mesh_margin", .value = mesh_margin, .least = true},
                  {.name = "step_over_limit",

@@ -7,6 +7,7 @@
 #include "jets/tables/table_product.hpp"
 #include "lattice/error.hpp"
 #include "schemes/methods/element_parts.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/space_keys.hpp"
 #include "schemes/simulation.hpp"
@@ -53,7 +54,7 @@ const MethodEntry radau_iia_method{
     .label = label,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
-    .energy = element_energy,
+    .energy = &hamiltonian_of_row,
     .order = order};
 
 }  // namespace delf

@@ -7,6 +7,7 @@
 #include "jets/tables/spacetime_element.hpp"
 #include "lattice/error.hpp"
 #include "schemes/methods/element_parts.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -81,7 +82,7 @@ const MethodEntry spacetime_method{
     .label = label,
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,
-    .energy = element_energy,
+    .energy = &hamiltonian_of_row,
     .variants = variants};
 
 }  // namespace delf

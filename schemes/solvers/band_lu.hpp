@@ -14,7 +14,7 @@ class BandLU {
  public:
   BandLU(int n, int lower, int upper);
 
-  /// Where A_ij is in numbers(), of doubles.
+  /// The place of A_ij in numbers(), of doubles.
   int place(int i, int j) const { return base_[static_cast<std::size_t>(i)] + j; }
   double* numbers() { return reinterpret_cast<double*>(rows_.data()); }
   void set_zero();

@@ -26,7 +26,7 @@ class BlockSolver {
   /// x = A⁻¹ b. Allocates nothing but where a large block is sparse.
   void solve(const std::vector<double>& b, std::vector<double>& x) const;
 
-  /// Those that were factored last; none before.
+  /// The values that were factored last; none before.
   const std::vector<double>& values() const { return values_; }
 
   int blocks() const { return static_cast<int>(blocks_.size()); }

@@ -10,7 +10,7 @@ namespace delf {
 
 namespace {
 
-/// What enters an arc is felt as long as q^i of it is more than a fifth of what rounding leaves.
+/// The smallest effect that counts: what enters an arc is felt while q^i of it exceeds a fifth of what rounding leaves.
 constexpr double smallest_felt = 1e-17;
 
 }  // namespace
@@ -35,8 +35,8 @@ CirculantSolver::CirculantSolver(const RowLayout& layout, double centre, double 
   build_closure();
 }
 
-/// With e_l what the recurrence from nothing leaves at the site before arc l, U_l the true value there; and with s_l what
-/// it leaves of x at the site after arc l, found in arc m = l + 1 at the index j_m, X_l the true value:
+/// The closure of the arcs: e_l is what the recurrence from nothing leaves at the site before arc l, U_l the true value
+/// there; s_l what it leaves of x at the site after arc l, found in arc m = l + 1 at the index j_m, X_l the true value:
 ///
 ///     U_l = e_l + q^(gap_l + 1) U_{l−1}
 ///     X_l = s_m + K_m U_m + q^(M − j_m) X_m,      K_m = Σ_{i ≥ j_m} q^(i − j_m) q^(i + 1)
@@ -94,7 +94,7 @@ struct Recurrence {
 
 }  // namespace
 
-/// The same for the right side that a sum of rows gives.
+/// The forward run for the right side that a sum of rows gives.
 Pack CirculantSolver::run_forward(const RowSum& sum, const double* const* rows, double* u, int first, int last,
                                   Pack before) const {
   Recurrence sink{q_, u, before};
@@ -206,7 +206,7 @@ class CirculantSolver::ByStrips final : public Sweeps {
  public:
   explicit ByStrips(const CirculantSolver& solver) : s_(solver), packs_(solver.layout_->packs()) {}
   PackRange warm_up() const override { return {packs_ - s_.near_, packs_}; }
-  /// By the last packs the arcs know what enters from the one before.
+  /// The last packs: by them the arcs know what enters from the one before.
   void begin(double* u) override {
     s_.run_forward(u, packs_ - s_.near_, packs_, Pack(0.0));
     last_ = s_.layout_->before_first(u);
@@ -231,7 +231,7 @@ class CirculantSolver::ByStrips final : public Sweeps {
 
  private:
   void look_back(const double* u, int end) {
-    // What the arc before needs of this one is in its first `near` packs.
+    // The arc before needs the first `near` packs of this one.
     if (ready_ == 0) after_ = from_lane_above(s_.sum_of_first(u));
     ready_ = end;
   }
@@ -242,7 +242,7 @@ class CirculantSolver::ByStrips final : public Sweeps {
   Pack last_ = 0.0, after_ = 0.0;
 };
 
-/// By strips where the ends of arcs are far apart against what is felt of them.
+/// Returns sweeps by strips where arcs are long against the range in which their ends are felt.
 std::unique_ptr<Sweeps> CirculantSolver::sweeps(int) const {
   constexpr int long_row = 4096;
   if (layout_->packs() >= long_row && layout_->packs() >= 8 * near_ && layout_->finds_halos_by_packs())

@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// How far entries lie from the diagonal, the shorter way round where space is a circle.
+/// The distance of entries from the diagonal, the shorter way round where space is a circle.
 struct Bandwidth {
   int lower = 0, upper = 0;
 };

@@ -36,7 +36,7 @@ class Sweeps {
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
-  /// In place: w holds the right sides times right_side_scale(). Halos are not filled.
+  /// Solves in place: w holds the right sides times right_side_scale(). Halos are not filled.
   virtual void solve(double* const* w) const = 0;
   virtual double right_side_scale(int /*component*/) const { return 1; }
   /// Null where it cannot be done by sweeps.
@@ -59,7 +59,7 @@ struct BandEntry {
 std::unique_ptr<LinearSolver> factor(const Lattice&, const RowLayout&, int components,
                                      const std::vector<MatrixEntry>& entries);
 
-/// The same for a matrix that is the same at every site of a circle, one component.
+/// The solver of a matrix that is the same at every site of a circle, one component.
 std::unique_ptr<LinearSolver> factor_uniform(const Lattice&, const RowLayout&, std::span<const BandEntry> stencil);
 
 /// Components that do not couple.

@@ -17,7 +17,7 @@ struct PackRange {
   int first, last, stride = 1;
 };
 
-/// How a row of N sites lies in memory: lane l of every pack owns the contiguous arc of sites start(l) … start(l)+M−1,
+/// The layout of a row of N sites: lane l of every pack owns the contiguous arc of sites start(l) … start(l)+M−1,
 /// so that the neighbours of a pack of sites are the packs before and after it, aligned, without shuffles. Arcs may
 /// overlap by one site or more when N is no multiple of the lanes; such slots hold the same value. `halo` packs on
 /// either side repeat the sites across the ends of the arcs.
@@ -32,7 +32,7 @@ class RowLayout {
 
   int packs() const { return packs_; }  ///< M
   PackRange all() const { return {0, packs_}; }
-  /// Where one of so many parts of the row begins; part `parts` begins at its end.
+  /// The pack at which one of so many parts of the row begins; part `parts` begins at its end.
   int first_of_part(int part, int parts) const {
     return static_cast<int>(static_cast<long long>(part) * packs_ / parts);
   }
@@ -60,10 +60,10 @@ class RowLayout {
     if (turn != 0) fill_halo_turned(row, turn);
     else fill_halo(row);
   }
-  /// Whether packs of a halo are packs of the row, moved by a lane; and then the one before the first.
+  /// True if packs of a halo are packs of the row, moved by a lane; before_first() is then the one before the first.
   bool finds_halos_by_packs() const { return by_packs_; }
   Pack before_first(const double* row) const { return before_.pack(row, -lanes); }
-  /// The same, of packs that `read(at)` gives: what has just been stored would be waited for.
+  /// The pack before the first, from packs that `read(at)` gives: reading what has just been stored would wait.
   template <class Read>
     requires std::invocable<Read, std::ptrdiff_t>
   Pack before_first(const Read& read) const {
@@ -91,7 +91,7 @@ class RowLayout {
   struct Copy {
     int to, from, turns;
   };
-  /// What lies beside arcs on one side of them. A pack of it is a pack of the row, moved by a lane: another one where
+  /// The values beside arcs on one side. A pack of them is a pack of the row, moved by a lane: another one where
   /// arcs overlap by one site more.
   template <Pack (*moved)(Pack)>
   struct Beside {
@@ -133,7 +133,7 @@ class RowBuffer {
   RowBuffer(const RowLayout& layout, int rows);
   /// Rows of so many doubles.
   explicit RowBuffer(std::size_t doubles, int rows = 1);
-  /// What that would take: rows begin at cache lines.
+  /// The bytes that so many doubles take: rows begin at cache lines.
   static std::size_t bytes_of(std::size_t doubles, int rows = 1) {
     return stride_of(doubles) * static_cast<std::size_t>(rows) * sizeof(double);
   }

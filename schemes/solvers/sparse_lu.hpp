@@ -10,7 +10,7 @@ using SparseLU = Eigen::SparseLU<Eigen::SparseMatrix<double>>;
 /// False where A is singular. Not lu.compute(A): for a matrix with far fewer entries than columns Eigen 3.4 estimates
 /// the memory as 0, and then asks for it again without end.
 bool factor(SparseLU& lu, const Eigen::SparseMatrix<double>& A);
-/// The same for a matrix with the pattern of the last one: its analysis is kept.
+/// Factors a matrix with the pattern of the last one: its analysis is kept.
 bool factor_again(SparseLU& lu, const Eigen::SparseMatrix<double>& A);
 }  // namespace delf
 

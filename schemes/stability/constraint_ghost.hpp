@@ -27,7 +27,7 @@ std::optional<ConstraintGhost> ghost_under_constraint(const LatticeSystem&);
 /// "waves near theta = pi, z = -1 off the constraint's surface grow from rounding, and faster for a shorter time step".
 std::string in_words_under_constraint(const ConstraintGhost&);
 
-/// What to do about it: the end of a message.
+/// The remedy: the end of a message.
 inline constexpr const char* without_ghost_under_constraint =
     "use a stencil without them, such as lattice.stencil = rectangle";
 

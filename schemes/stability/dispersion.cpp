@@ -56,8 +56,8 @@ std::vector<DispersionPoint> dispersion(const Symbol& symbol, double mass, int c
       like.push_back(usable ? likeness(symbol, root, wave_number) : 0);
       best = std::max(best, like.back());
     }
-    // Of those that are like a plane wave the nearest to what is expected; at κ = 0 that in the upper half.
-    // From one root to the next as the exact ones go.
+    // The branch is the root like a plane wave nearest to what is expected; at κ = 0 that in the upper half.
+    // It goes from one root to the next as the exact ones go.
     const double expected = i == 0 ? std::min(exact, pi) : phase + exact - before;
     double nearest = std::numeric_limits<double>::infinity(), found = expected, size = std::abs(z[0]);
     for (std::size_t r = 0; r < z.size(); ++r) {

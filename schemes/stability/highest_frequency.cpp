@@ -3,23 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "jets/simd/scratch_rows.hpp"
+#include "jets/one_jet.hpp"
 
 namespace delf {
 
 double highest_frequency(const BatchDensity& density, double constant, double q) {
   const int d = density.components(), m = density.variables();
-  const ScratchRows jet(m, lanes), H(m * m, lanes);
-  for (int i = 0; i < m; ++i) std::fill_n(jet[i], lanes, i < d ? constant : 0.0);
-  density.hessian({lanes, jet.data()}, H.data());
+  std::vector<double> jet(static_cast<std::size_t>(m), 0.0);
+  std::fill_n(jet.begin(), d, constant);
+  const std::vector<double> all = hessian_at(density, jet, 0, 0);
+  const auto H = [&](int a, int b) { return all[static_cast<std::size_t>(a * m + b)]; };
   enum { phi, phi_t, phi_x, phi_tt, phi_tx, phi_xx };
   double highest = 0;
   for (int a = 0; a < d; ++a) {
     const auto sum = [&](int left, int right, auto value) {
       double total = 0;
       for (int b = 0; b < d && std::max(left, right) < density.slots(); ++b)
-        total += std::abs(value(H[(left * d + a) * m + right * d + b][0], H[(right * d + a) * m + left * d + b][0]));
+        total += std::abs(value(H(left * d + a, right * d + b), H(right * d + a, left * d + b)));
       return total;
     };
     const auto entry = [](double x, double) { return x; };

@@ -195,7 +195,7 @@ class Scan {
 
   void add_ghost(Ghost ghost) {
     if (symbol_.brick()) {
-      // Of the two names (z, θ), (−z, θ + π) of a mode, the one in which even and odd sites have the same values.
+      // A mode has two names, (z, θ) and (−z, θ + π): the one taken gives even and odd sites the same values.
       const std::vector<Complex> v = symbol_.mode(ghost.z, ghost.theta);
       double like = 0;
       for (std::size_t c = 0; c < v.size() / 2; ++c) like += std::real(std::conj(v[c]) * v[c + v.size() / 2]);

@@ -12,7 +12,7 @@ double step_trace(const Splitting&, double lambda, double mu);
 /// The largest ωh up to which |trace| ≤ 2 for all that are less.
 double frequency_limit(const Splitting&);
 
-/// The same for h/k and the wave equation, over pairs of these weights, and those of the squared force.
+/// The limit of h/k for the wave equation, over pairs of these weights, and those of the squared force.
 double courant_limit(const Splitting&, const std::vector<double>& pairs, const std::vector<double>& force_pairs,
                      double mass_k = 0);
 

@@ -10,7 +10,7 @@ namespace delf {
 std::vector<StableInterval> stable_set(const std::function<LatticeSystem(double)>& make, double least, double most,
                                        const StableSearch& search) {
   const auto stable = [&](double x) { return linear_stability(make(x), search.constant, search.wave_numbers).stable; };
-  /// Where the property that holds at a ends, between a and b.
+  /// The end, between a and b, of the property that holds at a.
   const auto end = [&](double a, double b) {
     const bool at_a = stable(a);
     while (std::abs(b - a) > search.tolerance) {

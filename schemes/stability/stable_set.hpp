@@ -12,7 +12,7 @@ struct StableInterval {
   double from, to;
 };
 
-/// How a parameter is searched.
+/// The search of a parameter.
 struct StableSearch {
   int samples = 200;        ///< steps of the parameter; intervals and gaps narrower than a step may be missed
   double tolerance = 1e-8;  ///< of the ends

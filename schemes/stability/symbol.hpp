@@ -31,7 +31,7 @@ class Symbol {
   bool brick() const { return brick_; }
   double time_step() const { return time_step_; }
   double space_step() const { return space_step_; }
-  /// Where the component of v lies in its cell, as fractions of h and k.
+  /// The place of the component of v in its cell, as fractions of h and k.
   NodePosition position(int v) const { return positions_[index(v % components_)]; }
 
   /// All modes have their mirror image in 0 ≤ θ ≤ zone(): 0 for mechanics, π/2 for bricks, else π.
@@ -42,7 +42,7 @@ class Symbol {
   std::vector<Complex> roots(double theta) const;
   /// max |z|; a root on the unit circle to round-off has |z| = 1.
   double amplification(double theta) const;
-  /// The same, of roots(θ).
+  /// The amplification of given roots(θ).
   double amplification(double theta, const std::vector<Complex>& roots) const;
 
   /// P, row by row.
@@ -50,7 +50,7 @@ class Symbol {
   /// The singular values of P with its rows and columns scaled, relative to the size of its terms; smallest last. One
   /// of them is zero if z is a root.
   std::vector<double> singular_values(Complex z, double theta) const;
-  /// Whether z is a root to round-off.
+  /// True if z is a root to round-off.
   bool is_root(Complex z, double theta) const;
   /// The v of Euclidean length 1 with the smallest |P v|.
   std::vector<Complex> mode(Complex z, double theta) const;
@@ -62,7 +62,7 @@ class Symbol {
     int equation, unknown, time, space;
     double value;
   };
-  /// Which unknown of which row an equation is solved for (Σ-method), and how many roots there are.
+  /// The unknown and its row that an equation is solved for (Σ-method), and the number of roots.
   struct Order {
     std::vector<int> c, d;   ///< of equations and unknowns: their rows in a slab
     std::vector<int> depth;  ///< of unknowns: slabs before this one that equations read

@@ -7,7 +7,7 @@
 
 namespace delf::initial {
 
-/// Where initial.wavenumber n becomes a wave that the lattice allows. A circle has q = 2πn/L; an interval has the
+/// The map from initial.wavenumber n to a wave that the lattice allows. A circle has q = 2πn/L; an interval has the
 /// standing modes of its walls (fixed: a node; natural: a crest):
 ///
 ///     fixed–fixed      sin nπx/L          natural–natural    cos nπx/L
@@ -36,7 +36,7 @@ class Modes {
 /// m² in ω² = q² + m² for small waves around φ = 0: −N″(0). Throws BadInput if it is negative.
 double squared_mass(const StateBuild&);
 
-// Of plane-wave and wave-packet, which are exact in linear theories.
+// The parameters of plane-wave and wave-packet, which are exact in linear theories.
 Parameter wave_amplitude_parameter();
 /// initial.amplitude; 1 in a linear theory and 0.1 in others if not given.
 double wave_amplitude(const StateBuild&);

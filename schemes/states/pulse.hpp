@@ -7,7 +7,7 @@
 
 namespace delf::initial {
 
-/// Where a pulse is, how it moves, and for how long the lattice lets it be what it is.
+/// The place of a pulse, its motion, and the time for which the lattice leaves it as it is.
 struct PulseFrame {
   double position, speed;  ///< the centre is at position + speed·t
   int winding;             ///< on a circle: (φ(+∞) − φ(−∞))/2π
@@ -32,7 +32,7 @@ class Pulse : public State {
  protected:
   /// The pulse at time t, at the distance s from its moving centre; φ_t is taken at fixed x = x₀ + vt + s.
   virtual FieldPoint pulse(double t, double s) const = 0;
-  /// What it tends to far away, modulo 2π.
+  /// The value that it tends to far away, modulo 2π.
   virtual double vacuum() const { return 0; }
   /// The formula and its parameters, for description().
   virtual std::string formula() const = 0;

@@ -8,12 +8,12 @@
 
 namespace delf {
 
-/// Where a state can live: on a circle; on a circle or between walls; at a point; or it does not matter.
+/// The space that a state can live in: a circle; a circle or an interval; a line; a point; or any.
 enum class Place { circle, interval, line, point, anywhere };
 
 struct StateEntry;
 
-/// What a state is built from.
+/// The arguments that a state is built from.
 struct StateBuild {
   const StateEntry& entry;
   const StateRequest& request;

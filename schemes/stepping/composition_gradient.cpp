@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "jets/simd/scratch_rows.hpp"
-#include "schemes/families/jet_family.hpp"
+#include "jets/tables/density_on_table.hpp"
 #include "schemes/stepping/composition_stepper.hpp"
 #include "schemes/stepping/pair_strips.hpp"
 
@@ -16,14 +16,13 @@ namespace delf {
 std::optional<CompositionStepper::ForceGradient> CompositionStepper::read_gradient(const StencilFamily& of,
                                                                                    const StencilFamily& given,
                                                                                    double k) {
-  const auto* family = dynamic_cast<const JetFamily*>(&given);
-  const auto* density = family ? dynamic_cast<const ForceSquared*>(&family->density()) : nullptr;
-  if (!density || family->table().points.size() != 1) return std::nullopt;
-  if (const auto* first = dynamic_cast<const JetFamily*>(&of); !first || &first->density() != &density->of())
-    return std::nullopt;
-  const auto& vertices = family->pattern().vertices;
-  const TablePoint& point = family->table().points[0];
-  ForceGradient gradient{density, {}, {}, point.weight * family->table().measure};
+  const DensityOnTable *jets = given.made_of(), *first = of.made_of();
+  const ForceSquared* density = jets ? jets->density->squared_force() : nullptr;
+  if (!density || jets->table.points.size() != 1) return std::nullopt;
+  if (!first || first->density.get() != &density->of()) return std::nullopt;
+  const auto& vertices = given.pattern().vertices;
+  const TablePoint& point = jets->table.points[0];
+  ForceGradient gradient{density, {}, {}, point.weight * jets->table.measure};
   for (const TablePoint::Entry& e : point[JetSlot::phi_xx]) {
     const Site v = vertices[static_cast<std::size_t>(e.vertex)];
     if (v.time != 0 || v.node != 0) return std::nullopt;

@@ -436,7 +436,7 @@ double CompositionStepper::residual() const {
   if (known_ == 0) return std::numeric_limits<double>::quiet_NaN();
   const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
   if (!scratch_.rows() && scratch_rows() > 0) scratch_ = RowBuffer(doubles, scratch_rows());
-  // The next step that is looked at writes over these.
+  // The next step that is checked writes over these.
   const auto room = [&](int r) {
     return r < S_ ? slabs_.row(static_cast<int>(n_ % slabs_held) * S_ + r) : scratch_.row(r - S_);
   };

@@ -21,7 +21,7 @@ namespace delf {
 /// where all numbers come from the constant part of the element's Jacobian. A second family, the squares of the force at
 /// node 0, adds its gradient there. Where rows are those of a kernel, its processor gives the first one, and is undone on
 /// copies of rows that are observed. A step that no one looks at writes rows over
-/// each other; one that is looked at keeps those between its sub-steps.
+/// each other; one that is checked keeps those between its sub-steps.
 ///
 /// On an interval the families with the placement of a mirror say that the field goes on beyond the walls as its mirror image:
 /// steps take the equations of the first family everywhere, and halos are mirror images.
@@ -88,7 +88,7 @@ class CompositionStepper final : public StepMethod {
   void set(RowBuffer& rows, const std::vector<double>& section, double turn);
   void save();
   [[noreturn]] void fail();
-  /// Of the rows that the residual is worked out in: the others are those of a slab that is not held any more.
+  /// The number of rows to work out the residual in, which those of a slab no longer held do not give.
   int scratch_rows() const { return S_ < 3 ? 3 - S_ : 0; }
   void require(int slabs) const;
 
@@ -107,7 +107,7 @@ class CompositionStepper final : public StepMethod {
   double scale_ = 1;         ///< K: velocities are P/K
   RowLayout layout_, ends_;  ///< with the halo of differences, and of rows: one pack
   std::size_t size_;         ///< of a row of d components
-  // Of an interval: images of differences and of what lies at sites, the slots of fixed walls with their values, and natural walls.
+  // The images of differences and of values beyond an interval, slots of fixed walls with values, natural walls.
   std::vector<Image> differences_beyond_, values_beyond_;
   struct Held {
     int slot;

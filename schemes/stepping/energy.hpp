@@ -3,6 +3,7 @@
 #include "jets/batch_density.hpp"
 #include "schemes/solvers/row_layout.hpp"
 #include "schemes/system/cell_jet.hpp"
+#include "schemes/system/energy_momentum.hpp"
 
 namespace delf {
 
@@ -15,14 +16,10 @@ struct RowPair {
   double time_step, space_step;
 };
 
-/// What the energy of a run is, in one line, for whoever reads a number or a figure.
+/// The definition of a run's energy, in one line, for whoever reads a number or a figure.
 inline constexpr const char* energy_formula =
     "k Σ (φ_t ∂ℓ/∂φ_t − ℓ), jets of the symmetric rectangle on the last two rows, whatever the scheme; order 2 in h "
     "and k";
-
-struct EnergyMomentum {
-  double energy = 0, momentum = 0;
-};
 
 /// Energy and momentum between two rows, over the symmetric rectangle's jets whatever the scheme,
 ///
@@ -32,7 +29,7 @@ struct EnergyMomentum {
 /// behind both: they are measured, not conserved. cells[slot]: 1 for each slot that is the left end of a cell, else 0.
 EnergyMomentum energy_momentum(const BatchDensity&, const RowPair&, const double* cells);
 
-/// The same site by site, for densities of second order too (StressEnergy says what their energy is). `jets` are of this
+/// Energy and momentum site by site, for densities of second order too (StressEnergy defines it). `jets` are of this
 /// lattice; rows [i·d + a]; t: between them.
 EnergyMomentum energy_momentum(const BatchDensity&, const Lattice&, CellJets& jets, std::span<const double> below,
                                std::span<const double> above, double t);

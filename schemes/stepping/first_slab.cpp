@@ -15,7 +15,7 @@ bool is_data(const LatticeSystem& system, const Node& value) {
   return value.site.time == 0 && (role == Role::field || role == Role::trace);
 }
 
-/// What an equation reads. Equations of one component are alike, but near walls.
+/// The values that an equation reads. Equations of one component are alike, but near walls.
 class Reads {
  public:
   explicit Reads(const LatticeSystem& system) : system_(system) {}
@@ -82,7 +82,7 @@ Assembly::Parts first_slab(const LatticeSystem& system, const Assembly::Parts& w
   for (std::size_t n = 0; n < whole.equations.size(); ++n) {
     const Node &equation = whole.equations[n], &unknown = whole.unknowns[n];
     if (equation.site.time < 0 || unknown.site.time < 0 || is_data(system, unknown)) continue;
-    // What is slaved to the row before keeps what the start gave.
+    // Unknowns that are slaved to the row before keep what the start gave.
     if (from_momenta && system.component(unknown.component).role == Role::slaved &&
         std::ranges::any_of(reads.of(equation), [](const Node& value) { return value.site.time < 0; }))
       continue;

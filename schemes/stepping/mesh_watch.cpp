@@ -7,12 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "schemes/families/mapped_family.hpp"
+
 namespace delf {
 
 MeshWatch::MeshWatch(const LatticeSystem& system) : system_(system) {
   for (const auto& family : system.families())
-    if (const auto* mapped = dynamic_cast<const MappedFamily*>(family.get()); mapped && !mapped->cell().empty())
-      stages_.push_back(mapped);
+    if (family->moving_cell()) stages_.push_back(family.get());
 }
 
 std::optional<int> MeshWatch::crossing(const double* row) const {
@@ -25,19 +26,19 @@ std::optional<int> MeshWatch::crossing(const double* row) const {
 std::string MeshWatch::crossing_at(const SectionRing& ring, std::int64_t row) const {
   if (const auto i = crossing(ring.row(row)))
     return fmt::format("sites {} and {} of the mesh pass each other", *i, *i + 1);
-  for (const MappedFamily* stage : stages_) {
+  for (const StencilFamily* stage : stages_) {
     int top = 0;
     for (const Site& vertex : stage->pattern().vertices) top = std::max(top, vertex.time);
     for (int i = 0; i + 1 < system_.lattice().sites(); ++i) {
       double size = 0;
-      for (const auto& [value, weight] : stage->cell()) {
+      for (const auto& [value, weight] : stage->moving_cell()->width) {
         const Site site = stage->site(value);
         const int component = stage->values()[static_cast<std::size_t>(value)].component;
         size += weight * ring.row(row - top + site.time)[(i + site.space) * system_.components() + component];
       }
       if (!(size > 0))
         return fmt::format("sites {} and {} of the mesh pass each other at {:.3g} of the step", i, i + 1,
-                           stage->cell_time());
+                           stage->moving_cell()->time);
     }
   }
   return {};

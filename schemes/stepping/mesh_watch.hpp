@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "schemes/families/mapped_family.hpp"
 #include "schemes/system/assembly.hpp"
 
 namespace delf {
@@ -18,14 +17,14 @@ class MeshWatch {
 
   /// The first of two neighbouring sites that have passed each other in a row.
   std::optional<int> crossing(const double* row) const;
-  /// Whether cells have turned over in a row, or at a stage of the step that led there; in words, empty if not.
+  /// Says in words if cells have turned over in a row, or at a stage of the step that led there; empty if not.
   std::string crossing_at(const SectionRing&, std::int64_t row) const;
   /// "sites 5 and 6 are 0.0073 apart, closer than any others"
   std::string narrowest_cell(const double* row) const;
 
  private:
   const LatticeSystem& system_;
-  std::vector<const MappedFamily*> stages_;  ///< that have cells
+  std::vector<const StencilFamily*> stages_;  ///< that have cells
 };
 
 }  // namespace delf

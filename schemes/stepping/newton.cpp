@@ -135,7 +135,7 @@ struct EveryJacobian {
     at.take(problem.size(as_vector(change)), problem.size(y));
   }
 };
-/// The same with the Jacobian where the iteration begins.
+/// Newton's method with the Jacobian where the iteration begins.
 struct FirstJacobian : EveryJacobian {
   std::optional<BlockSolver> solver = {};
 
@@ -253,7 +253,7 @@ NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, cons
   const int rows = static_cast<int>(past.rows.size());
   const Vector newest = as_vector(past.rows.back());
   const Vector increment = newest - as_vector(past.rows[past.rows.size() - 2]);
-  // With the step s·h the rows before the newest are as far away as the same velocities put them.
+  // A step of s·h has the rows before the newest as far away as the same velocities put them.
   SlabProblem problem(system, Assembly::slab(plan, parity_of(plan, J), rows, 0, past.turn), J,
                       [&](double s, const Vector& y, SectionRing& ring) {
                         for (int r = 0; r < rows; ++r) {

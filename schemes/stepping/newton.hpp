@@ -10,9 +10,9 @@
 
 namespace delf {
 
-/// What Newton's method has not found after so many iterations, more of them do not find.
+/// The number of iterations after which more of them find no root either.
 inline constexpr int enough_iterations = 12;
-/// What a user can do who has allowed so many.
+/// The remedy for a user who has allowed so many.
 std::string remedy_for(int max_iterations);
 
 struct NewtonResult {
@@ -36,10 +36,10 @@ struct SlabPast {
   std::int64_t J, slabs;  ///< `slabs` before it are known, with their inner nodes and multipliers
   Assembly::Parts parts;  ///< of the slab
   const std::vector<double>& known;  ///< the part of the equations that no unknown changes: momenta of the newest row
-  /// Of row 0, where slab 0 is solved from them: in place of `known`.
+  /// The momenta of row 0, where slab 0 is solved from them: in place of `known`.
   const std::vector<double>* momenta = nullptr;
 };
-/// The same for a slab of any kind: a small step begins at the newest row and its momenta, for stencils below keep their step.
+/// Follows a slab of any kind: a small step begins at the newest row and its momenta; stencils below keep their step.
 NewtonResult follow_slab(const LatticeSystem&, const SlabPast&, double tolerance, int max_iterations);
 /// True if the determinant has not the sign at this root that it has for a small step: between them two roots meet.
 bool turns_back(const LatticeSystem&, const SlabPast&, const std::vector<double>& unknowns, double tolerance);

@@ -21,8 +21,8 @@ struct PairStrip {
   double *u, *next, *next_D;
 };
 
-/// How many neighbouring packs share what they load: a difference is loaded once for all of them, which halves the time of
-/// wide sums (measured: 0.72 of a step of b6 over pairs to 8 apart).
+/// The number of neighbouring packs that share what they load: a difference is loaded once for all, which halves the
+/// time of wide sums (measured: 0.72 of a step of b6 over pairs to 8 apart).
 inline constexpr int sharing = 4;
 
 /// sum[b] += Σ_j weights(j) (D(i + b + j) − D(i + b − 1 − j)) for B packs from i on, j < R in this order.

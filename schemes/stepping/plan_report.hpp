@@ -8,12 +8,12 @@
 
 namespace delf {
 
-/// How a step is solved, in one line.
+/// Describes in one line how a step is solved.
 std::string solve_in_words(const SolvePlan&, const Stepper&);
 
-/// What `delf plan` prints: stencils, who determines what, the linearised field equation as a table of coefficients over
-/// its sites, the solver, the memory of a run whose rows are looked at, `monitor_bytes` of it for monitors, and what is
-/// left out.
+/// The text of `delf plan`: stencils, who determines what, the linearised field equation as a table of coefficients
+/// over its sites, the solver, the memory of a run whose rows are checked, `monitor_bytes` of it for monitors, and
+/// what is left out.
 std::string plan_report(const LatticeSystem&, const SolvePlan&, const Stepper&, std::size_t monitor_bytes);
 
 }  // namespace delf

@@ -7,10 +7,10 @@
 namespace delf {
 namespace {
 
-/// What a root may leave its predictor by, over what the predictors of two orders differ by. In 192 runs of the shipped scenes
-/// of elements, moving meshes and multipliers, by many methods and steps, those of the motion leave it by less than 4, but for
-/// discontinuous elements of one function, which are two oscillations at once: by 4.11 at the longest steps. Other roots were
-/// at 15.3 and more (Lotka–Volterra, h = 1/16), those of another branch of a constraint at 10¹⁶.
+/// The largest distance of a root from its predictor, over the difference of predictors of two orders. In 192 runs of
+/// the shipped scenes of elements, moving meshes and multipliers, by many methods and steps, roots of the motion leave
+/// it by less than 4, but for discontinuous elements of one function, two oscillations at once: by 4.11 at the longest
+/// steps. Other roots were at 15.3 and more (Lotka–Volterra, h = 1/16), of another branch of a constraint at 10¹⁶.
 constexpr double farthest = 6;
 constexpr double clearly = 0.25;   ///< a part of the way that no doubt begins below
 constexpr double rounding = 1e-8;  ///< of the values: differences of high order are rounding below

@@ -10,9 +10,9 @@
 
 namespace delf {
 
-/// What a restart needs of a run. A class lists its state once, in visit(SavedState&), item by item with a name: the same
-/// list saves the items and restores them, so that the two cannot disagree. Restoring reads into an object that was built
-/// from the same scene, and checks every name and size.
+/// The state that a restart needs. A class lists its state once, in visit(SavedState&), item by item with a name: the
+/// same list saves the items and restores them, so that the two cannot disagree. Restoring reads into an object that
+/// was built from the same scene, and checks every name and size.
 class SavedState {
  public:
   virtual ~SavedState() = default;

@@ -12,7 +12,7 @@ inline BlockSolver solver_of(const Assembly& slab, const std::vector<char>& pres
   for (const auto& [equation, unknown] : slab.places()) places.emplace_back(equation, unknown);
   return {slab.size(), places, present, slab.matched()};
 }
-/// What cancels between stencils is no coupling.
+/// The solver of a slab, without couplings that cancel between stencils.
 inline BlockSolver solver_of(const Assembly& slab) { return solver_of(slab, slab.present()); }
 
 }  // namespace delf

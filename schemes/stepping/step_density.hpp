@@ -5,7 +5,7 @@ namespace delf {
 
 class SavedState;
 
-/// What a row says of the steps beside it: σ, which steps shall be in proportion to, and how it changes.
+/// The density of steps at a row: σ, which steps shall be in proportion to, and how it changes.
 struct RowDensity {
   double density;  ///< 1/σ
   double slope;    ///< G = −d(log σ)/dt along the motion

@@ -48,15 +48,15 @@ inline const char* in_words(Continued why) {
                                   : "scheme.max_iterations was reached";
 }
 
-/// Where a stepper stands.
+/// The state of a stepper between steps.
 struct StepState {
   std::int64_t newest = -1;  ///< row of the fields
   int iterations = 0;        ///< of the last step: evaluations of the nonlinear part; 0 if it was solved at once
   Continued continued = Continued::no;  ///< of the last step
-  int held = 2;  ///< newest rows that are there at least: a step that is not looked at leaves fewer
+  int held = 2;  ///< newest rows that are there at least: a step that is not checked leaves fewer
 };
 
-/// What a stepper is like.
+/// The properties of a stepper.
 struct StepReport {
   int starting_rows = 2;
   std::vector<int> behind = {};  ///< of each component, rows before the newest that its newest is; none: 0
@@ -67,8 +67,8 @@ struct StepReport {
   std::string memory = {};                   ///< both, in parts
 };
 
-/// How a system is stepped: by whole rows (RowStepper), by sub-steps (CompositionStepper) or slab by slab (SlabStepper).
-/// What the functions do stands at Stepper, which chooses one.
+/// The interface of steppers: by whole rows (RowStepper), by sub-steps (CompositionStepper) or slab by slab
+/// (SlabStepper). Stepper, which chooses one, says what the functions do.
 class StepMethod {
  public:
   virtual ~StepMethod() = default;

@@ -37,7 +37,7 @@ class Stepper {
     method_->step(looked_at);
   }
 
-  /// The same as so many step(false). If one of them throws, newest() is the row before.
+  /// Takes `count` steps as step(false) does. If one of them throws, newest() is the row before.
   void steps(int count) {
     for (; count > 0; --count) step(false);
   }
@@ -47,7 +47,7 @@ class Stepper {
   void visit(SavedState&);
 
   std::int64_t newest() const { return method_->state().newest; }
-  /// Of each component, so many rows before the newest row of fields is its newest that is known.
+  /// The number of rows by which each component's newest known row is behind the newest row of fields.
   std::vector<int> behind() const {
     std::vector<int> rows = report_.behind;
     rows.resize(components_, 0);
@@ -67,23 +67,23 @@ class Stepper {
   /// The residual of the field equations that were solved for the newest row: max |Σ terms| / max Σ |terms| over the
   /// sites (a vacuum has no scale of its own). Costs about a step, and the first of them rows to work in.
   double residual() const { return method_->residual(); }
-  /// How many of the newest rows are held: less than two after a step that is not looked at, or that failed then.
+  /// The number of newest rows that are held: less than two after a step that is not checked, or that failed then.
   int held() const { return method_->state().held; }
-  /// Of the last step: evaluations of the nonlinear part; 0 if it was solved at once.
+  /// The evaluations of the nonlinear part in the last step; 0 if it was solved at once.
   int iterations() const { return method_->state().iterations; }
-  /// Whether the last step was solved by continuation, and why.
+  /// The reason for which the last step was solved by continuation, if it was.
   Continued continued() const { return method_->state().continued; }
 
-  /// Of rows by lanes with halos; null when stepped slab by slab.
+  /// The layout of rows by lanes with halos; null when stepped slab by slab.
   const RowLayout* layout() const { return report_.layout; }
-  /// Where rows are by lanes, of each component the row before the newest, then of each the newest, and of each the
-  /// increment from one to the other, all with the pack after the end.
+  /// The newest pair of rows by lanes: of each component the row before the newest, then of each the newest, and of
+  /// each the increment from one to the other, all with the pack after the end.
   void newest_pair(const double** rows) const { method_->newest_pair(rows); }
 
   bool iterates() const { return report_.iterates; }        ///< a step is not one solve
   bool matrix_free() const { return report_.matrix_free; }  ///< one number for all sites: no matrix is allocated
-  /// What it is like now: its solver, its memory, and what comes on top by residual() if that is asked for. What depends on
-  /// the data is not foreseen: see Simulation::bytes_of_run.
+  /// The stepper as it is now: its solver, its memory, and what residual() adds if that is asked for. Memory that
+  /// depends on the data is not foreseen: see Simulation::bytes_of_run.
   StepReport report(bool residual) const { return method_->report(residual); }
   std::size_t bytes() const { return report(false).bytes; }
 

@@ -22,7 +22,7 @@ namespace {
 using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 
-/// What |Jx| over Σ|J||x| is at most where J x = 0 but for rounding, and the relative change that lets a singular J be
+/// The largest |Jx| over Σ|J||x| where J x = 0 but for rounding, and the relative change that lets a singular J be
 /// factored.
 constexpr double rounding = 1e-12, change = 1e-13;
 constexpr int states = 2, tries = 4;

@@ -380,7 +380,7 @@ void Assembly::take_differences(const Batch& b, int packs) const {
     }
 }
 
-/// With `gain`, what stencils add to the known part of the next slab too.
+/// Adds residuals; with `gain`, also what stencils add to the known part of the next slab.
 void Assembly::add_residual(const Batch& b, const Columns& columns, std::int64_t J, double* E, double* absolute,
                             double* gain) const {
   const std::vector<int>& evaluated = gain != nullptr ? b.evaluated : b.equations;
@@ -483,7 +483,7 @@ bool Assembly::list_gains(const LatticeSystem& system) {
   const auto site_of = [&](const Batch& b, int i, int s) {
     return system.lattice().home(b.family->column(b.sites[at(s)], i));
   };
-  // Where a family leaves nodes out of its sums, the residuals of the rows alone add up to momenta.
+  // Residuals of the rows alone add up to momenta where a family leaves nodes out of its sums.
   const auto leaves_out = [&](const StencilFamily& family, int i) {
     return !family.sums().empty() && system.component(family.values()[at(i)].component).at.time != 0 &&
            std::ranges::none_of(family.sums(), [i](const auto& sum) { return std::ranges::count(sum, i) > 0; });
@@ -505,7 +505,7 @@ bool Assembly::list_gains(const LatticeSystem& system) {
       for (int i = 0; i < b.size; ++i) {
         const int n = equations[at(i)] = b.equation[at(b.read(i, s))];
         if (n == size()) continue;
-        // Without low parts there is nothing to gain.
+        // Families without low parts gain nothing.
         if (!b.family->reads_low()) return false;
         const auto column = column_of(site_of(b, i, s), equation(n).component);
         if (!column || equation_of.try_emplace(*column, n).first->second != n) return false;
@@ -570,7 +570,7 @@ void Assembly::jacobian(SectionView section, std::int64_t J, std::vector<double>
   values.resize(places_.size());
 }
 
-/// The same for a batch all of whose stencils have this J.
+/// Adds the constant part of a batch all of whose stencils have this J.
 void Assembly::add_constant(const Batch& b, const Numbers& J, Numbers& values) const {
   const int* entry = b.entry.data();
   for (const int i : b.equations)
@@ -578,7 +578,7 @@ void Assembly::add_constant(const Batch& b, const Numbers& J, Numbers& values) c
       for (int s = 0; s < b.padded; ++s) values[at(*entry++)] += J[at(i * b.size + m)];
 }
 
-/// The same for a batch whose stencils each have their own.
+/// Adds the constant parts of a batch whose stencils each have their own.
 bool Assembly::add_own_constants(const Batch& b, Numbers& values) const {
   const std::size_t pairs = b.equations.size() * b.unknowns.size();
   for (int s = 0; s < b.stencils; ++s) {
@@ -597,7 +597,7 @@ bool Assembly::constant_jacobian(std::vector<double>& values) const {
   values.assign(places_.size() + 1, 0.0);
   for (const Batch& b : batches_) {
     if (b.unknowns.empty()) continue;
-    // What depends on the place is not in the constant part: one cell stands for all.
+    // One cell stands for all: values that depend on the place are not in the constant part.
     if (b.family->listed()) {
       if (!add_own_constants(b, values)) return false;
       continue;

@@ -23,7 +23,7 @@ class SectionView {
       : values_(values), depth_(depth), row_size_(row_size), low_(low) {}
 
   const double* row(std::int64_t r) const { return at(index(r)); }
-  /// Where row r stands in the ring, and the row `by` rows after the one that stands at an index: divisions are slow.
+  /// The place of row r in the ring, and that of the row `by` rows after the one at an index: divisions are slow.
   int index(std::int64_t r) const {
     const auto i = static_cast<int>(r % depth_);
     return i < 0 ? i + depth_ : i;
@@ -114,7 +114,7 @@ class Assembly {
   /// site.time counts from J.
   const Node& unknown(int n) const { return parts_.unknowns[static_cast<std::size_t>(n)]; }
   const Node& equation(int n) const { return parts_.equations[static_cast<std::size_t>(n)]; }
-  /// Of a node, in its row.
+  /// The place of a node in its row.
   int place(const Node& node) const { return place(node.site) * components_ + node.component; }
   double& value(SectionRing& ring, std::int64_t J, int n) const {
     return ring.row(J + unknown(n).site.time)[place(unknown(n))];
@@ -125,7 +125,7 @@ class Assembly {
     int equation, unknown;
   };
   const std::vector<Place>& places() const { return places_; }
-  /// Which of them are not zero at three seeded random sections: others cancel between stencils.
+  /// True for those that are not zero at three seeded random sections: others cancel between stencils.
   std::vector<char> present() const;
 
   /// h of all rows, if it is not what the system's rows have.
@@ -143,9 +143,9 @@ class Assembly {
   void known(SectionView, std::int64_t J, std::vector<double>& E, const std::vector<double>* momenta = nullptr) const;
   void residual_from(const std::vector<double>& known, SectionView, std::int64_t J, std::vector<double>& E) const;
 
-  /// From here on sections have low parts. True if known() of the next slab follows from that of this one: an equation e of
-  /// row −1 reads, of what is known, the stencils below it alone; in this slab these have unknowns. Where the slab's equations
-  /// hold, and a column is all values of one field at one place,
+  /// Gives sections low parts from here on. True if known() of the next slab follows from that of this one: an equation
+  /// e of row −1 reads, of what is known, the stencils below it alone; in this slab these have unknowns. Where the
+  /// slab's equations hold, and a column is all values of one field at one place,
   ///
   ///     known_e(J + 1) = known_e(J) + Σ_{l in its column} r^l,
   ///
@@ -195,8 +195,8 @@ class Assembly {
     int e, m;
     double value;
   };
-  /// As many lanes as fill whole packs: the last stencil is repeated, and what it repeats goes to an equation that
-  /// nobody reads. Lists hold what belongs to value i of stencil s at i·padded + s.
+  /// The stencils of a family in as many lanes as fill whole packs: the last one is repeated, and its copies add to an
+  /// equation that nobody reads. Lists hold what belongs to value i of stencil s at i·padded + s.
   struct Batch {
     const StencilFamily* family;
     int number;           ///< of the family
@@ -211,7 +211,7 @@ class Assembly {
     Numbers gained = {};                             ///< for having gone round the circle; empty if nothing
     std::vector<int> equation = {};                  ///< that the residual belongs to, or size()
     std::vector<int> equations = {}, unknowns = {};  ///< values that are one, of some stencil
-    /// Of (equations[e], unknowns[u]) of stencil s, at (e·U + u)·padded + s: its number in places(), or one beyond.
+    /// The numbers in places() of (equations[e], unknowns[u]) of stencil s, at (e·U + u)·padded + s, or one beyond.
     std::vector<int> entry = {};
     bool linear = false;  ///< r = r(0) + J y with the same J everywhere
     bool by_differences = false;  ///< J acts on differences within columns, and on the first value of each
@@ -219,7 +219,7 @@ class Assembly {
     Numbers at_zero = {};  ///< of evaluated[e]
     /// `equations`, then what else residual_and_gain() asks of the family: values, and sums of them.
     std::vector<int> evaluated = {};
-    /// What a number of `evaluated` adds to: [s] an equation, or size().
+    /// The equations to which a number of `evaluated` adds: [s] an equation, or size().
     struct Gain {
       int e;
       std::vector<int> equation;

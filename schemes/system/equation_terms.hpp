@@ -7,7 +7,7 @@
 
 namespace delf {
 
-/// What a term of the assembled equation multiplies. Rows count from the newest known row n; y_{n+1} = y_n + v_n + w.
+/// The factor of a term of the assembled equation. Rows count from the newest known row n; y_{n+1} = y_n + v_n + w.
 enum class Source {
   difference,  ///< y_n at the shifted site minus y_n at the equation's own (its own component)
   value,       ///< y_n

@@ -7,8 +7,8 @@
 #include <array>
 #include <map>
 
+#include "jets/tables/density_on_table.hpp"
 #include "lattice/error.hpp"
-#include "schemes/families/jet_family.hpp"
 
 namespace delf {
 
@@ -16,10 +16,10 @@ void require_jet_slots(const LatticeSystem& system) {
   // terms of walls are of the same density, and see fewer slots
   std::map<const BatchDensity*, std::array<bool, jet_slots>> seen;
   for (const auto& family : system.families())
-    if (const auto* jets = dynamic_cast<const JetFamily*>(family.get()))
-      for (const TablePoint& point : jets->table().points)
+    if (const DensityOnTable* jets = family->made_of())
+      for (const TablePoint& point : jets->table.points)
         for (std::size_t s = 0; s < point.slots.size(); ++s)
-          seen[&jets->density()][s] = seen[&jets->density()][s] || !point.slots[s].empty();
+          seen[jets->density.get()][s] = seen[jets->density.get()][s] || !point.slots[s].empty();
   for (const auto& [density, slots] : seen)
     for (int v = 0; v < density->variables(); ++v) {
       const auto s = static_cast<std::size_t>(v / density->components());

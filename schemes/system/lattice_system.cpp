@@ -25,7 +25,7 @@ Cell cell_at(const Lattice& lattice, const StencilFamily& family, std::int64_t r
   return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, lattice.position(home)};
 }
 
-/// What walls keep beside φ is in terms of the action there: to the equations they are fixed or natural.
+/// The equations see sites beside walls as fixed or natural: what walls keep beside φ is in terms of the action there.
 Lattice with_free_neighbours(const Lattice& lattice) {
   const auto kept = [](Wall wall) { return wall == Wall::clamped ? Wall::fixed : wall; };
   if (kept(lattice.left()) == lattice.left() && kept(lattice.right()) == lattice.right()) return lattice;
@@ -209,7 +209,7 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
     }
     return result;
   };
-  // Where a density is not defined around 0 (a logarithm), it may be around 1.
+  // A density that is not defined around 0 (a logarithm) may be so around 1.
   auto found = around(0);
   return found ? found : around(1);
 }
@@ -222,7 +222,7 @@ SystemPattern LatticeSystem::pattern() const {
   for (const Component& component : names_) pattern.names.push_back(component.name);
   // Round a circle the sites are alike, but for their parity in a brick wall.
   using Known = std::map<std::pair<int, int>, std::vector<Coupling>>;
-  // Those of a mesh differ in the numbers of their stencils alone: one that keeps no value stands for all.
+  // The families of a mesh differ in the numbers of their stencils alone: one that keeps no value stands for all.
   int any = 0;
   while (lattice_.space() == Space::mesh && any + 1 < lattice_.sites() && lattice_.is_fixed(any)) ++any;
   pattern.equations = [this, any, known = std::make_shared<Known>()](const Lattice& lattice, Site site, int component) {

@@ -17,7 +17,7 @@
 
 namespace delf {
 
-/// What a component of the section is.
+/// The role of a component of the section.
 enum class Role {
   field,       ///< at the vertices of the lattice: what rows record
   inner,       ///< a field at a node inside the cells
@@ -49,7 +49,7 @@ struct Window {
   std::int64_t first_row = 0;  ///< index of rows[0]
   std::vector<std::vector<double>> rows;
   std::vector<double> turns = {};  ///< of each component, where they differ: multipliers are periodic
-  /// What rounding has taken from the rows: their values are rows + low. Empty: nothing is known of it.
+  /// The low parts, which rounding has taken from the rows: their values are rows + low. Empty: none is known.
   std::vector<std::vector<double>> low = {};
 
   /// Rows beyond the window read as its nearest row: stencils may reach there without depending on it.
@@ -90,7 +90,7 @@ class LatticeSystem {
   const std::vector<Component>& all_components() const { return names_; }
   /// Components that are fields at the vertices.
   int fields() const;
-  /// Which component field a is at the vertices.
+  /// The component that is field a at the vertices.
   int field_component(int a) const;
   /// The sites move: a component is their position.
   bool moves() const;
@@ -101,7 +101,7 @@ class LatticeSystem {
     return lattice_.is_fixed(column) && names_[static_cast<std::size_t>(component)].at.space == 0;
   }
   double time_step() const { return time_step_; }
-  /// Of the rows: uniform, unless a run gives its steps lengths of their own. Copies of a system share them.
+  /// The times of rows: uniform, unless a run gives its steps lengths of their own. Copies of a system share them.
   const std::shared_ptr<RowTimes>& times() const { return times_; }
   void share_times(const LatticeSystem& other) { times_ = other.times_; }
   int width() const { return width_; }  ///< the largest space offset between two sites of one equation
@@ -125,13 +125,13 @@ class LatticeSystem {
   std::vector<Coefficient> linearised(const Lattice& lattice, Site site, int component) const;
   std::vector<Coefficient> linearised(Site site, int component) const { return linearised(lattice_, site, component); }
 
-  /// What the plan is made of.
+  /// The pattern that the plan is made of.
   SystemPattern pattern() const;
 
-  /// Rows of all components, to be looked at: `turn` is φ(x + L) − φ(x).
+  /// Rows of all components, to be checked: `turn` is φ(x + L) − φ(x).
   Window window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const;
 
-  /// Whether a family has a stencil at (row, site), whose row matters by its parity.
+  /// True if a family has a stencil at (row, site), whose row matters by its parity.
   bool has_stencil(const StencilFamily&, std::int64_t row, int site) const;
   /// Anchors of a row that may have a stencil: sites, or the numbers of listed ones.
   int anchors(const StencilFamily& family) const {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "jets/tables/space_table.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/system/legendre.hpp"
+#include "schemes/system/stress_energy.hpp"
 
 namespace delf {
 
@@ -82,15 +84,11 @@ double MeshEnergy::between(std::span<const double> before, std::span<const doubl
 
 std::vector<double> MeshEnergy::rates(std::span<const double> values, std::span<const double> momenta,
                                       double t) const {
-  const auto d = static_cast<std::size_t>(density_->components());
-  std::vector<double> rates, p(d);
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
-    for (std::size_t a = 0; a < d; ++a) p[a] = momenta[i * d + a] / masses_[i];
-    const auto found = velocity_of(*density_, values.subspan(i * d, d), p, t);
-    for (std::size_t a = 0; a < d; ++a)
-      rates.push_back(found ? (*found)[a] : std::numeric_limits<double>::quiet_NaN());
-  }
-  return rates;
+  const std::size_t d = momenta.size() / masses_.size();
+  std::vector<double> p(momenta.begin(), momenta.end());
+  for (std::size_t n = 0; n < p.size(); ++n) p[n] /= masses_[n / d];
+  const auto found = velocity_of(*density_, values, p, t);
+  return found ? *found : std::vector(p.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace delf

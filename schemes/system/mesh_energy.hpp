@@ -19,7 +19,7 @@ class MeshEnergy {
  public:
   MeshEnergy(std::shared_ptr<const BatchDensity>, const MeshSpace&);
 
-  /// Of fields and their rates, both [i·d + a], at a time.
+  /// The energy of fields and their rates, both [i·d + a], at a time.
   double operator()(std::span<const double> values, std::span<const double> rates, double t) const;
   /// At the half step between two rows, with the rates (y − before)/h that join them: the mean of both rows' energies. It is
   /// what the rows of the usual method keep.

@@ -19,7 +19,7 @@ enum class Side { below, above };
 /// inside the cell above the row, or joins them to it, lies above it. The window holds the rows on that side that the
 /// stencils reach. Throws BadInput for a scheme without a Lagrangian.
 std::vector<double> momenta(const LatticeSystem&, const Window&, std::int64_t row, Side);
-/// The same sums of any scheme, with a Lagrangian or without one.
+/// The half sums of the equations of any scheme, with a Lagrangian or without one.
 std::vector<double> half_equations(const LatticeSystem&, const Window&, std::int64_t row, Side,
                                    std::vector<double>* absolute = nullptr);
 /// Throws that BadInput.

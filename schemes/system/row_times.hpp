@@ -6,13 +6,13 @@
 
 namespace delf {
 
-/// When the rows of a section are: t_n = n h, or, where steps have lengths of their own, as they were told.
+/// When the rows of a section are: t_n = n h, or, where steps have lengths of their own, as they were given.
 class RowTimes {
  public:
   explicit RowTimes(double step) : step_(step) {}
 
   bool uniform() const { return rows_.empty(); }
-  /// From a row to the next one. Rows beyond those that are known continue the first step or the last.
+  /// The step from a row to the next one. Rows beyond those that are known continue the first step or the last.
   double step(std::int64_t row) const { return uniform() ? step_ : at(row).step; }
   double time(std::int64_t row) const { return uniform() ? static_cast<double>(row) * step_ : own_time(row); }
 

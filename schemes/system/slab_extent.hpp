@@ -8,7 +8,7 @@
 
 namespace delf {
 
-/// How the unknowns and the equations of slab J lie in rows around row J.
+/// The rows around row J in which the unknowns and the equations of slab J are.
 struct SlabExtent {
   int below = 0;          ///< rows from its lowest unknown up to row J
   int history = 0;        ///< rows before row J that its equations contain
@@ -16,7 +16,7 @@ struct SlabExtent {
   int field_lag = 0;      ///< rows from the lowest unknown field up to row J: the newest whole row is J − field_lag
   int equation_lag = 0;   ///< rows from its lowest equation up to row J
   int equation_lead = 0;  ///< rows from row J up to its highest equation
-  /// Of each component: rows that what is newest of it lies behind the newest whole row of fields.
+  /// The number of rows that the newest known value of each component is behind the newest whole row of fields.
   std::vector<int> behind;
 
   /// Rows before row J that must be there.

@@ -4,7 +4,7 @@
 
 namespace delf {
 
-/// What flows where at a jet: for the balance laws of translations in time and in space,
+/// The densities and fluxes at a jet, for the balance laws of translations in time and in space,
 ///
 ///     ∂_t(φ_t ∂ℓ/∂φ_t − ℓ) + ∂_x(φ_t ∂ℓ/∂φ_x) = −∂ℓ/∂t        ∂_t(−φ_x ∂ℓ/∂φ_t) + ∂_x(ℓ − φ_x ∂ℓ/∂φ_x) = ∂ℓ/∂x
 ///

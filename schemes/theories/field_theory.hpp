@@ -30,7 +30,7 @@ class FieldTheory {
   /// The components of the field, by name.
   const std::vector<Component>& fields() const { return fields_; }
   bool is_placed() const { return density_->is_placed(); }
-  /// What leaves the density as it is, as the theory declares it.
+  /// The symmetries, which leave the density as it is, as the theory declares them.
   const std::vector<LinearSymmetry>& symmetries() const { return density_->symmetries(); }
 
   /// The action on a stencil of named_tables(); null if there is none of that name.

@@ -4,7 +4,7 @@
 
 namespace delf {
 
-/// The same problem seen backwards: T − t in place of t, which densities that are given as text alone read.
+/// The problem seen backwards: T − t in place of t, which densities that are given as text alone read.
 Problem mirrored_in_time(Problem, double T);
 
 }  // namespace delf

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/theories/sine_gordon.hpp"
 
-#include "schemes/families/moving_rectangle.hpp"
+#include "schemes/families/r_adaptive.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 
@@ -20,7 +20,10 @@ const TheoryEntry sine_gordon_theory{
     {},
     nullptr,
     [](const ParameterValues& p) -> std::shared_ptr<const StencilFamily> {
-      return std::make_shared<MovingRectangleFamily>(MovingRectangle{p.get<double>("theory.mass")});
+      return std::make_shared<LagrangianFamily<MovingRectangle>>(MovingRectangle{p.get<double>("theory.mass")});
+    },
+    [](const ParameterValues& p, double weight) -> std::shared_ptr<const StencilFamily> {
+      return std::make_shared<LagrangianFamily<MovingStage>>(MovingStage{{p.get<double>("theory.mass")}, weight});
     }};
 
 }  // namespace delf

@@ -68,7 +68,7 @@ std::vector<Parameter> parameters_of(const TheoryEntry& entry, const ParameterVa
   return all;
 }
 
-// In the units of theory.speed and theory.scale, if they are given.
+// Makes the theory in the units of theory.speed and theory.scale, if they are given.
 std::unique_ptr<FieldTheory> make_theory(const TheoryEntry& entry, ParameterValues given) {
   complete(given, parameters_of(entry, given));
   auto theory = entry.make(given);

@@ -19,7 +19,7 @@ struct TheoryEntry {
   std::string name;
   std::string formula;
   std::vector<Parameter> parameters;  ///< that it reads
-  /// From the values of all its parameters.
+  /// Makes the theory from the values of all its parameters.
   std::unique_ptr<FieldTheory> (*make)(const ParameterValues&);
   bool angle = false;  ///< the field is an angle: values 2π apart are the same state
   /// All components have this value in the state about which the linear limits of a run are found; none: they are not.
@@ -29,9 +29,10 @@ struct TheoryEntry {
   std::vector<std::string> chosen_by = {};
   /// Parameters that the values of those above declare; null: none.
   std::vector<Parameter> (*further)(const ParameterValues&) = nullptr;
-  /// Its action on rectangles whose sites move, in closed form: fields, then X, piecewise linear in space, and the
-  /// trapezoidal rule in time. Null: by quadrature.
+  /// Its action on cells whose sites move, in closed form, fields and then X piecewise linear in space: of a whole step by
+  /// the trapezoidal rule, and of one point of an element, of (φ, X) at both ends, then of h (φ_t, X_t). Null: by quadrature.
   std::shared_ptr<const StencilFamily> (*moving_rectangle)(const ParameterValues&) = nullptr;
+  std::shared_ptr<const StencilFamily> (*moving_stage)(const ParameterValues&, double weight) = nullptr;
 };
 
 /// m and λ, which several theories have.
@@ -46,7 +47,7 @@ void register_theory(const TheoryEntry&);
 const TheoryEntry& find_theory(const std::string& name);
 /// All that it reads, with what these values declare. Throws BadInput for values that declare none.
 std::vector<Parameter> parameters_of(const TheoryEntry&, const ParameterValues&);
-/// With the fallbacks of the parameters that are not given. Throws BadInput for values out of range.
+/// Makes a theory, with the fallbacks of parameters that are not given. Throws BadInput for values out of range.
 std::unique_ptr<FieldTheory> make_theory(const TheoryEntry&, ParameterValues given = {});
 
 }  // namespace delf

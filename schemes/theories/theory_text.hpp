@@ -20,7 +20,7 @@ struct TheoryText {
   std::pair<std::string, std::string> choice = {};  ///< the key and value for which the density is this one; none: always
 };
 
-/// Of every built-in theory but the solar system, whose formulas fill pages.
+/// The texts of all built-in theories but the solar system, whose formulas fill pages.
 const std::vector<TheoryText>& theory_texts();
 
 /// The text of a theory with these values of its parameters, the others at their fallbacks. Null if it has none, or other

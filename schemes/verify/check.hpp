@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// What a sum left that ought to be zero, beside the sum of the absolute values of its terms.
+/// The rest of a sum that ought to be zero, beside the sum of the absolute values of its terms.
 struct Balance {
   double sum = 0, absolute = 0;
   std::int64_t count = 0;  ///< terms that are not zero
@@ -19,11 +19,11 @@ struct Balance {
     absolute += std::abs(term);
     count += term != 0;
   }
-  /// Not a number if a term was none.
+  /// The rest relative to its terms; not a number if a term was none.
   double relative() const { return absolute == 0 ? 0.0 : std::abs(sum) / absolute; }
 };
 
-/// Whether a value is the worst so far, than which nothing is worse if it is not a number.
+/// True if a value is the worst so far; nothing is worse than one that is not a number.
 inline bool worse(double value, double than) { return !(value <= than) && !std::isnan(than); }
 
 /// Adds Ωⁱ(V, W) = −Σ_m ∂rⁱ/∂yᵐ (Vᵐ Wⁱ − Wᵐ Vⁱ) of one stencil, every product a term of its own: where V and W have

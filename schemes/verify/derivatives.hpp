@@ -13,7 +13,7 @@ namespace delf {
 /// 2e-11 on a moving mesh, whose Lagrangian has poles: fifty times that.
 inline constexpr double derivative_tolerance = 1e-9;
 
-/// Whether what the families generate are derivatives: at random jets, somewhere on the lattice, each residual against
+/// Checks that the families generate derivatives: at random jets, somewhere on the lattice, each residual against
 /// finite differences of its Lagrangian (where there is one), and each Jacobian against those of its residual. Two
 /// checks a family, or one; their values are the largest difference of an entry, relative to the largest |entry| of the
 /// gradient, or of the Jacobian, at that jet.

@@ -19,7 +19,7 @@ RegionFrame frame_of(const LatticeSystem& system, Range solved) {
   return frame;
 }
 
-/// From the first column to the last; on a circle the first is the one after the widest gap, and the last may lie
+/// The first column and the last; on a circle the first is the one after the widest gap, and the last may lie
 /// beyond N − 1.
 std::pair<int, int> columns_of(const Region& region) {
   std::set<int> columns;
@@ -45,8 +45,8 @@ int RegionDrawer::rows_wanted(const LatticeSystem& system) { return 2 * frame_of
 std::optional<Region> RegionDrawer::draw(const RegionRequest& request, std::mt19937_64& random) const {
   const Lattice& lattice = system_.lattice();
   if (!request.kind) {
-    // What no stencil holds together is no part of the formula: U becomes cl U, which is regular.
-    // Row 0 is the first whose stencils reach no further back than equations hold; bricks keep their parity.
+    // Sites that no stencil holds together are no part of the formula: U becomes cl U, which is regular.
+    // The first row is the first whose stencils reach no further back than equations hold; bricks keep their parity.
     int first = frame_.rows.first - frame_.reach_time;
     if (system_.placement() == Placement::brick_wall) first += first & 1;
     std::vector<Site> sites;

@@ -96,7 +96,7 @@ void EquationCheck::find_sizes(const Window& window, std::int64_t row) {
         }
 }
 
-/// Where that is largest, of the sites that have the component's equation; −1 if none has.
+/// The site with the largest residual among those that have the component's equation; −1 if none has.
 int EquationCheck::largest_site(int component) const {
   int site = -1;
   for (int i = 0; i < system_->lattice().sites(); ++i)

@@ -13,13 +13,13 @@
 
 namespace delf {
 
-/// How far values may be from those that were computed: what their format and the last digits of steps make of them.
+/// The distance that values may have from those that were computed, by their format and the last digits of steps.
 struct ValueError {
   /// A step rounds the sum that gives a row, and a row is rounded again when it is stored.
   double relative = 2 * std::numeric_limits<double>::epsilon();
   double absolute = 0;
   int digits = 0;  ///< significant ones of a text; 0: all
-  /// Where the largest of them is `y`.
+  /// The error of values whose largest is `y`.
   double of(double y) const;
 };
 
@@ -39,7 +39,7 @@ class EquationCheck {
   /// Looks at one row of a window that holds reach() rows before and after it.
   void at(const Window&, std::int64_t row);
 
-  /// Of the row looked at last: |E| relative to the row, [i·C + c]; not a number where there is no equation.
+  /// The residuals of the last row: |E| relative to the row, [i·C + c]; not a number where there is no equation.
   const std::vector<double>& newest() const { return newest_; }
   /// E itself, [i·C + c], whether it is an equation there or not.
   const std::vector<LatticeSystem::Value>& sums() const { return values_; }

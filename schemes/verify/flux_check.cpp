@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "jets/simd/scratch_rows.hpp"
-#include "schemes/families/jet_family.hpp"
+#include "jets/one_jet.hpp"
+#include "jets/tables/density_on_table.hpp"
 
 namespace delf {
 namespace {
@@ -38,14 +38,12 @@ std::span<const double> largest(std::span<const double> fields, std::size_t d) {
 
 /// ∂ℓ/∂q̇ at (q, 0)
 std::vector<double> momenta_of(const BatchDensity& density, std::span<const double> q, const Cell& cell) {
-  const int d = density.components(), m = density.variables();
-  const ScratchRows jet(m + 1, lanes), g(m, lanes);
-  for (int v = 0; v <= m; ++v) std::fill_n(jet[v], lanes, v < d ? q[static_cast<std::size_t>(v)] : 0.0);
-  std::fill_n(jet[m], lanes, cell.x);
-  density.gradient({lanes, jet.data(), cell.t, jet[m]}, g.data());
-  std::vector<double> p;
-  for (int a = 0; a < d; ++a) p.push_back(g[static_cast<int>(JetSlot::phi_t) * d + a][0]);
-  return p;
+  const int d = density.components();
+  std::vector<double> jet(q.begin(), q.end());
+  jet.resize(static_cast<std::size_t>(density.variables()), 0.0);
+  const std::vector<double> g = gradient_at(density, jet, cell.t, cell.x);
+  const auto by_rates = g.begin() + static_cast<int>(JetSlot::phi_t) * d;
+  return {by_rates, by_rates + d};
 }
 
 }  // namespace
@@ -53,15 +51,15 @@ std::vector<double> momenta_of(const BatchDensity& density, std::span<const doub
 std::vector<Check> check_fluxes(const LatticeSystem& system, std::span<const double> fields, double tolerance) {
   std::vector<Check> checks;
   for (const auto& family : system.families()) {
-    const auto* jets = dynamic_cast<const JetFamily*>(family.get());
+    const DensityOnTable* jets = family->made_of();
     if (!jets || !joins_traces(system, *family)) continue;
     const Cell cell{system.time_step(), system.lattice().space_step(), 0, system.lattice().position(0)};
-    const std::span<const double> q = largest(fields, static_cast<std::size_t>(jets->density().components()));
+    const std::span<const double> q = largest(fields, static_cast<std::size_t>(jets->density->components()));
     std::vector<double> y, r(static_cast<std::size_t>(family->size()));
     for (const VertexValue& value : family->values())
       y.push_back(q[static_cast<std::size_t>(system.component(value.component).field)]);
     family->residual(cell, y, r);
-    std::vector<double> p = momenta_of(jets->density(), q, cell);
+    std::vector<double> p = momenta_of(*jets->density, q, cell);
     for (double& x : p) x *= cell.space_step;  // a site's share of space
     double scale = 0;
     for (const double x : p) scale = std::max(scale, std::abs(x));

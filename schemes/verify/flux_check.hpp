@@ -8,8 +8,8 @@
 
 namespace delf {
 
-/// Whether the action J of a jump between two traces agrees with that of the cells: where the jump closes, the momenta of
-/// its traces are those of the density,
+/// Checks that the action J of a jump between two traces agrees with that of the cells: where the jump closes, the
+/// momenta of its traces are those of the density,
 ///
 ///     ∂₊J(q, q) = ∂ℓ/∂q̇ = −∂₋J(q, q)
 ///

@@ -25,8 +25,8 @@ constexpr double least_share = 1e-8;
 // 2⁻³¹ is how often noise has the same sign in all of them.
 constexpr std::int64_t most_stretches = 32, fewest_stretches = 24;
 
-/// How rows and sites are parted: in stretches of rows with all sites, or in longer ones with some neighbouring sites. Where
-/// values were rounded, E is the second difference of that, of which a long smooth average leaves least.
+/// The partition of rows and sites: stretches of rows with all sites, or longer ones with some neighbouring sites.
+/// Rounded values have a second difference E, of which a long smooth average leaves least.
 struct Partition {
   std::size_t of_rows, of_sites;
 };
@@ -141,7 +141,7 @@ double ForceShare::Average::c() const {
 
 double ForceShare::Average::least() const {
   const double mean = c();
-  // How far the worst stretch falls below |c|: more than |c| if it has the other sign.
+  // The shortfall of the worst stretch below |c|: more than |c| if it has the other sign.
   double shortfall = 0;
   for (std::size_t b = 0; b < ES.size(); ++b)
     if (SS[b] > 0) shortfall = std::max(shortfall, (mean - ES[b] / SS[b]) * (mean < 0 ? -1 : 1));
@@ -159,8 +159,8 @@ double ForceShare::Average::least() const {
   return std::min(shortfall, standard_errors * std::max(error_by(1), error_by(4)));
 }
 
-/// Where the force is lost in the last digits of a step, E is the force, without a sign of its own: such equations do not
-/// count.
+/// Equations do not count where the force is lost in the last digits of a step: there E is the force, without a sign of
+/// its own.
 void ForceShare::add_to_averages(const Window& window, std::int64_t row, const EquationCheck& equations) {
   const std::int64_t reach = std::max(1, system_->height());
   if (forces_of_ == row) {
@@ -263,7 +263,7 @@ std::string ForceShare::where(std::size_t n, std::int64_t row) const {
 
 std::optional<ForceShare::Judged> ForceShare::check() const {
   if (closest_.bound == 0) return std::nullopt;
-  // In an equilibrium the terms of the force cancel.
+  // The terms of the force cancel in an equilibrium.
   const double scale = force_ > closest_.bound ? force_ : terms_;
   const bool fails = beyond_.bound > 0 && !(beyond_.error <= least_share * scale);
   const Suspect& worst = fails ? beyond_ : closest_;

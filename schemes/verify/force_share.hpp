@@ -33,7 +33,7 @@ struct SiteSeverity {
 /// Where all terms have time differences, and no row has a force, the scale is that of the terms themselves.
 ///
 /// Rows are wrong where |E| is more than the errors of the values explain, and more than a share of the force that no
-/// program computes to. Where the errors of the values are larger than the force, nothing can be told.
+/// program computes to. Where the errors of the values are larger than the force, nothing can be said.
 ///
 /// Errors of the values have no sign, and a wrong force has: averages over the rows see it far below the rounding of each.
 ///
@@ -50,10 +50,10 @@ class ForceShare {
     double solver = 0;  ///< the last change of an iterated step, relative to the largest value
     double asked = 0;   ///< |E| that was asked to be passed over, relative to its terms
   };
-  /// `rows` are looked at.
+  /// `rows` are checked.
   ForceShare(const LatticeSystem&, std::int64_t rows, const Precision&);
 
-  /// One row of a window that holds the rows that its equations read, which the check has looked at.
+  /// One row of a window that holds the rows that its equations read, which the check has checked.
   void at(const Window&, std::int64_t row, const EquationCheck&);
 
   /// |E| beside the force, and beside the errors of the values; nothing of fields that rest in a vacuum. Where it is
@@ -65,14 +65,14 @@ class ForceShare {
   std::optional<Judged> check() const;
   /// |c| of the signal that is followed best, beside how far c of a stretch falls below it; nothing of few rows.
   std::optional<Check> average() const;
-  /// Of the row that was looked at last: what the errors of the values make of |E|, relative as EquationCheck::newest.
+  /// The bound by errors of the values on |E| of the row checked last, relative as EquationCheck::newest.
   double relative_bound() const { return relative_bound_; }
   /// max|E| / max|F| over all rows and sites; and the site whose share is largest, if an error is more than rounding. Of
   /// fields that rest, nothing.
   std::vector<Measured> measured() const;
-  /// Of each site that has an equation, and of each field there.
+  /// The severities of all sites that have an equation, and of each field there.
   std::vector<SiteSeverity> sites() const;
-  /// |E| of the row that was looked at last, [i·C + c]; not a number where there is no equation of a field.
+  /// |E| of the row that was checked last, [i·C + c]; not a number where there is no equation of a field.
   const std::vector<double>& errors() const { return errors_; }
 
  private:

@@ -177,7 +177,7 @@ void FormCheck::look_at_stencils(const RegionSystem& system, const RegionSystem:
         local_.region, defect.row, defect.column, defect.column, defect.row);
 }
 
-/// In words, and where: V is none, or the equations are those of no action.
+/// The reason in words, and the place: V is none, or the equations are those of no action.
 std::string FormCheck::why(const RegionSystem& system, const RegionSystem::Values& y,
                            const RegionSystem::Pair& pair) const {
   for (const auto* variation : {&pair.V, &pair.W}) {

@@ -36,7 +36,7 @@ class FormCheck {
 
   /// Rows that windows must have.
   static int rows_wanted(const LatticeSystem&, const SolvePlan&, const std::vector<RegionRequest>&);
-  /// Of a window, counted from its first row: where regions lie.
+  /// The rows of a window, counted from its first, in which regions may lie.
   Range solved_rows() const { return solved_; }
 
   /// Looks at one moment: consecutive rows of a section, every component at its own row, the first row even.

@@ -45,7 +45,7 @@ void NearbyCheck::at(const std::string& kind, const RegionSystem& region, const 
     q.push_back(balances[p].sum / balances[p].absolute);
     normaliser = balances[p].absolute, count = balances[p].count;
   }
-  // What is left of the next power, and rounding: the values whose differences these are were rounded when they were
+  // The rest is the next power, and rounding: the values whose differences these are were rounded when they were
   // made.
   const double delta = 8 * std::numeric_limits<double>::epsilon() * largest(F);
   double next_power = 10, rounding = 0;
@@ -56,7 +56,7 @@ void NearbyCheck::at(const std::string& kind, const RegionSystem& region, const 
   const double tolerance = std::max(tolerance_, next_power + rounding);
   const double value = std::abs(extrapolated(sizes, q));
 
-  // Where they explain a tenth of the sum, nothing can be told any more.
+  // The differences tell nothing where these explain a tenth of the sum.
   if (!(tolerance < 0.1)) {
     ++too_far_;
     return;

@@ -20,11 +20,11 @@ class NearbyCheck {
  public:
   explicit NearbyCheck(double tolerance) : tolerance_(tolerance) {}
 
-  /// Of one region: F, and the pairs of differences to it, in any order of size.
+  /// Takes one region: F, and the pairs of differences to it, in any order of size.
   void at(const std::string& kind, const RegionSystem&, const RegionSystem::Values& F,
           const std::vector<RegionSystem::Pair>& differences);
   std::vector<Check> checks() const;
-  /// What could not be told, in words.
+  /// The checks that were not possible, in words.
   std::vector<std::string> left_out() const;
 
  private:

@@ -110,7 +110,7 @@ std::optional<Descent> descend(SolvedSlab& slab, std::vector<double> y) {
     iterates.push_back(std::move(*next));
     // Changes that no longer shrink are rounding, if they are small.
     if (change <= 4 * epsilon * size || (change >= before && change <= 1e-8 * size)) break;
-    // Where they still grow by then the start was too far away.
+    // Errors that still grow by then began too far away.
     if (n >= 10 && change > before) return std::nullopt;
     before = change;
   }
@@ -134,7 +134,7 @@ std::optional<Triple> last_triple(const Descent& descent) {
   return std::nullopt;
 }
 
-/// What the descents from starts that are further and less far away gave.
+/// The results of the descents from starts that are further and less far away.
 struct Descents {
   int tried = 0, converged = 0, at_once = 0;
   std::int64_t steps = 0;  ///< of those that converged

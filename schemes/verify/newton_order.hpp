@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// Whether Newton's method converges quadratically, as it does only if the assembled Jacobian of a slab is the
+/// Checks that Newton's method converges quadratically, as it does only if the assembled Jacobian of a slab is the
 /// derivative of the slab's equations. `solution` holds consecutive rows that solve them, every component at its own
 /// row; multipliers of the newest row need not be there. The unknowns of the newest slab in it are moved at random and
 /// found again by full steps, the Jacobian taken anew at each. With e_n the largest error of a field,

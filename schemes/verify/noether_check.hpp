@@ -27,7 +27,7 @@ class NoetherCheck {
  private:
   /// Σ_l Jˡ(ξ) = dL(ξ) on single stencils at random jets, which is zero where ξ is a symmetry of L.
   Check invariance(const LinearSymmetry&, std::mt19937_64&) const;
-  /// That the change δL is a divergence: its sum over a region is one over the region's boundary.
+  /// Checks that the change δL is a divergence: its sum over a region is one over the region's boundary.
   Check divergence(const LinearSymmetry&, std::mt19937_64&) const;
   /// ∂/∂y of Σ_Δ δL_Δ at one value of a random field.
   Balance change_at(Site, int component, const LinearSymmetry&, double centre, std::mt19937_64&) const;

@@ -15,8 +15,8 @@ struct CanonicalRow {
   std::vector<double> q, p;
 };
 
-/// What a program's one-step map (q, p) ↦ (q₊, p₊) keeps, whatever scheme it is of: dq ∧ dp on the differences V, W of
-/// nearby solutions, from row to row, and p·ξ(q) for symmetries.
+/// The quantities that a program's one-step map (q, p) ↦ (q₊, p₊) keeps, by any scheme: dq ∧ dp on the differences V, W
+/// of nearby solutions, from row to row, and p·ξ(q) for symmetries.
 ///
 ///     ω(V, W) = Σ (V_q W_p − W_q V_p),          J = Σ_i p_i · ξ(q_i)
 ///
@@ -28,7 +28,7 @@ class PhaseSpaceCheck {
   /// One row after the other, with the same row of pairs of nearby solutions: (A, B) at one size, further pairs at others.
   void at(std::int64_t row, const CanonicalRow&, const std::vector<CanonicalRow>& nearby);
   std::vector<Check> checks() const;
-  /// ω could not be told: the differences are too large, or rounding.
+  /// ω could not be found: the differences are too large, or rounding.
   bool too_far() const { return tried_ && !symplectic_; }
 
  private:

@@ -124,7 +124,7 @@ std::vector<RegionSystem::Values> RegionSystem::first_variations(const Values& y
   });
   std::vector<Values> variations(static_cast<std::size_t>(count), Values(nodes(), 0.0));
   std::normal_distribution<double> normal;
-  // What no equation feels is free.
+  // Values that no equation reads are free.
   for (Values& V : variations)
     for (std::size_t n = 0; n < V.size(); ++n)
       if (!held_[n]) V[n] = normal(random);

@@ -14,7 +14,7 @@
 
 namespace delf {
 
-/// What values that are slaved to others are to forms: solved for with the rest, or functions of t that are known, which do
+/// The part of slaved values in forms: they are solved for with the rest, or are known functions of t, which do
 /// not vary and have no equations.
 enum class SlavedValues { solved, known };
 
@@ -44,7 +44,7 @@ class RegionSystem {
   /// The nodes of int U where there is an equation.
   const std::vector<std::size_t>& equations() const { return equations_; }
 
-  /// What a window says on U.
+  /// The values of a window on U.
   Values restricted(const Window&) const;
 
   /// E_b = Σ_{l: Δˡ = b} rˡ at the nodes of equations()                                                     (5.2)
@@ -53,7 +53,7 @@ class RegionSystem {
   /// Random solutions of the linearised equations at equations(), by an orthogonal projection onto the null space of
   /// ∂E_b/∂y_a, and zero at fixed walls: no evolution is needed to have them, only the region.
   std::vector<Values> first_variations(const Values& y, int count, std::mt19937_64&) const;
-  /// How badly V solves them: Σ_a ∂E_b/∂y_a V_a at each node of equations().
+  /// The failure of V to solve them: Σ_a ∂E_b/∂y_a V_a at each node of equations().
   std::vector<Balance> linearised(const Values& y, const Values& V) const;
   /// The node of ∂U that the equations of int U feel most: where a broken variation must show.
   std::optional<std::size_t> coupling_node(const Values& y) const;
@@ -61,7 +61,7 @@ class RegionSystem {
   struct Pair {
     Values V, W;
   };
-  /// Of each pair, with every stencil differentiated once,
+  /// The form formula of each pair, with every stencil differentiated once,
   ///
   ///     Σ_{Δ ⊂ U, Δ ∩ ∂U ≠ ∅} Σ_{l: Δˡ ∈ ∂U} Ωˡ(V, W)                                                      (5.6)
   ///
@@ -73,7 +73,7 @@ class RegionSystem {
   /// (5.6) over the stencils without multipliers alone: on (φ, X) in place of (φ, X, λ), Tyranowski–Desbrun, remark 5.
   std::vector<Balance> form_without_multipliers(const Values& y, std::span<const Pair> pairs) const;
 
-  /// What an error of δ in every value of V and W can make of that sum: δ Σ |∂rⁱ/∂yᵐ| (|Vᵐ| + |Wⁱ| + |Wᵐ| + |Vⁱ|).
+  /// The largest effect of an error of δ in V and W on that sum: δ Σ |∂rⁱ/∂yᵐ| (|Vᵐ| + |Wⁱ| + |Wᵐ| + |Vⁱ|).
   double form_error(const Values& y, const Pair&, double delta) const;
 
   struct LocalDefect {
@@ -85,7 +85,7 @@ class RegionSystem {
   /// The stencil in U on which Σ_l Ωˡ(V, W) is largest, relative to its terms.
   LocalDefect local_identity(const Values& y, const Pair&) const;
 
-  /// Of the equations in int U, which are those of an action only if ∂E_b/∂y_a = ∂E_a/∂y_b, the two that differ most.
+  /// The two equations in int U that differ most from ∂E_b/∂y_a = ∂E_a/∂y_b, by which equations are those of an action.
   struct OneWay {
     Node b, a;
     double b_by_a = 0, a_by_b = 0;
@@ -98,8 +98,8 @@ class RegionSystem {
   ///
   /// and, for a symmetry up to a divergence, less what L changes by on all Δ ⊂ U: Σ_{Δ ⊂ U} Σ_l ∂L/∂yˡ ξ(yˡ).
   Balance noether(const Values& y, const LinearSymmetry&, bool up_to_divergence = false) const;
-  /// What that sum may be because y has so many bits: ε Σ |∂rⁱ/∂yᵐ yᵐ ξⁱ| at the boundary. A momentum (q₁ − q₀)/h has the
-  /// rounding of q divided by h.
+  /// The rounding of that sum by the number of bits of y: ε Σ |∂rⁱ/∂yᵐ yᵐ ξⁱ| at the boundary. A momentum (q₁ − q₀)/h
+  /// has the rounding of q divided by h.
   double rounding(const Values& y, const LinearSymmetry&) const;
 
  private:

@@ -35,7 +35,7 @@ Measured measured(const std::string& name, const BalanceLaw::Largest& largest, d
 void BalanceLaw::Largest::add(double candidate, double absolute, std::int64_t at_row, int at_site) {
   ++count;
   scale = std::max(scale, absolute);
-  // What is not a number is found as well, and stays.
+  // A value that is not a number is found as well, and stays.
   if (std::isnan(value) || candidate <= value) return;
   value = candidate, row = at_row, site = at_site;
 }
@@ -155,7 +155,7 @@ std::vector<Measured> StressBalance::results() const {
   return list;
 }
 
-/// What flows from cell to cell is not known: totals of a circle, through which nothing flows in or out.
+/// Totals of a circle, through which nothing flows in or out: the flow from cell to cell is not known.
 std::vector<Measured> StressBalance::of_second_order() const {
   const BatchDensity& density = theory_.density();
   for (int a = 0; a < density.components(); ++a)

@@ -51,7 +51,7 @@ class BalanceLaw {
 
   Lattice lattice_;
   double time_step_;
-  std::vector<Current> below_;  ///< cells under the row that is looked at; none at first
+  std::vector<Current> below_;  ///< cells under the row that is checked; none at first
   Sums sums_below_;
   double first_density_ = 0, passed_ = 0;  ///< passed: through the ends and from sources, since the first row of cells
   Largest local_, total_;

@@ -48,7 +48,7 @@ int Tangent::least_rows(const LatticeSystem& system, const SolvePlan& plan) {
 }
 
 Range Tangent::solved_rows(const LatticeSystem& system, const SolvePlan& plan, int rows) {
-  // Slabs past … rows − 1 − above are solved, and an equation at row j is in one of slabs j − lead … j + lag.
+  // Slabs past … rows − 1 − above are solved, and an equation at row j is in one of slabs j − lead … j + delay.
   const SlabExtent extent = slab_extent(system, plan);
   return {extent.past() + extent.equation_lead, rows - 1 - extent.above - extent.equation_lag};
 }
@@ -94,8 +94,8 @@ std::vector<Window> Tangent::evolve(const Window& y, int count, std::mt19937_64&
       p.solver.solve(E, x);
       p.solver.solve(remainder(p.equations, values, E, x, size_of_terms), more);
       for (std::size_t n = 0; n < x.size(); ++n) x[n] += more[n];
-      // Where something of an equation is left even so, or terms grow beyond what they make up, the matrix is singular but
-      // for rounding. On all stencils and theories they grow up to 6e7 times where it is not, and from 2e10 on where it is.
+      // A matrix is singular but for rounding where something of an equation is left even so, or terms grow beyond what
+      // they make up: over all stencils and theories up to 6e7 times where it is not, from 2e10 on where it is.
       const std::vector<double> left = remainder(p.equations, values, E, x, size_of_terms);
       constexpr double most_growth = 1e9;
       const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };

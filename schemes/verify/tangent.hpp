@@ -15,14 +15,14 @@ namespace delf {
 /// V on each slab from random values on the rows before the first one. Memory is linear in the slab.
 class Tangent {
  public:
-  /// For windows of `rows` rows.
+  /// Prepares windows of `rows` rows.
   Tangent(const LatticeSystem&, const SolvePlan&, int rows, double turn);
 
   ~Tangent();
 
   /// The least number of rows with a row in the middle on which all equations can hold.
   static int least_rows(const LatticeSystem&, const SolvePlan&);
-  /// Of a window of `rows` rows, counted from its first: where V solves the linearised equations, every component's.
+  /// The rows of a window of `rows`, from its first, in which V solves the linearised equations of all components.
   static Range solved_rows(const LatticeSystem&, const SolvePlan&, int rows);
 
   /// `count` of them on the rows of y; zero where values are data, at fixed walls. Where y itself solves the equations

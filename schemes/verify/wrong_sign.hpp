@@ -11,7 +11,7 @@
 namespace delf {
 
 /// A planted fault which every check has to find: a family in which the residual of one value, and its row of the
-/// Jacobian with it, has the wrong sign. Lagrangian and momenta are left alone, and the family still says that it is
+/// Jacobian with it, has the wrong sign. The Lagrangian is left alone, and the family still says that it is
 /// variational. There is no row kernel, so that nothing goes past the fault.
 class WrongSign final : public StencilFamily {
  public:
@@ -32,10 +32,6 @@ class WrongSign final : public StencilFamily {
   }
   std::optional<double> lagrangian(const Cell& cell, std::span<const double> y) const override {
     return right_->lagrangian(cell, y);
-  }
-  bool momentum(const Cell& cell, std::span<const double> phi, std::span<const double> phi_t,
-                std::span<double> p) const override {
-    return right_->momentum(cell, phi, phi_t, p);
   }
 
  private:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The wheel, made of a build tree, in a fresh environment: wheel.py SOURCE BUILD WORK. Its checks, its program, and a C++
-program with the headers in it."""
+"""The wheel, made of a build tree, in a fresh environment: wheel.py SOURCE BUILD WORK. Its checks, its program, the lines
+of the README, and a C++ program with the headers in it."""
 import glob
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -29,8 +30,13 @@ out = run(python, "-m", "delf", "run", "collision", "--run.until=1", "--output.f
           capture_output=True).stdout
 assert "collision: sine-gordon" in out, out
 run(os.path.join(work, "venv", "bin", "delf"), "--version")
+with open(os.path.join(source, "README.md"), encoding="utf-8") as file:
+    (lines,) = re.findall(r"```python\n(.*?)```", file.read(), re.S)
+out = run(python, "-c", lines, capture_output=True).stdout
+assert "Run collision: done" in out and "FAIL" not in out, out
 prefix = run(python, "-c", "import delf; print(delf.prefix())", capture_output=True).stdout.strip()
 run("cmake", "-S", os.path.join(source, "tests", "package"), "-B", "consumer", "-G", "Ninja",
     f"-DCMAKE_PREFIX_PATH={prefix}")
-run("cmake", "--build", "consumer", "--target", "consumer_of_lattice")
-assert run("consumer/consumer_of_lattice", capture_output=True).stdout.startswith("0.1568627450980392")
+run("cmake", "--build", "consumer")
+for consumer in ("consumer", "consumer_of_lattice"):
+    assert run(f"consumer/{consumer}", capture_output=True).stdout.startswith("0.1568627450980392")

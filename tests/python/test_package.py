@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The module of the build tree, beyond what `python3 -m delf test` checks of an installed one (those checks run too)."""
+import io
 import json
 import os
 import pathlib
@@ -137,6 +138,120 @@ def test_a_folder_is_gone_on_with(tmp_path):
     assert np.array_equal(delf.run("kink", until=2).resume(until=4).series["energy"], straight.series["energy"])
 
 
+@pytest.mark.parametrize("scene, first, whole", [
+    ("collision", dict(until=20.05, every=7), dict(until=50)), ("kink", dict(until=2), dict(until=4)),
+    ("wave-map", dict(steps=25, every=10), dict(steps=60)), ("pendulum", dict(steps=25, every=10), dict(steps=60)),
+    ("phi6-moving-mesh", dict(steps=25, every=10), dict(steps=60))])
+def test_a_run_in_memory_goes_on_to_the_same_bits(scene, first, whole):
+    begun = delf.run(scene, **first)
+    longer = begun.resume(**whole)
+    straight = delf.run(scene, **{"every": begun.scene["output.every"] or every_of(begun), **first, **whole})
+    assert len(begun.series) < len(longer.series) == len(straight.series)
+    for name in straight.series.dtype.names:
+        assert np.array_equal(longer.series[name], straight.series[name], equal_nan=True), name
+    for name in straight.fields:
+        assert np.array_equal(longer.fields[name], straight.fields[name], equal_nan=True), name
+    ours, theirs = dict(longer.summary), dict(straight.summary)
+    for timing in ("seconds", "ns_per_site_step"):
+        ours.pop(timing), theirs.pop(timing)
+    assert ours == theirs and longer.text == straight.text
+
+
+def every_of(run):
+    return int(re.search(r"^every = (\d+)$", run.text, re.M)[1])
+
+
+def test_a_run_that_was_stopped_goes_on():
+    stopped = delf.run("collision", until=20, every=7, at_record=lambda record: record.row > 100)
+    straight = delf.run("collision", until=20, every=7)
+    assert stopped.status == "stopped" and stopped.resume(until=20).status == "done"
+    assert np.array_equal(stopped.resume(until=20).fields.field, straight.fields.field)
+    with pytest.raises(delf.BadInput, match="run.until"):
+        straight.resume(until=3)
+
+
+@pytest.mark.parametrize("scene, keys", [
+    ("collision", dict(until=3)), ("kink", dict(until=3)), ("wave-map", dict(steps=30)), ("pendulum", dict(steps=100)),
+    ("spherical-pendulum", dict(steps=30)), ("kink", {"until": 3, "scheme.method": "vu-quoc-li"})])
+def test_verify_finds_what_the_program_finds(scene, keys, tmp_path):
+    here = delf.verify(scene, **keys)
+    there = delf.verify(scene, out=tmp_path / "made", output_figures=False, **keys)
+    ours, theirs = dict(here.data), dict(there.data)
+    ours.pop("seconds"), theirs.pop("seconds")
+    assert ours == theirs and here.passed == there.passed == ("scheme.method" not in keys)
+    untimed = lambda result: re.sub(r"stencils in .*? s", "", str(result))
+    assert untimed(here) == untimed(there).split(str(tmp_path))[0]
+
+
+def test_rows_that_do_not_fit_are_refused_in_the_words_of_the_call():
+    with pytest.raises(delf.BadInput, match="^check: rows: .*lattice.sites"):
+        delf.check(np.zeros((10, 3)), density="0.5*phi_t^2 - 0.5*phi_x^2", h=0.1, length=1, sites=7)
+
+
+def test_memory_of_a_row_is_used_again_only_if_nobody_views_it():
+    evolution = _selftest.pair(50)
+    kept, copies = [], []
+    for n in range(60):
+        evolution.step()
+        row = evolution.row(n % 2)
+        view = row[3:9] if n % 3 == 0 else memoryview(row) if n % 3 == 1 else row.reshape(5, 10).T
+        if n % 4 == 0:
+            kept.append(view), copies.append(np.array(view))
+        with pytest.raises(ValueError):
+            row[0] = 1
+        with pytest.raises(ValueError):
+            row.flags.writeable = True
+        del row, view
+    for view, copy in zip(kept, copies):
+        assert np.array_equal(np.array(view), copy)
+    addresses = set()
+    for _ in range(20):
+        evolution.step()
+        addresses.add(evolution.row().ctypes.data)
+    assert len(addresses) <= 3
+
+
+def test_tables_are_frames_where_pandas_is():
+    pytest.importorskip("pandas")
+    table = delf.convergence("kink", until=1, convergence_levels=2)
+    assert list(table.frame.columns) == list(table.table.dtype.names) and len(table.frame) == len(table) == 2
+
+
+def test_symmetries_as_text_have_their_sums():
+    evolution = delf.Scheme("0.5*(u_t^2 + v_t^2) - 0.5*(u_x^2 + v_x^2)", "rectangle", fields="u, v",
+                            symmetry="-v, u").on(delf.circle(41, 2 * np.pi), 0.05)
+    evolution.start(lambda x: (np.cos(x), np.sin(x)), lambda x: (np.sin(x), 0.3 * np.cos(x)))
+    before = evolution.monitors["symmetry"]
+    evolution.step(200)
+    assert abs(before) > 0.1 and abs(evolution.monitors["symmetry"] - before) < 1e-11 * abs(before)
+
+
+@pytest.mark.parametrize("with_tqdm", [True, False])
+def test_progress_is_shown_in_terminals_alone(with_tqdm, monkeypatch):
+    from delf import _run
+    if with_tqdm:
+        pytest.importorskip("tqdm")
+    else:
+        monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    assert not _run._Progress.wanted()
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    assert _run._Progress.wanted()
+    progress = _run._Progress(delf.Scene("collision", until=10))
+    progress(delf.Record(1, 2.5, 0.0, np.zeros(1)))
+    assert terminal.getvalue() == ""  # a run of a moment
+    progress.began -= 9
+    progress.shown -= 9
+    progress(delf.Record(100, 2.5, 0.0, np.zeros(1)))
+    progress.close()
+    assert re.search(r"25 ?%", terminal.getvalue())
+
+
 def test_no_memory_is_lost():
     def resident():
         return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
@@ -147,16 +262,31 @@ def test_no_memory_is_lost():
     for _ in range(int(os.environ.get("DELF_LEAK_RUNS", "500"))):
         delf.run(scene)
     grown = resident() - before
-    print(f"RSS grew by {grown} bytes")
+    print(f"RSS grew by {grown} bytes over {os.environ.get('DELF_LEAK_RUNS', '500')} runs of 10 steps")
     assert grown < 8 << 20
 
 
-def test_types_are_complete():
+def mypy(*words, **environment):
     pytest.importorskip("mypy")
-    package = pathlib.Path(delf.__file__).parent
-    done = subprocess.run([sys.executable, "-m", "mypy", "--ignore-missing-imports", "--follow-imports=silent",
-                           *map(str, sorted((ROOT / "tools/examples/python").glob("*[a-z].py")))],
-                          capture_output=True, text=True, env={**os.environ, "MYPYPATH": str(package.parent)})
+    return subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True,
+                          env={**os.environ, "MYPYPATH": str(pathlib.Path(delf.__file__).parents[1]), **environment})
+
+
+def test_types_are_those_of_the_package_and_its_examples(tmp_path):
+    used = ROOT / "tests/python/typed_use.py"
+    wrong = tmp_path / "wrong.py"
+    wrong.write_text("import delf\ndelf.Scheme().on(delf.point(), 1).stepp(1)\n")
+    files = [*pathlib.Path(delf.__file__).parent.glob("*.py*"), *(ROOT / "tools/examples/python").glob("*.py"), used, wrong]
+    done = mypy("mypy", "--config-file", str(ROOT / "tests/python/mypy.ini"), "--cache-dir", str(tmp_path),
+                *map(str, files))
+    (error,) = [line for line in done.stdout.splitlines() if "error:" in line]
+    assert '"Evolution" has no attribute "stepp"' in error
+
+
+def test_stubs_name_all_that_the_module_has(tmp_path):
+    allowed = tmp_path / "allowed"
+    allowed.write_text("delf._delf.Evolution\ndelf._delf.Settings\n")  # their metaclass is the binding's
+    done = mypy("mypy.stubtest", "delf._delf", "--allowlist", str(allowed))
     assert done.returncode == 0, done.stdout
 
 

@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <string>
 
+#include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
-#include "schemes/stepping/energy.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
@@ -75,6 +75,14 @@ double largest(const RowsInTime& rows) {
   return most;
 }
 
+const EnergyEntry own_energy{.name = "energy of own-cells",
+                             .formula = "7",
+                             .source = {},
+                             .rows = {},
+                             .make = [](const FieldTheory&, const LatticeSystem&, const Problem&) -> EnergyOfRows {
+                               return [](const RowsInTime&) { return EnergyMomentum{.energy = 7}; };
+                             }};
+
 /// The action on the cells of a key; its energy is said to be 7.
 const MethodEntry own_method{
     .name = "own-cells",
@@ -89,10 +97,7 @@ const MethodEntry own_method{
     .label = [](const Problem& p) { return "cells of a " + p.parameters.get<std::string>("scheme.cells"); },
     .starts = {StartRule::centred},
     .start = StartRule::centred,
-    .energy =
-        [](const RowsInTime&) {
-          return EnergyMomentum{.energy = 7};
-        },
+    .energy = &own_energy,
     .monitors = {{"largest", largest}}};
 
 [[maybe_unused]] const bool registered =

@@ -13,7 +13,7 @@ using namespace delf::testing;
 namespace {
 
 /// Rows 0 … 12 of a run on a circle of 24 sites at h = k/2, from seeded noise at rest, as a field on all of them: what
-/// the steps, row by row and by whatever plan, make of the equations is looked at one stencil at a time.
+/// the steps, row by row and by whatever plan, make of the equations is checked one stencil at a time.
 Patch stepped(const std::string& theory, const SchemeName& scheme) {
   const int N = 24, last = 12;
   const Lattice lattice = Lattice::circle(N, 10);

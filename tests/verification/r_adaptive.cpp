@@ -6,7 +6,8 @@
 #include <random>
 
 #include "lattice/lattice.hpp"
-#include "schemes/families/moving_rectangle.hpp"
+#include "schemes/families/lagrangian_family.hpp"
+#include "schemes/families/r_adaptive.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/verify/region_system.hpp"
 #include "tests/catch.hpp"
@@ -112,14 +113,14 @@ class PrintedWall final : public StencilFamily {
   }
 
  private:
-  MovingRectangleFamily of_{{}};
+  LagrangianFamily<MovingRectangle> of_{{}};
 };
 
 }  // namespace
 
 TEST_CASE("six-tuples at the walls have weight one half: with the printed 1 the form formula fails") {
   std::vector<std::shared_ptr<const StencilFamily>> families{
-      std::make_shared<MovingRectangleFamily>(MovingRectangle{}),
+      std::make_shared<LagrangianFamily<MovingRectangle>>(MovingRectangle{}),
       std::make_shared<LagrangianFamily<ArclengthConstraint>>(ArclengthConstraint{2.5})};
   const std::vector<Component> components{{"phi"}, {"X"}, {"lambda", Role::multiplier, {}}};
   const Lattice lattice = Lattice::interval(17, 25);

@@ -152,10 +152,7 @@ TEST_CASE("other densities and monitors move the mesh too, and keep their constr
 }
 
 TEST_CASE("the margin of a mesh is what cells of equal arclength leave of the length") {
-  const auto constraint = [](const MeshMonitor& monitor) {
-    return MeshConstraint({1, monitor}, std::make_shared<const LagrangianFamily<Equidistribution>>(Equidistribution{}),
-                          {});
-  };
+  const auto constraint = [](const MeshMonitor& monitor) { return MeshConstraint{.d = 1, .monitor = monitor}; };
   const std::vector<double> y{0, 0.6, 1.6};
   CHECK(*constraint({.alpha = 0.5}).margin(y, 1, 1) == Approx(1 - 0.5 * 0.8));
   CHECK(*constraint({.alpha = 1.5}).margin(y, 1, 1) == Approx(-0.2));

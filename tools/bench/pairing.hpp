@@ -11,7 +11,7 @@ struct Side {
   std::function<void(long)> advance;
 };
 
-/// Of some repetitions.
+/// The middle and the range of some repetitions.
 struct Spread {
   double median = 0, least = 0, most = 0;
 };

@@ -11,7 +11,7 @@
 namespace delf::bench {
 namespace {
 
-/// Where f changes its sign between `low` and `high`, to the last bit.
+/// The place at which f changes its sign between `low` and `high`, to the last bit.
 template <class F>
 double root_of(const F& f, double low, double high) {
   const bool sign = f(low) > 0;

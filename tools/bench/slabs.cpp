@@ -110,7 +110,7 @@ void spacetime(const Compared& compare, double tolerance) {
   const auto simulation = std::make_shared<Simulation>(problem.problem());
   Side engine = side_of(simulation, TwoRows{});
   engine.restart = [=] {
-    // Of the four components of a cell two lie in the lowest row.
+    // A cell has four components, of which two are in the lowest row.
     std::vector<double> row, velocity(2 * phi.size(), 0.0);
     for (std::size_t i = 0; i < phi.size(); i += 2) row.insert(row.end(), {phi[i], phi[i + 1], phi[i], phi[i + 1]});
     simulation->start_legendre(row, velocity);

@@ -40,7 +40,7 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     } catch (const NumericalFailure& error) {
       if (level == 0) throw;
       table.status = status_of(error);
-      // Where h/k has not changed, and the coarser steps were stable, a limit of h/k² may have been passed.
+      // A limit of h/k² may have been passed if h/k has not changed, and the coarser steps were stable.
       table.ended =
           fmt::format("N = {}: {}; h/k^2 doubles from line to line, and may be limited: begin with smaller steps",
                       lattice.sites(), error.what());

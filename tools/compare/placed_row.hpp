@@ -12,7 +12,7 @@ namespace delf {
 struct PlacedRow {
   std::vector<double> fields, positions;
 };
-/// Of the newest row, or of the one so many rows back, as it is observed.
+/// The newest row, or the one so many rows back, as it is observed.
 PlacedRow placed_row(const Simulation&, int back = 0);
 
 /// L∞ and √(Σ δ e²), half of each cell with either end, from a solution at the sites, wherever they are.

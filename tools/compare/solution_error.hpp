@@ -30,7 +30,7 @@ class ComparedSolution {
   std::vector<double> row_;
 };
 
-/// Whether the scene's state knows the solution up to that time. Throws BadScene for states that cannot be.
+/// True if the scene's state knows the solution up to that time. Throws BadScene for states that cannot be.
 bool has_exact(const Scene&, double until);
 
 /// The centre of the first field's φ_x²; around a circle, the angle of its first Fourier coefficient. Not a number

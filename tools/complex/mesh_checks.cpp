@@ -47,7 +47,7 @@ void MeshChecks::add_to(Verdict& verdict) const {
 
 std::vector<LinearSymmetry> MeshChecks::symmetries(const Values& values) {
   std::vector<LinearSymmetry> all = scene_.theory->symmetries();
-  if (const auto* density = dynamic_cast<const SymbolicDensity*>(&scene_.theory->density()))
+  if (const SymbolicDensity* density = scene_.theory->density().formula())
     for (const LinearSymmetry& symmetry : density->up_to_divergence())
       left_out_.push_back(fmt::format(
           "Noether, {}: the density has it up to a divergence, and its stencils on a mesh have not", symmetry.name));

@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Of the lines beside the errors: what is asked for, or the scheme's, or the whole numbers around what was found.
+// The orders of the lines beside the errors: those asked for, or the scheme's, or whole numbers around the measured.
 std::vector<double> drawn_orders(const OrderRequest& request, double measured) {
   if (request.order) return {*request.order};
   if (request.of_scheme) return {static_cast<double>(*request.of_scheme)};
@@ -42,8 +42,8 @@ std::vector<double> drawn_orders(const OrderRequest& request, double measured) {
   return {below, below + 1};
 }
 
-// What is missing, in one line. A figure that cannot be drawn does not fail the command.
-// What the method declares.
+// The reason for a missing figure, in one line. A figure that cannot be drawn does not fail the command.
+// The order that the method declares.
 std::optional<int> order_of_scheme(const Problem& asked) {
   const Problem problem = completed(asked);
   const auto order = find_method(problem.method).order;
@@ -192,7 +192,7 @@ ExitCode convergence(const Scene& scene, const fs::path& folder) {
 
 ExitCode convergence(const ComplexScene& mesh, const fs::path& folder) {
   constexpr int order = 2;  // of steps in rows, of P1 and Q1
-  // Of asynchronous steps order 2 is known on one mesh alone (see Lew et al.): none is asked for.
+  // No order is asked of asynchronous steps: order 2 is known on one mesh alone (see Lew et al.).
   return converge_in(folder, mesh.scene, mesh, (mesh.space ? "mesh of " : "") + mesh.mesh_in_words(),
                      mesh.time == MeshTime::cells ? std::nullopt : std::optional(order));
 }

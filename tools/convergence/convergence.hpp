@@ -11,7 +11,7 @@ struct ComplexScene;
 
 /// `delf convergence`: a scene at steps halved again and again, its errors and their order.
 ExitCode convergence(const Scene&, const std::filesystem::path& folder);
-/// The same on a mesh: its sides are halved.
+/// The convergence on a mesh, whose sides are halved.
 ExitCode convergence(const ComplexScene&, const std::filesystem::path& folder);
 
 }  // namespace delf

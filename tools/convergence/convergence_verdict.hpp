@@ -19,8 +19,8 @@ struct OrderRequest {
   bool met(double measured) const;
 };
 
-/// What a table says of the scheme. Errors of the last lines may be those of rounding, of the ends of the lattice, of a
-/// formula that is no solution, or of steps that are not stable: then the table says nothing of the scheme's order.
+/// The verdict of a table on the scheme. Errors of the last lines may be those of rounding, of the ends of the lattice,
+/// of a formula that is no solution, or of steps that are not stable: then it tells nothing of the scheme's order.
 struct ConvergenceVerdict {
   enum Kind { passed, missed, not_measured, unstable };
   Kind kind = passed;
@@ -36,7 +36,7 @@ const char* to_string(ConvergenceVerdict::Kind);
 /// `scene` is null for a mesh, of which rounding alone is known.
 ConvergenceVerdict judge(const ConvergenceTable&, const OrderRequest&, const Scene* scene);
 
-/// What the ends of the lattice do to the state of a scene; nothing where its rows are of a file.
+/// The effect of the ends of the lattice on the state of a scene; nothing where its rows are of a file.
 EndChange off_at_ends(const Scene&);
 
 }  // namespace delf

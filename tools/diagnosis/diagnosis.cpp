@@ -46,7 +46,7 @@ Diagnosis diagnose(Evidence evidence) {
     }
   }
   if (sample.rests()) {
-    diagnosis.findings.push_back({"rest", "The fields rest: no equation can be told from another by them."});
+    diagnosis.findings.push_back({"rest", "The fields rest: no equation can be distinguished from another by them."});
     return diagnosis;
   }
   if (const auto rounded = rounding_of(evidence.rows, evidence.row); rounded && evidence.failed.failed() > 0)

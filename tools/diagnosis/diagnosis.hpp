@@ -6,7 +6,7 @@
 
 namespace delf {
 
-/// What rows are that do not solve the equations of a scene; or, of rows that do, whose they are.
+/// The explanation of rows that do not solve the equations of a scene; or, for rows that do, whose they are.
 struct Diagnosis {
   std::vector<Finding> findings;
 };

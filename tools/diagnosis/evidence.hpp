@@ -10,7 +10,7 @@
 
 namespace delf {
 
-/// Which equations of some rows fail: counted by row and by site.
+/// The equations of some rows that fail, counted by row and by site.
 class FailedEquations {
  public:
   /// |E| of a row relative to its terms, [i·C + c]; not a number where there is no equation (EquationCheck::newest).

@@ -10,7 +10,7 @@ struct Finding {
   std::string words;
   /// It explains every failure: nothing more need be looked for.
   bool settles = true;
-  /// With it the equations hold; else it says how near they come.
+  /// True if the equations hold with it; else it says how near they come.
   bool exact = true;
 };
 

@@ -10,7 +10,7 @@ namespace delf {
 // One kind of finding each, in the file of its name. A finding is returned only if the rows confirm it: what it says was
 // tried on them, and the equations that failed hold.
 
-// Where the equations fail at few rows or sites:
+// Findings for equations that fail at few rows or sites:
 std::optional<Finding> find_rounding(const Evidence&);
 std::optional<Finding> find_wrapped(const Evidence&);
 std::optional<Finding> find_doubled_frame(const Evidence&);
@@ -22,8 +22,8 @@ std::optional<Finding> find_seam(const Evidence&);
 std::optional<Finding> find_fixed_sites(const Evidence&);
 std::optional<Finding> find_sponge(const Evidence&);
 
-// Where they fail everywhere:
-/// The scheme that the rows solve, at the steps of the scene, on every second site, or with every second row.
+// Findings for equations that fail everywhere:
+/// Finds the scheme that the rows solve, at the steps of the scene, on every second site, or with every second row.
 std::optional<Finding> find_scheme(const Evidence&, const Sample&);
 /// The one-step map that takes each frame to the next, in (φ, φ_t): by the momenta of the file, or by those that lead to the
 /// next frame.

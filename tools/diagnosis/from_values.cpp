@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t most_frames = 6;
 
-/// Whether the scheme takes frame 0 to those after it.
+/// True if the scheme takes frame 0 to those after it.
 bool gives(const Problem& p, const Evidence& e, double tolerance) {
   try {
     Simulation simulation(p);

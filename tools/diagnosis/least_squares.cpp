@@ -9,7 +9,7 @@ namespace delf {
 
 LeastSquares least_squares(const Eigen::VectorXd& given, const std::vector<Eigen::VectorXd>& given_columns) {
   LeastSquares fit;
-  // In units of the target: squares of values above 1e154 are not finite.
+  // Units of the target keep squares finite, which those of values above 1e154 are not.
   const double largest = given.cwiseAbs().maxCoeff(), unit = largest > 0 ? largest : 1;
   const Eigen::VectorXd target = given / unit;
   std::vector<Eigen::VectorXd> columns = given_columns;

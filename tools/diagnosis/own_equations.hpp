@@ -7,8 +7,8 @@
 
 namespace delf {
 
-/// What is summed in the equations of a system where the fields reach `largest`: max_c Σ_a |∂E_c/∂y_a| · largest, of their
-/// constant part.
+/// The sum of terms in the equations of a system where the fields reach `largest`: max_c Σ_a |∂E_c/∂y_a| · largest, of
+/// their constant part.
 double scale_of_terms(const LatticeSystem&, double largest);
 
 /// The largest absolute value.
@@ -18,7 +18,7 @@ double largest_of(const std::vector<std::vector<double>>& rows);
 /// rows[n] is row first_row + n.
 double worst_equation(const LatticeSystem&, const std::vector<std::vector<double>>& rows, std::int64_t first_row,
                       std::int64_t row, double turn, int first, int last);
-/// The same at all sites.
+/// The largest residual of any site.
 double worst_equation(const LatticeSystem&, const std::vector<std::vector<double>>& rows, std::int64_t first_row,
                       std::int64_t row, double turn);
 

@@ -10,7 +10,7 @@
 
 namespace delf {
 
-/// What all values were rounded to, if it is coarser than double precision.
+/// The precision that all values were rounded to, if it is coarser than double precision.
 struct RoundedValues {
   std::string words;  ///< "6 decimals", "6 significant digits"
   double unit;        ///< the largest error of a value
@@ -18,7 +18,7 @@ struct RoundedValues {
   ValueError error;
 };
 std::optional<RoundedValues> rounding_of(const std::vector<std::vector<double>>& rows);
-/// The same of `count` rows that can be read, by some of them.
+/// The rounding of `count` rows that can be read, by some of them.
 std::optional<RoundedValues> rounding_of(std::int64_t count,
                                          const std::function<std::vector<double>(std::int64_t)>& row);
 

@@ -47,14 +47,14 @@ Sample::Sample(const Evidence& evidence) : evidence_(evidence), fields_(evidence
   find_schemes();
 }
 
-// Whether two schemes have the same equations shows in their values.
+// Finds the schemes to try. Two have the same equations if the values of these are the same.
 void Sample::find_schemes() {
   schemes_.push_back({scheme_label(evidence_.problem), evidence_.problem});
   std::vector<Equations> known;
   std::vector<double> distances;
   if (auto own = equations(evidence_.problem, {})) known.push_back(std::move(*own));
   for (NamedScheme& scheme : named_schemes(evidence_.problem)) {
-    // What two rows do not start has more values than those that rows hold; it may be costly to build.
+    // A method that two rows do not start has more values than those rows hold; it may be costly to build.
     if (!std::ranges::count(find_method(scheme.problem.method).starts, StartRule::exact)) continue;
     auto found = equations(scheme.problem, {});
     if (!found) continue;

@@ -33,8 +33,8 @@ class Sample {
   /// of the parity of a brick wall.
   std::optional<Equations> equations(const Problem&, Stride, int shift = 0) const;
 
-  /// The same equations by powers of the steps: E = time + space + force, time ~ 1/h², space ~ 1/k², as they are for densities
-  /// that are quadratic in φ_t and in φ_x, without products with φ. Of the rows `later` rows later.
+  /// The equations by powers of the steps: E = time + space + force, time ~ 1/h², space ~ 1/k², as they are for
+  /// densities that are quadratic in φ_t and in φ_x, without products with φ. Of the rows `later` rows later.
   struct Split {
     Eigen::VectorXd time, space, force, velocity;  ///< velocity: that of φ_t, −∂²ℓ/∂φ_t² φ_t by central differences
     double scale = 0;
@@ -43,8 +43,8 @@ class Sample {
 
   /// The scene's own scheme, and all others by name whose equations can be tried; those that are the same once.
   const std::vector<NamedScheme>& schemes() const { return schemes_; }
-  /// How far the equations of these schemes are from the scene's own at these rows, |E − E'|: the median of the largest. It
-  /// tells what a scheme may differ by that is as good as they are.
+  /// The distance of the equations of these schemes from the scene's own at these rows, |E − E'|: the median of the
+  /// largest. It bounds the difference of a scheme that is as good as they are.
   double spread() const { return spread_; }
 
   /// Nothing in the sample changes by more than rounding.

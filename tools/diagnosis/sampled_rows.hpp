@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// How many rows a fit takes: 40 at most, spread over those that have an equation on three rows.
+/// The number of rows that a fit takes: 40 at most, spread over those that have an equation on three rows.
 inline std::int64_t sampled_rows(const Evidence& e) { return std::min<std::int64_t>(40, e.rows - 2); }
 
 /// Calls look(n, rows, E) for n = 0, 1, … of them, with the row, the ones below and above it, and its equations. Returns the

@@ -7,13 +7,13 @@ namespace delf {
 
 // Values modulo 2π, each taken within π of the one before it.
 
-/// In time: those of the row before.
+/// Unwraps in time, after the row before.
 void unwrap_after(const std::vector<double>& before, std::vector<double>& row);
-/// In space: the site before, of each of the components.
+/// Unwraps in space, each of the components after the site before.
 void unwrap_along(std::vector<double>& row, int components);
 /// Moves a row, all sites alike, by the multiple of 2π that brings each component at the first site next to `first`.
 void unwrap_to(std::span<const double> first, std::vector<double>& row);
-/// What an unwrapped row gains around the circle: a multiple of 2π.
+/// The gain of an unwrapped row around the circle: a multiple of 2π.
 double turn_of_row(const std::vector<double>& row, int components);
 
 }  // namespace delf

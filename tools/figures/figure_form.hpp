@@ -8,7 +8,7 @@ namespace delf {
 /// The formats that figures may have; each is the ending of their files, too.
 inline const std::vector<std::string> figure_formats{"svg", "png", "pdf"};
 
-/// How figures are drawn: output.format and output.titles.
+/// The form of figures: output.format and output.titles.
 struct FigureForm {
   std::vector<std::string> formats{"png", "svg"};
   bool titles = true;  ///< off: for a paper, whose captions say it

@@ -17,7 +17,7 @@ struct ColourScale {
 };
 /// The scale of some values; the most extreme half per cent are ignored if they would hide the rest.
 ColourScale colour_scale(std::span<const double> values);
-/// As gnuplot commands.
+/// The scale as gnuplot commands.
 std::string gnuplot_colours(const ColourScale&);
 
 /// A figure as gnuplot commands: `body` drawn in each format, all in one style. It may use the variables `titles`, 0 or 1,
@@ -32,8 +32,8 @@ double nice_step(double range, int most);
 
 /// The dark colour of single lines.
 inline constexpr auto line_colour = "#31688e";
-/// For each curve the first of the curves before it that it cannot be told from: nowhere farther than a line's width on
-/// an axis of that range; or itself.
+/// Finds for each curve the first of the curves before it that it cannot be distinguished from: nowhere farther than a
+/// line's width on an axis of that range; or itself.
 std::vector<std::size_t> coinciding(const std::vector<std::vector<double>>& curves, double range);
 
 /// The names of curves in their colours, at the upper right, above the plots; of one that lies on another, which.

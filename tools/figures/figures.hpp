@@ -20,7 +20,7 @@ struct DrawnSection {
   std::array<int, 2> columns{0, 0};
 };
 
-/// What the figures of a run are drawn from.
+/// The data that the figures of a run are drawn from.
 struct FigureSource {
   std::string scene, theory;
   std::string scheme;  ///< one line: stencil, method, sites, steps
@@ -57,7 +57,7 @@ std::vector<double> drawn_sites(const FigureSource&, int frame, std::size_t comp
 /// "φ", or the name of the component where there are several.
 std::string drawn_name(const FigureSource&, std::size_t component);
 
-/// How many frames, from the first one, have not blown up: a scale made for the others would hide these.
+/// The number of frames, from the first one, that have not blown up: a scale made for the others would hide these.
 int tame_frames(const FigureSource&);
 
 /// The names of the figures of a run on a lattice or on a mesh, without ending.

@@ -29,13 +29,13 @@ class Film {
   std::span<const double> frame(int index) const;  ///< site by site
   std::size_t components() const noexcept { return components_; }
   const std::vector<double>& space() const noexcept { return space_; }
-  /// How many frames, from the first one, are equally spaced in time.
+  /// The number of frames, from the first one, that are equally spaced in time.
   int even_frames() const;
   /// Records from frame to frame.
   std::int64_t stride() const noexcept { return stride_; }
-  /// How far the frames are from showing the motion. The change D from frame to frame is held against that of the rates,
-  /// P = ½Δt (φ_t + φ_t′): Σ|D − P|²/Σ|D|² over all frames, which for an oscillation is below ¼ for more than 2.7 frames a
-  /// period, and above 1 beyond Nyquist's frequency. 0 where nothing moves.
+  /// The distance of the frames from showing the motion. The change D from frame to frame is held against that of the
+  /// rates, P = ½Δt (φ_t + φ_t′): Σ|D − P|²/Σ|D|² over all frames, which for an oscillation is below ¼ for more than
+  /// 2.7 frames a period, and above 1 beyond Nyquist's frequency. 0 where nothing moves.
   double alias() const;
   /// True if frames are farther apart than the motion lasts: what moves in a figure may not exist.
   bool is_aliased() const { return !(alias() <= aliased); }

@@ -10,7 +10,7 @@ namespace delf {
 /// Mechanics on a point: the coordinates over time. Returns gnuplot commands; their data is written to `scratch`. Empty
 /// for a field in space.
 std::string trajectory_figure(const FigureSource&, const std::filesystem::path& scratch);
-/// Of two coordinates, the second over the first.
+/// The orbit of two coordinates, the second over the first.
 std::string orbit_figure(const FigureSource&, const std::filesystem::path& scratch);
 
 }  // namespace delf

@@ -18,7 +18,7 @@ class CheckpointWriter final : public SavedState {
   explicit CheckpointWriter(const std::filesystem::path&);
   ~CheckpointWriter() override;
   bool restores() const override { return false; }
-  /// Without it nothing has changed.
+  /// Puts the checkpoint in its place. A writer that is not closed has changed nothing.
   void close();
 
  private:

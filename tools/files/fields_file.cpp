@@ -153,7 +153,7 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
     describe(datasets_.back(), components);
     require(datasets_.back().dataset && write_text(datasets_.back().dataset, "meaning", meaning), "cannot be written");
   }
-  // From here on (single writer, multiple readers) every write leaves a file that can be read, whenever the process ends.
+  // Every write leaves, from here on (single writer, multiple readers), a file that can be read whenever a run ends.
   require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0 && H5Fstart_swmr_write(file_) >= 0, "cannot be written");
   times_.reserve(frames_per_block_);
   if (kept.size == 0) return;

@@ -23,7 +23,7 @@ class FieldsReader final : public RowsFile {
   int components() const override { return shape(Role::field).components; }
   std::optional<double> time(int frame) const override;
   std::vector<double> row(int frame) const override;
-  /// Of /momentum; nothing where it is not of the shape of /field, or not finite.
+  /// The momenta of /momentum; nothing where it is not of the shape of /field, or not finite.
   std::optional<std::vector<double>> momenta(int frame) const override;
   /// Throws BadInput where the attribute is anything but one whole number.
   std::optional<int> winding() const override;
@@ -31,7 +31,7 @@ class FieldsReader final : public RowsFile {
 
   /// The resolved scene that the file has as an attribute; empty if it has none.
   std::string scene() const;
-  /// Of the sites, /space; nothing where it is not one number for each.
+  /// The positions of the sites, /space; nothing where it is not one number for each.
   std::optional<std::vector<double>> positions() const;
   /// All of /space, on a mesh n × dimension, row by row; nothing where it is neither that nor one number for each site.
   std::optional<std::vector<double>> coordinates() const;
@@ -39,7 +39,7 @@ class FieldsReader final : public RowsFile {
   struct Shape {
     int frames = 0, sites = 0, components = 0;
   };
-  /// Of the dataset of a role; all zero if there is none, or none of three axes.
+  /// The shape of the dataset of a role; all zero if there is none, or none of three axes.
   const Shape& shape(Role role) const { return part(role).shape; }
   /// A frame of it as it is, finite or not: [i·components + c]. Throws BadInput, key initial.file.
   std::vector<double> values(Role, int frame) const;

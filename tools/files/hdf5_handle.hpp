@@ -22,7 +22,7 @@ class Hdf5Handle {
 
   explicit operator bool() const noexcept { return id_ >= 0; }
   operator hid_t() const noexcept { return id_; }
-  /// Whether closing went well: for a file, whether its last bytes reached the disk.
+  /// True if closing went well: for a file, if its last bytes reached the disk.
   bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
   /// Leaves it open for good.
   void abandon() noexcept { id_ = -1; }

@@ -83,7 +83,7 @@ PlainArray npy_of(const std::string& all) {
   return array;
 }
 
-/// What zlib has made `size` bytes smaller to; nothing if it is not whole.
+/// The `size` bytes that zlib has packed; nothing if they are not whole.
 std::optional<std::string> inflated(const std::string& packed, std::size_t size) {
   constexpr std::size_t most = 1032;  // times smaller, by its format
   if (size / most > packed.size()) return std::nullopt;

@@ -19,7 +19,7 @@ struct PlainArray {
   std::vector<double> times;         ///< of the frames, if the file says them
   std::vector<double> momenta = {};  ///< as many as values, if the file has them
 
-  /// How many values the shape has.
+  /// The number of values in the shape.
   std::size_t count() const { return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies{}); }
 };
 
@@ -62,8 +62,8 @@ PlainArray read_dataset(const std::filesystem::path&, const std::string& name);
 
 /// FILE of FILE:/NAME, which is a data set in it; any other path as it is.
 std::filesystem::path file_of_rows(const std::filesystem::path&);
-/// By the name: .npy, .npz, a table if it ends in .csv, .txt or .dat, or the data set of an HDF5 file, or an array of an .npz,
-/// that is given as FILE:/NAME.
+/// The reader for a name: .npy, .npz, a table if it ends in .csv, .txt or .dat, or the data set of an HDF5 file, or an
+/// array of an .npz, that is given as FILE:/NAME.
 /// Nothing for other names.
 std::unique_ptr<RowsFile> open_plain_rows(const std::filesystem::path&, int sites, int components);
 

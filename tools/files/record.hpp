@@ -21,7 +21,7 @@ struct Record {
 /// A recorded row: the components of each role, site by site.
 using RecordedRow = ByRole<std::vector<double>>;
 
-/// What the method declares beside the components, each site by site: RowNames::datasets.
+/// The data sets that the method declares beside the components, each site by site: RowNames::datasets.
 using RecordedDatasets = std::vector<std::vector<double>>;
 
 }  // namespace delf

@@ -18,7 +18,7 @@ struct ByRole {
   const T& operator[](Role role) const { return values[static_cast<std::size_t>(role)]; }
 };
 
-/// What the columns of recorded rows, and of the series, are called.
+/// The names of the columns of recorded rows, and of the series.
 struct RowNames {
   RowNames() = default;
   explicit RowNames(const Simulation&);
@@ -32,7 +32,7 @@ struct RowNames {
   };
   std::optional<Mesh> mesh;  ///< the component that is the position of the sites
 
-  /// What figures draw: the fields, and behind them the positions of sites that move, if these are not a field.
+  /// The names that figures draw: the fields, then the positions of sites that move, if these are not a field.
   std::vector<std::string> drawn() const;
   std::optional<std::size_t> drawn_mesh() const;  ///< which of them are the positions
   /// One field at the vertices, and nothing else.

@@ -22,7 +22,7 @@ class RowsFile {
   virtual std::vector<double> row(int frame) const = 0;
   /// The momenta of the fields in a frame, in the same order, if the file has them.
   virtual std::optional<std::vector<double>> momenta(int) const { return std::nullopt; }
-  /// What the field gains around the circle, in units of 2π, if the file says so.
+  /// The gain of the field around the circle, in units of 2π, if the file says so.
   virtual std::optional<int> winding() const = 0;
   /// The names of the fields in their order; empty if the file says none.
   virtual std::vector<std::string> names() const { return {}; }

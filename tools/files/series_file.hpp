@@ -17,7 +17,7 @@ class SeriesFile {
   /// Goes on behind the first bytes of a file.
   SeriesFile(const std::filesystem::path& path, const WrittenPart& kept) : file_(path, kept) {}
   void append(const Record&);
-  /// What has reached the system, and with `sync` the disk.
+  /// Returns what has reached the system, and with `sync` the disk.
   const WrittenPart& flush(bool sync) { return file_.flush(sync), file_.written(); }
   void close() { file_.close(); }
 

@@ -17,7 +17,7 @@ class TextFile {
   /// Goes on with a file behind its first bytes; what follows them is cut off.
   TextFile(const std::filesystem::path&, const WrittenPart& kept);
   void write(std::string_view);
-  /// What has been written so far reaches the system, and with `sync` the disk.
+  /// Hands what has been written so far to the system, and with `sync` to the disk.
   void flush(bool sync = false);
   /// Bytes from its beginning.
   const WrittenPart& written() const { return written_; }

@@ -7,7 +7,7 @@
 
 namespace delf {
 
-/// Whether a data set has storage for all of its values. What was never written reads as zeros, and takes no room in a file
+/// True if a data set has storage for all of its values. Those never written read as zeros, and take no room in a file
 /// whatever its extents. Filters such as deflate may make constant values as few as a millionth. With `growing`, one frame of a
 /// data set in chunks is enough: where a disk was full, it is longer than what fitted.
 inline bool was_written(hid_t dataset, bool growing = false) {
@@ -35,7 +35,7 @@ inline bool was_written(hid_t dataset, bool growing = false) {
          static_cast<double>(H5Dget_storage_size(dataset)) >= least;
 }
 
-/// Whether the chunk that the frame begins in is there; true where there are no chunks.
+/// True if the chunk that the frame begins in is there; also where there are no chunks.
 inline bool frame_was_written(hid_t dataset, hsize_t frame) {
   const Hdf5Handle properties(H5Dget_create_plist(dataset), H5Pclose);
   std::array<hsize_t, H5S_MAX_RANK> chunk{}, corner{};

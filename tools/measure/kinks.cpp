@@ -73,7 +73,7 @@ int number_of_kink(double n) {
   return static_cast<int>(n);
 }
 
-/// Of kink n, counted from 1 at the left end, or from −1 at the right end.
+/// The n-th kink, counted from 1 at the left end, or from −1 at the right end.
 class OneKink : public Measurement {
  public:
   OneKink(const MeasuredField& field, const std::vector<double>& numbers)

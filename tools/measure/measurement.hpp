@@ -13,7 +13,7 @@ namespace delf {
 
 class SavedState;
 
-/// What measurements are made on.
+/// The field that measurements are made on.
 struct MeasuredField {
   Lattice lattice;
   double time_step;
@@ -46,9 +46,9 @@ class Measurement {
   /// True if it sees the rows of all steps: what passes between two records is not lost.
   virtual bool sees_steps() const { return false; }
   virtual void see(const MeasuredRow&) = 0;
-  /// Not a number where there is no answer.
+  /// The answer; not a number where there is none.
   virtual double value() const = 0;
-  /// What it keeps of the rows that it has seen.
+  /// Visits what it keeps of the rows that it has seen.
   virtual void visit(SavedState&) = 0;
 };
 

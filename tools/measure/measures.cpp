@@ -119,8 +119,8 @@ struct Measures::Expression {
     check_text();
   }
 
-  // For its errors. A number that a run may have, such as log(value(1) - value(2)) or 1/(kinks - 1), may be none at the
-  // first of the trial values.
+  // Compiles the text for its errors. A number that a run may have, such as log(value(1) - value(2)) or 1/(kinks - 1),
+  // may be none at the first of the trial values.
   void check_text() const {
     for (const double step : {0.0, 0.1, -0.1}) try {
         double trial = 1;

@@ -15,10 +15,10 @@ struct Richardson {
   bool converging = false;  ///< without it there is no estimate
 };
 
-/// Of the two differences; `size` is that of the values, below whose rounding both differences count as no error.
+/// The error from two differences; `size` is that of the values, whose rounding counts as no error.
 Richardson richardson(double first, double second, double size);
 
-/// How wrong a run is, found from runs of the same scene at half and at a quarter of its steps.
+/// The error of a run, found from runs of the same scene at half and at a quarter of its steps.
 struct ErrorEstimate {
   std::string failure;       ///< why there is none
   bool interrupted = false;  ///< by Ctrl-C

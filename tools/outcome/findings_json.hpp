@@ -10,7 +10,7 @@ namespace delf {
 
 // Common parts of the files in JSON: summary, verify, sweep, convergence, stability and workprecision.
 
-/// What is not a finite number is written as null.
+/// JSON with keys in order. A number that is not finite is written as null.
 using Json = nlohmann::ordered_json;
 
 inline Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
@@ -18,7 +18,7 @@ inline Json text_or_null(const std::string& text) { return text.empty() ? Json()
 /// The head: which version found it, of which scene.
 inline Json json_head(const Scene& scene) { return {{"version", DELF_VERSION}, {"scene", scene.name}}; }
 
-/// Of each element what `json_of` makes of it.
+/// The array of what `json_of` makes of each element.
 template <class Element, class JsonOf>
 Json json_list(const std::vector<Element>& all, JsonOf json_of) {
   Json list = Json::array();
@@ -26,7 +26,7 @@ Json json_list(const std::vector<Element>& all, JsonOf json_of) {
   return list;
 }
 
-/// As a file has it; bytes that are no UTF-8 are replaced.
+/// The text of a file; bytes that are no UTF-8 are replaced.
 inline std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -62,7 +62,7 @@ struct Outcome {
   std::optional<ErrorEstimate> error_estimate;  ///< output.estimate
   std::vector<std::string> warnings;            ///< why the result may be wrong although the status is done
 
-  /// What grows with the run.
+  /// Visits what grows with the run.
   void visit(SavedState&);
 
   double ns_per_site_step(int sites) const {
@@ -70,7 +70,7 @@ struct Outcome {
   }
 };
 
-/// What a run is of, a lattice or a mesh, as summary.json and the report name it.
+/// The subject of a run, a lattice or a mesh, as summary.json and the report name it.
 struct Subject {
   static constexpr double none = Outcome::unknown;
 
@@ -85,7 +85,7 @@ Subject subject_of(const Problem&);
 
 /// summary.json; what is not a number is null.
 std::string summary_json(const Subject&, const Scene&, const Outcome&);
-/// The same for people, in a dozen lines.
+/// The report for people, in a dozen lines.
 std::string report(const Subject&, const Scene&, const Outcome&);
 /// "rectangle-symmetric, N = 255, h/k = 0.125"; on a point "midpoint, h = 0.01"
 std::string scheme_in_words(const Problem&);

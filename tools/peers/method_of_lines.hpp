@@ -12,7 +12,7 @@
 
 namespace delf::peers {
 
-/// Where the sites of a circle lie in a row: φ_i at halo + i, copies of its neighbours before and after, so that a loop
+/// The memory of a circle's sites in a row: φ_i at halo + i, copies of its neighbours before and after, so that a loop
 /// over whole packs needs no modulo. The copies are no part of the state: acceleration() refreshes them.
 struct CircleRow {
   explicit CircleRow(int number) : sites(static_cast<std::size_t>(number)) {}

@@ -25,7 +25,7 @@ Pack doubled(Pack a, std::integer_sequence<int, l...>) {
   return {__builtin_shufflevector(a.v, a.v, (from + l / 2)...)};
 }
 
-/// For a flow of one length t, cos κt, sin(κt)/κ and −κ sin κt of every mode.
+/// The factors of a flow of one length t: cos κt, sin(κt)/κ and −κ sin κt of every mode.
 struct FlowFactors {
   explicit FlowFactors(std::size_t modes) : cosine(modes), sinc(modes), slope(modes) {}
 

@@ -8,7 +8,7 @@
 
 namespace delf::peers {
 
-/// Where the curvature of the potential at φ = 0 acts.
+/// The flow in which the curvature of the potential at φ = 0 acts.
 enum class MassIn {
   kick,  ///< flow φ_tt = φ_xx, kick −V′(φ)
   flow  ///< flow φ_tt = φ_xx − m²φ, kick m²φ − V′(φ): sine-Gordon without turn; of Klein–Gordon no kick is left

@@ -15,7 +15,7 @@ std::vector<double> mirrored(std::vector<double> half, bool at_last) {
   return half;
 }
 
-/// With the last weight chosen so that all of them, mirrored, sum to 1.
+/// The weights, mirrored, with the last one chosen so that all sum to 1.
 std::vector<double> mirrored_to_one(std::vector<double> half, bool at_last) {
   double rest = at_last ? 1 : 0.5;
   for (const double w : half) rest -= at_last ? 2 * w : w;
@@ -35,7 +35,7 @@ Splitting composed(bool flows_first, const std::vector<double>& half) {
 
 Splitting strang() { return composed(true, {1}); }
 
-// With their sources in jets/tables/splitting.hpp: the peers get the splittings of the engine too.
+// The peers get the splittings of the engine too, with their sources in jets/tables/splitting.hpp.
 static Splitting kicks_first(const delf::Splitting& splitting) {
   return {false, splitting.kicks, splitting.drifts, {}};
 }

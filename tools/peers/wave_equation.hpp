@@ -23,7 +23,7 @@ struct WaveEquation {
   void check(int least_sites) const;
 };
 
-/// By the name that scenes give to the theory: wave, klein-gordon, sine-gordon, phi4; nothing for another.
+/// The equation that scenes name as a theory: wave, klein-gordon, sine-gordon, phi4; nothing for another.
 std::optional<WaveEquation> wave_equation(std::string_view theory, double mass, double lambda, double length,
                                           double turn, int sites);
 

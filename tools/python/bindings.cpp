@@ -6,6 +6,8 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -28,6 +30,8 @@
 #include "tools/scene/scene.hpp"
 #include "tools/scene/shipped_scenes.hpp"
 #include "tools/scene/values.hpp"
+#include "tools/verify/verify.hpp"
+#include "tools/verify/verify_in_memory.hpp"
 
 namespace py = pybind11;
 
@@ -35,7 +39,7 @@ namespace delf {
 namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Given = std::vector<std::pair<std::string, std::string>>;
+using Keys = std::vector<std::pair<std::string, std::string>>;
 
 void raise(const char* name, const std::exception& error, const std::string& key) {
   std::string line = error_line(error);
@@ -71,7 +75,7 @@ py::array read_only(std::shared_ptr<const std::vector<double>> values, std::vect
 }
 
 // A scene: a file or a shipped name, and keys over it; or keys alone, if there is no file.
-Settings settings_of(const std::string& file, const Given& given) {
+Settings settings_of(const std::string& file, const Keys& given) {
   std::vector<Setting> keys;
   for (const auto& [key, value] : given) keys.push_back({key, value, 0});
   if (!file.empty()) return read_settings(find_scene(file), keys);
@@ -141,7 +145,11 @@ class Kept {
  public:
   using Row = std::shared_ptr<const std::vector<double>>;
 
-  void begin(const RowNames& names) { names_ = names; }
+  void begin(const RowNames& names, std::uint64_t records_before) {
+    names_ = names, records_before_ = records_before;
+  }
+  /// Of the run that this one goes on from: so many of its records are in front of these.
+  std::uint64_t records_before() const { return records_before_; }
   void see(const Record& r, const RecordedRow& row, const RecordedDatasets& datasets) {
     for (const double value : {static_cast<double>(r.row), r.time, r.energy, r.energy_error, r.momentum, r.charge,
                                static_cast<double>(r.iterations), r.residual})
@@ -204,13 +212,23 @@ class Kept {
   }
 
   RowNames names_;
+  std::uint64_t records_before_ = 0;
   py::ssize_t frames_ = 0;
   std::vector<double> series_;
   std::map<std::string, std::vector<Row>> rows_;
 };
 
-// Runs a scene on a lattice. `at_record` gets (row, time, energy, field) and ends the run by returning True.
-py::dict run_scene(const Settings& settings, const std::string& name, const py::object& at_record, bool main_thread) {
+// The Python exception of a failure, or None.
+py::object exception_of(const std::exception_ptr& failure) {
+  if (!failure) return py::none();
+  translate(failure);
+  return py::error_already_set().value();
+}
+
+// Runs a scene on a lattice. `at_record` gets (row, time, energy, field) and ends the run by returning True. With the
+// `state` of an earlier run it goes on from there.
+py::dict run_scene(const Settings& settings, const std::string& name, const py::object& at_record, bool main_thread,
+                   const std::string& state) {
   Kept kept;
   RunInMemory result;
   Scene scene = read_scene(settings);
@@ -233,7 +251,8 @@ py::dict run_scene(const Settings& settings, const std::string& name, const py::
   {
     const py::gil_scoped_release others_may_go_on;
     const InPython here(main_thread);
-    result = run_in_memory(scene, [&](const RowNames& names) { kept.begin(names); }, see);
+    const auto begin = [&](const RowNames& names, std::uint64_t before) { kept.begin(names, before); };
+    result = run_in_memory(scene, state, {begin, see});
     interrupted = result.status == "interrupted" && !stopped;
   }
   if (in_callback) std::rethrow_exception(in_callback);
@@ -244,18 +263,30 @@ py::dict run_scene(const Settings& settings, const std::string& name, const py::
   d["section"] = result.section, d["warnings"] = scene.warnings;
   d["series_names"] = kept.series_names(), d["series"] = kept.series();
   d["rows"] = kept.rows(), d["components"] = kept.components();
+  d["records_before"] = kept.records_before(), d["state"] = py::bytes(result.state);
   std::vector<double> space;
   for (int i = 0; i < scene.problem.lattice.sites(); ++i) space.push_back(scene.problem.lattice.position(i));
   const auto sites = static_cast<py::ssize_t>(space.size());
   d["space"] = read_only(std::make_shared<std::vector<double>>(std::move(space)), {sites});
-  d["failure"] = py::none();
-  if (result.failure) try {
-      std::rethrow_exception(result.failure);
-    } catch (const std::exception&) {
-      translate(result.failure);
-      const py::error_already_set python_error;
-      d["failure"] = python_error.value();
-    }
+  d["failure"] = exception_of(result.failure);
+  return d;
+}
+
+// Checks the rows of a scene on a lattice, or those of a file.
+py::dict verify_scene(Settings settings, const std::string& name, const std::optional<std::string>& fields,
+                      const std::vector<std::string>& nearby, bool main_thread) {
+  if (fields) imply_rows(settings, *fields);
+  Scene scene = read_scene(std::move(settings));
+  if (!name.empty()) scene.name = name;
+  VerifyInMemory result;
+  {
+    const py::gil_scoped_release others_may_go_on;
+    const InPython here(main_thread);
+    result = verify_in_memory(scene, fields, nearby);
+  }
+  py::dict d;
+  d["status"] = result.status, d["report"] = result.report, d["json"] = result.json, d["passed"] = result.passed;
+  d["warnings"] = scene.warnings, d["failure"] = exception_of(result.failure);
   return d;
 }
 
@@ -272,9 +303,10 @@ class HandEvolution {
   void start(const Array& row0, const Array& velocity) {
     const std::vector<double> y = complete(row0), v = complete(velocity);
     const Scope scope(*this);
+    ++moves_;
     if (starts_with(StartRule::centred)) simulation_->start_centred(y, v);
     else simulation_->start_legendre(y, v);
-    moved();
+    started_ = true;
   }
   void start_rows(const std::vector<Array>& rows) {
     std::vector<std::vector<double>> all;
@@ -283,8 +315,9 @@ class HandEvolution {
     if (static_cast<int>(all.size()) != simulation_->starting_rows())
       throw BadInput("", "start_rows: this scheme starts from " + std::to_string(simulation_->starting_rows()) +
                              " rows, and " + std::to_string(all.size()) + " are given");
+    ++moves_;
     simulation_->start(all);
-    moved();
+    started_ = true;
   }
 
   /// So many steps. Python's signals are handled ten times a second.
@@ -292,12 +325,17 @@ class HandEvolution {
     if (count < 0) throw BadInput("", "step: the number of steps is negative; give 0 or more");
     require_start();
     std::int64_t batch = 1;
+    if (count == 1) {  // nothing is handled on the way
+      const Scope scope(*this);
+      ++moves_;
+      return simulation_->step();
+    }
     while (count > 0) {
       {
         const Scope scope(*this);
         const auto begin = std::chrono::steady_clock::now();
         const auto now = static_cast<int>(std::min(batch, count));
-        moved();
+        ++moves_;
         if (now > 1) simulation_->steps(now - 1);
         simulation_->step();
         count -= now;
@@ -308,26 +346,31 @@ class HandEvolution {
     }
   }
 
-  /// The fields of a row, sites × fields: an array of its own, which later steps leave alone. Asked for again before a
-  /// step it is the same one.
+  /// The fields of a row, sites × fields: a view of memory that later steps leave alone, as it belongs to the row and its
+  /// views. (In the engine sites are not in their order.) Memory that nobody views is used again.
   py::array row(int back) {
     require_start();
     if (back < 0 || back >= std::max(2, simulation_->starting_rows()))
       throw BadInput("", "row: back = " + std::to_string(back) + " is not held; give 0 to " +
                              std::to_string(std::max(2, simulation_->starting_rows()) - 1));
-    std::shared_ptr<const std::vector<double>> values;
-    {
-      const Scope scope(*this);
-      auto& known = rows_[static_cast<std::size_t>(back)];
-      if (!known) {
-        auto made = std::make_shared<std::vector<double>>(static_cast<std::size_t>(sites() * fields()));
-        simulation_->observe(back, *made);
-        known = std::move(made);
+    RowMemory& known = rows_[static_cast<std::size_t>(back)];
+    if (!known.values || known.moves != moves_) {
+      RowMemory next{unviewed(), 0};
+      double* const values = static_cast<double*>(const_cast<void*>(next.values->data()));
+      {
+        std::unique_lock lock(busy_, std::try_to_lock);
+        std::optional<py::gil_scoped_release> others_may_go_on;
+        if (constexpr py::ssize_t many = 1 << 16; !lock || next.values->size() > many) others_may_go_on.emplace();
+        if (!lock) lock.lock();
+        next.moves = moves_;
+        simulation_->observe(back, {values, static_cast<std::size_t>(next.values->size())});
+        lock.unlock();
       }
-      values = known;
+      std::swap(known, next);
+      spare_ = std::move(next.values);
     }
-    if (fields() == 1) return read_only(std::move(values), {sites()});
-    return read_only(std::move(values), {sites(), fields()});
+    const py::array& values = *known.values;
+    return {values.dtype(), {values.shape(), values.shape() + values.ndim()}, {}, values.data(), values};
   }
 
   std::int64_t newest() { return started_ ? ask([](Simulation& s) { return s.newest(); }) : -1; }
@@ -385,9 +428,14 @@ class HandEvolution {
     const Scope scope(*this);
     return question(*simulation_);
   }
-  void moved() {
-    started_ = true;
-    for (auto& row : rows_) row.reset();
+  // Memory for a row that Python cannot write to, and no array views.
+  std::optional<py::array> unviewed() {
+    if (auto memory = std::exchange(spare_, {}); memory && memory->ref_count() == 1) return memory;
+    std::vector<py::ssize_t> shape{sites()};
+    if (fields() != 1) shape.push_back(fields());
+    py::array_t<double> memory(std::move(shape));
+    py::detail::array_proxy(memory.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+    return memory;
   }
   void require_start() const {
     if (!started_) throw BadInput("", "a step needs rows to go on from: call start(y0, v0) first");
@@ -415,8 +463,15 @@ class HandEvolution {
   Scene scene_;
   std::unique_ptr<Simulation> simulation_;
   std::mutex busy_;
-  bool started_ = false;
-  std::array<std::shared_ptr<const std::vector<double>>, 8> rows_;
+  std::atomic<bool> started_ = false;
+  std::atomic<std::uint64_t> moves_ = 0;  ///< starts and steps
+  /// A row as it was after so many moves; nothing writes to it any more. It belongs to the interpreter's lock.
+  struct RowMemory {
+    std::optional<py::array> values;
+    std::uint64_t moves = 0;
+  };
+  std::array<RowMemory, 8> rows_;
+  std::optional<py::array> spare_;
 };
 
 }  // namespace
@@ -450,7 +505,10 @@ PYBIND11_MODULE(_delf, m) {
         for (auto one = s.all().rbegin(); one != s.all().rend(); ++one) d[one->key.c_str()] = one->value;
         return d;
       });
-  m.def("run", &run_scene, py::arg("settings"), py::arg("name"), py::arg("at_record"), py::arg("main_thread"));
+  m.def("run", &run_scene, py::arg("settings"), py::arg("name"), py::arg("at_record"), py::arg("main_thread"),
+        py::arg("state"));
+  m.def("verify", &verify_scene, py::arg("settings"), py::arg("name"), py::arg("fields"), py::arg("nearby"),
+        py::arg("main_thread"));
 
   py::class_<HandEvolution>(m, "Evolution", "A scheme on a lattice, stepped by hand.")
       .def(py::init<const Settings&, int>(), py::arg("settings"), py::arg("winding") = 0)

@@ -2,14 +2,15 @@
 """Builds the wheel of delf by CMake (PEP 517): pip install . and pip wheel . in the root, without a network.
 
 The wheel runs on any processor of its kind, with the same bits: DELF_NATIVE is off. Settings (pip's -C NAME=VALUE):
-build-dir, an existing or new folder of CMake; native=on, for this machine alone; jobs. What it links to beyond itself are
-the system's libraries of Boost.Program_options, fmt and zlib, so that its tag is that of this machine's Linux.
+build-dir, an existing or new folder of CMake; native=on, for this machine alone; jobs. It links to
+the system's libraries of Boost.Program_options, fmt, HDF5 and zlib: its tag is that of this machine's Linux.
 """
 import base64
 import hashlib
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -42,12 +43,29 @@ def _cmake(settings):
     native = "ON" if settings.get("native", "off") == "on" else "OFF"
     jobs = ["-j", settings["jobs"]] if "jobs" in settings else ["-j", str(os.cpu_count())]
     if "build-dir" not in settings or not (build / "CMakeCache.txt").exists():
+        generator = ["-G", "Ninja"] if shutil.which("ninja") and not (build / "CMakeCache.txt").exists() else []
         options = {"CMAKE_BUILD_TYPE": "Release", "DELF_NATIVE": native, "DELF_BUILD_TESTS": "OFF", "DELF_PYTHON": "ON",
                    "Python_EXECUTABLE": sys.executable}
-        subprocess.run(["cmake", "-S", str(ROOT), "-B", str(build), *(f"-D{k}={v}" for k, v in options.items())],
+        subprocess.run(["cmake", "-S", str(ROOT), "-B", str(build), *generator, *(f"-D{k}={v}" for k, v in options.items())],
                        check=True)
     subprocess.run(["cmake", "--build", str(build), *jobs, "--target", "python_package"], check=True)
     return build
+
+
+def _about():
+    """The files of the wheel that describe it."""
+    return {"METADATA": _metadata().encode(),
+            "WHEEL": f"Wheel-Version: 1.0\nGenerator: delf\nRoot-Is-Purelib: false\nTag: {_tag()}\n".encode(),
+            "entry_points.txt": b"[console_scripts]\ndelf = delf.__main__:main\n",
+            "LICENSE": (ROOT / "LICENSE").read_bytes()}
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    info = f"{NAME}-{_version()}.dist-info"
+    os.makedirs(os.path.join(metadata_directory, info))
+    for name, data in _about().items():
+        pathlib.Path(metadata_directory, info, name).write_bytes(data)
+    return info
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
@@ -65,10 +83,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
             if path.is_file():
                 files[f"delf/prefix/{path.relative_to(prefix)}"] = path.read_bytes()
     info = f"{NAME}-{_version()}.dist-info"
-    files[f"{info}/METADATA"] = _metadata().encode()
-    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: delf\nRoot-Is-Purelib: false\nTag: {_tag()}\n".encode()
-    files[f"{info}/entry_points.txt"] = b"[console_scripts]\ndelf = delf.__main__:main\n"
-    files[f"{info}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    files.update({f"{info}/{name}": data for name, data in _about().items()})
     hashed = lambda data: base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
     record = "".join(f"{name},sha256={hashed(data)},{len(data)}\n" for name, data in files.items())
     files[f"{info}/RECORD"] = (record + f"{info}/RECORD,,\n").encode()
@@ -77,7 +92,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         for name, data in files.items():
             entry = zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0))
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = (0o755 if name.startswith("delf/prefix/bin/") or name.endswith(".so") else 0o644) << 16
+            executable = name.startswith("delf/prefix/bin/") or name.endswith(".so")
+            entry.external_attr = (0o100755 if executable else 0o100644) << 16  # pip reads them of regular files alone
             archive.writestr(entry, data)
     return wheel
 

@@ -8,8 +8,8 @@
 
 namespace delf {
 
-/// Whether so many seconds have passed, asked after every step: it is one comparison, and reads the clock some twenty
-/// times a second.
+/// A clock that tells if so many seconds have passed, asked after every step: it is one comparison, and reads the clock
+/// some twenty times a second.
 class Due {
  public:
   /// Never, if they are 0.

@@ -5,7 +5,7 @@
 
 namespace delf {
 
-/// How far a run has come, on stderr: a bar with the time left on a terminal, a plain line now and then elsewhere,
+/// The progress of a run, on stderr: a bar with the time left on a terminal, a plain line now and then elsewhere,
 /// nothing for runs of a second or two.
 class Progress {
  public:

@@ -3,8 +3,8 @@
 
 namespace delf {
 
-/// What steps cost: the time that this thread had a processor, so that what else the machine does is not counted. Where
-/// run.threads share the steps, it is the time that passes.
+/// The cost of steps: the time that this thread had a processor, so that other work of the machine is not counted.
+/// Where run.threads share the steps, it is the time that passes.
 class StepClock {
  public:
   explicit StepClock(int threads);

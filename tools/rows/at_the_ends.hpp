@@ -7,13 +7,13 @@
 
 namespace delf {
 
-/// By how much the ends of space change a state, in units of the field, and what it does there.
+/// The change of a state by the ends of space, in units of the field, and what it does there.
 struct EndChange {
   double change = 0;
   std::string words;  ///< "jumps where the circle closes"
 };
 
-/// How far a state is from what the ends of space make of it; at all times of the run where it is a solution.
+/// The distance of a state from what the ends of space make of it; at all times of the run where it is a solution.
 struct AtTheEnds {
   EndChange value;  ///< the jump where a circle closes, or the motion of a fixed wall
   EndChange slope;  ///< slopes at natural walls, corners of a circle, rates at fixed walls: times the time that they act

@@ -53,7 +53,7 @@ Simulation build(const Scene& scene, int winding) {
 
 namespace {
 
-// What a run takes for each site, measured on one of the same cells and fewer sites; 0 where there is none.
+// The bytes that a run takes for each site, measured on one of the same cells and fewer sites; 0 where there is none.
 double bytes_of_a_site(const Scene& scene) {
   constexpr int few = 1 << 14;
   const Lattice& lattice = scene.problem.lattice;
@@ -63,7 +63,7 @@ double bytes_of_a_site(const Scene& scene) {
                                   : Lattice::interval(few, (few - 1) * lattice.space_step());
   try {
     const Simulation simulation(p);
-    // the rows that a start is made of, twice, and those that are looked at
+    // the rows that a start is made of, twice, and those that are checked
     const double rows = 2.0 * simulation.starting_rows() + 2;
     return static_cast<double>(simulation.bytes_of_run({})) / few +
            rows * static_cast<double>(simulation.components().size() * sizeof(double));

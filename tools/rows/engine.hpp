@@ -11,7 +11,7 @@ namespace delf {
 /// The simulation of a scene. Throws BadScene with the line of the key that prevents it.
 Simulation build(const Scene&, int winding);
 
-/// For commands that step: throws BadScene, with the key, where no equation of a step determines some wave.
+/// Checks a scene whose command steps: throws BadScene, with the key, where no equation of a step determines some wave.
 void require_determined(const Scene&, const Simulation&);
 
 /// Runs `work`; a lattice that does not fit into memory becomes a SystemFailure that names the size requested.

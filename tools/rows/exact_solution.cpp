@@ -25,7 +25,7 @@ struct PointOfTime {
   double t, x;
 };
 
-/// The same ones each time.
+/// Random points of spacetime, the same ones each time.
 std::vector<PointOfTime> random_points(const Scene& scene) {
   constexpr int count = 256;
   std::mt19937_64 random(1);
@@ -84,7 +84,7 @@ void require_solution(const Scene& scene, const State& exact) {
   if (!smooth || (!method.order && !method.energy)) return;
   const auto theory = make_theory(find_theory(scene.problem.theory), scene.problem.parameters);
   const auto equations = FieldEquations::of(theory->density());
-  if (!equations || (theory->constraint() && !dynamic_cast<const SymbolicDensity*>(&theory->density()))) return;
+  if (!equations || (theory->constraint() && !theory->density().formula())) return;
   std::vector<TriedPoint> points;
   for (const auto& [t, x] : random_points(scene)) {
     const auto jet = smooth->jet(t, x, equations->order());

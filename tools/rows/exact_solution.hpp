@@ -20,8 +20,8 @@ struct TriedPoint {
 void require_solved(const std::vector<TriedPoint>&, const std::vector<std::string>& fields);
 
 /// Tries the formulas exact.FIELD at random points of the lattice and of the time of the run. Throws BadInput, with the point,
-/// if they do not solve the field equations of the theory there. Walls and seams are not looked at: a kink of the line is a
-/// solution between walls that are far away.
+/// if they do not solve the field equations of the theory there. Walls and seams are not checked: a kink of the line is
+/// a solution between walls that are far away.
 void require_solution(const Scene&, const State& exact);
 
 /// Returns "phi has no value at t = 1, x = 2" for one of those points; empty if it has a value at all of them.

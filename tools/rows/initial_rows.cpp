@@ -129,7 +129,7 @@ std::vector<double> InitialRows::values(Writer write, double time, const Lattice
   return out;
 }
 
-/// What is slaved in a row of the file: [i·components + c]; empty where the file has not all of it.
+/// The slaved values in a row of the file: [i·components + c]; empty where the file has not all of them.
 std::vector<double> InitialRows::slaved_in_file(const Simulation& simulation, int row) const {
   const auto* fields = dynamic_cast<const FieldsReader*>(file_.get());
   if (!fields || simulation.count(Role::slaved) == 0) return {};

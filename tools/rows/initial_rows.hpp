@@ -20,7 +20,7 @@ class InitialRows {
   int winding() const;
   /// Gives a problem the slopes that its clamped walls keep: those of row 0, where no key says them.
   void keep_slopes(Problem&) const;
-  /// What the fields gain around a circle: 2π·winding + gain.
+  /// The gain of the fields around a circle: 2π·winding + gain.
   double turn() const;
   StartRule rule() const;
   std::string description() const;

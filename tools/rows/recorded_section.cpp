@@ -93,7 +93,7 @@ std::string RecordedSection::recorded(const std::string& key) const {
   return found == keys.end() ? std::string() : found->second;
 }
 
-// Of rows that chose their steps.
+// The times of rows that chose their steps.
 std::vector<double> RecordedSection::own_times() const {
   if (const std::string every = recorded("output.every"); !every.empty() && every != "1")
     throw wrong(

@@ -24,7 +24,7 @@ class RecordedSection {
                   const char* option);
 
   int rows() const { return file_->frames(); }
-  /// What the field gains around the circle, in units of 2π, if the file says so.
+  /// The gain of the field around the circle, in units of 2π, if the file says so.
   std::optional<int> winding() const { return file_->winding(); }
   /// All components, each at row j: [i·C + c]. Those that no frame has, because they would have been found with rows
   /// after the last, are zero.
@@ -33,7 +33,7 @@ class RecordedSection {
   std::string scene() const { return fields_ ? fields_->scene() : std::string(); }
   /// The file has values of this role.
   bool has(Role role) const { return shape(role).frames > 0; }
-  /// Of the fields, at frame j, if the file has momenta of the same shape.
+  /// The momenta of the fields at frame j, if the file has them in the same shape.
   std::optional<std::vector<double>> momenta(std::int64_t j) const { return file_->momenta(static_cast<int>(j)); }
 
  private:

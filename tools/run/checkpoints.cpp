@@ -8,6 +8,7 @@
 
 #include "jets/simd/pack.hpp"
 #include "tools/files/checkpoint_file.hpp"
+#include "tools/files/state_in_memory.hpp"
 #include "tools/report/failure.hpp"
 
 namespace delf {
@@ -30,9 +31,15 @@ Checkpoints::Checkpoints(const std::filesystem::path& folder, CheckpointHead hea
 
 void Checkpoints::write(std::int64_t row, const std::function<void(SavedState&)>& state) {
   if (!wanted_) return;
+  head_.row = row;
+  if (memory_) {
+    memory_->clear();
+    StateWriter writer(*memory_);
+    head_.visit(writer);
+    return state(writer);
+  }
   try {
     CheckpointWriter writer(path_);
-    head_.row = row;
     head_.visit(writer);
     state(writer);
     writer.close();

@@ -11,7 +11,7 @@
 
 namespace delf {
 
-/// What a checkpoint says of its run before the state itself.
+/// The head of a checkpoint, which describes its run before the state itself.
 struct CheckpointHead {
   std::string version, instructions;
   std::string scene;  ///< the text of scene.ini
@@ -35,6 +35,8 @@ class Checkpoints {
 
   /// 0 seconds: none at all.
   Checkpoints(const std::filesystem::path& folder, CheckpointHead head, double seconds);
+  /// Those of a run in memory, where they are asked for: the last one takes the place of the one before.
+  explicit Checkpoints(std::string& memory) : due_(0), wanted_(true), memory_(&memory) {}
 
   bool due(std::int64_t row) { return due_.at(row); }
   /// `state` hands over what follows the head. A failure is reported once, and the run goes on.
@@ -46,6 +48,7 @@ class Checkpoints {
   CheckpointHead head_;
   Due due_;
   bool wanted_, reported_ = false;
+  std::string* memory_ = nullptr;
 };
 
 }  // namespace delf

@@ -28,7 +28,7 @@ Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, cons
 
 void Recorder::append(const Record& record, const RecordedRow& row, const RecordedDatasets& datasets,
                       std::span<const double> rates) {
-  if (seen_) seen_(record, row, datasets);
+  if (seen_) seen_(record, row, datasets), ++seen_records_;
   if (series_) series_->append(record);
   if (fields_) fields_->append(record.time, row, datasets);
   if (film_) film_->append(record.time, drawn(row), names_.drawn_mesh() ? std::span<const double>() : rates);
@@ -56,6 +56,7 @@ std::vector<double> Recorder::drawn(const RecordedRow& row) const {
 
 RunFiles::Written Recorder::flush(bool sync) {
   Written written;
+  written.series.size = seen_records_;
   if (fields_) written.fields = fields_->flush(sync);
   if (series_) written.series = series_->flush(sync);
   return written;

@@ -18,17 +18,18 @@
 
 namespace delf {
 
-/// Where the recorded rows of a run go: series.csv; fields.h5 and the film for figures, if the scene wants them. Or, in
+/// The writer of a run's recorded rows: series.csv; fields.h5 and the film for figures, if the scene wants them. Or, in
 /// memory, to a function.
 class Recorder final : public RunFiles {
  public:
-  /// With `kept`, the files of an earlier run are gone on with from there. Throws BadScene, and changes no file, where they
-  /// do not hold that much, or other values.
+  /// Opens the files; those of an earlier run, `kept`, are continued from there. Throws BadScene, and changes no file,
+  /// where they do not hold that much, or other values.
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&, const std::optional<Written>& kept = {});
   using Seen = std::function<void(const Record&, const RecordedRow&, const RecordedDatasets&)>;
-  /// Writes no file: each recorded row is given to `seen`.
-  Recorder(const RowNames& names, Seen seen) : names_(names), seen_(std::move(seen)) {}
+  /// Writes no file: each recorded row is given to `seen`, after those that were `kept` of an earlier run.
+  Recorder(const RowNames& names, Seen seen, const Written& kept)
+      : names_(names), seen_(std::move(seen)), seen_records_(kept.series.size) {}
 
   /// `rates`: of the fields, where they are known.
   void append(const Record&, const RecordedRow&, const RecordedDatasets&, std::span<const double> rates = {});
@@ -41,7 +42,7 @@ class Recorder final : public RunFiles {
 
   const Film* film() const noexcept { return film_ ? &*film_ : nullptr; }
   const Trace& energy_errors() const noexcept { return energy_errors_; }
-  /// Of the rows that were recorded or watched.
+  /// The largest error of the energy over the rows that were recorded or watched.
   double largest_energy_error() const noexcept { return largest_energy_error_; }
 
  private:
@@ -51,6 +52,7 @@ class Recorder final : public RunFiles {
   std::optional<FieldsFile> fields_;
   std::optional<SeriesFile> series_;  ///< there unless rows are kept in memory; made when the rows are
   Seen seen_;
+  std::uint64_t seen_records_ = 0;
   std::optional<Film> film_;
   Trace energy_errors_;
   double largest_energy_error_ = 0;

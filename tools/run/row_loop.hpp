@@ -11,7 +11,7 @@
 
 namespace delf {
 
-/// Whether a row solves its equations, whose residual is relative to their terms; otherwise rounding or an overflow has
+/// True if a row solves its equations, whose residual is relative to their terms; otherwise rounding or an overflow has
 /// taken it, and it is no result. A residual that is not a number is that of no solution.
 bool is_solution(double residual, double tolerance);
 
@@ -33,7 +33,7 @@ class RowLoop {
  protected:
   RowLoop(const Scene&, Outcome&, const WatchedRows&);
 
-  /// Whether there are rows to step from.
+  /// True if there are rows to step from.
   bool started() const { return started_; }
   std::int64_t newest() const { return newest_; }
   std::int64_t recorded() const { return recorded_; }
@@ -42,20 +42,20 @@ class RowLoop {
   virtual void make_first_rows() = 0;
   /// The newest row that solves its equations.
   virtual std::int64_t newest_row() const = 0;
-  /// Of the newest rows, and where a further step leads.
+  /// The time of the newest rows, and that to which a further step leads.
   virtual double time(std::int64_t row) const = 0;
-  /// Where steps have lengths of their own, that of the newest.
+  /// The length of the newest step, where steps have lengths of their own.
   virtual std::optional<double> own_length() const = 0;
-  /// A row that is not looked at is neither recorded nor the last.
+  /// A row that is not checked is neither recorded nor the last.
   virtual void step(bool looked_at) = 0;
   virtual bool looks_at_all() const { return false; }
-  /// Of the newest step; 0 if it is one solve.
+  /// The iterations of the newest step; 0 if it is one solve.
   virtual int iterations() const = 0;
   /// A row that was made is recorded; or throws NumericalFailure, if it is no result.
   virtual void record(std::int64_t row) = 0;
   /// The newest row is measured as if it were recorded; or throws NumericalFailure, if it is no result.
   virtual void watch() = 0;
-  /// Where no row was recorded before one that is no result: records the data of row 0, and returns true if it can.
+  /// Records the data of row 0 where no row was recorded before one that is no result; returns true if it can.
   virtual bool record_start() { return false; }
   virtual void visit_rows(SavedState&) = 0;
   /// The results, after the last row, however the run ends.

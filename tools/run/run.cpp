@@ -3,16 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
-#include "schemes/methods/method_registry.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
-#include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/angles.hpp"
 #include "schemes/turn.hpp"
 #include "tools/compare/estimate_error.hpp"
 #include "tools/figures/figures.hpp"
+#include "tools/files/state_in_memory.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/text_columns.hpp"
@@ -40,15 +41,8 @@ void refuse_own_rows(const fs::path& folder, const Scene& scene) {
       throw scene.settings.error("initial.file", "is the file that this run would write to; choose another --out");
 }
 
-// energy_formula on a point.
-constexpr auto energy_of_point =
-    "q_t ∂ℓ/∂q_t − ℓ, midway between the last two rows, q_t = (q⁺ − q)/h, whatever the scheme; order 2 in h";
-
 std::string energy_in_words(const Problem& problem) {
-  if (find_method(problem.method).energy)
-    return fmt::format("H of the last row, with the momenta and the quadrature of scheme.method = {} itself",
-                       problem.method);
-  return problem.lattice.space() == Space::point ? energy_of_point : energy_formula;
+  return fmt::format(fmt::runtime(energy_of_run(problem).formula), problem.method);
 }
 
 // Figures of the rows that the recorder kept.
@@ -66,7 +60,7 @@ std::string drawn(const Scene& scene, const InitialRows& initial, const FieldThe
                       folder);
 }
 
-// Of the step, where the first rows tell.
+// The limit of the step, where the first rows tell.
 std::string limit_of(const Scene& scene, const Simulation& simulation) {
   const auto limit = find_method(scene.problem.method).limit;
   const Stepper& stepper = simulation.evolution().stepper();
@@ -126,7 +120,7 @@ struct Begun {
         outcome.error_estimate = estimate_error(scene, outcome, stepping->last_row());
         if (outcome.error_estimate->interrupted) outcome.status = "interrupted";  // what was asked for is not all there
       });
-    outcome.bytes = simulation.bytes();  // only now is everything there that rows are looked at with
+    outcome.bytes = simulation.bytes();  // only now is everything there that rows are checked with
     attempts.attempt([&] { recorder.close(); });
   }
 };
@@ -166,21 +160,36 @@ ExitCode run(const Scene& scene, const fs::path& folder, Resumed resumed) {
   return with_memory_for(scene, [&] { return run_in(folder, scene, resumed); });
 }
 
-RunInMemory run_in_memory(const Scene& scene, const std::function<void(const RowNames&)>& begin,
-                          const Recorder::Seen& seen) {
+RunInMemory run_in_memory(const Scene& given, const std::string& state, const SeenInMemory& seen) {
+  Scene scene = given;
+  std::optional<StateReader> earlier;
+  CheckpointHead head;
+  RunFiles::Written kept;
+  if (!state.empty()) {
+    head.visit(earlier.emplace(state));
+    (*earlier)("written", kept);
+    if (scene.until) scene.steps = std::max(scene.steps, head.row + 1);  // their number is a guess where the field chooses
+    if (head.row >= scene.steps)
+      throw BadInput("run.steps", fmt::format("resume: the run is at row {}, and run.steps = {}; raise run.until or "
+                                              "run.steps, as steps={}",
+                                              head.row, scene.steps, 2 * std::max<std::int64_t>(1, head.row)));
+  }
   RunInMemory result;
   with_memory_for(scene, [&] {
     Begun begun(scene);
-    begun.start(scene);
-    begin(begun.names);
+    if (earlier) begun.stepping->visit(*earlier);
+    else begun.start(scene);
+    seen.begin(begun.names, kept.series.size);
     FailuresOfRun failures(begun.outcome);
-    Recorder recorder(begun.names, seen);
-    Checkpoints checkpoints({}, {}, 0);
+    Recorder recorder(begun.names, seen.record, kept);
+    if (earlier) recorder.visit(*earlier);
+    Checkpoints checkpoints(result.state);
     begun.step(scene, recorder, checkpoints, failures);
     const Subject subject = subject_of(scene.problem);
     result = {begun.outcome.status, summary_json(subject, scene, begun.outcome), report(subject, scene, begun.outcome),
               resolved_text(scene, begun.outcome.start, begun.outcome.state),
-              begun.stepping->section() ? begun.stepping->section()->table() : "", failures.first()};
+              begun.stepping->section() ? begun.stepping->section()->table() : "", std::move(result.state),
+              failures.first()};
     return ExitCode::done;
   });
   return result;

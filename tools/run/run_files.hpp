@@ -9,7 +9,7 @@ class SavedState;
 /// The files that the recorded rows of a run go to.
 class RunFiles {
  public:
-  /// What of them has reached the disk.
+  /// The amount of each file that has reached the disk.
   struct Written {
     WrittenPart series, fields;
   };
@@ -17,7 +17,7 @@ class RunFiles {
   virtual ~RunFiles() = default;
   /// Writes all buffered rows, and with `sync` waits until they are on the disk.
   virtual Written flush(bool sync) = 0;
-  /// What is kept for figures and the summary.
+  /// Visits what is kept for figures and the summary.
   virtual void visit(SavedState&) = 0;
 };
 

@@ -23,8 +23,8 @@ class RunFolder {
   /// Makes the folder, and removes what an earlier run left there; a run that is `resumed` goes on with it.
   RunFolder(const std::filesystem::path&, const Resumed& resumed, Outcome&);
 
-  /// With the files open: writes scene.ini, and gives them back what a checkpoint holds of them. `resolved`: the scene with
-  /// all that is in force.
+  /// Begins with the files open: writes scene.ini, and gives them back what a checkpoint holds of them. `resolved`: the
+  /// scene with all that is in force.
   Checkpoints begin(RunFiles&, const Scene&, const std::string& resolved);
   /// A part of the run after which the others are tried still.
   template <class Part>

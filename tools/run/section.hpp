@@ -35,7 +35,7 @@ class Section {
   /// (q, p) of the next row, from row 0 on.
   void see(std::vector<double> point);
   void visit(SavedState&);
-  /// What lies between the last rows.
+  /// Draws what is between the last rows.
   void finish();
 
   /// section.csv: time,q1,…,p1,… of every point; q, p for one coordinate.

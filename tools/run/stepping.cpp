@@ -17,7 +17,7 @@ namespace delf {
 
 namespace {
 
-// Whether threads share the strips of a step: explicit ones, whose matrix is one number.
+// True if threads share the strips of a step: explicit ones, whose matrix is one number.
 bool is_shared(const Simulation& simulation) {
   const Stepper& stepper = simulation.evolution().stepper();
   const LatticeSystem& system = simulation.evolution().system();
@@ -60,7 +60,7 @@ WatchedRows watched_rows(const Scene& scene, const Simulation& simulation) {
   return {std::min(rows, most_values / values) / sums, apart * sums, scene.initial.seed};
 }
 
-/// Of a row from a solution, at its sites, wherever they are.
+/// The error of a row against the exact solution, at the row's own sites, which may move.
 FieldError error_of(const RecordedRow& row, const RowNames& names, const State& exact, double time,
                     const Lattice& lattice) {
   const std::vector<double>& fields = row[Role::field];
@@ -119,7 +119,7 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
     outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   if (own)
     outcome.conserved.push_back(
-        {names.further.back() + ", " + own->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+        {names.further.back() + ", " + own->entry->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   outcome.iterates = simulation.evolution().stepper().iterates();
   outcome.threads = threads_in_words(simulation, scene.problem.threads);
 }
@@ -363,7 +363,7 @@ void Stepping::finish() {
 void Stepping::warn_of_alias() {
   const Film* film = recorder_->film();
   if (!film || !film->is_aliased()) return;
-  // For pulses the excess is in proportion to the time between frames.
+  // The excess of pulses is in proportion to the time between frames.
   const double apart = static_cast<double>(scene_.every * film->stride()), wanted = apart * Film::aliased / film->alias();
   const auto every = std::max<std::int64_t>(1, std::llround(std::floor(wanted)));
   constexpr std::int64_t most_frames = 600;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "schemes/methods/own_energy.hpp"
+#include "schemes/methods/energies.hpp"
 #include "tools/measure/measures.hpp"
 #include "tools/rows/initial_rows.hpp"
 #include "tools/run/recorder.hpp"

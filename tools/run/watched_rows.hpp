@@ -23,7 +23,7 @@ class WatchedRows {
     for (std::int64_t b = block;; ++b)
       if (const std::int64_t watched = of_block(b); watched > row) return watched;
   }
-  /// Which rows a maximum of a run is over, if every `recorded` is recorded (0: the last alone).
+  /// Says which rows a maximum of a run is over, if every `recorded` is recorded (0: the last alone).
   std::string in_words(std::int64_t steps, std::int64_t recorded) const;
 
  private:

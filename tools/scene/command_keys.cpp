@@ -116,7 +116,7 @@ std::vector<Parameter> command_keys() {
        .otherwise = "0.5, 1, 2.3"},
       {.key = "stability.most_courant",
        .fallback = 3.0,
-       .help = "Courant numbers are looked at up to this, c h/k of own waves "
+       .help = "Courant numbers are checked up to this, c h/k of own waves "
                "of speed c; on a point, wh up to 8 unless it is given",
        .range = {.low = 0, .open = true}},
       {.key = "stability.steps",
@@ -134,7 +134,7 @@ std::vector<Parameter> command_keys() {
        .otherwise = "all"},
       {.key = "stability.budget",
        .fallback = 1.0,
-       .help = "seconds for a corner before it is cut",
+       .help = "seconds for a stress case before it is cut",
        .unit = "seconds",
        .range = {.low = 0, .open = true}},
       {.key = "stability.map", .fallback = "on", .help = "the map of Courant number and mh", .choices = on_or_off},

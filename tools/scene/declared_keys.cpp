@@ -43,7 +43,7 @@ const TheoryEntry* chosen_theory(Settings& settings) {
   return at == theory_entries().end() ? nullptr : *at;  // whoever reads theory.name says so
 }
 
-// What the settings give; numbers that cannot be read are left to whoever reads them.
+// Reads what the settings give; numbers that cannot be read are left to whoever reads them.
 void read(const Settings& settings, const Parameter& p, ParameterValues& values) {
   const Setting* given = settings.find(p.key);
   if (!given) return;

@@ -40,7 +40,7 @@ const char* name_of(Wall wall) {
   return wall == Wall::natural ? "natural" : wall == Wall::clamped ? "clamped" : "fixed";
 }
 
-// What the rows lie on: a circle or an interval, and its walls.
+// Requires the space of recorded rows: a circle or an interval, and its walls.
 void require_recorded_space(const Scene& scene, const std::string& file,
                             const std::map<std::string, std::string>& recorded) {
   const Lattice& lattice = scene.problem.lattice;

@@ -62,7 +62,7 @@ Lattice read_lattice(const Settings& settings, const Values& values) {
   return lattice;
 }
 
-// What the scene gives, of all theories and methods (others may run in its place); those of its own are complete.
+// Reads what the scene gives, of all theories and methods (others may run in its place); those of its own are complete.
 void read_parameters(const Values& values, Problem& p) {
   for (const Declaration& declaration : declarations()) {
     if (declaration.kind == DeclaredBy::state) continue;
@@ -193,7 +193,7 @@ bool is_for_others(const Scene& scene, const Setting& given) {
   return false;
 }
 
-// For a key that theories, methods or states declare; empty where the scene's own does, and for other keys.
+// The reason for which a key that theories, methods or states declare is not read; empty for others, and where it is.
 std::string why_not_read(const Scene& scene, std::string_view key) {
   std::optional<DeclaredBy> kind;
   for (const DeclaredKey& own : scene.settings.declared()) {

@@ -42,11 +42,11 @@ struct Scene {
   std::vector<double> times;  ///< of the waveforms; empty: evenly spread
 
   bool from_file() const { return !initial_file.empty(); }
-  /// Whether row n, at time t, is the last: the first that is as late as `until`, or else the last of `steps`.
+  /// True if row n, at time t, is the last: the first that is as late as `until`, or else the last of `steps`.
   bool is_over(std::int64_t n, double t) const { return until ? t >= *until * (1 - 1e-12) : n >= steps; }
   /// The last row of a run that has come to row n, which may be one beyond the steps asked for.
   std::int64_t last_row(std::int64_t n) const { return until && steps > 0 ? n : std::min(n, steps); }
-  /// Whether a row is recorded by a run that has come to row n at time t; and the next one after n, if none ends it before.
+  /// True if a row is recorded by a run that has come to row n at time t; next_record(n): the next one after n, if any.
   bool is_recorded(std::int64_t row, std::int64_t n, double t) const {
     return (is_over(n, t) && row == last_row(n)) || (every > 0 && row % every == 0);
   }
@@ -65,7 +65,7 @@ FigureForm read_figure_form(const Settings&, const Values&);
 
 /// Reads, checks and resolves the scene `file`; throws BadScene.
 Scene read_scene(const std::filesystem::path& file, const std::vector<Setting>& on_command_line);
-/// The same of settings that are read.
+/// The scene of settings that are read.
 Scene read_scene(Settings);
 
 /// Why a key has no effect in this scene, or an empty string if it has one.

@@ -41,7 +41,7 @@ boost::program_options::parsed_options parsed(const std::string& text) {
   po::options_description known;
   for (const Parameter& key : keys()) known.add_options()(key.key.c_str(), po::value<std::string>());
   std::istringstream in(text);
-  return po::parse_config_file(in, known, true);  // unknown keys are kept, to be told with their line
+  return po::parse_config_file(in, known, true);  // unknown keys are kept, to be reported with their line
 }
 
 std::string unknown_key(const std::string& key, std::span<const Parameter> known) {

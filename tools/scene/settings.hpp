@@ -23,7 +23,7 @@ struct DeclaredKey {
   std::string owner;
 };
 
-/// What a scene and a command line give, before anything is made of it. The command line wins over the file.
+/// The settings of a scene and a command line, before anything is made of them. The command line wins over the file.
 class Settings {
  public:
   Settings(std::filesystem::path file, std::vector<Setting> in_file, std::vector<Setting> on_command_line);
@@ -32,8 +32,8 @@ class Settings {
   const Setting* find(std::string_view key) const;
   /// All that are given, the command line first; the first of a key is in force.
   const std::vector<Setting>& all() const { return all_; }
-  /// Of two keys that say the same thing, exactly one may be given in a place; the one on the command line wins, and
-  /// the other is forgotten.
+  /// Keeps one of two keys that say the same thing: exactly one may be given in a place; the one on the command line
+  /// wins, the other is forgotten.
   void keep_one_of(std::string_view key, std::string_view other, std::string_view remedy);
 
   /// Gives a key that nothing gives the value that another key implies, at the place of that key.
@@ -51,7 +51,7 @@ class Settings {
   std::string place(std::string_view key) const;
   /// "FILE:LINE: key = value: what is wrong; remedy"
   BadScene error(std::string_view key, std::string_view wrong) const;
-  /// The same for what a library found wrong with a value; its key is looked up.
+  /// The place of an error that a library found in a value; its key is looked up.
   BadScene located(const BadInput&) const;
 
  private:
@@ -61,7 +61,7 @@ class Settings {
 };
 
 /// Reads the scene `file` by Boost.Program_options. Throws BadScene for whatever is no scene, for unknown keys and for
-/// keys given twice; values are not looked at.
+/// keys given twice; values are not checked.
 Settings read_settings(const std::filesystem::path& file, const std::vector<Setting>& on_command_line);
 
 /// Throws BadScene for an unknown key on the command line, one given twice, or a value that no scene could hold.

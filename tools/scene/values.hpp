@@ -26,7 +26,7 @@ class Values {
   bool toggle(std::string_view key) const;
   std::string choice(std::string_view key) const;
   std::vector<double> times(std::string_view key) const;
-  /// By the type of its fallback.
+  /// The value of a parameter, by the type of its fallback.
   ParameterValue parameter(const Parameter&) const;
 
   std::optional<double> maybe_real(std::string_view key) const;

@@ -27,7 +27,7 @@ struct LinearTheory {
   std::vector<CourantInterval> stable;  ///< Courant numbers, in order, up to the most that was asked for
   std::vector<GhostMode> ghosts;        ///< in the middle of the first of them
 
-  /// Where the first instability from below begins: 0 if nothing is stable, infinity if everything is up to `most`.
+  /// The beginning of the first instability from below: 0 if nothing is stable, infinity if everything is up to `most`.
   double first_limit(double most) const;
   bool is_stable(double courant) const;
   /// No end of an interval is nearer than `relative` of it.
@@ -60,7 +60,7 @@ struct WorstWave {
   double rate() const { return amplification > 1 ? std::log(amplification) : 0; }
 };
 
-/// How the waves of a scheme grow at one Courant number: of any length, and those of a circle of N sites, θ = 2πj/N.
+/// The growth of a scheme's waves at one Courant number: of any length, and those of a circle of N sites, θ = 2πj/N.
 /// Throws as linear_theory.
 class WaveGrowth {
  public:

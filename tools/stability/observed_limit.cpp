@@ -158,7 +158,7 @@ void scale(LinearTheory& theory, double factor) {
   for (CourantInterval& i : theory.stable) i.from *= factor, i.to *= factor;
 }
 
-// Whether runs find a limit above theory's because nothing that is unstable between them grows so that a run could tell.
+// True if runs find a limit above theory's because nothing unstable between them grows so that a run could tell.
 bool unresolved_between(Runs& runs, const Limit& limit, const LimitRequest& request) {
   constexpr int points = 4;  // of each unstable interval
   const double most = std::min(limit.observed * (1 - request.agreement), request.most);
@@ -178,13 +178,13 @@ bool unresolved_between(Runs& runs, const Limit& limit, const LimitRequest& requ
 }
 
 void compare_limits(Runs& runs, Limit& limit, const LimitRequest& request) {
-  const auto told = [](double courant) { return std::isfinite(courant) ? fmt::format("{:.6g}", courant) : "none"; };
+  const auto shown = [](double courant) { return std::isfinite(courant) ? fmt::format("{:.6g}", courant) : "none"; };
   const double observed = std::min(limit.observed, request.most), theory = std::min(limit.theory, request.most);
   if (std::abs(observed - theory) <= request.agreement * std::max(observed, theory)) return;
   limit.limit_unresolved = unresolved_between(runs, limit, request);
   if (!limit.limit_unresolved)
     limit.disagreements.push_back(fmt::format("{}, {}: theory's limit is {}, and runs find {}", limit.scheme,
-                                              limit.waves, told(limit.theory), told(limit.observed)));
+                                              limit.waves, shown(limit.theory), shown(limit.observed)));
 }
 
 void compare(Runs& runs, Limit& limit, const Place& place) {
@@ -211,7 +211,7 @@ Limit unknown_limit(const std::string& name, const LinearWaves& waves) {
   return limit;
 }
 
-/// From random rows; where rows are not enough (a composition), from the first and the rates that lead to the second.
+/// Starts from random rows; where rows are not enough (a composition), from the first and the rates of the second.
 void start_from_noise(Simulation& simulation, const Problem& problem, std::uint64_t seed) {
   const auto rows = random_rows(simulation, problem.lattice.sites(), seed);
   try {

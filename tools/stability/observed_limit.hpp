@@ -22,7 +22,7 @@ struct ObservedGrowth {
   bool stable() const { return kind == Growth::bounded || kind == Growth::linear; }
 };
 
-/// Whether the waves can be stepped on a circle of so many sites: bricks close on an even number only.
+/// True if the waves can be stepped on a circle of so many sites: bricks close on an even number only.
 bool closes_on(const LinearWaves&, int sites);
 
 /// Steps from random rows and compares the largest |φ| of the second and of the fourth quarter of the run.
@@ -88,7 +88,7 @@ struct LimitRequest {
 /// compared with theory for the waves of its own circle. Disagreements are reported, not thrown.
 Limit find_limit(const std::string& name, const LinearWaves&, const LimitRequest&);
 
-/// The same, compared with given intervals.
+/// Compares runs with given intervals.
 Limit compare_with_runs(const std::string& name, const LinearWaves&, const LinearTheory& intervals,
                         const LimitRequest&);
 

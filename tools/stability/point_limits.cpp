@@ -60,7 +60,7 @@ struct Mechanics {
   bool phase_space;
 };
 
-/// What a method of elements starts from is (q, p); other schemes start from two rows, or in phase space from one.
+/// True for methods of elements, which start from (q, p); others start from two rows, or in phase space from one.
 bool by_momenta(const Problem& p) { return find_method(p.method).start == StartRule::legendre; }
 
 /// Starts at (q, p), or with the rows y₀ and y₁.
@@ -106,8 +106,8 @@ double growth(const Mechanics& scheme, double z) {
 }
 constexpr double round_off = 1e-11;
 
-/// Where it is looked at: evenly, and at the highest point wherever it comes near 1 between two of these. There roots meet
-/// on the circle, and leave it for a narrow interval or not at all.
+/// The samples of the map: evenly, and at the highest point wherever it comes near 1 between two of these. There roots
+/// meet on the circle, and leave it for a narrow interval or not at all.
 std::vector<Pair> samples_of(const Mechanics& scheme, double most) {
   constexpr int count = 320;
   std::vector<Pair> all;
@@ -149,7 +149,7 @@ std::vector<std::pair<double, double>> stable_intervals(const Mechanics& scheme,
   return list;
 }
 
-/// Whether an oscillator stays where it can be.
+/// True if an oscillator stays where it can be.
 bool stays(const Mechanics& scheme, double z, int steps) {
   const Problem p = scheme.with(oscillator, z);
   try {
@@ -165,8 +165,8 @@ bool stays(const Mechanics& scheme, double z, int steps) {
   }
 }
 
-/// Finds the limit by running, near the one of theory, if it is there. Where stability returns soon, runs are looked at in
-/// the middle of the interval between, and are as long as its growth asks for, within reason.
+/// Finds the limit by running, near the one of theory, if it is there. Where stability returns soon, runs are checked
+/// in the middle of the interval between, and are as long as its growth asks for, within reason.
 void observe_limit(const Mechanics& scheme, double again, const PointRequest& request, PointFinding& f) {
   constexpr double folds = 20, longest = 100;
   double in = f.theory * (1 - request.agreement);

@@ -12,10 +12,10 @@
 
 namespace delf {
 
-/// What is asked of the schemes of mechanics.
+/// The question asked of the schemes of mechanics.
 struct PointRequest {
   std::vector<NamedScheme> schemes;
-  double most = 8;           ///< ωh is looked at up to this
+  double most = 8;           ///< ωh is checked up to this
   double agreement = 0.01;   ///< of theory and runs, relative
   int steps = 2000;          ///< of a run
   double theory_factor = 1;  ///< a planted fault

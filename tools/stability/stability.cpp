@@ -17,10 +17,10 @@
 #include "tools/report/interrupt.hpp"
 #include "tools/report/progress.hpp"
 #include "tools/report/seconds_since.hpp"
-#include "tools/stability/corner_list.hpp"
 #include "tools/stability/point_limits.hpp"
 #include "tools/stability/stability_figures.hpp"
 #include "tools/stability/stability_map.hpp"
+#include "tools/stability/stress_cases.hpp"
 
 namespace delf {
 
@@ -57,11 +57,11 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
   f.dispersion_courant = base.time_step / base.lattice.space_step();
   f.dispersion_mass = mass_of(base) * base.lattice.space_step();
 
-  std::vector<Corner> all;
-  for (const std::string& group : request.corners)
-    for (Corner& corner : corners(group, request.schemes)) {
-      corner.state.seed = request.limit.seed;
-      all.push_back(std::move(corner));
+  std::vector<StressCase> all;
+  for (const std::string& group : request.stress_cases)
+    for (StressCase& stress_case : stress_cases(group, request.schemes)) {
+      stress_case.state.seed = request.limit.seed;
+      all.push_back(std::move(stress_case));
     }
   std::vector<std::optional<double>> mass_steps(request.mass_steps.begin(), request.mass_steps.end());
   if (request.own_waves) mass_steps = {std::nullopt};
@@ -91,11 +91,11 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
   for (const NamedScheme& scheme : request.schemes)
     if (auto words = growth_under_constraint(scheme.problem); !words.empty())
       f.constraints.push_back({scheme.name, std::move(words)});
-  for (Corner& corner : all) {
+  for (StressCase& stress_case : all) {
     if (Interrupt::asked()) break;
-    CornerResult result = run_corner_apart(corner, request.budget);
+    StressResult result = run_stress_case_apart(stress_case, request.budget);
     if (Interrupt::asked()) break;  // its verdict is that of an interrupted run
-    f.corners.push_back({std::move(corner), std::move(result)});
+    f.stress_cases.push_back({std::move(stress_case), std::move(result)});
     advance(1);
   }
   if (Interrupt::asked()) f.status = "interrupted";

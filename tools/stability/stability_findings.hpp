@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tools/scene/scene.hpp"
-#include "tools/stability/corner.hpp"
 #include "tools/stability/observed_limit.hpp"
+#include "tools/stability/stress_case.hpp"
 
 namespace delf {
 
@@ -26,9 +26,9 @@ struct DispersionCurve {
   std::vector<FrequencyPoint> points;
 };
 
-struct CornerFinding {
-  Corner corner;
-  CornerResult result;
+struct StressFinding {
+  StressCase stress_case;
+  StressResult result;
 };
 
 /// A scheme whose rounding errors grow off the surface that the scene's theory is kept on.
@@ -42,7 +42,7 @@ struct StabilityFindings {
   std::string own_left_out;  ///< the scene's own scheme, and why it has no limits here, or empty
   std::vector<Limit> limits;
   std::vector<ConstraintFinding> constraints;
-  std::vector<CornerFinding> corners;
+  std::vector<StressFinding> stress_cases;
   std::vector<StabilityMap> maps;
   std::vector<DispersionCurve> dispersion;
   double dispersion_courant = 0, dispersion_mass = 0;  ///< of the dispersion curves: h/k and mk
@@ -64,7 +64,7 @@ struct StabilityFindings {
 
 /// stability.json; what is not a finite number is null.
 std::string stability_json(const Scene&, const StabilityFindings&);
-/// The same for people: tables within 120 columns.
+/// The findings for people: tables within 120 columns.
 std::string stability_report(const Scene&, const StabilityFindings&);
 
 }  // namespace delf

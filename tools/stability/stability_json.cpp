@@ -48,13 +48,13 @@ Json json_of(const Limit& l) {
 
 Json json_of(const ConstraintFinding& c) { return {{"scheme", c.scheme}, {"what", c.words}}; }
 
-Json json_of(const CornerFinding& f) {
+Json json_of(const StressFinding& f) {
   Json parameters = Json::object();
-  for (const Setting& key : keys_of(f.corner)) parameters[key.key] = key.value;
-  const CornerResult& r = f.result;
-  return {{"name", f.corner.name},
-          {"group", f.corner.group},
-          {"scheme", f.corner.scheme},
+  for (const Setting& key : keys_of(f.stress_case)) parameters[key.key] = key.value;
+  const StressResult& r = f.result;
+  return {{"name", f.stress_case.name},
+          {"group", f.stress_case.group},
+          {"scheme", f.stress_case.scheme},
           {"parameters", parameters},
           {"verdict", to_string(r.verdict)},
           {"reason", text_or_null(r.reason)},
@@ -109,7 +109,7 @@ std::string stability_json(const Scene& scene, const StabilityFindings& f) {
   json["own_scheme_left_out"] = text_or_null(f.own_left_out);
   json["limits"] = json_list(f.limits, of_each);
   json["constraint_ghosts"] = json_list(f.constraints, of_each);
-  json["corners"] = json_list(f.corners, of_each);
+  json["corners"] = json_list(f.stress_cases, of_each);
   json["maps"] = json_list(f.maps, of_each);
   json["dispersion"] = {{"courant", f.dispersion_courant},
                         {"mass_space_step", f.dispersion_mass},

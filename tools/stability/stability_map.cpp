@@ -10,7 +10,7 @@ namespace delf {
 
 namespace {
 
-// From 0.1 to 10, evenly in the logarithm.
+// Masses from 0.1 to 10, evenly in the logarithm.
 std::vector<double> masses(int count) {
   std::vector<double> all;
   for (int j = 0; j < count; ++j) all.push_back(std::pow(10, -1 + 2 * (j + 0.5) / count));

@@ -82,36 +82,36 @@ std::string constraints(const StabilityFindings& f) {
   return text;
 }
 
-std::string cell(const CornerResult& r) {
+std::string cell(const StressResult& r) {
   std::string word;
   switch (r.verdict) {
-    case CornerVerdict::stable:
+    case StressVerdict::stable:
       word = "ok";
       break;
-    case CornerVerdict::wrong:
+    case StressVerdict::wrong:
       word = "wrong";
       break;
-    case CornerVerdict::diverged:
+    case StressVerdict::diverged:
       word = fmt::format("t={:.3g}", r.diverged_at);
       break;
-    case CornerVerdict::refused:
+    case StressVerdict::refused:
       word = "refused";
       break;
-    case CornerVerdict::unstarted:
+    case StressVerdict::unstarted:
       word = "-";
       break;
     default:
       word = "FAILED";
   }
-  return word + (std::isfinite(r.cut_at) && r.verdict != CornerVerdict::unstarted ? "…" : "");
+  return word + (std::isfinite(r.cut_at) && r.verdict != StressVerdict::unstarted ? "…" : "");
 }
 
 // One row for each stress case, one column for each scheme, whose names are numbers that the first line explains.
-std::string corner_table(const StabilityFindings& f) {
-  if (f.corners.empty()) return {};
+std::string stress_table(const StabilityFindings& f) {
+  if (f.stress_cases.empty()) return {};
   std::vector<std::string> schemes;
-  for (const CornerFinding& c : f.corners)
-    if (std::ranges::find(schemes, c.corner.scheme) == schemes.end()) schemes.push_back(c.corner.scheme);
+  for (const StressFinding& c : f.stress_cases)
+    if (std::ranges::find(schemes, c.stress_case.scheme) == schemes.end()) schemes.push_back(c.stress_case.scheme);
   std::vector<TextColumn> columns{{"stress case", false, 34}};
   std::string key;
   for (std::size_t s = 0; s < schemes.size(); ++s) {
@@ -119,12 +119,12 @@ std::string corner_table(const StabilityFindings& f) {
     key += fmt::format("{}({}) {}", s == 0 ? "" : ", ", s + 1, schemes[s]);
   }
   std::vector<std::vector<std::string>> rows;
-  for (const CornerFinding& c : f.corners) {
-    if (rows.empty() || rows.back().front() != c.corner.name) {
+  for (const StressFinding& c : f.stress_cases) {
+    if (rows.empty() || rows.back().front() != c.stress_case.name) {
       rows.emplace_back(schemes.size() + 1);
-      rows.back().front() = c.corner.name;
+      rows.back().front() = c.stress_case.name;
     }
-    const auto at = std::ranges::find(schemes, c.corner.scheme) - schemes.begin();
+    const auto at = std::ranges::find(schemes, c.stress_case.scheme) - schemes.begin();
     rows.back()[static_cast<std::size_t>(at) + 1] = cell(c.result);
   }
   std::string text = "\n";
@@ -145,12 +145,13 @@ std::string failures(const StabilityFindings& f) {
       text += "\nFAILED: theory and runs disagree\n";
       add(d);
     }
-  for (const CornerFinding& c : f.corners) {
+  for (const StressFinding& c : f.stress_cases) {
     if (!must_not_be(c.result.verdict)) continue;
-    text += fmt::format("\nFAILED: {}: {}, {}\n", to_string(c.result.verdict), c.corner.scheme, c.corner.name);
+    text +=
+        fmt::format("\nFAILED: {}: {}, {}\n", to_string(c.result.verdict), c.stress_case.scheme, c.stress_case.name);
     add(c.result.reason);
     std::string keys;
-    for (const Setting& k : keys_of(c.corner)) keys += fmt::format(" {}={}", k.key, k.value);
+    for (const Setting& k : keys_of(c.stress_case)) keys += fmt::format(" {}={}", k.key, k.value);
     add("keys:" + keys);
   }
   return text;
@@ -159,13 +160,13 @@ std::string failures(const StabilityFindings& f) {
 std::string conclusion(const StabilityFindings& f) {
   std::int64_t compared = 0, refused = 0, wrong = 0;
   for (const Limit& l : f.limits) compared += l.left_out.empty();
-  for (const CornerFinding& c : f.corners) {
-    refused += c.result.verdict == CornerVerdict::refused;
-    wrong += c.result.verdict == CornerVerdict::wrong;
+  for (const StressFinding& c : f.stress_cases) {
+    refused += c.result.verdict == StressVerdict::refused;
+    wrong += c.result.verdict == StressVerdict::wrong;
   }
   const std::string counts =
       fmt::format("{} limits compared{}, {} stress cases ({} refused, {} bounded but wrong), in {}", compared,
-                  f.unresolved() > 0 ? fmt::format(" ({} h/k unresolved)", f.unresolved()) : "", f.corners.size(),
+                  f.unresolved() > 0 ? fmt::format(" ({} h/k unresolved)", f.unresolved()) : "", f.stress_cases.size(),
                   refused, wrong, duration_in_words(f.seconds));
   if (f.status != "done") return fmt::format("not finished ({}): {}\n", f.status, counts);
   if (f.nothing_compared()) return fmt::format("FAILED: nothing could be compared; {}\n", counts);
@@ -183,7 +184,7 @@ std::int64_t StabilityFindings::disagreements() const {
 }
 
 bool StabilityFindings::nothing_compared() const {
-  return corners.empty() && std::ranges::none_of(limits, [](const Limit& l) { return l.left_out.empty(); });
+  return stress_cases.empty() && std::ranges::none_of(limits, [](const Limit& l) { return l.left_out.empty(); });
 }
 
 bool StabilityFindings::not_applicable() const { return status == "done" && nothing_compared() && constraints.empty(); }
@@ -203,7 +204,8 @@ std::int64_t StabilityFindings::unresolved() const {
 }
 
 std::int64_t StabilityFindings::must_not_be() const {
-  return std::ranges::count_if(corners, [](const CornerFinding& c) { return delf::must_not_be(c.result.verdict); });
+  return std::ranges::count_if(stress_cases,
+                               [](const StressFinding& c) { return delf::must_not_be(c.result.verdict); });
 }
 
 std::string stability_report(const Scene& scene, const StabilityFindings& f) {
@@ -215,7 +217,7 @@ std::string stability_report(const Scene& scene, const StabilityFindings& f) {
              scene.name,
              f.own_waves ? "small waves of its own theory about 0" : "phi_tt - phi_xx + m^2 phi = 0, and stress cases",
              f.seed, f.own_waves ? "k" : "mh") +
-         limits(f) + own_left_out(f) + constraints(f) + corner_table(f) + failures(f) + "\n" + conclusion(f);
+         limits(f) + own_left_out(f) + constraints(f) + stress_table(f) + failures(f) + "\n" + conclusion(f);
 }
 
 }  // namespace delf

@@ -13,7 +13,7 @@
 #include "tools/scene/lists.hpp"
 #include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
-#include "tools/stability/corner_list.hpp"
+#include "tools/stability/stress_cases.hpp"
 #include "tools/warnings/vacuum_symbol.hpp"
 
 namespace delf {
@@ -120,13 +120,13 @@ StabilityRequest read_stability_request(const Scene& scene) {
   }
   if (const auto masses = positive_numbers(scene.settings, "stability.mass_steps"); !masses.empty())
     request.mass_steps = masses;
-  request.corners = list("stability.corners");
-  for (const std::string& group : request.corners)
-    if (group != "none" && std::ranges::find(corner_groups(), group) == corner_groups().end())
+  request.stress_cases = list("stability.corners");
+  for (const std::string& group : request.stress_cases)
+    if (group != "none" && std::ranges::find(stress_groups(), group) == stress_groups().end())
       throw scene.settings.error("stability.corners", fmt::format("{} is no group of stress cases{}", group,
-                                                                  suggestion(group, corner_groups())));
-  if (request.corners.empty()) request.corners = corner_groups();
-  std::erase(request.corners, "none");
+                                                                  suggestion(group, stress_groups())));
+  if (request.stress_cases.empty()) request.stress_cases = stress_groups();
+  std::erase(request.stress_cases, "none");
   request.limit.most = values.real("stability.most_courant");
   request.limit.steps = static_cast<int>(values.integer("stability.steps"));
   request.limit.agreement = values.real("stability.agreement");
@@ -134,7 +134,7 @@ StabilityRequest read_stability_request(const Scene& scene) {
   if (values.choice("stability.fault") == "limit") request.limit.theory_factor = 1.05;
   request.budget = values.real("stability.budget");
   request.map = values.toggle("stability.map");
-  if (request.own_waves) request.corners.clear(), request.map = false, request.limit.most *= own_unit;
+  if (request.own_waves) request.stress_cases.clear(), request.map = false, request.limit.most *= own_unit;
   return request;
 }
 

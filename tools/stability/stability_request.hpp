@@ -17,7 +17,7 @@ struct StabilityRequest {
   bool own_waves = false;  ///< limits are those of the scene's own theory: no maps, dispersion and stress cases then
   std::vector<double> mass_steps{0.5, 1, 2.3};  ///< mh at which limits are found
   LimitRequest limit;
-  std::vector<std::string> corners;  ///< groups
+  std::vector<std::string> stress_cases;  ///< groups
   double budget = 1;                 ///< seconds for a stress case
   bool map = true;
 };

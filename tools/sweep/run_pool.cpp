@@ -147,7 +147,7 @@ SweepRow RunPool::finished(const Process& process, const SweptRun&, const std::s
     row.failure = error_in(folder_ / process.folder / log_name);
   }
   if (request_.table) fs::remove_all(folder_ / process.folder);
-  // What the machine did to a run may not happen again.
+  // A run may go well another time if the machine ended it.
   if (row.status != "crashed" && row.status != "system-failure" && row.status != "interrupted") journal_.append(row);
   return row;
 }

@@ -11,7 +11,7 @@
 
 namespace delf {
 
-/// What a sweep found: everything in its files, its report and its figure.
+/// The results of a sweep: everything in its files, its report and its figure.
 struct SweepOutcome {
   std::string scene;
   std::string status = "done";                   ///< or interrupted, or bad-input if no run can have sweep.number

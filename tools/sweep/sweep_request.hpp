@@ -41,7 +41,7 @@ inline constexpr std::size_t most_runs = 100000;
 /// The values of `a,b,c` or `from:to:step`, as text; one value where it is neither. Throws BadScene for a bad range.
 std::vector<std::string> swept_values(const Setting&);
 
-/// From the command line and the keys [sweep]. Throws BadScene.
+/// Reads the command line and the keys [sweep]. Throws BadScene.
 SweepRequest read_sweep_request(const std::filesystem::path& scene, const std::vector<Setting>& on_command_line);
 
 }  // namespace delf

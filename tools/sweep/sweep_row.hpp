@@ -11,7 +11,7 @@
 
 namespace delf {
 
-/// What is left of a run: a row of a sweep.
+/// The summary of a run: a row of a sweep.
 struct SweepRow {
   std::string fingerprint;
   std::string status;              ///< of its summary.json; or bad-input, crashed

@@ -7,7 +7,7 @@
 
 namespace delf {
 
-/// Where a number of a run passes a level.
+/// The crossing of a level by a number of a run.
 struct Threshold {
   double low = 0, high = 0;  ///< it is between these values of the key
   double at_low = 0, at_high = 0, level = 0;

@@ -114,7 +114,7 @@ void verify_momenta(const Scene& scene, const VerifyRequest& request, const std:
   const Problem plain = explicit_scheme(scene.problem);
   const auto system = fields_system(plain);
   if (!system || request.unwrap) return;
-  // Where sites move, or the scheme has more fields than the theory, rows are not those of an explicit scheme.
+  // Rows are not those of an explicit scheme where sites move, or the scheme has more fields than the theory.
   const Simulation simulation = build(scene, 0);
   if (simulation.evolution().system().moves() || simulation.count(Role::field) != system->components()) return;
   CanonicalRows rows(fields, *system, scene, "--fields");

@@ -13,8 +13,8 @@ namespace delf {
 /// has: its one-step map is verified, and no equations. Throws BadScene for a file that cannot be read.
 bool has_momenta_alone(const Scene&, const std::string& fields);
 
-/// Of rows with momenta: what the program's own one-step map keeps (PhaseSpaceCheck); and, `alone`, whether it is that of
-/// the scene's scheme, with a diagnosis where it is not. Rows without momenta are left as they are.
+/// Verifies rows with momenta: what the program's own one-step map keeps (PhaseSpaceCheck); and, `alone`, if it is that
+/// of the scene's scheme, with a diagnosis where it is not. Rows without momenta are left as they are.
 void verify_momenta(const Scene&, const VerifyRequest&, const std::string& fields,
                     const std::vector<std::string>& nearby, bool alone, Verdict&);
 

@@ -13,7 +13,7 @@ class ResidualBins {
  public:
   ResidualBins(const Lattice&, double time_step, std::int64_t first_row, std::int64_t rows);
 
-  /// Of a row: [i·components + c], not a number where there is no equation.
+  /// Adds a row: [i·components + c], not a number where there is no equation.
   void add(std::int64_t row, const std::vector<double>& residuals, int components);
   ResidualMap map() const;
 

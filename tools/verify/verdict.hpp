@@ -40,13 +40,13 @@ struct ResidualMap {
   std::vector<double> log10;        ///< rows × columns: of the largest |E| / normaliser; NaN if no equation is there
 };
 
-/// The energy that the rows have for themselves (schemes/methods/own_energy.hpp), row by row.
+/// The energy that the rows have for themselves (schemes/methods/energies.hpp), row by row.
 struct EnergyHistory {
   std::string name, meaning;
   std::vector<double> time, value;
 };
 
-/// How far a run forth and back, of so many steps, ends from where it began.
+/// The distance of a run forth and back, of so many steps, from where it began.
 struct ReversalCurve {
   std::vector<std::int64_t> steps;
   std::vector<double> distance;
@@ -89,7 +89,7 @@ struct Verdict {
 
 /// verify.json; what is not a finite number is null.
 std::string verdict_json(const Scene&, const Verdict&);
-/// The same for people: a table within 120 columns, and what each failure means.
+/// The verdict for people: a table within 120 columns, and what each failure means.
 std::string verdict_report(const Scene&, const Verdict&);
 
 }  // namespace delf

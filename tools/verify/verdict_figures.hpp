@@ -16,7 +16,7 @@ std::string draw_verdict(const Verdict&, const std::string& scene, const std::st
 /// The names of the figures, without ending.
 std::vector<std::string> verdict_figure_names();
 
-/// What a figure of a verdict is drawn from.
+/// The data that a figure of a verdict is drawn from.
 struct VerdictSource {
   const Verdict& verdict;
   std::string scene, scheme;

@@ -56,7 +56,7 @@ int first_with_terms(const StencilFamily& family, const LatticeSystem& system) {
   return 0;
 }
 
-// The same families, with the first derivative of the first one's Lagrangian of the wrong sign.
+// The families with the first derivative of the first one's Lagrangian of the wrong sign.
 std::unique_ptr<LatticeSystem> with_wrong_sign(const LatticeSystem& right) {
   std::vector<std::shared_ptr<const StencilFamily>> families(right.families().begin(), right.families().end());
   families[0] = std::make_shared<WrongSign>(families[0], first_with_terms(*families[0], right));
@@ -110,7 +110,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   moment_rows_ = FormCheck::rows_wanted(system_, plan_, request.regions);
   drawer_.emplace(system_, Tangent::solved_rows(system_, plan_, moment_rows_));
   double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
-  // What a file has of its values says how well the equations can hold, unless the scene does.
+  // The digits of values in a file say how well the equations can hold, unless the scene does.
   if (rounded_ && !request.own_tolerance) of_steps = std::max(of_steps, 2 * rounded_->relative);
   std::optional<ValueError> coarse;
   if (rounded_ && !request.own_tolerance) coarse = rounded_->error;
@@ -128,7 +128,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   Problem problem = scene_.problem;
   problem.winding = winding_;
   if (request_.wants("equations")) energy_ = own_energy(simulation_, problem);
-  if (energy_) verdict_.energy.name = energy_->name, verdict_.energy.meaning = energy_->meaning;
+  if (energy_) verdict_.energy.name = energy_->entry->name, verdict_.energy.meaning = energy_->entry->formula;
   if (fields) open_nearby(*fields, nearby);
 }
 
@@ -163,7 +163,7 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
   require_every_row(fields);
 }
 
-// Where the field chose the steps, the first two frames are as far apart as row 0 asks for, or a few times as far. Rows
+// The first two frames are as far apart as row 0 asks for, or a few times as far, where the field chose the steps. Rows
 // of delf say how they were recorded.
 void Verification::require_every_row(const std::string& fields) const {
   const auto density = find_method(scene_.problem.method).row_density;
@@ -192,7 +192,7 @@ void Verification::require_interiors() const {
                                                                 request.name.substr(request.name.find(' ') + 1)));
 }
 
-// Where rows choose the steps only a run tells how many there are.
+// A run tells how many steps there are where rows choose them.
 std::int64_t Verification::steps_of_run() const {
   if (!scene_.until) return scene_.steps;
   Simulation simulation = build(scene_, winding_);
@@ -261,7 +261,7 @@ bool Verification::scheme_has(const LinearSymmetry& symmetry) const {
 
 std::vector<LinearSymmetry> Verification::symmetries() {
   std::vector<LinearSymmetry> all = simulation_.symmetries();
-  if (const auto* density = dynamic_cast<const SymbolicDensity*>(&simulation_.theory().density()))
+  if (const SymbolicDensity* density = simulation_.theory().density().formula())
     for (const LinearSymmetry& symmetry : density->up_to_divergence()) {
       if (scheme_has(symmetry)) all.push_back(symmetry);
       else
@@ -374,20 +374,21 @@ void Verification::take(std::vector<double> row) {
   }
 }
 
-// Of the last two rows.
+// Takes the energy of the last two rows.
 void Verification::look_at_energy(std::int64_t j) {
   if (scene_.problem.step_control && j > 0) measure_energy(j);
   if (!energy_ || j < 1 || held_.rows.size() < 2) return;
   verdict_.energy.time.push_back(static_cast<double>(j) * scene_.problem.time_step);
   verdict_.energy.value.push_back(
-      energy_->value({simulation_.theory(), system_, window(j - 1, j), j, scene_.problem.time_step}));
+      energy_->value({simulation_.theory(), system_, window(j - 1, j), j, scene_.problem.time_step}).energy);
 }
 
-// Where steps differ the energy is what there is to be kept.
+// The energy is what there is to be kept where steps differ.
 void Verification::measure_energy(std::int64_t j) {
-  const auto energy = find_method(scene_.problem.method).energy;
-  if (!energy) return;
+  const EnergyEntry* entry = find_method(scene_.problem.method).energy;
+  if (!entry) return;
   const LatticeSystem& right = simulation_.evolution().system();  // a planted fault hides what its families are
+  const EnergyOfRows energy = entry->make(simulation_.theory(), right, scene_.problem);
   const EnergyMomentum now = energy({simulation_.theory(), right, window(j - 1, j), j, right.times()->step(j - 1)});
   if (j == 1) first_energy_ = now.energy;
   if (!energy_change_)
@@ -420,7 +421,7 @@ void Verification::look_at_walls(std::int64_t j, const std::vector<double>& row)
     }
 }
 
-// Of fields at the vertices alone: what else a scheme has, other programs do not write.
+// Diagnoses fields at the vertices alone: other programs write nothing else that a scheme has.
 void Verification::diagnose_rows() {
   if (!fields_) {
     if (request_.identify) leave_out("diagnosis: of rows of a file; give --fields");

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "schemes/methods/own_energy.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/verify/equation_check.hpp"

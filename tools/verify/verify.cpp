@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <exception>
+#include <utility>
 
 #include "tools/figures/drawing.hpp"
+#include "tools/files/plain_rows.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/interrupt.hpp"
@@ -14,6 +17,7 @@
 #include "tools/verify/momenta_verification.hpp"
 #include "tools/verify/verdict_figures.hpp"
 #include "tools/verify/verification.hpp"
+#include "tools/verify/verify_in_memory.hpp"
 
 namespace delf {
 
@@ -21,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What tables there are of rows and sites; those of an earlier time go.
+// Writes the tables of rows and sites that there are; those of an earlier time go.
 void write_tables(const fs::path& folder, const Verdict& verdict) {
   const auto write = [&](const char* name, const char* head, const std::string& lines) {
     std::error_code none;
@@ -37,18 +41,33 @@ void write_tables(const fs::path& folder, const Verdict& verdict) {
   write("energy_own.csv", "time,energy_own\n", energies);
 }
 
-ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::optional<std::string>& fields,
-                   const std::vector<std::string>& nearby) {
-  const Interrupt interrupt;
+/// The checks, and what ended them early, if anything did.
+struct Verified {
+  Verdict verdict;
+  std::exception_ptr failure;
+};
+
+/// `begin` is called before the first row, once all files of rows are open.
+template <class Begin>
+Verified verified(const Scene& scene, const std::optional<std::string>& fields, const std::vector<std::string>& nearby,
+                  const Begin& begin) {
   VerifyRequest request = read_verify_request(scene);
   // on the fibre S1 values modulo 2π are those of the field
   if (scene.problem.circle_valued && fields && nearby.empty()) request.unwrap = true;
   std::optional<Verification> verification;
   const bool momenta_alone = fields && has_momenta_alone(scene, *fields);
   if (!momenta_alone) verification.emplace(scene, request, fields, nearby);
-  make_results_folder(folder);  // earlier results stay until there are new ones
+  begin();
   Verdict verdict = verification ? verification->run() : Verdict{};
   if (fields && verdict.status == "done") verify_momenta(scene, request, *fields, nearby, momenta_alone, verdict);
+  return {std::move(verdict), verification ? verification->failure() : nullptr};
+}
+
+ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::optional<std::string>& fields,
+                   const std::vector<std::string>& nearby) {
+  const Interrupt interrupt;
+  // earlier results stay until there are new ones
+  const auto [verdict, failure] = verified(scene, fields, nearby, [&] { make_results_folder(folder); });
   write_text_file(folder / "verify.json", verdict_json(scene, verdict));
   write_tables(folder, verdict);
   remove_figures(verdict_figure_names(), folder);
@@ -58,18 +77,42 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   fmt::print("{}", verdict_report(scene, verdict));
   fmt::print("{}: verify.json{}\n", folder.string(), scene.figures && missing.empty() ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
-  if (verification && verification->failure()) std::rethrow_exception(verification->failure());
+  if (failure) std::rethrow_exception(failure);
   if (verdict.status == "interrupted") return ExitCode::interrupted;
   return verdict.passed() ? ExitCode::done : ExitCode::check_failed;
 }
 
+Scene with_first_row_of(Scene scene, const std::optional<std::string>& fields) {
+  if (fields) take_first_row(scene, *fields, 0);
+  return scene;
+}
+
 }  // namespace
+
+void imply_rows(Settings& settings, const std::string& fields) {
+  if (!settings.find("initial.state")) {
+    settings.imply("initial.state", "file", "theory.name");
+    settings.imply("initial.file", fs::absolute(file_of_rows(fields)).string(), "theory.name");
+  }
+  if (!settings.find("run.until")) settings.imply("run.steps", "0", "theory.name");
+}
 
 ExitCode verify(const Scene& given, const fs::path& folder, const std::optional<std::string>& fields,
                 const std::vector<std::string>& nearby) {
-  Scene scene = given;
-  if (fields) take_first_row(scene, *fields, 0);
+  const Scene scene = with_first_row_of(given, fields);
   return with_memory_for(scene, [&] { return verify_in(folder, scene, fields, nearby); });
+}
+
+VerifyInMemory verify_in_memory(const Scene& given, const std::optional<std::string>& fields,
+                                const std::vector<std::string>& nearby) {
+  const Scene scene = with_first_row_of(given, fields);
+  VerifyInMemory result;
+  with_memory_for(scene, [&] {
+    const auto [verdict, failure] = verified(scene, fields, nearby, [] {});
+    result = {verdict.status, verdict_report(scene, verdict), verdict_json(scene, verdict), verdict.passed(), failure};
+    return ExitCode::done;
+  });
+  return result;
 }
 
 }  // namespace delf

@@ -29,7 +29,7 @@ struct VerifyRequest {
   bool wants(std::string_view check) const;
 };
 
-/// What can be checked: forms, equations, noether, balance, reversal, derivatives, newton.
+/// The names of checks: forms, equations, noether, balance, reversal, derivatives, newton.
 const std::vector<std::string>& verify_checks();
 
 /// Throws BadScene.

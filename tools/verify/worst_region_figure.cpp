@@ -30,7 +30,7 @@ struct Frame {
   double left = 0;                       // beside the numbers of the rows
   double width = 0, height = 0;          // of a mark, in units of x and t
   double dot_width = 0, dot_height = 0;  // of the largest round mark, in the same units
-  bool dense = false;                    // too small for a ring to be told from a disc: boundary sites are bars
+  bool dense = false;  // too small for a ring to be distinguished from a disc: boundary sites are bars
 
   explicit Frame(const std::vector<DrawnSite>& sites) {
     int nodes = 1;
@@ -124,7 +124,7 @@ std::string plots(const std::vector<DrawnSite>& sites, const Frame& frame, const
   return text + "\n";
 }
 
-// What a ring or a bar and a disc stand for, above the colours.
+// The legend above the colours: the meaning of a ring, or of a bar and a disc.
 std::string legend(bool dense) {
   const auto circle = [](int number, double y, double radius, const char* colour) {
     return fmt::format("set object {} circle at screen 0.82,{} size screen {} front fs solid noborder fc rgb '{}'\n",

@@ -9,8 +9,8 @@
 
 namespace delf {
 
-/// In words: waves on the theory's vacuum grow more than tenfold in so many steps, by linear theory. Nothing where they do
-/// not, or where there is no such theory.
+/// Says in words that waves on the theory's vacuum grow more than tenfold in so many steps, by linear theory. Nothing
+/// where they not, or where there is no such theory.
 std::optional<std::string> beyond_linear_limit(const Scene&, const Simulation&, std::int64_t steps);
 
 }  // namespace delf

@@ -35,7 +35,7 @@ class Spread {
   std::vector<double> least_, most_;
 };
 
-/// How many steps the copies go: a two-hundredth of the run, or as many as take some 0.2 ms.
+/// The number of steps that the copies go: a two-hundredth of the run, or as many as take some 0.2 ms.
 std::int64_t steps_of_copies(const Simulation& simulation, std::int64_t steps) {
   const Stepper& stepper = simulation.evolution().stepper();
   constexpr std::int64_t most_values = 4096, part = 200, most_nanoseconds = 200'000, steps_for_each = 3;

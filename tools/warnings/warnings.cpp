@@ -70,7 +70,7 @@ Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulat
     if (std::abs(separation(lattice, at_end, exact_centre(end - stretch))) > some_cells) late_ = end - stretch;
 }
 
-/// What makes steps finer, in keys.
+/// The keys that make steps finer.
 std::string Warnings::finer() const {
   return scene_.problem.lattice.space() == Space::point ? "reduce lattice.time_step"
                                                         : "raise lattice.sites, unless the lattice itself is the model";
@@ -210,7 +210,7 @@ Found Warnings::pinned(const Outcome& outcome, std::span<const double> last_row)
       now < 0 ? now + lattice.length() : now, late->time, wanted, finer());
 }
 
-/// Where the copies end before the run does, what they tell of its end is a guess: it must be a fifth more.
+/// The phase error. Copies that end before the run does only estimate its end: it must be a fifth more.
 Found Warnings::phase(const Outcome& outcome, std::span<const double> last_row) const {
   constexpr double thirty_percent = 0.3, little = 0.02;
   const double turn = turn_.value();

@@ -18,57 +18,57 @@ std::vector<double> sites_of(const Lattice& lattice) {
 
 }  // namespace
 
-TriedRun run_once(const Scene& scene, const std::vector<Contestant>& contestants, std::size_t which,
+TriedRun run_once(const Scene& scene, const std::vector<WorkPrecisionEntry>& entries, std::size_t which,
                   const Resolution& r, double until, const ComparedSolution& solution, const RunLimit& limit) {
   const StepClock clock(scene.problem.threads);
   const Lattice lattice = lattice_of(scene, r.sites);
-  const Contestant& contestant = contestants[which];
+  const WorkPrecisionEntry& entry = entries[which];
   TriedRun tried{which,
                  r,
-                 {.scheme = contestant.name,
-                  .peer = contestant.peer,
-                  .processed = contestant.processed,
-                  .tuned = contestant.tuned,
-                  .own = contestant.own,
+                 {.scheme = entry.name,
+                  .peer = entry.peer,
+                  .processed = entry.processed,
+                  .tuned = entry.tuned,
+                  .own = entry.own,
                   .sites = r.sites,
                   .space_step = lattice.space_step(),
                   .time_step = r.time_step,
                   .steps = r.steps}};
   WorkPrecisionRun& run = tried.result;
   const double begin = clock.now();
-  tried.racer = contestant.start(r);
-  const auto& racer = tried.racer;
+  tried.started = entry.start(r);
+  const auto& started = tried.started;
   run.seconds_setup = clock.since(begin);
-  if (racer->newest() >= r.steps - 1) throw BadInput("run.until", "too few steps to be timed");
+  if (started->newest() >= r.steps - 1) throw BadInput("run.until", "too few steps to be timed");
 
   constexpr std::int64_t records = 50;
-  const double energy0 = racer->energy();
+  const double energy0 = started->energy();
   double largest = 0, seconds = 0, forces = 0;
   int looked_at = 0;
   const auto step_to = [&](std::int64_t row) {
     const double from = clock.now();
-    racer->advance(row - racer->newest(), limit);
+    started->advance(row - started->newest(), limit);
     seconds += clock.since(from);
-    if (racer->newest() != row) return false;
-    const double error = std::abs(racer->energy() - energy0) / std::abs(energy0);
+    if (started->newest() != row) return false;
+    const double error = std::abs(started->energy() - energy0) / std::abs(energy0);
     if (!(error <= largest)) largest = error;
-    forces += racer->forces(), ++looked_at;
+    forces += started->forces(), ++looked_at;
     return true;
   };
   const std::int64_t every = std::max<std::int64_t>(1, r.steps / records);
-  for (std::int64_t row = racer->newest() + every; row < r.steps - 1; row += every)
+  for (std::int64_t row = started->newest() + every; row < r.steps - 1; row += every)
     if (!step_to(row)) return tried;
   const auto d = static_cast<std::size_t>(solution.components());
   std::vector<double> before(static_cast<std::size_t>(r.sites) * d), last(before.size());
-  if (racer->newest() < r.steps - 1 && !step_to(r.steps - 1)) return tried;
-  racer->copy(before);
+  if (started->newest() < r.steps - 1 && !step_to(r.steps - 1)) return tried;
+  started->copy(before);
   if (!step_to(r.steps)) return tried;
-  racer->copy(last);
+  started->copy(last);
   run.seconds = run.seconds_min = run.seconds_max = seconds;
   run.energy_error_max = largest;
   run.forces_per_step = forces / looked_at;
 
-  if (const std::vector<double> positions = racer->positions(); !positions.empty()) {
+  if (const std::vector<double> positions = started->positions(); !positions.empty()) {
     // at the sites, wherever they are; of a row of another run piecewise linearly at its own sites
     const FieldError error = solution.is_exact()
                                  ? field_error(PlacedRow{last, positions}, *make_state(scene.initial, lattice), until)

@@ -9,8 +9,8 @@
 
 namespace delf {
 
-/// Of the runs with these indices, those that no other beats in both error and seconds, from cheap to accurate: along
-/// them seconds rise and errors fall, strictly. Runs whose error or time is not a number are never among them.
+/// The runs, among those with these indices, that no other beats in both error and seconds, from cheap to accurate:
+/// along them seconds rise and errors fall, strictly. Runs whose error or time is not a number are never among them.
 std::vector<std::size_t> lower_envelope(const std::vector<WorkPrecisionRun>&, std::span<const std::size_t> among);
 
 /// The cheapest run with error ≤ accuracy, or nothing.

@@ -20,25 +20,26 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // The last row, or nothing if the scheme cannot give it at this Courant number.
-std::optional<std::vector<double>> last_row(const Contestant& scheme, const Scene& scene, int sites, double courant,
-                                            double until, int d, const RunLimit& limit) {
+std::optional<std::vector<double>> last_row(const WorkPrecisionEntry& scheme, const Scene& scene, int sites,
+                                            double courant, double until, int d, const RunLimit& limit) {
   const Lattice lattice = lattice_of(scene, sites);
   const double h = lattice.space() == Space::point ? courant * scene.problem.time_step : courant * lattice.space_step();
   const auto steps = std::max<std::int64_t>(4, std::llround(until / h));
   try {
-    const auto racer = scheme.start({sites, steps, until / static_cast<double>(steps)});
-    racer->advance(steps - racer->newest(), limit);
-    if (racer->newest() != steps) return std::nullopt;
+    const auto started = scheme.start({sites, steps, until / static_cast<double>(steps)});
+    started->advance(steps - started->newest(), limit);
+    if (started->newest() != steps) return std::nullopt;
     std::vector<double> row(static_cast<std::size_t>(sites * d));
-    racer->copy(row);
+    started->copy(row);
     return row;
   } catch (const Error&) {
     return std::nullopt;
   }
 }
 
-std::optional<Reference> refined(const Contestant& scheme, const Scene& scene, const WorkPrecisionRequest& request,
-                                 double courant, Clock::time_point until, const RunLimit& limit) {
+std::optional<Reference> refined(const WorkPrecisionEntry& scheme, const Scene& scene,
+                                 const WorkPrecisionRequest& request, double courant, Clock::time_point until,
+                                 const RunLimit& limit) {
   const bool point = scene.problem.lattice.space() == Space::point;
   const double turn = InitialRows(scene).turn();
   const int d = make_state(scene.initial, scene.problem.lattice)->components();
@@ -82,10 +83,10 @@ std::optional<Reference> find_reference(const Scene& scene, const WorkPrecisionR
     throw scene.settings.error("initial.state", "a file has rows of one lattice only; use a state");
   if (has_exact(scene, request.until))
     return Reference{ComparedSolution::exact(scene, request.until), "the exact solution", 0};
-  std::vector<Contestant> schemes = engine_contestants(scene);
-  std::erase_if(schemes, [](const Contestant& c) { return c.rank == 0; });
-  std::ranges::stable_sort(schemes, std::greater(), &Contestant::rank);
-  for (const Contestant& scheme : schemes)
+  std::vector<WorkPrecisionEntry> schemes = engine_entries(scene);
+  std::erase_if(schemes, [](const WorkPrecisionEntry& c) { return c.rank == 0; });
+  std::ranges::stable_sort(schemes, std::greater(), &WorkPrecisionEntry::rank);
+  for (const WorkPrecisionEntry& scheme : schemes)
     for (const double courant : {0.25, 0.0625}) {
       if (auto reference = refined(scheme, scene, request, courant, until, limit)) return reference;
       if (Interrupt::asked()) return std::nullopt;

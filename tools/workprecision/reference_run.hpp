@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tools/compare/solution_error.hpp"
-#include "tools/workprecision/contestant.hpp"
+#include "tools/workprecision/entry.hpp"
 
 namespace delf {
 

@@ -35,13 +35,13 @@ double refined(int times) { return std::pow(2.0, 0.5 * times); }
 }  // namespace
 
 ResolutionSearch::ResolutionSearch(const Scene& scene, const WorkPrecisionRequest& request,
-                                   const std::vector<Contestant>& contestants, const ComparedSolution& solution)
+                                   const std::vector<WorkPrecisionEntry>& entries, const ComparedSolution& solution)
     : scene_(scene),
       request_(request),
-      contestants_(contestants),
+      entries_(entries),
       solution_(solution),
-      reasons_(contestants.size()),
-      seen_(contestants.size()) {
+      reasons_(entries.size()),
+      seen_(entries.size()) {
   const std::vector<double> there = solution.at(scene.problem.lattice, request.until);
   const auto [least, most] = std::ranges::minmax(there);
   field_scale_ = std::max(1e-300, std::max(std::abs(most), std::abs(least)));
@@ -50,7 +50,7 @@ ResolutionSearch::ResolutionSearch(const Scene& scene, const WorkPrecisionReques
 bool ResolutionSearch::chosen() const { return request_.sites.empty() && request_.courants.empty(); }
 
 bool ResolutionSearch::is_scenes_own(std::size_t c, const Resolution& r) const {
-  return contestants_[c].own && r.sites == scene_.problem.lattice.sites() && r.steps == scene_steps();
+  return entries_[c].own && r.sites == scene_.problem.lattice.sites() && r.steps == scene_steps();
 }
 
 std::int64_t ResolutionSearch::scene_steps() const {
@@ -73,12 +73,12 @@ Resolution ResolutionSearch::resolution(const Next& next) const {
   double h = scene_.problem.time_step * coarsest / refined(next.time);
   if (lattice.space() == Space::point) r.sites = 1;
   else {
-    const double coarse = lattice.cells() / coarsest / contestants_[next.contestant].nodes;
+    const double coarse = lattice.cells() / coarsest / entries_[next.entry].nodes;
     // an even number of cells: stencils of brick walls close around a circle then
     const auto cells = [&](int times) { return 2 * std::max(2L, std::lround(0.5 * coarse * refined(times))); };
     const int ends = lattice.is_circle() ? 0 : 1;
     r.sites = next.sites ? next.sites : static_cast<int>(cells(next.space)) + ends;
-    if (!next.sites && next.space == scenes_own && contestants_[next.contestant].own) r.sites = lattice.sites();
+    if (!next.sites && next.space == scenes_own && entries_[next.entry].own) r.sites = lattice.sites();
     const double k = lattice_of(scene_, r.sites).space_step();
     if (next.courant > 0) h = next.courant * k;
   }
@@ -90,7 +90,7 @@ Resolution ResolutionSearch::resolution(const Next& next) const {
 
 void ResolutionSearch::push(const Next& next) {
   const Resolution r = resolution(next);
-  auto& seen = seen_[next.contestant];
+  auto& seen = seen_[next.entry];
   if (const std::pair place{r.sites, r.steps}; std::ranges::find(seen, place) == seen.end()) {
     seen.push_back(place);
     queue_.push_back(next);
@@ -103,9 +103,9 @@ void ResolutionSearch::run(Clock::time_point until, const std::function<void()>&
   const double seconds = seconds_of(until - begin);
   until_ = until;
   most_of_one_ = chosen() ? share_of_one * seconds : std::numeric_limits<double>::infinity();
-  if (const auto own = std::ranges::find(contestants_, true, &Contestant::own); chosen() && own != contestants_.end())
-    run_own(static_cast<std::size_t>(own - contestants_.begin()), -seconds_since(until) * own_share, at);
-  for (std::size_t c = 0; c < contestants_.size(); ++c) seed(c);
+  if (const auto own = std::ranges::find(entries_, true, &WorkPrecisionEntry::own); chosen() && own != entries_.end())
+    run_own(static_cast<std::size_t>(own - entries_.begin()), -seconds_since(until) * own_share, at);
+  for (std::size_t c = 0; c < entries_.size(); ++c) seed(c);
   run_cheapest(until, at);
   out_of_time_ = out_of_time_ || !queue_.empty();
 }
@@ -141,24 +141,24 @@ void ResolutionSearch::run_cheapest(Clock::time_point until, const std::function
   }
 }
 
-// What fails at a coarse resolution may run at a finer one: a smaller step, or more sites up to those of the scene.
+// Tries a finer resolution after a failure at a coarse one: a smaller step, or more sites up to those of the scene.
 void ResolutionSearch::retry(const Next& next, const Resolution& r, double cost) {
   if (next.sites) return;
   cost = std::max(1.5 * next.cost, refined(1) * cost);
   const bool point = scene_.problem.lattice.space() == Space::point;
   const double least = lattice_of(scene_, r.sites).space_step() / 64;
   if (next.courant == 0 && r.time_step > least)
-    push({next.contestant, next.space, next.time + 1, 0, 0, cost, next.setup, unknown});
+    push({next.entry, next.space, next.time + 1, 0, 0, cost, next.setup, unknown});
   if (!point && next.space < scenes_own)
-    push({next.contestant, next.space + 1, next.time + 1, next.courant, 0, cost, next.setup, unknown});
+    push({next.entry, next.space + 1, next.time + 1, next.courant, 0, cost, next.setup, unknown});
 }
 
 void ResolutionSearch::attempt(const Next& next) {
   const Resolution r = resolution(next);
   constexpr std::int64_t fewest_steps = 8;
   if (r.steps < fewest_steps && !next.sites)
-    return push({next.contestant, next.space + 1, next.time + 1, next.courant, 0, next.cost, next.setup, unknown});
-  std::string& reason = reasons_[next.contestant];
+    return push({next.entry, next.space + 1, next.time + 1, next.courant, 0, next.cost, next.setup, unknown});
+  std::string& reason = reasons_[next.entry];
   const auto failed = [&](const std::string& why) {
     if (reason.empty()) reason = why;
   };
@@ -166,12 +166,12 @@ void ResolutionSearch::attempt(const Next& next) {
   const double begin = clock.now();
   try {
     TriedRun tried =
-        run_once(scene_, contestants_, next.contestant, r, request_.until, solution_, RunLimit(until_, most_of_one_));
+        run_once(scene_, entries_, next.entry, r, request_.until, solution_, RunLimit(until_, most_of_one_));
     if (Interrupt::asked()) return;  // it is not at its end
     if (!std::isfinite(tried.result.seconds)) {
       out_of_time_ = true;
       return failed(fmt::format("stopped after {:.2g} s at row {} of {}, N = {}: raise workprecision.budget",
-                                clock.since(begin), tried.racer->newest(), r.steps, r.sites));
+                                clock.since(begin), tried.started->newest(), r.steps, r.sites));
     }
     if (!std::isfinite(tried.result.error_linf)) {
       failed("the field is no longer finite");
@@ -179,13 +179,13 @@ void ResolutionSearch::attempt(const Next& next) {
     }
     tried_.push_back(std::move(tried));
     for (TriedRun& run : tried_)
-      if (run.contestant == next.contestant && run.racer && !worth(run)) run.racer.reset();
+      if (run.entry == next.entry && run.started && !worth(run)) run.started.reset();
     if (!next.sites) refine(next, tried_.back().result);
   } catch (const BadInput& error) {
     failed(error.what());
     // a stencil may be too wide, or a wave too short, for few sites
     if (!next.sites && r.sites < scene_.problem.lattice.sites())
-      push({next.contestant, next.space + 1, next.time + 1, next.courant, 0, next.cost, next.setup, unknown});
+      push({next.entry, next.space + 1, next.time + 1, next.courant, 0, next.cost, next.setup, unknown});
   } catch (const NumericalFailure& error) {
     failed(error.what());
     retry(next, r, clock.since(begin));  // unstable, or without a solution
@@ -199,20 +199,20 @@ void ResolutionSearch::attempt(const Next& next) {
 // Errors as large as the field itself do not predict the effect of refinement.
 bool ResolutionSearch::too_coarse(const Next& next, const WorkPrecisionRun& run) const {
   const Problem& p = scene_.problem;
-  const int scene_sites = p.lattice.sites() / contestants_[next.contestant].nodes;
+  const int scene_sites = p.lattice.sites() / entries_[next.entry].nodes;
   return run.error_linf > 0.1 * field_scale_ && run.sites <= 2 * scene_sites &&
          run.time_step >= (p.lattice.space() == Space::point ? p.time_step : run.space_step) / 16;
 }
 
 bool ResolutionSearch::beaten(const TriedRun& run, double share) const {
   return std::ranges::any_of(tried_, [&](const TriedRun& other) {
-    return other.contestant == run.contestant && other.result.seconds < share * run.result.seconds &&
+    return other.entry == run.entry && other.result.seconds < share * run.result.seconds &&
            other.result.error_linf <= hardly_better * run.result.error_linf;
   });
 }
 
 bool ResolutionSearch::worth(const TriedRun& run) const {
-  return !request_.sites.empty() || is_scenes_own(run.contestant, run.resolution) ||
+  return !request_.sites.empty() || is_scenes_own(run.entry, run.resolution) ||
          (run.result.error_linf <= field_scale_ && !beaten(run, clearly));
 }
 
@@ -220,7 +220,7 @@ void ResolutionSearch::refine(const Next& next, const WorkPrecisionRun& run) {
   if (run.error_linf <= 0.5 * request_.accuracies.back()) return;
   const bool point = scene_.problem.lattice.space() == Space::point, free = next.courant == 0;
   const auto further = [&](int space, int time, double before) {
-    push({next.contestant, next.space + space, next.time + time, next.courant, 0, run.seconds * refined(space + time),
+    push({next.entry, next.space + space, next.time + time, next.courant, 0, run.seconds * refined(space + time),
           run.seconds_setup * refined(space), before});
   };
   if (run.error_linf > unstable * field_scale_) return retry(next, tried_.back().resolution, run.seconds);
@@ -241,11 +241,11 @@ std::vector<TriedRun> ResolutionSearch::worth_timing() const {
 
 std::vector<WorkPrecisionOutcome::LeftOut> ResolutionSearch::left_out() const {
   std::vector<WorkPrecisionOutcome::LeftOut> list;
-  for (std::size_t c = 0; c < contestants_.size(); ++c) {
-    if (std::ranges::any_of(tried_, [&](const TriedRun& run) { return run.contestant == c && worth(run); })) continue;
+  for (std::size_t c = 0; c < entries_.size(); ++c) {
+    if (std::ranges::any_of(tried_, [&](const TriedRun& run) { return run.entry == c && worth(run); })) continue;
     double least = std::numeric_limits<double>::infinity();
     for (const TriedRun& run : tried_)
-      if (run.contestant == c) least = std::min(least, run.result.error_linf);
+      if (run.entry == c) least = std::min(least, run.result.error_linf);
     std::string reason = reasons_[c];
     if (std::isfinite(least))
       reason = fmt::format("no error below the field itself at what was run: {:.2g} at best{}", least,
@@ -253,7 +253,7 @@ std::vector<WorkPrecisionOutcome::LeftOut> ResolutionSearch::left_out() const {
     else if (reason.empty())
       reason = Interrupt::asked() ? "interrupted before it was run"
                                   : "the time was used up before it was run; raise workprecision.budget";
-    list.push_back({contestants_[c].name, reason});
+    list.push_back({entries_[c].name, reason});
   }
   return list;
 }

@@ -7,17 +7,18 @@
 #include <vector>
 
 #include "tools/compare/solution_error.hpp"
-#include "tools/workprecision/contestant.hpp"
+#include "tools/workprecision/entry.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 namespace delf {
 
 /// A resolution at which an entry has been run, once, untimed.
 struct TriedRun {
-  std::size_t contestant;
+  std::size_t entry;
   Resolution resolution;
   WorkPrecisionRun result;            ///< its seconds are those of this first run
-  std::shared_ptr<Racer> racer = {};  ///< kept while the run is worth timing: to build it may cost more than its steps
+  std::shared_ptr<StartedEntry> started =
+      {};  ///< kept while the run is worth timing: to build it may cost more than its steps
 };
 
 /// Runs each entry once at the resolutions that a request names, or at those that turn out to matter:
@@ -33,21 +34,22 @@ struct TriedRun {
 class ResolutionSearch {
  public:
   using Clock = std::chrono::steady_clock;
-  ResolutionSearch(const Scene&, const WorkPrecisionRequest&, const std::vector<Contestant>&, const ComparedSolution&);
+  ResolutionSearch(const Scene&, const WorkPrecisionRequest&, const std::vector<WorkPrecisionEntry>&,
+                   const ComparedSolution&);
 
   /// Until there is nothing left to run, `until` has come, or Ctrl-C. `at` is called after each run.
   void run(Clock::time_point until, const std::function<void()>& at);
 
-  /// Those to be timed: all of a given ladder; of a chosen one, those that no other of the scheme clearly beats.
+  /// The runs to be timed: all of a given ladder; of a chosen one, those that no other of the scheme clearly beats.
   std::vector<TriedRun> worth_timing() const;
-  /// How many resolutions were run.
+  /// The number of resolutions that were run.
   std::size_t tried() const { return tried_.size(); }
   /// Schemes without any run worth timing, and why.
   std::vector<WorkPrecisionOutcome::LeftOut> left_out() const;
 
  private:
   struct Next {
-    std::size_t contestant;
+    std::size_t entry;
     int space, time;     ///< times that N and h were refined by √2
     double courant;      ///< 0: h is refined on its own
     int sites;           ///< if given; else 0
@@ -56,11 +58,11 @@ class ResolutionSearch {
   };
   bool chosen() const;  ///< no resolution is given
   std::int64_t scene_steps() const;
-  bool is_scenes_own(std::size_t contestant, const Resolution&) const;
-  void run_own(std::size_t contestant, double seconds, const std::function<void()>& at);
+  bool is_scenes_own(std::size_t entry, const Resolution&) const;
+  void run_own(std::size_t entry, double seconds, const std::function<void()>& at);
   void run_cheapest(Clock::time_point until, const std::function<void()>& at);
   void retry(const Next&, const Resolution&, double cost);
-  void seed(std::size_t contestant);
+  void seed(std::size_t entry);
   Resolution resolution(const Next&) const;
   void attempt(const Next&);
   void refine(const Next&, const WorkPrecisionRun&);
@@ -72,7 +74,7 @@ class ResolutionSearch {
 
   const Scene& scene_;
   const WorkPrecisionRequest& request_;
-  const std::vector<Contestant>& contestants_;
+  const std::vector<WorkPrecisionEntry>& entries_;
   const ComparedSolution& solution_;
   double field_scale_ = 1;
   std::vector<Next> queue_;
@@ -86,7 +88,7 @@ class ResolutionSearch {
 
 /// Builds it and runs it once: errors against the solution, the energy at some fifty rows, and seconds that leave these
 /// out; these stay unknown if the limit ends it. Throws BadInput or NumericalFailure.
-TriedRun run_once(const Scene&, const std::vector<Contestant>&, std::size_t contestant, const Resolution&, double until,
-                  const ComparedSolution&, const RunLimit&);
+TriedRun run_once(const Scene&, const std::vector<WorkPrecisionEntry>&, std::size_t entry, const Resolution&,
+                  double until, const ComparedSolution&, const RunLimit&);
 
 }  // namespace delf

@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// What ends a run before its last row: a moment up to which the user waits, seconds of the processor since it began,
+/// The end of a run before its last row: a moment up to which the user waits, seconds of the processor since it began,
 /// or Ctrl-C.
 class RunLimit {
  public:

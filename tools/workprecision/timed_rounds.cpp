@@ -55,12 +55,12 @@ void time_in_turn(std::vector<TriedRun>& runs, const std::vector<int>& repeats, 
     std::ranges::shuffle(order, random);
     for (const std::size_t i : order) {
       if (limit.reached()) break;
-      Racer* racer = runs[i].racer.get();
-      racer->restart();
+      StartedEntry* started = runs[i].started.get();
+      started->restart();
       const double from = clock.now();
-      racer->advance(runs[i].resolution.steps - racer->newest(), limit);
+      started->advance(runs[i].resolution.steps - started->newest(), limit);
       const double taken = clock.since(from);
-      if (racer->newest() != runs[i].resolution.steps) break;
+      if (started->newest() != runs[i].resolution.steps) break;
       seconds[i].push_back(taken);
       at();
     }

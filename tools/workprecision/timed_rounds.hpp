@@ -7,8 +7,8 @@
 
 namespace delf {
 
-/// How often each run is timed, so that all of them take at most `seconds`: `repeats` times, or less for those that
-/// take longest, but once at least.
+/// The number of times that each run is timed, so that all of them take at most `seconds`: `repeats` times, or less for
+/// those that take longest, but once at least.
 std::vector<int> shared_repeats(const std::vector<double>& cost_of_each, int repeats, double seconds);
 
 /// Times the runs, round after round, each round in an order of its own, so that other load on the machine affects all

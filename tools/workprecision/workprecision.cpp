@@ -63,13 +63,14 @@ ExitCode workprecision_in(const fs::path& folder, const Scene& scene) {
 WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequest& request) {
   const auto begin = Clock::now();
   WorkPrecisionOutcome outcome;
-  const std::vector<Contestant> schemes = contestants(scene, request);
+  const std::vector<WorkPrecisionEntry> schemes = entries(scene, request);
   const auto reference = find_reference(scene, request, after(begin, reference_share * request.budget),
                                         RunLimit(after(begin, longest_reference * request.budget)));
   if (!reference) {
     outcome.status = "interrupted";
     outcome.reference = "a finer run, which was interrupted";
-    for (const Contestant& one : schemes) outcome.left_out.push_back({one.name, "interrupted before it was run"});
+    for (const WorkPrecisionEntry& one : schemes)
+      outcome.left_out.push_back({one.name, "interrupted before it was run"});
     outcome.seconds = seconds_since(begin);
     return outcome;
   }

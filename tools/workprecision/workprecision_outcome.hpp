@@ -17,7 +17,7 @@ struct WorkPrecisionRun {
 
   std::string scheme;
   bool peer = false;  ///< another program
-  bool processed = false, tuned = false, own = false;  ///< as of the contestant
+  bool processed = false, tuned = false, own = false;  ///< as of the entry
   int sites = 0;
   double space_step = 1, time_step = 0;
   std::int64_t steps = 0;
@@ -73,7 +73,7 @@ std::string workprecision_csv(const WorkPrecisionOutcome&);
 /// The table by scheme for a paper, as Markdown and as LaTeX.
 std::string workprecision_markdown(const Scene&, const WorkPrecisionRequest&, const WorkPrecisionOutcome&);
 std::string workprecision_latex(const Scene&, const WorkPrecisionRequest&, const WorkPrecisionOutcome&);
-/// For the terminal.
+/// The report for the terminal.
 std::string workprecision_report(const Scene&, const WorkPrecisionRequest&, const WorkPrecisionOutcome&);
 /// Draws `folder`/figures/workprecision; returns what is missing, in one line, or an empty string.
 std::string draw_workprecision(const Scene&, const WorkPrecisionOutcome&, const std::filesystem::path& folder);

@@ -121,7 +121,7 @@ std::string costs_table(const WorkPrecisionOutcome& o) {
   return text_table(columns, rows, terminal);
 }
 
-// Schemes that are told of the solution against the peers of the first table, and its engine against processed peers.
+// Schemes that know the solution against the peers of the first table, and its engine against processed peers.
 std::string special_costs_table(const WorkPrecisionOutcome& o) {
   std::vector<std::vector<std::string>> rows;
   const auto cells = [&](std::vector<std::string>& row, const std::optional<std::size_t>& index, double ratio) {

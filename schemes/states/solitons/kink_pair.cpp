@@ -130,7 +130,7 @@ std::unique_ptr<State> kink_pair(const StateBuild& build, int winding) {
   return std::make_unique<Pulses>(build, PulseFrame{pair.position, 0, winding, lasts_until(build, pair)}, pair);
 }
 
-// Of integrable theories the exact solution.
+// The exact solution of integrable theories.
 std::unique_ptr<State> kink_antikink(const StateBuild& build) {
   auto profile = kink_profile(build);
   if (profile->integrable()) return kink_pair<KinkAntikink>(build, 0);

@@ -52,7 +52,7 @@ class MpsCollision final : public State {
     const double xi = x - train_.period / 2 - train_.speed * t, slope = train_.slope(xi);
     return {train_.phi(xi), -train_.speed * slope, side * slope};
   }
-  // Of the last quarter of the sites the mirror images are taken, so that sites i and N − i agree to the bit.
+  // The last quarter of the sites takes mirror images, so that sites i and N − i agree to the bit.
   void at_every_site(double FieldPoint::*part, double t, const Lattice& lattice, std::span<double> out) const {
     const int N = lattice.sites();
     FieldPoint point;

@@ -20,9 +20,9 @@ struct TrainProfile {
   /// √(1 − v²)/m = Λ/2κK, of each kink
   double width() const { return period / (2 * jacobi.modulus() * jacobi.K()); }
 
-  /// From κ = 1 − ε; the speed follows. Throws BadInput (initial.epsilon) if the kinks are too wide for the period.
+  /// A train of κ = 1 − ε; speed follows. Throws BadInput (initial.epsilon) if the kinks are too wide for the period.
   static TrainProfile from_epsilon(double epsilon, double period, double mass);
-  /// From v; κ follows. Throws BadInput (initial.speed) if they are further apart than numbers can tell.
+  /// A train of speed v; κ follows. Throws BadInput (initial.speed) if they are further apart than numbers can tell.
   static TrainProfile from_speed(double speed, double period, double mass);
 };
 

@@ -18,7 +18,7 @@ double Contraction::within(double size, std::int64_t n) {
   return within_;
 }
 
-/// With the step sh the root is near y_n + s v_n + s² (v_{n+1} − v_n).
+/// The root of the step sh is near y_n + s v_n + s² (v_{n+1} − v_n).
 bool Contraction::is_stiff_along(const RowTable& table, std::int64_t n) {
   along_ = 0;
   for (const double s : {0.0, 0.25, 0.5, 0.75, 1.0}) along_ = larger_or_nan(of(equations_.slopes_at(table, n, s)), along_);

@@ -9,9 +9,9 @@
 
 namespace delf {
 
-/// How the fixed point of a step contracts, in the largest norm: y_{n+1} enters a quadrature value m_j with weights that
-/// sum to W_j, and a change of 1 in the source term g_s changes y^a by at most G_as, so that a change of y_{n+1} is the
-/// next time less by
+/// The contraction of a step's fixed point, in the largest norm: y_{n+1} enters a quadrature value m_j with weights
+/// that sum to W_j, and a change of 1 in the source term g_s changes y^a by at most G_as, so that a change of y_{n+1}
+/// is the next time less by
 ///
 ///     q = max_a Σ_s G_as max Σ_j W_j |∂g_s/∂m_j|.
 ///
@@ -26,7 +26,7 @@ class Contraction {
   double within(double size, std::int64_t n);
   /// A step from fields of this size may have several roots, by q for all fields that are no larger.
   bool is_stiff(double size, std::int64_t n) { return !(within(size, n) < single_root); }
-  /// The same by the fields on the way from row n to row n + 1, both as they stand in the table.
+  /// True if the step is stiff for the fields on the way from row n to row n + 1, both as they are in the table.
   bool is_stiff_along(const RowTable&, std::int64_t n);
   /// The next change of y_{n+1} over its last change: four times the worst case.
   double next_change(double size, std::int64_t n) { return 4 * (is_stiff(size, n) ? std::min(along_, within_) : within_); }

@@ -14,7 +14,7 @@ namespace delf {
 /// row n + 1 is made. Steps in place make it over row n; the row before the first of them stays.
 class KeptRows {
  public:
-  /// For equations that read `history` rows; φ(x + L) = φ(x) + monodromy.
+  /// The rows of equations that read `history` rows; φ(x + L) = φ(x) + monodromy.
   KeptRows(const LatticeSystem&, const RowLayout&, const RowEquations&, RowTable&, int history, double monodromy);
 
   /// The newest `history` of these rows, and the increments between them.
@@ -42,7 +42,7 @@ class KeptRows {
   std::vector<const double*> all() const;
 
   bool in_place() const { return !beside_.empty(); }
-  /// From here on row n + 1 takes the place of row n.
+  /// Lets row n + 1 take the place of row n from here on.
   void go_in_place();
   void advance_in_place();
   void leave_place();

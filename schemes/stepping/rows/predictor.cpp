@@ -9,11 +9,11 @@ namespace delf {
 namespace {
 
 constexpr int most_order = 8;
-// What a prediction of low order leaves is in phase with the wave, and feeds or damps it step after step.
+// The lowest useful order: errors of lower ones are in phase with the wave, and feed or damp it step after step.
 constexpr int lowest_order = 4;
 // Lower orders serve where what all steps of a unit of time leave together is less than this part of the tolerance.
 constexpr double left_in_unit_time = 0.05;
-// What an iteration costs, in rows read: an evaluation of the density and a solve.
+// The cost of an iteration, in rows read: an evaluation of the density and a solve.
 constexpr double rows_per_iteration = 24;
 constexpr int steps_between_choices = 128;
 constexpr int sites_in_cache = 1 << 15;
@@ -40,7 +40,7 @@ void Predictor::choose(const RowTable& table, std::int64_t n, int rows_there, co
     if (!source.reads_unknown) continue;
     Pack worst[most_order + 1];
     std::fill_n(worst, most_order + 1, Pack(0.0));
-    // Of bricks every second pack is there.
+    // Bricks fill every second pack.
     const int own = source.stride == 2 ? static_cast<int>((n + source.newest - 1) & 1) : 0;
     for (int pack = own; pack < layout_.packs(); pack += source.stride) {
       Pack difference[most_order + 1];

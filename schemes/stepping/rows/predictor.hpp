@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// How the source terms of the unknown row are predicted: the polynomial of order p through those of the last p rows,
+/// The predictor of source terms of the unknown row: the polynomial of order p through those of the last p rows,
 ///
 ///     g_{n+1} ≈ Σ_{j=1}^{p} (−1)^{j+1} C(p, j) g_{n+1−j},
 ///

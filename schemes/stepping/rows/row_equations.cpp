@@ -225,7 +225,7 @@ const SourceRow& RowEquations::source_of(const Term& t) const {
   return *found;
 }
 
-/// Where a term of the known part stands in the table.
+/// The place in the table of a term of the known part.
 int RowEquations::known_row(const Term& t) const {
   switch (t.source) {
     case Source::difference:
@@ -240,7 +240,7 @@ int RowEquations::known_row(const Term& t) const {
   }
 }
 
-/// Where it stands for residual(): source terms that depend on row n + 1, or have no row, among the measured ones.
+/// The place of a term in residual(): source terms that read row n + 1, or have no row, are among the measured ones.
 int RowEquations::measured_row(const Term& t) const {
   if (t.source == Source::unknown) return measured_ + t.component;
   if (t.source != Source::output) return known_row(t);

@@ -69,15 +69,15 @@ class RowEquations {
   const std::vector<SourceRow>& sources() const { return sources_; }
   bool iterates() const { return iterates_; }  ///< some source term depends on row n + 1
   bool reads_increments_beside() const { return reads_increments_beside_; }  ///< at shifts: v needs halos
-  /// For the step from row n: on brick walls those from even and from odd rows may differ.
+  /// The solver of the step from row n: on brick walls those from even and from odd rows may differ.
   const LinearSolver& solver(std::int64_t n) const { return solver_[1] ? *solver_[n & 1] : *solver_[0]; }
   int reach() const { return reach_; }  ///< so many sites to either side right sides read y
 
   /// The right side of component a, times the solver's scale, for the packs from … to, into w.
   void right_side(const RowTable&, std::int64_t n, int a, Solving, int from, int to, double* w) const;
-  /// Of all components, w[a], and at walls.
+  /// The right sides of all components, w[a], and at walls.
   void right_sides(const RowTable&, std::int64_t n, Solving, int from, int to, double* const* w) const;
-  /// Of a component as a sum of rows, for all packs; null for bricks, whose packs take turns.
+  /// The right side of a component as a sum of rows, for all packs; null for bricks, whose packs take turns.
   const RowSum* right_side(int a, Solving solving) const { return bricks_ ? nullptr : &sum_of(a, 0, solving); }
   /// The prediction of number 0 of a source row's ring.
   const RowSum& prediction(const SourceRow& row, int predicted_from) const {
@@ -94,7 +94,7 @@ class RowEquations {
   /// pack v stands at layout.at(v).
   void evaluate(const RowTable&, std::int64_t n, const SourceRow& first_of_group, int back, int from, int to,
                 double* const* out) const;
-  /// Of each source row, the most that a change of 1 in y_{n+1} everywhere may change it by, max Σ_j W_j |∂g/∂m_j|: W_j is
+  /// The largest change of each source row by a change of 1 in y_{n+1} everywhere, max Σ_j W_j |∂g/∂m_j|: W_j is
   /// what the weights of row n + 1 in its quadrature value m_j sum to. With quadrature values up to `size`; and on the way
   /// from row n to row n + 1, at the row y_n + s v_n + s² (v_{n+1} − v_n).
   std::vector<double> slopes_within(double size, std::int64_t n) const;

@@ -39,13 +39,13 @@ class RowOperations {
   virtual double pass(Solving, std::vector<double>* corrections, const std::function<void(RowOperations&)>& along) = 0;
 
   virtual void evaluate(Strip) = 0;
-  /// From the source terms of `order` rows.
+  /// Predicts from the source terms of `order` rows.
   virtual void predict(int order, Strip) = 0;
   virtual void right_side(Strip) = 0;
   /// The next strip to update: right sides of other strips may have to come first, and then it is empty.
   virtual Strip solve() = 0;
   virtual void update(Strip) = 0;
-  /// As far as row n + 1 is there.
+  /// Compares as far as row n + 1 is there.
   virtual void compare(Strip) = 0;
 
   /// g in whole rows: those terms that depend on rows up to n alone, and that other sites read; or those that depend on row

@@ -27,7 +27,7 @@ constexpr int most_components = 32;
 // The passes of a step over its rows, strip by strip. Each returns the largest |y_{n+1}|, and in `corrections` the largest
 // |δ| of each source term.
 
-/// Where no source term depends on row n + 1.
+/// The pass of a step in which no source term depends on row n + 1.
 double explicit_pass(RowOperations& rows) {
   return rows.pass(Solving::step, nullptr, [](RowOperations& part) {
     for (const Strip& strip : part.strips()) {
@@ -39,7 +39,7 @@ double explicit_pass(RowOperations& rows) {
   });
 }
 
-/// Where g at row n + 1 is predicted from so many rows; or, of order 0, is there.
+/// The pass in which g at row n + 1 is predicted from so many rows; or, of order 0, is there.
 double predicted_pass(RowOperations& rows, int order, std::vector<double>& corrections) {
   return rows.pass(Solving::step, &corrections, [order](RowOperations& part) {
     for (const Strip& strip : part.strips()) {
@@ -54,7 +54,7 @@ double predicted_pass(RowOperations& rows, int order, std::vector<double>& corre
   });
 }
 
-/// Of the last correction, δ is not evaluated: null.
+/// The pass that corrects. The last correction evaluates no δ: null.
 double correction_pass(RowOperations& rows, std::vector<double>* corrections) {
   return rows.pass(Solving::correction, corrections, [corrections](RowOperations& part) {
     for (const Strip& strip : part.strips()) {
@@ -175,8 +175,8 @@ struct RowStepper::Impl {
     largest_before = largest, largest = value;
     return true;
   }
-  /// Where the fixed point does not contract: by Newton's method, and where there may be other roots than the one that it
-  /// finds, by following the root from a small time step.
+  /// Solves where the fixed point does not contract: by Newton's method, and where there may be other roots than its
+  /// own, by following the root from a small time step.
   void solve_by_newton() {
     const Window past = kept.window(history);
     if (continued != Continued::stiff) {
@@ -209,7 +209,7 @@ struct RowStepper::Impl {
     return !may_have_other_roots(value) && set_largest(value);
   }
 
-  /// The same of row 1 of a centred start, from row 0 and y₋₁ = y₁ − 2hφ_t.
+  /// True if row 1 of a centred start may have other roots, from row 0 and y₋₁ = y₁ − 2hφ_t.
   bool may_have_other_roots_from(const std::vector<double>& row0, const std::vector<double>& velocity,
                                  const std::vector<double>& row1) {
     if (!tolerance) return false;
@@ -240,7 +240,7 @@ struct RowStepper::Impl {
     ++past_sources;
     count_sources();
   }
-  /// Of bricks those of every second row stand at the same sites.
+  /// Counts source rows at the same sites: those of bricks are every second one.
   void count_sources() {
     source_rows_there = most_rows;
     for (const SourceRow& source : equations.sources())

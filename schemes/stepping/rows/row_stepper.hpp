@@ -15,7 +15,7 @@ namespace delf {
 /// differences throughout, so that rounding enters at the size of the increment and not of the field.
 class RowStepper final : public StepMethod {
  public:
-  /// For a system that goes_by_rows. Throws NoConvergence if the constant part of the equations is singular.
+  /// The stepper of a system that goes_by_rows. Throws NoConvergence if the constant part of the equations is singular.
   RowStepper(const LatticeSystem&, const SolvePlan&, const StepOptions&);
   ~RowStepper() override;
 

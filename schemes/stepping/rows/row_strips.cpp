@@ -209,7 +209,7 @@ void RowStrips::evaluate(Strip packs) {
   }
 }
 
-/// Of bricks every second pack is there.
+/// The first pack with bricks, which fill every second one.
 int RowStrips::first_brick(const SourceRow& source, int pack) const {
   return source.stride == 2 ? pack + static_cast<int>((pack + kept_.newest() + source.newest) & 1) : pack;
 }

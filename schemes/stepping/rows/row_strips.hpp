@@ -36,7 +36,7 @@ class RowStrips final : public RowOperations {
   std::size_t bytes() const;
 
  private:
-  /// How A₊ w = r is solved.
+  /// The solution of A₊ w = r.
   enum class Solver {
     number,     ///< r/A₊ is used as it is formed, or, where row n + 1 takes the place of row n, some packs later
     sweeps,     ///< by two recurrences; the second may follow the first at a distance
@@ -78,7 +78,7 @@ class RowStrips final : public RowOperations {
   std::optional<ThreadTeam> team_;
   std::vector<std::unique_ptr<RowStrips>> parts_;
 
-  // Of the pass that is under way.
+  // The state of the pass that is under way.
   Solving solving_ = Solving::step;
   std::vector<double>* corrections_ = nullptr;
   const ScratchRows* local_ = nullptr;  ///< source terms that no row is kept of

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double round_off = std::numeric_limits<double>::epsilon();
 
-/// How y answers to a change of 1 in a source term, [source][component]: exact on a circle, where one impulse shows it. In
-/// the middle of an interval it is near enough: the tolerance is tested by it, and the change itself is what ends an
-/// iteration.
+/// The change of y by a change of 1 in a source term, [source][component]: exact on a circle, where one impulse shows
+/// it. In the middle of an interval it is near enough: the tolerance is tested by it, and the change itself is what
+/// ends an iteration.
 std::vector<std::vector<double>> gains_of(int d, const RowEquations& equations, const RowLayout& layout, RowTable& table) {
   constexpr std::int64_t first_step = -1;
   std::vector<std::vector<double>> gains;
@@ -77,16 +77,16 @@ void StepTolerance::see_span(const RowTable& table) {
   }
 }
 
-/// What the tolerance allows: relative to what the field spans, for where it has drifted to says nothing, but not below
-/// what rounding leaves at its size.
+/// The error that the tolerance allows: relative to what the field spans, as its mean may have drifted anywhere, but
+/// not below what rounding leaves at its size.
 double StepTolerance::allowed(double size) const {
   const double spanned = span_ > 0 ? std::min(span_, size) : size;
   return std::max(tolerance_ * spanned, 4 * round_off * size);
 }
 
-/// What is left to a prediction has the same sign step after step, and moves the energy: over 5000 collisions (N = 255,
-/// h = k/8, tolerance 6e-8) by 1e-4 of it where all of the tolerance was, within what the exact root does with this share.
-/// The smallest tolerances ask for all that rounding allows: what is left then no longer shrinks.
+/// The share of the tolerance that is left to a prediction: its error has the same sign step after step, and moves the
+/// energy, in 5000 collisions (N = 255, h = k/8, tolerance 6e-8) by 1e-4 with all of the tolerance, by this share as
+/// little as the exact root. The smallest tolerances ask for all that rounding allows: no less is left then.
 double StepTolerance::share(double contraction) const {
   constexpr double left_to_predictions = 0.01;
   return tolerance_ >= smallest_estimated ? left_to_predictions : std::min(contraction, 1.0) / 64;

@@ -12,17 +12,17 @@ namespace delf {
 /// against what is allowed.
 class StepTolerance {
  public:
-  /// For equations that iterate. Uses the rows of changes in the table.
+  /// The tolerance of equations that iterate. Uses the rows of changes in the table.
   StepTolerance(const LatticeSystem&, const RowEquations&, const RowLayout&, RowTable&, const StepOptions&);
 
-  /// Of each source row: what a change of 1 changes y by, at most.
+  /// The largest change of y by a change of 1, for each source row.
   const std::vector<double>& gains() const { return gains_; }
-  /// What the changes of source terms, the largest |δ| of each, would change y by, at most.
+  /// The largest change of y by changes of source terms, given the largest |δ| of each.
   double effect_of(const std::vector<double>& changes) const;
-  /// What the row y_n spans, max y − min y; what is allowed is relative to it from here on.
+  /// Takes the span of row y_n, max y − min y; what is allowed is relative to it from here on.
   void see_span(const RowTable&);
-  /// For a prediction or a last change, and fields whose largest |y| is `size`, where one more iteration's change would
-  /// be less by `contraction`.
+  /// The error at which a prediction or a last correction is good enough, for fields whose largest |y| is `size`, where
+  /// one more iteration would correct it by `contraction` times less.
   double enough(double size, double contraction) const { return share(contraction) * allowed(size); }
   Contraction& contraction() { return contraction_; }
 

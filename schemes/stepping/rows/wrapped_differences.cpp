@@ -44,7 +44,8 @@ void check_wrapped_differences(const LatticeSystem& system, const RowLayout& lay
         if (site < 0) continue;
         throw NotFinite(fmt::format(
             "step {}, t = {:.6g}, site {}: on the fibre S1 a wrapped difference within a stencil is above 0.9 pi, where "
-            "it cannot be told from its complement; refine the lattice, reduce lattice.courant, or use theory.fibre = R",
+            "it cannot be distinguished from its complement; refine the lattice, reduce lattice.courant, or use "
+            "theory.fibre = R",
             newest, static_cast<double>(newest) * system.time_step(), site));
       }
     }

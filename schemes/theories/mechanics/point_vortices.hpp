@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// The same rotation of n planes, A = diag(J, …, J).
+/// The rotation of n planes together, A = diag(J, …, J).
 inline LinearSymmetry rotation_of_planes(std::size_t n) {
   LinearSymmetry rotation{"rotation", std::vector<double>(4 * n * n, 0.0), std::vector<double>(2 * n, 0.0)};
   for (std::size_t i = 0; i < n; ++i) {

@@ -3,40 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
 
-#include "jets/simd/scratch_rows.hpp"
-#include "schemes/families/jet_family.hpp"
+#include "jets/tables/density_on_table.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 namespace {
 
 constexpr double rounding = 1e-12;
-
-/// At some t and x, ℓ(φ, −φ_t, φ_x, φ_tt, −φ_tx, φ_xx) = ℓ at random jets: half of them from −1 to 1, half of them where logarithms and roots
-/// have values.
-bool is_even_in_rates(const BatchDensity& density) {
-  constexpr int jets = 2 * lanes;
-  const int m = density.variables();
-  ScratchRows jet(m + 1, jets), l(2, jets);
-  std::mt19937_64 random(20261126);
-  for (int v = 0; v < m; ++v)
-    for (int n = 0; n < jets; ++n)
-      jet[v][n] = std::uniform_real_distribution<double>(n % 2 ? -1 : 0.1, n % 2 ? 1 : 2)(random);
-  for (int n = 0; n < jets; ++n) jet[m][n] = std::uniform_real_distribution<double>(0, 1)(random);
-  const JetBatch batch{jets, jet.data(), std::uniform_real_distribution<double>(0, 1)(random), jet[m]};
-  density.value(batch, l[0]);
-  for (int v = 0; v < m; ++v)
-    if (const auto slot = static_cast<JetSlot>(v / density.components());
-        slot == JetSlot::phi_t || slot == JetSlot::phi_tx)
-      for (int n = 0; n < jets; ++n) jet[v][n] = -jet[v][n];
-  density.value(batch, l[1]);
-  for (int n = 0; n < jets; ++n)
-    if (std::isfinite(l[0][n]) && !(std::abs(l[0][n] - l[1][n]) <= rounding * (1 + std::abs(l[0][n])))) return false;
-  return true;
-}
 
 /// Points at τ and at 1 − τ, at the same place, have the same weight.
 bool is_symmetric(const StencilTable& table) {
@@ -48,7 +23,7 @@ bool is_symmetric(const StencilTable& table) {
   });
 }
 
-/// Whether the nodes of a cell that constraints hold, the lower end counted for both, lie at τ and 1 − τ.
+/// True if the nodes of a cell that constraints hold, the lower end counted for both, lie at τ and 1 − τ.
 bool are_symmetric(const std::vector<double>& times) {
   return std::ranges::all_of(times, [&](double time) {
     return time == 0 || std::ranges::any_of(times, [&](double other) { return std::abs(time + other - 1) < rounding; });
@@ -60,8 +35,9 @@ bool are_symmetric(const std::vector<double>& times) {
 bool reversible_elements(const LatticeSystem& system) {
   std::vector<double> held;
   for (const auto& family : system.families()) {
-    if (const auto* element = dynamic_cast<const JetFamily*>(family.get())) {
-      if (!is_even_in_rates(element->density()) || !is_symmetric(element->table())) return false;
+    if (const DensityOnTable* element = family->made_of()) {
+      // ℓ(φ, −φ_t, φ_x, φ_tt, −φ_tx, φ_xx) = ℓ
+      if (!element->density->is_even(Reflection::in_time) || !is_symmetric(element->table)) return false;
       continue;
     }
     bool constrains = false;

@@ -5,9 +5,9 @@ namespace delf {
 
 class LatticeSystem;
 
-/// Whether a scheme of elements in time is its own inverse: its densities are even in φ_t and φ_tx, and its quadrature
+/// True if a scheme of elements in time is its own inverse: its densities are even in φ_t and φ_tx, and its quadrature
 /// points and the nodes that constraints hold are the same seen from the end of the cell. (Polynomials and uniform splines are.)
-/// Of densities that read t, seen with T − t in its place. False too for families that are neither elements nor
+/// Densities that read t are seen with T − t in its place. False too for families that are neither elements nor
 /// constraints.
 bool reversible_elements(const LatticeSystem&);
 

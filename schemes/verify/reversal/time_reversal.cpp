@@ -40,7 +40,7 @@ Values equations_in_the_middle(const LatticeSystem& system, std::int64_t first_r
   return values;
 }
 
-/// The same E up to rounding, or its negative, at every site that has an equation of a field.
+/// True for the same E up to rounding, or its negative, at every site that has an equation of a field.
 bool agree(const LatticeSystem& system, const Values& one, const Values& other, double sign) {
   double scale = 0, difference = 0;
   for (std::size_t n = 0; n < one.size(); ++n) {
@@ -118,7 +118,7 @@ struct TurningPoint {
   double time;  ///< of the newest row
 };
 
-/// How the state is read, turned round, and begun from.
+/// The state as it is read, turned round, and begun from.
 class Motion {
  public:
   Motion(const LatticeSystem& system, bool by_momenta)
@@ -155,7 +155,7 @@ class Motion {
     if (by_momenta_ && constrained_) return largest_difference({a.first}, {b.first});
     return largest_difference({a.first, a.second}, {b.first, b.second});
   }
-  /// From two rows; elements, and steps that rows choose, from the first, moved by their difference: any motion will do.
+  /// Begins from two rows; elements, and steps that rows choose, from the first, moved by the difference: any will do.
   void begin(Simulation& simulation, const Rows& rows) const {
     if (!by_momenta_ && !simulation.step_density()) return simulation.start(rows);
     Row velocity(rows[0].size());
@@ -191,7 +191,7 @@ class Motion {
     return c.at.time == 0 && (c.role == Role::field || c.role == Role::inner) &&
            !system.touching({0, site}, component).empty();
   }
-  /// With the row's value in the nodes above it too: between rows a wall holds what it holds there.
+  /// Puts the row's value into the nodes above it too: between rows a wall holds what it holds there.
   static Row in_all_nodes(const LatticeSystem& system, Row row) {
     for (std::size_t n = 0; n < row.size(); ++n) {
       const auto [site, component] = place(system, n);

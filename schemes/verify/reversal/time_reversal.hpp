@@ -14,7 +14,7 @@ namespace delf {
 class LatticeSystem;
 class Simulation;
 
-/// Whether the equations are the same with time running backwards: at random rows, y_{j+s} ↦ y_{j−s} leaves E of every
+/// True if the equations are the same with time running backwards: at random rows, y_{j+s} ↦ y_{j−s} leaves E of every
 /// field at row j as it is, or turns its sign at all sites together. Bricks lie half a brick apart from row to row, so
 /// that theirs is the mirror between two rows: E at row j of the one is E at row j + 1 of the other. Equations of
 /// multipliers are not asked, only their part in those of the fields. Where equations read t, `mirrored` has T − t in its
@@ -26,7 +26,7 @@ double mirror_time(const LatticeSystem&);
 /// Forward, the last two rows exchanged, and back: to rows 2 and 3, the first that the scheme itself has made. Elements in
 /// time go from (q, p) to (q, -p) and back; under a constraint their rows alone are compared.
 struct Reversal {
-  /// Whether the way back must end at the start: the equations are reversible, or have no Lagrangian to excuse them. A
+  /// True if the way back must end at the start: the equations are reversible, or have no Lagrangian to excuse them. A
   /// variational scheme need not be reversible; the distances of one that is not are measured, and `check` is empty.
   bool promised = false;
   std::vector<std::int64_t> steps;  ///< m = 1, 2, 4, … and the whole way; even ones for brick walls

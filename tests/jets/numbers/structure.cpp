@@ -2,8 +2,11 @@
 #include "jets/numbers/structure.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
+#include "jets/batch_of.hpp"
 #include "tests/catch.hpp"
 #include "tests/jets/catalogue.hpp"
 #include "tests/jets/random.hpp"
@@ -111,6 +114,25 @@ double contradiction(const Program& program, const Abstract& claim, Random& rand
   return worst;
 }
 
+/// The largest change of ℓ(φ, φ_t, φ_x), relative, by a reflection that is said to leave it as it is.
+double change_by_reflections(const Program& program, std::uint8_t even, Random& random) {
+  double worst = 0;
+  for (int r = 0; r < 3; ++r)
+    for (int n = 0; n < 4 && (even >> r & 1) != 0; ++n) {
+      const double phi = random(-1.5, 1.5), phi_t = random(-1.5, 1.5), phi_x = random(-1.5, 1.5);
+      const double as_it_is = program(Jet<double>{phi, phi_t, phi_x}),
+                   reflected = program(Jet<double>{r == 0 ? -phi : phi, r == 1 ? -phi_t : phi_t, r == 2 ? -phi_x : phi_x});
+      worst = std::max(worst, std::abs(reflected - as_it_is) / (1 + std::abs(as_it_is)));
+    }
+  return worst;
+}
+
+/// The reflection of φ_x leaves a density of that lambda as it is, by its form alone.
+template <class F>
+bool is_even(F f) {
+  return structure_of(from(f)).of_density.even >> static_cast<int>(Reflection::phi_x) & 1;
+}
+
 }  // namespace
 
 TEST_CASE("theories without a potential, or with a quadratic one, are linear") {
@@ -212,4 +234,68 @@ TEST_CASE("the sampling can fail: φ³ claimed to have a constant Hessian, φφ_
   none.nonzero.fill(0);
   CHECK(contradiction(cube, constant, random) > 0.01);
   CHECK(contradiction(product, none, random) > 0.01);
+}
+
+TEST_CASE("of random polynomials no reflection is claimed that changes them") {
+  Random random(19);
+  int claimed = 0;
+  for (int n = 0; n < 3000; ++n) {
+    Program program;
+    program.grow(random, random.pick(1, 5));
+    const std::uint8_t even = structure_of(program).of_density.even;
+    CHECK(change_by_reflections(program, even, random) < 1e-12);
+    for (int r = 0; r < 3; ++r) claimed += even >> r & 1;
+    CHECK((even >> static_cast<int>(Reflection::phi_t) & 1) == (even >> static_cast<int>(Reflection::in_time) & 1));
+  }
+  CHECK(claimed > 1000);
+  // the sampling can fail: φ_x³ claimed to be even
+  Program cube;
+  cube.operations = {{'v', 2, 0}, {'p', 0, 3}};
+  CHECK(change_by_reflections(cube, 1u << static_cast<int>(Reflection::phi_x), random) > 0.01);
+}
+
+TEST_CASE("even functions of an odd number are even, and so are products of two odd ones") {
+  CHECK(is_even([](const auto& j) { return cos(j.phi_x) + cosh(j.phi_x) + sinc(j.phi_x) + cosm1(j.phi_x); }));
+  CHECK(is_even([](const auto& j) { return sin(j.phi_x) * j.phi_x + tan(j.phi_x) * sinh(j.phi_x); }));
+  CHECK(is_even([](const auto& j) { return tanh(j.phi_x) / j.phi_x - atan(j.phi_x) * (1.0 / j.phi_x); }));
+  CHECK(is_even([](const auto& j) { return pow(j.phi_x, 4.0) + pow(j.phi_x, -2.0) + pow(j.phi_x, 3.0) * j.phi_x; }));
+  CHECK(is_even([](const auto& j) { return -sqrt(1.0 - j.phi_t * j.phi_t + j.phi_x * j.phi_x) + exp(j.phi); }));
+  CHECK(is_even([](const auto& j) { return sin(sin(j.phi_x)) * j.phi_t * sin(-j.phi_x); }));
+}
+
+TEST_CASE("a density that a reflection changes is not claimed to be even") {
+  CHECK_FALSE(is_even([](const auto& j) { return j.phi_x; }));
+  CHECK_FALSE(is_even([](const auto& j) { return sin(j.phi_x) + cos(j.phi_x); }));
+  CHECK_FALSE(is_even([](const auto& j) { return tan(j.phi_x) + sinh(j.phi_x) + tanh(j.phi_x) + atan(j.phi_x); }));
+  CHECK_FALSE(is_even([](const auto& j) { return exp(j.phi_x); }));
+  CHECK_FALSE(is_even([](const auto& j) { return sqrt(2.0 + j.phi_x) + log(2.0 + j.phi_x); }));
+  CHECK_FALSE(is_even([](const auto& j) { return pow(j.phi_x, 3.0) + pow(j.phi_x, -1.0); }));
+  CHECK_FALSE(is_even([](const auto& j) { return pow(j.phi_x, 2.5); }));
+  CHECK_FALSE(is_even([](const auto& j) { return j.phi_t * j.phi_x; }));
+  CHECK_FALSE(is_even([](const auto& j) { return cos(1.0 + j.phi_x); }));
+  CHECK_FALSE(is_even([](const auto& j) { return cos(j.phi_t + j.phi_x); }));
+  // in all rates together: not in each
+  const auto turning = structure_of(from<2>([](const auto& j) { return j.phi_t[0] * j.phi_t[1] + j.phi_x[0] * j.phi[1]; }));
+  const auto even = [&](Reflection r) { return (turning.of_density.even >> static_cast<int>(r) & 1) != 0; };
+  CHECK(even(Reflection::in_time));
+  CHECK_FALSE(even(Reflection::phi_x));
+  CHECK_FALSE(even(Reflection::phi));
+}
+
+TEST_CASE("a quadratic density is even where the entries between slots cancel in numbers") {
+  const auto even = [](const auto& f, Reflection r) { return BatchOf(from(f)).is_even(r); };
+  const auto wave = [](const auto& j) { return (j.phi_t - j.phi_x) * (j.phi_t + j.phi_x) + exp(j.phi); };
+  const auto skew = [](const auto& j) { return (j.phi_t - j.phi_x) * (j.phi_t + 2.0 * j.phi_x) + exp(j.phi); };
+  const auto pushed = [](const auto& j) { return (j.phi_t - j.phi_x) * (j.phi_t + j.phi_x + 1.0); };
+  CHECK_FALSE(is_even(wave));  // its form alone does not say so
+  CHECK(even(wave, Reflection::phi_x));
+  CHECK(even(wave, Reflection::in_time));
+  CHECK_FALSE(even(wave, Reflection::phi));
+  CHECK_FALSE(even(skew, Reflection::phi_x));
+  CHECK_FALSE(even(skew, Reflection::in_time));
+  CHECK_FALSE(even(pushed, Reflection::phi_x));
+  const auto driven = from<1, true>([](const auto& j) { return j.phi_x * j.phi_x + sin(j.x) * j.phi_x; });
+  CHECK_FALSE(BatchOf(driven).is_even(Reflection::phi_x));
+  const auto medium = from<1, true>([](const auto& j) { return (2.0 + sin(j.x)) * j.phi_x * j.phi_x; });
+  CHECK(BatchOf(medium).is_even(Reflection::phi_x));
 }

@@ -70,6 +70,22 @@ TEST_CASE("a density whose natural condition is not a level field is refused whe
   CHECK(refused_key([&] { Scheme{triangle, SineGordon{}}.on(lattice, 0.05); }) == "accepted");
 }
 
+TEST_CASE("natural walls with a term take densities whose form says that phi_x = 0 there, and no others") {
+  const auto key = [](const std::string& density) {
+    Problem p;
+    p.theory = "text", p.stencil = "triangle", p.time_step = 0.05;
+    p.lattice = Lattice::interval(8, 1, natural, fixed);
+    p.parameters["theory.density"] = "0.5*phi_t^2 - (" + density + ")";
+    return refused_key([&] { Simulation{p}; });
+  };
+  for (const char* level : {"cosh(phi_x)", "sqrt(1 + phi_x^2)", "(phi_x - phi)*(phi_x + phi)", "exp(phi_x) - phi_x",
+                            "phi_x*sin(phi_x) + cos(phi)*phi_x^4", "cos(x)*phi_x^2"})
+    CHECK(key(level) == "accepted");
+  for (const char* other : {"exp(phi_x)", "phi_x^2 - phi_x", "phi_x^2 + phi*phi_x^3*phi_x^2 + phi*phi_x",
+                            "phi_x^2 + 0.1*phi_t*phi_x", "phi_x^2 + x*phi_x"})
+    CHECK(key(other) == "lattice.stencil");
+}
+
 TEST_CASE("triangles between natural walls step whole rows, of sites that are all solved at the next row") {
   for (const char* stencil : {"triangle", "triangle-vertex"})
     for (const int N : {5, 8, 33, 64}) {

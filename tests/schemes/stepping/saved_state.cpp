@@ -66,7 +66,7 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-// Saved after so many steps, the last of which is looked at or not, and restored into another simulation.
+// Saved after so many steps, the last of which is checked or not, and restored into another simulation.
 void check_restored(const Problem& p, int steps, bool looked_at) {
   Simulation whole(p);
   start(whole, p);

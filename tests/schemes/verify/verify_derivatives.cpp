@@ -159,7 +159,7 @@ Evolution sine_gordon_circle() {
 TEST_CASE("residuals and Jacobians of every theory on every stencil are derivatives") {
   for (const TheoryEntry* entry : theory_entries())
     for (const NamedFormula& stencil : stencils()) {
-      // 18 coordinates are looked at on a point
+      // 18 coordinates are checked on a point
       if (!is_mechanics(stencil.name) && make_theory(*entry, problem_of(entry->name).parameters)->components() > 6)
         continue;
       const LatticeSystem system = system_named(*entry, stencil.name);

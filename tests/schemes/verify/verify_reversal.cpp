@@ -251,6 +251,27 @@ TEST_CASE("an element whose rule has one end is not reversible, and another step
   CHECK_FALSE(longer.check.passed());
 }
 
+TEST_CASE("an element is reversible where the form of its density says that it is even in the rates") {
+  const auto way = [](const std::string& density) {
+    Problem p = pendulum_by("gauss", 3);
+    p.theory = "text", p.parameters["theory.density"] = density;
+    const std::size_t C = Simulation(p).components().size();
+    return time_reversal([&](auto) { return std::make_unique<Simulation>(p); },
+                         Rows{std::vector<double>(C, 0.5), std::vector<double>(C, 0.52)}, 8, tolerance);
+  };
+  for (const char* even : {"0.5*phi_t^2*(1 + phi^2) + cos(phi)", "0.5*phi_t^2 + 0.1*phi_t*sin(phi_t) + cos(phi)"}) {
+    const auto back = way(even);
+    CAPTURE(even);
+    REQUIRE(back);
+    CHECK(back->promised);
+    CHECK(back->check.passed());
+  }
+  const auto other = way("0.5*phi_t^2 + 0.1*phi*phi_t^3 + cos(phi)");
+  REQUIRE(other);
+  CHECK_FALSE(other->promised);
+  CHECK(other->distance.front() > 1e-9);
+}
+
 TEST_CASE("traces are not asked: a row and its momenta are not their state") {
   Problem p;
   p.theory = "lotka-volterra", p.method = "dgvi", p.lattice = Lattice::point(), p.time_step = 0.1;

@@ -25,7 +25,7 @@ void work(double seconds) {
 }
 
 // Each step waits for the machine and then works for a tenth of that.
-struct Waiting final : Racer {
+struct Waiting final : StartedEntry {
   std::int64_t newest_ = 0;
   void restart() override { newest_ = 0; }
   std::int64_t newest() const override { return newest_; }
@@ -40,7 +40,7 @@ struct Waiting final : Racer {
 std::vector<TriedRun> waiting_run(std::int64_t steps) {
   std::vector<TriedRun> runs(1);
   runs[0].resolution.steps = steps;
-  runs[0].racer = std::make_shared<Waiting>();
+  runs[0].started = std::make_shared<Waiting>();
   return runs;
 }
 
@@ -74,8 +74,8 @@ TEST_CASE("a run ends at its limit, of time that passes or of the processor's") 
   const auto begin = now();
   time_in_turn(runs, {2}, 1, StepClock(1), begin + std::chrono::milliseconds(100), [] {});
   CHECK(runs[0].result.repeats == 0);  // it was not timed to its end
-  CHECK(runs[0].racer->newest() > 0);
-  CHECK(runs[0].racer->newest() < 1000);
+  CHECK(runs[0].started->newest() > 0);
+  CHECK(runs[0].started->newest() < 1000);
 
   const RunLimit never(now() + std::chrono::hours(1)), processor(now() + std::chrono::hours(1), 0.5 * waiting);
   wait();

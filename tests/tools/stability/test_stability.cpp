@@ -15,12 +15,12 @@
 #include "tests/tools/refused.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/shipped_scenes.hpp"
-#include "tools/stability/corner_list.hpp"
 #include "tools/stability/linear_theory.hpp"
 #include "tools/stability/observed_limit.hpp"
 #include "tools/stability/stability.hpp"
 #include "tools/stability/stability_figures.hpp"
 #include "tools/stability/stability_map.hpp"
+#include "tools/stability/stress_cases.hpp"
 
 using namespace delf;
 using Json = nlohmann::json;
@@ -46,8 +46,8 @@ LimitRequest quick() {
   return request;
 }
 
-Corner corner(const std::string& group, const std::string& name, const std::string& of) {
-  for (Corner& c : corners(group, chosen_schemes({of}, Problem{})))
+StressCase stress_case(const std::string& group, const std::string& name, const std::string& of) {
+  for (StressCase& c : stress_cases(group, chosen_schemes({of}, Problem{})))
     if (c.name == name) return c;
   FAIL("no stress case " << name);
   return {};
@@ -58,7 +58,7 @@ StabilityRequest small_request() {
   request.schemes = chosen_schemes({"triangle-vertex", "hexagon"}, Problem{});
   request.mass_steps = {1};
   request.limit = quick();
-  request.corners = {"angle"};
+  request.stress_cases = {"angle"};
   request.map = false;
   return request;
 }
@@ -280,42 +280,42 @@ TEST_CASE("a scheme that cannot be built is refused, without a verdict") {
 
 TEST_CASE("stress cases end in the right verdicts") {
   SECTION("stable") {
-    const CornerResult r = run_corner(corner("fast-kink", "v = 0.99, k gamma = 0.05", "triangle-vertex"), 10);
-    CHECK(r.verdict == CornerVerdict::stable);
+    const StressResult r = run_stress_case(stress_case("fast-kink", "v = 0.99, k gamma = 0.05", "triangle-vertex"), 10);
+    CHECK(r.verdict == StressVerdict::stable);
     CHECK(r.error_linf < 0.01);
     CHECK(std::isnan(r.diverged_at));
   }
   SECTION("bounded but wrong") {
-    const CornerResult r = run_corner(corner("fast-kink", "v = 0.9, k gamma = 2", "rectangle"), 10);
-    CHECK(r.verdict == CornerVerdict::wrong);
+    const StressResult r = run_stress_case(stress_case("fast-kink", "v = 0.9, k gamma = 2", "rectangle"), 10);
+    CHECK(r.verdict == StressVerdict::wrong);
     CHECK(r.error_linf > 0.1);
     CHECK_FALSE(r.reason.empty());
   }
   SECTION("bounded but wrong: leapfrog just beyond its limit") {
-    const CornerResult r = run_corner(corner("courant", "h/k = 1.01", "triangle-vertex"), 10);
-    CHECK(r.verdict == CornerVerdict::wrong);
+    const StressResult r = run_stress_case(stress_case("courant", "h/k = 1.01", "triangle-vertex"), 10);
+    CHECK(r.verdict == StressVerdict::wrong);
     CHECK(std::isnan(r.diverged_at));
     CHECK(r.error_linf > 0.3);
   }
   SECTION("diverged") {
-    const CornerResult angle = run_corner(corner("angle", "values in S1, h/k = 1.2", "triangle-vertex"), 10);
-    CHECK(angle.verdict == CornerVerdict::diverged);
+    const StressResult angle = run_stress_case(stress_case("angle", "values in S1, h/k = 1.2", "triangle-vertex"), 10);
+    CHECK(angle.verdict == StressVerdict::diverged);
     CHECK(angle.diverged_at > 0);
-    const CornerResult line = run_corner(corner("courant", "h/k = 2", "triangle-vertex"), 10);
-    CHECK(line.verdict == CornerVerdict::diverged);
+    const StressResult line = run_stress_case(stress_case("courant", "h/k = 2", "triangle-vertex"), 10);
+    CHECK(line.verdict == StressVerdict::diverged);
     CHECK(line.diverged_at > 0);
   }
   SECTION("refused") {
-    const CornerResult odd = run_corner(corner("size", "N = 5", "hexagon"), 10);
-    CHECK(odd.verdict == CornerVerdict::refused);
+    const StressResult odd = run_stress_case(stress_case("size", "N = 5", "hexagon"), 10);
+    CHECK(odd.verdict == StressVerdict::refused);
     CHECK(odd.reason.find("brick wall") != std::string::npos);
-    const CornerResult stiff = run_corner(corner("stiff", "mh = 1000", "rectangle-symmetric"), 10);
-    CHECK(stiff.verdict == CornerVerdict::refused);
+    const StressResult stiff = run_stress_case(stress_case("stiff", "mh = 1000", "rectangle-symmetric"), 10);
+    CHECK(stiff.verdict == StressVerdict::refused);
   }
   SECTION("cut") {
-    Corner c = corner("long", "breather, 10^6 steps", "triangle-vertex");
+    StressCase c = stress_case("long", "breather, 10^6 steps", "triangle-vertex");
     c.patience = 1;
-    const CornerResult r = run_corner(c, 0.01);
+    const StressResult r = run_stress_case(c, 0.01);
     CHECK(r.cut_at > 0);
     CHECK(r.steps < c.steps);
   }
@@ -323,8 +323,8 @@ TEST_CASE("stress cases end in the right verdicts") {
 
 TEST_CASE("a stress case in a process of its own ends as it does here") {
   for (const char* name : {"values in S1, h/k = 0.5", "values in S1, h/k = 1.2"}) {
-    const Corner c = corner("angle", name, "triangle-vertex");
-    const CornerResult here = run_corner(c, 10), apart = run_corner_apart(c, 10);
+    const StressCase c = stress_case("angle", name, "triangle-vertex");
+    const StressResult here = run_stress_case(c, 10), apart = run_stress_case_apart(c, 10);
     CHECK(apart.verdict == here.verdict);
     CHECK(apart.reason == here.reason);
     CHECK((apart.diverged_at == here.diverged_at || std::isnan(here.diverged_at)));
@@ -334,25 +334,25 @@ TEST_CASE("a stress case in a process of its own ends as it does here") {
 }
 
 TEST_CASE("a stress case whose steps outlast its budget is cut, with what there was before") {
-  Corner c = corner("size", "N = 1000000", "rectangle");
+  StressCase c = stress_case("size", "N = 1000000", "rectangle");
   c.problem.lattice = Lattice::circle(300001, 0.3 * 300001);
   c.problem.time_step = 0.15;
   c.state.name = "noise", c.state.values["initial.amplitude"] = 1.0;
   c.problem.parameters["theory.mass"] = 30.0;  // mh = 4.5: steps are followed, at seconds each
-  const CornerResult r = run_corner_apart(c, 0.05);
+  const StressResult r = run_stress_case_apart(c, 0.05);
   CHECK_FALSE(must_not_be(r.verdict));
   CHECK(std::isfinite(r.cut_at));
   CHECK(r.steps < c.steps);
 }
 
 TEST_CASE("every stress case of every group names keys that a scene has") {
-  for (const std::string& group : corner_groups()) {
-    const auto all = corners(group, chosen_schemes({}, Problem{}));
+  for (const std::string& group : stress_groups()) {
+    const auto all = stress_cases(group, chosen_schemes({}, Problem{}));
     CHECK_FALSE(all.empty());
-    for (const Corner& c : all)
+    for (const StressCase& c : all)
       for (const Setting& key : keys_of(c)) CHECK(find_key(key.key) != nullptr);
   }
-  CHECK(corners("no such group", chosen_schemes({}, Problem{})).empty());
+  CHECK(stress_cases("no such group", chosen_schemes({}, Problem{})).empty());
 }
 
 TEST_CASE("schemes are chosen by their names") {
@@ -449,7 +449,7 @@ TEST_CASE("under the constraint of the scene's theory a staggered wave that grow
   request.schemes = chosen_schemes({"rectangle-symmetric", "rectangle", "triangle-vertex"}, Problem{});
   for (NamedScheme& one : request.schemes)
     one.problem.theory = "wave-map", one.problem.lattice = coarse().lattice, one.problem.time_step = 0.1;
-  request.mass_steps.clear(), request.corners.clear();
+  request.mass_steps.clear(), request.stress_cases.clear();
   const StabilityFindings f = find_stability(request, coarse());
   REQUIRE(f.constraints.size() == 1);
   CHECK(f.constraints[0].scheme == "rectangle-symmetric");
@@ -464,7 +464,7 @@ TEST_CASE("under the constraint of the scene's theory a staggered wave that grow
 TEST_CASE("findings fail when theory is wrong, or a stress case ends in a forbidden verdict") {
   StabilityRequest request = small_request();
   request.schemes.pop_back();
-  request.corners.clear();
+  request.stress_cases.clear();
   request.limit.theory_factor = 1.05;
   StabilityFindings f = find_stability(request, coarse());
   CHECK_FALSE(f.passed());
@@ -474,18 +474,18 @@ TEST_CASE("findings fail when theory is wrong, or a stress case ends in a forbid
 
   f.limits.assign(1, Limit{});
   CHECK(f.passed());
-  Corner c = corner("angle", "values in S1, h/k = 0.5", "triangle-vertex");
-  for (const CornerVerdict verdict : {CornerVerdict::unsolved, CornerVerdict::silent, CornerVerdict::failed,
-                                      CornerVerdict::crashed, CornerVerdict::hung}) {
-    CornerResult r;
+  StressCase c = stress_case("angle", "values in S1, h/k = 0.5", "triangle-vertex");
+  for (const StressVerdict verdict : {StressVerdict::unsolved, StressVerdict::silent, StressVerdict::failed,
+                                      StressVerdict::crashed, StressVerdict::hung}) {
+    StressResult r;
     r.verdict = verdict;
-    f.corners = {{c, r}};
+    f.stress_cases = {{c, r}};
     CHECK_FALSE(f.passed());
     CHECK(Json::parse(stability_json(scene, f))["passed"] == false);
   }
-  CornerResult refused;
-  refused.verdict = CornerVerdict::refused;
-  f.corners = {{c, refused}};
+  StressResult refused;
+  refused.verdict = StressVerdict::refused;
+  f.stress_cases = {{c, refused}};
   CHECK(f.passed());
 }
 

@@ -7,7 +7,7 @@
 
 namespace delf::bench {
 
-/// What a competent programmer writes for one system of mechanics and one method: a loop, with the derivatives by hand.
+/// Loops that a competent programmer writes for one system of mechanics and one method, with the derivatives by hand.
 
 /// q_{n+1} of (q_{n+1} − 2q_n + q_{n−1})/h + h/2 (sin m_{n−½} + sin m_{n+½}) = 0, m_{n+½} = (q_n + q_{n+1})/2, by Newton's
 /// method from the straight line.

@@ -96,7 +96,7 @@ class PackedSlab {
       if (fresh) fresh_iterations_ = iteration;
       if (change <= tolerance_) break;
       if (iteration > 3 && change > 0.3 * before && change < 1e-10) break;  // rounding
-      // With one matrix ρ/(1 − ρ) of the correction is left, with a new one each time C times its square.
+      // One matrix leaves ρ/(1 − ρ) of the correction, a new one each time C times its square.
       if (keeps_ && ratio < 0.5 && 2 * ratio / (1 - ratio) * change <= tolerance_) break;
       if (!keeps_ && (iteration > 1 || unseen_ < 8) && curvature_ >= 0 &&
           4 * curvature_ * change * change <= tolerance_)

@@ -12,7 +12,7 @@ std::optional<Finding> find_fixed_sites(const Evidence& e) {
   const int N = e.system.lattice().sites(), C = e.system.components();
   const auto sites = e.failed.sites();
   if (sites.empty() || e.rows < 4 || static_cast<int>(sites.size()) > N / 4) return std::nullopt;
-  // Those at the ends alone are walls: a seam.
+  // Sites at the ends alone are walls: a seam.
   if (std::ranges::all_of(sites, [&](int i) { return i == 0 || i == N - 1; })) return std::nullopt;
   const std::vector<double> first = e.row(1);
   bool moves = false;

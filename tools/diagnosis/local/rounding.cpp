@@ -48,7 +48,7 @@ std::optional<RoundedValues> rounding_of(const std::vector<std::vector<double>>&
   };
   if (single)
     return found("single precision (float32)", std::ldexp(1.0, -25) * largest, {.relative = std::ldexp(1.0, -24)});
-  // Of both the coarser: decimals have more digits where values are large, and digits more decimals where they are small.
+  // The coarser one counts: decimals have more digits where values are large, digits more decimals at small ones.
   const double of_decimals = decimals > most_decimals ? 0 : 0.5 * std::pow(10.0, -decimals);
   const double of_digits =
       digits > most_digits ? 0 : 0.5 * std::pow(10.0, std::floor(std::log10(largest)) - digits + 1);

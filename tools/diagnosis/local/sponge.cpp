@@ -14,7 +14,7 @@
 namespace delf {
 namespace {
 
-/// How a program takes φ_t in a friction γ φ_t: by the rows above and below, or by the last step.
+/// The quotients by which a program takes φ_t in a friction γ φ_t: of the rows above and below, or of the last step.
 struct Quotient {
   const char* words;
   int from, to;  ///< rows from the one below the equation

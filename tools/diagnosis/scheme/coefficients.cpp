@@ -53,9 +53,9 @@ std::string percent(double share) {
   return share < 1e-5 ? fmt::format("{:.1e}", share) : fmt::format("{:.2g} %", 100 * share);
 }
 
-/// What coefficients other than 1, 1, 0 mean; empty if they are these.
+/// The meaning of coefficients other than 1, 1, 0; empty if they are these.
 std::string meaning(const Fit& fit, const Problem& p) {
-  // Differences below what remains are not told.
+  // Differences below what remains are not reported.
   const double blur = std::max(fit.to_rounding ? 1e-9 : 2 * fit.remains, 1e-9);
   const auto is = [&](double x, double target, double error) {
     return std::abs(x - target) <= std::max(4 * error, blur * std::max(1.0, std::abs(x)));
@@ -139,7 +139,7 @@ std::optional<Finding> find_coefficients(const Evidence& evidence, const Sample&
                                                    upper_first(means), scheme->name,
                                                    keys.empty() ? "" : " (" + keys + ")", equation(fit))};
       }
-      // Friction is told if the rows are nearer by it than by any other scheme, and far nearer.
+      // Friction is reported if the rows are nearer by it than by any other scheme, and far nearer.
       if (!nearest || fit.remains < (rule.friction && nearest->c == 0 ? 0.1 : 1) * nearest->remains) nearest = fit;
     }
   if (!nearest) return std::nullopt;

@@ -7,7 +7,7 @@
 
 namespace delf {
 
-/// What a file means by momenta: φ_t = p / scale, [i·C + c].
+/// The meaning of momenta in a file: φ_t = p / scale, [i·C + c].
 struct MomentumScale {
   std::string words;          ///< "p is φ_t"
   std::vector<double> scale;  ///< empty: none of those that are known

@@ -47,7 +47,7 @@ class Frames {
   const std::string& momenta_in_words() const { return momenta_.words; }
 
   std::vector<double> values(std::int64_t j) const { return part(e_.row(j)); }
-  /// Of the file, or central differences.
+  /// The velocities of the file, or central differences.
   std::vector<double> velocities(std::int64_t j) const {
     std::vector<double> v;
     if (has_velocities()) {
@@ -98,7 +98,7 @@ bool went(const OneStepMap& map, PhasePoint& z) {
   }
 }
 
-/// Whether the map takes frame j to frame j + 1, in φ and φ_t.
+/// True if the map takes frame j to frame j + 1, in φ and φ_t.
 bool takes(const OneStepMap& map, const Frames& frames, std::int64_t j, double tolerance) {
   PhasePoint z{frames.values(j), frames.velocities(j)};
   const std::vector<double> q = frames.values(j + 1), v = frames.velocities(j + 1);
@@ -106,8 +106,8 @@ bool takes(const OneStepMap& map, const Frames& frames, std::int64_t j, double t
   return went(map, z) && frames.distance(z.q, q) <= tolerance * size && frames.distance(z.v, v) <= tolerance * size;
 }
 
-/// Whether the rows come near the scene's own equations, as those of every scheme of its theory do: |E| is within a quarter of
-/// the largest φ_tt.
+/// True if the rows come near the scene's own equations, as those of every scheme of its theory do: |E| is within a
+/// quarter of the largest φ_tt.
 bool are_near(const Evidence& e, const Sample& sample) {
   const auto own = sample.split(e.problem);
   if (!own) return false;
@@ -115,7 +115,7 @@ bool are_near(const Evidence& e, const Sample& sample) {
   return E.cwiseAbs().maxCoeff() <= 0.25 * own->time.cwiseAbs().maxCoeff();
 }
 
-/// Whether a φ_t of frame j leads to frame j + 1 and on to frame j + 2: v ← v + a (φ_{j+1} − φ(v))/h, whose error
+/// True if a φ_t of frame j leads to frame j + 1 and on to frame j + 2: v ← v + a (φ_{j+1} − φ(v))/h, whose error
 /// falls as (h times the largest frequency)² for a = 1 where masses are those of sites. Of a mass that couples neighbours,
 /// (1, 4, 1)/6, the error is up to tripled by its inverse: a = ½ halves it.
 bool leads(const OneStepMap& map, const Frames& frames, std::int64_t j, double h, double tolerance, double a = 1) {
@@ -137,7 +137,7 @@ bool leads(const OneStepMap& map, const Frames& frames, std::int64_t j, double h
       break;
     }
     before = off;
-    // What is wrong by far more than φ_t still is need not be found to the last digit.
+    // A map that is wrong by far more than φ_t still is need not be found to the last digit.
     if (n == first_look) {
       const bool far = !went(map, z) || frames.distance(z.q, next) > 100 * off + tolerance * size;
       if (far) return false;

@@ -43,7 +43,7 @@ std::optional<Acceleration> acceleration(const Problem& p, int space_order) {
   return Acceleration::of(explicit_scheme(p, space_order));
 }
 
-// By turns v += b h a(q) and q += a h v.
+// The map that does v += b h a(q) and q += a h v by turns.
 std::function<bool(PhasePoint&)> kicks_and_drifts(Force a, double h, std::vector<double> kicks,
                                                   std::vector<double> drifts) {
   return [=](PhasePoint& z) {
@@ -145,7 +145,7 @@ void add_splittings(std::vector<OneStepMap>& maps, const Problem& p, const Force
     if (named.name == "leapfrog") continue;
     const Splitting splitting = named.make();
     take("the splitting " + named.name, keys(named.name), splitting.kicks, splitting.drifts);
-    // The same weights with the roles of kicks and drifts exchanged.
+    // The weights serve once more with the roles of kicks and drifts exchanged.
     std::vector<double> kicks{0};
     kicks.insert(kicks.end(), splitting.drifts.begin(), splitting.drifts.end());
     kicks.push_back(0);

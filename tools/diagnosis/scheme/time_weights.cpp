@@ -28,8 +28,8 @@ std::string list(const std::array<double, 3>& w) {
   return fmt::format("{}, {}, {}", number(w[0]), number(w[1]), number(w[2]));
 }
 
-/// Of a linear force three rows make φ_tt itself, N′(φ₊ − 2φ + φ₋) = N′(1) h² φ_tt, whatever the rows are: it is taken at one
-/// of them.
+/// The weights for a linear force, of which three rows make φ_tt itself, N′(φ₊ − 2φ + φ₋) = N′(1) h² φ_tt: it is taken
+/// at one of them.
 std::optional<LeastSquares> with_one_force(const Eigen::VectorXd& time, const std::vector<Eigen::VectorXd>& columns,
                                            double allowed) {
   for (const std::size_t at : {4u, 3u, 5u}) {

@@ -8,7 +8,8 @@ from nbclient import NotebookClient
 
 
 def notebook_of(source):
-    cells, lines, markdown = [], [], False
+    cells, markdown = [], False
+    lines: "list[str]" = []
 
     def close():
         text = "\n".join(lines).strip()

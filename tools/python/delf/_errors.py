@@ -8,6 +8,11 @@ from typing import Any, Optional
 _PLACE = re.compile(r"^(?P<file>[^\s:][^:\n]*?)(?::(?P<line>\d+))?: (?:--)?(?P<key>[a-z_]+\.[\w.]+)(?: = .*?)?: ", re.S)
 
 
+def here(message: str) -> str:
+    """The program's words without its command line: keys are given otherwise here."""
+    return re.sub(r"^command line: (--)?", "", message)
+
+
 class Error(Exception):
     """The base of everything that delf raises on purpose.
 
@@ -16,7 +21,7 @@ class Error(Exception):
     """
 
     def __init__(self, message: str = "", key: str = "") -> None:
-        super().__init__(message)
+        super().__init__(here(message))
         place = _PLACE.match(message)
         self.key: Optional[str] = key or (place["key"] if place else None) or None
         self.file: Optional[str] = place["file"] if place and place["file"] != "command line" else None

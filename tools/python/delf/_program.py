@@ -12,14 +12,17 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import warnings
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
-from ._errors import BadInput, CheckFailed, Error, NumericsFailed, SystemFailed
+from . import _delf
+from ._errors import BadInput, CheckFailed, Error, NumericsFailed, SystemFailed, here
 from ._scene import Scene, scene_of, texts_of
 
+# Options beside **keys take Any: a dictionary of keys, **{"lattice.sites": 401}, might hold any of them to a type checker.
 SceneLike = Union[Scene, str, "os.PathLike[str]", None]
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -38,7 +41,7 @@ def program() -> str:
 
 
 def warn(line: str) -> None:
-    warnings.warn(line, UserWarning, stacklevel=4)
+    warnings.warn(here(line), UserWarning, stacklevel=4)
 
 
 _FAILURES = {1: CheckFailed, 2: BadInput, 3: NumericsFailed, 4: SystemFailed}
@@ -201,11 +204,14 @@ def workprecision(scene: SceneLike = None, *, out: Any = None, **keys: Any) -> T
 
 def stability(scene: SceneLike = None, *, out: Any = None, **keys: Any) -> Table:
     """Limits of the step by theory and by runs; maps, stress cases and dispersion are in `data`."""
-    flat = lambda d: [{k: v for k, v in one.items() if not isinstance(v, (list, dict))} for one in d["limits"]]
-    return _command("stability", scene, keys, out, lambda f, d: structured(flat(d)))
+
+    def limits(folder: str, data: Dict[str, Any]) -> "np.ndarray[Any, Any]":
+        return structured([{name: value for name, value in one.items() if not isinstance(value, (list, dict))}
+                           for one in data["limits"]])
+    return _command("stability", scene, keys, out, limits)
 
 
-def sweep(scene: SceneLike = None, *, out: Any = None, jobs: Optional[int] = None, **keys: Any) -> Table:
+def sweep(scene: SceneLike = None, *, out: Any = None, jobs: Any = None, **keys: Any) -> Table:
     """A scene for many values: keys that are given a list, a NumPy array or "from:to:step". A row for each run."""
     many: Dict[str, str] = {}
     if jobs is not None:
@@ -248,6 +254,8 @@ class Plan:
         return structured([{"name": name, "value": value} for name, value in self.lines.items()])
 
     def __getitem__(self, name: str) -> str:
+        if name not in self.lines:
+            raise BadInput(f"{name}: no such line of this plan; there are {', '.join(self.lines)}")
         return self.lines[name]
 
     def __str__(self) -> str:
@@ -260,7 +268,7 @@ class Plan:
         return f"<pre>{html.escape(self.text)}</pre>"
 
 
-def plan(scene: SceneLike = None, *, latex: bool = False, **keys: Any) -> Plan:
+def plan(scene: SceneLike = None, *, latex: Any = False, **keys: Any) -> Plan:
     """The plan of a scene; with latex=True its equations for a paper."""
     with words_of(scene_of(scene, keys)) as named:
         return Plan(call(["plan", *named, *(["--latex"] if latex else [])]).stdout)
@@ -292,22 +300,42 @@ class Verification(Table):
                                                                      f"failed: {', '.join(failed)}"), *("  " + w for w in words)])
 
 
-def verify(scene: SceneLike = None, *, fields: Any = None, nearby: Sequence[Any] = (), out: Any = None,
-           raises: bool = False, **keys: Any) -> Verification:
+def verify(scene: SceneLike = None, *, fields: Any = None, nearby: Any = (), out: Any = None,
+           raises: Any = False, **keys: Any) -> Verification:
     """Checks the rows of a scene, or those of `fields`, a file. raises=True: CheckFailed where a check fails."""
     subject = scene_of(scene, keys)
-    words = [] if fields is None else ["--fields", os.fspath(fields)]
-    for file in nearby:
-        words += ["--nearby", os.fspath(file)]
-    with folder_for(out) as folder, words_of(subject) as named:
-        figures = [] if out is not None or "output.figures" in subject else ["--output.figures=off"]
-        done = call(["verify", *named, *words, *figures, "--out", folder])
-        with open(os.path.join(folder, "verify.json"), encoding="utf-8") as file:
-            data = json.load(file)
-    result = Verification(_without_folder(done.stdout, folder, out), data, done.returncode == 0)
+    rows = None if fields is None else os.fspath(fields)
+    others = [os.fspath(file) for file in nearby]
+    settings = subject.settings()
+    if out is None and not settings.on_mesh:
+        result = _verified(settings, subject.name, rows, others)
+    else:
+        words = [] if rows is None else ["--fields", rows]
+        for other in others:
+            words += ["--nearby", other]
+        with folder_for(out) as folder, words_of(subject) as named:
+            figures = [] if out is not None or "output.figures" in subject else ["--output.figures=off"]
+            done = call(["verify", *named, *words, *figures, "--out", folder])
+            with open(os.path.join(folder, "verify.json"), encoding="utf-8") as file:
+                data = json.load(file)
+        result = Verification(_without_folder(done.stdout, folder, out), data, done.returncode == 0)
     if raises and not result:
         raise _failed(result)
     return result
+
+
+def _verified(settings: "_delf.Settings", name: str, rows: Optional[str], others: Sequence[str]) -> Verification:
+    """In this process, without files."""
+    main = threading.current_thread() is threading.main_thread()
+    done = _delf.verify(settings, name, rows, others, main)
+    for line in done["warnings"]:
+        warn(line)
+    if done["status"] == "interrupted":
+        raise KeyboardInterrupt
+    if done["failure"] is not None:
+        failure: Error = done["failure"]
+        raise failure
+    return Verification(done["report"], json.loads(done["json"]), done["passed"])
 
 
 def _failed(result: Verification) -> CheckFailed:
@@ -355,7 +383,10 @@ def check(rows: Any, *, density: Any = None, stencil: str = "rectangle-symmetric
             np.save(path, array)
         else:
             np.savez(path, q=array, p=momenta)
-        result = verify(scene, fields=path, **given)
+        try:
+            result = verify(scene, fields=path, **given)
+        except BadInput as error:  # in the words of this call
+            raise BadInput(str(error).replace(f"fields {path}", "check: rows"), error.key or "") from None
         result.text = result.text.replace(path, "an array")
         result.data["subject"] = "rows of an array"
     finally:

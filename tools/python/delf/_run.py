@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
+import re
 import sys
-import tempfile
 import threading
 import time
-from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -18,6 +17,8 @@ from ._errors import BadInput, Error
 from ._scene import Scene, scene_of
 
 SceneLike = Union[Scene, str, "os.PathLike[str]", None]
+Arrays = Dict[str, "np.ndarray[Any, Any]"]
+Components = Mapping[str, List[str]]  # names of the last axis of a dataset
 
 
 class Record(NamedTuple):
@@ -63,28 +64,39 @@ class Summary(Mapping[str, Any]):
 class Fields(Mapping[str, Any]):
     """The recorded rows: time, space and field as arrays; further datasets, such as multiplier, as items.
 
-    field: frames × sites × fields. Of a folder the arrays are read when they are asked for.
+    field: frames × sites × fields. Each field and multiplier by its own name is frames × sites: fields.phi. Of a folder the
+    arrays are read when they are asked for.
     """
 
-    def __init__(self, load: Callable[[], Dict[str, Any]]) -> None:
+    def __init__(self, load: "Callable[[], Tuple[Arrays, Components]]") -> None:
         self._load = load
-        self._arrays: Optional[Dict[str, Any]] = None
+        self._loaded: "Optional[Tuple[Arrays, Components]]" = None
 
-    def _all(self) -> Dict[str, Any]:
-        if self._arrays is None:
-            self._arrays = self._load()
-        return self._arrays
+    def _both(self) -> "Tuple[Arrays, Components]":
+        if self._loaded is None:
+            self._loaded = self._load()
+        return self._loaded
+
+    def _all(self) -> "Arrays":
+        return self._both()[0]
 
     def __getitem__(self, name: str) -> "np.ndarray[Any, Any]":
-        return self._all()[name]
+        arrays, components = self._both()
+        if name not in arrays:
+            for dataset, names in components.items():
+                if name in names:
+                    return arrays[dataset][..., names.index(name)]
+        return arrays[name]
 
     def __getattr__(self, name: str) -> "np.ndarray[Any, Any]":
         if name.startswith("_"):
             raise AttributeError(name)
         try:
-            return self._all()[name]
+            return self[name]
         except KeyError:
-            raise AttributeError(f"no dataset {name}; there are {', '.join(self._all())}") from None
+            arrays, components = self._both()
+            known = [*arrays, *(one for names in components.values() for one in names)]
+            raise AttributeError(f"no dataset {name}; there are {', '.join(known)}") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._all())
@@ -104,11 +116,20 @@ class Run:
     """
 
     def __init__(self, scene: Scene, summary: Dict[str, Any], series: "np.ndarray[Any, Any]", fields: Fields,
-                 report: str = "", text: str = "", folder: Optional[str] = None, section: str = "") -> None:
+                 report: str = "", text: str = "", folder: Optional[str] = None, section: str = "",
+                 state: bytes = b"") -> None:
         self.scene, self.summary, self.series, self.fields = scene, Summary(summary), series, fields
+        self._made_of, self._state = scene.copy(), state
         self.report, self.folder = report, folder
         self.text = text  #: scene.ini: the scene with all that was in force
         self.section = section  #: section.csv, if output.section asks for it
+
+    def __getattr__(self, name: str) -> Any:
+        if not name.startswith("_"):
+            where = (f'series["{name}"]' if name in (self.series.dtype.names or ()) else f"summary.{name}"
+                     if name in self.summary else f"fields.{name}" if name in self.fields else "")
+            raise AttributeError(f"a run has no {name}" + (f"; did you mean {where}?" if where else ""))
+        raise AttributeError(name)
 
     @property
     def status(self) -> str:
@@ -146,19 +167,30 @@ class Run:
                         out.write(data)
             return found
 
-    def resume(self, until: Optional[float] = None, steps: Optional[int] = None) -> "Run":
-        """The run to a later time. Of a folder it goes on from its checkpoint, to the same bits; in memory it is run again."""
+    def resume(self, until: Optional[float] = None, steps: Optional[int] = None, *,
+               at_record: Optional[Callable[[Record], Any]] = None) -> "Run":
+        """The run to a later time, from where it is, to the same bits as a run that goes there at once.
+
+        A run in a folder goes on there, from its checkpoint; of a run in memory the result is a new one, with the records of
+        both. Runs on meshes in memory begin again.
+        """
         if (until is None) == (steps is None):
             raise BadInput("resume: give until or steps", "run.until")
         key, value = ("run.until", until) if until is not None else ("run.steps", steps)
         if self.folder is not None:
             _program.call(["resume", self.folder, f"--{key}={value!r}"])
             return load(self.folder)
-        scene = self.scene.copy()
+        scene = self._made_of.copy()
         for other in ("run.until", "run.steps"):
             scene._given.pop(other, None)
         scene[key] = value
-        return run(scene)
+        if scene.settings().on_mesh:
+            return run(scene)
+        if every := re.search(r"^every = (\d+)$", self.text, re.M):
+            scene["output.every"] = int(every[1])  # by default it follows from the end
+        if not self._state:
+            raise BadInput(f"resume: the run ended as {self.status}, and cannot go on; run the scene again")
+        return _in_memory(scene, at_record, self)
 
     def _tree(self) -> str:
         s = self.summary
@@ -185,13 +217,15 @@ class Run:
         return text + first.decode("utf-8", "replace")
 
 
-def _read_fields(path: str) -> Dict[str, Any]:
+def _read_fields(path: str) -> "Tuple[Arrays, Components]":
     try:
         import h5py
     except ImportError:
         raise BadInput(f"{path}: reading it takes h5py; install python3-h5py, or run in memory") from None
     with h5py.File(path) as file:
-        return {name: file[name][()] for name in ("time", "space", *sorted(set(file) - {"time", "space"}))}
+        arrays = {name: file[name][()] for name in ("time", "space", *sorted(set(file) - {"time", "space"}))}
+        names = {name: file[name].attrs.get("components", b"") for name in arrays}
+        return arrays, {name: text.decode().split(",") for name, text in names.items() if text}
 
 
 def load(folder: Union[str, "os.PathLike[str]"]) -> Run:
@@ -263,7 +297,7 @@ def _series(done: Mapping[str, Any]) -> "np.ndarray[Any, Any]":
     return series
 
 
-def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]]) -> Run:
+def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]], earlier: Optional[Run] = None) -> Run:
     progress = _Progress(scene) if _Progress.wanted() else None
 
     def see(*record: Any) -> bool:
@@ -274,16 +308,24 @@ def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]]) -> Ru
 
     main = threading.current_thread() is threading.main_thread()
     try:
-        done = _delf.run(scene.settings(), scene.name, see if at_record or progress else None, main)
+        done = _delf.run(scene.settings(), scene.name, see if at_record or progress else None, main,
+                         earlier._state if earlier else b"")
     finally:
         if progress:
             progress.close()
     summary = json.loads(done["summary"])
     if done["status"] == "stopped":
         summary["status"] = "stopped"
-    series = _series(done)
-    arrays = {"time": series["time"], "space": done["space"], **done["rows"]}
-    result = Run(scene, summary, series, Fields(lambda: arrays), done["report"], done["scene"], section=done["section"])
+    series, rows = _series(done), done["rows"]
+    if earlier:
+        before = done["records_before"]
+        series = np.concatenate([earlier.series[:before], series])
+        rows = {name: np.concatenate([earlier.fields[name][:before], row]) for name, row in rows.items()}
+    arrays = {"time": series["time"], "space": done["space"], **rows}
+    for array in (series, *arrays.values()):
+        array.flags.writeable = False
+    result = Run(scene, summary, series, Fields(lambda: (arrays, done["components"])), done["report"], done["scene"], section=done["section"],
+                 state=done["state"])
     for line in summary["warnings"]:
         _program.warn(line)
     if done["interrupted"] and main:
@@ -297,8 +339,7 @@ def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]]) -> Ru
     return result
 
 
-def run(scene: SceneLike = None, *, out: Union[str, "os.PathLike[str]", None] = None,
-        at_record: Optional[Callable[[Record], Any]] = None, **keys: Any) -> Run:
+def run(scene: SceneLike = None, *, out: Any = None, at_record: Any = None, **keys: Any) -> Run:
     """Steps a scene: a name, a file, a Scene, or keys alone; run("collision", **{"lattice.sites": 401}, until=20).
 
     In memory, unless `out` names a folder for all files of `delf run`. at_record: called with a Record at each recorded

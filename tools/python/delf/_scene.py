@@ -68,6 +68,11 @@ class Section:
         except BadInput as error:
             raise AttributeError(str(error)) from None
 
+    def __repr__(self) -> str:
+        values = {key: getattr(self, key) for key in self.__dir__()}
+        return f"Section {self._name}\n" + "\n".join(f"  {key:<16} {value}" for key, value in values.items()
+                                                    if value is not None)
+
     def __dir__(self) -> List[str]:
         head = self._name + "."
         return [k["name"][len(head):] for k in self._scene.settings().keys() if k["name"].startswith(head)]

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/methods/own_energy.hpp"
+#include "schemes/methods/energies.hpp"
 
 #include <Eigen/SparseCore>
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <vector>
 
-#include "schemes/stepping/evolution.hpp"
+#include "schemes/problem.hpp"
 #include "schemes/system/assembly.hpp"
-#include "schemes/turn.hpp"
 
 namespace delf {
 namespace {
@@ -57,51 +55,43 @@ std::optional<LinearRow> linear_row(const LatticeSystem& system) {
   return row;
 }
 
-}  // namespace
-
-std::optional<OwnEnergy> quadratic_invariant(const LatticeSystem& system, int winding) {
+/// Of linear variational equations over two rows, A y₊ + B y + Aᵀ y₋ + c = 0, the difference of the products of the
+/// equation with y₊ and with y₋ telescopes: I = y₊ᵀA y₊ + yᵀB y₊ + yᵀA y + cᵀ(y + y₊) is kept, and so is E = −I/2h. With
+/// v = y₊ − y, m = ½(y + y₊) and Aₛ = ½(A + Aᵀ),
+///
+///     E = vᵀ (B − 2Aₛ)/(8h) v − mᵀ (B + 2Aₛ)/(2h) m − cᵀm/h
+///
+/// A, B and c are the constant parts of the equations. It is kinetic energy plus potential, but for a constant; for (5.12)
+/// it is the energy of Marsden–Patrick–Shkoller's footnote 4. Nothing if the equations are not linear, depend on t or x, are
+/// of more than two rows, or of more than fields.
+EnergyOfRows make(const FieldTheory&, const LatticeSystem& system, const Problem& problem) {
   const auto is_field = [](const Component& c) { return c.role == Role::field && !c.position; };
-  if (winding != 0 || system.height() != 1 || system.placement() != Placement::every_site || !is_variational(system) ||
-      !std::ranges::all_of(system.all_components(), is_field) || !is_linear(system))
-    return std::nullopt;
+  if (problem.winding != 0 || system.height() != 1 || system.placement() != Placement::every_site ||
+      !is_variational(system) || !std::ranges::all_of(system.all_components(), is_field) || !is_linear(system))
+    return nullptr;
   const auto row = linear_row(system);
-  if (!row) return std::nullopt;
+  if (!row) return nullptr;
   const double h = system.time_step();
   const Sparse twice = row->A + Sparse(row->A.transpose());  // 2Aₛ
   const auto of_steps = std::make_shared<const Sparse>((row->B - twice) / (8 * h)),
              of_means = std::make_shared<const Sparse>((row->B + twice) / (-2 * h));
   const auto force = std::make_shared<const Vector>(row->c / -h);
-  return OwnEnergy{"quadratic invariant", quadratic_invariant_formula, true, [=](const RowsInTime& rows) {
-                     const std::vector<double>&before = rows.rows.rows.front(), &newest = rows.rows.rows.back();
-                     const auto size = static_cast<Eigen::Index>(newest.size());
-                     const Eigen::Map<const Vector> below(before.data(), size), above(newest.data(), size);
-                     const Vector v = above - below, mean = 0.5 * (above + below);
-                     return v.dot(*of_steps * v) + mean.dot(*of_means * mean) + force->dot(mean);
-                   }};
+  return [=](const RowsInTime& rows) {
+    const std::vector<double>&before = rows.rows.rows.front(), &newest = rows.rows.rows.back();
+    const auto size = static_cast<Eigen::Index>(newest.size());
+    const Eigen::Map<const Vector> below(before.data(), size), above(newest.data(), size);
+    const Vector v = above - below, mean = 0.5 * (above + below);
+    return EnergyMomentum{v.dot(*of_steps * v) + mean.dot(*of_means * mean) + force->dot(mean)};
+  };
 }
 
-extern const OwnEnergyEntry vu_quoc_li_energy, guo_energy, composition_energy;
-const std::vector<const OwnEnergyEntry*>& own_energy_entries() {
-  static const std::vector<const OwnEnergyEntry*> all{&vu_quoc_li_energy, &guo_energy, &composition_energy};
-  return all;
-}
+}  // namespace
 
-std::optional<OwnEnergy> own_energy(const Simulation& simulation, const Problem& given) {
-  const Problem problem = completed(given);
-  const LatticeSystem& system = simulation.evolution().system();
-  if (system.moves() || simulation.is_processed()) return std::nullopt;
-  for (const OwnEnergyEntry* entry : own_energy_entries())
-    if (entry->method == problem.method)
-      if (auto own = entry->make(simulation.theory(), system, problem)) return own;
-  if (find_method(problem.method).energy || gain_of(problem.parameters) != 0) return std::nullopt;
-  return quadratic_invariant(system, problem.winding);
-}
-
-double newest_own_energy(const OwnEnergy& own, const Simulation& simulation) {
-  const LatticeSystem& system = simulation.evolution().system();
-  const Stepper& stepper = simulation.evolution().stepper();
-  if (stepper.newest() < 1) return std::numeric_limits<double>::quiet_NaN();
-  return own.value({simulation.theory(), system, stepper.window(2), stepper.newest(), system.time_step()});
-}
+extern const EnergyEntry quadratic_invariant;
+const EnergyEntry quadratic_invariant{
+    "quadratic invariant",
+    "E = v'(B - 2A)v/8h - m'(B + 2A)m/2h with v = y+ - y, m = (y + y+)/2, A y+ + B y + A'y- the linear equations of "
+    "the scheme itself; kept to round-off",
+    "Marsden-Patrick-Shkoller, footnote 4, for (5.12)", "linear theories on two rows", make};
 
 }  // namespace delf

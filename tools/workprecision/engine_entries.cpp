@@ -15,21 +15,21 @@
 #include "tools/compare/placed_row.hpp"
 #include "tools/rows/engine.hpp"
 #include "tools/rows/initial_rows.hpp"
-#include "tools/workprecision/contestant.hpp"
+#include "tools/workprecision/entry.hpp"
 
 namespace delf {
 
 namespace {
 
 // A scheme of the engine with the scene that it runs.
-class EngineRacer final : public Racer {
+class EngineEntry final : public StartedEntry {
  public:
-  explicit EngineRacer(Scene scene)
+  explicit EngineEntry(Scene scene)
       : scene_(std::move(scene)),
         initial_(scene_),
         simulation_(build()),
         at_once_(std::clamp<std::int64_t>(20000 / scene_.problem.lattice.sites(), 1, most_at_once)) {
-    EngineRacer::restart();
+    EngineEntry::restart();
   }
   void restart() override { initial_.start(simulation_); }
   std::int64_t newest() const override { return simulation_.newest(); }
@@ -113,7 +113,7 @@ bool same_scheme(const Problem& a, const Problem& b) {
 
 }  // namespace
 
-std::vector<Contestant> engine_contestants(const Scene& scene) {
+std::vector<WorkPrecisionEntry> engine_entries(const Scene& scene) {
   std::vector<NamedScheme> schemes = named_schemes(scene.problem);
   auto own = std::ranges::find_if(schemes, [&](const NamedScheme& s) { return same_scheme(s.problem, scene.problem); });
   if (own == schemes.end()) {
@@ -122,11 +122,11 @@ std::vector<Contestant> engine_contestants(const Scene& scene) {
     own = schemes.insert(schemes.begin(), {name, scene.problem});
   }
   const std::string own_name = own->name;
-  std::vector<Contestant> all;
+  std::vector<WorkPrecisionEntry> all;
   for (NamedScheme& scheme : schemes)
     all.push_back({scheme.name, false, false, scheme.tuned, scheme.nodes, scheme.rank, scheme.name == own_name,
-                   [&scene, problem = std::move(scheme.problem)](const Resolution& r) -> std::unique_ptr<Racer> {
-                     return std::make_unique<EngineRacer>(scene_of(scene, problem, r));
+                   [&scene, problem = std::move(scheme.problem)](const Resolution& r) -> std::unique_ptr<StartedEntry> {
+                     return std::make_unique<EngineEntry>(scene_of(scene, problem, r));
                    }});
   return all;
 }

@@ -12,7 +12,7 @@
 
 #include "tools/report/interrupt.hpp"
 #include "tools/report/seconds_since.hpp"
-#include "tools/stability/corner.hpp"
+#include "tools/stability/stress_case.hpp"
 
 namespace delf {
 
@@ -27,7 +27,7 @@ struct Numbers {
   std::uint64_t reason;  ///< characters of it, which follow
 };
 
-void send(int pipe, char mark, const CornerResult& r) {
+void send(int pipe, char mark, const StressResult& r) {
   const Numbers numbers{static_cast<int>(r.verdict),
                         r.error_linf,
                         r.energy_error_max,
@@ -50,7 +50,7 @@ void send(int pipe, char mark, const CornerResult& r) {
 /// The last result that has come, and its mark.
 struct Received {
   char mark = 0;  ///< nothing has come
-  CornerResult result;
+  StressResult result;
   double at = 0;     ///< seconds from the start
   std::string text;  ///< of which a part may still be to come
 
@@ -61,7 +61,7 @@ struct Received {
       std::memcpy(&n, text.data() + 1, sizeof n);
       if (text.size() < head + n.reason) return;
       mark = text.front(), at = now;
-      result.verdict = static_cast<CornerVerdict>(n.verdict);
+      result.verdict = static_cast<StressVerdict>(n.verdict);
       result.reason = text.substr(head, n.reason);
       result.error_linf = n.error_linf, result.energy_error_max = n.energy_error_max;
       result.residual_max = n.residual_max, result.diverged_at = n.diverged_at, result.cut_at = n.cut_at;
@@ -71,8 +71,8 @@ struct Received {
   }
 };
 
-CornerResult ended(CornerVerdict verdict, const std::string& reason, double seconds) {
-  CornerResult r;
+StressResult ended(StressVerdict verdict, const std::string& reason, double seconds) {
+  StressResult r;
   r.verdict = verdict;
   r.reason = reason;
   r.seconds = seconds;
@@ -81,21 +81,21 @@ CornerResult ended(CornerVerdict verdict, const std::string& reason, double seco
 
 }  // namespace
 
-CornerResult run_corner_apart(const Corner& corner, double budget) {
-  const double to_start = 5 * budget + 1, to_run = budget * corner.patience + budget + 1;
+StressResult run_stress_case_apart(const StressCase& stress_case, double budget) {
+  const double to_start = 5 * budget + 1, to_run = budget * stress_case.patience + budget + 1;
   int pipe_ends[2];
-  if (pipe(pipe_ends) != 0) return run_corner(corner, budget);
+  if (pipe(pipe_ends) != 0) return run_stress_case(stress_case, budget);
   std::fflush(nullptr);  // or the child would write it again
   const pid_t child = fork();
   if (child < 0) {
     close(pipe_ends[0]), close(pipe_ends[1]);
-    return run_corner(corner, budget);
+    return run_stress_case(stress_case, budget);
   }
   if (child == 0) {
     close(pipe_ends[0]);
     signal(SIGINT, SIG_DFL);
     const int out = pipe_ends[1];
-    send(out, answer, run_corner(corner, budget, [out](const CornerResult& r) { send(out, on_the_way, r); }));
+    send(out, answer, run_stress_case(stress_case, budget, [out](const StressResult& r) { send(out, on_the_way, r); }));
     _exit(0);
   }
   close(pipe_ends[1]);
@@ -127,10 +127,10 @@ CornerResult run_corner_apart(const Corner& corner, double budget) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  CornerResult& result = received.result;
+  StressResult& result = received.result;
   if (received.mark == answer) return result;
   if (ended_here && received.mark == 0) {
-    result = ended(CornerVerdict::unstarted, fmt::format("no first rows after {:.3g} s", to_start), elapsed());
+    result = ended(StressVerdict::unstarted, fmt::format("no first rows after {:.3g} s", to_start), elapsed());
     result.cut_at = 0;
     return result;
   }
@@ -138,14 +138,14 @@ CornerResult run_corner_apart(const Corner& corner, double budget) {
     constexpr double far_longer = 1e5;
     const double waited = elapsed() - received.at;
     const bool hung = result.steps > 0 && waited * static_cast<double>(result.steps) > far_longer * result.seconds;
-    if (hung) return ended(CornerVerdict::hung, fmt::format("no answer from a step after {:.3g} s", waited), elapsed());
-    result.cut_at = static_cast<double>(result.steps) * corner.problem.time_step;
+    if (hung) return ended(StressVerdict::hung, fmt::format("no answer from a step after {:.3g} s", waited), elapsed());
+    result.cut_at = static_cast<double>(result.steps) * stress_case.problem.time_step;
     return result;
   }
   if (WIFSIGNALED(status))
-    return ended(CornerVerdict::crashed,
+    return ended(StressVerdict::crashed,
                  fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status))), elapsed());
-  return ended(CornerVerdict::crashed, fmt::format("ended with code {}", WEXITSTATUS(status)), elapsed());
+  return ended(StressVerdict::crashed, fmt::format("ended with code {}", WEXITSTATUS(status)), elapsed());
 }
 
 }  // namespace delf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/stability/corner_list.hpp"
+#include "tools/stability/stress_cases.hpp"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@ namespace delf {
 
 namespace {
 
-// A corner before it has a scheme.
-struct Draft : Corner {
+// A stress case before it has a scheme.
+struct Draft : StressCase {
   std::string theory = "sine-gordon";
   double mass = 1, lambda = 1;
   int sites = 64;
@@ -27,8 +27,8 @@ struct Draft : Corner {
   }
 };
 
-Corner corner_of(const std::string& group, const Draft& d, const NamedScheme& scheme) {
-  Corner c = d;
+StressCase stress_case_of(const std::string& group, const Draft& d, const NamedScheme& scheme) {
+  StressCase c = d;
   c.group = group;
   c.scheme = scheme.name;
   c.problem = scheme.problem;
@@ -237,7 +237,7 @@ constexpr Group groups[] = {
 
 }  // namespace
 
-const std::vector<std::string>& corner_groups() {
+const std::vector<std::string>& stress_groups() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
     for (const Group& g : groups) all.emplace_back(g.name);
@@ -246,12 +246,12 @@ const std::vector<std::string>& corner_groups() {
   return names;
 }
 
-std::vector<Corner> corners(const std::string& group, const std::vector<NamedScheme>& schemes) {
-  std::vector<Corner> all;
+std::vector<StressCase> stress_cases(const std::string& group, const std::vector<NamedScheme>& schemes) {
+  std::vector<StressCase> all;
   for (const Group& g : groups)
     if (group == g.name)
       for (const Draft& draft : g.drafts())
-        for (const NamedScheme& scheme : schemes) all.push_back(corner_of(group, draft, scheme));
+        for (const NamedScheme& scheme : schemes) all.push_back(stress_case_of(group, draft, scheme));
   return all;
 }
 

@@ -14,7 +14,7 @@
 namespace delf {
 
 /// A run at the edge of what schemes are made for.
-struct Corner {
+struct StressCase {
   std::string group;   ///< "fast kink"
   std::string name;    ///< "kink, v = 0.999, k gamma = 2"
   std::string scheme;  ///< as of named_schemes()
@@ -27,7 +27,7 @@ struct Corner {
   double error_bound = 0.1, energy_bound = 0.1, growth_bound = std::numeric_limits<double>::infinity();
 };
 
-enum class CornerVerdict {
+enum class StressVerdict {
   stable,     ///< finite, and within the bounds
   unstarted,  ///< its first rows took longer than there was time for
   wrong,      ///< finite, and out of the bounds
@@ -40,13 +40,13 @@ enum class CornerVerdict {
   crashed,   ///< the process ended
   hung       ///< it had to be ended in a step that took a hundred thousand times as long as those before
 };
-const char* to_string(CornerVerdict);
-inline bool must_not_be(CornerVerdict v) { return v >= CornerVerdict::unsolved; }
+const char* to_string(StressVerdict);
+inline bool must_not_be(StressVerdict v) { return v >= StressVerdict::unsolved; }
 
-struct CornerResult {
+struct StressResult {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-  CornerVerdict verdict = CornerVerdict::stable;
+  StressVerdict verdict = StressVerdict::stable;
   std::string reason;  ///< in words; empty if stable
   double error_linf = unknown, energy_error_max = unknown, residual_max = unknown;
   double diverged_at = unknown, cut_at = unknown;  ///< times
@@ -54,14 +54,15 @@ struct CornerResult {
   double seconds = 0;
 };
 
-/// The keys of a scene that is this corner, `delf run` being given all of them.
-std::vector<Setting> keys_of(const Corner&);
+/// The keys of a scene that is this stress case, `delf run` being given all of them.
+std::vector<Setting> keys_of(const StressCase&);
 
-/// Steps it here, for at most `budget` seconds and a step, and catches everything that is thrown. `report` is called with
-/// what there is so far, before the first step and some fifty times on the way.
-CornerResult run_corner(const Corner&, double budget, const std::function<void(const CornerResult&)>& report = {});
-/// The same in a process of its own, so that a crash or a hang is a verdict too. A step that outlasts the budget by
-/// another budget and a second is ended, and the result is what was reported before it.
-CornerResult run_corner_apart(const Corner&, double budget);
+/// Steps it here, for at most `budget` seconds and a step, and catches everything that is thrown. `report` is called
+/// with what there is so far, before the first step and some fifty times on the way.
+StressResult run_stress_case(const StressCase&, double budget,
+                             const std::function<void(const StressResult&)>& report = {});
+/// Runs the case in a process of its own, so that a crash or a hang is a verdict too. A step that outlasts the budget
+/// by another budget and a second is ended, and the result is what was reported before it.
+StressResult run_stress_case_apart(const StressCase&, double budget);
 
 }  // namespace delf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/workprecision/contestant.hpp"
+#include "tools/workprecision/entry.hpp"
 #include "tools/workprecision/workprecision_outcome.hpp"
 
 #ifdef DELF_HAS_PEERS
@@ -49,7 +49,7 @@ double potential(const WaveEquation& e, double phi) {
 }
 
 /// A program of the peers, from the first values and rates of a scene on.
-class PeerRacer : public Racer {
+class PeerEntry : public StartedEntry {
  public:
   void restart() override {
     peer_->start(first_, first_t_);
@@ -72,7 +72,7 @@ class PeerRacer : public Racer {
   }
 
  protected:
-  PeerRacer(const Scene& scene, const Lattice& lattice, double h, std::int64_t most_in_a_call)
+  PeerEntry(const Scene& scene, const Lattice& lattice, double h, std::int64_t most_in_a_call)
       : h_(h), most_in_a_call_(most_in_a_call) {
     const auto state = make_state(scene.initial, lattice);
     for (std::vector<double>* row : {&phi_, &phi_t_, &first_, &first_t_})
@@ -82,7 +82,7 @@ class PeerRacer : public Racer {
   }
   void start(std::unique_ptr<peers::Peer> peer) {
     peer_ = std::move(peer);
-    PeerRacer::restart();
+    PeerEntry::restart();
   }
   /// Values and rates of the newest row, phi_ and phi_t_.
   void fetch() const { peer_->copy(phi_, phi_t_); }
@@ -96,10 +96,10 @@ class PeerRacer : public Racer {
   std::unique_ptr<peers::Peer> peer_;
 };
 
-class FieldRacer final : public PeerRacer {
+class FieldEntry final : public PeerEntry {
  public:
-  FieldRacer(const Scene& scene, const WaveEquation& equation, const peers::PeerInfo& info, const Resolution& r)
-      : PeerRacer(scene, lattice_of(scene, r.sites), r.time_step, std::max<std::int64_t>(1, 4000000 / r.sites)),
+  FieldEntry(const Scene& scene, const WaveEquation& equation, const peers::PeerInfo& info, const Resolution& r)
+      : PeerEntry(scene, lattice_of(scene, r.sites), r.time_step, std::max<std::int64_t>(1, 4000000 / r.sites)),
         equation_(equation),
         forces_(equation.potential == WaveEquation::Potential::none ? WorkPrecisionRun::unknown
                                                                     : static_cast<double>(info.forces)) {
@@ -136,10 +136,10 @@ class FieldRacer final : public PeerRacer {
   double forces_;
 };
 
-class BodyRacer final : public PeerRacer {
+class BodyEntry final : public PeerEntry {
  public:
-  BodyRacer(const Scene& scene, peers::BodyPeerInfo info, const Resolution& r)
-      : PeerRacer(scene, scene.problem.lattice, r.time_step, 1 << 20),
+  BodyEntry(const Scene& scene, peers::BodyPeerInfo info, const Resolution& r)
+      : PeerEntry(scene, scene.problem.lattice, r.time_step, 1 << 20),
         info_(std::move(info)),
         mass_(scene.problem.parameters.maybe<double>("theory.mass").value_or(1)) {
     start(info_.make(mass_));
@@ -155,27 +155,27 @@ class BodyRacer final : public PeerRacer {
   double mass_;
 };
 
-std::vector<Contestant> body_contestants(const Scene& scene) {
-  std::vector<Contestant> all;
+std::vector<WorkPrecisionEntry> body_entries(const Scene& scene) {
+  std::vector<WorkPrecisionEntry> all;
   if (scene.from_file()) return all;
   for (const peers::BodyPeerInfo& info : peers::body_peers(scene.problem.theory))
     all.push_back({.name = info.name, .peer = true, .start = [&scene, info](const Resolution& r) {
-                     return std::unique_ptr<Racer>(new BodyRacer(scene, info, r));
+                     return std::unique_ptr<StartedEntry>(new BodyEntry(scene, info, r));
                    }});
   return all;
 }
 
 }  // namespace
 
-std::vector<Contestant> peer_contestants(const Scene& scene) {
-  if (scene.problem.lattice.space() == Space::point) return body_contestants(scene);
-  std::vector<Contestant> all;
+std::vector<WorkPrecisionEntry> peer_entries(const Scene& scene) {
+  if (scene.problem.lattice.space() == Space::point) return body_entries(scene);
+  std::vector<WorkPrecisionEntry> all;
   const auto equation = equation_of(scene);
   if (!equation) return all;
   for (const peers::PeerInfo& info : peers::peers())
     all.push_back({info.name, true, info.processed, false, 1, 0, false,
                    [&scene, &info, equation = *equation](const Resolution& r) {
-                     return std::unique_ptr<Racer>(new FieldRacer(scene, equation, info, r));
+                     return std::unique_ptr<StartedEntry>(new FieldEntry(scene, equation, info, r));
                    }});
   return all;
 }
@@ -186,7 +186,7 @@ std::vector<Contestant> peer_contestants(const Scene& scene) {
 
 namespace delf {
 
-std::vector<Contestant> peer_contestants(const Scene&) { return {}; }
+std::vector<WorkPrecisionEntry> peer_entries(const Scene&) { return {}; }
 
 }  // namespace delf
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/methods/own_energy.hpp"
+#include "schemes/methods/energies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +57,7 @@ History run(const Problem& p, int steps = 200) {
   const auto own = own_energy(s, p);
   History history;
   if (!own) return history;
-  history.name = own->name;
+  history.name = own->entry->name;
   for (int j = 0; j < steps; ++j) {
     history.own.push_back(newest_own_energy(*own, s));
     history.measured.push_back(s.monitors().energy);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/workprecision/contestant.hpp"
+#include "tools/workprecision/entry.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,10 +18,10 @@ Lattice lattice_of(const Scene& scene, int sites) {
   return Lattice::interval(sites, given.length(), given.left(), given.right());
 }
 
-std::vector<Contestant> contestants(const Scene& scene, const WorkPrecisionRequest& request) {
-  std::vector<Contestant> all = engine_contestants(scene);
+std::vector<WorkPrecisionEntry> entries(const Scene& scene, const WorkPrecisionRequest& request) {
+  std::vector<WorkPrecisionEntry> all = engine_entries(scene);
   if (request.peers)
-    for (Contestant& peer : peer_contestants(scene)) all.push_back(std::move(peer));
+    for (WorkPrecisionEntry& peer : peer_entries(scene)) all.push_back(std::move(peer));
   if (request.schemes.empty()) return all;
   std::vector<bool> named(all.size());
   const auto name_all = [&](const std::string& given) {
@@ -40,13 +40,13 @@ std::vector<Contestant> contestants(const Scene& scene, const WorkPrecisionReque
     while (end != at && !name_all(fmt::format("{}", fmt::join(at, end, ", ")))) --end;
     if (end == at) {
       std::vector<std::string> names = stencil_names_and_aliases();
-      for (const Contestant& one : all) names.push_back(one.name);
+      for (const WorkPrecisionEntry& one : all) names.push_back(one.name);
       throw scene.settings.error("workprecision.schemes",
                                  fmt::format("{} is no scheme here{}", *at, suggestion(*at, names)));
     }
     at = end;
   }
-  std::vector<Contestant> chosen;
+  std::vector<WorkPrecisionEntry> chosen;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (named[i]) chosen.push_back(std::move(all[i]));
   return chosen;

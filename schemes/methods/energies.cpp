@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/methods/energies.hpp"
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "schemes/methods/element_parts.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/system/assembly.hpp"
+#include "schemes/system/legendre.hpp"
+#include "schemes/turn.hpp"
+
+namespace delf {
+namespace {
+
+/// Momenta ∂L/∂y of the fields at a row, of the stencils below it. What these read is listed once: half_equations(), which
+/// goes from stencil to stencil, takes ten times as long.
+class MomentaBelow {
+ public:
+  MomentaBelow(const LatticeSystem& system, double turn)
+      : system_(system), assembly_(system, parts(system, turn)) {}
+
+  std::vector<double> operator()(const RowsInTime& rows) const {
+    std::vector<double> E, p(static_cast<std::size_t>(system_.lattice().sites() * system_.components()), 0.0);
+    assembly_.residual(SectionRing(rows.rows, rows.newest - 1, rows.newest), rows.newest, E);
+    for (int n = 0; n < assembly_.size(); ++n)
+      p[static_cast<std::size_t>(assembly_.place(assembly_.equation(n)))] = E[static_cast<std::size_t>(n)];
+    return p;
+  }
+
+ private:
+  static Assembly::Parts parts(const LatticeSystem& system, double turn) {
+    std::vector<Assembly::Anchor> below;
+    for (std::size_t f = 0; f < system.families().size(); ++f)
+      for (int i = 0; i < system.anchors(*system.families()[f]); ++i)
+        if (system.has_stencil(*system.families()[f], -1, i)) below.push_back({static_cast<int>(f), {-1, i}});
+    Assembly::Parts parts{.equations = {}, .past = 1, .turn = turn, .stencils = std::move(below)};
+    for (int i = 0; i < system.lattice().sites(); ++i)
+      for (int c = 0; c < system.fields(); ++c) parts.equations.push_back({{0, i}, c});
+    return parts;
+  }
+  const LatticeSystem& system_;
+  Assembly assembly_;
+};
+
+}  // namespace
+
+extern const EnergyEntry rectangle_energy, midway_energy, quadratic_invariant, vu_quoc_li_energy, guo_energy,
+    composition_energy;
+
+const EnergyEntry rectangle_energy{"energy", energy_formula, "Marsden-Patrick-Shkoller, footnote 4, of any density", ""};
+const EnergyEntry midway_energy{
+    "energy of a point",
+    "q_t ∂ℓ/∂q_t − ℓ, midway between the last two rows, q_t = (q⁺ − q)/h, whatever the scheme; order 2 in h",
+    "the same on one site", ""};
+const EnergyEntry hamiltonian_of_row{
+    "H of a row", "H of the last row, with the momenta and the quadrature of scheme.method = {} itself",
+    "discrete Legendre transform, Marsden-West 1.5", "",
+    [](const FieldTheory&, const LatticeSystem&, const Problem&) -> EnergyOfRows { return row_energy; }};
+const EnergyEntry composition_energy{
+    "H(q, p) of the composition",
+    "H(q, p) = p'p/2km - k sum l(q, 0, D), on the pairs of the scheme's own order, p of its own Legendre transform: "
+    "kept to the order of the steps",
+    "discrete Legendre transform, Marsden-West 1.5", "composition",
+    [](const FieldTheory&, const LatticeSystem& system, const Problem& problem) -> EnergyOfRows {
+      // of this system: one that a check plants faults in has families that do not say what they are made of
+      return [&system, momenta = std::make_shared<const MomentaBelow>(system, turn_of(problem))](const RowsInTime& rows) {
+        return LegendreTransform(system, rows.rows, rows.newest).energy((*momenta)(rows));
+      };
+    }};
+
+const std::vector<const EnergyEntry*>& energy_entries() {
+  static const std::vector<const EnergyEntry*> all{&rectangle_energy,    &midway_energy,     &hamiltonian_of_row,
+                                                   &quadratic_invariant, &vu_quoc_li_energy, &guo_energy,
+                                                   &composition_energy};
+  return all;
+}
+
+const EnergyEntry& energy_of_run(const Problem& problem) {
+  if (const EnergyEntry* own = find_method(problem.method).energy) return *own;
+  return problem.lattice.space() == Space::point ? midway_energy : rectangle_energy;
+}
+
+std::optional<OwnEnergy> own_energy(const Simulation& simulation, const Problem& given) {
+  const Problem problem = completed(given);
+  const LatticeSystem& system = simulation.evolution().system();
+  if (system.moves() || simulation.is_processed()) return std::nullopt;
+  const MethodEntry& method = find_method(problem.method);
+  const bool any = !method.energy && gain_of(problem.parameters) == 0;
+  for (const EnergyEntry* entry : {method.own_energy, any ? &quadratic_invariant : nullptr})
+    if (entry)
+      if (EnergyOfRows value = entry->make(simulation.theory(), system, problem)) return OwnEnergy{entry, value};
+  return std::nullopt;
+}
+
+double newest_own_energy(const OwnEnergy& own, const Simulation& simulation) {
+  const LatticeSystem& system = simulation.evolution().system();
+  const Stepper& stepper = simulation.evolution().stepper();
+  if (stepper.newest() < 1) return std::numeric_limits<double>::quiet_NaN();
+  return own.value({simulation.theory(), system, stepper.window(2), stepper.newest(), system.time_step()}).energy;
+}
+
+}  // namespace delf
