@@ -38,7 +38,11 @@ class CellFamilies {
 }  // namespace
 
 AsynchronousEvolution::AsynchronousEvolution(const CellSpace& space, std::vector<double> steps)
-    : space_(space), d_(space.density->components()), steps_(std::move(steps)), done_(steps_.size(), 0), potentials_(d_) {
+    : space_(space),
+      d_(space.density->components()),
+      steps_(std::move(steps)),
+      done_(steps_.size(), 0),
+      potentials_(d_) {
   if (space.constraint)
     throw BadInput("theory.name",
                    "theory.name: cells with steps of their own have no constraints; choose lattice.time = rows");
@@ -100,14 +104,14 @@ void AsynchronousEvolution::visit(SavedState& state) {
 void AsynchronousEvolution::kick(int cell, double t, std::span<const double> y, double factor,
                                  std::vector<double>& momenta) const {
   const auto corners = space_.mesh.cell(cell);
-  potentials_.each_residual(
-      {&cell, 1}, y,
-      [&](ComplexSystem::Stencils, const double* r) {
-        for (std::size_t n = 0; n < corners.size() * at(d_); ++n)
-          if (const auto site = static_cast<std::size_t>(corners[n / at(d_)]); !space_.fixed[site])
-            momenta[site * at(d_) + n % at(d_)] += factor * steps_[at(cell)] * r[n * most];
-      },
-      {.places = {}, .time = t});
+  potentials_.each_residual({&cell, 1}, y,
+                            [&](ComplexSystem::Stencils, const double* r) {
+                              for (std::size_t n = 0; n < corners.size() * at(d_); ++n)
+                                if (const auto site = static_cast<std::size_t>(corners[n / at(d_)]);
+                                    !space_.fixed[site])
+                                  momenta[site * at(d_) + n % at(d_)] += factor * steps_[at(cell)] * r[n * most];
+                            },
+                            {.places = {}, .time = t});
 }
 
 void AsynchronousEvolution::drift(int site, double t) {

@@ -29,7 +29,8 @@ std::vector<TablePoint::Entry> place_of(const TablePoint& point) {
 
 }  // namespace
 
-ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int vertices, const std::vector<TablePoint>& form)
+ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int vertices,
+                              const std::vector<TablePoint>& form)
     : density_(std::move(density)), vertices_(vertices), form_(form) {
   const int d = density_->components();
   StencilTable table{.pattern = {}, .points = {}};
@@ -73,7 +74,10 @@ ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int v
 }
 
 ComplexSystem::Family::Family(std::shared_ptr<const StencilFamily> family)
-    : vertices_(family->pattern().size()), family_(std::move(family)), linear_(false), reads_time_(family_->is_placed()) {
+    : vertices_(family->pattern().size()),
+      family_(std::move(family)),
+      linear_(false),
+      reads_time_(family_->is_placed()) {
   coupled_.assign(at(size()) * at(size()), 1), varying_ = coupled_;
 }
 
@@ -126,7 +130,8 @@ int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table
   Family& of = families_[at(family)];
   std::vector<Complex::Position> positions;
   const std::size_t per_vertex = sites.size() / at(of.vertices_);
-  for (std::size_t l = 0; of.is_placed() && l < sites.size(); l += per_vertex) positions.push_back(complex_.position(sites[l]));
+  for (std::size_t l = 0; of.is_placed() && l < sites.size(); l += per_vertex)
+    positions.push_back(complex_.position(sites[l]));
   numbers_.push_back(of.add_numbers(table, positions));
   measures_.push_back(measure);
   time_steps_.push_back(time_step);
@@ -163,19 +168,27 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
            time_steps_[at(stencils[end])] == step && !of.reads_time())
       ++end;
     const Stencils batch = stencils.subspan(first, end - first);
-    const std::size_t count = (batch.size() + lanes - 1) / lanes * lanes, rows = power == 0 ? 1 : power == 1 ? size : size * size;
-    const ScratchRows values(of.size(), static_cast<int>(count)), results(static_cast<int>(rows), static_cast<int>(count)),
-        out(static_cast<int>(rows), most);
+    const std::size_t count = (batch.size() + lanes - 1) / lanes * lanes, rows = power == 0   ? 1
+                                                                                 : power == 1 ? size
+                                                                                              : size * size;
+    const ScratchRows values(of.size(), static_cast<int>(count)),
+        results(static_cast<int>(rows), static_cast<int>(count)), out(static_cast<int>(rows), most);
     for (std::size_t s = 0; s < count; ++s) {  // the last one fills whole packs
       const std::size_t n = std::min(s, batch.size() - 1);
       numbers[s] = numbers_[at(batch[n])];
       for (std::size_t i = 0; i < size; ++i)
-        values[static_cast<int>(i)][s] = y[reading.places.empty() ? node(batch[n], static_cast<int>(i))
-                                                                    : at(reading.places[begin + n * size + i])];
+        values[static_cast<int>(i)][s] =
+            y[reading.places.empty() ? node(batch[n], static_cast<int>(i)) : at(reading.places[begin + n * size + i])];
     }
     begin += batch.size() * size;
     const double first_time = of.jets_ ? 0 : complex_.position(complex_.vertices(batch[0])[0])[0];
-    evaluate(of, StencilBatch{{step, 1, reading.time.value_or(first_time), 0}, static_cast<int>(count), x[0], values[0], nullptr, numbers.data()},
+    evaluate(of,
+             StencilBatch{{step, 1, reading.time.value_or(first_time), 0},
+                          static_cast<int>(count),
+                          x[0],
+                          values[0],
+                          nullptr,
+                          numbers.data()},
              results[0]);
     for (std::size_t r = 0; r < rows; ++r)
       for (std::size_t s = 0; s < batch.size(); ++s)  // |Δ| in place of the area h k of the table
@@ -188,18 +201,18 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
 void ComplexSystem::each_lagrangian(Stencils s, std::span<const double> y, const Visit& visit,
                                     const StencilReading& reading) const {
   each(
-      s, y, 0, [](const Family& of, const StencilBatch& batch, double* out) { of.family_->lagrangian(batch, out); }, visit,
-      reading);
+      s, y, 0, [](const Family& of, const StencilBatch& batch, double* out) { of.family_->lagrangian(batch, out); },
+      visit, reading);
 }
 void ComplexSystem::each_energy(Stencils s, std::span<const double> y, const Visit& visit) const {
-  each(
-      s, y, 0, [](const Family& of, const StencilBatch& batch, double* out) { of.jets_->energy(batch, out); }, visit, {});
+  each(s, y, 0, [](const Family& of, const StencilBatch& batch, double* out) { of.jets_->energy(batch, out); }, visit,
+       {});
 }
 void ComplexSystem::each_residual(Stencils s, std::span<const double> y, const Visit& visit,
                                   const StencilReading& reading) const {
   each(
-      s, y, 1, [](const Family& of, const StencilBatch& batch, double* out) { of.family_->residual(batch, out); }, visit,
-      reading);
+      s, y, 1, [](const Family& of, const StencilBatch& batch, double* out) { of.family_->residual(batch, out); },
+      visit, reading);
 }
 void ComplexSystem::each_jacobian(Stencils s, std::span<const double> y, const Visit& visit,
                                   const StencilReading& reading) const {

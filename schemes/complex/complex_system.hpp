@@ -68,8 +68,9 @@ class ComplexSystem {
     std::shared_ptr<const StencilFamily> family_;
     std::vector<std::vector<TablePoint::Entry>> places_;  ///< of the points: weights of the vertices
     std::vector<TablePoint> form_;
-    std::vector<std::vector<double>> tables_;  ///< of a density that is placed: numbers that stencils have besides their places
-    std::vector<char> coupled_, varying_;      ///< [i·size + m]
+    std::vector<std::vector<double>>
+        tables_;  ///< of a density that is placed: numbers that stencils have besides their places
+    std::vector<char> coupled_, varying_;  ///< [i·size + m]
     bool linear_ = true, reads_time_ = false;
   };
 
@@ -128,8 +129,8 @@ class ComplexSystem {
 
   int components_;
   Complex complex_;
-  std::vector<Family> families_;        ///< its number is the number of its shape
-  std::vector<std::int32_t> numbers_;   ///< of each stencil: where its own are
+  std::vector<Family> families_;       ///< its number is the number of its shape
+  std::vector<std::int32_t> numbers_;  ///< of each stencil: where its own are
   std::vector<double> measures_, time_steps_;
 };
 

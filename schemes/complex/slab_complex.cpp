@@ -16,8 +16,9 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
   if (!is_variational(system))
-    throw BadInput("scheme.method",
-                   "scheme.method: on a mesh delf verify checks methods that have an action: composition or cgvi; use one of these");
+    throw BadInput(
+        "scheme.method",
+        "scheme.method: on a mesh delf verify checks methods that have an action: composition or cgvi; use one of these");
   const Lattice& lattice = system.lattice();
   const auto& components = system.all_components();
   // With multipliers every value is a site of its own: equations of one point are not matched with its own unknowns.
@@ -37,8 +38,8 @@ SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
         const double t = system.times()->time(r) + component.at.time * system.times()->step(r);
         const auto& [x, y, z] = lattice.mesh()->mesh.points[at(i)];
         const SiteRole role = lattice.is_fixed(i) || (in_row && row == 0) ? SiteRole::given
-                              : in_row && last                           ? SiteRole::final
-                                                                         : SiteRole::free;
+                              : in_row && last                            ? SiteRole::final
+                                                                          : SiteRole::free;
         number(row, i, node) = made.system.add_site({t, x, y, z}, role);
         for (int a = 0; a < together; ++a) made.values.push_back(rows(r, i, node * together + a));
       }
@@ -50,7 +51,8 @@ SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
         if (!system.has_stencil(*family, rows.first_row + row, s)) continue;
         vertices.clear();
         for (int i = 0; i < family->size(); i += together)
-          vertices.push_back(number(row + family->site(i).time, family->column(s, i), family->values()[at(i)].component / together));
+          vertices.push_back(
+              number(row + family->site(i).time, family->column(s, i), family->values()[at(i)].component / together));
         made.system.add_stencil(placed, vertices, s, 1, system.times()->step(rows.first_row + row));
       }
   }

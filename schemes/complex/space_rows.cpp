@@ -70,7 +70,8 @@ SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
                   rows * (values * (sites + space.mesh.vertices.size()) + (values + 1) * constraints) +
                       2 * (rows - 1) * values * sites);
   for (std::size_t j = 0; j < times.size(); ++j) {
-    const double below = j == 0 ? 0 : times[j] - times[j - 1], above = j + 1 == times.size() ? 0 : times[j + 1] - times[j];
+    const double below = j == 0 ? 0 : times[j] - times[j - 1],
+                 above = j + 1 == times.size() ? 0 : times[j + 1] - times[j];
     add_row(times[j], 0.5 * (below + above));
     if (j == 0) continue;
     if (j == 1) motion_ = system_.add_family(space.tables.motion());
@@ -158,19 +159,19 @@ std::vector<double> SpaceRows::with_multipliers(std::span<const double> fields) 
   std::vector<double> y = with_multipliers(fields, std::vector<double>(at(rows_) * at(space_.sites()), 0.0));
   const std::vector<Balance> E = system_.residual(y);
   for (int j = 0; j < rows_; ++j)
-    space_.each_constraint(
-        fields.subspan(at(j) * of_fields, of_fields), [&](std::size_t i, double, std::span<const double> slopes) {
-          const std::size_t row = at(j) * of_row;
-          if (!system_.complex().has_equation(static_cast<int>(row + i * d))) return;
-          // E + |Δ| λ ∂G/∂φ = 0 along ∂G/∂φ
-          double product = 0, square = 0;
-          for (std::size_t a = 0; a < d; ++a) {
-            product += E[row + i * d + a].sum * slopes[a];
-            square += slopes[a] * slopes[a];
-          }
-          const double measure = weight_of_constraint(static_cast<int>(i)) * measures_[at(j)];
-          if (square > 0) y[row + of_fields + i] = -product / square / measure;
-        });
+    space_.each_constraint(fields.subspan(at(j) * of_fields, of_fields),
+                           [&](std::size_t i, double, std::span<const double> slopes) {
+                             const std::size_t row = at(j) * of_row;
+                             if (!system_.complex().has_equation(static_cast<int>(row + i * d))) return;
+                             // E + |Δ| λ ∂G/∂φ = 0 along ∂G/∂φ
+                             double product = 0, square = 0;
+                             for (std::size_t a = 0; a < d; ++a) {
+                               product += E[row + i * d + a].sum * slopes[a];
+                               square += slopes[a] * slopes[a];
+                             }
+                             const double measure = weight_of_constraint(static_cast<int>(i)) * measures_[at(j)];
+                             if (square > 0) y[row + of_fields + i] = -product / square / measure;
+                           });
   return y;
 }
 

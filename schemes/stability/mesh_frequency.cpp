@@ -25,7 +25,9 @@ double largest_eigenvalue(const Matrix& K) {
   if (size > 1e100 || size < 1e-100) return size * largest_eigenvalue(K / size);
   constexpr int few = 32, basis = 24, most_iterations = 1000;
   if (K.rows() <= few)
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(K), Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(K), Eigen::EigenvaluesOnly)
+        .eigenvalues()
+        .maxCoeff();
   Spectra::SparseSymMatProd<double> product(K);
   Spectra::SymEigsSolver<Spectra::SparseSymMatProd<double>> lanczos(product, 1, basis);
   lanczos.init();
@@ -42,7 +44,8 @@ std::vector<MatrixEntry> derivatives(const LatticeSystem& system, int above, dou
       if (system.component(c).role != Role::field || system.is_held(i, c)) continue;
       equations.push_back({{0, i}, c}), unknowns.push_back({{above, i}, c});
     }
-  Assembly assembly(system, {.equations = std::move(equations), .unknowns = std::move(unknowns), .past = 1, .future = 1});
+  Assembly assembly(system,
+                    {.equations = std::move(equations), .unknowns = std::move(unknowns), .past = 1, .future = 1});
   assembly.set_time_step(time_step);
   std::vector<double> values;
   assembly.jacobian(SectionRing(3, static_cast<std::size_t>(N * C)), 1, values);

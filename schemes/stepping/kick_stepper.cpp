@@ -110,7 +110,8 @@ bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilF
       if (input.size() != 1 || input[0].weight != 1) return false;
       const auto i = std::ranges::find_if(family.values(), [&](const VertexValue& value) {
         const Site& v = family.pattern().vertices[at(value.vertex)];
-        return v.time == input[0].vertex.time && v.space == input[0].vertex.space && value.component == input[0].component;
+        return v.time == input[0].vertex.time && v.space == input[0].vertex.space &&
+               value.component == input[0].component;
       });
       inputs.push_back(values[static_cast<std::size_t>(i - family.values().begin())]);
     }
@@ -122,7 +123,8 @@ bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilF
         // N′ of component c kicks the same one, there
         if (v.node != inputs[at(c)].node || v.place != inputs[at(c)].place) return false;
         if (v.data) continue;
-        if (family.is_placed() && group.time != family.site(i).time + system.component(family.values()[at(i)].component).at.time)
+        if (family.is_placed() &&
+            group.time != family.site(i).time + system.component(family.values()[at(i)].component).at.time)
           return false;
         std::vector<Source>& list = sources[at(v.node)];
         const auto [found, fresh] = known.try_emplace({v.node, g}, list.size());
@@ -157,7 +159,8 @@ KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const 
       for (int e = begin; next != K.end() && next->first.first == pack + lane; ++next, ++e) {
         if (e == static_cast<int>(kick.value.size())) {
           kick.value.emplace_back(0.0);
-          kick.column.insert(kick.column.end(), at(lanes), pack);  // rows with fewer entries read a value and take nothing of it
+          kick.column.insert(kick.column.end(), at(lanes),
+                             pack);  // rows with fewer entries read a value and take nothing of it
         }
         kick.column[at(e * lanes + lane)] = next->first.second;
         numbers(kick.value)[e * lanes + lane] = next->second;
@@ -203,8 +206,7 @@ std::unique_ptr<StepMethod> KickStepper::make(const LatticeSystem& system, const
     for (int anchor = 0; anchor < system.anchors(*family); ++anchor) {
       if (!system.has_stencil(*family, 0, anchor)) continue;
       for (int i = 0; i < family->size(); ++i) values[at(i)] = parts.value(system, *family, anchor, i);
-      if (!parts.add(system, *family, anchor, values) ||
-          !parts.add_sources(system, *family, anchor, values, known))
+      if (!parts.add(system, *family, anchor, values) || !parts.add_sources(system, *family, anchor, values, known))
         return nullptr;
     }
   }
@@ -252,9 +254,9 @@ std::size_t KickStepper::index(std::int64_t row, int node) const {
 /// P ← P + κ (K y + c + w N′(y)),   y′ = y + δ M⁻¹ P, strip by strip, with κ and δ as they are given.
 void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double of_drift, double t, Node& next) {
   const Node& here = node(newest_, n);
-  const double *const from = numbers(here.y), *const from_low = numbers(here.low), *const constant = numbers(kick.constant),
-                     *const drift = numbers(inverse_[at(n)]), *const value = numbers(kick.value),
-                     *const x = x_.empty() ? nullptr : numbers(x_);
+  const double *const from = numbers(here.y), *const from_low = numbers(here.low),
+                      *const constant = numbers(kick.constant), *const drift = numbers(inverse_[at(n)]),
+                      *const value = numbers(kick.value), *const x = x_.empty() ? nullptr : numbers(x_);
   double *const P = numbers(momentum_), *const to = numbers(next.y), *const to_low = numbers(next.low);
   const ScratchRows slope(fields_, strip);
   const std::int32_t* const column = kick.column.data();
@@ -265,7 +267,8 @@ void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double
       for (int i = begin; i < begin + count; i += lanes) {
         Pack sum = Pack::load(constant + i);
         const int end = kick.first[at(i / lanes + 1)];
-        for (int e = kick.first[at(i / lanes)]; e < end; ++e) sum += Pack::load(value + e * lanes) * gather(from, column + e * lanes);
+        for (int e = kick.first[at(i / lanes)]; e < end; ++e)
+          sum += Pack::load(value + e * lanes) * gather(from, column + e * lanes);
         (Pack::load(P + i) + of_kick * sum).store(P + i);
       }
       inputs_[at(a)] = from + begin;
@@ -276,7 +279,8 @@ void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double
         const int begin = a * padded_ + first;
         const double* const weight = numbers(source.weights) + begin;
         for (int i = 0; i < count; i += lanes)
-          (Pack::load(P + begin + i) + of_kick * Pack::load(weight + i) * Pack::load(slope[a] + i)).store(P + begin + i);
+          (Pack::load(P + begin + i) + of_kick * Pack::load(weight + i) * Pack::load(slope[a] + i))
+              .store(P + begin + i);
       }
     }
     for (int a = 0; a < fields_; ++a) {
@@ -306,8 +310,9 @@ void KickStepper::take_slab(const Kick& first, double share_below) {
     kick_and_drift(n == 0 ? first : kicks_[at(n)], n, kick, above, t, next);
   }
   if (overflowed(max_or_nan(largest_)))
-    throw NotFinite(fmt::format("step {}, t = {:.6g}: the field is not finite; reduce lattice.time_step or lattice.courant",
-                                newest_ + 1, times.time(newest_ + 1)));
+    throw NotFinite(
+        fmt::format("step {}, t = {:.6g}: the field is not finite; reduce lattice.time_step or lattice.courant",
+                    newest_ + 1, times.time(newest_ + 1)));
   std::ranges::rotate(slots_, slots_.end() - 1);
   held_ = std::min(held_ + 1, rows_held);
   ++newest_;
@@ -404,7 +409,8 @@ double KickStepper::residual() const {
 }
 
 std::size_t KickStepper::bytes_of(const Kick& kick) {
-  std::size_t sum = 4 * (kick.first.size() + kick.column.size()) + sizeof(Pack) * (kick.value.size() + kick.constant.size());
+  std::size_t sum =
+      4 * (kick.first.size() + kick.column.size()) + sizeof(Pack) * (kick.value.size() + kick.constant.size());
   for (const Source& source : kick.sources) sum += sizeof(Pack) * source.weights.size();
   return sum;
 }

@@ -24,7 +24,7 @@ namespace delf {
 /// parts and the source terms of the families.
 class KickStepper final : public StepMethod {
  public:
-  /// Null where the equations are of another kind.
+  /// Returns null if the equations are of another kind.
   static std::unique_ptr<StepMethod> make(const LatticeSystem&, const SolvePlan&, const StepOptions&);
 
   void start(const std::vector<std::vector<double>>& rows) override;
@@ -46,7 +46,7 @@ class KickStepper final : public StepMethod {
     int group;
     Packs weights;  ///< as the values of a node
   };
-  /// Of the values at a node: y[a·padded + i], a field after the other.
+  /// The kick of the values at a node, y[a·padded + i], a field after the other.
   struct Kick {
     /// Of each pack of rows of K its entries, and the end; an entry has a column and a value for each lane.
     std::vector<std::int32_t> first, column;
@@ -74,15 +74,15 @@ class KickStepper final : public StepMethod {
 
   const LatticeSystem& system_;
   double turn_;
-  int fields_, nodes_, padded_;      ///< nodes of a slab but the last; sites to whole packs
-  std::vector<int> behind_;          ///< rows that the newest of a component is below the newest row
-  Kick alone_;                       ///< of row 0, which has no slab below it
-  std::vector<Kick> kicks_;          ///< of each node: at a row those of both slabs
-  std::vector<Packs> inverse_;       ///< M_s⁻¹; 0 where values are data
-  Packs x_;                          ///< of the sites, if a density reads x
-  std::vector<Node> ring_;           ///< rows with the nodes above them
-  std::vector<int> slots_;           ///< where the newest row stands in the ring, and those before it
-  Packs momentum_;                   ///< P
+  int fields_, nodes_, padded_;        ///< nodes of a slab but the last; sites to whole packs
+  std::vector<int> behind_;            ///< rows that the newest of a component is below the newest row
+  Kick alone_;                         ///< of row 0, which has no slab below it
+  std::vector<Kick> kicks_;            ///< of each node: at a row those of both slabs
+  std::vector<Packs> inverse_;         ///< M_s⁻¹; 0 where values are data
+  Packs x_;                            ///< of the sites, if a density reads x
+  std::vector<Node> ring_;             ///< rows with the nodes above them
+  std::vector<int> slots_;             ///< where the newest row stands in the ring, and those before it
+  Packs momentum_;                     ///< P
   std::vector<const double*> inputs_;  ///< of a source, in kick_and_drift()
   Pack largest_;
   std::int64_t newest_ = -1;

@@ -82,8 +82,7 @@ double MeshEnergy::between(std::span<const double> before, std::span<const doubl
   return 0.5 * ((*this)(before, rates, t - h) + (*this)(y, rates, t));
 }
 
-std::vector<double> MeshEnergy::rates(std::span<const double> values, std::span<const double> momenta,
-                                      double t) const {
+std::vector<double> MeshEnergy::rates(std::span<const double> values, std::span<const double> momenta, double t) const {
   const std::size_t d = momenta.size() / masses_.size();
   std::vector<double> p(momenta.begin(), momenta.end());
   for (std::size_t n = 0; n < p.size(); ++n) p[n] /= masses_[n / d];

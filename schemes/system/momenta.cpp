@@ -63,10 +63,14 @@ std::vector<double> half_equations(const LatticeSystem& system, const Window& wi
           y[0][m * count + s] = window(at, column, values[m].component);
           y[1][m * count + s] = window.low_part(at, column, values[m].component);
         }
-      family->residual(StencilBatch{{system.times()->step(anchor), lattice.space_step(), system.times()->time(anchor), 0},
-                                    static_cast<int>(count), x[0], y[0], family->reads_low() ? y[1] : nullptr,
-                                    numbers.data()},
-                       r[0]);
+      family->residual(
+          StencilBatch{{system.times()->step(anchor), lattice.space_step(), system.times()->time(anchor), 0},
+                       static_cast<int>(count),
+                       x[0],
+                       y[0],
+                       family->reads_low() ? y[1] : nullptr,
+                       numbers.data()},
+          r[0]);
       for (std::size_t m = 0; m < size; ++m) {
         if (anchor + family->site(static_cast<int>(m)).time != row || !family->is_varied(static_cast<int>(m))) continue;
         for (std::size_t s = 0; s < own; ++s) {

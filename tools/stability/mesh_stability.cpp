@@ -15,10 +15,10 @@
 #include "schemes/simulation.hpp"
 #include "schemes/stability/mesh_frequency.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "tools/report/text_columns.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/progress.hpp"
-#include "tools/files/text_file.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/stability/point_limits.hpp"
 
@@ -72,13 +72,12 @@ std::vector<NamedScheme> schemes_of(const ComplexScene& c) {
   if (c.has_method()) schemes.push_back({scheme_label(point), point});
   point.parameters = {};
   for (const NamedScheme& scheme : named_schemes(point))
-    if (const MethodEntry& m = find_method(scheme.problem.method); m.on_meshes && !m.reads_stencil) schemes.push_back(scheme);
+    if (const MethodEntry& m = find_method(scheme.problem.method); m.on_meshes && !m.reads_stencil)
+      schemes.push_back(scheme);
   return schemes;
 }
 
-std::string in_words(double limit) {
-  return std::isinf(limit) ? "none" : fmt::format("{:.6g}", limit);
-}
+std::string in_words(double limit) { return std::isinf(limit) ? "none" : fmt::format("{:.6g}", limit); }
 
 }  // namespace
 
@@ -87,7 +86,8 @@ ExitCode mesh_stability(const ComplexScene& c, const std::filesystem::path& fold
   if (c.time != MeshTime::rows)
     throw c.scene.settings.error("lattice.time", "limits are those of rows; leave it out for delf stability");
   if (c.theory->constraint())
-    throw c.scene.settings.error("theory.name", "limits on a mesh are of theories without a constraint; choose another");
+    throw c.scene.settings.error("theory.name",
+                                 "limits on a mesh are of theories without a constraint; choose another");
   const Values values(c.scene.settings);
   PointRequest request;
   request.agreement = values.real("stability.agreement");
@@ -97,7 +97,8 @@ ExitCode mesh_stability(const ComplexScene& c, const std::filesystem::path& fold
   usual.method = Problem().method;
   const auto longest = longest_step(Simulation(usual).evolution().system());
   if (!longest)
-    throw c.scene.settings.error("theory.name", "nothing oscillates about phi = 0; choose a theory whose vacuum is there");
+    throw c.scene.settings.error("theory.name",
+                                 "nothing oscillates about phi = 0; choose a theory whose vacuum is there");
   const double omega = 2 / *longest;
   const std::vector<NamedScheme> schemes = schemes_of(c);
   Progress progress(static_cast<std::int64_t>(schemes.size()));
@@ -120,7 +121,9 @@ ExitCode mesh_stability(const ComplexScene& c, const std::filesystem::path& fold
   nlohmann::ordered_json limits = nlohmann::ordered_json::array();
   std::vector<std::vector<std::string>> rows;
   for (const MeshFinding& f : findings) {
-    const auto number = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(); };
+    const auto number = [](double x) {
+      return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
+    };
     limits.push_back({{"scheme", f.oscillator.scheme},
                       {"frequency_step", number(f.oscillator.theory)},
                       {"time_step", number(f.limit)},

@@ -34,7 +34,8 @@ MeshRows::MeshRows(const CellSpace& space, double time_step, std::shared_ptr<con
       energy_(space.density, space) {}
 
 void MeshRows::start(std::span<const double> values, std::span<const double> rates, std::optional<double> time_step) {
-  const auto C = static_cast<std::size_t>(evolution_.system().components()), d = static_cast<std::size_t>(space_.fields());
+  const auto C = static_cast<std::size_t>(evolution_.system().components()),
+             d = static_cast<std::size_t>(space_.fields());
   std::vector<double> row0(space_.mesh.points.size() * C, 0.0), momenta(row0);
   const ScratchRows jet(space_.density->variables(), lanes), slope(space_.density->variables(), lanes), x(1, lanes);
   for (std::size_t i = 0; i < space_.mesh.points.size(); ++i) {
@@ -59,7 +60,8 @@ void MeshRows::step(std::optional<double> time_step) {
 }
 
 void MeshRows::read() {
-  const auto C = static_cast<std::size_t>(evolution_.system().components()), d = static_cast<std::size_t>(space_.fields());
+  const auto C = static_cast<std::size_t>(evolution_.system().components()),
+             d = static_cast<std::size_t>(space_.fields());
   for (const int back : {0, 1}) {
     std::vector<double>& to = back == 0 ? row_ : before_;
     to.clear();
@@ -71,7 +73,8 @@ void MeshRows::read() {
 
 Balance MeshRows::momentum(const LinearSymmetry& symmetry) const {
   Balance balance;
-  balance.sum = noether_charge(evolution_.system(), evolution_.stepper().window(2), newest(), symmetry, &balance.absolute);
+  balance.sum =
+      noether_charge(evolution_.system(), evolution_.stepper().window(2), newest(), symmetry, &balance.absolute);
   return balance;
 }
 

@@ -147,7 +147,9 @@ void step(Simulation& simulation, bool reversible, double longest) {
   if (reversible) simulation.step();
   else simulation.step_by(longest / simulation.row_density().density);  // the plain step, which is not reversible
 }
-std::vector<double> row_of(const Simulation& simulation, int back = 0) { return simulation.evolution().stepper().row(back); }
+std::vector<double> row_of(const Simulation& simulation, int back = 0) {
+  return simulation.evolution().stepper().row(back);
+}
 
 TEST_CASE("steps that the field chooses run back to where they began, and plain ones do not") {
   const CellSpace space(icosahedral_sphere(1), sine_gordon(), false);
@@ -192,7 +194,9 @@ TEST_CASE("steps that the field chooses have order 2, and keep the energy withou
   const auto drift = [&](bool reversible) {
     const auto evolution = of_chosen_steps(space, 0.25, 1.5, start, rest);
     const auto last_step = [&] { return evolution->evolution().system().times()->step(evolution->newest() - 1); };
-    const auto energy_now = [&] { return energy_of.between(row_of(*evolution, 1), row_of(*evolution), last_step(), 0); };
+    const auto energy_now = [&] {
+      return energy_of.between(row_of(*evolution, 1), row_of(*evolution), last_step(), 0);
+    };
     const double energy = energy_now();
     double shortest = 1, longest = 0;
     std::array<double, 2> mean{};  // of the energy's change, over the first and the last fifth

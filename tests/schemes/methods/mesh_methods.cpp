@@ -101,14 +101,15 @@ double distance(const Values& a, const Values& b) {
 const ParameterValues verlet = keys({{"scheme.tableau", std::string("stormer-verlet")}});
 
 /// Row `steps` of the complex of all rows at once, from rows 0 and 1.
-Values rows_as_complex(const OnMesh& on, const std::shared_ptr<const BatchDensity>& density, bool fixed, double h, int steps,
-                       const Values& row0, const Values& row1) {
+Values rows_as_complex(const OnMesh& on, const std::shared_ptr<const BatchDensity>& density, bool fixed, double h,
+                       int steps, const Values& row0, const Values& row1) {
   const CellSpace space(on.space->mesh, density, fixed);
   Values times;
   for (int n = 0; n <= steps; ++n) times.push_back(n * h);
   const SpaceRows rows(space, times);
   Values y;
-  for (int n = 0; n <= steps; ++n) y.insert(y.end(), n == 0 ? row0.begin() : row1.begin(), n == 0 ? row0.end() : row1.end());
+  for (int n = 0; n <= steps; ++n)
+    y.insert(y.end(), n == 0 ? row0.begin() : row1.begin(), n == 0 ? row0.end() : row1.end());
   ComplexSolver(rows.system()).solve(y);
   return {y.end() - static_cast<std::ptrdiff_t>(row0.size()), y.end()};
 }
@@ -148,12 +149,15 @@ TEST_CASE("families of a time table on a mesh have the rows of a finite complex 
       for (int i = 0; i < 6; ++i) {
         const int n = 7 * j + i;
         if ((i + j) % 2) mesh.add_cell(std::vector<std::int32_t>{n, n + 1, n + 8, n + 7});
-        else mesh.add_cell(std::vector<std::int32_t>{n, n + 1, n + 8}), mesh.add_cell(std::vector<std::int32_t>{n, n + 8, n + 7});
+        else
+          mesh.add_cell(std::vector<std::int32_t>{n, n + 1, n + 8}),
+              mesh.add_cell(std::vector<std::int32_t>{n, n + 8, n + 7});
       }
     return mesh;
   }();
-  for (const char* text : {"0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)", "0.5*phi_t^2 - 0.5*(1 + 0.3*phi^2)*phi_x^2 - phi^4",
-                           "0.5*phi_t^2 - 0.5*(1 + 0.2*x^2)*phi_x^2 - (1 + 0.1*x + sin(t))*phi^4"})
+  for (const char* text :
+       {"0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)", "0.5*phi_t^2 - 0.5*(1 + 0.3*phi^2)*phi_x^2 - phi^4",
+        "0.5*phi_t^2 - 0.5*(1 + 0.2*x^2)*phi_x^2 - (1 + 0.1*x + sin(t))*phi^4"})
     for (const bool fixed : {false, true}) {
       CAPTURE(text, fixed);
       const auto density = expression(text);
@@ -169,8 +173,8 @@ TEST_CASE("families of a time table on a mesh have the rows of a finite complex 
   // A mass that is another's is seen.
   const OnMesh on(clipped, "cgvi", verlet), other(icosahedral_sphere(1), "cgvi", verlet);
   const auto half = expression("0.25*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)");
-  CHECK(distance(rows_as_complex(on, expression("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)"), false, 0.02, 40, on.pulse(1, false),
-                                 rows_by_families(on, half, 0.02, 1)),
+  CHECK(distance(rows_as_complex(on, expression("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)"), false, 0.02, 40,
+                                 on.pulse(1, false), rows_by_families(on, half, 0.02, 1)),
                  rows_by_families(on, half, 0.02, 40)) > 1e-3);
 }
 
@@ -181,13 +185,13 @@ TEST_CASE("methods of lattices have their orders in time on a sphere") {
     double order;
     int steps;
   };
-  for (const Case& c : {Case{"cgvi", keys({{"scheme.tableau", std::string("gauss1")}}), 2, 40},
-                        Case{"cgvi", keys({{"scheme.tableau", std::string("gauss2")}}), 4, 20},
-                        Case{"cgvi", keys({{"scheme.tableau", std::string("lobatto3")}}), 4, 20},
-                        Case{"radau-iia", keys({{"scheme.stages", 2}}), 3, 20},
-                        Case{"composition", keys({{"scheme.order", 2}}), 2, 40},
-                        Case{"composition", keys({{"scheme.order", 4}}), 4, 16},
-                        Case{"composition", keys({{"scheme.order", 6}}), 6, 12}}) {
+  for (const Case& c :
+       {Case{"cgvi", keys({{"scheme.tableau", std::string("gauss1")}}), 2, 40},
+        Case{"cgvi", keys({{"scheme.tableau", std::string("gauss2")}}), 4, 20},
+        Case{"cgvi", keys({{"scheme.tableau", std::string("lobatto3")}}), 4, 20},
+        Case{"radau-iia", keys({{"scheme.stages", 2}}), 3, 20}, Case{"composition", keys({{"scheme.order", 2}}), 2, 40},
+        Case{"composition", keys({{"scheme.order", 4}}), 4, 16},
+        Case{"composition", keys({{"scheme.order", 6}}), 6, 12}}) {
     CAPTURE(c.method, c.order);
     OnMesh on(icosahedral_sphere(1), c.method, c.keys);
     const Values coarse = on.at_one(c.steps), middle = on.at_one(2 * c.steps), fine = on.at_one(4 * c.steps);
@@ -251,8 +255,8 @@ TEST_CASE("the sub-steps of a composition on a mesh are solved in turn, without 
   std::vector<Component> components = fields(1);
   for (std::size_t s = 1; s < time.nodes.size(); ++s)
     components.push_back({"phi after " + std::to_string(s), Role::inner, time.nodes[s], false, 0});
-  const auto coupled = by_families(mesh, time, expression("0.5*phi_t^2 - 0.5*(1 + 0.3*phi^2)*phi_x^2 - phi^4"), 0.02, 20,
-                                   components);
+  const auto coupled =
+      by_families(mesh, time, expression("0.5*phi_t^2 - 0.5*(1 + 0.3*phi^2)*phi_x^2 - phi^4"), 0.02, 20, components);
   CHECK(coupled.stepper().iterations() == 0);
   CHECK(coupled.stepper().residual() < 1e-13);
   OnMesh implicit(icosahedral_sphere(1), "cgvi", keys({{"scheme.tableau", std::string("gauss2")}}));

@@ -93,14 +93,16 @@ TEST_CASE("limits of methods on a mesh are those of its highest oscillator, and 
   }
   CHECK((verlet && gauss && composition));
   // a planted error of theory is found by the runs
-  CHECK(delf_program(folder, "stability sphere --lattice.mesh=icosahedron:1 --stability.fault=limit --out out").code == 1);
+  CHECK(delf_program(folder, "stability sphere --lattice.mesh=icosahedron:1 --stability.fault=limit --out out").code ==
+        1);
 }
 
 TEST_CASE("methods on a mesh keep the form, and planted faults are found") {
   const Folder folder;
   for (const std::string run :
        {sphere + " --scheme.method=composition", sphere + " --scheme.method=cgvi --scheme.tableau=gauss2",
-        sphere + " --scheme.method=cgvi --scheme.tableau=lobatto3", std::string("turning-soliton --scheme.method=cgvi --scheme.tableau=lobatto3 --run.steps=12")}) {
+        sphere + " --scheme.method=cgvi --scheme.tableau=lobatto3",
+        std::string("turning-soliton --scheme.method=cgvi --scheme.tableau=lobatto3 --run.steps=12")}) {
     CAPTURE(run);
     const std::string scene = "verify " + run + " --verify.moments=2 --out out";
     const Ran ran = delf_program(folder, scene);
@@ -115,7 +117,9 @@ TEST_CASE("methods on a mesh keep the form, and planted faults are found") {
 TEST_CASE("every method on a mesh takes steps in turn, and ends at their time") {
   const Folder folder;
   const auto last = [&](const std::string& method, const std::string& steps) {
-    const Ran ran = delf_program(folder, "run sphere --lattice.mesh=icosahedron:1 --output.every=0 --output.figures=off --out out " + method + steps);
+    const Ran ran = delf_program(
+        folder,
+        "run sphere --lattice.mesh=icosahedron:1 --output.every=0 --output.figures=off --out out " + method + steps);
     CAPTURE(ran.out, ran.err);
     REQUIRE(ran.code == 0);
     return nlohmann::json::parse(read(folder / "out/summary.json"));
