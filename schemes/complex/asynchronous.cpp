@@ -11,6 +11,7 @@
 #include "lattice/error.hpp"
 #include "schemes/complex/complex_noether.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/system/constant_mass.hpp"
 
 namespace delf {
 namespace {
@@ -46,16 +47,11 @@ AsynchronousEvolution::AsynchronousEvolution(const CellSpace& space, std::vector
   if (space.constraint)
     throw BadInput("theory.name",
                    "theory.name: cells with steps of their own have no constraints; choose lattice.time = rows");
-  Eigen::MatrixXd mass(d_, d_);
-  const int variables = space.density->variables();
-  for (int a = 0; a < d_; ++a)
-    for (int b = 0; b < d_; ++b) {
-      if (!space.density->is_constant(d_ + a, d_ + b))
-        throw BadInput("theory.name",
-                       "theory.name: asynchronous steps need T(phi_t) quadratic; choose lattice.time = rows");
-      mass(a, b) = space.density->constant_hessian()[at((d_ + a) * variables + d_ + b)];
-    }
-  const Eigen::MatrixXd inverse = mass.inverse();
+  const std::optional<Eigen::MatrixXd> mass = constant_mass(*space.density);
+  if (!mass)
+    throw BadInput("theory.name",
+                   "theory.name: asynchronous steps need T(phi_t) quadratic; choose lattice.time = rows");
+  const Eigen::MatrixXd inverse = mass->inverse();
   inverse_mass_.assign(inverse.data(), inverse.data() + inverse.size());
   for (const Mesh::Point& p : space.mesh.points) potentials_.add_site({0, p[0], p[1], p[2]});
   CellFamilies families(space, potentials_);

@@ -46,7 +46,6 @@ class ComplexSystem {
 
     int vertices() const { return vertices_; }
     int size() const { return family_->size(); }
-    const std::shared_ptr<const BatchDensity>& density() const { return density_; }  ///< null: no jets
     /// Which values feel each other, where a site of the complex holds so many of them.
     ComplexShape shape(int values_of_site) const;
     /// ∂r/∂y is proved to be the same at all y: the equations of these stencils are linear.
@@ -62,7 +61,7 @@ class ComplexSystem {
     /// Numbers of a stencil, those of a table and the places of its points.
     int add_numbers(int table, std::span<const Complex::Position> vertices);
 
-    std::shared_ptr<const BatchDensity> density_;
+    std::shared_ptr<const BatchDensity> density_;  ///< null: no tables
     int vertices_;
     std::shared_ptr<JetFamily> jets_;  ///< null: no tables
     std::shared_ptr<const StencilFamily> family_;

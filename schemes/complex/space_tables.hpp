@@ -32,8 +32,6 @@ class SpaceTables {
   ComplexSystem::Family site() const;
   ComplexSystem::Family gradient(int corners) const;
 
-  std::vector<TablePoint> motion_table() const;
-  std::vector<TablePoint> site_table() const;
   /// With the measure of the cell in its weights.
   std::vector<TablePoint> gradient_table(const Mesh&, int cell) const;
   /// The potential of a cell, its sites and gradient in one: for cells with a time step of their own.
@@ -41,6 +39,9 @@ class SpaceTables {
   ComplexSystem::Family cell(int corners) const;
 
  private:
+  std::vector<TablePoint> motion_table() const;
+  std::vector<TablePoint> site_table() const;
+
   std::shared_ptr<const BatchDensity> density_;
   bool coupled_;  ///< φ and ∇φ
 };

@@ -10,6 +10,7 @@
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/problem.hpp"
 #include "schemes/stepping/step_density.hpp"
+#include "schemes/system/constant_mass.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
 
@@ -18,19 +19,10 @@ namespace {
 
 /// (∂²T/∂φ_t∂φ_t)⁻¹
 Eigen::MatrixXd inverse_mass(const BatchDensity& density) {
-  const int d = density.components();
-  Eigen::MatrixXd mass(d, d);
-  bool constant = true;
-  for (int a = 0; a < d; ++a)
-    for (int b = 0; b < d; ++b) {
-      constant = constant && density.is_constant(d + a, d + b);
-      mass(a, b) = density.constant_hessian()[static_cast<std::size_t>((d + a) * density.variables() + d + b)];
-    }
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(mass);
-  if (!constant || !lu.isInvertible())
-    throw BadInput("lattice.time_steps",
-                   "lattice.time_steps: reversible steps need a density quadratic in phi_t; give a list of steps");
-  return lu.inverse();
+  if (const auto mass = constant_mass(density))
+    if (const Eigen::FullPivLU<Eigen::MatrixXd> lu(*mass); lu.isInvertible()) return lu.inverse();
+  throw BadInput("lattice.time_steps",
+                 "lattice.time_steps: reversible steps need a density quadratic in phi_t; give a list of steps");
 }
 
 }  // namespace

@@ -318,11 +318,11 @@ void KickStepper::take_slab(const Kick& first, double share_below) {
   ++newest_;
 }
 
-std::vector<double> KickStepper::row_of(std::int64_t row, bool low) const {
+std::vector<double> KickStepper::row_of(std::int64_t row, int behind, bool low) const {
   const int C = system_.components(), N = system_.lattice().sites();
   std::vector<double> values(at(N * C));
   for (int n = 0; n < nodes_; ++n) {
-    const Node& from = node(row, n);
+    const Node& from = node(std::max<std::int64_t>(0, n == 0 ? row : row - behind), n);
     for (int a = 0; a < fields_; ++a) {
       const double* const field = numbers(low ? from.low : from.y) + a * padded_;
       for (int i = 0; i < N; ++i) values[at(i * C + n * fields_ + a)] = field[i];
@@ -367,23 +367,14 @@ void KickStepper::start_legendre(const std::vector<double>& row0, const std::vec
 
 void KickStepper::step(bool /*looked_at*/) { take_slab(kicks_[0], 0.5); }
 
-std::vector<double> KickStepper::row(int back) const {
-  std::vector<double> result;
-  const std::size_t C = at(system_.components());
-  std::map<int, std::vector<double>> rows;
-  for (const int behind : behind_)
-    if (!rows.contains(behind)) rows[behind] = row_of(std::max<std::int64_t>(0, newest_ - back - behind), false);
-  result = rows.begin()->second;
-  for (std::size_t n = 0; n < result.size(); ++n) result[n] = rows[behind_[n % C]][n];
-  return result;
-}
+std::vector<double> KickStepper::row(int back) const { return row_of(newest_ - back, 1, false); }
 
 Window KickStepper::window(int rows) const {
   std::vector<std::vector<double>> newest_rows, low_rows;
   const std::int64_t first = newest_ - rows + 1;
   for (std::int64_t r = first; r <= newest_; ++r) {
-    newest_rows.push_back(row_of(std::max<std::int64_t>(r, 0), false));
-    low_rows.push_back(row_of(std::max<std::int64_t>(r, 0), true));
+    newest_rows.push_back(row_of(r, 0, false));
+    low_rows.push_back(row_of(r, 0, true));
   }
   Window window = system_.window(first, std::move(newest_rows), turn_);
   window.low = std::move(low_rows);

@@ -69,8 +69,8 @@ class KickStepper final : public StepMethod {
   void kick_and_drift(const Kick&, int n, double kick, double drift, double t, Node& next);
   void read(const std::vector<double>& row, Packs& y) const;
   void take_slab(const Kick& first, double share_below);
-  /// The row as it is held, or of low parts.
-  std::vector<double> row_of(std::int64_t row, bool low) const;
+  /// A row, or row 0 for those before it, [i·C + c], with the nodes above the row so many `behind` it; or the low parts of both.
+  std::vector<double> row_of(std::int64_t row, int behind, bool low) const;
 
   const LatticeSystem& system_;
   double turn_;

@@ -7,6 +7,7 @@
 
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/circle_fibre.hpp"
+#include "schemes/complex/complex_noether.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/mesh_frequency.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -63,7 +64,8 @@ class AllSites final : public MeshEvolution {
     MeshRow now{row, t, values_, Outcome::unknown, is_newest ? iterations() : 0, 0};
     if (is_newest && row > 0) now.residual = is_whole ? simulation_.residual() : Outcome::unknown;
     if (is_whole) {
-      const std::vector<double> p = momenta(back);
+      const bool needs_momenta = c_.has_method() || !c_.theory->symmetries().empty();
+      const std::vector<double> p = needs_momenta ? momenta(back) : std::vector<double>();
       now.energy = c_.has_method() ? energy_(values_, energy_.rates(values_, p, t), t) : energy_between();
       for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(sum(symmetry, p));
     } else {  // a start that failed left row 0 alone
@@ -126,9 +128,7 @@ class AllSites final : public MeshEvolution {
     Balance balance;
     for (std::size_t n = 0; n < p.size(); ++n) {
       const std::size_t a = n % d;
-      double xi = symmetry.shift[a];
-      for (std::size_t b = 0; b < d; ++b) xi += symmetry.matrix[a * d + b] * values_[n - a + b];
-      balance.add(p[n] * xi);
+      balance.add(p[n] * generator_at(symmetry, a, values_.data() + n - a));
     }
     return balance;
   }
