@@ -17,11 +17,11 @@ bool is_even_form(const BatchDensity& density, Reflection r) {
   };
   for (int a = 0; a < m; ++a) {
     if (!is_reflected(a)) continue;
-    if (density.constant_gradient()[static_cast<std::size_t>(a)] != 0) return false;
+    if (density.constant_gradient()[a] != 0) return false;
     for (int b = 0; b < m + 2; ++b) {  // t and x are the last
       if (density.is_zero(a, b)) continue;
       if (b >= m || !density.is_constant(a, b)) return false;
-      if (!is_reflected(b) && density.constant_hessian()[static_cast<std::size_t>(a * m + b)] != 0) return false;
+      if (!is_reflected(b) && density.constant_hessian()[a * m + b] != 0) return false;
     }
   }
   return true;
@@ -31,7 +31,7 @@ bool is_even_form(const BatchDensity& density, Reflection r) {
 
 /// Constant entries are the same wherever they are taken: at zero, or where the density has a value if it has none there.
 void BatchDensity::find_constants() {
-  const auto m = static_cast<std::size_t>(variables());
+  const std::size_t m = variables();
   std::vector<Pack> jet(m + 1, Pack(0.0)), H(m * m), g(m);
   std::vector<const double*> slots(m);
   std::vector<double*> entries(m * m), gradient_rows(m);
@@ -66,7 +66,8 @@ void BatchDensity::find_constants() {
     if (finite) break;
   }
   for (int r = 0; r <= static_cast<int>(Reflection::in_time); ++r)
-    if (is_even_form(*this, static_cast<Reflection>(r))) structure_.of_density.even |= static_cast<std::uint8_t>(1u << r);
+    if (is_even_form(*this, static_cast<Reflection>(r)))
+      structure_.of_density.even |= static_cast<std::uint8_t>(1u << r);
 }
 
 }  // namespace delf

@@ -7,6 +7,7 @@
 
 #include "jets/batch_density.hpp"
 #include "jets/value_derivatives.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -45,10 +46,10 @@ class BatchOf final : public BatchDensity, public ValueDerivatives {
   /// Row by row: the derivative in one variable of all derivatives. Where ℓ is nonlinear in φ alone, only ∂²ℓ/∂φ∂φ varies.
   void hessian(const JetBatch& batch, double* const* H) const override {
     if (nonlinearity() != Nonlinearity::all && !is_placed() && !constant_hessian().empty()) {
-      for (int v = 0; v < m * m; ++v) std::fill_n(H[v], batch.count, constant_hessian()[static_cast<std::size_t>(v)]);
-      std::array<double*, static_cast<std::size_t>(d* d)> c;
+      for (int v = 0; v < m * m; ++v) std::fill_n(H[v], batch.count, constant_hessian()[v]);
+      std::array<double*, delf::at(d * d)> c;
       for (int a = 0; a < d; ++a)
-        for (int b = 0; b < d; ++b) c[static_cast<std::size_t>(a * d + b)] = H[a * m + b];
+        for (int b = 0; b < d; ++b) c[a * d + b] = H[a * m + b];
       return curvature(batch, c.data());
     }
     using Inner = Dual<Pack, 1>;
@@ -68,8 +69,8 @@ class BatchOf final : public BatchDensity, public ValueDerivatives {
     // Copies of this function alone: stores cannot change them.
     const D density = density_;
     const JetBatch batch = given;
-    std::array<const double*, static_cast<std::size_t>(d)> phi;
-    std::array<double*, static_cast<std::size_t>(d)> g;
+    std::array<const double*, delf::at(d)> phi;
+    std::array<double*, delf::at(d)> g;
     for (int a = 0; a < d; ++a) phi[a] = batch.slots[a], g[a] = given_g[a];
     const double* const x = batch.x;
     for (int at = 0; at < batch.count; at += lanes) {
@@ -147,8 +148,9 @@ class BatchOf final : public BatchDensity, public ValueDerivatives {
   }
 
  private:
-  static constexpr bool has_quotient =
-      requires(const D& density, const FibreValue<double, d>& a) { density.difference_quotient(a, a); };
+  static constexpr bool has_quotient = requires(const D& density, const FibreValue<double, d>& a) {
+    density.difference_quotient(a, a);
+  };
   template <class Number>
   FibreValue<Number, d> quotient(const auto& make) const {
     FibreValue<Number, d> a, b;

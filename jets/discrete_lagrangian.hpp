@@ -5,6 +5,7 @@
 
 #include "jets/density.hpp"
 #include "jets/tables/jet_table.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -28,22 +29,21 @@ struct DiscreteLagrangian {
   D density;
 
   template <class T>
-  T operator()(const std::array<T, static_cast<std::size_t>(size)>& y, const Cell& cell) const {
+  T operator()(const std::array<T, at(size)>& y, const Cell& cell) const {
     T sum(0.0);
-    for (int q = 0; q < map.points; ++q)
-      sum += map.point(q).weight * density(jet(q, y, cell));
+    for (int q = 0; q < map.points; ++q) sum += map.point(q).weight * density(jet(q, y, cell));
     return (map.measure * cell.time_step * cell.space_step) * sum;
   }
 
   /// The continuous jet that the vertex values stand for at quadrature point q.
   template <class T>
-  JetFor<T, D> jet(int q, const std::array<T, static_cast<std::size_t>(size)>& y, const Cell& cell) const {
+  JetFor<T, D> jet(int q, const std::array<T, at(size)>& y, const Cell& cell) const {
     JetFor<T, D> j;
     const auto& p = map.point(q);
     for (int a = 0; a < d; ++a) {
       T value(0.0), by_t(0.0), by_x(0.0);
       for (int l = 0; l < n; ++l) {
-        const T& yl = y[static_cast<std::size_t>(l * d + a)];
+        const T& yl = y[l * d + a];
         if (p.phi[l] != 0) value += p.phi[l] * yl;
         if (p.phi_t[l] != 0) by_t += p.phi_t[l] * yl;
         if (p.phi_x[l] != 0) by_x += p.phi_x[l] * yl;
@@ -59,24 +59,24 @@ struct DiscreteLagrangian {
     return j;
   }
 
-  using Values = std::array<double, static_cast<std::size_t>(size)>;
+  using Values = std::array<double, at(size)>;
 
   /// ∂L/∂y[l·d + a], by forward differentiation.
   Values gradient(const Values& y, const Cell& cell) const {
     using Number = Dual<double, size>;
-    std::array<Number, static_cast<std::size_t>(size)> variables;
+    std::array<Number, at(size)> variables;
     for (int i = 0; i < size; ++i) variables[i] = Number::variable(y[i], i);
     return (*this)(variables, cell).d;
   }
 
   /// ∂²L/∂y∂y, row by row, by forward differentiation twice.
-  std::array<double, static_cast<std::size_t>(size* size)> hessian(const Values& y, const Cell& cell) const {
+  std::array<double, at(size* size)> hessian(const Values& y, const Cell& cell) const {
     using Inner = Dual<double, size>;
     using Outer = Dual<Inner, size>;
-    std::array<Outer, static_cast<std::size_t>(size)> variables;
+    std::array<Outer, at(size)> variables;
     for (int i = 0; i < size; ++i) variables[i] = Outer::variable(Inner::variable(y[i], i), i);
     const Outer result = (*this)(variables, cell);
-    std::array<double, static_cast<std::size_t>(size * size)> matrix;
+    std::array<double, at(size * size)> matrix;
     for (int i = 0; i < size; ++i)
       for (int j = 0; j < size; ++j) matrix[i * size + j] = result.d[i].d[j];
     return matrix;

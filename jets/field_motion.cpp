@@ -2,6 +2,7 @@
 #include "jets/field_motion.hpp"
 
 #include "jets/tables/stencil_table.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -11,9 +12,9 @@ void FieldMotion::add(const BatchDensity& density) {
   for (int v = 0; v < density.variables(); ++v)
     for (int u = 0; u < density.variables(); ++u) {
       if (density.is_zero(v, u)) continue;
-      const auto a = static_cast<std::size_t>(v % d), b = static_cast<std::size_t>(u % d);
+      const std::size_t a = v % d, b = at(u % d);
       present[a] = coupled[a][b] = true;
-      if (slot_powers[static_cast<std::size_t>(v / d)].time == 0) continue;
+      if (slot_powers[at(v / d)].time == 0) continue;
       moving[a] = true;
       if (a != b) moving[b] = true;  // in p q_t the equation of q has p_t
     }

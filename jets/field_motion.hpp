@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "jets/batch_density.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -12,8 +13,7 @@ struct FieldMotion {
   std::vector<bool> present, moving;
   std::vector<std::vector<bool>> coupled;
 
-  explicit FieldMotion(int d)
-      : present(static_cast<std::size_t>(d)), moving(present), coupled(present.size(), present) {}
+  explicit FieldMotion(int d) : present(at(d)), moving(present), coupled(present.size(), present) {}
 
   /// One more density of the same fields.
   void add(const BatchDensity&);

@@ -53,8 +53,7 @@ ForceSquared::ForceSquared(std::shared_ptr<const BatchDensity> of, double scale)
   components_ = d, slots_ = 6, placed_ = of_->is_placed();
   if (6 * d + 2 > Abstract::most_variables) refuse("has too many fields");
   for (int a = 0; a < d; ++a)
-    for (int b = 0; b < d; ++b)
-      stiffness_.push_back(-of_->constant_hessian()[static_cast<std::size_t>((2 * d + a) * m + 2 * d + b)]);
+    for (int b = 0; b < d; ++b) stiffness_.push_back(-of_->constant_hessian()[(2 * d + a) * m + 2 * d + b]);
   Abstract squares;
   for (int a = 0; a < d; ++a) {
     Abstract force = slope_of(*of_, a);
@@ -81,13 +80,13 @@ void squares_at_rest(int fields, int count, double twice, const double* stiffnes
     for (int a = 0; a < d; ++a) {
       Pack sum = Pack::load(g[2 * d + a] + at);
       for (int b = 0; b < d; ++b) sum += stiffness[a * d + b] * Pack::load(phi_xx[b] + at);
-      force[static_cast<std::size_t>(a)] = twice * sum;
+      force[a] = twice * sum;
     }
     for (int a = 0; a < d; ++a) {
       Pack by_phi(0.0), by_phi_xx(0.0);
       for (int b = 0; b < d; ++b) {
-        by_phi += Pack::load(c[a * d + b] + at) * force[static_cast<std::size_t>(b)];
-        by_phi_xx += stiffness[b * d + a] * force[static_cast<std::size_t>(b)];
+        by_phi += Pack::load(c[a * d + b] + at) * force[b];
+        by_phi_xx += stiffness[b * d + a] * force[b];
       }
       by_phi.store(g[a] + at), by_phi_xx.store(g[d + a] + at);
     }
@@ -173,7 +172,7 @@ void ForceSquared::curvature(const JetBatch& phi, double* const* c) const {
   const int d = components_, m = variables();
   const ScratchRows H(m * m, phi.count), zero(1, phi.count);
   std::fill_n(zero[0], phi.count, 0.0);
-  std::vector<const double*> slots(static_cast<std::size_t>(m), zero[0]);
+  std::vector<const double*> slots(m, zero[0]);
   std::copy_n(phi.slots, d, slots.begin());
   hessian({phi.count, slots.data(), phi.t, phi.x}, H.data());
   for (int a = 0; a < d; ++a)

@@ -32,7 +32,7 @@ class ForceSquared final : public BatchDensity {
   void gradient_at_rest(const JetBatch& phi, const double* const* second, double* const* g) const;
 
  private:
-  double stiffness(int a, int b) const { return stiffness_[static_cast<std::size_t>(a * components_ + b)]; }
+  double stiffness(int a, int b) const { return stiffness_[a * components_ + b]; }
 
   std::shared_ptr<const BatchDensity> of_;
   const ValueDerivatives* derivatives_;

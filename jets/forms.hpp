@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <span>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 // The forms on a stencil's jets, given its residuals rˡ (∂L/∂yˡ where there is a Lagrangian) and their Jacobian
@@ -11,8 +13,7 @@ namespace delf {
 /// Θˡ(V) = ∂L/∂yˡ · Vˡ                                    Marsden–Patrick–Shkoller, above (5.3)
 inline double cartan_form(int l, int d, std::span<const double> gradient, std::span<const double> V) {
   double sum = 0;
-  for (std::size_t i = static_cast<std::size_t>(l * d); i < static_cast<std::size_t>((l + 1) * d); ++i)
-    sum += gradient[i] * V[i];
+  for (std::size_t i = at(l * d); i < at((l + 1) * d); ++i) sum += gradient[i] * V[i];
   return sum;
 }
 
@@ -22,7 +23,7 @@ inline double multisymplectic_form(int l, int d, std::span<const double> jacobia
   const std::size_t size = V.size();
   double sum = 0;
   // dΘˡ(V, W) = D(Θˡ·W)[V] − D(Θˡ·V)[W] = Σ_m ∂rˡ/∂yᵐ (Vᵐ Wˡ − Wᵐ Vˡ)
-  for (std::size_t i = static_cast<std::size_t>(l * d); i < static_cast<std::size_t>((l + 1) * d); ++i)
+  for (std::size_t i = at(l * d); i < at((l + 1) * d); ++i)
     for (std::size_t m = 0; m < size; ++m) sum -= jacobian[i * size + m] * (V[m] * W[i] - W[m] * V[i]);
   return sum;
 }

@@ -3,11 +3,13 @@
 #include <array>
 #include <type_traits>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 /// One number for a scalar field, an array of them for a field with values in ℝⁿ.
 template <class T, int components>
-using FibreValue = std::conditional_t<components == 1, T, std::array<T, static_cast<std::size_t>(components)>>;
+using FibreValue = std::conditional_t<components == 1, T, std::array<T, at(components)>>;
 
 /// The continuous first jet (φ, φ_t, φ_x) that the values on a stencil stand for, at one quadrature point.
 template <class T, int components = 1>
@@ -36,7 +38,7 @@ constexpr T& component(T& value, int) {
 }
 template <class T, std::size_t n>
 constexpr T& component(std::array<T, n>& value, int a) {
-  return value[static_cast<std::size_t>(a)];
+  return value[a];
 }
 
 /// Component a of slot number s, in the order of jets: φ, φ_t, φ_x, φ_tt, φ_tx, φ_xx.

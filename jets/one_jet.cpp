@@ -13,7 +13,7 @@ template <class Evaluate>
 std::vector<double> first_of(std::span<const double> jet, double t, double x, int results, const Evaluate& evaluate) {
   const int m = static_cast<int>(jet.size());
   const ScratchRows in(m + 1, lanes), out(results, lanes);
-  for (int v = 0; v <= m; ++v) std::fill_n(in[v], lanes, v < m ? jet[static_cast<std::size_t>(v)] : x);
+  for (int v = 0; v <= m; ++v) std::fill_n(in[v], lanes, v < m ? jet[v] : x);
   evaluate(JetBatch{lanes, in.data(), t, in[m]}, out.data());
   std::vector<double> first;
   for (int r = 0; r < results; ++r) first.push_back(out[r][0]);

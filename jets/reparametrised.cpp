@@ -14,8 +14,6 @@
 namespace delf {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The jet of ℓ, from that of ℓ̃: (φ, φ_t − φ_x X_t/X_x, φ_x/X_x).
 template <class T>
 void inner_jet(int d, const auto& outer, std::vector<T>& jet) {
@@ -23,7 +21,7 @@ void inner_jet(int d, const auto& outer, std::vector<T>& jet) {
   const T &mesh_t = outer(D + d), &mesh_x = outer(2 * D + d);
   for (int a = 0; a < d; ++a) {
     const T slope = outer(2 * D + a) / mesh_x;
-    jet[at(a)] = outer(a), jet[at(d + a)] = outer(D + a) - slope * mesh_t, jet[at(2 * d + a)] = slope;
+    jet[a] = outer(a), jet[d + a] = outer(D + a) - slope * mesh_t, jet[2 * d + a] = slope;
   }
 }
 
@@ -46,22 +44,22 @@ Reparametrised::Reparametrised(std::shared_ptr<const BatchDensity> of, Part part
   if (part == Part::quadratic) {
     form_ = of_->constant_hessian(), g0_ = of_->constant_gradient();
     for (int a = 0; a < d; ++a) {
-      g0_[at(a)] = 0;
-      for (int b = 0; b < d; ++b) form_[at(a * m + b)] = 0;
+      g0_[a] = 0;
+      for (int b = 0; b < d; ++b) form_[a * m + b] = 0;
     }
   }
 
-  std::vector<Abstract> jet(at(m));
+  std::vector<Abstract> jet(m);
   inner_jet(
       d, [](int v) { return Abstract::variable(v); }, jet);
   Abstract inner, read;
   for (int v = 0; v < m; ++v)
-    if (of_->depends_on(v) && (part == Part::whole || v < d)) read = read + jet[at(v)];
+    if (of_->depends_on(v) && (part == Part::whole || v < d)) read = read + jet[v];
   if (part == Part::quadratic)
     for (int a = 0; a < m; ++a) {
-      if (g0_[at(a)] != 0) inner = inner + jet[at(a)];
+      if (g0_[a] != 0) inner = inner + jet[a];
       for (int b = 0; b < m; ++b)
-        if (form_[at(a * m + b)] != 0) inner = inner + jet[at(a)] * jet[at(b)];
+        if (form_[a * m + b] != 0) inner = inner + jet[a] * jet[b];
     }
   else inner = unknown_function(read);
   structure_ = structure_of(inner * Abstract::variable(2 * D + d), 3 * D, d + 1);
@@ -75,14 +73,14 @@ struct Reparametrised::Inner {
       : of(density), m(density.inner_), jet(m, batch.count), g(m, batch.count), l(1, batch.count) {
     const int d = of.of_->components();
     thread_local std::vector<Pack> one;
-    one.resize(at(m));
+    one.resize(m);
     for (int i = 0; i < batch.count; i += lanes) {
       inner_jet(
           d, [&](int v) { return Pack::load(batch.slots[v] + i); }, one);
       for (int v = 0; v < m; ++v) {
         // N(φ) is ℓ at rest
-        if (of.part_ == Part::potential && v >= d) one[at(v)] = Pack(0.0);
-        one[at(v)].store(jet[v] + i);
+        if (of.part_ == Part::potential && v >= d) one[v] = Pack(0.0);
+        one[v].store(jet[v] + i);
       }
     }
     jets = {batch.count, jet.data(), batch.t, batch.x};
@@ -100,8 +98,8 @@ struct Reparametrised::Inner {
       for (int a = 0; a < m; ++a) {
         Pack row(0.0);
         for (int b = 0; b < m; ++b)
-          if (const double w = of.form_[at(a * m + b)]; w != 0) row += w * Pack::load(jet[b] + i);
-        const Pack y = Pack::load(jet[a] + i), constant(of.g0_[at(a)]);
+          if (const double w = of.form_[a * m + b]; w != 0) row += w * Pack::load(jet[b] + i);
+        const Pack y = Pack::load(jet[a] + i), constant(of.g0_[a]);
         sum += y * (0.5 * row + constant);
         (row + constant).store(g[a] + i);
       }
@@ -110,7 +108,7 @@ struct Reparametrised::Inner {
   }
   void hessian(double* const* H) const {
     if (of.part_ == Part::quadratic) {
-      for (int v = 0; v < m * m; ++v) std::fill_n(H[v], jets.count, of.form_[at(v)]);
+      for (int v = 0; v < m * m; ++v) std::fill_n(H[v], jets.count, of.form_[v]);
       return;
     }
     of.of_->hessian(jets, H);
@@ -173,19 +171,19 @@ void Reparametrised::hessian(const JetBatch& batch, double* const* H) const {
   for (int i = 0; i < batch.count; i += lanes) {
     const Pack mesh_t = Pack::load(batch.slots[T] + i), mesh_x = Pack::load(batch.slots[J] + i), per_x = 1.0 / mesh_x;
     const Pack ratio = mesh_t * per_x;
-    Z.assign(at(m * M), Pack(0.0)), HZ.assign(at(m * M), Pack(0.0)), out.assign(at(M * M), Pack(0.0));
-    const auto entry = [&](int u, int v) -> Pack& { return out[at(u * M + v)]; };
+    Z.assign(m * M, Pack(0.0)), HZ.assign(m * M, Pack(0.0)), out.assign(M * M, Pack(0.0));
+    const auto entry = [&](int u, int v) -> Pack& { return out[u * M + v]; };
     const auto add = [&](int u, int v, const Pack& x) {
       entry(u, v) = entry(u, v) + x;
       if (u != v) entry(v, u) = entry(v, u) + x;
     };
     for (int a = 0; a < d; ++a) {
-      Z[at(a * M + a)] = Pack(1.0);
+      Z[a * M + a] = Pack(1.0);
       if (!moving) continue;
       const Pack slope = Pack::load(inner.jet[2 * d + a] + i);  // φ_x/X_x
-      Pack* const rate = &Z[at((d + a) * M)];
+      Pack* const rate = &Z[(d + a) * M];
       rate[D + a] = Pack(1.0), rate[2 * D + a] = -ratio, rate[T] = -slope, rate[J] = slope * ratio;
-      Pack* const along = &Z[at((2 * d + a) * M)];
+      Pack* const along = &Z[(2 * d + a) * M];
       along[2 * D + a] = per_x, along[J] = -slope * per_x;
       // X_x g·z_uv
       const Pack of_rate = Pack::load(inner.g[d + a] + i), of_slope = Pack::load(inner.g[2 * d + a] + i);
@@ -197,19 +195,19 @@ void Reparametrised::hessian(const JetBatch& batch, double* const* H) const {
     for (int a = 0; a < m; ++a)
       for (int b = 0; b < m; ++b) {
         const Pack h = Pack::load(of_inner[a * m + b] + i);
-        for (int v = 0; v < M; ++v) HZ[at(a * M + v)] = HZ[at(a * M + v)] + h * Z[at(b * M + v)];
+        for (int v = 0; v < M; ++v) HZ[a * M + v] = HZ[a * M + v] + h * Z[b * M + v];
       }
     for (int v = 0; v < M; ++v) {
       Pack along(0.0);  // g·z_v
-      for (int a = 0; a < m; ++a) along += Pack::load(inner.g[a] + i) * Z[at(a * M + v)];
+      for (int a = 0; a < m; ++a) along += Pack::load(inner.g[a] + i) * Z[a * M + v];
       entry(J, v) = entry(J, v) + along, entry(v, J) = entry(v, J) + along;
       for (int u = 0; u < M; ++u) {
         Pack sum(0.0);
-        for (int a = 0; a < m; ++a) sum += Z[at(a * M + u)] * HZ[at(a * M + v)];
+        for (int a = 0; a < m; ++a) sum += Z[a * M + u] * HZ[a * M + v];
         entry(u, v) = entry(u, v) + mesh_x * sum;
       }
     }
-    for (int v = 0; v < M * M; ++v) out[at(v)].store(H[v] + i);
+    for (int v = 0; v < M * M; ++v) out[v].store(H[v] + i);
   }
 }
 

@@ -27,8 +27,8 @@ ScaledDensity::ScaledDensity(std::shared_ptr<const BatchDensity> of, double c, d
   for (int a = 0; a < variables(); ++a) {
     if (of_->depends_on(a)) known.depends |= std::uint64_t{1} << a;
     for (int b = 0; b < variables(); ++b) {
-      if (!of_->is_zero(a, b)) known.nonzero[static_cast<std::size_t>(a)] |= std::uint64_t{1} << b;
-      if (!of_->is_constant(a, b)) known.varying[static_cast<std::size_t>(a)] |= std::uint64_t{1} << b;
+      if (!of_->is_zero(a, b)) known.nonzero[a] |= std::uint64_t{1} << b;
+      if (!of_->is_constant(a, b)) known.varying[a] |= std::uint64_t{1} << b;
     }
   }
   // ξ(y) = A y + b of y is s ξ(φ/s) of φ = s y

@@ -29,7 +29,7 @@ class ScaledDensity final : public BatchDensity {
 
  private:
   struct Inner;
-  double factor(int variable) const { return factors_[static_cast<std::size_t>(variable / components_)]; }
+  double factor(int variable) const { return factors_[variable / components_]; }
 
   std::shared_ptr<const BatchDensity> of_;
   double scale_;

@@ -12,8 +12,7 @@ struct ShiftedDensity::Inner {
   Inner(const ShiftedDensity& density, const JetBatch& batch, int given)
       : jet(density.variables(), batch.count), slots(jet.data()) {
     for (int v = 0; v < density.variables(); ++v)
-      for (int i = 0; i < batch.count; ++i)
-        jet[v][i] = density.by_[static_cast<std::size_t>(v)] + (v < given ? batch.slots[v][i] : 0);
+      for (int i = 0; i < batch.count; ++i) jet[v][i] = density.by_[v] + (v < given ? batch.slots[v][i] : 0);
     inner = {batch.count, slots, batch.t, batch.x};
   }
   ScratchRows jet;

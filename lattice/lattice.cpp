@@ -36,7 +36,7 @@ Lattice Lattice::on(std::shared_ptr<const MeshSpace> mesh) {
   return lattice;
 }
 
-double Lattice::mesh_position(int i) const noexcept { return mesh_->mesh.points[static_cast<std::size_t>(i)][0]; }
-bool Lattice::is_fixed_on_mesh(int i) const noexcept { return mesh_->fixed[static_cast<std::size_t>(i)] != 0; }
+double Lattice::mesh_position(int i) const noexcept { return mesh_->mesh.points[i][0]; }
+bool Lattice::is_fixed_on_mesh(int i) const noexcept { return mesh_->fixed[i] != 0; }
 
 }  // namespace delf

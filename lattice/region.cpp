@@ -15,8 +15,7 @@ namespace {
 int vertices_at(const Stencils& all, Site site) {
   int count = 0;
   for (int family = 0; family < static_cast<int>(all.families().size()); ++family)
-    for (const Site offset : all.families()[static_cast<std::size_t>(family)].vertices)
-      count += all.exists(family, site - offset) ? 1 : 0;
+    for (const Site offset : all.families()[family].vertices) count += all.exists(family, site - offset) ? 1 : 0;
   return count;
 }
 
@@ -25,7 +24,7 @@ template <class Visit>
 void for_stencils_inside(const Stencils& all, const SiteSet& u, Visit visit) {
   std::vector<std::size_t> places;
   for (int family = 0; family < static_cast<int>(all.families().size()); ++family) {
-    const StencilPattern& pattern = all.families()[static_cast<std::size_t>(family)];
+    const StencilPattern& pattern = all.families()[family];
     for (const Site site : u.sites()) {
       const Site anchor = site - pattern.vertices.front();
       if (!all.exists(family, anchor)) continue;

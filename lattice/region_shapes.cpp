@@ -5,6 +5,8 @@
 #include <array>
 #include <set>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
@@ -31,11 +33,11 @@ Columns draw_columns(const Lattice& lattice, int least, int most, std::mt19937_6
 
 }  // namespace
 
-const char* to_string(RegionKind kind) { return names[static_cast<std::size_t>(kind)]; }
+const char* to_string(RegionKind kind) { return names[at(kind)]; }
 
 const std::vector<RegionKind>& region_kinds() {
-  static const std::vector<RegionKind> all{RegionKind::box, RegionKind::staircase, RegionKind::hole,
-                                           RegionKind::wall,      RegionKind::slab,      RegionKind::random};
+  static const std::vector<RegionKind> all{RegionKind::box,  RegionKind::staircase, RegionKind::hole,
+                                           RegionKind::wall, RegionKind::slab,      RegionKind::random};
   return all;
 }
 

@@ -41,23 +41,21 @@ Stencils::Stencils(const Lattice& lattice, std::vector<StencilPattern> families)
   }
 }
 
-Site Stencils::reduced(Site site) const {
-  return {site.time, lattice_.home(site.space), site.node};
-}
+Site Stencils::reduced(Site site) const { return {site.time, lattice_.home(site.space), site.node}; }
 
 bool Stencils::in_lattice(Site site) const {
   return lattice_.is_circle() || (0 <= site.space && site.space < lattice_.sites());
 }
 
 bool Stencils::exists(int family, Site anchor) const {
-  const StencilPattern& pattern = families_[static_cast<std::size_t>(family)];
+  const StencilPattern& pattern = families_[family];
   // Stencils are anchored at the vertices of the lattice.
   return anchor.node == 0 && has_stencil(lattice_, pattern, anchor);
 }
 
 std::optional<Stencil> Stencils::find(int family, Site anchor) const {
   if (!exists(family, anchor)) return std::nullopt;
-  const StencilPattern& pattern = families_[static_cast<std::size_t>(family)];
+  const StencilPattern& pattern = families_[family];
   Stencil stencil{family, reduced(anchor), {}};
   stencil.sites.reserve(pattern.vertices.size());
   for (const Site offset : pattern.vertices) stencil.sites.push_back(reduced(anchor + offset));
@@ -67,7 +65,7 @@ std::optional<Stencil> Stencils::find(int family, Site anchor) const {
 std::vector<Stencil> Stencils::touching(Site site) const {
   std::vector<Stencil> found;
   for (int family = 0; family < static_cast<int>(families_.size()); ++family)
-    for (const Site offset : families_[static_cast<std::size_t>(family)].vertices) {
+    for (const Site offset : families_[family].vertices) {
       auto stencil = find(family, site - offset);
       // A stencil that is longer than its circle meets a site with more than one vertex.
       if (stencil && std::ranges::find(found, *stencil) == found.end()) found.push_back(std::move(*stencil));

@@ -12,13 +12,13 @@ namespace delf {
 
 /// A stencil Δ: an ordered tuple of sites.
 struct Stencil {
-  int family = 0;           ///< which of the stencil families it belongs to
+  int family = 0;  ///< which of the stencil families it belongs to
   Site anchor;
   std::vector<Site> sites;  ///< on a circle, space indices are 0 … N−1
 
   int size() const { return static_cast<int>(sites.size()); }
   /// Δˡ, l = 0 … n−1 (the paper counts from 1).
-  Site vertex(int l) const { return sites[static_cast<std::size_t>(l)]; }
+  Site vertex(int l) const { return sites[l]; }
 
   friend bool operator==(const Stencil&, const Stencil&) = default;
 };

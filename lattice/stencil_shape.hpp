@@ -12,10 +12,10 @@ namespace delf {
 
 /// At which sites of the lattice a stencil is anchored.
 enum class Placement {
-  every_site,  ///< one stencil for each site
-  brick_wall,  ///< only where time + space is even, so that rows of bricks are laid half a brick apart
-  left_wall,   ///< at the first column of an interval: a term of the boundary, for the walls that need it
-  right_wall,  ///< at the last column, likewise
+  every_site,   ///< one stencil for each site
+  brick_wall,   ///< only where time + space is even, so that rows of bricks are laid half a brick apart
+  left_wall,    ///< at the first column of an interval: a term of the boundary, for the walls that need it
+  right_wall,   ///< at the last column, likewise
   left_mirror,  ///< at the first column of an interval, whatever its wall: what wide stencils have beyond it
   right_mirror  ///< at the last column, likewise
 };
@@ -31,15 +31,15 @@ struct Offsets {
 
   static constexpr int size() { return n; }
   /// Δˡ relative to the anchor, l = 0 … n−1 (the paper counts from 1).
-  constexpr Site vertex(int l) const { return vertices[static_cast<std::size_t>(l)]; }
+  constexpr Site vertex(int l) const { return vertices[l]; }
 };
 
 /// The concept of a stencil shape: `size()`, `vertex(l)` for l = 0 … size()−1, and a `placement`. A list of offsets,
 /// `delf::Offsets<n>{{{{time, space}, …}}}`, has them all.
 template <class S>
 concept StencilShape = requires(const S& shape) {
-  { S::size() } -> std::convertible_to<int>;            // how many vertices: static constexpr int size()
-  { shape.vertex(0) } -> std::convertible_to<Site>;     // the offset {time, space} of vertex l from the anchor
+  { S::size() } -> std::convertible_to<int>;              // how many vertices: static constexpr int size()
+  { shape.vertex(0) } -> std::convertible_to<Site>;       // the offset {time, space} of vertex l from the anchor
   { shape.placement } -> std::convertible_to<Placement>;  // every_site, or brick_wall
 };
 
@@ -56,9 +56,7 @@ struct StencilPattern {
   }
   int size() const { return static_cast<int>(vertices.size()); }
   /// True if a stencil of this pattern is anchored at `site`, without regard to walls.
-  bool placed_at(Site site) const {
-    return placement != Placement::brick_wall || (site.time + site.space) % 2 == 0;
-  }
+  bool placed_at(Site site) const { return placement != Placement::brick_wall || (site.time + site.space) % 2 == 0; }
   /// It stands at a wall alone: all of space, and a circle, have none.
   bool is_of_wall() const { return placement != Placement::every_site && placement != Placement::brick_wall; }
 };

@@ -21,7 +21,7 @@ void start_by_sites(Simulation& simulation, const Problem& given, const StartFie
   const std::vector<Component>& components = simulation.components();
   const std::size_t C = components.size();
   std::vector<double> row(sites.X.size() * C, 0.0), rates = row;
-  std::vector<FieldPoint> field(static_cast<std::size_t>(fields));
+  std::vector<FieldPoint> field(fields);
   for (std::size_t i = 0; i < sites.X.size(); ++i) {
     profile(sites.X[i], field);
     for (std::size_t c = 0; c < C; ++c) {
@@ -31,7 +31,7 @@ void start_by_sites(Simulation& simulation, const Problem& given, const StartFie
       if (component.position || (of_field && component.field == fields)) {
         row[at] = sites.X[i], rates[at] = sites.X_t[i];
       } else if (of_field) {
-        const FieldPoint& f = field[static_cast<std::size_t>(component.field)];
+        const FieldPoint& f = field[component.field];
         row[at] = f.phi, rates[at] = f.phi_t + f.phi_x * sites.X_t[i];
       }
     }

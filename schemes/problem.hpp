@@ -20,7 +20,7 @@ struct Problem {
   ParameterValues parameters;  ///< of the theory and of the method; the others have their fallbacks
   double time_step = 0;
   double tolerance = 1e-14;                 ///< scheme.tolerance
-  int seed_order = 8;                       ///< scheme.seed_order
+  int predictor_order = 8;                  ///< scheme.seed_order
   int max_iterations = 50;                  ///< scheme.max_iterations
   int threads = 1;                          ///< run.threads: that explicit steps are shared by
   std::optional<double> step_control = {};  ///< s of steps that the rows choose; time_step is ε then

@@ -8,10 +8,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "lattice/index.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/system/conserved.hpp"
 #include "schemes/system/slab_extent.hpp"
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -43,7 +44,7 @@ RowMonitors::RowMonitors(const Problem& problem, const FieldTheory& theory,
       equations_(system_),
       has_constraints_(std::ranges::count(system_.all_components(), Role::multiplier, &Component::role) > 0),
       field_lag_(has_constraints_ ? slab_extent(system_, evolution.plan()).field_lag : 0),
-      turn_(turn_of(problem)) {
+      monodromy_(monodromy_of(problem)) {
   if (method_.energy) energy_ = method_.energy->make(theory, system_, problem);
   if (!energy_ && system_.fields() != theory.components())
     throw std::logic_error("scheme.method = " + method_.name + ": has other fields than the theory, and no energy");
@@ -68,7 +69,7 @@ EnergyMomentum RowMonitors::energy_momentum() const {
   const double h = problem_.time_step;
   const double t = (static_cast<double>(stepper_.newest()) - (stepper_.is_processed() ? 0.5 : 1)) * h;
   if (theory_.density().slots() > 3) {
-    CellJets jets(theory_.density(), problem_.lattice, h, turn_);
+    CellJets jets(theory_.density(), problem_.lattice, h, monodromy_);
     return delf::energy_momentum(theory_.density(), problem_.lattice, jets, row_of(evolution_, Role::field, 1),
                                  row_of(evolution_, Role::field, 0), t + 0.5 * h);
   }
@@ -92,8 +93,9 @@ double RowMonitors::constraint() {
           std::min(stepper_.newest(), slab - evolution_.plan().shift(i, c, static_cast<int>(slab & 1)));
       const auto [at, fresh] = of_row.try_emplace(row);
       if (fresh)
-        equations_.equations(stepper_.window(std::max(3, static_cast<int>(stepper_.newest() - row) + 2)), row, at->second);
-      worst = std::max(worst, std::abs(at->second[static_cast<std::size_t>(i * system_.components() + c)].sum));
+        equations_.equations(stepper_.window(std::max(3, static_cast<int>(stepper_.newest() - row) + 2)), row,
+                             at->second);
+      worst = std::max(worst, std::abs(at->second[i * system_.components() + c].sum));
     }
   return worst;
 }
@@ -102,7 +104,7 @@ double RowMonitors::charge() const {
   if (problem_.lattice.is_circle()) return problem_.winding + gain_of(problem_.parameters) / (2 * std::numbers::pi);
   // of the first field
   const int first = own_layout_ ? theory_.components() : system_.components() + system_.field_component(0);
-  const double* const newest = monitored_[static_cast<std::size_t>(first)];
+  const double* const newest = monitored_[first];
   const auto at = [&](int i) { return newest[layout().slot(i)]; };
   return (at(problem_.lattice.sites() - 1) - at(0)) / (2 * std::numbers::pi);
 }
@@ -127,26 +129,25 @@ void RowMonitors::copy_newest_pair() {
   const int C = system_.components(), d = theory_.components();
   if (stepper_.is_processed()) return copy_observed_pair();
   const std::vector<double> newest = stepper_.row(0), before = stepper_.row(1);
-  std::vector<double> before_newest(static_cast<std::size_t>(problem_.lattice.sites())), value(before_newest),
-      step(before_newest);
+  std::vector<double> before_newest(problem_.lattice.sites()), value(before_newest), step(before_newest);
   for (int a = 0; a < d; ++a) {
     for (std::size_t i = 0; i < value.size(); ++i) {
-      const std::size_t at = i * static_cast<std::size_t>(C) + static_cast<std::size_t>(system_.field_component(a));
+      const std::size_t at = i * delf::at(C) + delf::at(system_.field_component(a));
       before_newest[i] = before[at], value[i] = newest[at];
       step[i] = newest[at] - before[at];
     }
-    own_layout_->scatter(before_newest, last_rows_.row(a), turn_);
-    own_layout_->scatter(value, last_rows_.row(d + a), turn_);
+    own_layout_->scatter(before_newest, last_rows_.row(a), monodromy_);
+    own_layout_->scatter(value, last_rows_.row(d + a), monodromy_);
     own_layout_->scatter(step, last_rows_.row(2 * d + a));
   }
-  for (int r = 0; r < 3 * d; ++r) monitored_[static_cast<std::size_t>(r)] = last_rows_.row(r);
+  for (int r = 0; r < 3 * d; ++r) monitored_[r] = last_rows_.row(r);
 }
 
 /// Half a step before and after the observed row: y ∓ ½h φ_t.
 void RowMonitors::copy_observed_pair() {
-  const auto d = static_cast<std::size_t>(theory_.components());
+  const std::size_t d = theory_.components();
   const double h = problem_.time_step;
-  std::vector<double> fields, rates, value(static_cast<std::size_t>(problem_.lattice.sites()));
+  std::vector<double> fields, rates, value(delf::at(problem_.lattice.sites()));
   stepper_.observe(0, fields, &rates);
   const auto put = [&](double of_field, double of_rate, std::size_t row, double gained) {
     for (std::size_t a = 0; a < d; ++a) {
@@ -155,8 +156,8 @@ void RowMonitors::copy_observed_pair() {
       own_layout_->scatter(value, last_rows_.row(static_cast<int>(row * d + a)), gained);
     }
   };
-  put(1, -0.5 * h, 0, turn_), put(1, 0.5 * h, 1, turn_), put(0, h, 2, 0);
-  for (int r = 0; r < static_cast<int>(3 * d); ++r) monitored_[static_cast<std::size_t>(r)] = last_rows_.row(r);
+  put(1, -0.5 * h, 0, monodromy_), put(1, 0.5 * h, 1, monodromy_), put(0, h, 2, 0);
+  for (int r = 0; r < static_cast<int>(3 * d); ++r) monitored_[r] = last_rows_.row(r);
 }
 
 void RowMonitors::prepare() {
@@ -166,11 +167,11 @@ void RowMonitors::prepare() {
   const int N = problem_.lattice.sites(), cells = problem_.lattice.cells(), d = theory_.components();
   if (!stepper_.layout()) last_rows_ = RowBuffer(layout, 3 * d);
   for (int i = 0; i < cells; ++i) cell_weights_.row(0)[layout.slot(i)] = 1;
-  monitored_.resize(static_cast<std::size_t>(3 * std::max(d, system_.components())));
+  monitored_.resize(3 * std::max(d, system_.components()));
   if (!theory_.is_placed()) return;
   positions_ = RowBuffer(layout, 1);
-  std::vector<double> x(static_cast<std::size_t>(N));
-  for (int i = 0; i < N; ++i) x[static_cast<std::size_t>(i)] = problem_.lattice.position(i);
+  std::vector<double> x(N);
+  for (int i = 0; i < N; ++i) x[i] = problem_.lattice.position(i);
   layout.scatter(x, positions_.row(0));
 }
 

@@ -49,8 +49,8 @@ class RowMonitors {
   const LatticeSystem& system_;
   AssembledRow equations_;
   bool has_constraints_;
-  int field_lag_;  ///< rows from the newest row of fields up to the newest slab
-  double turn_;    ///< φ(x + L) − φ(x)
+  int field_lag_;     ///< rows from the newest row of fields up to the newest slab
+  double monodromy_;  ///< φ(x + L) − φ(x)
   std::vector<std::string> conserved_names_;
   std::unique_ptr<RowLayout> own_layout_;  ///< where steps do not go by rows
   RowBuffer cell_weights_, positions_, last_rows_;

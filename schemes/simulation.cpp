@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/row_monitors.hpp"
 #include "schemes/starting_rows.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -20,7 +22,6 @@
 #include "schemes/system/slab_extent.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "schemes/turn.hpp"
 #include "schemes/without_value.hpp"
 
 namespace delf {
@@ -56,8 +57,8 @@ Evolution make_evolution(SchemeParts parts, const Problem& p) {
   return {p.lattice,
           std::move(parts.families),
           p.time_step,
-          {p.tolerance, p.seed_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real, turn_of(p),
-           p.threads, std::move(parts.processor), p.step_control || !p.time_steps.empty()},
+          {p.tolerance, p.predictor_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
+           monodromy_of(p), p.threads, std::move(parts.processor), p.step_control || !p.time_steps.empty()},
           std::move(parts.components)};
 }
 
@@ -94,8 +95,9 @@ struct Simulation::Impl {
   void require_steps_of_any_length() {
     const SlabExtent extent = slab_extent(system, evolution.plan());
     if (system.height() != 1 || extent.field_lag != 0 || extent.above != 0)
-      throw BadInput("lattice.time_steps",
-                     fmt::format("lattice.time_steps: scheme.method = {} has steps of one length; leave it out", method.name));
+      throw BadInput(
+          "lattice.time_steps",
+          fmt::format("lattice.time_steps: scheme.method = {} has steps of one length; leave it out", method.name));
     begin_times();
   }
   /// Steps in turn begin with the first of their list.
@@ -115,7 +117,7 @@ struct Simulation::Impl {
   }
   /// The density of steps that row 0 and its momenta, or the newest row, ask for.
   RowDensity row_density(const std::vector<double>& row0, std::span<const double> momenta) const {
-    return method.row_density({*theory, system, system.window(0, {row0}, turn_of(problem)), 0, problem.time_step},
+    return method.row_density({*theory, system, system.window(0, {row0}, monodromy_of(problem)), 0, problem.time_step},
                               momenta, *problem.step_control);
   }
   RowDensity row_density() const {
@@ -141,7 +143,7 @@ struct Simulation::Impl {
   }
   void step(bool looked_at) {
     if (!problem.time_steps.empty()) {
-      const auto n = static_cast<std::size_t>(stepper.newest()) % problem.time_steps.size();
+      const auto n = at(stepper.newest()) % problem.time_steps.size();
       return step_by(problem.time_steps[n], looked_at);
     }
     if (!chosen_steps) return with_reasons([&] { stepper.step(looked_at); });
@@ -199,7 +201,8 @@ void Simulation::start(const std::vector<std::vector<double>>& given, std::optio
 }
 
 void Simulation::start_centred(std::span<const double> row0, std::span<const double> velocity) {
-  if (impl_->chosen_steps) throw BadInput("initial.start", "initial.start = centred: takes steps of one length; use legendre");
+  if (impl_->chosen_steps)
+    throw BadInput("initial.start", "initial.start = centred: takes steps of one length; use legendre");
   std::vector<std::vector<double>> rows{{row0.begin(), row0.end()}};
   if (impl_->problem.circle_valued) rows = impl_->starts.lifted(rows);
   impl_->starts.check_mirrors(rows[0]);

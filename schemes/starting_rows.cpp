@@ -10,9 +10,9 @@
 #include "jets/fibre.hpp"
 #include "lattice/error.hpp"
 #include "schemes/families/mirror_check.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -46,9 +46,7 @@ void StartingRows::hold_walls(std::vector<double>& row, bool velocity) const {
     const bool inner = component.role == Role::inner || component.role == Role::trace;
     if (!inner && !(velocity && component.role == Role::field)) continue;
     for (int i = 0; i < system_.lattice().sites(); ++i)
-      if (system_.is_held(i, c))
-        row[static_cast<std::size_t>(i * C + c)] =
-            velocity ? 0 : row[static_cast<std::size_t>(i * C + system_.field_component(component.field))];
+      if (system_.is_held(i, c)) row[i * C + c] = velocity ? 0 : row[i * C + system_.field_component(component.field)];
   }
 }
 
@@ -61,8 +59,7 @@ void StartingRows::check_mirrors(const std::vector<double>& row) const {
     const int site = left ? 0 : system_.lattice().sites() - 1;
     const bool fixed = system_.lattice().is_fixed(site);
     std::vector<double> wall;
-    for (int a = 0; a < theory_.components(); ++a)
-      wall.push_back(row[static_cast<std::size_t>(site * C + system_.field_component(a))]);
+    for (int a = 0; a < theory_.components(); ++a) wall.push_back(row[site * C + system_.field_component(a)]);
     if (has_mirror_images(theory_.density(), fixed ? Mirror::odd : Mirror::even, wall)) continue;
     throw BadInput(
         left ? "boundary.left" : "boundary.right",
@@ -75,11 +72,11 @@ void StartingRows::check_mirrors(const std::vector<double>& row) const {
 
 std::optional<std::vector<double>> StartingRows::momenta(std::span<const double> row0,
                                                          std::span<const double> velocity) const {
-  const Window window = system_.window(0, {{row0.begin(), row0.end()}}, turn_of(problem_));
+  const Window window = system_.window(0, {{row0.begin(), row0.end()}}, monodromy_of(problem_));
   const LegendreTransform row(system_, window, 0);
   if (!row.has_row()) return std::nullopt;
   std::vector<double> momenta = row.momenta(velocity);
-  const auto C = static_cast<std::size_t>(system_.components());
+  const std::size_t C = system_.components();
   for (std::size_t n = 0; n < momenta.size(); ++n)
     if (system_.component(static_cast<int>(n % C)).role == Role::slaved) momenta[n] = 0;
   return momenta;

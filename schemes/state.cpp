@@ -8,7 +8,7 @@ namespace {
 
 void at_every_site(const State& state, double FieldPoint::*part, double t, const Lattice& lattice,
                    std::span<double> out) {
-  std::vector<FieldPoint> point(static_cast<std::size_t>(state.components()));
+  std::vector<FieldPoint> point(state.components());
   std::size_t next = 0;
   for (int i = 0; i < lattice.sites(); ++i) {
     state.at(t, lattice.position(i), point);

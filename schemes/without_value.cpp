@@ -15,15 +15,14 @@ namespace {
 std::vector<double> jet_at(const DensityOnTable& jets, const TablePoint& point, const Window& rows, std::int64_t row,
                            int cell, double h, double k) {
   const int d = jets.density->components();
-  std::vector<double> jet(static_cast<std::size_t>(jets.density->variables()), 0.0);
+  std::vector<double> jet(jets.density->variables(), 0.0);
   for (int slot = 0; slot < jets.density->slots(); ++slot) {
-    const auto s = static_cast<std::size_t>(slot);
+    const std::size_t s = slot;
     const double scale = std::pow(h, slot_powers[s].time) * std::pow(k, slot_powers[s].space);
     for (const TablePoint::Entry& entry : point.slots[s]) {
-      const Site v = jets.table.pattern.vertices[static_cast<std::size_t>(entry.vertex)];
+      const Site v = jets.table.pattern.vertices[entry.vertex];
       for (int a = 0; a < d; ++a)
-        jet[static_cast<std::size_t>(slot * d + a)] +=
-            entry.weight / scale * rows(row + v.time, cell + v.space, v.node * d + a);
+        jet[slot * d + a] += entry.weight / scale * rows(row + v.time, cell + v.space, v.node * d + a);
     }
   }
   return jet;

@@ -11,6 +11,7 @@
 
 #include "jets/expressions/euler_lagrange.hpp"
 #include "jets/expressions/evaluate.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
@@ -36,12 +37,10 @@ std::string jet_name(int variable, const JetVariables& jets, const ExpressionNam
   if (variable == jets.x()) return "x";
   if (variable == jets.t()) return "t";
   if (variable == jets.multiplier()) return name_of(multiplier_name(names), notation);
-  if (!jets.is_derivative(variable))
-    return name_of(names.parameters[static_cast<std::size_t>(variable - jets.parameter(0))].first, notation);
+  if (!jets.is_derivative(variable)) return name_of(names.parameters[variable - jets.parameter(0)].first, notation);
   const auto [a, in_t, in_x] = jets.of(variable);
-  const std::string by =
-      std::string(static_cast<std::size_t>(in_t), 't') + std::string(static_cast<std::size_t>(in_x), 'x');
-  const std::string field = name_of(names.fields[static_cast<std::size_t>(a)], notation);
+  const std::string by = std::string(delf::at(in_t), 't') + std::string(delf::at(in_x), 'x');
+  const std::string field = name_of(names.fields[a], notation);
   if (by.empty()) return field;
   if (notation == Notation::plain) return field + "_" + by;
   // one subscript: u_1 and its derivative u_{1,tt}
@@ -78,7 +77,7 @@ class SiteVariables {
   bool is_site(int v) const { return v >= first_site(); }
   int rank(int v) const {  // later rows first, and in a row from left to right
     if (!is_site(v)) return 0;
-    const auto& [field, time, space] = sites_[static_cast<std::size_t>(v - first_site())];
+    const auto& [field, time, space] = sites_[v - first_site()];
     return 1000 + 100 * time - space;
   }
   std::string name(int v, Notation notation) const {
@@ -91,14 +90,14 @@ class SiteVariables {
       return v == x   ? (notation == Notation::latex ? "x_i" : "x(i)")
              : v == t ? (notation == Notation::latex ? "t_j" : "t(j)")
                       : letters[v];
-    if (!is_site(v)) return name_of(names_.parameters[static_cast<std::size_t>(v - parameters)].first, notation);
-    const auto& [field, time, space] = sites_[static_cast<std::size_t>(v - first_site())];
+    if (!is_site(v)) return name_of(names_.parameters[v - parameters].first, notation);
+    const auto& [field, time, space] = sites_[v - first_site()];
     const auto index = [](const char* letter, int offset) {
       std::string text(letter);
       if (offset > 0) text += '+';
       return offset == 0 ? text : text.append(std::to_string(offset));
     };
-    const std::string u = name_of(names_.fields[static_cast<std::size_t>(field)], notation);
+    const std::string u = name_of(names_.fields[field], notation);
     if (notation == Notation::plain) return u + "(" + index("j", time) + "," + index("i", space) + ")";
     const std::string sub = index("i", space);
     if (u.back() == '}' && u.find("_{") != std::string::npos)
@@ -145,7 +144,7 @@ class DiscreteEquations {
   // −measure · w_q Σ_slots ∂ℓ/∂(slot)(j_q) ∂(slot)/∂yˡ, where vertex l of the stencil is the site (j, i)
   void add(int a, int l, const TablePoint& point, std::vector<int>& terms) {
     for (int s = 0; s < jet_slots; ++s)
-      for (const TablePoint::Entry& entry : point.slots[static_cast<std::size_t>(s)]) {
+      for (const TablePoint::Entry& entry : point.slots[delf::at(s)]) {
         if (entry.vertex != l) continue;
         const int slope = graph_.differentiate(l_, s * jets_.d + a);
         if (graph_.is_constant(slope, 0)) continue;
@@ -156,7 +155,7 @@ class DiscreteEquations {
   }
   /// A variable of the density at a quadrature point, by the values at sites.
   int at_point(int v, int l, const TablePoint& point) {
-    const Site own = table_.pattern.vertices[static_cast<std::size_t>(l)];
+    const Site own = table_.pattern.vertices[l];
     const auto shifted = [&](int variable, double by, int step) {
       return graph_.add(graph_.variable(variable), graph_.multiply(graph_.constant(by), graph_.variable(step)));
     };
@@ -165,15 +164,15 @@ class DiscreteEquations {
     if (!jets_.is_derivative(v)) return graph_.variable(SiteVariables::parameters + v - jets_.parameter(0));
     const int s = v / jets_.d;
     int sum = graph_.constant(0);
-    for (const TablePoint::Entry& entry : point.slots[static_cast<std::size_t>(s)]) {
-      const Site site = table_.pattern.vertices[static_cast<std::size_t>(entry.vertex)];
+    for (const TablePoint::Entry& entry : point.slots[delf::at(s)]) {
+      const Site site = table_.pattern.vertices[entry.vertex];
       const int y = graph_.variable(sites_.at(v % jets_.d, site.time - own.time, site.space - own.space));
       sum = graph_.add(sum, graph_.multiply(graph_.constant(entry.weight), y));
     }
     return graph_.divide(sum, scale(s));
   }
   int scale(int slot) {
-    const auto [time, space] = slot_powers[static_cast<std::size_t>(slot)];
+    const auto [time, space] = slot_powers[delf::at(slot)];
     return graph_.multiply(graph_.power(graph_.variable(SiteVariables::h), static_cast<double>(time)),
                            graph_.power(graph_.variable(SiteVariables::k), static_cast<double>(space)));
   }
@@ -215,12 +214,12 @@ std::string SymbolicDensity::without_value(std::span<const double> jet, double t
     for (int v = 0; v < static_cast<int>(jet.size()); ++v) roots.push_back(graph.differentiate(roots[0], v));
     const auto value_of = [&](int v) {
       if (v == jets.t() || v == jets.x()) return v == jets.t() ? t : x;
-      if (!jets.is_derivative(v)) return names().parameters[static_cast<std::size_t>(v - jets.parameter(0))].second;
-      return v < static_cast<int>(jet.size()) ? jet[static_cast<std::size_t>(v)] : 0.0;
+      if (!jets.is_derivative(v)) return names().parameters[v - jets.parameter(0)].second;
+      return v < static_cast<int>(jet.size()) ? jet[v] : 0.0;
     };
     const std::vector<bool> wanted = graph.reachable(roots);
     for (int i = 0; i < graph.size(); ++i) {  // operands come first: so does what has no value by itself
-      if (!wanted[static_cast<std::size_t>(i)]) continue;
+      if (!wanted[i]) continue;
       const Evaluation part(graph, i);
       if (std::isfinite(part.operator()<double>(value_of))) continue;
       std::string reason = formula_of(graph, i, jets, names()) + " has no value";

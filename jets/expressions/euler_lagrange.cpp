@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "lattice/index.hpp"
+
 namespace delf::expressions {
 
 JetVariables::JetVariables(const ExpressionNames& given)
@@ -10,10 +12,9 @@ JetVariables::JetVariables(const ExpressionNames& given)
   for (int a = 0; a < d; ++a)
     for (int order = 0; order <= 2; ++order)
       for (int in_x = 0; in_x <= order; ++in_x)
-        names.variables.emplace_back(given.fields[static_cast<std::size_t>(a)] + (order ? "_" : "") +
-                                         std::string(static_cast<std::size_t>(order - in_x), 't') +
-                                         std::string(static_cast<std::size_t>(in_x), 'x'),
-                                     derivative(a, order - in_x, in_x));
+        names.variables.emplace_back(
+            given.fields[a] + (order ? "_" : "") + std::string(at(order - in_x), 't') + std::string(at(in_x), 'x'),
+            derivative(a, order - in_x, in_x));
   names.variables.emplace_back("x", x());
   names.variables.emplace_back("t", t());
   for (std::size_t p = 0; p < given.parameters.size(); ++p)
@@ -32,7 +33,7 @@ int total_derivative(Graph& graph, int root, const JetVariables& variables, bool
   const std::vector<bool> wanted = graph.reachable({root});
   std::vector<int> read;
   for (int i = 0; i <= root; ++i)
-    if (wanted[static_cast<std::size_t>(i)] && graph[i].operation == Operation::variable) read.push_back(graph[i].a);
+    if (wanted[i] && graph[i].operation == Operation::variable) read.push_back(graph[i].a);
   // d/dt = ∂/∂t + Σ v_t ∂/∂v over the fields and their derivatives v
   int sum = graph.differentiate(root, in_t ? variables.t() : variables.x());
   for (const int v : read) {

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 
+#include "lattice/index.hpp"
+
 namespace delf::expressions {
 
 Evaluation::Evaluation(const Graph& graph, int root) {
-  const auto index = [](int i) { return static_cast<std::size_t>(i); };
+  const auto index = [](int i) { return at(i); };
   const std::vector<bool> wanted = graph.reachable({root});
   std::vector<int> last_use(index(root + 1), -1), place(last_use), free;
   const auto has_operands = [](const Node& n) {

@@ -5,6 +5,7 @@
 
 #include "jets/expressions/graph.hpp"
 #include "jets/simd/pack_math.hpp"
+#include "lattice/index.hpp"
 
 namespace delf::expressions {
 
@@ -19,12 +20,12 @@ class Evaluation {
   template <class T, class Variable>
   T operator()(const Variable& variable) const {
     thread_local std::vector<T> values;
-    values.resize(static_cast<std::size_t>(places_));
+    values.resize(places_);
     for (const Step& step : steps_) {
-      const auto at = [&](int place) -> const T& { return values[static_cast<std::size_t>(place)]; };
-      values[static_cast<std::size_t>(step.to)] = value<T>(step, at, variable);
+      const auto at = [&](int place) -> const T& { return values[place]; };
+      values[step.to] = value<T>(step, at, variable);
     }
-    return std::move(values[static_cast<std::size_t>(steps_.back().to)]);
+    return std::move(values[steps_.back().to]);
   }
 
   bool reads(int variable) const;

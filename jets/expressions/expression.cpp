@@ -13,6 +13,7 @@
 #include "jets/simd/scratch_rows.hpp"
 #include "jets/value_derivatives.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -20,8 +21,6 @@ namespace {
 
 using namespace expressions;
 using O = Operation;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr std::array<const char*, 6> slot_endings{"", "_t", "_x", "_tt", "_tx", "_xx"};
 
@@ -37,8 +36,7 @@ Names names_of(const ExpressionNames& given) {
   const Numbering number{static_cast<int>(given.fields.size())};
   Names names{{{"t", number.t()}, {"x", number.x()}}, {}};
   for (int a = 0; a < number.d; ++a)
-    for (int s = 0; s < 6; ++s)
-      names.variables.emplace_back(given.fields[at(a)] + slot_endings[at(s)], s * number.d + a);
+    for (int s = 0; s < 6; ++s) names.variables.emplace_back(given.fields[a] + slot_endings[s], s * number.d + a);
   names.constants = given.parameters;
   return names;
 }
@@ -112,7 +110,7 @@ class ExpressionDensity final : public SymbolicDensity, public ValueDerivatives 
     slots_ = 3;
     const std::vector<bool> wanted = graph.reachable({l});
     for (int i = 0; i <= l; ++i) {
-      if (!wanted[at(i)] || graph[i].operation != O::variable) continue;
+      if (!wanted[i] || graph[i].operation != O::variable) continue;
       if (graph[i].a == number_.t() || graph[i].a == number_.x()) placed_ = true;
       else if (graph[i].a >= 3 * d) slots_ = 6;
     }
@@ -122,12 +120,12 @@ class ExpressionDensity final : public SymbolicDensity, public ValueDerivatives 
                               " values and derivatives are more than " + std::to_string(Abstract::most_variables - 2) +
                               "; use fewer fields");
     structure_ = structure_of(abstract_value(graph, l, number_, m), m, d);
-    for (int a = 0; a < d; ++a) require_determined(a, names.fields[at(a)], key);
+    for (int a = 0; a < d; ++a) require_determined(a, names.fields[a], key);
     for (int a = 0; a < d; ++a)
       if (!depends_on(a) && constraint().empty()) {  // φᵃ ↦ φᵃ + ε
-        LinearSymmetry shift{"translation" + (d > 1 ? " of " + names.fields[at(a)] : ""),
-                             std::vector<double>(at(d * d), 0.0), std::vector<double>(at(d), 0.0)};
-        shift.shift[at(a)] = 1;
+        LinearSymmetry shift{"translation" + (d > 1 ? " of " + names.fields[a] : ""), std::vector<double>(d * d, 0.0),
+                             std::vector<double>(d, 0.0)};
+        shift.shift[a] = 1;
         symmetries_.push_back(std::move(shift));
       }
   }
@@ -145,7 +143,7 @@ class ExpressionDensity final : public SymbolicDensity, public ValueDerivatives 
     if (!present)
       refuse("neither it nor its derivatives occur; add terms such as 0.5*" + field +
              "_t^2, or remove it from the fields");
-    if (!fields.moving[at(a)])
+    if (!fields.moving[a])
       refuse(depends_on(components_ + a)
                  ? field + "_t occurs only linearly, with a constant factor; add a term such as 0.5*" + field + "_t^2"
                  : field + "_t does not occur; add a term such as 0.5*" + field + "_t^2");
@@ -157,14 +155,14 @@ class ExpressionDensity final : public SymbolicDensity, public ValueDerivatives 
     for (int a = 0; a < m; ++a) g.push_back(depends_on(a) ? graph.differentiate(l, a) : zero);
     for (int a = 0; a < m; ++a)
       for (int b = 0; b <= a; ++b)
-        if (!is_zero(a, b)) H[at(a * m + b)] = H[at(b * m + a)] = graph.differentiate(g[at(a)], b);
+        if (!is_zero(a, b)) H[a * m + b] = H[b * m + a] = graph.differentiate(g[a], b);
     const auto at_rest = [&](int root) {
       return graph.substitute(
           root, [&](int v) { return v >= d && v != number_.t() && v != number_.x() ? zero : graph.variable(v); });
     };
-    for (int a = 0; a < d; ++a) slopes.push_back(at_rest(g[at(a)]));
+    for (int a = 0; a < d; ++a) slopes.push_back(at_rest(g[a]));
     for (int a = 0; a < d; ++a)
-      for (int b = 0; b < d; ++b) curvatures.push_back(at_rest(H[at(a * m + b)]));
+      for (int b = 0; b < d; ++b) curvatures.push_back(at_rest(H[a * m + b]));
     for (const int curvature : curvatures)
       for (int e = 0; e < d; ++e) thirds.push_back(graph.differentiate(curvature, e));
     const std::vector<int> places{graph.differentiate(l, number_.t()), graph.differentiate(l, number_.x())};
@@ -199,7 +197,7 @@ class ExpressionDensity final : public SymbolicDensity, public ValueDerivatives 
     std::array<const double*, 2 * Abstract::most_variables>
         in;  // a call is short: no more of it is written than is read
     std::fill(std::copy_n(batch.slots, given, in.begin()), in.begin() + number_.count(), nullptr);
-    in[at(number_.x())] = batch.x;
+    in[number_.x()] = batch.x;
     tape.run(batch.count, in.data(), batch.t, out);
   }
 

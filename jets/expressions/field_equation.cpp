@@ -15,12 +15,6 @@ namespace delf {
 
 using namespace expressions;
 
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 class FieldEquations::Form {
  public:
   explicit Form(int order) : order_(order) {}
@@ -41,9 +35,9 @@ class OfText final : public FieldEquations::Form {
       : Form(density.slots() > 3 ? 4 : 2), jets_(density.names()), parameters_(density.names().parameters) {
     Graph graph;
     const int l = parse(graph, density.text(), jets_.names, "theory.density");
-    terms_.resize(at(jets_.d));
+    terms_.resize(jets_.d);
     for (int a = 0; a < jets_.d; ++a)
-      for (const int term : euler_lagrange(graph, l, a, jets_)) terms_[at(a)].emplace_back(graph, term);
+      for (const int term : euler_lagrange(graph, l, a, jets_)) terms_[a].emplace_back(graph, term);
     if (density.constraint().empty()) return;
     const int G = parse(graph, density.constraint(), jets_.names, "theory.constraint");
     G_.emplace_back(graph, G);
@@ -52,11 +46,11 @@ class OfText final : public FieldEquations::Form {
 
   std::vector<FieldEquations::Value> values(std::span<const double> jet, double t, double x) const override {
     const auto variable = [&](int v) {
-      if (jets_.is_derivative(v)) return jet[at(v)];
+      if (jets_.is_derivative(v)) return jet[v];
       if (v == jets_.t() || v == jets_.x()) return v == jets_.t() ? t : x;
-      return parameters_[at(v - jets_.parameter(0))].second;
+      return parameters_[v - jets_.parameter(0)].second;
     };
-    std::vector<FieldEquations::Value> E(at(jets_.d));
+    std::vector<FieldEquations::Value> E(jets_.d);
     for (std::size_t a = 0; a < E.size(); ++a)
       for (const Evaluation& term : terms_[a]) {
         const double value = term.operator()<double>(variable);
@@ -68,9 +62,9 @@ class OfText final : public FieldEquations::Form {
     FieldEquations::Value G{G_[0].operator()<double>(variable), 0};
     double along = 0, square = 0;
     for (int a = 0; a < jets_.d; ++a) {
-      const double slope = slopes.emplace_back(G_[at(a + 1)].operator()<double>(variable));
-      along += E[at(a)].sum * slope, square += slope * slope;
-      G.absolute += std::abs(slope * jet[at(jets_.derivative(a, 0, 0))]);
+      const double slope = slopes.emplace_back(G_[a + 1].operator()<double>(variable));
+      along += E[a].sum * slope, square += slope * slope;
+      G.absolute += std::abs(slope * jet[jets_.derivative(a, 0, 0)]);
     }
     for (std::size_t a = 0; a < E.size() && square > 0; ++a) {
       const double force = along / square * slopes[a];
@@ -97,14 +91,14 @@ class OfHessian final : public FieldEquations::Form {
     const std::vector<double> g = gradient_at(density_, jet, t, x), H = hessian_at(density_, jet, t, x);
     // D_t and D_x of φ, φ_t, φ_x are φ_t, φ_tt, φ_tx and φ_x, φ_tx, φ_xx
     constexpr int by_t[] = {1, 3, 4}, by_x[] = {2, 4, 5};
-    std::vector<FieldEquations::Value> E(at(d));
+    std::vector<FieldEquations::Value> E(d);
     for (int a = 0; a < d; ++a) {
-      const auto add = [&](double term) { E[at(a)].sum += term, E[at(a)].absolute += std::abs(term); };
-      add(-g[at(a)]);
+      const auto add = [&](double term) { E[a].sum += term, E[a].absolute += std::abs(term); };
+      add(-g[a]);
       for (int s = 0; s < 3; ++s)
         for (int b = 0; b < d; ++b) {
-          add(H[at((d + a) * m + s * d + b)] * jet[at(by_t[s] * d + b)]);
-          add(H[at((2 * d + a) * m + s * d + b)] * jet[at(by_x[s] * d + b)]);
+          add(H[(d + a) * m + s * d + b] * jet[by_t[s] * d + b]);
+          add(H[(2 * d + a) * m + s * d + b] * jet[by_x[s] * d + b]);
         }
     }
     if (!density_.is_placed()) return E;
@@ -116,8 +110,8 @@ class OfHessian final : public FieldEquations::Form {
                  below = gradient_at(density_, jet, in_t ? t - by : t, in_t ? x : x - by);
       for (int a = 0; a < d; ++a) {
         const int v = (in_t ? d : 2 * d) + a;
-        const double term = (above[at(v)] - below[at(v)]) / (2 * by);
-        E[at(a)].sum += term, E[at(a)].absolute += std::abs(term);
+        const double term = (above[v] - below[v]) / (2 * by);
+        E[a].sum += term, E[a].absolute += std::abs(term);
       }
     }
     return E;

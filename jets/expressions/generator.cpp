@@ -10,6 +10,7 @@
 #include "jets/expressions/parse.hpp"
 #include "jets/expressions/random_jets.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
@@ -46,13 +47,12 @@ std::vector<int> change(Graph& graph, int root, const LinearSymmetry& symmetry, 
     const int slope = graph.differentiate(root, v);
     if (graph.is_constant(slope, 0)) continue;
     const int slot = v / d;
-    const auto a = static_cast<std::size_t>(v % d);
+    const std::size_t a = v % d;
     const auto add = [&](double factor, int times) {
       if (factor != 0) terms.push_back(graph.multiply(graph.constant(factor), graph.multiply(slope, times)));
     };
     if (slot == 0) add(symmetry.shift[a], graph.constant(1));
-    for (int b = 0; b < d; ++b)
-      add(symmetry.matrix[a * static_cast<std::size_t>(d) + static_cast<std::size_t>(b)], graph.variable(slot * d + b));
+    for (int b = 0; b < d; ++b) add(symmetry.matrix[a * at(d) + at(b)], graph.variable(slot * d + b));
   }
   return terms;
 }

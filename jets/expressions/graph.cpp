@@ -7,14 +7,11 @@
 #include <utility>
 
 #include "jets/simd/pack_math.hpp"
+#include "lattice/index.hpp"
 
 namespace delf::expressions {
 
 using O = Operation;
-
-namespace {
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-}  // namespace
 
 double apply(Operation function, double x) {
   switch (function) {
@@ -53,7 +50,7 @@ std::size_t Graph::Hash::operator()(const Node& n) const {
     h = (h ^ part) * 0x9e3779b97f4a7c15u;
     h ^= h >> 29;
   }
-  return static_cast<std::size_t>(h);
+  return delf::at(h);
 }
 
 int Graph::intern(const Node& node) {
@@ -171,12 +168,12 @@ int Graph::apply(Operation function, int a) {
 std::vector<bool> Graph::reachable(const std::vector<int>& roots) const {
   std::vector<bool> marked(nodes_.size(), false);
   int last = -1;
-  for (const int root : roots) marked[at(root)] = true, last = std::max(last, root);
+  for (const int root : roots) marked[root] = true, last = std::max(last, root);
   for (int i = last; i >= 0; --i) {
     const Node& n = (*this)[i];
-    if (!marked[at(i)] || n.operation == O::variable) continue;
-    if (n.a >= 0) marked[at(n.a)] = true;
-    if (n.b >= 0) marked[at(n.b)] = true;
+    if (!marked[i] || n.operation == O::variable) continue;
+    if (n.a >= 0) marked[n.a] = true;
+    if (n.b >= 0) marked[n.b] = true;
   }
   return marked;
 }
@@ -230,26 +227,26 @@ int Graph::derivative(int node, int a, int b) {
 
 int Graph::differentiate(int root, int variable) {
   const std::vector<bool> wanted = reachable({root});
-  std::vector<int> d(at(root + 1), -1);
+  std::vector<int> d(root + 1, -1);
   for (int i = 0; i <= root; ++i) {
-    if (!wanted[at(i)]) continue;
+    if (!wanted[i]) continue;
     const Node n = (*this)[i];
-    if (n.operation == O::constant) d[at(i)] = constant(0);
-    else if (n.operation == O::variable) d[at(i)] = constant(n.a == variable ? 1 : 0);
-    else d[at(i)] = derivative(i, d[at(n.a)], n.b < 0 ? -1 : d[at(n.b)]);
+    if (n.operation == O::constant) d[i] = constant(0);
+    else if (n.operation == O::variable) d[i] = constant(n.a == variable ? 1 : 0);
+    else d[i] = derivative(i, d[n.a], n.b < 0 ? -1 : d[n.b]);
   }
-  return d[at(root)];
+  return d[root];
 }
 
 int Graph::substitute(int root, const std::function<int(int variable)>& in_place_of) {
   const std::vector<bool> wanted = reachable({root});
-  std::vector<int> made(at(root + 1), -1);
+  std::vector<int> made(root + 1, -1);
   for (int i = 0; i <= root; ++i) {
-    if (!wanted[at(i)]) continue;
+    if (!wanted[i]) continue;
     const Node n = (*this)[i];
-    const auto a = [&] { return made[at(n.a)]; };
-    const auto b = [&] { return made[at(n.b)]; };
-    int& to = made[at(i)];
+    const auto a = [&] { return made[n.a]; };
+    const auto b = [&] { return made[n.b]; };
+    int& to = made[i];
     switch (n.operation) {
       case O::constant:
         to = i;
@@ -279,7 +276,7 @@ int Graph::substitute(int root, const std::function<int(int variable)>& in_place
         to = apply(n.operation, a());
     }
   }
-  return made[at(root)];
+  return made[root];
 }
 
 }  // namespace delf::expressions

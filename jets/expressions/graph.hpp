@@ -52,7 +52,7 @@ class Graph {
  public:
   static constexpr std::size_t most_nodes = 200'000;
 
-  const Node& operator[](int node) const { return nodes_[static_cast<std::size_t>(node)]; }
+  const Node& operator[](int node) const { return nodes_[node]; }
   int size() const { return static_cast<int>(nodes_.size()); }
   bool is_constant(int node) const { return (*this)[node].operation == Operation::constant; }
   bool is_constant(int node, double value) const { return is_constant(node) && (*this)[node].value == value; }

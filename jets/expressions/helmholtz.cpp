@@ -12,6 +12,7 @@
 #include "jets/expressions/parse.hpp"
 #include "jets/expressions/random_jets.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "lattice/text_parts.hpp"
 
 namespace delf {
@@ -70,7 +71,7 @@ class Equations {
   struct Order {
     int in_t, in_x;
   };
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  static std::size_t index(int i) { return delf::at(i); }
   [[noreturn]] void refuse(const std::string& why) const { throw BadInput(key_, key_ + ": " + why); }
   const std::string& name(int a) const { return names_.fields[index(a)]; }
 

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "lattice/nearest_name.hpp"
 
 namespace delf::expressions {
@@ -99,7 +100,7 @@ class Builder {
   }
 
   int name(At first, At last) const {
-    const std::string_view name(first, static_cast<std::size_t>(last - first));
+    const std::string_view name(first, at(last - first));
     if (const auto let = find_name(lets_, name); let != lets_.end()) return let->second;
     if (const auto v = find_name(names_.variables, name); v != names_.variables.end())
       return graph_.variable(v->second);
@@ -111,7 +112,7 @@ class Builder {
   }
 
   int call(At first, At last, const std::vector<int>& operands) const {
-    const std::string_view name(first, static_cast<std::size_t>(last - first));
+    const std::string_view name(first, at(last - first));
     const auto expect = [&](std::size_t count) {
       if (operands.size() != count)
         refuse(first, std::string(name) + " takes " + (count == 1 ? "one argument" : "two arguments") + ", not " +
@@ -305,7 +306,7 @@ At parse_let(Builder& make, At first, At end) {
   const At last = std::find_if(first, end, [](char c) { return c == '\n' || c == ';'; });
   At name = skip_space(first + 3, last), name_end = name;
   while (name_end != last && (is_letter(*name_end) || is_digit(*name_end))) ++name_end;
-  if (!is_name({name, static_cast<std::size_t>(name_end - name)})) make.refuse(name, "expected a name after let");
+  if (!is_name({name, at(name_end - name)})) make.refuse(name, "expected a name after let");
   const At sign = skip_space(name_end, last);
   if (sign == last || *sign != '=') make.refuse(sign, "expected = after let and a name, found " + make.found(sign));
   make.let(name, name_end, parse_sum(make, sign + 1, last));

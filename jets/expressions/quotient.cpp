@@ -48,7 +48,7 @@ struct Quotient::Lanes {
 };
 
 void Quotient::each(const JetBatch& ab, const auto& put) const {
-  std::vector<const double*> in(static_cast<std::size_t>(variables_), nullptr);
+  std::vector<const double*> in(variables_, nullptr);
   std::array<Pack, 2> at_a, at_b;
   std::array<Pack, orders> at_m;
   const auto run = [&](const Tape& tape, Pack phi, auto& results) {

@@ -19,7 +19,7 @@ StencilExpression StencilExpression::constraint(std::string_view text, const Exp
   const int d = static_cast<int>(given.fields.size());
   Names names{{}, given.parameters};
   std::vector<VertexValue> values;
-  for (int a = 0; a < d; ++a) names.variables.emplace_back(given.fields[static_cast<std::size_t>(a)], a);
+  for (int a = 0; a < d; ++a) names.variables.emplace_back(given.fields[a], a);
   for (int a = 0; a <= d; ++a) values.push_back({0, a});
   Graph graph;
   const int G = parse(graph, text, names, key);

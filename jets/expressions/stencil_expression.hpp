@@ -29,7 +29,7 @@ class StencilExpression {
   T operator()(std::span<const T> y, const Cell& cell) const {
     const int n = static_cast<int>(values_.size());
     return (*evaluation_).template operator()<T>([&](int variable) {
-      return variable < n ? y[static_cast<std::size_t>(variable)] : T(variable == n ? cell.time_step : cell.space_step);
+      return variable < n ? y[variable] : T(variable == n ? cell.time_step : cell.space_step);
     });
   }
 

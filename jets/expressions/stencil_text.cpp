@@ -10,6 +10,7 @@
 
 #include "jets/expressions/expression.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "lattice/text_parts.hpp"
 
 namespace delf {
@@ -53,7 +54,7 @@ std::vector<Site> sites_of(const std::string& text, const std::string& key) {
 double moment(const TablePoint& point, JetSlot slot, const std::vector<Site>& sites, int in_time, int in_space) {
   double sum = 0;
   for (const TablePoint::Entry& e : point[slot]) {
-    const Site v = sites[static_cast<std::size_t>(e.vertex)];
+    const Site v = sites[e.vertex];
     sum += e.weight * std::pow(v.time, in_time) * std::pow(v.space, in_space);
   }
   return sum;
@@ -78,7 +79,7 @@ TablePoint point_of(const std::string& text, const std::vector<Site>& sites, con
     if (weights.size() != sites.size())
       refuse(key, name + " has " + std::to_string(weights.size()) + " weights for " + std::to_string(sites.size()) +
                       " sites; give one each, separated by spaces");
-    auto& entries = point.slots[static_cast<std::size_t>(slot - slot_names.begin())];
+    auto& entries = point.slots[at(slot - slot_names.begin())];
     if (!entries.empty()) refuse(key, name + " is given twice at a point; give it once");
     point.set(static_cast<JetSlot>(slot - slot_names.begin()), weights);
   }
@@ -106,8 +107,8 @@ void check_consistent(const TablePoint& point, const std::vector<Site>& sites, b
     const double found = moment(point, rule.slot, sites, rule.in_time, rule.in_space);
     if (std::abs(found - rule.value) < 1e-12) continue;
     std::ostringstream why;
-    why << "is not consistent: of the field " << rule.field << ", " << slot_names[static_cast<std::size_t>(rule.slot)]
-        << " finds " << found << ", not " << rule.value << "; correct its weights";
+    why << "is not consistent: of the field " << rule.field << ", " << slot_names[at(rule.slot)] << " finds " << found
+        << ", not " << rule.value << "; correct its weights";
     refuse(key, why.str());
   }
 }
@@ -146,11 +147,11 @@ int order_of_consistency(const StencilTable& table) {
     const double tau = std::cos(direction * 1.1), xi = std::sin(direction * 1.1);
     const auto of_slot = [&](const TablePoint& point, int slot) {
       Series series{};
-      for (const TablePoint::Entry& e : point.slots[static_cast<std::size_t>(slot)]) {
-        const Site v = table.pattern.vertices[static_cast<std::size_t>(e.vertex)];
+      for (const TablePoint::Entry& e : point.slots[at(slot)]) {
+        const Site v = table.pattern.vertices[e.vertex];
         std::complex<double> power = e.weight;
         for (int n = 0; n < terms; ++n) {
-          series[static_cast<std::size_t>(n)] += power;
+          series[n] += power;
           power *= std::complex<double>(0, tau * v.time + xi * v.space) / static_cast<double>(n + 1);
         }
       }
@@ -165,13 +166,11 @@ int order_of_consistency(const StencilTable& table) {
         for (const TablePoint& point : table.points) {
           const Series u = of_slot(point, static_cast<int>(a)), v = of_slot(point, static_cast<int>(b));
           for (int n = 0; n < terms; ++n)
-            for (int m = 0; m <= n; ++m)
-              form[static_cast<std::size_t>(n)] += point.weight * std::real(std::conj(u[static_cast<std::size_t>(m)]) *
-                                                                            v[static_cast<std::size_t>(n - m)]);
+            for (int m = 0; m <= n; ++m) form[n] += point.weight * std::real(std::conj(u[m]) * v[n - m]);
         }
-        form[static_cast<std::size_t>(lowest)] -= std::real(std::conj(sigma[a]) * sigma[b]);
+        form[lowest] -= std::real(std::conj(sigma[a]) * sigma[b]);
         for (int n = lowest; n < lowest + order && n < terms; ++n)
-          if (std::abs(form[static_cast<std::size_t>(n)]) > 1e-9) order = std::min(order, n - lowest);
+          if (std::abs(form[n]) > 1e-9) order = std::min(order, n - lowest);
       }
   }
   return order;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "lattice/index.hpp"
+
 namespace delf::expressions {
 namespace {
 
@@ -216,7 +218,7 @@ Sum Sums::with_common_factors(Sum sum) {
       const double factor = sum[n].coefficient;
       sum.erase(sum.begin() + static_cast<std::ptrdiff_t>(n));
       sum = plus(std::move(sum), operand, factor);
-      n = static_cast<std::size_t>(-1);
+      n = delf::at(-1);
     }
   return sum;
 }
@@ -247,7 +249,7 @@ Sum Sums::made(const Node& n) {
 Sum Sums::of(const std::vector<int>& nodes) {
   const std::vector<bool> wanted = graph_.reachable(nodes);
   for (int i = 0; i < graph_.size(); ++i)  // operands come first: nothing recurses
-    if (wanted[static_cast<std::size_t>(i)] && !of_node_.contains(i)) of_node_.emplace(i, made(graph_[i]));
+    if (wanted[i] && !of_node_.contains(i)) of_node_.emplace(i, made(graph_[i]));
   Sum sum;
   for (const int node : nodes) sum = plus(std::move(sum), known(node), 1);
   return with_common_factors(std::move(sum));

@@ -34,7 +34,7 @@ class Sums {
 
   /// The sum of some nodes. Throws TooLarge.
   Sum of(const std::vector<int>& nodes);
-  const Atom& atom(int number) const { return atoms_[static_cast<std::size_t>(number)]; }
+  const Atom& atom(int number) const { return atoms_[number]; }
   bool is_scale(int atom_number) const;
 
  private:

@@ -8,6 +8,7 @@
 
 #include "jets/simd/pack_math.hpp"
 #include "jets/simd/scratch_rows.hpp"
+#include "lattice/index.hpp"
 
 namespace delf::expressions {
 
@@ -16,8 +17,6 @@ namespace {
 using O = Operation;
 
 constexpr int most_packs = 64;  ///< in a block: a dozen rows of them stay in the first level of the cache
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -29,55 +28,55 @@ class Tape::Compiler {
       : graph_(graph), outputs_(outputs), tape_(tape), uses_(at(graph.size()), 0), is_output_(at(graph.size()), false) {
     const std::vector<bool> reachable = graph.reachable(outputs);
     for (int i = 0; i < graph.size(); ++i)
-      if (reachable[at(i)]) for_operands(graph[i], [&](int u) { ++uses_[at(u)]; });
-    for (const int o : outputs) is_output_[at(o)] = true;
+      if (reachable[i]) for_operands(graph[i], [&](int u) { ++uses_[u]; });
+    for (const int o : outputs) is_output_[o] = true;
   }
 
   void compile() {
-    std::vector<bool> wanted(at(graph_.size()), false);
-    std::vector<Instruction> made(at(graph_.size()));
-    std::vector<int> last_use(at(graph_.size()), -1);
-    for (const int o : outputs_) wanted[at(o)] = true;
+    std::vector<bool> wanted(graph_.size(), false);
+    std::vector<Instruction> made(graph_.size());
+    std::vector<int> last_use(graph_.size(), -1);
+    for (const int o : outputs_) wanted[o] = true;
     for (int i = graph_.size() - 1; i >= 0; --i) {
-      if (!wanted[at(i)] || graph_[i].operation == O::variable) continue;
-      made[at(i)] = instruction(i);
-      for_rows(made[at(i)], [&](int& u) {
-        wanted[at(u)] = true;
-        last_use[at(u)] = std::max(last_use[at(u)], i);
+      if (!wanted[i] || graph_[i].operation == O::variable) continue;
+      made[i] = instruction(i);
+      for_rows(made[i], [&](int& u) {
+        wanted[u] = true;
+        last_use[u] = std::max(last_use[u], i);
       });
     }
 
     const int first_output = tape_.variables_, first_temporary = first_output + tape_.outputs_;
-    std::vector<int> row(at(graph_.size()), -1), free;
+    std::vector<int> row(graph_.size(), -1), free;
     for (std::size_t o = 0; o < outputs_.size(); ++o)
-      if (int& r = row[at(outputs_[o])]; r < 0) r = first_output + static_cast<int>(o);
+      if (int& r = row[outputs_[o]]; r < 0) r = first_output + static_cast<int>(o);
     for (int i = 0; i < graph_.size(); ++i) {
-      if (!wanted[at(i)]) continue;
+      if (!wanted[i]) continue;
       if (graph_[i].operation == O::variable) {
-        row[at(i)] = graph_[i].a;
+        row[i] = graph_[i].a;
         tape_.reads_t_ = tape_.reads_t_ || graph_[i].a == tape_.variables_ - 1;
         continue;
       }
-      Instruction now = made[at(i)];
-      if (row[at(i)] < 0) {  // before the operands' rows are free again: results overwrite none of them
+      Instruction now = made[i];
+      if (row[i] < 0) {  // before the operands' rows are free again: results overwrite none of them
         if (free.empty()) free.push_back(first_temporary + tape_.temporaries_++);
-        row[at(i)] = free.back();
+        row[i] = free.back();
         free.pop_back();
       }
       std::vector<int> read;
       for_rows(now, [&](int& u) {
-        if (last_use[at(u)] == i && std::ranges::find(read, u) == read.end()) read.push_back(u);
-        u = row[at(u)];
+        if (last_use[u] == i && std::ranges::find(read, u) == read.end()) read.push_back(u);
+        u = row[u];
       });
       for (const int u : read)
-        if (row[at(u)] >= first_temporary) free.push_back(row[at(u)]);
-      now.to = row[at(i)];
+        if (row[u] >= first_temporary) free.push_back(row[u]);
+      now.to = row[i];
       tape_.instructions_.push_back(now);
     }
     // what stands for several outputs, or is a variable
     for (std::size_t o = 0; o < outputs_.size(); ++o)
-      if (const int to = first_output + static_cast<int>(o); row[at(outputs_[o])] != to)
-        tape_.instructions_.push_back({.code = Code::affine, .to = to, .a = row[at(outputs_[o])]});
+      if (const int to = first_output + static_cast<int>(o); row[outputs_[o]] != to)
+        tape_.instructions_.push_back({.code = Code::affine, .to = to, .a = row[outputs_[o]]});
   }
 
  private:
@@ -99,7 +98,7 @@ class Tape::Compiler {
   }
 
   /// Nothing else reads it, so that it may be part of the instruction of what does.
-  bool may_be_fused(int u) const { return uses_[at(u)] == 1 && !is_output_[at(u)]; }
+  bool may_be_fused(int u) const { return uses_[u] == 1 && !is_output_[u]; }
   bool is_product(int u) const {
     return may_be_fused(u) && graph_[u].operation == O::multiply && !graph_.is_constant(graph_[u].a);
   }
@@ -134,10 +133,12 @@ class Tape::Compiler {
       return Instruction{.code = code, .a = graph_[of].a, .b = graph_[of].b, .c = other};
     };
     switch (n.operation) {
-      case O::constant: return {.code = Code::fill, .k = n.value};
+      case O::constant:
+        return {.code = Code::fill, .k = n.value};
       case O::add: {
         if (graph_.is_constant(n.a)) {
-          if (is_product(n.b)) return {.code = Code::product_shift, .a = graph_[n.b].a, .b = graph_[n.b].b, .l = value(n.a)};
+          if (is_product(n.b))
+            return {.code = Code::product_shift, .a = graph_[n.b].a, .b = graph_[n.b].b, .l = value(n.a)};
           const auto [k, u] = scaled(n.b);
           return {.code = Code::affine, .a = u, .k = k, .l = value(n.a)};
         }
@@ -158,7 +159,8 @@ class Tape::Compiler {
         if (const auto [k, u] = scaled(n.a); k != 1) return {.code = Code::scaled_less, .a = u, .b = n.b, .k = k};
         return {.code = Code::subtract, .a = n.a, .b = n.b};
       }
-      case O::negate: return times(-1, n.a);
+      case O::negate:
+        return times(-1, n.a);
       case O::multiply:
         if (graph_.is_constant(n.a)) return times(value(n.a), n.b);
         return {.code = Code::multiply, .a = n.a, .b = n.b};
@@ -166,8 +168,10 @@ class Tape::Compiler {
         if (graph_.is_constant(n.a)) return {.code = Code::reciprocal, .a = n.b, .k = value(n.a)};
         if (graph_.is_constant(n.b)) return {.code = Code::affine, .a = n.a, .k = 1 / value(n.b)};
         return {.code = Code::divide, .a = n.a, .b = n.b};
-      case O::power: return {.code = Code::power, .a = n.a, .k = n.value};
-      default: return of_function(1, n);
+      case O::power:
+        return {.code = Code::power, .a = n.a, .k = n.value};
+      default:
+        return of_function(1, n);
     }
   }
 
@@ -202,18 +206,30 @@ template <class Function>
 void map_function(O function, double* to, const double* a, double k, double l, int packs) {
   const auto each = [&](auto f) { map(to, a, k, l, packs, f); };
   switch (function) {
-    case O::sin: return each([](Pack x) { return sin(x); });
-    case O::cos: return each([](Pack x) { return cos(x); });
-    case O::cosm1: return each([](Pack x) { return cosm1(x); });
-    case O::tan: return each([](Pack x) { return tan(x); });
-    case O::exp: return each([](Pack x) { return exp(x); });
-    case O::log: return each([](Pack x) { return log(x); });
-    case O::sqrt: return each([](Pack x) { return sqrt(x); });
-    case O::sinh: return each([](Pack x) { return sinh(x); });
-    case O::cosh: return each([](Pack x) { return cosh(x); });
-    case O::tanh: return each([](Pack x) { return tanh(x); });
-    case O::atan: return each([](Pack x) { return atan(x); });
-    default: throw std::logic_error("delf: no function of one operand");
+    case O::sin:
+      return each([](Pack x) { return sin(x); });
+    case O::cos:
+      return each([](Pack x) { return cos(x); });
+    case O::cosm1:
+      return each([](Pack x) { return cosm1(x); });
+    case O::tan:
+      return each([](Pack x) { return tan(x); });
+    case O::exp:
+      return each([](Pack x) { return exp(x); });
+    case O::log:
+      return each([](Pack x) { return log(x); });
+    case O::sqrt:
+      return each([](Pack x) { return sqrt(x); });
+    case O::sinh:
+      return each([](Pack x) { return sinh(x); });
+    case O::cosh:
+      return each([](Pack x) { return cosh(x); });
+    case O::tanh:
+      return each([](Pack x) { return tanh(x); });
+    case O::atan:
+      return each([](Pack x) { return atan(x); });
+    default:
+      throw std::logic_error("delf: no function of one operand");
   }
 }
 
@@ -229,21 +245,36 @@ void Tape::carry_out(const Instruction& i, double* const* rows, int packs) {
   const auto c = [pc](int v) { return Pack::load(pc + v); };
   const Pack k(i.k), l(i.l);
   switch (i.code) {
-    case Code::fill: return for_packs(to, packs, [&](int) { return k; });
-    case Code::affine: return for_packs(to, packs, [&](int v) { return k * a(v) + l; });
-    case Code::add: return for_packs(to, packs, [&](int v) { return a(v) + b(v); });
-    case Code::subtract: return for_packs(to, packs, [&](int v) { return a(v) - b(v); });
-    case Code::scaled_add: return for_packs(to, packs, [&](int v) { return k * a(v) + b(v); });
-    case Code::scaled_less: return for_packs(to, packs, [&](int v) { return k * a(v) - b(v); });
-    case Code::multiply: return for_packs(to, packs, [&](int v) { return (k * a(v)) * b(v); });
-    case Code::product_add: return for_packs(to, packs, [&](int v) { return a(v) * b(v) + c(v); });
-    case Code::product_less: return for_packs(to, packs, [&](int v) { return a(v) * b(v) - c(v); });
-    case Code::less_product: return for_packs(to, packs, [&](int v) { return c(v) - a(v) * b(v); });
-    case Code::product_shift: return for_packs(to, packs, [&](int v) { return a(v) * b(v) + l; });
-    case Code::divide: return for_packs(to, packs, [&](int v) { return a(v) / b(v); });
-    case Code::reciprocal: return for_packs(to, packs, [&](int v) { return k / a(v); });
-    case Code::power: return for_packs(to, packs, [&](int v) { return pow(a(v), i.k); });
-    case Code::function: return map_function(i.function, to, pa, i.k, i.l, packs);
+    case Code::fill:
+      return for_packs(to, packs, [&](int) { return k; });
+    case Code::affine:
+      return for_packs(to, packs, [&](int v) { return k * a(v) + l; });
+    case Code::add:
+      return for_packs(to, packs, [&](int v) { return a(v) + b(v); });
+    case Code::subtract:
+      return for_packs(to, packs, [&](int v) { return a(v) - b(v); });
+    case Code::scaled_add:
+      return for_packs(to, packs, [&](int v) { return k * a(v) + b(v); });
+    case Code::scaled_less:
+      return for_packs(to, packs, [&](int v) { return k * a(v) - b(v); });
+    case Code::multiply:
+      return for_packs(to, packs, [&](int v) { return (k * a(v)) * b(v); });
+    case Code::product_add:
+      return for_packs(to, packs, [&](int v) { return a(v) * b(v) + c(v); });
+    case Code::product_less:
+      return for_packs(to, packs, [&](int v) { return a(v) * b(v) - c(v); });
+    case Code::less_product:
+      return for_packs(to, packs, [&](int v) { return c(v) - a(v) * b(v); });
+    case Code::product_shift:
+      return for_packs(to, packs, [&](int v) { return a(v) * b(v) + l; });
+    case Code::divide:
+      return for_packs(to, packs, [&](int v) { return a(v) / b(v); });
+    case Code::reciprocal:
+      return for_packs(to, packs, [&](int v) { return k / a(v); });
+    case Code::power:
+      return for_packs(to, packs, [&](int v) { return pow(a(v), i.k); });
+    case Code::function:
+      return map_function(i.function, to, pa, i.k, i.l, packs);
   }
 }
 
@@ -253,7 +284,7 @@ void Tape::run(int count, const double* const* in, double t, double* const* out)
   std::array<double*, 128> few;
   std::vector<double*> many;
   double** row = few.data();
-  if (at(rows) > few.size()) many.resize(at(rows)), row = many.data();
+  if (at(rows) > few.size()) many.resize(rows), row = many.data();
   for (int r = 0; r < temporaries_; ++r) row[variables_ + outputs_ + r] = temporaries[r + 1];
   if (reads_t_) std::fill_n(temporaries[0], block, t);
   for (int first = 0; first < count; first += block) {

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "jets/simd/pack_math.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -14,22 +15,18 @@ namespace delf {
 template <class T, int n>
 struct Dual {
   T value{};
-  std::array<T, static_cast<std::size_t>(n)> d{};
+  std::array<T, at(n)> d{};
 
   Dual() = default;
   constexpr Dual(double x) : value(x) { d.fill(T(0.0)); }
-  constexpr Dual(T x)
-    requires(!std::same_as<T, double>)
-      : value(x) {
-    d.fill(T(0.0));
-  }
+  constexpr Dual(T x) requires(!std::same_as<T, double>) : value(x) { d.fill(T(0.0)); }
   /// The variable number `which`.
   static constexpr Dual variable(T x, int which) {
     Dual y(x);
-    y.d[static_cast<std::size_t>(which)] = T(1.0);
+    y.d[which] = T(1.0);
     return y;
   }
-  const T& derivative(int which) const { return d[static_cast<std::size_t>(which)]; }
+  const T& derivative(int which) const { return d[which]; }
 
   /// f(u) by the chain rule, given f(u.value) and f′(u.value).
   friend Dual chain(const Dual& u, const T& f, const T& slope) {
@@ -65,9 +62,18 @@ struct Dual {
     return r;
   }
   // A plain number touches no derivatives that it need not.
-  friend Dual operator+(Dual a, double b) { a.value = a.value + T(b); return a; }
-  friend Dual operator+(double a, Dual b) { b.value = T(a) + b.value; return b; }
-  friend Dual operator-(Dual a, double b) { a.value = a.value - T(b); return a; }
+  friend Dual operator+(Dual a, double b) {
+    a.value = a.value + T(b);
+    return a;
+  }
+  friend Dual operator+(double a, Dual b) {
+    b.value = T(a) + b.value;
+    return b;
+  }
+  friend Dual operator-(Dual a, double b) {
+    a.value = a.value - T(b);
+    return a;
+  }
   friend Dual operator-(double a, const Dual& b) { return a + (-b); }
   friend Dual operator*(const Dual& a, double b) { return chain(a, a.value * T(b), T(b)); }
   friend Dual operator*(double a, const Dual& b) { return b * a; }

@@ -20,7 +20,7 @@ inline constexpr int lanes = 2;
 #endif
 
 /// `lanes` doubles that are worked on at once: a thin wrapper over the compiler's vector extension. Densities see it
-/// (inside a Dual) as just another number. Mathematical functions are in jets/pack_math.hpp.
+/// (inside a Dual) as just another number. Mathematical functions are in jets/simd/pack_math.hpp.
 struct Pack {
   using Vector = double __attribute__((vector_size(sizeof(double) * lanes)));
   using Bits = long long __attribute__((vector_size(sizeof(double) * lanes)));
@@ -42,9 +42,18 @@ struct Pack {
   friend Pack operator*(Pack a, Pack b) { return {a.v * b.v}; }
   friend Pack operator/(Pack a, Pack b) { return {a.v / b.v}; }
   friend Pack operator-(Pack a) { return {-a.v}; }
-  Pack& operator+=(Pack b) { v += b.v; return *this; }
-  Pack& operator-=(Pack b) { v -= b.v; return *this; }
-  Pack& operator*=(Pack b) { v *= b.v; return *this; }
+  Pack& operator+=(Pack b) {
+    v += b.v;
+    return *this;
+  }
+  Pack& operator-=(Pack b) {
+    v -= b.v;
+    return *this;
+  }
+  Pack& operator*=(Pack b) {
+    v *= b.v;
+    return *this;
+  }
 
  private:
   using Aliased = double __attribute__((vector_size(sizeof(double) * lanes), may_alias));

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "jets/simd/pack.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -13,8 +14,8 @@ namespace delf {
 class ScratchRows {
  public:
   ScratchRows(int rows, int count) : count_(count), before_(stack().used) {
-    const std::size_t numbers = static_cast<std::size_t>(rows) * static_cast<std::size_t>(count);
-    const std::size_t pointers = (static_cast<std::size_t>(rows) + lanes - 1) / lanes * lanes;
+    const std::size_t numbers = at(rows) * at(count);
+    const std::size_t pointers = (at(rows) + lanes - 1) / lanes * lanes;
     Stack& own = stack();
     if (!own.memory) own.memory = std::make_unique<Pack[]>(Stack::size / lanes);
     if (own.used + numbers + pointers <= Stack::size) {

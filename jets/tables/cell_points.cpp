@@ -22,8 +22,7 @@ CellPoint placed(const Mesh& mesh, std::span<const std::int32_t> corners, double
   std::vector<Vector> g(by_own.size(), Vector{});
   for (std::size_t b = 0; b < g.size(); ++b)
     for (std::size_t l = 0; l < corners.size(); ++l)
-      for (std::size_t k = 0; k < 3; ++k)
-        g[b][k] += by_own[b][l] * mesh.points[static_cast<std::size_t>(corners[l])][k];
+      for (std::size_t k = 0; k < 3; ++k) g[b][k] += by_own[b][l] * mesh.points[corners[l]][k];
   const Vector e1 = unit(g[0]);
   const double g11 = dot(g[0], e1);
   CellPoint point{weight * g11, std::move(value), {}};
@@ -72,7 +71,7 @@ std::vector<double> lumped_masses(const Mesh& mesh) {
   std::vector<double> masses(mesh.points.size(), 0.0);
   for (int c = 0; c < mesh.cells(); ++c) {
     const std::vector<double> shares = corner_shares(mesh, c);
-    for (std::size_t l = 0; l < shares.size(); ++l) masses[static_cast<std::size_t>(mesh.cell(c)[l])] += shares[l];
+    for (std::size_t l = 0; l < shares.size(); ++l) masses[mesh.cell(c)[l]] += shares[l];
   }
   return masses;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "jets/tables/line_rule.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
@@ -34,7 +35,7 @@ StencilTable on_nodes(const std::vector<int>& nodes) {
   StencilTable table{.pattern = {}, .points = {}};
   for (const int node : nodes) {
     table.pattern.vertices.push_back({.time = 0, .space = 0, .node = node});
-    if (static_cast<std::size_t>(node) >= table.nodes.size()) table.nodes.resize(static_cast<std::size_t>(node) + 1);
+    if (at(node) >= table.nodes.size()) table.nodes.resize(at(node) + 1);
   }
   return table;
 }

@@ -4,6 +4,7 @@
 #include <concepts>
 
 #include "jets/jet.hpp"
+#include "lattice/index.hpp"
 #include "lattice/stencil_shape.hpp"
 
 namespace delf {
@@ -15,7 +16,7 @@ namespace delf {
 /// and likewise φ_tt, φ_tx and φ_xx, where a stencil has room for second derivatives.
 template <int n>
 struct QuadraturePoint {
-  using Weights = std::array<double, static_cast<std::size_t>(n)>;
+  using Weights = std::array<double, at(n)>;
   double weight;
   Weights phi, phi_t, phi_x;
   Weights phi_tt = {}, phi_tx = {}, phi_xx = {};
@@ -32,9 +33,9 @@ struct JetTable {
   /// The share of spacetime that one stencil stands for, in cells hk, so that Σ_Δ |Δ| is the area: 1 where there is
   /// a stencil for each site.
   double measure;
-  std::array<QuadraturePoint<n>, static_cast<std::size_t>(Q)> quadrature;
+  std::array<QuadraturePoint<n>, at(Q)> quadrature;
 
-  constexpr const QuadraturePoint<n>& point(int q) const { return quadrature[static_cast<std::size_t>(q)]; }
+  constexpr const QuadraturePoint<n>& point(int q) const { return quadrature[q]; }
 };
 
 /// True if the weights of a table make sense: those of the quadrature sum to 1, and on an affine field

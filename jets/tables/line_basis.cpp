@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "jets/tables/line_rule.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -66,7 +67,7 @@ namespace {
 
 /// The n functions of degree n − 1, by de Casteljau's recursion B_j ← (1 − x) B_j + x B_{j−1}.
 std::vector<double> bernstein_values(int n, double x) {
-  std::vector<double> B(static_cast<std::size_t>(n), 0.0);
+  std::vector<double> B(n, 0.0);
   B[0] = 1;
   for (std::size_t degree = 1; degree < B.size(); ++degree)
     for (std::size_t j = degree + 1; j-- > 0;) B[j] = (1 - x) * B[j] + (j > 0 ? x * B[j - 1] : 0.0);
@@ -76,7 +77,7 @@ std::vector<double> bernstein_values(int n, double x) {
 /// B′_j = (S − 1)(B_{j−1} − B_j), of one degree less.
 std::vector<double> bernstein_slopes(int S, double x) {
   const std::vector<double> lower = bernstein_values(S - 1, x);
-  std::vector<double> slopes(static_cast<std::size_t>(S), 0.0);
+  std::vector<double> slopes(S, 0.0);
   for (std::size_t j = 0; j < lower.size(); ++j) {
     slopes[j] -= (S - 1) * lower[j];
     slopes[j + 1] += (S - 1) * lower[j];
@@ -112,17 +113,17 @@ namespace {
 /// The knots t of B-splines, and their values by the recursion of de Boor and Cox.
 class Spline {
  public:
-  Spline(int S, int degree) : S_(S), p_(degree), t_(static_cast<std::size_t>(S + degree + 1), 0.0) {
+  Spline(int S, int degree) : S_(S), p_(degree), t_(delf::at(S + degree + 1), 0.0) {
     const int spans = S - p_;
-    for (int i = 0; i <= S; ++i) t_[static_cast<std::size_t>(i + p_)] = std::min(1.0, static_cast<double>(i) / spans);
+    for (int i = 0; i <= S; ++i) t_[i + p_] = std::min(1.0, static_cast<double>(i) / spans);
     std::fill(t_.end() - p_ - 1, t_.end(), 1.0);
   }
   std::vector<double> inner_knots() const { return {t_.begin() + p_ + 1, t_.end() - p_ - 1}; }
   /// (t_{j+1} + … + t_{j+p})/p: the field τ has these coefficients (Greville).
   std::vector<double> places() const {
-    std::vector<double> places(static_cast<std::size_t>(S_), 0.0);
+    std::vector<double> places(S_, 0.0);
     for (int j = 0; j < S_; ++j)
-      for (int m = 1; m <= p_; ++m) places[static_cast<std::size_t>(j)] += t(j + m) / p_;
+      for (int m = 1; m <= p_; ++m) places[j] += t(j + m) / p_;
     return places;
   }
   /// N_{j,q} = (x − t_j)/(t_{j+q} − t_j) N_{j,q−1} + (t_{j+q+1} − x)/(t_{j+q+1} − t_{j+1}) N_{j+1,q−1}, from N_{j,0} = 1 on
@@ -131,10 +132,10 @@ class Spline {
     std::vector<double> N(t_.size() - 1, 0.0);
     int span = p_;
     while (span + 1 < S_ && x >= t(span + 1)) ++span;
-    N[static_cast<std::size_t>(span)] = 1;
+    N[span] = 1;
     for (int degree = 1; degree <= q; ++degree)
       for (int j = std::max(0, span - degree); j <= span; ++j) {
-        const auto at = static_cast<std::size_t>(j);
+        const std::size_t at = j;
         N[at] = share(x - t(j), t(j + degree) - t(j)) * N[at] +
                 share(t(j + degree + 1) - x, t(j + degree + 1) - t(j + 1)) * (at + 1 < N.size() ? N[at + 1] : 0.0);
       }
@@ -143,16 +144,16 @@ class Spline {
   /// N′_{j,p} = p (N_{j,p−1}/(t_{j+p} − t_j) − N_{j+1,p−1}/(t_{j+p+1} − t_{j+1}))
   std::vector<double> slopes(double x) const {
     const std::vector<double> lower = values(x, p_ - 1);
-    std::vector<double> slopes(static_cast<std::size_t>(S_));
+    std::vector<double> slopes(S_);
     for (int j = 0; j < S_; ++j) {
-      const auto at = static_cast<std::size_t>(j);
+      const std::size_t at = j;
       slopes[at] = p_ * (share(lower[at], t(j + p_) - t(j)) - share(lower[at + 1], t(j + p_ + 1) - t(j + 1)));
     }
     return slopes;
   }
 
  private:
-  double t(int j) const { return t_[static_cast<std::size_t>(j)]; }
+  double t(int j) const { return t_[j]; }
   static double share(double part, double whole) { return whole > 0 ? part / whole : 0; }  // 0/0 = 0
   int S_, p_;
   std::vector<double> t_;
@@ -166,7 +167,7 @@ LineBasis b_spline_basis(int S, int degree) {
   const auto spline = std::make_shared<const Spline>(S, degree);
   const auto values = [spline, S, degree](double x) {
     std::vector<double> N = spline->values(x, degree);
-    N.resize(static_cast<std::size_t>(S));
+    N.resize(S);
     return N;
   };
   return {spline->places(), values, [spline](double x) { return spline->slopes(x); }, spline->inner_knots()};

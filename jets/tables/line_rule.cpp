@@ -6,14 +6,14 @@
 #include <cstddef>
 #include <numbers>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
 using std::numbers::pi;
 
-LineRule empty_rule(int n) {
-  return {std::vector<double>(static_cast<std::size_t>(n)), std::vector<double>(static_cast<std::size_t>(n))};
-}
+LineRule empty_rule(int n) { return {std::vector<double>(n), std::vector<double>(n)}; }
 
 /// 1 − Σ_{j=1}^{⌊m/2⌋} c_j cos(2jθ)/(4j² − 1), c_j = 2, but 1 for the last one if `closed` and m is even: the integral of
 /// the cosine series that interpolates at θ.
@@ -26,7 +26,7 @@ double cosine_sum(int m, double theta, bool closed) {
 }  // namespace
 
 LineRule gauss_rule(int R) {
-  const auto n = static_cast<std::size_t>(R);
+  const std::size_t n = R;
   LineRule rule = empty_rule(R);
   std::size_t middle = n / 2;  // of the smallest zero ≥ 0; the zeros ascend
   for (const double x : boost::math::legendre_p_zeros<double>(R)) {
@@ -49,7 +49,7 @@ LineRule lobatto_rule(int n) {
       for (int iteration = 0; iteration < 10; ++iteration)
         x += (1 - x * x) * boost::math::legendre_p_prime(p, x) / (p * (p + 1) * boost::math::legendre_p(p, x));
     const double legendre = boost::math::legendre_p(p, x);
-    const auto low = static_cast<std::size_t>(i), high = static_cast<std::size_t>(p - i);
+    const std::size_t low = i, high = at(p - i);
     rule.points[low] = (1 - x) / 2;
     rule.points[high] = (1 + x) / 2;
     rule.weights[low] = rule.weights[high] = 1 / (p * (p + 1) * legendre * legendre);
@@ -68,8 +68,8 @@ LineRule radau_rule(int n) {
       x -= (boost::math::legendre_p(n - 1, x) + boost::math::legendre_p(n, x)) /
            (boost::math::legendre_p_prime(n - 1, x) + boost::math::legendre_p_prime(n, x));
     const long double legendre = n * boost::math::legendre_p(n - 1, x);
-    rule.points[static_cast<std::size_t>(i)] = static_cast<double>((1 + x) / 2);
-    rule.weights[static_cast<std::size_t>(i)] = static_cast<double>((1 - x) / (2 * legendre * legendre));
+    rule.points[i] = static_cast<double>((1 + x) / 2);
+    rule.weights[i] = static_cast<double>((1 - x) / (2 * legendre * legendre));
   }
   return rule;
 }
@@ -79,9 +79,8 @@ LineRule clenshaw_curtis_rule(int n) {
   for (int i = 0; i < n; ++i) {
     const double theta = pi * i / (n - 1);
     const double half = std::sin(theta / 2);
-    rule.points[static_cast<std::size_t>(i)] = half * half;  // (1 − cos θ)/2
-    rule.weights[static_cast<std::size_t>(i)] =
-        (i == 0 || i == n - 1 ? 0.5 : 1.0) / (n - 1) * cosine_sum(n - 1, theta, true);
+    rule.points[i] = half * half;  // (1 − cos θ)/2
+    rule.weights[i] = (i == 0 || i == n - 1 ? 0.5 : 1.0) / (n - 1) * cosine_sum(n - 1, theta, true);
   }
   return rule;
 }
@@ -91,8 +90,8 @@ LineRule fejer_rule(int n) {
   for (int i = 0; i < n; ++i) {
     const double theta = pi * (i + 0.5) / n;
     const double half = std::sin(theta / 2);
-    rule.points[static_cast<std::size_t>(i)] = half * half;
-    rule.weights[static_cast<std::size_t>(i)] = cosine_sum(n, theta, false) / n;
+    rule.points[i] = half * half;
+    rule.weights[i] = cosine_sum(n, theta, false) / n;
   }
   return rule;
 }

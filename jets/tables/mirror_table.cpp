@@ -85,7 +85,7 @@ MirrorTable mirror_table(const StencilTable& table, Placement wall, Mirror mirro
       PointAtWall p{given.weight, given.time, given.space, {}};
       for (std::size_t s = 0; s < given.slots.size(); ++s)
         for (const auto& [vertex, weight] : given.slots[s]) {
-          const Site& v = table.pattern.vertices[static_cast<std::size_t>(vertex)];
+          const Site& v = table.pattern.vertices[vertex];
           p.slots[s][{v.space, v.time}] += weight;
         }
       if (!left) p = turned(p);

@@ -4,6 +4,7 @@
 #include "jets/tables/splitting.hpp"
 #include "jets/tables/stencil_table.hpp"
 #include "jets/tables/table_product.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -32,8 +33,8 @@ inline StencilTable pair_element(const Splitting& splitting, int p) { return pai
 inline StencilTable force_table(int q, double offset = 0) {
   StencilTable table{.pattern = {}, .points = {}};
   for (int m = -q; m <= q; ++m) table.pattern.vertices.push_back({.time = 0, .space = m});
-  std::vector phi(static_cast<std::size_t>(2 * q + 1), 0.0), phi_xx = phi;
-  const auto centre = static_cast<std::size_t>(q);
+  std::vector phi(at(2 * q + 1), 0.0), phi_xx = phi;
+  const std::size_t centre = q;
   const std::vector<double> pairs = pair_weights(q);
   phi[centre] = 1;
   for (std::size_t m = 1; m <= centre; ++m) {

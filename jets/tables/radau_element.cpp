@@ -13,7 +13,7 @@
 namespace delf {
 
 StencilTable radau_element(int stages) {
-  const auto s = static_cast<std::size_t>(stages);
+  const std::size_t s = stages;
   LineRule rule = radau_rule(stages);  // mirrored: the right end is a point
   std::ranges::reverse(rule.points), std::ranges::reverse(rule.weights);
   for (double& c : rule.points) c = 1 - c;

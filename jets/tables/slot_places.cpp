@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "jets/one_jet.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// xⁿ/n!
 double monomial(double x, int n) {
@@ -40,18 +39,18 @@ struct Coupling {
   }
   /// Derivatives in sets: those of two sets are not coupled.
   std::vector<std::vector<int>> sets() const {
-    std::vector<int> set(at(density.slots()));
+    std::vector<int> set(density.slots());
     for (int s = 1; s < density.slots(); ++s) {
-      set[at(s)] = s;
+      set[s] = s;
       for (int r = 1; r < s; ++r)
-        if (const int joined = set[at(r)], own = set[at(s)]; joined != own && between(s, r))
+        if (const int joined = set[r], own = set[s]; joined != own && between(s, r))
           std::ranges::replace(set, own, joined);
     }
     std::vector<std::vector<int>> sets;
     for (int s = 1; s < density.slots(); ++s) {
       sets.emplace_back();
       for (int r = 1; r < density.slots(); ++r)
-        if (set[at(r)] == s) sets.back().push_back(r);
+        if (set[r] == s) sets.back().push_back(r);
     }
     std::erase_if(sets, [](const auto& members) { return members.empty(); });
     return sets;
@@ -94,11 +93,11 @@ std::vector<TablePoint::Entry> mean_of_vertices(const TablePoint& point, const s
 }  // namespace
 
 NodePosition place_of(const StencilTable& table, const TablePoint& point, JetSlot slot) {
-  const auto [a, b] = slot_powers[static_cast<std::size_t>(slot)];
+  const auto [a, b] = slot_powers[at(slot)];
   NodePosition place;
   for (const auto& [vertex, weight] : point[slot]) {
-    const Site& v = table.pattern.vertices[at(vertex)];
-    const NodePosition& node = table.nodes[at(v.node)];
+    const Site& v = table.pattern.vertices[vertex];
+    const NodePosition& node = table.nodes[v.node];
     const double t = v.time + node.time, x = v.space + node.space;
     place.time += weight * monomial(t, a + 1) * monomial(x, b);
     place.space += weight * monomial(t, a) * monomial(x, b + 1);

@@ -18,7 +18,7 @@ StencilTable point_space() {
 StencilTable element_space(const LineBasis& basis, const LineRule& rule) {
   const int degree = basis.size() - 1;
   StencilTable element{.pattern = {}, .points = {}, .nodes = {}};
-  for (int b = 0; b < degree; ++b) element.nodes.push_back({0, basis.places[static_cast<std::size_t>(b)]});
+  for (int b = 0; b < degree; ++b) element.nodes.push_back({0, basis.places[b]});
   for (int b = 0; b <= degree; ++b)
     element.pattern.vertices.push_back({.time = 0, .space = b / degree, .node = b % degree});
   for (std::size_t s = 0; s < rule.points.size(); ++s) {
@@ -57,13 +57,10 @@ StencilTable pair_space(const std::vector<double>& pairs) {
   for (int m = 1; m <= p; ++m)
     for (const int end : {0, m}) {
       std::vector phi(table.pattern.vertices.size(), 0.0), phi_x = phi;
-      phi[static_cast<std::size_t>(end)] = 1;
-      phi_x[static_cast<std::size_t>(m)] = 1. / m;
+      phi[end] = 1;
+      phi_x[m] = 1. / m;
       phi_x[0] = -1. / m;
-      TablePoint point{.weight = pairs[static_cast<std::size_t>(m - 1)] / 2,
-                       .time = 0,
-                       .space = static_cast<double>(end),
-                       .slots = {}};
+      TablePoint point{.weight = pairs[m - 1] / 2, .time = 0, .space = static_cast<double>(end), .slots = {}};
       point.set(JetSlot::phi, phi), point.set(JetSlot::phi_x, phi_x);
       table.points.push_back(std::move(point));
     }

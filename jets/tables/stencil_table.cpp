@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 bool is_consistent(const StencilTable& table) {
   const auto near = [](double a, double b) { return std::abs(a - b) < 1e-12; };
   const auto& vertices = table.pattern.vertices;
-  const auto node = [&](const Site& v) { return table.nodes[static_cast<std::size_t>(v.node)]; };
+  const auto node = [&](const Site& v) { return table.nodes[v.node]; };
   const auto time = [&](const Site& v) { return v.time + node(v).time; };
   const auto space = [&](const Site& v) { return v.space + node(v).space; };
   // On one point of space there is no φ_x to find.
@@ -19,9 +21,9 @@ bool is_consistent(const StencilTable& table) {
     total += p.weight;
     for (int s = 0; s < jet_slots; ++s) {
       double of_1 = 0, of_t = 0, of_x = 0, of_tt = 0, of_tx = 0, of_xx = 0;
-      for (const TablePoint::Entry& e : p.slots[static_cast<std::size_t>(s)]) {
-        const double t = time(vertices[static_cast<std::size_t>(e.vertex)]);
-        const double x = space(vertices[static_cast<std::size_t>(e.vertex)]);
+      for (const TablePoint::Entry& e : p.slots[at(s)]) {
+        const double t = time(vertices[e.vertex]);
+        const double x = space(vertices[e.vertex]);
         of_1 += e.weight, of_t += e.weight * t, of_x += e.weight * x;
         of_tt += e.weight * t * t / 2, of_tx += e.weight * t * x, of_xx += e.weight * x * x / 2;
       }

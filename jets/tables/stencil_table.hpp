@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "jets/tables/jet_table.hpp"
+#include "lattice/index.hpp"
 #include "lattice/stencil_shape.hpp"
 
 namespace delf {
@@ -40,12 +41,12 @@ struct TablePoint {
 
   /// Weights that are zero are left out.
   void set(JetSlot slot, const std::vector<double>& weights) {
-    auto& entries = slots[static_cast<std::size_t>(slot)];
+    auto& entries = slots[at(slot)];
     entries.clear();
     for (std::size_t l = 0; l < weights.size(); ++l)
       if (weights[l] != 0) entries.push_back({static_cast<int>(l), weights[l]});
   }
-  const std::vector<Entry>& operator[](JetSlot slot) const { return slots[static_cast<std::size_t>(slot)]; }
+  const std::vector<Entry>& operator[](JetSlot slot) const { return slots[at(slot)]; }
 };
 
 /// The place of a node of the unit cell in the cell, as fractions of h and k. Node 0 is the vertex (0, 0).
@@ -81,10 +82,8 @@ template <int n, int Q>
 StencilTable stencil_table(const JetTable<n, Q>& map) {
   StencilTable table{.pattern = StencilPattern(map.shape), .points = {}, .measure = map.measure};
   for (const QuadraturePoint<n>& q : map.quadrature) {
-    TablePoint point{.weight = q.weight,
-                     .time = time_offset(map.shape, q),
-                     .space = space_offset(map.shape, q),
-                     .slots = {}};
+    TablePoint point{
+        .weight = q.weight, .time = time_offset(map.shape, q), .space = space_offset(map.shape, q), .slots = {}};
     const auto list = [](const auto& weights) { return std::vector<double>(weights.begin(), weights.end()); };
     point.set(JetSlot::phi, list(q.phi));
     point.set(JetSlot::phi_t, list(q.phi_t));

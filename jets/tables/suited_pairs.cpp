@@ -48,7 +48,7 @@ std::vector<double> suited_pairs(int p, double decay) {
   for (int j = 0; j < points; ++j) {
     const double theta = theta_of(j), w = weight_of(theta, decay), nearest = pair_symbol({1}, theta);
     for (int m = 2; m <= p; ++m) {
-      std::vector<double> one(static_cast<std::size_t>(m), 0.0);
+      std::vector<double> one(m, 0.0);
       one.back() = 1;
       basis(j, m - 2) = w * (pair_symbol(one, theta) - nearest);
     }
@@ -60,7 +60,7 @@ std::vector<double> suited_pairs(int p, double decay) {
     const Eigen::VectorXd root = lambda.cwiseSqrt();
     const Eigen::VectorXd change = (root.asDiagonal() * basis).colPivHouseholderQr().solve(root.asDiagonal() * defect);
     std::vector<double> pairs = given;
-    for (int m = 2; m <= p; ++m) pairs[static_cast<std::size_t>(m - 1)] += change(m - 2), pairs[0] -= change(m - 2);
+    for (int m = 2; m <= p; ++m) pairs[m - 1] += change(m - 2), pairs[0] -= change(m - 2);
     if (const double now = weighted_defect(pairs, decay); now < least) least = now, best = pairs;
     lambda = lambda.cwiseProduct((basis * change - defect).cwiseAbs());
     lambda /= lambda.sum();

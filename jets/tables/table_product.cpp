@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
@@ -19,10 +21,10 @@ TablePoint product(const TablePoint& r, const TablePoint& s, int width) {
   TablePoint point{.weight = r.weight * s.weight, .time = r.time, .space = s.space, .slots = {}};
   point.own.weight = s.own.weight, point.own.place = s.own.place;
   const auto fill = [&](JetSlot slot, JetSlot of_time, JetSlot of_space) {
-    point.slots[static_cast<std::size_t>(slot)] = product(r[of_time], s[of_space], width);
-    const std::vector<int>& own = s.own.slots[static_cast<std::size_t>(of_space)];
+    point.slots[at(slot)] = product(r[of_time], s[of_space], width);
+    const std::vector<int>& own = s.own.slots[at(of_space)];
     for (std::size_t a = 0; a < r[of_time].size(); ++a) {
-      std::vector<int>& all = point.own.slots[static_cast<std::size_t>(slot)];
+      std::vector<int>& all = point.own.slots[at(slot)];
       all.insert(all.end(), own.begin(), own.end());
     }
   };

@@ -20,7 +20,7 @@ StencilTable time_element(const LineBasis& basis, const LineRule& of_a_span, Con
   element.pattern.vertices = {{.time = 0, .space = 0, .node = 0}};
   const int inside = broken ? basis.size() : basis.size() - 2;
   for (int j = 0; j < inside; ++j) {
-    element.nodes.push_back({.time = basis.places[static_cast<std::size_t>(broken ? j : j + 1)]});
+    element.nodes.push_back({.time = basis.places[broken ? j : j + 1]});
     element.pattern.vertices.push_back({.time = 0, .space = 0, .node = j + 1});
   }
   if (!broken) element.pattern.vertices.push_back({.time = 1, .space = 0, .node = 0});

@@ -49,7 +49,7 @@ inline constexpr struct NineTuple {
     int q = 0;
     for (int dt : {-1, 0})
       for (int dx : {-1, 0}) {
-        QuadraturePoint<9>& point = result.quadrature[static_cast<std::size_t>(q++)];
+        QuadraturePoint<9>& point = result.quadrature[q++];
         point.weight = .25;
         for (std::size_t l = 0; l < 9; ++l) {
           const Site v = shapes::nine_tuple.vertex(static_cast<int>(l)) - Site{dt, dx};

@@ -13,7 +13,7 @@ double share(const StencilTable& table, JetSlot slot, int column, By by) {
   double sum = 0;
   for (const TablePoint& p : table.points)
     for (const auto& [vertex, weight] : p[slot]) {
-      const Site v = table.pattern.vertices[static_cast<std::size_t>(vertex)];
+      const Site v = table.pattern.vertices[vertex];
       if (v.space == column) sum += table.measure * p.weight * weight * by(v);
     }
   return sum;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -23,7 +24,7 @@ int Complex::add_stencil(int shape, std::span<const int> sites_of) {
   const auto refuse = [&](const std::string& why) {
     throw BadInput("lattice.mesh", "stencil " + std::to_string(stencils()) + ": " + why);
   };
-  if (static_cast<int>(sites_of.size()) != shapes_[static_cast<std::size_t>(shape)].size)
+  if (static_cast<int>(sites_of.size()) != shapes_[shape].size)
     refuse("has " + std::to_string(sites_of.size()) + " sites, and its shape another number; give one site a vertex");
   for (auto s = sites_of.begin(); s != sites_of.end(); ++s) {
     if (*s < 0 || *s >= sites()) refuse("site " + std::to_string(*s) + " is not there; add it first");
@@ -42,15 +43,14 @@ std::string Complex::name(int site) const {
   return text;
 }
 
-Touching::Touching(const Complex& complex) : first_(static_cast<std::size_t>(complex.sites()) + 1, 0) {
+Touching::Touching(const Complex& complex) : first_(at(complex.sites()) + 1, 0) {
   for (int s = 0; s < complex.stencils(); ++s)
-    for (const int site : complex.vertices(s)) ++first_[static_cast<std::size_t>(site) + 1];
+    for (const int site : complex.vertices(s)) ++first_[at(site) + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  stencils_.resize(static_cast<std::size_t>(first_.back()));
+  stencils_.resize(first_.back());
   std::vector<std::int64_t> next(first_.begin(), first_.end() - 1);
   for (int s = 0; s < complex.stencils(); ++s)
-    for (const int site : complex.vertices(s))
-      stencils_[static_cast<std::size_t>(next[static_cast<std::size_t>(site)]++)] = s;
+    for (const int site : complex.vertices(s)) stencils_[at(next[site]++)] = s;
 }
 
 }  // namespace delf

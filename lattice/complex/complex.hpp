@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 /// A kind of stencil: how many sites it has, and which of its equations contain which of its values.
@@ -13,9 +15,7 @@ struct ComplexShape {
   int size = 0;
   std::vector<char> couples = {};  ///< [l·size + m]: the equation of vertex l contains vertex m; empty: all do
 
-  bool is_coupled(int l, int m) const {
-    return couples.empty() || couples[static_cast<std::size_t>(l * size + m)] != 0;
-  }
+  bool is_coupled(int l, int m) const { return couples.empty() || couples[l * size + m] != 0; }
 };
 
 /// What is asked at a site of a complex.
@@ -41,21 +41,21 @@ class Complex {
   int add_shape(ComplexShape);
   /// Throws BadInput for a site that is not there, or that the stencil names twice.
   int add_stencil(int shape, std::span<const int> sites);
-  void set_role(int site, SiteRole role) { roles_[static_cast<std::size_t>(site)] = role; }
+  void set_role(int site, SiteRole role) { roles_[site] = role; }
 
   int sites() const { return static_cast<int>(positions_.size()); }
   int stencils() const { return static_cast<int>(shape_of_.size()); }
-  const Position& position(int site) const { return positions_[static_cast<std::size_t>(site)]; }
-  SiteRole role(int site) const { return roles_[static_cast<std::size_t>(site)]; }
+  const Position& position(int site) const { return positions_[site]; }
+  SiteRole role(int site) const { return roles_[site]; }
   bool is_unknown(int site) const { return role(site) == SiteRole::free || role(site) == SiteRole::final; }
   bool has_equation(int site) const { return role(site) == SiteRole::free || role(site) == SiteRole::initial; }
 
-  const ComplexShape& shape(int stencil) const { return shapes_[static_cast<std::size_t>(shape_number(stencil))]; }
-  int shape_number(int stencil) const { return shape_of_[static_cast<std::size_t>(stencil)]; }
+  const ComplexShape& shape(int stencil) const { return shapes_[shape_number(stencil)]; }
+  int shape_number(int stencil) const { return shape_of_[stencil]; }
   /// Δ⁰, Δ¹, …
   std::span<const int> vertices(int stencil) const {
-    const auto s = static_cast<std::size_t>(stencil);
-    return {vertices_.data() + first_[s], static_cast<std::size_t>(first_[s + 1] - first_[s])};
+    const std::size_t s = stencil;
+    return {vertices_.data() + first_[s], at(first_[s + 1] - first_[s])};
   }
   /// "site 17 at (t, x, y, z) = (0.5, 1, 0, 0)"
   std::string name(int site) const;
@@ -73,8 +73,8 @@ class Touching {
  public:
   explicit Touching(const Complex&);
   std::span<const std::int32_t> operator[](int site) const {
-    const auto s = static_cast<std::size_t>(site);
-    return {stencils_.data() + first_[s], static_cast<std::size_t>(first_[s + 1] - first_[s])};
+    const std::size_t s = site;
+    return {stencils_.data() + first_[s], at(first_[s + 1] - first_[s])};
   }
 
  private:

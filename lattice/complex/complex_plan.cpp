@@ -7,18 +7,18 @@
 #include <numeric>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
 
 using Index = std::int32_t;
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 std::string some_names(const Complex& complex, const std::vector<Index>& sites, const std::vector<Index>& chosen) {
   constexpr std::size_t most = 3;
   std::string text;
   for (std::size_t n = 0; n < std::min(most, chosen.size()); ++n)
-    text += (n == 0 ? "" : ", ") + complex.name(sites[at(chosen[n])]);
+    text += (n == 0 ? "" : ", ") + complex.name(sites[chosen[n]]);
   if (chosen.size() > most) text += " and " + std::to_string(chosen.size() - most) + " more";
   return text;
 }
@@ -43,10 +43,10 @@ std::vector<Index> components(const Incidence& contains, const Matching& matchin
   from.reserve(contains.entries.size());
   to.reserve(contains.entries.size());
   for (Index u = 0; u < contains.columns; ++u)
-    for (const Index v : contains.row(matching.row_of[at(u)]))
+    for (const Index v : contains.row(matching.row_of[u]))
       if (v != u) from.push_back(u), to.push_back(v);
   const Graph graph(boost::construct_inplace_from_sources_and_targets, from, to, contains.columns);
-  std::vector<Index> block(at(contains.columns));
+  std::vector<Index> block(contains.columns);
   count = boost::strong_components(
       graph, boost::make_iterator_property_map(block.begin(), boost::get(boost::vertex_index, graph)));
   return block;
@@ -56,9 +56,9 @@ std::vector<Index> components(const Incidence& contains, const Matching& matchin
 
 ComplexIncidence incidence_of(const Complex& complex, const Touching& touching) {
   ComplexIncidence all;
-  std::vector<Index> number(at(complex.sites()), -1), seen(at(complex.sites()), -1);
+  std::vector<Index> number(complex.sites(), -1), seen(at(complex.sites()), -1);
   for (Index s = 0; s < complex.sites(); ++s) {
-    if (complex.is_unknown(s)) number[at(s)] = static_cast<Index>(all.unknowns.size()), all.unknowns.push_back(s);
+    if (complex.is_unknown(s)) number[s] = static_cast<Index>(all.unknowns.size()), all.unknowns.push_back(s);
     if (complex.has_equation(s)) all.equations.push_back(s);
   }
   all.contains.columns = static_cast<Index>(all.unknowns.size());
@@ -68,10 +68,10 @@ ComplexIncidence incidence_of(const Complex& complex, const Touching& touching) 
       const auto vertices = complex.vertices(stencil);
       const auto l = static_cast<int>(std::find(vertices.begin(), vertices.end(), b) - vertices.begin());
       for (int m = 0; m < static_cast<int>(vertices.size()); ++m) {
-        const Index site = vertices[at(m)];
-        if (number[at(site)] < 0 || seen[at(site)] == b || !complex.shape(stencil).is_coupled(l, m)) continue;
-        seen[at(site)] = b;
-        all.contains.entries.push_back(number[at(site)]);
+        const Index site = vertices[m];
+        if (number[site] < 0 || seen[site] == b || !complex.shape(stencil).is_coupled(l, m)) continue;
+        seen[site] = b;
+        all.contains.entries.push_back(number[site]);
       }
     }
     std::sort(all.contains.entries.begin() + begin, all.contains.entries.end());
@@ -90,37 +90,36 @@ ComplexPlan make_plan(const Complex& complex, const Touching& touching) {
   // A block's level is one more than those of all blocks that it contains unknowns of.
   std::vector<Index> by_block(block.size());
   std::iota(by_block.begin(), by_block.end(), 0);
-  std::stable_sort(by_block.begin(), by_block.end(), [&](Index u, Index v) { return block[at(u)] < block[at(v)]; });
-  std::vector<Index> level(at(count), 0);
+  std::stable_sort(by_block.begin(), by_block.end(), [&](Index u, Index v) { return block[u] < block[v]; });
+  std::vector<Index> level(count, 0);
   for (const Index u : by_block)
-    for (const Index v : all.contains.row(matching.row_of[at(u)]))
-      if (block[at(v)] != block[at(u)])
-        level[at(block[at(u)])] = std::max(level[at(block[at(u)])], level[at(block[at(v)])] + 1);
+    for (const Index v : all.contains.row(matching.row_of[u]))
+      if (block[v] != block[u]) level[block[u]] = std::max(level[block[u]], level[block[v]] + 1);
   std::stable_sort(by_block.begin(), by_block.end(),
-                   [&](Index u, Index v) { return level[at(block[at(u)])] < level[at(block[at(v)])]; });
+                   [&](Index u, Index v) { return level[block[u]] < level[block[v]]; });
 
   ComplexPlan plan;
   for (std::size_t n = 0; n < by_block.size(); ++n) {
     const Index u = by_block[n];
-    if (n > 0 && block[at(u)] != block[at(by_block[n - 1])]) plan.first.push_back(static_cast<Index>(n));
-    if (n == 0 || block[at(u)] != block[at(by_block[n - 1])]) plan.level.push_back(level[at(block[at(u)])]);
-    plan.unknowns.push_back(all.unknowns[at(u)]);
-    plan.equations.push_back(all.equations[at(matching.row_of[at(u)])]);
-    plan.levels = std::max(plan.levels, level[at(block[at(u)])] + 1);
+    if (n > 0 && block[u] != block[by_block[n - 1]]) plan.first.push_back(static_cast<Index>(n));
+    if (n == 0 || block[u] != block[by_block[n - 1]]) plan.level.push_back(level[block[u]]);
+    plan.unknowns.push_back(all.unknowns[u]);
+    plan.equations.push_back(all.equations[matching.row_of[u]]);
+    plan.levels = std::max(plan.levels, level[block[u]] + 1);
   }
   if (!by_block.empty()) plan.first.push_back(static_cast<Index>(by_block.size()));
-  std::vector<int> width(at(plan.levels), 0);
+  std::vector<int> width(plan.levels, 0);
   for (int b = 0; b < plan.blocks(); ++b) {
-    plan.largest = std::max(plan.largest, plan.first[at(b) + 1] - plan.first[at(b)]);
-    plan.widest = std::max(plan.widest, ++width[at(plan.level[at(b)])]);
+    plan.largest = std::max(plan.largest, plan.first[at(b) + 1] - plan.first[b]);
+    plan.widest = std::max(plan.widest, ++width[plan.level[b]]);
   }
   return plan;
 }
 
 std::vector<Index> ComplexPlan::level_of_sites(int sites) const {
-  std::vector<Index> of_site(at(sites), -1);
+  std::vector<Index> of_site(sites, -1);
   for (int b = 0; b < blocks(); ++b)
-    for (Index n = first[at(b)]; n < first[at(b) + 1]; ++n) of_site[at(unknowns[at(n)])] = level[at(b)];
+    for (Index n = first[b]; n < first[at(b) + 1]; ++n) of_site[unknowns[n]] = level[b];
   return of_site;
 }
 

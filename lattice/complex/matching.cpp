@@ -4,17 +4,18 @@
 #include <algorithm>
 #include <limits>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
 using Index = std::int32_t;
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 class HopcroftKarp {
  public:
   explicit HopcroftKarp(const Incidence& graph) : graph_(graph) {
-    matching_.column_of.assign(at(graph.rows()), -1);
-    matching_.row_of.assign(at(graph.columns), -1);
+    matching_.column_of.assign(graph.rows(), -1);
+    matching_.row_of.assign(graph.columns, -1);
   }
 
   Matching run() {
@@ -23,35 +24,35 @@ class HopcroftKarp {
     for (Index r = graph_.rows() - 1; r >= 0; --r) {
       const auto row = graph_.row(r);
       for (auto c = row.rbegin(); c != row.rend(); ++c)
-        if (matching_.row_of[at(*c)] < 0) {
+        if (matching_.row_of[*c] < 0) {
           match(r, *c);
           break;
         }
     }
     while (find_layers())
       for (Index r = 0; r < graph_.rows(); ++r)
-        if (matching_.column_of[at(r)] < 0) augment(r);
+        if (matching_.column_of[r] < 0) augment(r);
     return std::move(matching_);
   }
 
  private:
   static constexpr Index unreached = std::numeric_limits<Index>::max();
 
-  void match(Index r, Index c) { matching_.column_of[at(r)] = c, matching_.row_of[at(c)] = r; }
+  void match(Index r, Index c) { matching_.column_of[r] = c, matching_.row_of[c] = r; }
 
   // How many pairs an alternating path needs from a free row to each row; whether a free column is reached.
   bool find_layers() {
-    layer_.assign(at(graph_.rows()), unreached);
-    next_.assign(at(graph_.rows()), 0);
+    layer_.assign(graph_.rows(), unreached);
+    next_.assign(graph_.rows(), 0);
     std::vector<Index> queue;
     for (Index r = 0; r < graph_.rows(); ++r)
-      if (matching_.column_of[at(r)] < 0) layer_[at(r)] = 0, queue.push_back(r);
+      if (matching_.column_of[r] < 0) layer_[r] = 0, queue.push_back(r);
     bool reached = false;
     for (std::size_t q = 0; q < queue.size(); ++q)
       for (const Index c : graph_.row(queue[q])) {
-        const Index r = matching_.row_of[at(c)];
+        const Index r = matching_.row_of[c];
         if (r < 0) reached = true;
-        else if (layer_[at(r)] == unreached) layer_[at(r)] = layer_[at(queue[q])] + 1, queue.push_back(r);
+        else if (layer_[r] == unreached) layer_[r] = layer_[queue[q]] + 1, queue.push_back(r);
       }
     return reached;
   }
@@ -62,16 +63,16 @@ class HopcroftKarp {
     while (!path.empty()) {
       const Index r = path.back();
       const auto row = graph_.row(r);
-      if (next_[at(r)] == static_cast<Index>(row.size())) {
+      if (next_[r] == static_cast<Index>(row.size())) {
         path.pop_back();
         continue;
       }
-      const Index c = row[at(next_[at(r)]++)], further = matching_.row_of[at(c)];
+      const Index c = row[next_[r]++], further = matching_.row_of[c];
       if (further < 0) {
-        for (const Index p : path) match(p, graph_.row(p)[at(next_[at(p)] - 1)]);
+        for (const Index p : path) match(p, graph_.row(p)[next_[p] - 1]);
         return;
       }
-      if (layer_[at(further)] == layer_[at(r)] + 1) path.push_back(further);
+      if (layer_[further] == layer_[r] + 1) path.push_back(further);
     }
   }
 
@@ -82,11 +83,11 @@ class HopcroftKarp {
 
 /// The rows that alternating paths reach from some rows.
 std::vector<Index> reached_rows(const Incidence& graph, const std::vector<Index>& row_of, std::vector<Index> rows) {
-  std::vector<char> seen(at(graph.rows()), 0);
-  for (const Index r : rows) seen[at(r)] = 1;
+  std::vector<char> seen(graph.rows(), 0);
+  for (const Index r : rows) seen[r] = 1;
   for (std::size_t q = 0; q < rows.size(); ++q)
     for (const Index c : graph.row(rows[q]))
-      if (const Index r = row_of[at(c)]; r >= 0 && !seen[at(r)]) seen[at(r)] = 1, rows.push_back(r);
+      if (const Index r = row_of[c]; r >= 0 && !seen[r]) seen[r] = 1, rows.push_back(r);
   std::sort(rows.begin(), rows.end());
   return rows;
 }
@@ -107,7 +108,7 @@ Incidence Incidence::transposed() const {
   t.entries.resize(entries.size());
   std::vector<std::int64_t> next(t.first.begin(), t.first.end() - 1);
   for (Index r = 0; r < rows(); ++r)
-    for (const Index c : row(r)) t.entries[static_cast<std::size_t>(next[at(c)]++)] = r;
+    for (const Index c : row(r)) t.entries[next[c]++] = r;
   return t;
 }
 

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 /// A bipartite graph by rows: which columns each row contains, each once.
@@ -14,8 +16,8 @@ struct Incidence {
 
   int rows() const { return static_cast<int>(first.size()) - 1; }
   std::span<const std::int32_t> row(int r) const {
-    const auto i = static_cast<std::size_t>(r);
-    return {entries.data() + first[i], static_cast<std::size_t>(first[i + 1] - first[i])};
+    const std::size_t i = r;
+    return {entries.data() + first[i], at(first[i + 1] - first[i])};
   }
   Incidence transposed() const;
 };

@@ -32,14 +32,14 @@ using Equations = std::function<std::vector<Coupling>(const Lattice&, Site site,
 /// A system of equations, one for each unknown, that repeats along a lattice and in time.
 struct SystemPattern {
   int components = 1;
-  int width = 1;  ///< the largest |space offset| in any equation
+  int width = 1;                                ///< the largest |space offset| in any equation
   Placement placement = Placement::every_site;  ///< brick_wall if any family is: period 2 along time and space
   Equations equations;
   std::vector<std::string> names = {};  ///< of the components, for reports
 
   /// "lambda", or "component 2" if there are no names.
   std::string name(int component) const {
-    return names.empty() ? "component " + std::to_string(component) : names[static_cast<std::size_t>(component)];
+    return names.empty() ? "component " + std::to_string(component) : names[component];
   }
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "lattice/plan/quotient.hpp"
 #include "lattice/plan/solve_plan.hpp"
 #include "lattice/stencil.hpp"
@@ -213,11 +214,10 @@ SolvePlan planned_on_mesh(const Lattice& lattice, const SystemPattern& system, S
     plan.table.held.push_back(lattice.is_fixed(i));
     sites += !lattice.is_fixed(i);
   }
-  for (int c = 0; c < system.components; ++c) unknowns += plan.table.entries[static_cast<std::size_t>(c)].solved;
-  std::vector<char> is_wide(static_cast<std::size_t>(slab.blocks), 0);  // of each block of the quotient
+  for (int c = 0; c < system.components; ++c) unknowns += plan.table.entries[c].solved;
+  std::vector<char> is_wide(slab.blocks, 0);  // of each block of the quotient
   for (const SlabGraph::Edge& e : slab.edges)
-    if (e.cells != 0 && slab.block[static_cast<std::size_t>(e.from)] == slab.block[static_cast<std::size_t>(e.to)])
-      is_wide[static_cast<std::size_t>(slab.block[static_cast<std::size_t>(e.from)])] = 1;
+    if (e.cells != 0 && slab.block[e.from] == slab.block[e.to]) is_wide[at(slab.block[e.from])] = 1;
   for (const char wide : is_wide) blocks += wide ? 1 : sites;
   plan.unknowns = sites * unknowns;
   plan.blocks = blocks;
@@ -281,7 +281,8 @@ SolvePlan make_plan(const Lattice& lattice, const SystemPattern& system) {
 
   if (lattice.space() == Space::mesh) {
     if (is_fixed_everywhere(lattice))
-      throw BadInput("boundary.mesh", "boundary.mesh = fixed: every point of the mesh keeps its value; refine the mesh");
+      throw BadInput("boundary.mesh",
+                     "boundary.mesh = fixed: every point of the mesh keeps its value; refine the mesh");
     const Analysed site(lattice, system, Quotient::of_circle(lattice, system));
     return planned_on_mesh(lattice, system, planned(lattice, system, site), site.slab);
   }

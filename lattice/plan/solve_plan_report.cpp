@@ -17,8 +17,7 @@ std::string blocks_in_words(const SolvePlan& plan) {
 }
 
 std::string name(const SolvePlan& plan, int component) {
-  return plan.names.empty() ? "component " + std::to_string(component)
-                            : plan.names[static_cast<std::size_t>(component)];
+  return plan.names.empty() ? "component " + std::to_string(component) : plan.names[component];
 }
 
 std::string field(const SolvePlan& plan, int component) {

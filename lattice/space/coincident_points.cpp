@@ -8,10 +8,11 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 double distance(const Mesh::Point& a, const Mesh::Point& b) {
   return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
 }
@@ -24,7 +25,7 @@ struct BucketHash {
       hash = (hash ^ static_cast<std::uint64_t>(n)) * 1099511628211U;
       hash ^= hash >> 29;
     }
-    return static_cast<std::size_t>(hash);
+    return at(hash);
   }
 };
 
@@ -64,7 +65,7 @@ std::optional<std::pair<std::size_t, std::size_t>> coincident_points(const Mesh&
   double longest = 0;
   for (int c = 0; c < mesh.cells(); ++c) {
     const double edge = shortest_edge(mesh, c);
-    for (const auto p : mesh.cell(c)) shortest[at(p)] = std::min(shortest[at(p)], edge);
+    for (const auto p : mesh.cell(c)) shortest[p] = std::min(shortest[p], edge);
   }
   for (const double edge : shortest)
     if (std::isfinite(edge)) longest = std::max(longest, edge);
@@ -106,7 +107,7 @@ Mesh merged(const Mesh& mesh, double near) {
     one.point_tags.push_back(mesh.point_number(p));
   }
   for (const auto p : mesh.vertices)  // a number that is of no point is of none still
-    one.vertices.push_back(p >= 0 && at(p) < number.size() ? number[at(p)] : p);
+    one.vertices.push_back(p >= 0 && at(p) < number.size() ? number[p] : p);
   return one;
 }
 

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 /// The stencils of one family in a row of a space where they do not repeat: each an ordered list of as many sites. The
@@ -14,15 +16,15 @@ class ListedStencils {
   ListedStencils(int length, std::vector<std::int32_t> sites, int sites_of_row);
 
   int size() const { return static_cast<int>(sites_.size()) / length_; }
-  int site(int stencil, int place) const { return sites_[static_cast<std::size_t>(stencil * length_ + place)]; }
+  int site(int stencil, int place) const { return sites_[stencil * length_ + place]; }
 
   /// The stencils that have a site, by their numbers, and where they have it.
   struct Member {
     std::int32_t stencil, place;
   };
   std::span<const Member> touching(int site) const {
-    const auto s = static_cast<std::size_t>(site);
-    return {members_.data() + first_[s], static_cast<std::size_t>(first_[s + 1] - first_[s])};
+    const std::size_t s = site;
+    return {members_.data() + first_[s], at(first_[s + 1] - first_[s])};
   }
 
  private:

@@ -7,11 +7,12 @@
 #include <tuple>
 #include <utility>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
 using Point = Mesh::Point;
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 Point between(const Point& a, const Point& b) { return {b[0] - a[0], b[1] - a[1], b[2] - a[2]}; }
 double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -45,9 +46,8 @@ std::vector<Side> sorted_sides(const Mesh& mesh) {
 /// Twice the area of the triangle at a corner of a cell, with the sign of its orientation in a plane.
 Point corner_area(const Mesh& mesh, std::span<const std::int32_t> corners, std::size_t n) {
   const std::size_t m = corners.size();
-  const Point& p = mesh.points[at(corners[n])];
-  return cross(between(p, mesh.points[at(corners[(n + 1) % m])]),
-               between(p, mesh.points[at(corners[(n + m - 1) % m])]));
+  const Point& p = mesh.points[corners[n]];
+  return cross(between(p, mesh.points[corners[(n + 1) % m]]), between(p, mesh.points[corners[(n + m - 1) % m]]));
 }
 
 class FaultFinder {
@@ -59,7 +59,7 @@ class FaultFinder {
     std::vector<int> uses(mesh_.points.size(), 0);
     for (int c = 0; c < mesh_.cells(); ++c) {
       if (const auto fault = of_cell(c)) return fault;
-      for (const auto p : mesh_.cell(c)) ++uses[at(p)];
+      for (const auto p : mesh_.cell(c)) ++uses[p];
     }
     for (std::size_t p = 0; p < uses.size(); ++p) {
       const int line = line_of(mesh_.point_lines, p);
@@ -111,7 +111,7 @@ class FaultFinder {
     constexpr double flat = 1e-12;  // of an area, relative to the longest side's square
     double longest = 0;
     for (std::size_t n = 0; n < m; ++n)
-      longest = std::max(longest, norm(between(mesh_.points[at(corners[n])], mesh_.points[at(corners[(n + 1) % m])])));
+      longest = std::max(longest, norm(between(mesh_.points[corners[n]], mesh_.points[corners[(n + 1) % m]])));
     if (!(longest > 0) || !std::isfinite(longest))
       return fault_of(c, "is degenerate: its corners are one point; move or remove it");
     if (m == 2) return std::nullopt;
@@ -152,18 +152,18 @@ class FaultFinder {
   std::optional<MeshFault> hanging(const std::vector<Side>& outer) const {
     std::vector<std::int32_t> points;
     for (const Side& s : outer) points.push_back(s.low), points.push_back(s.high);
-    const auto x = [&](std::int32_t p) { return mesh_.points[at(p)][0]; };
+    const auto x = [&](std::int32_t p) { return mesh_.points[p][0]; };
     std::sort(points.begin(), points.end(), [&](auto a, auto b) { return std::pair(x(a), a) < std::pair(x(b), b); });
     points.erase(std::unique(points.begin(), points.end()), points.end());
     for (const Side& s : outer) {
-      const Point &a = mesh_.points[at(s.low)], &b = mesh_.points[at(s.high)];
+      const Point &a = mesh_.points[s.low], &b = mesh_.points[s.high];
       const Point along = between(a, b);
       const double length2 = dot(along, along), slack = 1e-9 * std::sqrt(length2);
       const double low = std::min(a[0], b[0]) - slack, high = std::max(a[0], b[0]) + slack;
       auto p = std::lower_bound(points.begin(), points.end(), low, [&](auto q, double value) { return x(q) < value; });
       for (; p != points.end() && x(*p) <= high; ++p) {
         if (*p == s.low || *p == s.high) continue;
-        const Point to = between(a, mesh_.points[at(*p)]);
+        const Point to = between(a, mesh_.points[*p]);
         const double share = dot(to, along) / length2;
         if (share > 0 && share < 1 && norm(cross(to, along)) <= slack * std::sqrt(length2))
           return MeshFault{line_of(mesh_.cell_lines, at(s.cell)), point(at(*p)) + " hangs in the middle of a side of " +
@@ -187,7 +187,7 @@ int Mesh::coordinates() const {
 
 double measure(const Mesh& mesh, int cell) {
   const auto corners = mesh.cell(cell);
-  const auto point = [&](std::size_t n) -> const Point& { return mesh.points[at(corners[n])]; };
+  const auto point = [&](std::size_t n) -> const Point& { return mesh.points[corners[n]]; };
   if (corners.size() == 2) return norm(between(point(0), point(1)));
   Point twice{};
   for (std::size_t n = 1; n + 1 < corners.size(); ++n)
@@ -200,8 +200,8 @@ double shortest_edge(const Mesh& mesh, int cell) {
   const auto corners = mesh.cell(cell);
   double shortest = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < corners.size(); ++n)
-    shortest = std::min(shortest,
-                        norm(between(mesh.points[at(corners[n])], mesh.points[at(corners[(n + 1) % corners.size()])])));
+    shortest =
+        std::min(shortest, norm(between(mesh.points[corners[n]], mesh.points[corners[(n + 1) % corners.size()]])));
   return shortest;
 }
 
@@ -214,7 +214,7 @@ double shortest_edge(const Mesh& mesh) {
 std::vector<std::int32_t> boundary_points(const Mesh& mesh) {
   std::vector<char> outer(mesh.points.size(), 0);
   if (mesh.dimension == 1) {
-    for (const auto p : mesh.vertices) ++outer[at(p)];
+    for (const auto p : mesh.vertices) ++outer[p];
     for (char& n : outer) n = n == 1;
   } else {
     const std::vector<Side> sides = sorted_sides(mesh);
@@ -222,7 +222,7 @@ std::vector<std::int32_t> boundary_points(const Mesh& mesh) {
       const auto same = [&](std::size_t m) {
         return m < sides.size() && sides[m].low == sides[n].low && sides[m].high == sides[n].high;
       };
-      if (!same(n + 1) && !(n > 0 && same(n - 1))) outer[at(sides[n].low)] = outer[at(sides[n].high)] = 1;
+      if (!same(n + 1) && !(n > 0 && same(n - 1))) outer[sides[n].low] = outer[sides[n].high] = 1;
     }
   }
   std::vector<std::int32_t> points;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 /// A space made of cells: segments of a line or a curve, triangles and quadrilaterals of a plane or a surface. Cells of a
@@ -31,8 +33,8 @@ struct Mesh {
   }
   int cells() const { return static_cast<int>(first.size()) - 1; }
   std::span<const std::int32_t> cell(int c) const {
-    const auto i = static_cast<std::size_t>(c);
-    return {vertices.data() + first[i], static_cast<std::size_t>(first[i + 1] - first[i])};
+    const std::size_t i = c;
+    return {vertices.data() + first[i], at(first[i + 1] - first[i])};
   }
   void add_cell(std::span<const std::int32_t> corners) {
     vertices.insert(vertices.end(), corners.begin(), corners.end());

@@ -75,7 +75,7 @@ Mesh icosahedral_sphere(int level) {
       const auto [known, is_new] =
           middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<std::int32_t>(mesh.points.size()));
       if (is_new) {
-        const Mesh::Point p = mesh.points[static_cast<std::size_t>(a)], q = mesh.points[static_cast<std::size_t>(b)];
+        const Mesh::Point p = mesh.points[a], q = mesh.points[b];
         mesh.points.push_back(on_sphere({p[0] + q[0], p[1] + q[1], p[2] + q[2]}));
       }
       return known->second;

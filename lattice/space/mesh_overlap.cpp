@@ -18,7 +18,6 @@ using Point = Mesh::Point;
 using Corner = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
 using Box = boost::geometry::model::box<Corner>;
 
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 Point between(const Point& a, const Point& b) { return {b[0] - a[0], b[1] - a[1], b[2] - a[2]}; }
 double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Point cross(const Point& a, const Point& b) {
@@ -40,7 +39,7 @@ struct Cell {
   Point axis{};
 
   Cell(const Mesh& mesh, int c) : corners{}, count(mesh.cell(c).size()) {
-    for (std::size_t n = 0; n < count; ++n) corners[n] = mesh.points[at(mesh.cell(c)[n])];
+    for (std::size_t n = 0; n < count; ++n) corners[n] = mesh.points[mesh.cell(c)[n]];
     for (std::size_t n = 0; n < count; ++n) {
       const Point side = this->side(n);
       length = std::max(length, std::sqrt(dot(side, side)));
@@ -92,12 +91,12 @@ bool overlap(const Cell& a, const Cell& b) {
 
 std::optional<std::pair<int, int>> overlapping_cells(const Mesh& mesh) {
   std::vector<std::pair<Box, int>> boxes;
-  boxes.reserve(static_cast<std::size_t>(mesh.cells()));
+  boxes.reserve(mesh.cells());
   for (int c = 0; c < mesh.cells(); ++c) {
     Box box;
     boost::geometry::assign_inverse(box);
     for (const auto p : mesh.cell(c)) {
-      const auto& [x, y, z] = mesh.points[at(p)];
+      const auto& [x, y, z] = mesh.points[p];
       boost::geometry::expand(box, Corner(x, y, z));
     }
     boxes.emplace_back(box, c);

@@ -12,8 +12,7 @@ Mesh refined(const Mesh& mesh) {
   const auto add_middle = [&](std::span<const std::int32_t> of) {
     Mesh::Point middle{};
     for (const auto p : of)
-      for (std::size_t c = 0; c < 3; ++c)
-        middle[c] += mesh.points[static_cast<std::size_t>(p)][c] / static_cast<double>(of.size());
+      for (std::size_t c = 0; c < 3; ++c) middle[c] += mesh.points[p][c] / static_cast<double>(of.size());
     fine.points.push_back(middle);
     return static_cast<std::int32_t>(fine.points.size()) - 1;
   };

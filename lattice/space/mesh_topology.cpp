@@ -5,10 +5,10 @@
 #include <numeric>
 #include <utility>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 /// Sets of points, joined two by two.
 class Parts {
@@ -17,7 +17,7 @@ class Parts {
     std::iota(parent_.begin(), parent_.end(), std::size_t{0});
   }
   void join(std::int32_t a, std::int32_t b) {
-    there_[at(a)] = there_[at(b)] = 1;
+    there_[a] = there_[b] = 1;
     parent_[root(at(a))] = root(at(b));
   }
   /// The number of sets among the points that were joined with any.
@@ -46,7 +46,7 @@ MeshTopology topology(const Mesh& mesh) {
     const auto corners = mesh.cell(c);
     for (std::size_t n = 0; n < corners.size(); ++n) {
       const auto a = corners[n], b = corners[(n + 1) % corners.size()];
-      used[at(a)] = 1;
+      used[a] = 1;
       pieces.join(a, b);
       if (mesh.dimension > 1) sides.push_back(std::minmax(a, b));
     }

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 using Triplet = Eigen::Triplet<double>;
 
 }  // namespace
@@ -67,11 +68,9 @@ void AssembledEquations::assemble() {
 }
 
 std::size_t AssembledEquations::bytes() const {
-  const auto of = [](const auto& matrix) {
-    return static_cast<std::size_t>(12 * matrix.nonZeros() + 4 * matrix.outerSize());
-  };
+  const auto of = [](const auto& matrix) { return at(12 * matrix.nonZeros() + 4 * matrix.outerSize()); };
   const auto numbers = [](const auto&... all) { return (... + (all.capacity() * sizeof(all[0]))); };
-  std::size_t sum = of(matrix_) + of(of_unknowns_) + 8 * static_cast<std::size_t>(at_zero_.size()) + numbers(nodes_);
+  std::size_t sum = of(matrix_) + of(of_unknowns_) + 8 * at(at_zero_.size()) + numbers(nodes_);
   sum += numbers(nonlinear_.list, nonlinear_.places, nonlinear_.rows, nonlinear_.columns);
   return sum;
 }

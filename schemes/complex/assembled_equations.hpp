@@ -73,12 +73,12 @@ class AssembledEquations {
   /// are 0 at this y and need not be at others are among them: a matrix has one pattern at every y.
   template <class Use>
   void each(const Stencils& stencils, const Vector& y, const Use& use) const {
-    constexpr auto most = static_cast<std::size_t>(ComplexSystem::most);
+    constexpr std::size_t most = ComplexSystem::most;
     constexpr bool of_residual = std::is_invocable_v<Use, std::size_t, double>;
     std::size_t begin = 0;  // of the batch, in values of stencils
     const auto visit = [&](ComplexSystem::Stencils batch, const double* out) {
       const ComplexSystem::Family& family = system_.family_of(batch[0]);
-      const auto size = static_cast<std::size_t>(family.size());
+      const std::size_t size = family.size();
       for (std::size_t s = 0; s < batch.size(); ++s)
         for (std::size_t i = 0; i < size; ++i) {
           const std::size_t value = begin + s * size + i;

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/complex/complex_noether.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/constant_mass.hpp"
@@ -16,8 +17,7 @@
 namespace delf {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr auto most = static_cast<std::size_t>(ComplexSystem::most);
+constexpr std::size_t most = ComplexSystem::most;
 
 /// V_K of cells as stencils of a complex, a family for each number of corners.
 class CellFamilies {
@@ -63,19 +63,18 @@ void AsynchronousEvolution::start(std::span<const double> values, std::span<cons
   std::ranges::copy(values, y_.begin());
   const int variables = space_.density->variables();
   for (int i = 0; i < space_.sites(); ++i)  // p = A ∂²T φ_t
-    for (int a = 0; a < d_ && !space_.fixed[at(i)]; ++a)
+    for (int a = 0; a < d_ && !space_.fixed[i]; ++a)
       for (int b = 0; b < d_; ++b)
-        momenta_[at(i * d_ + a)] += space_.masses[at(i)] *
-                                    space_.density->constant_hessian()[at((d_ + a) * variables + d_ + b)] *
-                                    rates[at(i * d_ + b)];
+        momenta_[i * d_ + a] +=
+            space_.masses[i] * space_.density->constant_hessian()[(d_ + a) * variables + d_ + b] * rates[i * d_ + b];
   for (int c = 0; c < space_.mesh.cells(); ++c) kick(c, 0, y_, 0.5, momenta_);
   fill_queue();
 }
 
 void AsynchronousEvolution::make_room() {
-  y_.assign(at(space_.sites() * d_), 0.0);
+  y_.assign(space_.sites() * d_, 0.0);
   momenta_.assign(y_.size(), 0.0);
-  times_.assign(at(space_.sites()), 0.0);
+  times_.assign(space_.sites(), 0.0);
   std::fill(done_.begin(), done_.end(), 0);
   time_ = 0, updates_ = 0;
   simultaneous_ = 1e-6 * *std::ranges::min_element(steps_);
@@ -84,8 +83,7 @@ void AsynchronousEvolution::make_room() {
 /// n h, not a sum: two cells of one step stay together.
 void AsynchronousEvolution::fill_queue() {
   queue_ = {};
-  for (int c = 0; c < space_.mesh.cells(); ++c)
-    queue_.emplace(static_cast<double>(done_[at(c)] + 1) * steps_[at(c)], c);
+  for (int c = 0; c < space_.mesh.cells(); ++c) queue_.emplace(static_cast<double>(done_[c] + 1) * steps_[c], c);
 }
 
 void AsynchronousEvolution::visit(SavedState& state) {
@@ -103,22 +101,20 @@ void AsynchronousEvolution::kick(int cell, double t, std::span<const double> y, 
   potentials_.each_residual({&cell, 1}, y,
                             [&](ComplexSystem::Stencils, const double* r) {
                               for (std::size_t n = 0; n < corners.size() * at(d_); ++n)
-                                if (const auto site = static_cast<std::size_t>(corners[n / at(d_)]);
-                                    !space_.fixed[site])
-                                  momenta[site * at(d_) + n % at(d_)] += factor * steps_[at(cell)] * r[n * most];
+                                if (const std::size_t site = corners[n / at(d_)]; !space_.fixed[site])
+                                  momenta[site * at(d_) + n % at(d_)] += factor * steps_[cell] * r[n * most];
                             },
                             {.places = {}, .time = t});
 }
 
 void AsynchronousEvolution::drift(int site, double t) {
-  const double passed = t - times_[at(site)];
+  const double passed = t - times_[site];
   if (passed <= simultaneous_) return;
   for (int a = 0; a < d_; ++a)
     for (int b = 0; b < d_; ++b)
-      y_[at(site * d_ + a)] +=
-          passed * inverse_mass_[at(a + b * d_)] / space_.masses[at(site)] * momenta_[at(site * d_ + b)];
-  times_[at(site)] = t;
-  if (keeps_) events_[at(site)].push_back({t, {y_.begin() + site * d_, y_.begin() + (site + 1) * d_}});
+      y_[site * d_ + a] += passed * inverse_mass_[a + b * d_] / space_.masses[site] * momenta_[site * d_ + b];
+  times_[site] = t;
+  if (keeps_) events_[site].push_back({t, {y_.begin() + site * d_, y_.begin() + (site + 1) * d_}});
 }
 
 void AsynchronousEvolution::update_next() {
@@ -127,7 +123,7 @@ void AsynchronousEvolution::update_next() {
   for (const auto site : space_.mesh.cell(cell)) drift(site, t);
   kick(cell, t, y_, 1, momenta_);
   if (keeps_) cells_.push_back({cell, t});
-  queue_.emplace(static_cast<double>(++done_[at(cell)] + 1) * steps_[at(cell)], cell);
+  queue_.emplace(static_cast<double>(++done_[cell] + 1) * steps_[cell], cell);
   time_ = t;
   ++updates_;
 }
@@ -147,8 +143,7 @@ std::vector<double> AsynchronousEvolution::values(double t) const {
   for (int i = 0; i < space_.sites(); ++i)
     for (int a = 0; a < d_; ++a)
       for (int b = 0; b < d_; ++b)
-        now[at(i * d_ + a)] +=
-            (t - times_[at(i)]) * inverse_mass_[at(a + b * d_)] / space_.masses[at(i)] * momenta_[at(i * d_ + b)];
+        now[i * d_ + a] += (t - times_[i]) * inverse_mass_[a + b * d_] / space_.masses[i] * momenta_[i * d_ + b];
   return now;
 }
 
@@ -158,8 +153,8 @@ double AsynchronousEvolution::energy(double t) const {
   std::vector<double> momenta = momenta_;
   double potential = 0;
   for (int c = 0; c < space_.mesh.cells(); ++c) {
-    const double last = static_cast<double>(done_[at(c)]) * steps_[at(c)];
-    kick(c, t, now, (t - last) / steps_[at(c)] - 0.5, momenta);
+    const double last = static_cast<double>(done_[c]) * steps_[c];
+    kick(c, t, now, (t - last) / steps_[c] - 0.5, momenta);
   }
   potentials_.each_lagrangian(
       potentials_.all_stencils(), now,
@@ -169,14 +164,13 @@ double AsynchronousEvolution::energy(double t) const {
   for (int i = 0; i < space_.sites(); ++i)
     for (int a = 0; a < d_; ++a)
       for (int b = 0; b < d_; ++b)
-        kinetic += 0.5 * momenta[at(i * d_ + a)] * inverse_mass_[at(a + b * d_)] * momenta[at(i * d_ + b)] /
-                   space_.masses[at(i)];
+        kinetic += 0.5 * momenta[i * d_ + a] * inverse_mass_[a + b * d_] * momenta[i * d_ + b] / space_.masses[i];
   return kinetic + potential;
 }
 
 Balance AsynchronousEvolution::momentum(const LinearSymmetry& symmetry) const {
   Balance balance;
-  const auto d = at(d_);
+  const std::size_t d = d_;
   for (std::size_t n = 0; n < y_.size(); ++n)
     balance.add(momenta_[n] * generator_at(symmetry, n % d, y_.data() + n - n % d));
   return balance;
@@ -189,9 +183,9 @@ std::size_t AsynchronousEvolution::bytes() const {
 void AsynchronousEvolution::open_window() {
   keeps_ = true;
   cells_.clear();
-  events_.assign(at(space_.sites()), {});
+  events_.assign(space_.sites(), {});
   for (int i = 0; i < space_.sites(); ++i)
-    events_[at(i)].push_back({times_[at(i)], {y_.begin() + i * d_, y_.begin() + (i + 1) * d_}});
+    events_[i].push_back({times_[i], {y_.begin() + i * d_, y_.begin() + (i + 1) * d_}});
 }
 
 AsynchronousEvolution::Window AsynchronousEvolution::window() const {
@@ -219,11 +213,11 @@ AsynchronousEvolution::Window AsynchronousEvolution::window() const {
     const auto corners = space_.mesh.cell(kept.cell);
     std::array<int, 4> sites{};
     for (std::size_t l = 0; l < corners.size(); ++l) {
-      const auto& events = events_[static_cast<std::size_t>(corners[l])];
+      const auto& events = events_[corners[l]];
       const auto later = std::ranges::upper_bound(events, kept.time, {}, &SiteEvent::time);
-      sites[l] = first[static_cast<std::size_t>(corners[l])] + static_cast<int>(later - events.begin()) - 1;
+      sites[l] = first[corners[l]] + static_cast<int>(later - events.begin()) - 1;
     }
-    families.add(kept.cell, {sites.data(), corners.size()}, steps_[at(kept.cell)]);
+    families.add(kept.cell, {sites.data(), corners.size()}, steps_[kept.cell]);
   }
   return made;
 }

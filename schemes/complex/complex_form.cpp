@@ -7,10 +7,10 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 void sort_unique(std::vector<int>& list) {
   std::sort(list.begin(), list.end());
@@ -82,15 +82,15 @@ ComplexForm::ComplexForm(const ComplexSystem& system, ComplexRegion region, std:
   const std::size_t nodes = region_.sites().size() * at(d);
   equation_.assign(nodes, -1), at_boundary_.assign(nodes, 0);
   const auto place = [&](int site) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(region_.sites(), site) - region_.sites().begin());
+    return at(std::ranges::lower_bound(region_.sites(), site) - region_.sites().begin());
   };
   for (const int site : region_.interior())
     for (int a = 0; a < d; ++a) equation_[place(site) * at(d) + at(a)] = equations_++;
   for (const int site : region_.boundary())
     for (int a = 0; a < d; ++a) at_boundary_[place(site) * at(d) + at(a)] = 1;
   system.each_jacobian(region_.stencils(), y, [&](ComplexSystem::Stencils batch, const double* J) {
-    const auto size = at(system.family_of(batch[0]).size());
-    constexpr auto most = static_cast<std::size_t>(ComplexSystem::most);
+    const std::size_t size = system.family_of(batch[0]).size();
+    constexpr std::size_t most = ComplexSystem::most;
     for (std::size_t s = 0; s < batch.size(); ++s) {
       Local local{{}, std::vector<double>(size * size)};
       for (const int site : complex.vertices(batch[s]))
@@ -178,7 +178,7 @@ std::optional<std::size_t> ComplexForm::coupling_node() const {
           felt[local.nodes[m]] += std::abs(local.J[i * local.nodes.size() + m]);
   const auto most = std::ranges::max_element(felt);
   if (most == felt.end() || *most == 0) return std::nullopt;
-  return static_cast<std::size_t>(most - felt.begin());
+  return at(most - felt.begin());
 }
 
 }  // namespace delf

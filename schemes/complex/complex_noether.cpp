@@ -7,11 +7,12 @@
 #include <cmath>
 #include <limits>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr auto most = static_cast<std::size_t>(ComplexSystem::most);
+constexpr std::size_t most = ComplexSystem::most;
 
 /// use(stencil, its r or its J, ξ) for some stencils.
 template <class Use>
@@ -19,9 +20,9 @@ auto with_generator(const ComplexSystem& system, std::span<const double> y, cons
                     const Use& use) {
   return [&system, &symmetry, y, use](ComplexSystem::Stencils batch, const double* out) {
     const ComplexSystem::Family& family = system.family_of(batch[0]);
-    std::vector<double> local(at(family.size())), xi;
+    std::vector<double> local(family.size()), xi;
     for (std::size_t s = 0; s < batch.size(); ++s) {
-      for (int i = 0; i < family.size(); ++i) local[at(i)] = y[system.node(batch[s], i)];
+      for (int i = 0; i < family.size(); ++i) local[i] = y[system.node(batch[s], i)];
       generator(family, symmetry, local, xi);
       use(batch[s], family, out + s, xi);
     }
@@ -83,7 +84,7 @@ Balance ComplexNoether::invariance(const ComplexSystem& system, const LinearSymm
 Balance ComplexNoether::sum(const ComplexSystem& system, const ComplexRegion& region, std::span<const double> y,
                             const LinearSymmetry& symmetry) const {
   Balance balance;
-  const auto d = at(system.components());
+  const std::size_t d = system.components();
   system.each_residual(
       region.stencils(), y,
       with_generator(system, y, symmetry,
@@ -100,19 +101,20 @@ Balance ComplexNoether::sum(const ComplexSystem& system, const ComplexRegion& re
 double ComplexNoether::rounding(const ComplexSystem& system, const ComplexRegion& region, std::span<const double> y,
                                 const LinearSymmetry& symmetry) const {
   double products = 0;
-  const auto d = at(system.components());
+  const std::size_t d = system.components();
   system.each_jacobian(
       region.stencils(), y,
-      with_generator(
-          system, y, symmetry, [&](int stencil, const ComplexSystem::Family&, const double* J, const std::vector<double>& xi) {
-            const std::size_t n = xi.size();
-            for (std::size_t i = 0; i < n; ++i) {
-              const std::size_t node = system.node(stencil, static_cast<int>(i));
-              if (!std::ranges::binary_search(region.boundary(), static_cast<int>(node / d))) continue;
-              for (std::size_t m = 0; m < n; ++m)
-                products += std::abs(J[(i * n + m) * most] * y[system.node(stencil, static_cast<int>(m))] * xi[i]);
-            }
-          }));
+      with_generator(system, y, symmetry,
+                     [&](int stencil, const ComplexSystem::Family&, const double* J, const std::vector<double>& xi) {
+                       const std::size_t n = xi.size();
+                       for (std::size_t i = 0; i < n; ++i) {
+                         const std::size_t node = system.node(stencil, static_cast<int>(i));
+                         if (!std::ranges::binary_search(region.boundary(), static_cast<int>(node / d))) continue;
+                         for (std::size_t m = 0; m < n; ++m)
+                           products +=
+                               std::abs(J[(i * n + m) * most] * y[system.node(stencil, static_cast<int>(m))] * xi[i]);
+                       }
+                     }));
   return std::numeric_limits<double>::epsilon() * products;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "lattice/index.hpp"
 #include "schemes/complex/level_part.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/thread_team.hpp"
@@ -11,14 +12,12 @@
 namespace delf {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Cuts a level into as many ranges of blocks, of about as many unknowns each.
 std::vector<int> cuts_of(const ComplexPlan& plan, int begin, int end, int count) {
   std::vector<int> cuts{begin};
-  const std::int64_t first = plan.first[at(begin)], unknowns = plan.first[at(end)] - first;
+  const std::int64_t first = plan.first[begin], unknowns = plan.first[end] - first;
   for (int b = begin + 1; b < end; ++b)
-    if ((plan.first[at(b)] - first) * count >= unknowns * static_cast<std::int64_t>(cuts.size())) cuts.push_back(b);
+    if ((plan.first[b] - first) * count >= unknowns * static_cast<std::int64_t>(cuts.size())) cuts.push_back(b);
   cuts.push_back(end);
   return cuts;
 }
@@ -28,28 +27,28 @@ std::vector<int> cuts_of(const ComplexPlan& plan, int begin, int end, int count)
 ComplexSolver::ComplexSolver(const ComplexSystem& system, Options options) : system_(system), options_(options) {
   const Touching touching(system.complex());  // of no use behind the plan
   plan_ = make_plan(system.complex(), touching);
-  const auto sites = at(system.complex().sites());
+  const std::size_t sites = system.complex().sites();
   Places places{std::vector<std::int32_t>(sites, -1), std::vector<std::int32_t>(sites, -1)};
   for (std::size_t n = 0; n < plan_.unknowns.size(); ++n) {
-    places.equation[at(plan_.equations[n])] = static_cast<std::int32_t>(n);
-    places.unknown[at(plan_.unknowns[n])] = static_cast<std::int32_t>(n);
+    places.equation[plan_.equations[n]] = static_cast<std::int32_t>(n);
+    places.unknown[plan_.unknowns[n]] = static_cast<std::int32_t>(n);
   }
   struct Range {
     int first, last;
   };
   std::vector<Range> ranges;
-  std::vector<std::int32_t> seen(at(system.complex().stencils()), -1);
+  std::vector<std::int32_t> seen(system.complex().stencils(), -1);
   for (int begin = 0, end = 0; begin < plan_.blocks(); begin = end) {
-    while (end < plan_.blocks() && plan_.level[at(end)] == plan_.level[at(begin)]) ++end;
-    const int unknowns = plan_.first[at(end)] - plan_.first[at(begin)];
+    while (end < plan_.blocks() && plan_.level[end] == plan_.level[begin]) ++end;
+    const int unknowns = plan_.first[end] - plan_.first[begin];
     std::vector<int> cuts = cuts_of(plan_, begin, end, std::max(1, unknowns / options.unknowns));
     // Stencils on two parts are evaluated twice: where the blocks of a level have no order that keeps neighbours together,
     // the level stays whole.
     std::int64_t once = 0, all = 0;
     const auto count = [&](int from, int to, std::int32_t mark, std::int64_t& sum) {
-      for (std::int32_t n = plan_.first[at(from)]; n < plan_.first[at(to)]; ++n)
-        for (const auto s : touching[plan_.equations[at(n)]])
-          if (seen[at(s)] != mark) seen[at(s)] = mark, ++sum;
+      for (std::int32_t n = plan_.first[from]; n < plan_.first[to]; ++n)
+        for (const auto s : touching[plan_.equations[n]])
+          if (seen[s] != mark) seen[s] = mark, ++sum;
     };
     std::int32_t mark = 2 * begin;
     count(begin, end, mark, once);
@@ -91,7 +90,7 @@ void ComplexSolver::for_each(std::size_t first, std::size_t last, const Do& one)
   const std::size_t shares = std::min(last - first, team_ ? at(team_->size()) : 1);
   std::vector<std::exception_ptr> failures(shares);
   const auto share = [&](int which) {
-    const auto w = at(which);
+    const std::size_t w = which;
     for (std::size_t p = first + (last - first) * w / shares; p < first + (last - first) * (w + 1) / shares; ++p) try {
         one(p, w);
       } catch (...) {
@@ -106,7 +105,7 @@ void ComplexSolver::for_each(std::size_t first, std::size_t last, const Do& one)
 }
 
 ComplexSolver::Report ComplexSolver::solve(std::span<double> y) const {
-  std::vector<Report> of_share(at(std::max(1, options_.threads)));
+  std::vector<Report> of_share(std::max(1, options_.threads));
   for (std::size_t l = 0; l + 1 < level_.size(); ++l) {
     if (options_.is_to_end && options_.is_to_end()) of_share.front().ended = true;
     else

@@ -10,11 +10,10 @@
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Where a point lies, as weights of its vertices.
 std::vector<TablePoint::Entry> place_of(const TablePoint& point) {
@@ -69,7 +68,7 @@ ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int v
               }
   linear_ = linear_ && !reads_time_;
   OwnWeights own{std::make_shared<ListedStencils>(vertices, std::vector<std::int32_t>(), 0), {}};
-  own.numbers.resize(at(numbers));
+  own.numbers.resize(numbers);
   family_ = jets_ = std::make_shared<JetFamily>(std::move(table), density_, false, std::move(own));
 }
 
@@ -83,10 +82,10 @@ ComplexSystem::Family::Family(std::shared_ptr<const StencilFamily> family)
 
 ComplexShape ComplexSystem::Family::shape(int values_of_site) const {
   const int sites = size() / values_of_site;
-  ComplexShape shape{sites, std::vector<char>(at(sites * sites), 0)};
+  ComplexShape shape{sites, std::vector<char>(sites * sites, 0)};
   for (int i = 0; i < size(); ++i)
     for (int m = 0; m < size(); ++m)
-      if (coupled_[at(i * size() + m)] != 0) shape.couples[at(i / values_of_site * sites + m / values_of_site)] = 1;
+      if (coupled_[i * size() + m] != 0) shape.couples[i / values_of_site * sites + m / values_of_site] = 1;
   return shape;
 }
 
@@ -110,11 +109,11 @@ int ComplexSystem::Family::add_table(std::span<const TablePoint> points) {
 
 int ComplexSystem::Family::add_numbers(int table, std::span<const Complex::Position> vertices) {
   if (!jets_ || !is_placed()) return table;
-  std::vector<double> numbers = tables_[at(table)];
+  std::vector<double> numbers = tables_[table];
   for (const auto& weights : places_)
     for (const std::size_t coordinate : {1U, 0U}) {
       double place = 0;
-      for (const auto& [vertex, weight] : weights) place += weight * vertices[at(vertex)][coordinate];
+      for (const auto& [vertex, weight] : weights) place += weight * vertices[vertex][coordinate];
       numbers.push_back(place);
     }
   return jets_->add_own(numbers);
@@ -127,7 +126,7 @@ int ComplexSystem::add_family(Family family) {
 }
 
 int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step) {
-  Family& of = families_[at(family)];
+  Family& of = families_[family];
   std::vector<Complex::Position> positions;
   const std::size_t per_vertex = sites.size() / at(of.vertices_);
   for (std::size_t l = 0; of.is_placed() && l < sites.size(); l += per_vertex)
@@ -145,7 +144,7 @@ std::size_t ComplexSystem::bytes() const {
 }
 
 std::vector<std::int32_t> ComplexSystem::all_stencils() const {
-  std::vector<std::int32_t> all(at(complex_.stencils()));
+  std::vector<std::int32_t> all(complex_.stencils());
   std::iota(all.begin(), all.end(), 0);
   return all;
 }
@@ -160,12 +159,12 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
   for (std::size_t first = 0; first < stencils.size();) {
     const int shape = complex_.shape_number(stencils[first]);
     const Family& of = family(shape);
-    const auto size = at(of.size());
+    const std::size_t size = of.size();
     // A batch has one time step, and one time.
-    const double step = time_steps_[at(stencils[first])];
+    const double step = time_steps_[stencils[first]];
     std::size_t end = first + 1;
     while (end < stencils.size() && end - first < most && complex_.shape_number(stencils[end]) == shape &&
-           time_steps_[at(stencils[end])] == step && !of.reads_time())
+           time_steps_[stencils[end]] == step && !of.reads_time())
       ++end;
     const Stencils batch = stencils.subspan(first, end - first);
     const std::size_t count = (batch.size() + lanes - 1) / lanes * lanes, rows = power == 0   ? 1
@@ -175,7 +174,7 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
         results(static_cast<int>(rows), static_cast<int>(count)), out(static_cast<int>(rows), most);
     for (std::size_t s = 0; s < count; ++s) {  // the last one fills whole packs
       const std::size_t n = std::min(s, batch.size() - 1);
-      numbers[s] = numbers_[at(batch[n])];
+      numbers[s] = numbers_[batch[n]];
       for (std::size_t i = 0; i < size; ++i)
         values[static_cast<int>(i)][s] =
             y[reading.places.empty() ? node(batch[n], static_cast<int>(i)) : at(reading.places[begin + n * size + i])];
@@ -192,7 +191,7 @@ void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power
              results[0]);
     for (std::size_t r = 0; r < rows; ++r)
       for (std::size_t s = 0; s < batch.size(); ++s)  // |Δ| in place of the area h k of the table
-        out[static_cast<int>(r)][s] = measures_[at(batch[s])] / (of.jets_ ? step : 1) * results[static_cast<int>(r)][s];
+        out[static_cast<int>(r)][s] = measures_[batch[s]] / (of.jets_ ? step : 1) * results[static_cast<int>(r)][s];
     visit(batch, out[0]);
     first = end;
   }
@@ -219,7 +218,7 @@ void ComplexSystem::each_jacobian(Stencils s, std::span<const double> y, const V
   each(
       s, y, 2,
       [](const Family& of, const StencilBatch& batch, double* out) {
-        std::vector<int> all(at(of.size()));
+        std::vector<int> all(of.size());
         std::iota(all.begin(), all.end(), 0);
         of.family_->jacobian(batch, all, all, out);
       },
@@ -250,7 +249,7 @@ std::vector<double> ComplexSystem::sizes(std::span<const double> y) const {
 
 double scale_of_equations(const ComplexSystem& system, std::span<const Balance> E, std::span<const double> y) {
   constexpr double few = 8 * std::numeric_limits<double>::epsilon(), suspicious = 1e-3;
-  const auto d = at(system.components());
+  const std::size_t d = system.components();
   const auto has_equation = [&](std::size_t n) { return system.complex().has_equation(static_cast<int>(n / d)); };
   double sum = 0, absolute = 0, size = 0;
   for (std::size_t n = 0; n < E.size(); ++n)
@@ -266,7 +265,7 @@ double scale_of_equations(const ComplexSystem& system, std::span<const Balance> 
 double largest_residual(const ComplexSystem& system, std::span<const double> y) {
   const std::vector<Balance> E = system.residual(y);
   const double scale = scale_of_equations(system, E, y);
-  const auto d = at(system.components());
+  const std::size_t d = system.components();
   double sum = 0;
   for (std::size_t n = 0; n < E.size(); ++n)
     if (system.complex().has_equation(static_cast<int>(n / d))) sum = larger_or_nan(std::abs(E[n].sum), sum);

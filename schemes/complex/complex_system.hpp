@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lattice/complex/complex.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/verify/check.hpp"
 
@@ -53,7 +54,7 @@ class ComplexSystem {
     /// The equations of the stencils depend on t.
     bool reads_time() const { return reads_time_; }
     /// ∂r/∂y of value m in the equation of value i is not proved to be the same at all y.
-    bool is_varying(int i, int m) const { return varying_[static_cast<std::size_t>(i * size() + m)] != 0; }
+    bool is_varying(int i, int m) const { return varying_[i * size() + m] != 0; }
 
    private:
     friend class ComplexSystem;
@@ -85,18 +86,14 @@ class ComplexSystem {
   }
   void set_role(int site, SiteRole role) { complex_.set_role(site, role); }
   int add_family(Family);
-  int add_table(int family, std::span<const TablePoint> points) {
-    return families_[static_cast<std::size_t>(family)].add_table(points);
-  }
+  int add_table(int family, std::span<const TablePoint> points) { return families_[family].add_table(points); }
   /// `table` is not read of a family without tables.
   int add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step = 1);
 
   const Complex& complex() const { return complex_; }
   int components() const { return components_; }
-  std::size_t nodes() const {
-    return static_cast<std::size_t>(complex_.sites()) * static_cast<std::size_t>(components_);
-  }
-  const Family& family(int number) const { return families_[static_cast<std::size_t>(number)]; }
+  std::size_t nodes() const { return at(complex_.sites()) * at(components_); }
+  const Family& family(int number) const { return families_[number]; }
   int families() const { return static_cast<int>(families_.size()); }
   const Family& family_of(int stencil) const { return family(complex_.shape_number(stencil)); }
   std::size_t bytes() const;
@@ -113,9 +110,7 @@ class ComplexSystem {
 
   /// The node that value i of a stencil is.
   std::size_t node(int stencil, int i) const {
-    return static_cast<std::size_t>(complex_.vertices(stencil)[static_cast<std::size_t>(i / components_)]) *
-               static_cast<std::size_t>(components_) +
-           static_cast<std::size_t>(i % components_);
+    return at(complex_.vertices(stencil)[i / components_]) * at(components_) + at(i % components_);
   }
   /// E at every node, whether or not it holds there.
   std::vector<Balance> residual(std::span<const double> y) const;

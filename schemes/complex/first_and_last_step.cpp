@@ -6,6 +6,7 @@
 #include <array>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
@@ -22,7 +23,7 @@ Rows linearised(const ComplexSystem& system, std::span<const double> y) {
     for (std::size_t s = 0; s < batch.size(); ++s)
       for (int i = 0; i < size; ++i)
         for (int m = 0; m < size; ++m)
-          if (const double value = J[static_cast<std::size_t>((i * size + m) * ComplexSystem::most) + s]; value != 0)
+          if (const double value = J[at((i * size + m) * ComplexSystem::most) + s]; value != 0)
             entries.emplace_back(static_cast<int>(system.node(batch[s], i)), static_cast<int>(system.node(batch[s], m)),
                                  value);
   });
@@ -44,13 +45,13 @@ Balance form_of_first_step(const CellSpace& space, std::span<const double> times
   for (Vector& V : variations) {
     V = Vector::Zero(E.rows());
     for (int i = 0; i < 2 * n; ++i)
-      if (!space.fixed[static_cast<std::size_t>(i % n / d)]) V[i] = normal(random);
+      if (!space.fixed[i % n / d]) V[i] = normal(random);
   }
   // Row j + 1 from the equations of row j, whose matrix of row j + 1 has blocks of one site.
   for (int j = 1; j < last; ++j) {
     Matrix above = E.middleRows(j * n, n).middleCols((j + 1) * n, n);
     for (int i = 0; i < n; ++i)
-      if (space.fixed[static_cast<std::size_t>(i / d)]) {
+      if (space.fixed[i / d]) {
         above.prune([&](int row, int column, double) { return row != i && column != i; });
         above.coeffRef(i, i) = 1;
       }
@@ -59,7 +60,7 @@ Balance form_of_first_step(const CellSpace& space, std::span<const double> times
     for (Vector& V : variations) {
       Vector right = -(E.middleRows(j * n, n) * V);
       for (int i = 0; i < n; ++i)
-        if (space.fixed[static_cast<std::size_t>(i / d)]) right[i] = 0;
+        if (space.fixed[i / d]) right[i] = 0;
       V.segment((j + 1) * n, n) = solver.solve(right);
     }
   }
@@ -70,14 +71,13 @@ Balance form_of_first_step(const CellSpace& space, std::span<const double> times
   const ComplexSystem& system = step.system();
   Balance change;
   for (const int first : {last - 1, 0}) {
-    const auto begin = static_cast<std::size_t>(first * n);
+    const std::size_t begin = first * n;
     system.each_jacobian(
         step.motion(0), y.subspan(begin, system.nodes()), [&](ComplexSystem::Stencils batch, const double* J) {
-          const auto size = static_cast<std::size_t>(system.family_of(batch[0]).size());
+          const std::size_t size = system.family_of(batch[0]).size();
           for (std::size_t s = 0; s < batch.size(); ++s) {
             std::vector<double> local(size * size), V(size), W(size);
-            for (std::size_t k = 0; k < size * size; ++k)
-              local[k] = J[k * static_cast<std::size_t>(ComplexSystem::most) + s];
+            for (std::size_t k = 0; k < size * size; ++k) local[k] = J[k * at(ComplexSystem::most) + s];
             for (std::size_t i = 0; i < size; ++i) {
               const auto node = static_cast<Eigen::Index>(begin + system.node(batch[s], static_cast<int>(i)));
               V[i] = variations[0][node], W[i] = variations[1][node];

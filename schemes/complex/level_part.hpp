@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/complex/assembled_equations.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/sitewise_lu.hpp"
@@ -29,10 +30,10 @@ class ComplexSolver::LevelPart {
   LevelPart(const ComplexSystem& system, const Touching& touching, const ComplexPlan& plan, const Places& places,
             int first_block, int last_block) {
     const int d = system.components();
-    const std::int32_t first = plan.first[at(first_block)], last = plan.first[at(last_block)];
+    const std::int32_t first = plan.first[first_block], last = plan.first[last_block];
     std::vector<std::int32_t> stencils;
     for (std::int32_t n = first; n < last; ++n) {
-      const auto touched = touching[plan.equations[at(n)]];
+      const auto touched = touching[plan.equations[n]];
       stencils.insert(stencils.end(), touched.begin(), touched.end());
     }
     const auto number_in = [&](const std::vector<std::int32_t>& place) {
@@ -44,11 +45,10 @@ class ComplexSolver::LevelPart {
     equations_.emplace(system, std::move(stencils), (last - first) * d, number_in(places.equation),
                        number_in(places.unknown));
     for (std::int32_t n = first; n < last; ++n)
-      for (int a = 0; a < d; ++a)
-        unknowns_.push_back(at(equations_->place_of(at(plan.unknowns[at(n)]) * at(d) + at(a))));
+      for (int a = 0; a < d; ++a) unknowns_.push_back(at(equations_->place_of(at(plan.unknowns[n]) * at(d) + at(a))));
     for (int b = first_block; b < last_block; ++b) {
-      const int size = (plan.first[at(b) + 1] - plan.first[at(b)]) * d;
-      first_.push_back((plan.first[at(b)] - first) * d);
+      const int size = (plan.first[at(b) + 1] - plan.first[b]) * d;
+      first_.push_back((plan.first[b] - first) * d);
       begin_.push_back(entries_);
       largest_ = std::max(largest_, size);
       entries_ += at(size) * at(size);
@@ -68,7 +68,7 @@ class ComplexSolver::LevelPart {
   std::size_t bytes() const {
     const auto numbers = [](const auto&... all) { return (... + (all.capacity() * sizeof(all[0]))); };
     return equations_->bytes() + numbers(unknowns_, first_, block_of_, begin_, blocks_) +
-           8 * static_cast<std::size_t>(y_.size() + diagonal_.size() + sources_.size());
+           8 * at(y_.size() + diagonal_.size() + sources_.size());
   }
 
   /// Finds the unknowns from the other values of y, without writing them there: other parts may read y.
@@ -129,7 +129,6 @@ class ComplexSolver::LevelPart {
   using Vector = AssembledEquations::Vector;
   static constexpr int small_block = 8;  ///< unknowns: solved as a dense matrix
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, small_block, small_block>;
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
   /// Values of a point of spacetime may be sites of their own: a place is where they lie.
   void make_solver(const ComplexSystem& system, const ComplexPlan& plan, std::int32_t first, std::int32_t last) {
@@ -137,7 +136,7 @@ class ComplexSolver::LevelPart {
     const auto places = [&](const std::vector<std::int32_t>& sites) {
       std::vector<int> list;
       for (std::int32_t n = first; n < last; ++n) {
-        const Complex::Position& position = system.complex().position(sites[at(n)]);
+        const Complex::Position& position = system.complex().position(sites[n]);
         const int place = number.try_emplace(position, static_cast<int>(number.size())).first->second;
         list.insert(list.end(), at(system.components()), place);
       }
@@ -223,7 +222,7 @@ class ComplexSolver::LevelPart {
       for (Matrix::InnerIterator e(A, m); e; ++e) entry(static_cast<int>(e.row()), static_cast<int>(m)) += e.value();
   }
   double& entry(int i, int m) {
-    const std::size_t b = at(block_of_[at(i)]);
+    const std::size_t b = at(block_of_[i]);
     return blocks_[begin_[b] + at((i - first_[b]) * (first_[b + 1] - first_[b]) + m - first_[b])];
   }
 

@@ -40,21 +40,19 @@ class SitewiseLU {
  private:
   using Factors = Eigen::SparseLU<Matrix, Eigen::NaturalOrdering<int>>;
   using Order = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>;
-  static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
   void find_order(const Matrix& A) {
     std::vector<Eigen::Triplet<double>> neighbours;
     for (Eigen::Index u = 0; u < A.outerSize(); ++u)
-      for (Matrix::InnerIterator e(A, u); e; ++e)
-        neighbours.emplace_back(of_equations_[at(e.row())], of_unknowns_[at(u)], 1.0);
+      for (Matrix::InnerIterator e(A, u); e; ++e) neighbours.emplace_back(of_equations_[e.row()], of_unknowns_[u], 1.0);
     Matrix graph(places_, places_);
     graph.setFromTriplets(neighbours.begin(), neighbours.end());
     Order of_places;  // places in the order of their elimination
     Eigen::AMDOrdering<int>()(graph, of_places);
-    std::vector<int> turn(at(places_)), unknowns(of_unknowns_.size());
-    for (int n = 0; n < places_; ++n) turn[at(of_places.indices()[n])] = n;
+    std::vector<int> turn(places_), unknowns(of_unknowns_.size());
+    for (int n = 0; n < places_; ++n) turn[of_places.indices()[n]] = n;
     std::iota(unknowns.begin(), unknowns.end(), 0);
-    std::ranges::stable_sort(unknowns, {}, [&](int u) { return turn[at(of_unknowns_[at(u)])]; });
+    std::ranges::stable_sort(unknowns, {}, [&](int u) { return turn[of_unknowns_[u]]; });
     order_ = Order(Eigen::Map<const Eigen::VectorXi>(unknowns.data(), A.cols()));
   }
 

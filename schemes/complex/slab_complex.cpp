@@ -8,12 +8,6 @@
 #include "lattice/space/mesh_space.hpp"
 
 namespace delf {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
   if (!is_variational(system))
     throw BadInput(
@@ -26,17 +20,17 @@ SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
   const int together = by_value ? 1 : system.fields(), nodes = system.components() / together, N = lattice.sites();
   SlabComplex made{ComplexSystem(together), {}};
   const auto count = static_cast<int>(rows.rows.size());
-  std::vector<int> sites(at(count * N * nodes), -1);
-  const auto number = [&](int row, int i, int node) -> int& { return sites[at((row * N + i) * nodes + node)]; };
+  std::vector<int> sites(count * N * nodes, -1);
+  const auto number = [&](int row, int i, int node) -> int& { return sites[(row * N + i) * nodes + node]; };
   for (int row = 0; row < count; ++row)
     for (int i = 0; i < N; ++i)
       for (int node = 0; node < nodes; ++node) {
-        const Component& component = components[at(node * together)];
+        const Component& component = components[node * together];
         const bool in_row = component.at.time == 0, last = row + 1 == count;
         if (last && component.role != Role::field) continue;  // of the slab above
         const std::int64_t r = rows.first_row + row;
         const double t = system.times()->time(r) + component.at.time * system.times()->step(r);
-        const auto& [x, y, z] = lattice.mesh()->mesh.points[at(i)];
+        const auto& [x, y, z] = lattice.mesh()->mesh.points[i];
         const SiteRole role = lattice.is_fixed(i) || (in_row && row == 0) ? SiteRole::given
                               : in_row && last                            ? SiteRole::final
                                                                           : SiteRole::free;
@@ -52,7 +46,7 @@ SlabComplex slab_complex(const LatticeSystem& system, const Window& rows) {
         vertices.clear();
         for (int i = 0; i < family->size(); i += together)
           vertices.push_back(
-              number(row + family->site(i).time, family->column(s, i), family->values()[at(i)].component / together));
+              number(row + family->site(i).time, family->column(s, i), family->values()[i].component / together));
         made.system.add_stencil(placed, vertices, s, 1, system.times()->step(rows.first_row + row));
       }
   }

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "schemes/complex/spacetime_complex.hpp"
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The sites row after row, each in the order of x; empty if they do not lie in rows of as many.
 std::vector<std::vector<int>> rows_of(const StencilList& list) {
@@ -18,17 +17,17 @@ std::vector<std::vector<int>> rows_of(const StencilList& list) {
   double longest = 0;
   for (const auto& site : list.sites)
     order.push_back(static_cast<int>(order.size())), longest = std::max(longest, std::abs(site.position[0]));
-  std::ranges::sort(order, {}, [&](int s) { return list.sites[at(s)].position[0]; });
+  std::ranges::sort(order, {}, [&](int s) { return list.sites[s].position[0]; });
   std::vector<std::vector<int>> rows;
   double t = 0;
   for (const int s : order) {
-    const double here = list.sites[at(s)].position[0];
+    const double here = list.sites[s].position[0];
     if (rows.empty() || here - t > rounding * longest) rows.emplace_back();
     rows.back().push_back(s), t = here;
   }
   for (auto& row : rows) {
     if (row.size() < 2 || row.size() != rows.front().size()) return {};
-    std::ranges::sort(row, {}, [&](int s) { return list.sites[at(s)].position[1]; });
+    std::ranges::sort(row, {}, [&](int s) { return list.sites[s].position[1]; });
   }
   return rows;
 }
@@ -50,7 +49,7 @@ std::vector<SlabEnergy> slab_energies(const StencilList& list, const std::shared
   if (find_fault(cells)) return {};  // rows that turn or cross
   const ComplexSystem system = spacetime_complex(cells, density);
   std::vector<SlabEnergy> slabs(rows.size() - 1);
-  const auto time = [&](std::size_t j) { return list.sites[at(rows[j].front())].position[0]; };
+  const auto time = [&](std::size_t j) { return list.sites[rows[j].front()].position[0]; };
   system.each_energy(system.all_stencils(), y, [&](ComplexSystem::Stencils batch, const double* E) {
     for (std::size_t s = 0; s < batch.size(); ++s) slabs[at(batch[s]) / in_slab].energy += E[s];
   });

@@ -8,14 +8,9 @@
 #include <numeric>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, bool fixed_boundary,
                      std::shared_ptr<const StencilFamily> constraint_)
     : MeshSpace{std::move(mesh_), {}},
@@ -25,11 +20,11 @@ CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, b
       masses(lumped_masses(mesh)) {
   fixed.assign(mesh.points.size(), 0);
   if (fixed_boundary)
-    for (const auto p : boundary_points(mesh)) fixed[static_cast<std::size_t>(p)] = 1;
+    for (const auto p : boundary_points(mesh)) fixed[p] = 1;
 }
 
 void CellSpace::each_constraint(std::span<const double> values, const UseConstraint& use) const {
-  const auto d = at(fields());
+  const std::size_t d = fields();
   std::vector<double> y(d + 1), r(d + 1);
   for (std::size_t i = 0; i * d < values.size(); ++i) {
     // L = λ G(φ), here with λ = 1
@@ -77,13 +72,13 @@ SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
     if (j == 1) motion_ = system_.add_family(space.tables.motion());
     first_of_motion_.push_back(system_.complex().stencils());
     for (std::int32_t i = 0; i < n; ++i)
-      system_.add_stencil(motion_, sites_of({rows_ - 2, rows_ - 1}, {&i, 1}), 0, space.masses[at(i)] * below, below);
+      system_.add_stencil(motion_, sites_of({rows_ - 2, rows_ - 1}, {&i, 1}), 0, space.masses[i] * below, below);
   }
   const int fields = n * per_point_, last = rows_ - 1;
   for (int j = 0; j < rows_; ++j)
     for (int s = 0; s < per_row_; ++s) {
       const bool multiplier = s >= fields;
-      if (space.fixed[at(multiplier ? s - fields : s / per_point_)]) continue;
+      if (space.fixed[multiplier ? s - fields : s / per_point_]) continue;
       // λ of the last row is in no equation, and G there is one for its fields; G of row 1 is in the data.
       system_.set_role(j * per_row_ + s, j == 0      ? SiteRole::given
                                          : j == last ? multiplier ? SiteRole::initial : SiteRole::final
@@ -104,8 +99,8 @@ void SpaceRows::add_row(double t, double measure) {
   const int n = space_.sites(), row = rows_;
   for (int s = 0; s < per_row_; ++s) {
     const int i = s < n * per_point_ ? s / per_point_ : s - n * per_point_;
-    const Mesh::Point& p = space_.mesh.points[at(i)];
-    system_.add_site({t, p[0], p[1], p[2]}, space_.fixed[at(i)] ? SiteRole::given : SiteRole::free);
+    const Mesh::Point& p = space_.mesh.points[i];
+    system_.add_site({t, p[0], p[1], p[2]}, space_.fixed[i] ? SiteRole::given : SiteRole::free);
   }
   if (rows_++ == 0) {
     site_ = system_.add_family(space_.tables.site());
@@ -122,22 +117,22 @@ void SpaceRows::add_row(double t, double measure) {
   }
   measures_.push_back(measure);
   for (std::int32_t i = 0; i < n; ++i)
-    system_.add_stencil(site_, sites_of({row}, {&i, 1}), 0, space_.masses[at(i)] * measure);
+    system_.add_stencil(site_, sites_of({row}, {&i, 1}), 0, space_.masses[i] * measure);
   for (int c = 0; c < space_.mesh.cells(); ++c)
-    system_.add_stencil(gradient_[at(c)], sites_of({row}, space_.mesh.cell(c)), gradient_tables_[at(c)], measure);
+    system_.add_stencil(gradient_[c], sites_of({row}, space_.mesh.cell(c)), gradient_tables_[c], measure);
   for (std::int32_t i = 0; i < n && space_.constraint; ++i) {
-    if (space_.fixed[at(i)]) continue;
+    if (space_.fixed[i]) continue;
     sites_of({row}, {&i, 1});
     sites_.push_back(row * per_row_ + n * per_point_ + i);
     system_.add_stencil(constraint_, sites_, 0, weight_of_constraint(i) * measure);
   }
 }
 
-double SpaceRows::weight_of_constraint(int point) const { return is_still_ ? 1 : space_.masses[at(point)]; }
+double SpaceRows::weight_of_constraint(int point) const { return is_still_ ? 1 : space_.masses[point]; }
 
 std::vector<std::int32_t> SpaceRows::motion(int row) const {
-  std::vector<std::int32_t> stencils(at(space_.sites()));
-  std::iota(stencils.begin(), stencils.end(), first_of_motion_[at(row)]);
+  std::vector<std::int32_t> stencils(space_.sites());
+  std::iota(stencils.begin(), stencils.end(), first_of_motion_[row]);
   return stencils;
 }
 
@@ -169,7 +164,7 @@ std::vector<double> SpaceRows::with_multipliers(std::span<const double> fields) 
                                product += E[row + i * d + a].sum * slopes[a];
                                square += slopes[a] * slopes[a];
                              }
-                             const double measure = weight_of_constraint(static_cast<int>(i)) * measures_[at(j)];
+                             const double measure = weight_of_constraint(static_cast<int>(i)) * measures_[j];
                              if (square > 0) y[row + of_fields + i] = -product / square / measure;
                            });
   return y;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "lattice/space/mesh_space.hpp"
 #include "schemes/complex/complex_system.hpp"
 #include "schemes/complex/space_tables.hpp"
@@ -23,7 +24,7 @@ struct CellSpace : MeshSpace {
   int sites() const { return static_cast<int>(mesh.points.size()); }
   int fields() const { return density->components(); }
   /// Values of a row: the fields, point by point; and behind them the multipliers, where there is a constraint.
-  std::size_t fields_of_row() const { return mesh.points.size() * static_cast<std::size_t>(fields()); }
+  std::size_t fields_of_row() const { return mesh.points.size() * at(fields()); }
   std::size_t values_of_row() const { return fields_of_row() + (constraint ? mesh.points.size() : 0); }
   /// use(i, G, ∂G/∂φ) at fields[i·d + a], site after site.
   using UseConstraint = std::function<void(std::size_t i, double G, std::span<const double> slopes)>;

@@ -8,23 +8,22 @@
 
 #include "jets/tables/cell_points.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Whether ℓ(φ, 0, p) − ℓ(φ, 0, 0) is multiplied by s² as p is by s, at random jets.
 bool is_quadratic(const BatchDensity& density) {
   const int d = density.components(), v = density.variables();
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0.1, 0.7);
-  std::vector<std::array<double, 8>> jets(at(v));
+  std::vector<std::array<double, 8>> jets(v);
   const std::array<double, 4> factors{0, 1, 2, -1};
   for (int i = 0; i < v; ++i) {
     const double value = uniform(random);
     for (std::size_t s = 0; s < 8; ++s)
-      jets[at(i)][s] = i < d ? value : i >= 2 * d && i < 3 * d ? value * factors[s % 4] : 0;
+      jets[i][s] = i < d ? value : i >= 2 * d && i < 3 * d ? value * factors[s % 4] : 0;
   }
   alignas(64) std::array<double, 8> l{};
   std::vector<const double*> slots;
@@ -32,7 +31,7 @@ bool is_quadratic(const BatchDensity& density) {
   std::vector<Pack> aligned(at(v + 1) * 8 / lanes);
   for (int i = 0; i < v; ++i) {
     double* const row = reinterpret_cast<double*>(aligned.data()) + 8 * i;
-    for (std::size_t s = 0; s < 8; ++s) row[s] = jets[at(i)][s];
+    for (std::size_t s = 0; s < 8; ++s) row[s] = jets[i][s];
     slots.push_back(row);
   }
   double* const x = reinterpret_cast<double*>(aligned.data()) + 8 * v;
@@ -120,7 +119,7 @@ namespace {
 Mesh cell_of(int corners) {
   Mesh mesh{.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, .vertices = {}};
   std::vector<std::int32_t> cell{0, 1, 2, 3};
-  cell.resize(at(corners));
+  cell.resize(corners);
   mesh.add_cell(cell);
   return mesh;
 }
@@ -130,6 +129,8 @@ Mesh cell_of(int corners) {
 ComplexSystem::Family SpaceTables::gradient(int corners) const {
   return {density_, corners, gradient_table(cell_of(corners), 0)};
 }
-ComplexSystem::Family SpaceTables::cell(int corners) const { return {density_, corners, cell_table(cell_of(corners), 0)}; }
+ComplexSystem::Family SpaceTables::cell(int corners) const {
+  return {density_, corners, cell_table(cell_of(corners), 0)};
+}
 
 }  // namespace delf

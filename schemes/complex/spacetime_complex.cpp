@@ -6,12 +6,11 @@
 
 #include "jets/tables/slot_places.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/complex/space_tables.hpp"
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Families by shape and by the entries that their tables have.
 class Families {
@@ -51,10 +50,10 @@ class Families {
     if (!space_) space_.emplace(density_);
     const int size = static_cast<int>(e.sites.size());
     auto& family = families_[{e.shape, {size}}];
-    const Complex::Position& p = list_.sites[at(e.sites.front())].position;
+    const Complex::Position& p = list_.sites[e.sites.front()].position;
     if (e.shape == "motion") {
       if (!family.number) family.number = system_.add_family(space_->motion());
-      const double h = list_.sites[at(e.sites[1])].position[0] - p[0];
+      const double h = list_.sites[e.sites[1]].position[0] - p[0];
       system_.add_stencil(*family.number, e.sites, 0, *e.share * h, h);
     } else if (e.shape == "site") {
       if (!family.number) family.number = system_.add_family(space_->site());

@@ -10,13 +10,13 @@
 #include <unordered_map>
 
 #include "jets/tables/named_tables.hpp"
+#include "lattice/index.hpp"
 #include "schemes/complex/space_tables.hpp"
 #include "schemes/verify/check.hpp"
 
 namespace delf {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = 1e-12;
 
 /// The parts of T + V, whose share must be given.
@@ -37,13 +37,13 @@ double sum_of(double a, double b) {
 /// A jet slot of a coordinate, its weights applied to the coordinates of the sites.
 double applied(const std::vector<TablePoint::Entry>& weights, std::span<const Complex::Position> sites, std::size_t c) {
   Balance terms;
-  for (const auto& e : weights) terms.add(e.weight * sites[at(e.vertex)][c]);
+  for (const auto& e : weights) terms.add(e.weight * sites[e.vertex][c]);
   return value_of(terms);
 }
 
 std::vector<double> dense(const std::vector<TablePoint::Entry>& entries, std::size_t sites) {
   std::vector<double> weights(sites, 0.0);
-  for (const auto& e : entries) weights[at(e.vertex)] = e.weight;
+  for (const auto& e : entries) weights[e.vertex] = e.weight;
   return weights;
 }
 
@@ -77,7 +77,7 @@ void set_second_derivatives(TablePoint& point, const TablePoint& q, std::span<co
       for (std::size_t l = 0; l < n; ++l) {
         const double t = sites[l][0] - sites[0][0], x = sites[l][1] - sites[0][1];
         const double monomial = s == JetSlot::phi_tt ? 0.5 * t * t : s == JetSlot::phi_tx ? t * x : 0.5 * x * x;
-        terms.add(rests[at(static_cast<int>(r))][l] * monomial);
+        terms.add(rests[static_cast<int>(r)][l] * monomial);
       }
       if (std::ranges::find(there, s) != there.end()) B(r, column++) = value_of(terms);
       else if (terms.relative() > determined) return;
@@ -90,10 +90,10 @@ void set_second_derivatives(TablePoint& point, const TablePoint& q, std::span<co
     std::vector<double> weights(n);
     for (std::size_t l = 0; l < n; ++l) {
       Balance terms;
-      for (Eigen::Index r = 0; r < count; ++r) terms.add(inverse(s, r) * rests[at(static_cast<int>(r))][l]);
+      for (Eigen::Index r = 0; r < count; ++r) terms.add(inverse(s, r) * rests[static_cast<int>(r)][l]);
       weights[l] = value_of(terms);
     }
-    point.set(there[at(static_cast<int>(s))], weights);
+    point.set(there[static_cast<int>(s)], weights);
   }
 }
 
@@ -103,7 +103,7 @@ double fingerprint(const std::vector<TablePoint>& points, const std::vector<int>
   for (const TablePoint& p : points) {
     const auto slot = [&](JetSlot s) {
       double value = 0;
-      for (const auto& e : p[s]) value += e.weight * std::sin(1.0 + 0.7 * sites[at(e.vertex)]);
+      for (const auto& e : p[s]) value += e.weight * std::sin(1.0 + 0.7 * sites[e.vertex]);
       return value;
     };
     sum += p.weight * std::sin(0.3 + slot(JetSlot::phi) + 1.1 * slot(JetSlot::phi_t) + 1.3 * slot(JetSlot::phi_x));
@@ -136,11 +136,11 @@ class Faults {
     std::vector<char> used(list_.sites.size(), 0);
     for (std::size_t n = 0; n < list_.stencils.size(); ++n) {
       if (auto fault = of_stencil(n)) return fault;
-      for (const int s : list_.stencils[n].sites) used[at(s)] = 1;
+      for (const int s : list_.stencils[n].sites) used[s] = 1;
     }
     const auto unused = std::ranges::find(used, 0);
     if (unused == used.end()) return std::nullopt;
-    const auto s = static_cast<std::size_t>(unused - used.begin());
+    const std::size_t s = unused - used.begin();
     return MeshFault{list_.sites[s].line, "site " + std::to_string(s) + " is in no stencil; remove it"};
   }
 
@@ -222,14 +222,14 @@ int StencilList::coordinates() const {
   int most = 2;
   for (const Site& s : sites)
     for (int c = most; c < 4; ++c)
-      if (s.position[at(c)] != 0) most = c + 1;
+      if (s.position[c] != 0) most = c + 1;
   return most;
 }
 
 std::vector<Complex::Position> StencilList::positions(const Entry& e) const {
   std::vector<Complex::Position> all;
   for (const int s : e.sites) {
-    all.push_back(sites[at(s)].position);
+    all.push_back(sites[s].position);
     if (circumference > 0) {
       const double apart = all.back()[1] - all.front()[1];
       if (std::abs(apart) > circumference / 2) all.back()[1] = all.front()[1] + std::remainder(apart, circumference);
@@ -239,7 +239,7 @@ std::vector<Complex::Position> StencilList::positions(const Entry& e) const {
 }
 
 std::vector<int> StencilList::outline(const Entry& e) const {
-  const auto x_of = [&](int s) { return sites[at(s)].position[1]; };
+  const auto x_of = [&](int s) { return sites[s].position[1]; };
   const auto [least, most] = std::ranges::minmax(e.sites, {}, x_of);
   if (circumference > 0 && x_of(most) - x_of(least) > circumference / 2) return {};
   const StencilTable* const table = stencil_shape(e.shape)->table;
@@ -318,7 +318,7 @@ std::optional<MeshFault> find_fault(const StencilList& list, const BatchDensity&
       const auto lacks = [&](const TablePoint& p) { return p[slot].empty(); };
       if (std::ranges::none_of(points, lacks)) continue;
       const std::string what = "stencil " + std::to_string(n) + " (" + e.shape + ") ",
-                        name = slot_names[at(static_cast<int>(slot))];
+                        name = slot_names[static_cast<int>(slot)];
       if (std::ranges::any_of(table->points, lacks))
         return MeshFault{e.line, what + "has no " + name + ", which the density reads; use a " +
                                      (slot == JetSlot::phi_tt ? "" : "six-tuple or a ") + "nine-tuple"};

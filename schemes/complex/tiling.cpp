@@ -16,8 +16,6 @@ namespace {
 using std::numbers::pi;
 using Position = Complex::Position;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// A number in a message.
 std::string text_of(double x) {
   std::array<char, 32> text{};
@@ -57,7 +55,7 @@ std::vector<std::size_t> around(const StencilTable& table) {
 }
 
 /// From one direction (x, t) counterclockwise to another: 0 … 2π.
-double turn(double x, double t, double to_x, double to_t) {
+double monodromy(double x, double t, double to_x, double to_t) {
   const double angle = std::atan2(x * to_t - t * to_x, x * to_x + t * to_t);
   return angle < 0 ? angle + 2 * pi : angle;
 }
@@ -74,7 +72,7 @@ class Tiler {
       const StencilList::Entry& e = list_.stencils[n];
       const StencilTable* const table = stencil_shape(e.shape)->table;
       if (!table) {
-        for (const int s : e.sites) around_[at(s)].has_parts = true;
+        for (const int s : e.sites) around_[s].has_parts = true;
         tiles = false;
         continue;
       }
@@ -105,8 +103,8 @@ class Tiler {
       weight += w;
       for (const auto& [c, slot] : {std::pair(0, JetSlot::phi_t), std::pair(1, JetSlot::phi_x)})
         for (const auto& entry : p[slot]) {
-          Around& site = around_[at(e.sites[at(entry.vertex)])];
-          site.slopes[at(c)] += w * entry.weight, site.absolute[at(c)] += std::abs(w * entry.weight);
+          Around& site = around_[e.sites[entry.vertex]];
+          site.slopes[c] += w * entry.weight, site.absolute[c] += std::abs(w * entry.weight);
         }
     }
     area += weight;
@@ -115,11 +113,11 @@ class Tiler {
     for (std::size_t m = 0; m < order.size(); ++m) {
       const Position &p = positions[order[m]], &next = positions[order[(m + 1) % order.size()]],
                      &before = positions[order[(m + order.size() - 1) % order.size()]];
-      angles[order[m]] = turn(next[1] - p[1], next[0] - p[0], before[1] - p[1], before[0] - p[0]);
+      angles[order[m]] = monodromy(next[1] - p[1], next[0] - p[0], before[1] - p[1], before[0] - p[0]);
     }
     for (std::size_t l = 0; l < positions.size(); ++l) {
-      around_[at(e.sites[l])].angle += angles[l];
-      around_[at(e.sites[l])].covered += density_[n] * angles[l];
+      around_[e.sites[l]].angle += angles[l];
+      around_[e.sites[l]].covered += density_[n] * angles[l];
     }
   }
 
@@ -137,14 +135,13 @@ class Tiler {
     std::vector<std::vector<std::size_t>> stencils(list_.sites.size());
     for (std::size_t n = 0; n < list_.stencils.size(); ++n) {
       const StencilList::Entry& e = list_.stencils[n];
-      if (std::ranges::none_of(e.sites, [&](int s) { return suspected[at(s)]; })) continue;
+      if (std::ranges::none_of(e.sites, [&](int s) { return suspected[s]; })) continue;
       const std::vector<Position> positions = list_.positions(e);
       for (std::size_t l = 0; l < positions.size(); ++l) {
-        if (!suspected[at(e.sites[l])]) continue;
-        stencils[at(e.sites[l])].push_back(n);
+        if (!suspected[e.sites[l]]) continue;
+        stencils[e.sites[l]].push_back(n);
         for (const Position& p : positions)
-          if (&p != &positions[l])
-            neighbours[at(e.sites[l])].push_back({p[1] - positions[l][1], p[0] - positions[l][0]});
+          if (&p != &positions[l]) neighbours[e.sites[l]].push_back({p[1] - positions[l][1], p[0] - positions[l][0]});
       }
     }
     double worst = 0;
@@ -231,7 +228,7 @@ class Tiler {
     }
     if (const auto twice = overlapping_cells(apart)) {
       const auto [later, first] =
-          std::minmax(stencil_of[at(twice->first)], stencil_of[at(twice->second)], std::greater<std::size_t>());
+          std::minmax(stencil_of[twice->first], stencil_of[twice->second], std::greater<std::size_t>());
       const int line = list_.stencils[first].line;
       found.fault = {list_.stencils[later].line,
                      "stencil " + std::to_string(later) + " (" + list_.stencils[later].shape + ") overlaps stencil " +

@@ -9,6 +9,7 @@
 
 #include "jets/expressions/evaluate.hpp"
 #include "jets/stencil_lagrangian.hpp"
+#include "lattice/index.hpp"
 #include "lattice/shapes/six_tuple.hpp"
 
 namespace delf {
@@ -35,7 +36,7 @@ struct MeshMonitor {
     if (kind == Kind::uniform) return size;
     if (kind == Kind::formula)
       return size * ((1 - strength) + strength * (*rho).template operator()<T>([&](int v) -> T {
-               const auto i = static_cast<std::size_t>(v);
+               const std::size_t i = v;
                if (i < d) return 0.5 * (a[i] + b[i]);
                return (b[i - d] - a[i - d]) / size;
              }));
@@ -76,7 +77,7 @@ struct Equidistribution {
   }
   template <class T>
   T operator()(std::span<const T> y, const Cell&) const {
-    const std::size_t n = static_cast<std::size_t>(d) + 1;
+    const std::size_t n = at(d) + 1;
     const auto left = y.subspan(0, n), centre = y.subspan(n, n), right = y.subspan(2 * n + 1, n);
     return -(y[2 * n] * monitor.change(left, centre, right));
   }
@@ -103,7 +104,7 @@ struct DelayedEquidistribution {
   }
   template <class T>
   T operator()(std::span<const T> y, const Cell& cell) const {
-    const std::size_t n = static_cast<std::size_t>(d) + 1;
+    const std::size_t n = at(d) + 1;
     const auto G = [&](std::span<const T> q) -> T { return monitor.change(q); };
     const auto lower = y.subspan(0, 3 * n), upper = y.subspan(3 * n, 3 * n);
     T drive(0.0);

@@ -8,18 +8,17 @@
 #include "jets/simd/exact_sum.hpp"
 #include "jets/simd/scratch_rows.hpp"
 #include "jets/tables/slot_places.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// h^−time k^−space of each slot.
 std::array<double, jet_slots> slot_scales(const Cell& cell) {
   std::array<double, jet_slots> scales;
   const double per_h = 1 / cell.time_step, per_k = 1 / cell.space_step;
   for (int s = 0; s < jet_slots; ++s) {
-    double& scale = scales[at(s)] = 1;
+    double& scale = scales[s] = 1;
     for (int power = slot_powers[at(s)].time; power > 0; --power) scale *= per_h;
     for (int power = slot_powers[at(s)].space; power > 0; --power) scale *= per_k;
   }
@@ -36,7 +35,7 @@ void add(double* y, double w, std::array<const double*, 3> own, const double* x,
   if (own[0] == nullptr) return add(y, w, x, count);
   for (int i = 0; i < count; i += lanes) {
     Pack factor = w * Pack::load(own[0] + i);
-    for (int n = 1; n < 3 && own[at(n)] != nullptr; ++n) factor = factor * Pack::load(own[at(n)] + i);
+    for (int n = 1; n < 3 && own[n] != nullptr; ++n) factor = factor * Pack::load(own[n] + i);
     (Pack::load(y + i) + factor * Pack::load(x + i)).store(y + i);
   }
 }
@@ -66,10 +65,10 @@ struct JetFamily::Jets {
   void look_at(int first, int count) {
     for (std::size_t n = 0; n < family_.own_.numbers.size(); ++n)
       for (int s = 0; s < count; ++s)
-        numbers[static_cast<int>(n)][s] = family_.own_.numbers[n][at(batch_.numbers[first + s])];
+        numbers[static_cast<int>(n)][s] = family_.own_.numbers[n][batch_.numbers[first + s]];
     if (batch_.low == nullptr) return;
     for (int i = 0; i < family_.size(); ++i) {
-      const int from = family_.first_[at(i / d)] * d + i % d;
+      const int from = family_.first_[i / d] * d + i % d;
       if (from == i) {
         fill_zero(increments[i], count);
         continue;
@@ -94,7 +93,7 @@ struct JetFamily::Jets {
             const int value_number = entries[e].vertex * d + a;
             const double* const from =
                 batch_.low != nullptr && is_rate(s) ? increments[value_number] : value(value_number) + first;
-            add(jet, entries[e].weight * scales[at(s)], {own(p.own.slots[at(s)][e])}, from, count);
+            add(jet, entries[e].weight * scales[s], {own(p.own.slots[at(s)][e])}, from, count);
           }
           continue;
         }
@@ -102,10 +101,10 @@ struct JetFamily::Jets {
           Pack sum(0.0);
           if (batch_.low != nullptr && is_rate(s))
             for (const auto& [vertex, weight] : p.slots[at(s)])
-              sum += (weight * scales[at(s)]) * Pack::load(increments[vertex * d + a] + i);
+              sum += (weight * scales[s]) * Pack::load(increments[vertex * d + a] + i);
           else
             for (const auto& [vertex, weight] : p.slots[at(s)])
-              sum += (weight * scales[at(s)]) * Pack::load(value(vertex * d + a) + first + i);
+              sum += (weight * scales[s]) * Pack::load(value(vertex * d + a) + first + i);
           sum.store(jet + i);
         }
       }
@@ -140,19 +139,19 @@ JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> den
   placed_ = of_.density->is_placed();
   listed_ = own_.stencils;
   const auto by_vertex = [this](const TablePoint& p) {
-    std::vector<std::vector<Weight>> weights(at(pattern_.size()));
+    std::vector<std::vector<Weight>> weights(pattern_.size());
     for (int s = 0; s < of_.density->slots(); ++s)
       for (std::size_t e = 0; e < p.slots[at(s)].size(); ++e) {
         const auto& [vertex, weight] = p.slots[at(s)][e];
         const std::vector<int>& numbers = p.own.slots[at(s)];
-        weights[at(vertex)].push_back({s, weight, numbers.empty() ? -1 : numbers[e]});
+        weights[vertex].push_back({s, weight, numbers.empty() ? -1 : numbers[e]});
       }
     return weights;
   };
   for (std::size_t q = 0; q < of_.table.points.size(); ++q) {
     Point point{by_vertex(of_.table.points[q]), by_vertex(of_.table.test(q)), {}};
     for (int i = 0; i < size(); ++i)
-      if (!point.of_vertex[at(i / d_)].empty() || !point.of_test[at(i / d_)].empty()) point.values.push_back(i);
+      if (!point.of_vertex[i / d_].empty() || !point.of_test[i / d_].empty()) point.values.push_back(i);
     points_.push_back(std::move(point));
   }
   find_columns();
@@ -163,25 +162,26 @@ JetFamily::JetFamily(StencilTable table, std::shared_ptr<const BatchDensity> den
 void JetFamily::find_columns() {
   std::vector<double> places;
   const auto place = [&](int l) {
-    const Site& v = pattern_.vertices[at(l)];
-    return v.space + of_.table.nodes[at(v.node)].space;
+    const Site& v = pattern_.vertices[l];
+    return v.space + of_.table.nodes[v.node].space;
   };
   // Tables with tests have residuals whose rows alone add up to momenta.
   const auto adds_up = [&](int l) {
-    return of_.table.tests.empty() || of_.table.nodes[at(pattern_.vertices[at(l)].node)].time == 0;
+    return of_.table.tests.empty() || of_.table.nodes[pattern_.vertices[l].node].time == 0;
   };
-  if (std::ranges::any_of(pattern_.vertices, [&](const Site& v) { return at(v.node) >= of_.table.nodes.size(); })) return;
-  first_.resize(at(pattern_.size()));
+  if (std::ranges::any_of(pattern_.vertices, [&](const Site& v) { return at(v.node) >= of_.table.nodes.size(); }))
+    return;
+  first_.resize(pattern_.size());
   for (int l = 0; l < pattern_.size(); ++l) {
-    const auto column = static_cast<std::size_t>(std::ranges::find(places, place(l)) - places.begin());
+    const std::size_t column = std::ranges::find(places, place(l)) - places.begin();
     if (column == places.size()) places.push_back(place(l)), columns_.emplace_back();
     columns_[column].push_back(l);
-    first_[at(l)] = l;
+    first_[l] = l;
   }
   const auto none_left = [](const std::vector<std::vector<Weight>>& weights, const std::vector<int>& column, int slot) {
     double sum = 0, absolute = 0;
     for (const int l : column)
-      for (const Weight& w : weights[at(l)])
+      for (const Weight& w : weights[l])
         if (w.slot == slot) sum += w.weight, absolute += std::abs(w.weight);
     return std::abs(sum) <= 1e-12 * absolute;
   };
@@ -192,21 +192,21 @@ void JetFamily::find_columns() {
         if (!is_rate(s)) continue;
         if (!none_left(point.of_vertex, column, s)) return columns_.clear();
         for (const int l : column)
-          has_rates |= std::ranges::any_of(point.of_vertex[at(l)], [&](const Weight& w) { return w.slot == s; });
+          has_rates |= std::ranges::any_of(point.of_vertex[l], [&](const Weight& w) { return w.slot == s; });
       }
   if (!has_rates) return columns_.clear();
   reads_low_ = true;
   for (const auto& column : columns_) {
     const auto is_read = [&](int l) {
       return std::ranges::any_of(points_, [&](const Point& p) {
-        return std::ranges::any_of(p.of_vertex[at(l)], [](const Weight& w) { return is_rate(w.slot); });
+        return std::ranges::any_of(p.of_vertex[l], [](const Weight& w) { return is_rate(w.slot); });
       });
     };
     if (const auto first = std::ranges::find_if(column, is_read); first != column.end())
-      for (const int l : column) first_[at(l)] = *first;
+      for (const int l : column) first_[l] = *first;
   }
   const auto is_tested = [&](int l) {
-    return std::ranges::any_of(points_, [l](const Point& p) { return !p.of_test[at(l)].empty(); });
+    return std::ranges::any_of(points_, [l](const Point& p) { return !p.of_test[l].empty(); });
   };
   for (auto& column : columns_) std::erase_if(column, [&](int l) { return !adds_up(l) || !is_tested(l); });
   for (const Point& point : points_)
@@ -224,7 +224,7 @@ void JetFamily::find_columns() {
       for (int s = 0; s < of_.density->slots(); ++s) {
         Weight sum{s, 0, -1};
         for (const int l : column)
-          for (const Weight& w : point.of_test[at(l)])
+          for (const Weight& w : point.of_test[l])
             if (w.slot == s && !is_rate(s)) sum.weight += w.weight, sum.own = w.own;  // the same at all times
         if (sum.weight != 0) all.push_back(sum);
       }
@@ -245,7 +245,7 @@ void JetFamily::find_lanes() {
     for (int lane = 0; lane < lanes; ++lane) {
       const std::size_t q = at(std::min(first + lane, Q - 1));
       for (int l = 0; l < pattern_.size(); ++l)
-        for (const Weight& w : points_[q].of_vertex[at(l)]) entry(of.jets, w.slot, l).v[lane] = w.weight;
+        for (const Weight& w : points_[q].of_vertex[l]) entry(of.jets, w.slot, l).v[lane] = w.weight;
       if (first + lane >= Q) continue;
       for (std::size_t l = 0; l < points_[q].of_test.size(); ++l)
         for (const Weight& w : points_[q].of_test[l])
@@ -309,7 +309,7 @@ int JetFamily::add_own(std::span<const double> numbers) {
 }
 
 bool JetFamily::adds_to(const Point& point, std::span<const int> equations) const {
-  return std::ranges::any_of(equations, [&](int i) { return !point.of_test[at(i / d_)].empty(); });
+  return std::ranges::any_of(equations, [&](int i) { return !point.of_test[i / d_].empty(); });
 }
 
 /// r of a batch that is one stencil in all lanes: mechanics, and elements of few cells. Its points stand side by side in one
@@ -322,7 +322,7 @@ bool JetFamily::residual_of_one(const StencilBatch& batch, std::span<const int> 
       differences += abs(Pack::load(values + i * lanes) - values[i * lanes]);
   if (detail::any_above(differences, 0)) return false;
   const auto increment = [&](int i) {
-    const int from = first_[at(i / d_)] * d_ + i % d_;
+    const int from = first_[i / d_] * d_ + i % d_;
     return (batch.y[i * lanes] - batch.y[from * lanes]) + (batch.low[i * lanes] - batch.low[from * lanes]);
   };
 
@@ -333,7 +333,7 @@ bool JetFamily::residual_of_one(const StencilBatch& batch, std::span<const int> 
   fill_zero(r, static_cast<int>(equations.size()) * lanes);
   thread_local std::vector<int> place;  // of a value, or a sum, among the equations
   place.assign(values_.size() + sums_.size(), -1);
-  for (std::size_t e = 0; e < equations.size(); ++e) place[at(equations[e])] = static_cast<int>(e);
+  for (std::size_t e = 0; e < equations.size(); ++e) place[equations[e]] = static_cast<int>(e);
   for (const Lanes& points : across_points_) {
     fill_zero(jets[0], m * lanes);
     for (const auto& [slot, vertex, weight] : points.jets)
@@ -346,7 +346,7 @@ bool JetFamily::residual_of_one(const StencilBatch& batch, std::span<const int> 
     of_.density->gradient({lanes, jets.data(), batch.cell.t, batch.x}, g.data());
     for (const auto& [slot, vertex, weight] : points.tests)
       for (int a = 0; a < d_; ++a) {
-        const int e = place[at(vertex * d_ + a)];
+        const int e = place[vertex * d_ + a];
         if (e < 0) continue;
         double* const to = r + static_cast<std::ptrdiff_t>(e) * lanes;
         (Pack::load(to) + (area * scales[at(slot)]) * (weight * Pack::load(g[slot * d_ + a]))).store(to);
@@ -373,7 +373,7 @@ void JetFamily::residual(const StencilBatch& batch, std::span<const int> equatio
       of_.density->gradient(jets.at_point(p, first, count), g.data());
       // r += |Δ| w_q M_qᵀ ∂ℓ/∂j
       for (std::size_t e = 0; e < equations.size(); ++e)
-        for (const auto& [slot, weight, own] : points_[q].of_test[at(equations[e] / d_)])
+        for (const auto& [slot, weight, own] : points_[q].of_test[equations[e] / d_])
           add(r + static_cast<std::ptrdiff_t>(e) * batch.count + first,
               jets.area * p.weight * jets.scales[at(slot)] * weight, {jets.own(p.own.weight), jets.own(own)},
               g[slot * d_ + equations[e] % d_], count);
@@ -401,8 +401,8 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
           double* const to =
               J + (static_cast<std::ptrdiff_t>(e) * columns + static_cast<std::ptrdiff_t>(u)) * batch.count + first;
           const int a = equations[e] % d_, b = unknowns[u] % d_;
-          for (const Weight& left : points_[q].of_test[at(equations[e] / d_)])
-            for (const Weight& right : points_[q].of_vertex[at(unknowns[u] / d_)]) {
+          for (const Weight& left : points_[q].of_test[equations[e] / d_])
+            for (const Weight& right : points_[q].of_vertex[unknowns[u] / d_]) {
               const int row = left.slot * d_ + a, column = right.slot * d_ + b;
               if (of_.density->is_zero(row, column)) continue;
               add(to,
@@ -417,11 +417,11 @@ void JetFamily::jacobian(const StencilBatch& batch, std::span<const int> equatio
 
 bool JetFamily::is_constant(int i, int m) const {
   for (const Point& point : points_)
-    for (const Weight& left : point.of_test[at(i / d_)])
-      for (const Weight& right : point.of_vertex[at(m / d_)]) {
+    for (const Weight& left : point.of_test[i / d_])
+      for (const Weight& right : point.of_vertex[m / d_]) {
         const int row = left.slot * d_ + i % d_, column = right.slot * d_ + m % d_;
         if (has_sources_ && row < d_ && column < d_ ? !of_.density->is_zero(row, column)
-                                                     : !of_.density->is_constant(row, column))
+                                                    : !of_.density->is_constant(row, column))
           return false;
       }
   return true;
@@ -432,22 +432,22 @@ std::optional<ConstantPart> JetFamily::constant_part(const Cell& cell) const {
   const int n = size(), m = of_.density->variables();
   const auto scales = slot_scales(cell);
   const double area = of_.table.measure * cell.time_step * cell.space_step;
-  ConstantPart part{std::vector<double>(at(n * n), 0.0), std::vector<double>(at(n), 0.0),
+  ConstantPart part{std::vector<double>(n * n, 0.0), std::vector<double>(n, 0.0),
                     of_.density->nonlinearity() == Nonlinearity::none && !has_sources_};
   const auto hessian = [&](int row, int column) {
-    return has_sources_ && row < d_ && column < d_ ? 0.0 : of_.density->constant_hessian()[at(row * m + column)];
+    return has_sources_ && row < d_ && column < d_ ? 0.0 : of_.density->constant_hessian()[row * m + column];
   };
   const auto own = [&](int number) { return own_number(number, cell.stencil); };
   for (std::size_t q = 0; q < points_.size(); ++q) {
     const double w = area * of_.table.points[q].weight * own(of_.table.points[q].own.weight);
     for (const int i : points_[q].values)
-      for (const Weight& left : points_[q].of_test[at(i / d_)]) {
+      for (const Weight& left : points_[q].of_test[i / d_]) {
         const double to = w * scales[at(left.slot)] * left.weight * own(left.own);
         const int row = left.slot * d_ + i % d_;
-        if (!(has_sources_ && row < d_)) part.r0[at(i)] += to * of_.density->constant_gradient()[at(row)];
+        if (!(has_sources_ && row < d_)) part.r0[i] += to * of_.density->constant_gradient()[row];
         for (const int k : points_[q].values)
-          for (const Weight& right : points_[q].of_vertex[at(k / d_)])
-            part.J[at(i * n + k)] +=
+          for (const Weight& right : points_[q].of_vertex[k / d_])
+            part.J[i * n + k] +=
                 to * scales[at(right.slot)] * right.weight * own(right.own) * hessian(row, right.slot * d_ + k % d_);
       }
   }
@@ -471,14 +471,14 @@ void JetFamily::find_sources() {
                return e.vertex == f.vertex && e.weight == f.weight;
              });
     };
-    const auto group = static_cast<std::size_t>(std::ranges::find_if(representatives, same) - representatives.begin());
+    const std::size_t group = std::ranges::find_if(representatives, same) - representatives.begin();
     if (group == representatives.size()) {
       representatives.push_back(&p);
       SourceTerms::Group made{.inputs = {}, .time = p.time, .space = p.space, .own = p.own.weight};
       for (int a = 0; a < d_; ++a) {
         SourceTerms::QuadratureValue value;
         for (const auto& [vertex, weight] : p[JetSlot::phi])
-          value.push_back({pattern_.vertices[at(vertex)], pattern_.vertices[at(vertex)].node * d_ + a, weight});
+          value.push_back({pattern_.vertices[vertex], pattern_.vertices[vertex].node * d_ + a, weight});
         made.inputs.push_back(std::move(value));
       }
       sources_.groups.push_back(std::move(made));

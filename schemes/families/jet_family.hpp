@@ -39,9 +39,7 @@ class JetFamily final : public StencilFamily {
   std::optional<ConstantPart> constant_part(const Cell&) const override;
 
   const SourceTerms* sources() const override;
-  double own_number(int number, int stencil) const override {
-    return number < 0 ? 1 : own_.numbers[static_cast<std::size_t>(number)][static_cast<std::size_t>(stencil)];
-  }
+  double own_number(int number, int stencil) const override { return number < 0 ? 1 : own_.numbers[number][stencil]; }
   void evaluate_sources(int group, const JetBatch& inputs, double* const* g) const override;
   void differentiate_sources(int group, const JetBatch& inputs, double* const* d) const override;
 

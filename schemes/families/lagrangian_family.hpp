@@ -10,6 +10,7 @@
 #include "jets/numbers/structure.hpp"
 #include "jets/stencil_lagrangian.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/stencil_family.hpp"
 
 namespace delf {
@@ -28,7 +29,7 @@ class LagrangianFamily final : public StencilFamily {
       reads_low_ = sums_vanish_ = true;
       first_.assign(values_.size(), -1);
       for (const std::vector<int>& column : sums_)
-        for (const int i : column) first_[at(i)] = column.front();
+        for (const int i : column) first_[i] = column.front();
     }
   }
 
@@ -47,7 +48,7 @@ class LagrangianFamily final : public StencilFamily {
     for (int s = 0; s < batch.count; ++s) {
       Cell cell = batch.cell;
       cell.x = batch.x[s];
-      for (int i = 0; i < size(); ++i) y[at(i)] = batch.y[i * batch.count + s];
+      for (int i = 0; i < size(); ++i) y[i] = batch.y[i * batch.count + s];
       values[s] = lagrangian_(std::span<const double>(y), cell);
     }
     return true;
@@ -74,18 +75,18 @@ class LagrangianFamily final : public StencilFamily {
     const std::span<const int> rows = by_unknown ? unknowns : equations, columns = by_unknown ? equations : unknowns;
     for (std::size_t first = 0; first < columns.size(); first += chunk) {
       const std::size_t last = std::min(first + chunk, columns.size());
-      for (std::size_t m = first; m < last; ++m) y[at(columns[m])].value.d[m - first] = Pack(1.0);
+      for (std::size_t m = first; m < last; ++m) y[columns[m]].value.d[m - first] = Pack(1.0);
       for (std::size_t i = 0; i < rows.size(); ++i) {
-        y[at(rows[i])].d[0].value = Pack(1.0);
+        y[rows[i]].d[0].value = Pack(1.0);
         for (int s = 0; s < batch.count; s += lanes) {
-          for (int n = 0; n < size(); ++n) y[at(n)].value.value = Pack::load(batch.y + n * batch.count + s);
+          for (int n = 0; n < size(); ++n) y[n].value.value = Pack::load(batch.y + n * batch.count + s);
           const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
           for (std::size_t m = first; m < last; ++m)
             value.d[0].d[m - first].store(J + (by_unknown ? m * U + i : i * U + m) * at(batch.count) + at(s));
         }
-        y[at(rows[i])].d[0].value = Pack(0.0);
+        y[rows[i]].d[0].value = Pack(0.0);
       }
-      for (std::size_t m = first; m < last; ++m) y[at(columns[m])].value.d[m - first] = Pack(0.0);
+      for (std::size_t m = first; m < last; ++m) y[columns[m]].value.d[m - first] = Pack(0.0);
     }
   }
   /// The second derivatives that the form of L alone proves constant.
@@ -100,8 +101,8 @@ class LagrangianFamily final : public StencilFamily {
     residual(cell, zero, part.r0);
     for (int i = 0; i < size(); ++i)
       for (int m = 0; m < size(); ++m) {
-        double& value = part.J[at(i * size() + m)];
-        const auto has = [&](const auto& bits) { return (bits[at(i)] >> m & 1u) != 0; };
+        double& value = part.J[i * size() + m];
+        const auto has = [&](const auto& bits) { return (bits[i] >> m & 1u) != 0; };
         if (has(form.varying)) part.is_all = false;
         if (has(form.varying) || !has(form.nonzero)) value = 0;
         if (!std::isfinite(value)) return std::nullopt;
@@ -113,7 +114,6 @@ class LagrangianFamily final : public StencilFamily {
   }
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   /// ∂L/∂y of some values for every pack of stencils, `width` of them a sweep.
   template <std::size_t width>
   [[gnu::__flatten__]] void slopes(const StencilBatch& batch, std::span<const int> equations, double* r) const {
@@ -122,19 +122,19 @@ class LagrangianFamily final : public StencilFamily {
     y.assign(values_.size(), Number(0.0));
     for (std::size_t first = 0; first < equations.size(); first += width) {
       const std::size_t last = std::min(first + width, equations.size());
-      for (std::size_t e = first; e < last; ++e) y[at(equations[e])].d[e - first] = Pack(1.0);
+      for (std::size_t e = first; e < last; ++e) y[equations[e]].d[e - first] = Pack(1.0);
       for (int s = 0; s < batch.count; s += lanes) {
-        for (int i = 0; i < size(); ++i) y[at(i)].value = load(batch, i, s);
+        for (int i = 0; i < size(); ++i) y[i].value = load(batch, i, s);
         const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
         for (std::size_t e = first; e < last; ++e) value.d[e - first].store(r + e * at(batch.count) + at(s));
       }
-      for (std::size_t e = first; e < last; ++e) y[at(equations[e])].d[e - first] = Pack(0.0);
+      for (std::size_t e = first; e < last; ++e) y[equations[e]].d[e - first] = Pack(0.0);
     }
   }
   /// Value i of a pack of stencils, counted from the first of its column: L depends on such differences alone.
   Pack load(const StencilBatch& batch, int i, int s) const {
     const auto of = [&](const double* values, int n) { return Pack::load(values + n * batch.count + s); };
-    const int from = batch.low == nullptr ? -1 : first_[at(i)];
+    const int from = batch.low == nullptr ? -1 : first_[i];
     if (from < 0) return of(batch.y, i);
     return (of(batch.y, i) - of(batch.y, from)) + (of(batch.low, i) - of(batch.low, from));
   }

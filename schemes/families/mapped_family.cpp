@@ -7,11 +7,10 @@
 #include <tuple>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// y = Σ w x, `count` numbers; x = row(value).
 template <class Row>
@@ -65,20 +64,20 @@ MappedFamily::MappedFamily(std::shared_ptr<const StencilFamily> family, const Ma
   const auto fill = [&](const std::vector<Sum>& sums, std::vector<std::vector<Entry>>& entries) {
     for (std::size_t value = 0; value < sums.size(); ++value)
       for (const Part& p : sums[value])
-        if (p.weight != 0) entries[at(number_of(p))].push_back({static_cast<int>(value), p.weight});
+        if (p.weight != 0) entries[number_of(p)].push_back({static_cast<int>(value), p.weight});
   };
   fill(map.reads, reads_);
   fill(map.tests.empty() ? map.reads : map.tests, tests_);
-  map_.resize(at(family_->size()));
+  map_.resize(family_->size());
   for (int i = 0; i < size(); ++i)
-    for (const auto& [value, weight] : reads_[at(i)]) map_[at(value)].push_back({i, weight});
+    for (const auto& [value, weight] : reads_[i]) map_[value].push_back({i, weight});
   for (const auto& entries : tests_) varied_.push_back(!entries.empty());
   find_rates();
   if (!map.cell) return;
   cell_.time = map.time;
   for (int i = 0; i < size(); ++i) {
     double weight = 0;
-    for (const Entry& entry : reads_[at(i)])
+    for (const Entry& entry : reads_[i])
       weight += entry.value == map.cell->second ? entry.weight : entry.value == map.cell->first ? -entry.weight : 0.0;
     if (weight != 0) cell_.width.push_back({i, weight});
   }
@@ -98,18 +97,18 @@ void MappedFamily::find_rates() {
     reads_low_ = true;
     int own = columns;
     for (const Entry& entry : row)
-      if (column[at(entry.value)] >= 0) own = column[at(entry.value)];
-    for (const Entry& entry : row) column[at(entry.value)] = own;
+      if (column[entry.value] >= 0) own = column[entry.value];
+    for (const Entry& entry : row) column[entry.value] = own;
     columns = std::max(columns, own + 1);
   }
   for (int c = 0; c < columns; ++c) {
     std::vector<int> members;
     std::vector<double> sum(map_.size(), 0.0), absolute = sum;
     for (int i = 0; i < size(); ++i) {
-      if (column[at(i)] != c) continue;
+      if (column[i] != c) continue;
       members.push_back(i);
-      for (const Entry& entry : tests_[at(i)])
-        sum[at(entry.value)] += entry.weight, absolute[at(entry.value)] += std::abs(entry.weight);
+      for (const Entry& entry : tests_[i])
+        sum[entry.value] += entry.weight, absolute[entry.value] += std::abs(entry.weight);
     }
     sums_.push_back(std::move(members)), tests_.emplace_back();
     for (std::size_t value = 0; value < sum.size(); ++value)
@@ -120,7 +119,7 @@ void MappedFamily::find_rates() {
 
 int MappedFamily::number_of(const Part& p) const {
   for (int i = 0; i < size(); ++i)
-    if (site(i) == p.site && values_[at(i)].component == p.component) return i;
+    if (site(i) == p.site && values_[i].component == p.component) return i;
   return -1;
 }
 
@@ -129,8 +128,8 @@ struct MappedFamily::Mapped {
   Mapped(const MappedFamily& of, const StencilBatch& batch) : y(of.family_->size(), batch.count) {
     const auto own = [&](int i) { return batch.y + static_cast<std::ptrdiff_t>(i) * batch.count; };
     for (int b = 0; b < of.family_->size(); ++b)
-      if (batch.low != nullptr && of.is_rate_[at(b)] != 0) add_increments(of.map_[at(b)], batch, y[b]);
-      else sum(of.map_[at(b)], own, batch.count, y[b]);
+      if (batch.low != nullptr && of.is_rate_[b] != 0) add_increments(of.map_[b], batch, y[b]);
+      else sum(of.map_[b], own, batch.count, y[b]);
     inner = {batch.cell, batch.count, batch.x, y[0]};
   }
   /// Σ w (y − y₀), y₀ the first of them.
@@ -149,12 +148,12 @@ struct MappedFamily::Mapped {
   /// The numbers met, ascending; `place` is where each stands among them.
   static void meet(const std::vector<std::vector<Entry>>& entries, std::span<const int> own, std::vector<int>& numbers,
                    std::vector<int>& place, int size) {
-    place.assign(at(size), -1);
+    place.assign(size, -1);
     numbers.clear();
     for (const int i : own)
-      for (const Entry& entry : entries[at(i)]) place[at(entry.value)] = 0;
+      for (const Entry& entry : entries[i]) place[entry.value] = 0;
     for (int b = 0; b < size; ++b)
-      if (place[at(b)] == 0) place[at(b)] = static_cast<int>(numbers.size()), numbers.push_back(b);
+      if (place[b] == 0) place[b] = static_cast<int>(numbers.size()), numbers.push_back(b);
   }
 
   ScratchRows y;
@@ -168,8 +167,8 @@ void MappedFamily::residual(const StencilBatch& batch, std::span<const int> equa
   const ScratchRows inner(static_cast<int>(rows.size()), batch.count);
   if (!rows.empty()) family_->residual(mapped.inner, rows, inner[0]);
   for (std::size_t e = 0; e < equations.size(); ++e)
-    sum(tests_[at(equations[e])], [&](int value) { return inner[place[at(value)]]; }, batch.count,
-        r + e * at(batch.count));
+    sum(
+        tests_[equations[e]], [&](int value) { return inner[place[value]]; }, batch.count, r + e * at(batch.count));
 }
 
 void MappedFamily::jacobian(const StencilBatch& batch, std::span<const int> equations, std::span<const int> unknowns,
@@ -184,11 +183,13 @@ void MappedFamily::jacobian(const StencilBatch& batch, std::span<const int> equa
   if (R > 0 && C > 0) family_->jacobian(mapped.inner, rows, columns, inner[0]);
   for (int r = 0; r < R; ++r)
     for (int u = 0; u < U; ++u)
-      sum(reads_[at(unknowns[at(u)])], [&](int value) { return inner[r * C + column_place[at(value)]]; }, batch.count,
+      sum(
+          reads_[unknowns[u]], [&](int value) { return inner[r * C + column_place[value]]; }, batch.count,
           by_own[r * U + u]);
   for (std::size_t e = 0; e < equations.size(); ++e)
     for (int u = 0; u < U; ++u)
-      sum(tests_[at(equations[e])], [&](int value) { return by_own[row_place[at(value)] * U + u]; }, batch.count,
+      sum(
+          tests_[equations[e]], [&](int value) { return by_own[row_place[value] * U + u]; }, batch.count,
           J + (e * unknowns.size() + at(u)) * at(batch.count));
 }
 
@@ -202,13 +203,12 @@ std::optional<ConstantPart> MappedFamily::constant_part(const Cell& cell) const 
   const auto inner = family_->constant_part(cell);
   if (!inner) return std::nullopt;
   const int n = size(), m = family_->size();
-  ConstantPart part{std::vector<double>(at(n * n)), std::vector<double>(at(n)), inner->is_all};
+  ConstantPart part{std::vector<double>(n * n), std::vector<double>(n), inner->is_all};
   for (int i = 0; i < n; ++i)
-    for (const auto& [row, left] : tests_[at(i)]) {
-      part.r0[at(i)] += left * inner->r0[at(row)];
+    for (const auto& [row, left] : tests_[i]) {
+      part.r0[i] += left * inner->r0[row];
       for (int k = 0; k < n; ++k)
-        for (const auto& [column, right] : reads_[at(k)])
-          part.J[at(i * n + k)] += left * right * inner->J[at(row * m + column)];
+        for (const auto& [column, right] : reads_[k]) part.J[i * n + k] += left * right * inner->J[row * m + column];
     }
   return part;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "lattice/index.hpp"
 #include "schemes/families/equidistribution.hpp"
 #include "schemes/families/stencil_family.hpp"
 
@@ -32,8 +33,7 @@ struct MeshConstraint {
     if (monitor.kind != MeshMonitor::Kind::arclength) return std::nullopt;
     const auto rise = [&](std::size_t i) {
       double square = 0;
-      for (std::size_t a = 0; a < static_cast<std::size_t>(d); ++a)
-        square += std::pow(y[(i + 1) * stride + a] - y[i * stride + a], 2);
+      for (std::size_t a = 0; a < at(d); ++a) square += std::pow(y[(i + 1) * stride + a] - y[i * stride + a], 2);
       return square;
     };
     double most = 0, filled = 0;

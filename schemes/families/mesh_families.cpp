@@ -9,13 +9,13 @@
 
 #include "jets/tables/cell_points.hpp"
 #include "jets/tables/table_product.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
 
 namespace delf {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-std::size_t at(JetSlot slot) { return static_cast<std::size_t>(slot); }
+std::size_t at(JetSlot slot) { return delf::at(slot); }
 
 bool couples_gradient(const BatchDensity& density) {
   const int d = density.components();
@@ -41,9 +41,9 @@ std::shared_ptr<const StencilFamily> on_sites(const StencilTable& time,
   std::iota(all.begin(), all.end(), 0);
   std::vector<double> places;
   for (const Mesh::Point& p : mesh.points) places.push_back(p[0]);
-  return std::make_shared<JetFamily>(product(time, site_space()), density, values_are_sources,
-                                     OwnWeights{std::make_shared<ListedStencils>(1, std::move(all), sites),
-                                                {lumped_masses(mesh), std::move(places)}});
+  return std::make_shared<JetFamily>(
+      product(time, site_space()), density, values_are_sources,
+      OwnWeights{std::make_shared<ListedStencils>(1, std::move(all), sites), {lumped_masses(mesh), std::move(places)}});
 }
 
 /// The cells of so many corners; null if there are none. The numbers of a cell are, point after point, its measure and its
@@ -71,7 +71,7 @@ std::shared_ptr<const StencilFamily> on_cells(const StencilTable& time,
     for (const CellPoint& q : cell_points(mesh, c)) {
       const auto measure = static_cast<int>(numbers.size());
       double place = 0;
-      for (int l = 0; l < corners; ++l) place += q.value[at(l)] * mesh.points[at(cell[at(l)])][0];
+      for (int l = 0; l < corners; ++l) place += q.value[l] * mesh.points[cell[l]][0];
       numbers.insert(numbers.end(), {q.weight, place});
       numbers.insert(numbers.end(), q.value.begin(), q.value.end());
       for (const std::vector<double>& slope : q.slopes) {

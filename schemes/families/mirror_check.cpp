@@ -21,7 +21,7 @@ bool has_mirror_images(const BatchDensity& density, Mirror mirror, std::span<con
   const double t = some(random);
   for (int i = 0; i < trials; ++i) {
     x[0][i] = some(random);
-    for (int v = 0; v < m; ++v) jets[v][i] = (v < d ? wall[static_cast<std::size_t>(v)] : 0) + some(random);
+    for (int v = 0; v < m; ++v) jets[v][i] = (v < d ? wall[v] : 0) + some(random);
   }
   const auto even = [&](int first, const auto& image) {
     for (int v = 0; v < m; ++v)
@@ -33,8 +33,7 @@ bool has_mirror_images(const BatchDensity& density, Mirror mirror, std::span<con
     return true;
   };
   if (!even(2, [](int, double phi_x) { return -phi_x; })) return false;
-  return mirror == Mirror::even ||
-         even(0, [&](int a, double phi) { return 2 * wall[static_cast<std::size_t>(a)] - phi; });
+  return mirror == Mirror::even || even(0, [&](int a, double phi) { return 2 * wall[a] - phi; });
 }
 
 }  // namespace delf

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 
 namespace delf {
@@ -18,16 +19,18 @@ template <StencilLagrangian L>
 class RateFamily final : public StencilFamily {
  public:
   explicit RateFamily(L lagrangian)
-      : StencilFamily(StencilPattern({{0, 0}}), list_values(lagrangian), true), m_(size() / 2), lagrangian_(lagrangian),
+      : StencilFamily(StencilPattern({{0, 0}}), list_values(lagrangian), true),
+        m_(size() / 2),
+        lagrangian_(lagrangian),
         of_(std::move(lagrangian)) {}
 
   using StencilFamily::jacobian;
   using StencilFamily::lagrangian;
   using StencilFamily::residual;
   bool lagrangian(const StencilBatch& batch, double* values) const override {
-    std::vector<Along> y(at(m_));
+    std::vector<Along> y(m_);
     for (int s = 0; s < batch.count; s += lanes) {
-      for (int i = 0; i < m_; ++i) y[at(i)] = along(batch, i, s);
+      for (int i = 0; i < m_; ++i) y[i] = along(batch, i, s);
       lagrangian_(std::span<const Along>(y), batch.cell).d[0].store(values + s);
     }
     return true;
@@ -42,7 +45,7 @@ class RateFamily final : public StencilFamily {
     constexpr int chunk = 4;
     using Number = Dual<Dual<Along, chunk>, 1>;
     thread_local std::vector<Number> y;
-    y.assign(at(m_), Number(0.0));
+    y.assign(m_, Number(0.0));
     std::fill_n(J, equations.size() * unknowns.size() * at(batch.count), 0.0);
     thread_local std::vector<int> as_equation, as_unknown;
     find(equations, as_equation), find(unknowns, as_unknown);
@@ -50,40 +53,38 @@ class RateFamily final : public StencilFamily {
       for (int first = 0; first < m_; first += chunk) {
         const int last = std::min(first + chunk, m_);
         if (!meets(equations, row, row + 1) || !meets(unknowns, first, last)) continue;
-        y[at(row)].d[0].value = Along(1.0);
-        for (int i = first; i < last; ++i) y[at(i)].value.d[at(i - first)] = Along(1.0);
+        y[row].d[0].value = Along(1.0);
+        for (int i = first; i < last; ++i) y[i].value.d[i - first] = Along(1.0);
         for (int s = 0; s < batch.count; s += lanes) {
-          for (int i = 0; i < m_; ++i) y[at(i)].value.value = along(batch, i, s);
+          for (int i = 0; i < m_; ++i) y[i].value.value = along(batch, i, s);
           const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
           const auto store = [&](int equation, int unknown, Pack entry) {
-            const int e = as_equation[at(equation)], u = as_unknown[at(unknown)];
+            const int e = as_equation[equation], u = as_unknown[unknown];
             if (e >= 0 && u >= 0) entry.store(J + (at(e) * unknowns.size() + at(u)) * at(batch.count) + at(s));
           };
           for (int i = first; i < last; ++i) {
-            const Along& entry = value.d[0].d[at(i - first)];
+            const Along& entry = value.d[0].d[i - first];
             store(row, i, entry.d[0]), store(row, m_ + i, entry.value), store(m_ + row, i, entry.value);
           }
         }
-        y[at(row)].d[0].value = Along(0.0);
-        for (int i = first; i < last; ++i) y[at(i)].value.d[at(i - first)] = Along(0.0);
+        y[row].d[0].value = Along(0.0);
+        for (int i = first; i < last; ++i) y[i].value.d[i - first] = Along(0.0);
       }
   }
   /// Entries proved constant in ∂²L are constant in ∂²L̇/∂y∂ẏ.
   std::optional<ConstantPart> constant_part(const Cell& cell) const override {
     const auto of = of_.constant_part(cell);
     if (!of) return std::nullopt;
-    ConstantPart part{std::vector<double>(at(size() * size())), std::vector<double>(at(size())), of->is_all};
+    ConstantPart part{std::vector<double>(size() * size()), std::vector<double>(size()), of->is_all};
     for (int i = 0; i < m_; ++i) {
-      part.r0[at(m_ + i)] = of->r0[at(i)];
-      for (int j = 0; j < m_; ++j)
-        part.J[at((m_ + i) * size() + j)] = part.J[at(j * size() + m_ + i)] = of->J[at(i * m_ + j)];
+      part.r0[m_ + i] = of->r0[i];
+      for (int j = 0; j < m_; ++j) part.J[(m_ + i) * size() + j] = part.J[j * size() + m_ + i] = of->J[i * m_ + j];
     }
     return part;
   }
 
  private:
   using Along = Dual<Pack, 1>;  // by ε
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   static std::vector<VertexValue> list_values(const L& lagrangian) {
     std::vector<VertexValue> list;
     for (int i = 0; i < 2 * static_cast<int>(lagrangian.values().size()); ++i) list.push_back({0, i});
@@ -98,7 +99,7 @@ class RateFamily final : public StencilFamily {
   /// Finds the places of values in a list; −1: not in it.
   void find(std::span<const int> list, std::vector<int>& place) const {
     place.assign(values_.size(), -1);
-    for (std::size_t n = 0; n < list.size(); ++n) place[at(list[n])] = static_cast<int>(n);
+    for (std::size_t n = 0; n < list.size(); ++n) place[list[n]] = static_cast<int>(n);
   }
   /// True if values of L, or their rates, are in a list.
   bool meets(std::span<const int> list, int first, int last) const {
@@ -111,15 +112,15 @@ class RateFamily final : public StencilFamily {
     for (int first = 0; first < m_; first += width) {
       const int last = std::min(first + width, m_);
       if (!meets(equations, first, last)) continue;
-      y.assign(at(m_), Number(0.0));
-      for (int i = first; i < last; ++i) y[at(i)].d[at(i - first)] = Along(1.0);
+      y.assign(m_, Number(0.0));
+      for (int i = first; i < last; ++i) y[i].d[i - first] = Along(1.0);
       for (int s = 0; s < batch.count; s += lanes) {
-        for (int i = 0; i < m_; ++i) y[at(i)].value = along(batch, i, s);
+        for (int i = 0; i < m_; ++i) y[i].value = along(batch, i, s);
         const Number value = lagrangian_(std::span<const Number>(y), batch.cell);
         for (std::size_t e = 0; e < equations.size(); ++e) {
           const int i = equations[e] % m_;
           if (i < first || i >= last) continue;
-          const Along& slope = value.d[at(i - first)];
+          const Along& slope = value.d[i - first];
           (equations[e] < m_ ? slope.d[0] : slope.value).store(r + e * at(batch.count) + at(s));
         }
       }

@@ -5,14 +5,9 @@
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 ResidualFamily::ResidualFamily(DirectResidual stencil, std::shared_ptr<const BatchDensity> density)
     : StencilFamily(stencil.pattern, values_at_every_vertex(stencil.pattern, density->components()), false),
       stencil_(std::move(stencil)),
@@ -21,7 +16,7 @@ ResidualFamily::ResidualFamily(DirectResidual stencil, std::shared_ptr<const Bat
   if (!density_->has_difference_quotient())
     throw BadInput("theory.name", "a comparator needs a density that declares a difference quotient of its potential");
   if (is_linear()) return;
-  const auto vertex = [this](int l) { return pattern_.vertices[at(l)]; };
+  const auto vertex = [this](int l) { return pattern_.vertices[l]; };
   // Q of the first pair; the others are that of the stencil that is anchored where they have moved to.
   const DirectResidual::Quotient& first = stencil_.quotients[0];
   SourceTerms::Group group;
@@ -29,7 +24,7 @@ ResidualFamily::ResidualFamily(DirectResidual stencil, std::shared_ptr<const Bat
     for (int a = 0; a < d_; ++a) group.inputs.push_back({{vertex(l), a, 1.0}});
   sources_.groups = {std::move(group)};
   sources_.outputs_per_group = d_;
-  sources_.weights.assign(at(d_ * size()), 0.0);
+  sources_.weights.assign(d_ * size(), 0.0);
   for (const DirectResidual::Quotient& q : stencil_.quotients) {
     const Site of = vertex(stencil_.centre) - (vertex(q.above) - vertex(first.above));
     const auto l = std::ranges::find(pattern_.vertices, of) - pattern_.vertices.begin();
@@ -39,15 +34,15 @@ ResidualFamily::ResidualFamily(DirectResidual stencil, std::shared_ptr<const Bat
 
 double ResidualFamily::linear(const Cell& cell, int l) const {
   const double h = cell.time_step, k = cell.space_step;
-  const double by_t = stencil_.by_t.empty() ? 0 : stencil_.by_t[at(l)];
-  return stencil_.by_xx[at(l)] * h / k - stencil_.by_tt[at(l)] * k / h + by_t * k;
+  const double by_t = stencil_.by_t.empty() ? 0 : stencil_.by_t[l];
+  return stencil_.by_xx[l] * h / k - stencil_.by_tt[l] * k / h + by_t * k;
 }
 
 void ResidualFamily::residual(const StencilBatch& batch, std::span<const int> equations, double* r) const {
   const int n = batch.count;
   const double hk = batch.cell.time_step * batch.cell.space_step;
   const ScratchRows q(d_, n), sums(d_, n);
-  std::vector<const double*> inputs(at(2 * d_));
+  std::vector<const double*> inputs(2 * d_);
   double* const E = sums[0];
   std::fill_n(E, d_ * n, 0.0);
   for (int l = 0; l < pattern_.size(); ++l)
@@ -55,8 +50,8 @@ void ResidualFamily::residual(const StencilBatch& batch, std::span<const int> eq
       for (int i = 0; i < d_ * n; ++i) E[i] += w * batch.y[static_cast<std::ptrdiff_t>(l * d_) * n + i];
   for (const DirectResidual::Quotient& quotient : stencil_.quotients) {
     for (int a = 0; a < d_; ++a) {
-      inputs[at(a)] = batch.y + static_cast<std::ptrdiff_t>(quotient.above * d_ + a) * n;
-      inputs[at(d_ + a)] = batch.y + static_cast<std::ptrdiff_t>(quotient.below * d_ + a) * n;
+      inputs[a] = batch.y + static_cast<std::ptrdiff_t>(quotient.above * d_ + a) * n;
+      inputs[d_ + a] = batch.y + static_cast<std::ptrdiff_t>(quotient.below * d_ + a) * n;
     }
     density_->difference_quotient({n, inputs.data()}, q.data());
     for (int a = 0; a < d_; ++a)
@@ -73,7 +68,7 @@ void ResidualFamily::jacobian(const StencilBatch& batch, std::span<const int> eq
   const int n = batch.count;
   const double hk = batch.cell.time_step * batch.cell.space_step;
   const ScratchRows slopes(d_ * 2 * d_, n);
-  std::vector<const double*> inputs(at(2 * d_));
+  std::vector<const double*> inputs(2 * d_);
   const auto columns = static_cast<std::ptrdiff_t>(unknowns.size());
   std::fill_n(J, static_cast<std::ptrdiff_t>(equations.size()) * columns * n, 0.0);
   // The entries of J that are asked for, as E of component a has them for value l·d + b.
@@ -89,8 +84,8 @@ void ResidualFamily::jacobian(const StencilBatch& batch, std::span<const int> eq
   });
   for (const DirectResidual::Quotient& quotient : stencil_.quotients) {
     for (int a = 0; a < d_; ++a) {
-      inputs[at(a)] = batch.y + static_cast<std::ptrdiff_t>(quotient.above * d_ + a) * n;
-      inputs[at(d_ + a)] = batch.y + static_cast<std::ptrdiff_t>(quotient.below * d_ + a) * n;
+      inputs[a] = batch.y + static_cast<std::ptrdiff_t>(quotient.above * d_ + a) * n;
+      inputs[d_ + a] = batch.y + static_cast<std::ptrdiff_t>(quotient.below * d_ + a) * n;
     }
     density_->differentiate_quotient({n, inputs.data()}, slopes.data());
     for_each_entry([&](double* to, int a, int l, int b) {
@@ -103,15 +98,15 @@ void ResidualFamily::jacobian(const StencilBatch& batch, std::span<const int> eq
 
 /// Difference quotients of a quadratic ℓ are linear.
 std::optional<ConstantPart> ResidualFamily::constant_part(const Cell& cell) const {
-  ConstantPart part{std::vector<double>(at(size() * size()), 0.0), std::vector<double>(at(size()), 0.0), is_linear()};
+  ConstantPart part{std::vector<double>(size() * size(), 0.0), std::vector<double>(size(), 0.0), is_linear()};
   if (is_linear()) {
-    const std::vector<double> zero(at(size()), 0.0);
+    const std::vector<double> zero(size(), 0.0);
     residual(cell, zero, part.r0);
     jacobian(cell, zero, part.J);
     return part;
   }
   for (int l = 0; l < pattern_.size(); ++l)
-    for (int a = 0; a < d_; ++a) part.J[at((stencil_.centre * d_ + a) * size() + l * d_ + a)] = linear(cell, l);
+    for (int a = 0; a < d_; ++a) part.J[(stencil_.centre * d_ + a) * size() + l * d_ + a] = linear(cell, l);
   return part;
 }
 

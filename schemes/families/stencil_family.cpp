@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
@@ -27,7 +29,7 @@ struct Alone {
 };
 
 std::vector<int> numbers_to(int n) {
-  std::vector<int> numbers(static_cast<std::size_t>(n));
+  std::vector<int> numbers(n);
   std::iota(numbers.begin(), numbers.end(), 0);
   return numbers;
 }
@@ -83,7 +85,7 @@ std::optional<double> StencilFamily::lagrangian(const Cell& cell, std::span<cons
 void StencilFamily::residual(const StencilBatch& batch, double* r) const { residual(batch, numbers_to(size()), r); }
 
 void StencilFamily::residual(const StencilBatch& batch, std::span<const int> equations, double* r) const {
-  const auto size = static_cast<std::size_t>(this->size()), count = static_cast<std::size_t>(batch.count);
+  const std::size_t size = this->size(), count = at(batch.count);
   std::vector<double> y(size), out(size);
   for (std::size_t s = 0; s < count; ++s) {
     Cell cell = batch.cell;
@@ -91,13 +93,13 @@ void StencilFamily::residual(const StencilBatch& batch, std::span<const int> equ
     if (batch.numbers != nullptr) cell.stencil = batch.numbers[s];
     for (std::size_t i = 0; i < size; ++i) y[i] = batch.y[i * count + s];
     residual(cell, y, out);
-    for (std::size_t e = 0; e < equations.size(); ++e) r[e * count + s] = out[static_cast<std::size_t>(equations[e])];
+    for (std::size_t e = 0; e < equations.size(); ++e) r[e * count + s] = out[equations[e]];
   }
 }
 
 void StencilFamily::jacobian(const StencilBatch& batch, std::span<const int> equations, std::span<const int> unknowns,
                              double* J) const {
-  const auto size = static_cast<std::size_t>(this->size()), count = static_cast<std::size_t>(batch.count);
+  const std::size_t size = this->size(), count = at(batch.count);
   std::vector<double> y(size), all(size * size);
   for (std::size_t s = 0; s < count; ++s) {
     Cell cell = batch.cell;
@@ -107,8 +109,7 @@ void StencilFamily::jacobian(const StencilBatch& batch, std::span<const int> equ
     jacobian(cell, y, all);
     for (std::size_t e = 0; e < equations.size(); ++e)
       for (std::size_t u = 0; u < unknowns.size(); ++u)
-        J[(e * unknowns.size() + u) * count + s] =
-            all[static_cast<std::size_t>(equations[e]) * size + static_cast<std::size_t>(unknowns[u])];
+        J[(e * unknowns.size() + u) * count + s] = all[at(equations[e]) * size + at(unknowns[u])];
   }
 }
 

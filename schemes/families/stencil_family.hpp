@@ -5,8 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "jets/discrete_lagrangian.hpp"
 #include "jets/batch_density.hpp"
+#include "jets/discrete_lagrangian.hpp"
+#include "lattice/index.hpp"
 #include "lattice/space/listed_stencils.hpp"
 #include "lattice/stencil_shape.hpp"
 
@@ -61,10 +62,7 @@ struct SourceTerms {
   std::vector<double> weights;
 
   int outputs() const { return static_cast<int>(groups.size()) * outputs_per_group; }
-  double weight(int output, int i) const {
-    return weights[static_cast<std::size_t>(output) * (weights.size() / static_cast<std::size_t>(outputs())) +
-                   static_cast<std::size_t>(i)];
-  }
+  double weight(int output, int i) const { return weights[at(output) * (weights.size() / at(outputs())) + at(i)]; }
 };
 
 /// One kind of stencil all over the lattice. A stencil carries one residual rⁱ for each value that it reads, ∂L/∂yⁱ
@@ -78,17 +76,17 @@ class StencilFamily {
   const std::vector<VertexValue>& values() const { return values_; }
   int size() const { return static_cast<int>(values_.size()); }
   /// The site of y[i], from the anchor.
-  Site site(int i) const {
-    return pattern_.vertices[static_cast<std::size_t>(values_[static_cast<std::size_t>(i)].vertex)];
-  }
+  Site site(int i) const { return pattern_.vertices[at(values_[i].vertex)]; }
   bool is_variational() const { return variational_; }
   /// r[i] enters the equation of y[i]. False for a value that is read but not varied: its equation is another family's.
-  bool is_varied(int i) const { return varied_.empty() || varied_[static_cast<std::size_t>(i)]; }
+  bool is_varied(int i) const { return varied_.empty() || varied_[i]; }
   bool is_placed() const { return placed_; }
   /// On a space where stencils do not repeat, those of a row. Null: one at every anchor of the pattern.
   const ListedStencils* listed() const { return listed_.get(); }
   /// The column where y[i] of a stencil lies: of the anchor in this column, beyond a circle's ends too, or of a number.
-  int column(int anchor, int i) const { return listed_ ? listed_->site(anchor, site(i).space) : anchor + site(i).space; }
+  int column(int anchor, int i) const {
+    return listed_ ? listed_->site(anchor, site(i).space) : anchor + site(i).space;
+  }
 
   /// True if derivatives in time are sums of differences of y + low, which lose no digits in a short step.
   bool reads_low() const { return reads_low_; }
@@ -136,7 +134,8 @@ class StencilFamily {
   virtual std::optional<double> lagrangian(const Cell&, std::span<const double> y) const;
 
  private:
-  void rows_of_jacobian(std::span<const int> equations, const Cell&, std::span<const double> y, std::span<double> J) const;
+  void rows_of_jacobian(std::span<const int> equations, const Cell&, std::span<const double> y,
+                        std::span<double> J) const;
 
  protected:
   StencilFamily(StencilPattern pattern, std::vector<VertexValue> values, bool variational)
@@ -154,7 +153,7 @@ class StencilFamily {
 inline std::vector<VertexValue> values_at_every_vertex(const StencilPattern& pattern, int d) {
   std::vector<VertexValue> values;
   for (int l = 0; l < pattern.size(); ++l)
-    for (int a = 0; a < d; ++a) values.push_back({l, pattern.vertices[static_cast<std::size_t>(l)].node * d + a});
+    for (int a = 0; a < d; ++a) values.push_back({l, pattern.vertices[l].node * d + a});
   return values;
 }
 

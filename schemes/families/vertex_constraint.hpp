@@ -19,7 +19,7 @@ concept Constrained = requires(const D& density, const JetFor<double, D>& j) {
 /// G(φ) = 0 at every site, with the multiplier λ there, which is component d:  L = λ G(φ). Its equations are G(φ) = 0,
 /// and −Σ ∂L/∂φ = λ ∂G/∂φ in those of φ, so that λ is hk times the multiplier of the continuous theory.
 template <class D>
-  requires Constrained<D>
+requires Constrained<D>
 struct VertexConstraint {
   static constexpr int d = components_of<D>();
   D density;
@@ -33,8 +33,8 @@ struct VertexConstraint {
   template <class T>
   T operator()(std::span<const T> y, const Cell&) const {
     FibreValue<T, d> phi;
-    for (int a = 0; a < d; ++a) component(phi, a) = y[static_cast<std::size_t>(a)];
-    return y[static_cast<std::size_t>(d)] * density.constraint(phi);
+    for (int a = 0; a < d; ++a) component(phi, a) = y[a];
+    return y[d] * density.constraint(phi);
   }
 };
 

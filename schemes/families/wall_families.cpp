@@ -10,6 +10,7 @@
 #include "jets/tables/mirror_table.hpp"
 #include "jets/tables/wall_tables.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
@@ -19,7 +20,7 @@ bool is_level(const BatchDensity& density, JetSlot slot) {
   if (density.is_even(static_cast<Reflection>(slot))) return true;
   const int d = density.components(), t = density.variables(), first = static_cast<int>(slot) * d;
   for (int a = first; a < first + d; ++a) {
-    if (density.constant_gradient()[static_cast<std::size_t>(a)] != 0) return false;
+    if (density.constant_gradient()[a] != 0) return false;
     for (int b = 0; b < t + 2; ++b)
       if ((b < first || b >= first + d) && !density.is_zero(a, b)) return false;
   }
@@ -53,10 +54,10 @@ bool has_three_columns(const StencilTable& table) {
 /// The term of a wall whose slope is not 0: each point reads the density at a jet of its own.
 void add_sloping(const MirrorTable& mirror, const std::shared_ptr<const BatchDensity>& density, const Lattice& lattice,
                  const std::vector<double>& slopes, std::vector<std::shared_ptr<const StencilFamily>>& families) {
-  const auto d = static_cast<std::size_t>(density->components());
+  const std::size_t d = density->components();
   for (std::size_t q = 0; q < mirror.table.points.size(); ++q) {
-    std::vector<double> by(static_cast<std::size_t>(density->variables()), 0.0);
-    for (std::size_t s = 0; s < static_cast<std::size_t>(density->slots()); ++s)
+    std::vector<double> by(density->variables(), 0.0);
+    for (std::size_t s = 0; s < at(density->slots()); ++s)
       for (std::size_t a = 0; a < d; ++a)
         by[s * d + a] = mirror.of_slope[q][s] * slopes[a] * std::pow(lattice.space_step(), 1 - slot_powers[s].space);
     StencilTable one = mirror.table;

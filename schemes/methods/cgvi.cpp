@@ -41,7 +41,7 @@ void add_constraints(SchemeParts& parts, const FieldTheory& theory, const TimeEl
     const std::vector<double> phi = keys.basis.values(point);
     nodes.push_back(static_cast<int>(std::ranges::max_element(phi) - phi.begin()));
     for (int j = 0; j <= last; ++j)
-      if (phi[static_cast<std::size_t>(j)] != (j == nodes.back() ? 1 : 0)) refuse();
+      if (phi[j] != (j == nodes.back() ? 1 : 0)) refuse();
   }
   if (nodes.front() != 0 || nodes.back() != last) refuse();
   nodes.pop_back();  // the next row's own
@@ -50,11 +50,11 @@ void add_constraints(SchemeParts& parts, const FieldTheory& theory, const TimeEl
     const auto constraint = theory.constraint();
     MappedFamily::Map map;
     for (int i = 0; i < constraint->size(); ++i) {
-      const int c = constraint->values()[static_cast<std::size_t>(i)].component;
+      const int c = constraint->values()[i].component;
       map.reads.push_back({{constraint->site(i), c < d ? node * d + c : multiplier, 1}});
     }
     parts.families.push_back(std::make_shared<MappedFamily>(constraint, map));
-    const NodePosition at = element.nodes[static_cast<std::size_t>(node)];
+    const NodePosition at = element.nodes[node];
     parts.components.push_back({node == 0 ? "lambda" : fmt::format("lambda at {:.4g}", at.time), Role::multiplier, at});
   }
 }
@@ -66,19 +66,21 @@ void require_mass(const FieldTheory& theory) {
     bool has_mass = false;
     for (int b = d; b < 2 * d; ++b) has_mass = has_mass || !theory.density().is_zero(a, b);
     if (!has_mass)
-      throw BadInput("scheme.method",
-                     fmt::format("scheme.method = cgvi: the density is linear in the velocity of {}, so that its momentum "
-                                 "does not determine it; use scheme.method = dgvi if it is so in all",
-                                 theory.fields()[static_cast<std::size_t>(a - d)].name));
+      throw BadInput(
+          "scheme.method",
+          fmt::format("scheme.method = cgvi: the density is linear in the velocity of {}, so that its momentum "
+                      "does not determine it; use scheme.method = dgvi if it is so in all",
+                      theory.fields()[a - d].name));
   }
 }
 
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   require_mass(theory);
   if (theory.constraint() && p.lattice.space() != Space::point && p.lattice.space() != Space::mesh)
-    throw BadInput("scheme.method",
-                   "scheme.method = cgvi: constraints of elements are for lattice.space = point or complex; use scheme.method = "
-                   "multisymplectic");
+    throw BadInput(
+        "scheme.method",
+        "scheme.method = cgvi: constraints of elements are for lattice.space = point or complex; use scheme.method = "
+        "multisymplectic");
   const TimeElementKeys keys(p.parameters);
   const StencilTable time = keys.element(), space = space_table(p), element = product(time, space);
   SchemeParts parts = keys.continuity == Continuity::shared

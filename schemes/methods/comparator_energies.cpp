@@ -4,13 +4,12 @@
 #include <vector>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "lattice/index.hpp"
 #include "schemes/methods/energies.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// N(φ) = ℓ(φ, 0, 0) and Q(a, b)_c = (N(a) − N(b))/(a − b) at every site, of rows [i·d + c].
 class Potential {
@@ -123,7 +122,8 @@ EnergyOfRows make(const FieldTheory& theory, const LatticeSystem& system, const 
 
 extern const EnergyEntry guo_energy, vu_quoc_li_energy;
 const EnergyEntry guo_energy{
-    "energy of (5.15)", "E = k sum (dy/h)^2/2 + (Dy)(Dy+)/2 - (N + N+)/2, dy = y+ - y, D over a cell by k: kept to round-off",
+    "energy of (5.15)",
+    "E = k sum (dy/h)^2/2 + (Dy)(Dy+)/2 - (N + N+)/2, dy = y+ - y, D over a cell by k: kept to round-off",
     "Guo and others, (5.15)", "guo", make<guo>};
 const EnergyEntry vu_quoc_li_energy{
     "energy of (5.14)",

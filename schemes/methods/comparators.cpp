@@ -20,7 +20,7 @@ bool is_of_plain_waves(const BatchDensity& density) {
   for (int i = d; i < m; ++i)
     for (int j = 0; j < m; ++j) {
       const double wanted = i != j ? 0 : i < 2 * d ? 1 : i < 3 * d ? -1 : 0;
-      const double given = density.constant_hessian()[static_cast<std::size_t>(i * m + j)];
+      const double given = density.constant_hessian()[i * m + j];
       if (!density.is_constant(i, j) || std::abs(given - wanted) > 1e-12) return false;
     }
   return true;
@@ -33,11 +33,12 @@ SchemeParts build(const FieldTheory& theory, const Problem& p, DirectResidual st
                                                 "depends on more than the field; use scheme.method = multisymplectic",
                                                 p.method, p.theory));
   if (!is_of_plain_waves(theory.density()))
-    throw BadInput("scheme.method",
-                   fmt::format("scheme.method = {}: written for phi_t^2/2 - phi_x^2/2 + N(phi), and theory.name = {} has "
-                               "other derivatives; choose units in which the speed is 1, or use scheme.method = "
-                               "multisymplectic",
-                               p.method, p.theory));
+    throw BadInput(
+        "scheme.method",
+        fmt::format("scheme.method = {}: written for phi_t^2/2 - phi_x^2/2 + N(phi), and theory.name = {} has "
+                    "other derivatives; choose units in which the speed is 1, or use scheme.method = "
+                    "multisymplectic",
+                    p.method, p.theory));
   if (p.lattice.space() == Space::point)
     throw BadInput("scheme.method",
                    fmt::format("scheme.method = {}: a scheme for fields, and lattice.space = point has "

@@ -49,7 +49,7 @@ int variable(JetSlot slot, int d, int a) { return static_cast<int>(slot) * d + a
 void require_first_order(const FieldTheory& theory) {
   const BatchDensity& density = theory.density();
   const int d = theory.components();
-  const auto name = [&](int a) { return theory.fields()[static_cast<std::size_t>(a)].name; };
+  const auto name = [&](int a) { return theory.fields()[a].name; };
   const auto refuse = [](const std::string& why) {
     throw BadInput("scheme.method", "scheme.method = dgvi: for densities theta(q).q_t - H(q), and " + why);
   };
@@ -98,9 +98,8 @@ std::vector<Component> traces(const char* name, int d) {
 void observe(SchemeParts& parts, const FieldTheory& theory, const Keys& keys, const Nodes& nodes) {
   const int d = theory.components();
   const FluxNodes at{nodes.minus, 0, nodes.plus};
-  std::vector<double> weights(static_cast<std::size_t>(nodes.plus), 0.0);
-  double &of_minus = weights[static_cast<std::size_t>(nodes.minus - 1)],
-         &of_plus = weights[static_cast<std::size_t>(nodes.plus - 1)];
+  std::vector<double> weights(nodes.plus, 0.0);
+  double &of_minus = weights[nodes.minus - 1], &of_plus = weights[nodes.plus - 1];
   const auto tie = [&](TraceStencil stencil) {
     parts.families.push_back(std::make_shared<LagrangianFamily<TraceStencil>>(std::move(stencil).with_own_nodes()));
   };

@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/methods/element_parts.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/assembly.hpp"
 #include "schemes/system/legendre.hpp"
-#include "schemes/turn.hpp"
 
 namespace delf {
 namespace {
@@ -20,24 +21,23 @@ namespace {
 /// goes from stencil to stencil, takes ten times as long.
 class MomentaBelow {
  public:
-  MomentaBelow(const LatticeSystem& system, double turn)
-      : system_(system), assembly_(system, parts(system, turn)) {}
+  MomentaBelow(const LatticeSystem& system, double monodromy)
+      : system_(system), assembly_(system, parts(system, monodromy)) {}
 
   std::vector<double> operator()(const RowsInTime& rows) const {
-    std::vector<double> E, p(static_cast<std::size_t>(system_.lattice().sites() * system_.components()), 0.0);
+    std::vector<double> E, p(at(system_.lattice().sites() * system_.components()), 0.0);
     assembly_.residual(SectionRing(rows.rows, rows.newest - 1, rows.newest), rows.newest, E);
-    for (int n = 0; n < assembly_.size(); ++n)
-      p[static_cast<std::size_t>(assembly_.place(assembly_.equation(n)))] = E[static_cast<std::size_t>(n)];
+    for (int n = 0; n < assembly_.size(); ++n) p[assembly_.place(assembly_.equation(n))] = E[n];
     return p;
   }
 
  private:
-  static Assembly::Parts parts(const LatticeSystem& system, double turn) {
+  static Assembly::Parts parts(const LatticeSystem& system, double monodromy) {
     std::vector<Assembly::Anchor> below;
     for (std::size_t f = 0; f < system.families().size(); ++f)
       for (int i = 0; i < system.anchors(*system.families()[f]); ++i)
         if (system.has_stencil(*system.families()[f], -1, i)) below.push_back({static_cast<int>(f), {-1, i}});
-    Assembly::Parts parts{.equations = {}, .past = 1, .turn = turn, .stencils = std::move(below)};
+    Assembly::Parts parts{.equations = {}, .past = 1, .monodromy = monodromy, .stencils = std::move(below)};
     for (int i = 0; i < system.lattice().sites(); ++i)
       for (int c = 0; c < system.fields(); ++c) parts.equations.push_back({{0, i}, c});
     return parts;
@@ -51,7 +51,8 @@ class MomentaBelow {
 extern const EnergyEntry rectangle_energy, midway_energy, quadratic_invariant, vu_quoc_li_energy, guo_energy,
     composition_energy;
 
-const EnergyEntry rectangle_energy{"energy", energy_formula, "Marsden-Patrick-Shkoller, footnote 4, of any density", ""};
+const EnergyEntry rectangle_energy{"energy", energy_formula, "Marsden-Patrick-Shkoller, footnote 4, of any density",
+                                   ""};
 const EnergyEntry midway_energy{
     "energy of a point",
     "q_t ∂ℓ/∂q_t − ℓ, midway between the last two rows, q_t = (q⁺ − q)/h, whatever the scheme; order 2 in h",
@@ -67,7 +68,8 @@ const EnergyEntry composition_energy{
     "discrete Legendre transform, Marsden-West 1.5", "composition",
     [](const FieldTheory&, const LatticeSystem& system, const Problem& problem) -> EnergyOfRows {
       // of this system: one that a check plants faults in has families that do not say what they are made of
-      return [&system, momenta = std::make_shared<const MomentaBelow>(system, turn_of(problem))](const RowsInTime& rows) {
+      return [&system,
+              momenta = std::make_shared<const MomentaBelow>(system, monodromy_of(problem))](const RowsInTime& rows) {
         return LegendreTransform(system, rows.rows, rows.newest).energy((*momenta)(rows));
       };
     }};

@@ -62,7 +62,7 @@ RowDensity density_of_mesh_rows(const RowsInTime& rows, std::span<const double> 
   const double h = system.times()->step(rows.newest);
   double square = 0, product = 0, area = 0;  // Σ A φ_t², Σ A φ_t·φ_tt, Σ A
   for (int i = 0; i < system.lattice().sites(); ++i) {
-    const double A = masses[static_cast<std::size_t>(i)];
+    const double A = masses[i];
     area += A;
     if (system.lattice().is_fixed(i)) continue;
     const Eigen::Map<const Eigen::VectorXd> p(momenta.data() + i * d, d), of_force(above.data() + i * d, d);

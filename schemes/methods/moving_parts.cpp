@@ -15,6 +15,7 @@
 #include "jets/tables/line_rule.hpp"
 #include "jets/tables/space_table.hpp"
 #include "jets/tables/table_product.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/mapped_family.hpp"
@@ -24,8 +25,6 @@
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Piecewise linear functions of space, with Gauss's rule.
 StencilTable linear_elements(int points) { return element_space(lagrange_basis({0, 1}), gauss_rule(points)); }
@@ -63,7 +62,7 @@ class Layout {
     width_ = scheme.varied ? d_ + 1 : d_;
     for (std::size_t node = 1; node < time_.nodes.size(); ++node)
       for (int a = 0; a < width_; ++a) {
-        const Component& field = components[at(a)];
+        const Component& field = components[a];
         components.push_back({fmt::format("{} at {:.4g}", field.name, time_.nodes[node].time), Role::inner,
                               time_.nodes[node], false, a});
       }
@@ -84,13 +83,13 @@ class Layout {
   }
   static bool is_row(double time) { return time == 0 || time == 1; }
   bool by_element() const { return by_element_; }
-  int position(int point) const { return stages_[at(point)].position; }
-  int rate(int point) const { return stages_[at(point)].rate; }
+  int position(int point) const { return stages_[point].position; }
+  int rate(int point) const { return stages_[point].rate; }
 
   /// Field c, or X for c = d, at a point of time and an offset in space: the value, or h times the rate.
   MappedFamily::Sum value(int point, int c, int space, bool rate) const {
     if (c == d_ && !by_element_) return slaved(point, space, rate);
-    return by_table(time_.points[at(point)], c, space, rate);
+    return by_table(time_.points[point], c, space, rate);
   }
   /// What residuals of that value are tested by.
   MappedFamily::Sum test(int point, int c, int space, bool rate) const {
@@ -107,18 +106,18 @@ class Layout {
   MappedFamily::Sum by_table(const TablePoint& point, int c, int space, bool rate) const {
     MappedFamily::Sum sum;
     for (const auto& [vertex, weight] : point[rate ? JetSlot::phi_t : JetSlot::phi]) {
-      const Site& v = time_.pattern.vertices[at(vertex)];
+      const Site& v = time_.pattern.vertices[vertex];
       sum.push_back({{v.time, space}, v.node == 0 ? c : first_node_ + (v.node - 1) * width_ + c, weight});
     }
     return sum;
   }
   MappedFamily::Sum slaved(int point, int space, bool rate) const {
-    if (rate) return {{{0, space}, stages_[at(point)].rate, 1}};
+    if (rate) return {{{0, space}, stages_[point].rate, 1}};
     // Between rows X is its chord and what lies beside that: so the plan has X of the new row in the same slab.
-    const double c = time_.points[at(point)].time;
-    if (const int beside = stages_[at(point)].position; beside >= 0)
+    const double c = time_.points[point].time;
+    if (const int beside = stages_[point].position; beside >= 0)
       return {{{0, space}, d_, 1 - c}, {{1, space}, d_, c}, {{0, space}, beside, 1}};
-    return {{{static_cast<int>(time_.points[at(point)].time), space}, d_, 1}};
+    return {{{static_cast<int>(time_.points[point].time), space}, d_, 1}};
   }
 
   int d_;
@@ -133,7 +132,7 @@ std::shared_ptr<const StencilFamily> read_as_it_is(std::shared_ptr<const Stencil
   if (varied) return family;
   MappedFamily::Map map;
   for (int i = 0; i < family->size(); ++i) {
-    const int c = family->values()[at(i)].component;
+    const int c = family->values()[i].component;
     map.reads.push_back({{family->site(i), c, 1}});
     map.tests.push_back(c == d ? MappedFamily::Sum{} : map.reads.back());
   }
@@ -170,8 +169,8 @@ void add_action(SchemeParts& parts, const FieldTheory& theory, const MovingSchem
 
 /// G of the three sites around each: of rows for point = −1, or else at a point of time. Its multiplier is `multiplier`; or
 /// it determines the component `slaved`, one of the two.
-void add_constraint(SchemeParts& parts, const std::shared_ptr<const MeshConstraint>& mesh, const Layout& layout, int point,
-                    std::optional<int> multiplier, std::optional<int> slaved) {
+void add_constraint(SchemeParts& parts, const std::shared_ptr<const MeshConstraint>& mesh, const Layout& layout,
+                    int point, std::optional<int> multiplier, std::optional<int> slaved) {
   const int d = mesh->d;
   MappedFamily::Map map;
   if (point < 0) map.mesh = mesh;
@@ -184,7 +183,7 @@ void add_constraint(SchemeParts& parts, const std::shared_ptr<const MeshConstrai
   }
   if (slaved) {
     map.tests.resize(map.reads.size());
-    map.tests[at(2 * (d + 1))] = {{{0, 0}, *slaved, 1}};
+    map.tests[2 * (d + 1)] = {{{0, 0}, *slaved, 1}};
   }
   parts.families.push_back(std::make_shared<const MappedFamily>(
       std::make_shared<const LagrangianFamily<Equidistribution>>(Equidistribution{d, mesh->monitor}), map));
@@ -213,7 +212,7 @@ double wave_speed(const BatchDensity& density) {
   const int d = density.components(), m = density.variables();
   double fastest = 0;
   for (int a = 0; a < d; ++a) {
-    const double inertia = H[at((d + a) * m + d + a)], stiffness = -H[at((2 * d + a) * m + 2 * d + a)];
+    const double inertia = H[(d + a) * m + d + a], stiffness = -H[(2 * d + a) * m + 2 * d + a];
     if (inertia > 0 && stiffness > 0) fastest = std::max(fastest, std::sqrt(stiffness / inertia));
   }
   return fastest;
@@ -238,7 +237,7 @@ void add_rate(SchemeParts& parts, int d, const MeshMonitor& monitor, const Layou
       for (int c = 0; c <= d; ++c) map.reads.push_back(layout.value(point, c, space, rate));
       if (space == 0) map.reads.push_back(slaved || rate ? MappedFamily::Sum{} : own);
     }
-  if (slaved) map.tests.resize(map.reads.size()), map.tests[at(2 * (d + 1))] = own;
+  if (slaved) map.tests.resize(map.reads.size()), map.tests[2 * (d + 1)] = own;
   parts.families.push_back(std::make_shared<const MappedFamily>(
       std::make_shared<const RateFamily<Equidistribution>>(Equidistribution{d, monitor}), map));
 }
@@ -260,7 +259,7 @@ void add_slack(SchemeParts& parts, int d, const MovingScheme& scheme, Layout& la
   const auto bubble = bubble_of(scheme.time);
   if (!bubble) return;
   const StencilTable& time = scheme.time;
-  const int slack = layout.add("slack", Role::multiplier, time.nodes[at(time.pattern.vertices[at(*bubble)].node)]);
+  const int slack = layout.add("slack", Role::multiplier, time.nodes[time.pattern.vertices[*bubble].node]);
   for (std::size_t i = 0; i < time.points.size(); ++i) {
     double slope = 0;
     for (const auto& [vertex, weight] : time.points[i][JetSlot::phi_t])
@@ -295,7 +294,7 @@ SchemeParts moving_parts(const FieldTheory& theory, const MovingScheme& scheme) 
   }
   add_action(parts, theory, scheme, layout);
   for (int i = 0; i < points; ++i) {
-    const NodePosition here{scheme.time.points[at(i)].time, 0};
+    const NodePosition here{scheme.time.points[i].time, 0};
     if (scheme.varied) {
       if (Layout::is_row(here.time) || points == 1) continue;
       const int lambda = layout.add(fmt::format("lambda at {:.4g}", here.time), Role::multiplier, here);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/methods/moving_parts.hpp"
 #include "schemes/solvers/newton.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
@@ -23,7 +24,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 class StartOfMesh {
  public:
   StartOfMesh(const Lattice& lattice, int d, const Profile& profile)
-      : N_(lattice.sites()), profile_(profile), point_(static_cast<std::size_t>(d)) {}
+      : N_(lattice.sites()), profile_(profile), point_(delf::at(d)) {}
 
   /// G at the sites between the walls; its derivatives by their X, and what it gains by φ_t at sites that stand still.
   void evaluate(const MeshMonitor& monitor, const Vector& X, Vector& G, Sparse& by_X, Vector& by_t) {
@@ -36,9 +37,9 @@ class StartOfMesh {
       for (int l = 0; l < 3; ++l) {
         const int at = i - 1 + l;
         const bool moves = at > 0 && at + 1 < N_;
-        for (const FieldPoint& f : field[static_cast<std::size_t>(at)]) {
+        for (const FieldPoint& f : field[at]) {
           Number phi(f.phi);
-          if (moves) phi.d[static_cast<std::size_t>(l)] = f.phi_x, phi.d[3] = f.phi_t;
+          if (moves) phi.d[l] = f.phi_x, phi.d[3] = f.phi_t;
           q.push_back(phi);
         }
         q.push_back(moves ? Number::variable(X[at], l) : Number(X[at]));
@@ -46,8 +47,7 @@ class StartOfMesh {
       const Number g = monitor.change(std::span<const Number>(q));
       G[i - 1] = g.value, by_t[i - 1] = g.d[3];
       for (int l = 0; l < 3; ++l)
-        if (const int at = i - 1 + l; at > 0 && at + 1 < N_)
-          entries.emplace_back(i - 1, at - 1, g.d[static_cast<std::size_t>(l)]);
+        if (const int at = i - 1 + l; at > 0 && at + 1 < N_) entries.emplace_back(i - 1, at - 1, g.d[l]);
     }
     by_X.setFromTriplets(entries.begin(), entries.end());
   }
@@ -63,8 +63,8 @@ class StartOfMesh {
       return Stop::no;
     };
     NewtonProgress at;
-    const Stop stop = newton(equations, at, Overflows{}, tangled, Converged{}, Rounding{rounding}, Diverges{},
-                             OutOfIterations{30});
+    const Stop stop =
+        newton(equations, at, Overflows{}, tangled, Converged{}, Rounding{rounding}, Diverges{}, OutOfIterations{30});
     return has_root(stop) ? std::optional(std::move(equations.X)) : std::nullopt;
   }
 

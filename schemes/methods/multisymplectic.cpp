@@ -156,7 +156,7 @@ void require_action_of(const FieldTheory& theory, const StencilFamily& family, c
   for (int f = 0; f < fields; ++f) {
     // half of them where logarithms and roots have values
     std::uniform_real_distribution<double> anything(f % 2 ? -1 : 0, f % 2 ? 1 : 2);
-    std::vector<double> jet(static_cast<std::size_t>(derivatives_up_to(equations->order())));
+    std::vector<double> jet(derivatives_up_to(equations->order()));
     for (double& value : jet) value = anything(random);
     std::size_t at = 0;
     for (int o = 0; uniform && at < jet.size(); ++o)
@@ -228,9 +228,10 @@ std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheo
 SchemeParts build(const FieldTheory& theory, const Problem& p) {
   if (p.lattice.mesh()) return rows_on_mesh(theory, p);
   if (p.step_control || !p.time_steps.empty())
-    throw BadInput("lattice.time_steps",
-                   "lattice.time_steps: scheme.method = multisymplectic has steps of one length; use scheme.method = r-adaptive with "
-                   "reversible steps, or a mesh, or leave it out");
+    throw BadInput(
+        "lattice.time_steps",
+        "lattice.time_steps: scheme.method = multisymplectic has steps of one length; use scheme.method = r-adaptive with "
+        "reversible steps, or a mesh, or leave it out");
   const bool own = p.stencil == stencil_as_text;
   SchemeParts parts{own ? on_own_stencil(theory, p) : std::vector{theory.variational(p.stencil)}, theory.fields(),
                     theory.symmetries()};

@@ -24,9 +24,7 @@ constexpr int usual_gradient_order = 6;
 /// κ = g h²/M, where ℓ has ½M φ_t² for every field and nothing else that is quadratic in rates.
 double gradient_scale(const BatchDensity& density, double gradient, double h) {
   const int d = density.components(), m = density.variables();
-  const auto rates = [&](int a, int b) {
-    return density.constant_hessian()[static_cast<std::size_t>((d + a) * m + d + b)];
-  };
+  const auto rates = [&](int a, int b) { return density.constant_hessian()[(d + a) * m + d + b]; };
   for (int a = 0; a < d; ++a)
     for (int b = 0; b < d; ++b)
       if (rates(a, b) != (a == b ? rates(0, 0) : 0) || rates(a, a) == 0)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/methods/energies.hpp"
-
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <memory>
 #include <vector>
 
+#include "lattice/index.hpp"
+#include "schemes/methods/energies.hpp"
 #include "schemes/problem.hpp"
 #include "schemes/system/assembly.hpp"
 
@@ -50,7 +50,7 @@ std::optional<LinearRow> linear_row(const LatticeSystem& system) {
   row.A.setFromTriplets(above.begin(), above.end());
   row.B.setFromTriplets(here.begin(), here.end());
   std::vector<double> at_zero;
-  assembly.residual(SectionRing(3, static_cast<std::size_t>(size)), 0, at_zero);
+  assembly.residual(SectionRing(3, at(size)), 0, at_zero);
   row.c = Eigen::Map<const Vector>(at_zero.data(), size);
   return row;
 }

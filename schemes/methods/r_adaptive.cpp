@@ -79,7 +79,7 @@ MeshMonitor monitor_of(const Problem& p, const std::vector<Component>& fields) {
   expressions::Names names{{}, {{"alpha", monitor.alpha}, {"beta", monitor.beta}}};
   const int d = static_cast<int>(fields.size());
   for (int a = 0; a < d; ++a) {
-    const std::string& name = fields[static_cast<std::size_t>(a)].name;
+    const std::string& name = fields[a].name;
     names.variables.emplace_back(name, a), names.variables.emplace_back(name + "_X", d + a);
   }
   expressions::Graph graph;
@@ -189,7 +189,7 @@ double mesh_margin(const RowsInTime& rows) {
   const MeshConstraint* mesh = find_mesh(rows.system.families());
   if (!mesh) return unknown;
   std::vector<double> y;
-  const auto d = static_cast<std::size_t>(rows.theory.components());
+  const std::size_t d = rows.theory.components();
   for (int i = 0; i < rows.system.lattice().sites(); ++i)
     for (std::size_t a = 0; a < d; ++a) y.push_back(rows.rows(rows.newest, i, static_cast<int>(a)));
   return mesh->margin(y, d, rows.system.lattice().length()).value_or(unknown);

@@ -18,7 +18,7 @@ RowDensity density_of_slopes(const RowsInTime& rows, std::span<const double> rat
   const auto rise = [&](int i, int c) { return rows.rows(rows.newest, i + 1, c) - rows.rows(rows.newest, i, c); };
   const auto rise_of_rates = [&](int i, int c) {
     const int next = system.lattice().home(i + 1);
-    return rates[static_cast<std::size_t>(next * C + c)] - rates[static_cast<std::size_t>(i * C + c)];
+    return rates[next * C + c] - rates[i * C + c];
   };
   double square = 0, product = 0;  // Σ φ_x², Σ φ_x (φ_x)_t
   for (int i = 0; i < cells; ++i) {

@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "jets/simd/pack_gather.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The largest multiple of a pack's width that is not above i ≥ 0.
 int whole_packs(int i) { return i / lanes * lanes; }
@@ -53,9 +52,9 @@ BandLU::BandLU(int n, int lower, int upper) : n_(n), lower_(lower), upper_(std::
   // Row i holds the columns from the first of the pack of column i − lower on.
   const int before = whole_packs(lower + lanes - 1);
   const int width = whole_packs(lower_ + upper_ + 2 * lanes - 1);
-  rows_.assign(at(n * (width / lanes)), Pack(0.0));
+  rows_.assign(n * (width / lanes), Pack(0.0));
   for (int i = 0; i < n; ++i) base_.push_back(i * width - whole_packs(i + before - lower) + before);
-  pivot_.resize(at(n)), inverse_.resize(at(n)), multipliers_.resize(at(n * lower));
+  pivot_.resize(n), inverse_.resize(n), multipliers_.resize(n * lower);
 }
 
 void BandLU::set_zero() { std::ranges::fill(rows_, Pack(0.0)); }
@@ -67,15 +66,15 @@ bool BandLU::factor() {
     int best = k;
     for (int i = k + 1; i <= last; ++i)
       if (std::abs(a[place(i, k)]) > std::abs(a[place(best, k)])) best = i;
-    pivot_[at(k)] = best;
+    pivot_[k] = best;
     const double pivot = a[place(best, k)];
     if (!(std::abs(pivot) > 0) || !std::isfinite(pivot)) return false;
-    inverse_[at(k)] = 1 / pivot;
+    inverse_[k] = 1 / pivot;
     const int first = whole_packs(k), packs = (last_column - first) / lanes + 1;
     Pack* const row = rows_.data() + place(k, first) / lanes;
     if (best != k) std::swap_ranges(row, row + packs, rows_.data() + place(best, first) / lanes);
     for (int i = k + 1; i <= last; ++i) {
-      const double by = multipliers_[at(k * lower_ + i - k - 1)] = a[place(i, k)] * inverse_[at(k)];
+      const double by = multipliers_[k * lower_ + i - k - 1] = a[place(i, k)] * inverse_[k];
       Pack* const to = rows_.data() + place(i, first) / lanes;
       for (int p = 0; p < packs; ++p) to[p] -= Pack(by) * row[p];
     }
@@ -87,21 +86,20 @@ bool BandLU::factor() {
 /// those before it by three products.
 void BandLU::solve(double* x) const {
   const bool is_common = at(lower_) < common.size();
-  (is_common ? common[at(lower_)] : eliminate<0>)(n_, lower_, pivot_.data(), multipliers_.data(), x);
+  (is_common ? common[lower_] : eliminate<0>)(n_, lower_, pivot_.data(), multipliers_.data(), x);
   double x1 = 0, x2 = 0, x3 = 0;  // x_{k+1}, …
   for (int k = n_ - 1; k >= 0; --k) {
     const double* const u = numbers() + place(k, k);
     const int count = std::min(upper_, n_ - 1 - k);
     Pack old(0.0);
     int j = count;
-    for (; j >= 3 + lanes; j -= lanes)
-      old += load_unaligned(u + j - lanes + 1) * load_unaligned(x + k + j - lanes + 1);
+    for (; j >= 3 + lanes; j -= lanes) old += load_unaligned(u + j - lanes + 1) * load_unaligned(x + k + j - lanes + 1);
     double s = x[k] - sum(old);
     for (; j > 3; --j) s -= u[j] * x[k + j];
     if (count > 2) s -= u[3] * x3;
     if (count > 1) s -= u[2] * x2;
     if (count > 0) s -= u[1] * x1;
-    x3 = x2, x2 = x1, x1 = x[k] = s * inverse_[at(k)];
+    x3 = x2, x2 = x1, x1 = x[k] = s * inverse_[k];
   }
 }
 

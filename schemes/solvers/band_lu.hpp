@@ -15,7 +15,7 @@ class BandLU {
   BandLU(int n, int lower, int upper);
 
   /// The place of A_ij in numbers(), of doubles.
-  int place(int i, int j) const { return base_[static_cast<std::size_t>(i)] + j; }
+  int place(int i, int j) const { return base_[i] + j; }
   double* numbers() { return reinterpret_cast<double*>(rows_.data()); }
   void set_zero();
 

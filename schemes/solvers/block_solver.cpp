@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "lattice/index.hpp"
 #include "lattice/plan/block_order.hpp"
 #include "schemes/solvers/band_lu.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
@@ -14,35 +15,33 @@
 namespace delf {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The place of each unknown in an order in which coupled ones are near each other: Cuthill and McKee's, breadth first
 /// from a node at one end. Round a circle it is folded flat.
 std::vector<int> banded_places(int n, BlockSolver::Entries entries) {
-  std::vector<std::vector<int>> neighbours(at(n));
+  std::vector<std::vector<int>> neighbours(n);
   for (const auto& e : entries)
-    if (e.row != e.column) neighbours[at(e.row)].push_back(e.column), neighbours[at(e.column)].push_back(e.row);
+    if (e.row != e.column) neighbours[e.row].push_back(e.column), neighbours[e.column].push_back(e.row);
   for (auto& list : neighbours) {
     std::ranges::sort(list);
     list.erase(std::ranges::unique(list).begin(), list.end());
   }
   std::vector<int> order;
   const auto from = [&](int start) {
-    std::vector<char> seen(at(n), false);
+    std::vector<char> seen(n, false);
     order.clear();
     for (int next = -1; next < n; ++next) {
       const int root = next < 0 ? start : next;
-      if (seen[at(root)]) continue;
-      seen[at(root)] = true, order.push_back(root);
+      if (seen[root]) continue;
+      seen[root] = true, order.push_back(root);
       for (std::size_t i = order.size() - 1; i < order.size(); ++i)
-        for (const int m : neighbours[at(order[i])])
-          if (!seen[at(m)]) seen[at(m)] = true, order.push_back(m);
+        for (const int m : neighbours[order[i]])
+          if (!seen[m]) seen[m] = true, order.push_back(m);
     }
   };
   // The node last found from the node last found lies at an end.
   for (int start = 0, sweep = 0; sweep < 3; ++sweep, start = order.back()) from(start);
-  std::vector<int> places(at(n));
-  for (int i = 0; i < n; ++i) places[at(order[at(i)])] = i;
+  std::vector<int> places(n);
+  for (int i = 0; i < n; ++i) places[order[i]] = i;
   return places;
 }
 
@@ -61,19 +60,19 @@ struct BlockSolver::Large {
   Large(int n, Entries entries) : size(n), places(banded_places(n, entries)) {
     int lower = 0, upper = 0;
     for (const Entry& e : entries) {
-      const int offset = places[at(e.column)] - places[at(e.row)];
+      const int offset = places[e.column] - places[e.row];
       lower = std::max(lower, -offset), upper = std::max(upper, offset);
     }
     if (2 * lower + upper > std::max(size / 2, 2 * largest_dense)) return;
     band.emplace(size, lower, upper);
-    for (const Entry& e : entries) where.push_back(band->place(places[at(e.row)], places[at(e.column)]));
+    for (const Entry& e : entries) where.push_back(band->place(places[e.row], places[e.column]));
   }
 
   bool factor(const std::vector<double>& values, Entries entries) {
     if (!band && !sparse) prepare(entries);
     if (band) band->set_zero();
     double* const numbers = band ? band->numbers() : matrix.valuePtr();
-    for (std::size_t e = 0; e < entries.size(); ++e) numbers[where[e]] = values[at(entries[e].place)];
+    for (std::size_t e = 0; e < entries.size(); ++e) numbers[where[e]] = values[entries[e].place];
     if (band) return band->factor();
     sparse->factorize(matrix);
     return sparse->info() == Eigen::Success;
@@ -102,17 +101,15 @@ struct BlockSolver::Large {
       std::copy_n(x.data(), size, result);
       return;
     }
-    for (int i = 0; i < size; ++i) result[places[at(i)]] = part[i];
+    for (int i = 0; i < size; ++i) result[places[i]] = part[i];
     band->solve(result);
     std::copy_n(result, size, part);
-    for (int i = 0; i < size; ++i) result[i] = part[places[at(i)]];
+    for (int i = 0; i < size; ++i) result[i] = part[places[i]];
   }
 
   std::size_t bytes() const {
     std::size_t total = (band ? band->bytes() : 0) + (places.size() + where.size()) * sizeof(int);
-    if (sparse)
-      total += static_cast<std::size_t>(matrix.nonZeros() + sparse->nnzL() + sparse->nnzU()) *
-               (sizeof(double) + sizeof(int));
+    if (sparse) total += at(matrix.nonZeros() + sparse->nnzL() + sparse->nnzU()) * (sizeof(double) + sizeof(int));
     return total;
   }
 };
@@ -141,7 +138,7 @@ BlockSolver::BlockSolver(int n, const std::vector<std::pair<int, int>>& places, 
   }
   list_entries(n, places, present);
   pivots_.resize(members_.size());
-  part_.resize(at(2 * largest_));
+  part_.resize(2 * largest_);
   std::size_t factors = 0;
   for (Block& b : blocks_) {
     b.factors = factors;
@@ -158,18 +155,18 @@ BlockSolver::BlockSolver(int n, const std::vector<std::pair<int, int>>& places, 
 /// Entries block by block, those within and those that couple a block to what was solved before it.
 void BlockSolver::list_entries(int n, const std::vector<std::pair<int, int>>& places,
                                const std::vector<char>& present) {
-  std::vector<int> block(at(n)), position(at(n));
+  std::vector<int> block(n), position(at(n));
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     for (int i = 0; i < blocks_[b].size; ++i) {
-      const int member = members_[at(blocks_[b].first + i)];
-      block[at(member)] = static_cast<int>(b);
-      position[at(member)] = i;
+      const int member = members_[blocks_[b].first + i];
+      block[member] = static_cast<int>(b);
+      position[member] = i;
     }
   const auto for_each = [&](const auto& visit) {
     for (std::size_t p = 0; p < places.size(); ++p) {
       if (!present[p]) continue;
       const auto [row, column] = places[p];
-      visit(blocks_[at(block[at(row)])], block[at(row)] == block[at(column)], static_cast<int>(p), row, column);
+      visit(blocks_[block[row]], block[row] == block[column], static_cast<int>(p), row, column);
     }
   };
   for_each([](Block& b, bool inside, int, int, int) { ++(inside ? b.inside_end : b.outside_end); });
@@ -181,8 +178,8 @@ void BlockSolver::list_entries(int n, const std::vector<std::pair<int, int>>& pl
   }
   inside_.resize(inside), outside_.resize(outside);
   for_each([&](Block& b, bool is_inside, int p, int row, int column) {
-    if (is_inside) inside_[b.inside_end++] = {position[at(row)], position[at(column)], p};
-    else outside_[b.outside_end++] = {position[at(row)], column, p};
+    if (is_inside) inside_[b.inside_end++] = {position[row], position[column], p};
+    else outside_[b.outside_end++] = {position[row], column, p};
   });
 }
 
@@ -190,7 +187,7 @@ bool BlockSolver::factor(const std::vector<double>& values) {
   values_ = values;
   for (const Block& b : blocks_) {
     const Entries entries = Entries(inside_).subspan(b.inside, b.inside_end - b.inside);
-    if (!(b.large >= 0 ? large_[at(b.large)]->factor(values, entries) : factor_dense(b, values))) return false;
+    if (!(b.large >= 0 ? large_[b.large]->factor(values, entries) : factor_dense(b, values))) return false;
   }
   return true;
 }
@@ -201,12 +198,12 @@ bool BlockSolver::factor_dense(const Block& block, const std::vector<double>& va
   double* const a = factors_.data() + block.factors;
   std::fill_n(a, n * n, 0.0);
   for (std::size_t e = block.inside; e < block.inside_end; ++e)
-    a[inside_[e].row * n + inside_[e].column] = values[at(inside_[e].place)];
+    a[inside_[e].row * n + inside_[e].column] = values[inside_[e].place];
   for (int p = 0; p < n; ++p) {
     int best = p;
     for (int i = p + 1; i < n; ++i)
       if (std::abs(a[i * n + p]) > std::abs(a[best * n + p])) best = i;
-    pivots_[at(block.first + p)] = best;
+    pivots_[block.first + p] = best;
     if (best != p) std::swap_ranges(a + p * n, a + (p + 1) * n, a + best * n);
     const double pivot = a[p * n + p];
     if (pivot == 0 || !std::isfinite(pivot)) return false;
@@ -224,7 +221,7 @@ void BlockSolver::solve_dense(const Block& block) const {
   const int n = block.size;
   const double* const a = factors_.data() + block.factors;
   double* const x = part_.data();
-  for (int p = 0; p < n; ++p) std::swap(x[p], x[pivots_[at(block.first + p)]]);
+  for (int p = 0; p < n; ++p) std::swap(x[p], x[pivots_[block.first + p]]);
   for (int i = 1; i < n; ++i)
     for (int c = 0; c < i; ++c) x[i] -= a[i * n + c] * x[c];
   for (int i = n - 1; i >= 0; --i) {
@@ -237,13 +234,13 @@ void BlockSolver::solve(const std::vector<double>& rhs, std::vector<double>& x) 
   x.resize(members_.size());
   for (const Block& b : blocks_) {
     const int* const member = members_.data() + b.first;
-    for (int i = 0; i < b.size; ++i) part_[at(i)] = rhs[at(member[i])];
+    for (int i = 0; i < b.size; ++i) part_[i] = rhs[member[i]];
     for (std::size_t e = b.outside; e < b.outside_end; ++e)
-      part_[at(outside_[e].row)] -= values_[at(outside_[e].place)] * x[at(outside_[e].column)];
+      part_[outside_[e].row] -= values_[outside_[e].place] * x[outside_[e].column];
     const double* result = part_.data();
-    if (b.large >= 0) large_[at(b.large)]->solve(part_.data()), result += b.size;
+    if (b.large >= 0) large_[b.large]->solve(part_.data()), result += b.size;
     else solve_dense(b);
-    for (int i = 0; i < b.size; ++i) x[at(member[i])] = result[i];
+    for (int i = 0; i < b.size; ++i) x[member[i]] = result[i];
   }
 }
 

@@ -53,13 +53,13 @@ void CirculantSolver::build_closure() {
     double power = 1;
     for (int v = j; v < near_; ++v, power *= q_) {
       backward_.row(0)[layout_->at(v) + l] = power;
-      K(l, l) += power * forward_[static_cast<std::size_t>(v)];
+      K(l, l) += power * forward_[v];
     }
   }
   const Square from_ends = U.inverse(), from_sums = X.inverse() * next, both = from_sums * K * from_ends;
   for (int m = 0; m < lanes; ++m)
     for (int l = 0; l < lanes; ++l) {
-      const auto at = static_cast<std::size_t>(m);
+      const std::size_t at = m;
       u_from_ends_[at].v[l] = from_ends(l, m);
       x_from_sums_[at].v[l] = from_sums(l, m);
       x_from_ends_[at].v[l] = both(l, m);
@@ -105,7 +105,8 @@ Pack CirculantSolver::run_forward(const RowSum& sum, const double* const* rows, 
 /// sink(at, x_i) with x_i = (u_i + q^(i+1) U) + q x_{i+1}, U what enters the arcs, felt in the first `near` packs; returns
 /// the first x. Four at once, as above.
 template <class Sink>
-Pack CirculantSolver::run_backward(const double* u, int first, int last, Pack after, Pack entering_u, Sink& given) const {
+Pack CirculantSolver::run_backward(const double* u, int first, int last, Pack after, Pack entering_u,
+                                   Sink& given) const {
   auto sink = given;
   const double q = q_, q2 = q * q, q3 = q * q2, q4 = q2 * q2;
   const auto four = [&](std::ptrdiff_t at, Pack r1, Pack r2, Pack r3, Pack r4) {
@@ -145,7 +146,7 @@ CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) 
   Entering part[2] = {{Pack(0.0), Pack(0.0)}, {Pack(0.0), Pack(0.0)}};
   Pack x_by_ends[2] = {Pack(0.0), Pack(0.0)};
   for (int m = 0; m < lanes; ++m) {
-    const auto at = static_cast<std::size_t>(m);
+    const std::size_t at = m;
     const Pack end(u[ends_[m]]);
     part[m % 2].u += u_from_ends_[at] * end;
     x_by_ends[m % 2] += x_from_ends_[at] * end;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 Bandwidth bandwidth(const Lattice& lattice, int size, const std::vector<MatrixEntry>& entries) {
@@ -28,10 +30,8 @@ std::optional<CyclicBandLU> CyclicBandLU::factor(int size, Bandwidth width, bool
   f.border_ = cyclic ? std::max(lower, upper) : 0;
   f.plain_ = size - f.border_;
   const int n = f.plain_, m = f.border_, w = lower + 1 + upper;
-  std::vector<double> band(static_cast<std::size_t>(n) * static_cast<std::size_t>(w), 0.0);
-  const auto at = [&](int i, int j) -> double& {
-    return band[static_cast<std::size_t>(i) * static_cast<std::size_t>(w) + static_cast<std::size_t>(j - i + lower)];
-  };
+  std::vector<double> band(delf::at(n) * delf::at(w), 0.0);
+  const auto at = [&](int i, int j) -> double& { return band[delf::at(i) * delf::at(w) + delf::at(j - i + lower)]; };
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, m), H = Eigen::MatrixXd::Zero(m, m);
   // G is not zero in its first and its last columns only.
   for (int c = 0; c < std::min(m, n); ++c) f.border_columns_.push_back(c);
@@ -88,7 +88,7 @@ void CyclicBandLU::solve_band(double* x) const {
     const double* u = upper_band_.data() + static_cast<std::ptrdiff_t>(i) * upper_;
     double sum = x[i];
     for (int s = 0; s < std::min(upper_, n - 1 - i); ++s) sum -= u[s] * x[i + 1 + s];
-    x[i] = sum * pivot_[static_cast<std::size_t>(i)];
+    x[i] = sum * pivot_[i];
   }
 }
 

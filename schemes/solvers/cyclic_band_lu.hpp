@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "lattice/lattice.hpp"
 #include "lattice/matrix_entry.hpp"
 
@@ -24,12 +25,11 @@ Bandwidth bandwidth(const Lattice&, int size, const std::vector<MatrixEntry>& en
 class CyclicBandLU {
  public:
   /// Nothing if the band would wrap onto itself, or a pivot is so small that pivoting would be needed.
-  static std::optional<CyclicBandLU> factor(int size, Bandwidth, bool cyclic,
-                                            const std::vector<MatrixEntry>& entries);
+  static std::optional<CyclicBandLU> factor(int size, Bandwidth, bool cyclic, const std::vector<MatrixEntry>& entries);
   void solve(std::vector<double>& x) const;
   std::size_t bytes() const {
-    return sizeof(double) * (lower_band_.size() + upper_band_.size() + pivot_.size() +
-                             static_cast<std::size_t>(Z_.size() + border_rows_.size()));
+    return sizeof(double) *
+           (lower_band_.size() + upper_band_.size() + pivot_.size() + at(Z_.size() + border_rows_.size()));
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/solvers/circulant_solver.hpp"
 #include "schemes/solvers/cyclic_band_lu.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
@@ -18,10 +19,9 @@ class DiagonalSolver final : public LinearSolver {
  public:
   DiagonalSolver(const RowLayout& layout, int d, const std::vector<double>& diagonal)
       : layout_(&layout), inverse_(layout, d), d_(d) {
-    std::vector<double> sites(static_cast<std::size_t>(layout.sites()));
+    std::vector<double> sites(layout.sites());
     for (int a = 0; a < d; ++a) {
-      for (std::size_t i = 0; i < sites.size(); ++i)
-        sites[i] = 1 / diagonal[i * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)];
+      for (std::size_t i = 0; i < sites.size(); ++i) sites[i] = 1 / diagonal[i * delf::at(d) + delf::at(a)];
       layout.scatter(sites, inverse_.row(a));
     }
   }
@@ -85,10 +85,10 @@ class OrderedSolver final : public LinearSolver {
         d_(d),
         factored_(std::move(factored)),
         name_(std::move(name)),
-        site_(static_cast<std::size_t>(layout.sites())),
-        all_(site_.size() * static_cast<std::size_t>(d)) {}
+        site_(delf::at(layout.sites())),
+        all_(site_.size() * delf::at(d)) {}
   void solve(double* const* w) const override {
-    const auto d = static_cast<std::size_t>(d_);
+    const std::size_t d = d_;
     for (std::size_t a = 0; a < d; ++a) {
       layout_->gather(w[a], d == 1 ? all_ : site_);
       if (d > 1)
@@ -100,8 +100,7 @@ class OrderedSolver final : public LinearSolver {
         for (std::size_t i = 0; i < site_.size(); ++i) site_[i] = all_[i * d + a];
       const std::vector<double>& values = d == 1 ? all_ : site_;
       for (int l = 0; l < lanes; ++l)
-        for (int v = 0; v < layout_->packs(); ++v)
-          w[a][layout_->at(v) + l] = values[static_cast<std::size_t>(layout_->start(l) + v)];
+        for (int v = 0; v < layout_->packs(); ++v) w[a][layout_->at(v) + l] = values[layout_->start(l) + v];
     }
   }
   std::size_t bytes() const override { return factored_.bytes() + (site_.size() + all_.size()) * sizeof(double); }
@@ -121,9 +120,7 @@ struct SparseFactors {
     Eigen::Map<Eigen::VectorXd> vector(x.data(), static_cast<Eigen::Index>(x.size()));
     vector = lu->solve(Eigen::VectorXd(vector));
   }
-  std::size_t bytes() const {
-    return static_cast<std::size_t>(lu->nnzL() + lu->nnzU()) * (sizeof(double) + sizeof(int));
-  }
+  std::size_t bytes() const { return delf::at(lu->nnzL() + lu->nnzU()) * (sizeof(double) + sizeof(int)); }
 };
 
 /// Components that do not meet.
@@ -133,8 +130,8 @@ class ByComponent final : public LinearSolver {
   void solve(double* const* w) const override {
     for (std::size_t a = 0; a < solvers_.size(); ++a) solvers_[a]->solve(w + a);
   }
-  std::unique_ptr<Sweeps> sweeps(int a) const override { return solvers_[static_cast<std::size_t>(a)]->sweeps(0); }
-  double right_side_scale(int a) const override { return solvers_[static_cast<std::size_t>(a)]->right_side_scale(0); }
+  std::unique_ptr<Sweeps> sweeps(int a) const override { return solvers_[a]->sweeps(0); }
+  double right_side_scale(int a) const override { return solvers_[a]->right_side_scale(0); }
   std::size_t bytes() const override {
     std::size_t total = 0;
     for (const auto& s : solvers_) total += s->bytes();
@@ -158,8 +155,8 @@ std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& la
   const int size = lattice.sites() * d;
   const Bandwidth band = bandwidth(lattice, size, entries);
   if (band.lower == 0 && band.upper == 0) {
-    std::vector<double> diagonal(static_cast<std::size_t>(size), 0.0);
-    for (const auto& e : entries) diagonal[static_cast<std::size_t>(e.row)] += e.value;
+    std::vector<double> diagonal(size, 0.0);
+    for (const auto& e : entries) diagonal[e.row] += e.value;
     if (std::ranges::any_of(diagonal, [](double x) { return x == 0 || !std::isfinite(x); }))
       throw NoConvergence("the constant part of the equations is singular");
     return std::make_unique<DiagonalSolver>(layout, d, diagonal);
@@ -167,8 +164,8 @@ std::unique_ptr<LinearSolver> factor(const Lattice& lattice, const RowLayout& la
   if (auto lu = CyclicBandLU::factor(size, band, lattice.is_circle(), entries))
     return std::make_unique<OrderedSolver<CyclicBandLU>>(
         layout, d, std::move(*lu),
-        "LU of a " + std::string(lattice.is_circle() ? "cyclic " : "") + "band of width " +
-            std::to_string(band.lower) + "+" + std::to_string(band.upper));
+        "LU of a " + std::string(lattice.is_circle() ? "cyclic " : "") + "band of width " + std::to_string(band.lower) +
+            "+" + std::to_string(band.upper));
   std::vector<Eigen::Triplet<double>> triplets;
   for (const auto& e : entries) triplets.emplace_back(e.row, e.column, e.value);
   Eigen::SparseMatrix<double> matrix(size, size);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <new>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 RowLayout::RowLayout(const Lattice& lattice, int halo, int aligned)
@@ -32,20 +34,20 @@ RowLayout::RowLayout(const Lattice& lattice, int halo, int aligned)
   if (lattice.is_circle()) find_halo_packs();
 }
 
-void RowLayout::fill_halo_turned(double* row, double turn) const {
+void RowLayout::fill_halo_turned(double* row, double monodromy) const {
   if (sites_ == 1) {
     const Pack point = Pack::load(row + at(0));
     for (int v = -halo_; v <= halo_; ++v) point.store(row + at(v));
     return;
   }
   if (!by_packs_) {
-    for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * turn;
+    for (const Copy& c : halo_copies_) row[c.to] = row[c.from] + c.turns * monodromy;
     return;
   }
   for (std::ptrdiff_t by = 0; by < at(0); by += lanes) {
     const std::ptrdiff_t back = -(by + lanes);
-    (before_.pack(row, back) + turn * turns_before_).store(row + before_.to + back);
-    (after_.pack(row, by) + turn * turns_after_).store(row + after_.to + by);
+    (before_.pack(row, back) + monodromy * turns_before_).store(row + before_.to + back);
+    (after_.pack(row, by) + monodromy * turns_after_).store(row + after_.to + by);
   }
 }
 
@@ -57,8 +59,8 @@ void RowLayout::find_halo_packs() {
   for (int l = 0; l < lanes; ++l)
     overlap[l] = packs_ - (start(l) - (l == 0 ? start(lanes - 1) - sites_ : start(l - 1)));
   const auto [least, most] = std::ranges::minmax(overlap);
-  by_packs_ = std::ranges::all_of(overlap, [&](int b) { return b == least || b == most; }) && least >= 0 &&
-              halo_ > 0 && most + halo_ <= packs_;
+  by_packs_ = std::ranges::all_of(overlap, [&](int b) { return b == least || b == most; }) && least >= 0 && halo_ > 0 &&
+              most + halo_ <= packs_;
   if (!by_packs_) return;
   // Set by copy_overlaps() are the last b_{l+1} packs of arc l: no halo is taken from these where arcs are long enough.
   halos_come_first_ = 2 * most + halo_ <= packs_;
@@ -79,15 +81,15 @@ std::vector<int> RowLayout::slots_of(int i) const {
   return slots;
 }
 
-void RowLayout::scatter(std::span<const double> sites, double* row, double turn) const {
+void RowLayout::scatter(std::span<const double> sites, double* row, double monodromy) const {
   for (int l = 0; l < lanes; ++l)
-    for (int v = 0; v < packs_; ++v) row[at(v) + l] = sites[static_cast<std::size_t>(start(l) + v)];
-  fill_halo(row, turn);
+    for (int v = 0; v < packs_; ++v) row[at(v) + l] = sites[start(l) + v];
+  fill_halo(row, monodromy);
 }
 
 void RowLayout::gather(const double* row, std::span<double> sites) const {
   for (int l = 0; l < lanes; ++l)
-    for (int v = 0; v < packs_; ++v) sites[static_cast<std::size_t>(start(l) + v)] = row[at(v) + l];
+    for (int v = 0; v < packs_; ++v) sites[start(l) + v] = row[at(v) + l];
 }
 
 RowBuffer::RowBuffer(const RowLayout& layout, int rows) : RowBuffer(layout.doubles(), rows) {}
@@ -95,7 +97,7 @@ RowBuffer::RowBuffer(const RowLayout& layout, int rows) : RowBuffer(layout.doubl
 RowBuffer::RowBuffer(std::size_t doubles, int rows) : stride_(stride_of(doubles)), rows_(rows) {
   constexpr std::size_t line = 64, huge_page = 1 << 21;
   if (rows == 0) return;
-  const std::size_t bytes = stride_ * sizeof(double) * static_cast<std::size_t>(rows);
+  const std::size_t bytes = stride_ * sizeof(double) * at(rows);
   // Rows that come from memory come a tenth faster by pages of 2 MB, which Linux gives to those who ask.
   const std::size_t alignment = bytes < 8 * huge_page ? line : huge_page;
   auto* p = static_cast<double*>(std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment));
@@ -104,7 +106,7 @@ RowBuffer::RowBuffer(std::size_t doubles, int rows) : stride_(stride_of(doubles)
   if (alignment == huge_page) madvise(p, bytes, MADV_HUGEPAGE);  // if it may not, pages are small
 #endif
   data_.reset(p);
-  std::fill_n(p, stride_ * static_cast<std::size_t>(rows), 0.0);
+  std::fill_n(p, stride_ * at(rows), 0.0);
 }
 
 }  // namespace delf

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "jets/simd/pack.hpp"
+#include "lattice/index.hpp"
 #include "lattice/lattice.hpp"
 
 namespace delf {
@@ -38,8 +39,8 @@ class RowLayout {
   }
   int halo() const { return halo_; }
   int sites() const { return sites_; }
-  std::size_t doubles() const { return static_cast<std::size_t>(packs_ + 2 * halo_) * lanes; }
-  int start(int lane) const { return start_[static_cast<std::size_t>(lane)]; }
+  std::size_t doubles() const { return delf::at(packs_ + 2 * halo_) * lanes; }
+  int start(int lane) const { return start_[lane]; }
   /// The slot in which site i is read and written from outside.
   int slot(int i) const {
     int lane = static_cast<int>(static_cast<long long>(i) * lanes / sites_);
@@ -50,14 +51,14 @@ class RowLayout {
   /// Offset of pack v in a row.
   std::ptrdiff_t at(int v) const { return static_cast<std::ptrdiff_t>(v + halo_) * lanes; }
 
-  /// Fills halo slots from the sites they repeat, adding `turn` for every time round the circle; on an interval the
+  /// Fills halo slots from the sites they repeat, adding `monodromy` for every time round the circle; on an interval the
   /// slots beyond a wall repeat the wall, so that they stay finite.
   void fill_halo(double* row) const {
     if (!by_packs_) fill_halo_turned(row, 0);
     else before_.fill(row, -at(0), 0), after_.fill(row, 0, at(0));
   }
-  void fill_halo(double* row, double turn) const {
-    if (turn != 0) fill_halo_turned(row, turn);
+  void fill_halo(double* row, double monodromy) const {
+    if (monodromy != 0) fill_halo_turned(row, monodromy);
     else fill_halo(row);
   }
   /// True if packs of a halo are packs of the row, moved by a lane; before_first() is then the one before the first.
@@ -65,10 +66,8 @@ class RowLayout {
   Pack before_first(const double* row) const { return before_.pack(row, -lanes); }
   /// The pack before the first, from packs that `read(at)` gives: reading what has just been stored would wait.
   template <class Read>
-    requires std::invocable<Read, std::ptrdiff_t>
-  Pack before_first(const Read& read) const {
-    return before_.pack_of(read, -lanes);
-  }
+  requires std::invocable<Read, std::ptrdiff_t> Pack before_first(const Read& read)
+  const { return before_.pack_of(read, -lanes); }
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {
     for (const Copy& c : overlap_copies_) row[c.to] = row[c.from];
@@ -82,7 +81,7 @@ class RowLayout {
   /// Every slot (overlaps too, halo not) that holds site i.
   std::vector<int> slots_of(int i) const;
 
-  void scatter(std::span<const double> sites, double* row, double turn = 0) const;
+  void scatter(std::span<const double> sites, double* row, double monodromy = 0) const;
   void gather(const double* row, std::span<double> sites) const;
 
   std::size_t bytes() const { return (halo_copies_.size() + overlap_copies_.size()) * sizeof(Copy); }
@@ -114,7 +113,7 @@ class RowLayout {
       } while ((by += lanes) < end);
     }
   };
-  void fill_halo_turned(double* row, double turn) const;
+  void fill_halo_turned(double* row, double monodromy) const;
   void find_halo_packs();
 
   int sites_, packs_, halo_;
@@ -135,13 +134,13 @@ class RowBuffer {
   explicit RowBuffer(std::size_t doubles, int rows = 1);
   /// The bytes that so many doubles take: rows begin at cache lines.
   static std::size_t bytes_of(std::size_t doubles, int rows = 1) {
-    return stride_of(doubles) * static_cast<std::size_t>(rows) * sizeof(double);
+    return stride_of(doubles) * delf::at(rows) * sizeof(double);
   }
-  double* row(int r) { return data_.get() + static_cast<std::size_t>(r) * stride_; }
-  const double* row(int r) const { return data_.get() + static_cast<std::size_t>(r) * stride_; }
+  double* row(int r) { return data_.get() + delf::at(r) * stride_; }
+  const double* row(int r) const { return data_.get() + delf::at(r) * stride_; }
   int rows() const { return rows_; }
   std::ptrdiff_t stride() const { return static_cast<std::ptrdiff_t>(stride_); }  ///< from row to row, in doubles
-  std::size_t bytes() const { return stride_ * static_cast<std::size_t>(rows_) * sizeof(double); }
+  std::size_t bytes() const { return stride_ * delf::at(rows_) * sizeof(double); }
 
  private:
   static std::size_t stride_of(std::size_t doubles) { return (doubles + 7) / 8 * 8; }

@@ -23,7 +23,7 @@ double likeness(const Symbol& symbol, Complex z, double wave_number) {
   for (int i = 0; i < symbol.size(); ++i) {
     const NodePosition at = symbol.position(i);
     if (at.time != 0) continue;
-    const Complex value = v[static_cast<std::size_t>(i)];
+    const Complex value = v[i];
     product += std::polar(1.0, -wave_number * at.space) * value;
     of_mode += std::norm(value), of_wave += 1;
   }

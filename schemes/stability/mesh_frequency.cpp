@@ -10,6 +10,7 @@
 #include <map>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/system/assembly.hpp"
 
 namespace delf {
@@ -48,7 +49,7 @@ std::vector<MatrixEntry> derivatives(const LatticeSystem& system, int above, dou
                     {.equations = std::move(equations), .unknowns = std::move(unknowns), .past = 1, .future = 1});
   assembly.set_time_step(time_step);
   std::vector<double> values;
-  assembly.jacobian(SectionRing(3, static_cast<std::size_t>(N * C)), 1, values);
+  assembly.jacobian(SectionRing(3, at(N * C)), 1, values);
   std::vector<MatrixEntry> entries;
   for (std::size_t n = 0; n < assembly.places().size(); ++n)
     entries.push_back({assembly.places()[n].equation, assembly.places()[n].unknown, values[n]});

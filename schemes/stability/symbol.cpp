@@ -197,7 +197,7 @@ std::vector<Complex> Symbol::phases(double theta) const {
   Complex step = std::polar(1.0, theta);
   if (quarters == std::round(quarters)) {
     constexpr std::array<Complex, 4> exact{Complex{1, 0}, Complex{0, 1}, Complex{-1, 0}, Complex{0, -1}};
-    step = exact[static_cast<std::size_t>(static_cast<long long>(quarters) & 3)];
+    step = exact[static_cast<long long>(quarters) & 3];
   }
   std::vector<Complex> result(index(2 * width_ + 1), 1.0);
   for (int s = 1; s <= width_; ++s) {
@@ -264,8 +264,8 @@ std::vector<Complex> Symbol::roots_of(const Powers& P, const Order& order) const
       for (Index a = 0; a < n; ++a) {
         const Complex value = P.of[power](a, b);
         if (value == 0.0) continue;
-        const auto B = static_cast<std::size_t>(b);
-        const int k = order.d[B] - order.c[static_cast<std::size_t>(a)] - (static_cast<int>(power) + P.low);
+        const std::size_t B = b;
+        const int k = order.d[B] - order.c[a] - (static_cast<int>(power) + P.low);
         if (k == 0) newest(a, b) = value;
         // Past the depth lie products that cancel.
         else if (k > 0 && k <= order.depth[B]) past(a, first[B] + k - 1) = value;
@@ -275,8 +275,8 @@ std::vector<Complex> Symbol::roots_of(const Powers& P, const Order& order) const
   const MatrixXcd next = -lu.solve(past);
   MatrixXcd step = MatrixXcd::Zero(states, states);
   for (Index b = 0; b < n; ++b)
-    for (int k = 0; k < order.depth[static_cast<std::size_t>(b)]; ++k) {
-      const int row = first[static_cast<std::size_t>(b)] + k;
+    for (int k = 0; k < order.depth[b]; ++k) {
+      const int row = first[b] + k;
       if (k == 0) step.row(row) = next.row(b);
       else step(row, row - 1) = 1;
     }

@@ -3,6 +3,7 @@
 #include <complex>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
@@ -71,7 +72,7 @@ class Symbol {
   struct Powers;  ///< the matrices of all powers of z
   struct Scaled;  ///< P with its rows and columns scaled, over the size of its terms
 
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  static std::size_t index(int i) { return at(i); }
   static Order order_of(int size, const std::vector<Term>& terms);
   std::vector<Complex> phases(double theta) const;
   Scaled scaled(Complex z, double theta) const;

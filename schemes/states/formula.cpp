@@ -8,10 +8,10 @@
 #include "jets/expressions/formula_jet.hpp"
 #include "jets/expressions/graph.hpp"
 #include "lattice/error.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/smooth_state.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/state_registry.hpp"
-#include "schemes/turn.hpp"
 
 namespace delf {
 namespace initial {
@@ -45,7 +45,7 @@ class FormulaState final : public State, public SmoothState {
     const bool alone = gain_of(request.values) == 0;  // of a gain in units of the field no part is taken for a winding
     winding_ = request.winding.value_or(
         alone ? static_cast<int>(std::lround(gain(fields_.front()) / (2 * std::numbers::pi))) : 0);
-    turn_ = 2 * std::numbers::pi * winding_ + gain_of(request.values);
+    monodromy_ = 2 * std::numbers::pi * winding_ + gain_of(request.values);
     double range = 0;  // of all fields: one of several may be small
     for (const FieldFormula& f : fields_) range = std::max(range, range_of(f, lattice));
     for (const FieldFormula& f : fields_) require_closed(f, range);
@@ -58,7 +58,7 @@ class FormulaState final : public State, public SmoothState {
       const FieldFormula& f = fields_[a];
       const double time = exact_ ? t : 0;
       const double phi_t = exact_ ? f.value.by_t(time, s) : f.velocity ? (*f.velocity)(0, s) : 0.0;
-      out[a] = {f.value(time, s) + turn_ * n, phi_t, f.value.by_x(time, s)};
+      out[a] = {f.value(time, s) + monodromy_ * n, phi_t, f.value.by_x(time, s)};
     }
   }
   bool exact() const override { return exact_; }
@@ -105,14 +105,15 @@ class FormulaState final : public State, public SmoothState {
   /// does not close: a run says how far it is off.
   void require_closed(const FieldFormula& f, double range) {
     constexpr double largest_part = 0.01;
-    const double jump = std::abs(gain(f) - turn_), rounding = 1e-12 * (std::abs(f.value(0, 0)) + std::abs(turn_));
+    const double jump = std::abs(gain(f) - monodromy_),
+                 rounding = 1e-12 * (std::abs(f.value(0, 0)) + std::abs(monodromy_));
     seam_ = std::max(seam_, jump);
     if (exact_ || !(jump > largest_part * range + rounding)) return;
     const double turns = gain(f) / (2 * std::numbers::pi), whole = std::round(turns);
     const bool winds = std::abs(turns - whole) < 1e-6 * std::max(1.0, std::abs(whole));
-    throw BadInput(f.key, f.key + ": gains " + text(gain(f)) +
-                              " around the circle, and with boundary.winding = " + std::to_string(winding_) +
-                              " it should gain " + text(turn_) + ": it jumps at the seam by " + text(jump) + "; use " +
+    throw BadInput(f.key, f.key + ": gains " + text(gain(f)) + " around the circle, and with boundary.winding = " +
+                              std::to_string(winding_) + " it should gain " + text(monodromy_) +
+                              ": it jumps at the seam by " + text(jump) + "; use " +
                               (winds ? "boundary.winding = " + text(whole)
                                      : "boundary.gain = " + text(gain(f)) + " without boundary.winding") +
                               ", a field that closes, or lattice.space = interval");
@@ -120,7 +121,7 @@ class FormulaState final : public State, public SmoothState {
 
   std::vector<FieldFormula> fields_;
   bool exact_, circle_;
-  double length_, seam_ = 0, turn_ = 0;
+  double length_, seam_ = 0, monodromy_ = 0;
   int winding_ = 0;
   std::vector<std::pair<std::string, double>> numbers_;
   mutable std::vector<FormulaJet> jets_;  ///< made when they are asked for
@@ -140,15 +141,17 @@ std::unique_ptr<State> formula(const StateBuild& build) {
   std::vector<FieldFormula> fields;
   std::optional<bool> all_exact;
   for (const std::string& name : build.request.fields) {
-    const auto value = text_of(value_key(name)), velocity = text_of(velocity_key(name)), exact = text_of(exact_key(name));
+    const auto value = text_of(value_key(name)), velocity = text_of(velocity_key(name)),
+               exact = text_of(exact_key(name));
     if (exact && (value || velocity))
       throw BadInput(exact_key(name), exact_key(name) + " = " + *exact + ": gives the start too; remove " +
                                           (value ? value_key(name) : velocity_key(name)));
     if (!exact && !value)
-      throw BadInput(value_key(name), value_key(name) + ": must be given; write it as a formula of x, or " + exact_key(name) +
-                                          " as one of t and x");
+      throw BadInput(value_key(name), value_key(name) + ": must be given; write it as a formula of x, or " +
+                                          exact_key(name) + " as one of t and x");
     if (all_exact.value_or(exact.has_value()) != exact.has_value())
-      throw BadInput(exact_key(name), exact_key(name) + ": must be given for all fields or for none; complete or remove it");
+      throw BadInput(exact_key(name),
+                     exact_key(name) + ": must be given for all fields or for none; complete or remove it");
     all_exact = exact.has_value();
     if (exact)
       fields.push_back(
@@ -184,7 +187,8 @@ std::vector<Parameter> further(const std::vector<std::string>& fields) {
 extern const StateEntry formula_state;
 const StateEntry formula_state{
     .name = "formula",
-    .formula = "initial.FIELD (and initial.FIELD_t) by formulas of x, or exact.FIELD by one of t and x; chosen by these keys",
+    .formula =
+        "initial.FIELD (and initial.FIELD_t) by formulas of x, or exact.FIELD by one of t and x; chosen by these keys",
     .parameters = {},
     .exact = {},
     .approximate = {},

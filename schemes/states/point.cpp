@@ -4,9 +4,10 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
+#include "lattice/text_parts.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/state_registry.hpp"
-#include "lattice/text_parts.hpp"
 
 namespace delf {
 namespace initial {
@@ -38,7 +39,7 @@ class Point final : public State {
 std::vector<double> numbers(const StateBuild& build, const std::string& key, int count) {
   const auto given = build.values.maybe<std::string>(key);
   std::vector<double> list;
-  if (!given) return std::vector<double>(static_cast<std::size_t>(count), 0.0);
+  if (!given) return std::vector<double>(count, 0.0);
   const auto refuse = [&](const std::string& why) { throw BadInput(key, key + " = " + *given + ": " + why); };
   for (const std::string& word : parts_of(*given)) {
     double x = 0;

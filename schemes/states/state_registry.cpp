@@ -12,8 +12,8 @@
 #include "lattice/error.hpp"
 #include "lattice/nearest_name.hpp"
 #include "schemes/declared.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/states/parameters.hpp"
-#include "schemes/turn.hpp"
 
 namespace delf {
 
@@ -145,7 +145,8 @@ std::unique_ptr<State> make_state(const StateRequest& request, const Lattice& la
                                            request.name + " winds " + std::to_string(state->winding()) +
                                            " times; set boundary.winding=" + std::to_string(state->winding()));
   if (lattice.is_circle() && gain_of(request.values) != 0 && !entry.further)
-    throw BadInput("boundary.gain", "boundary.gain = " + initial::text(gain_of(request.values)) + ": the state " + request.name +
+    throw BadInput("boundary.gain", "boundary.gain = " + initial::text(gain_of(request.values)) + ": the state " +
+                                        request.name +
                                         " gains nothing beside its winding; leave it out, or give the field by a "
                                         "formula or a file");
   return state;

@@ -5,6 +5,7 @@
 
 #include "jets/simd/scratch_rows.hpp"
 #include "jets/tables/density_on_table.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/composition_stepper.hpp"
 #include "schemes/stepping/pair_strips.hpp"
 
@@ -24,11 +25,11 @@ std::optional<CompositionStepper::ForceGradient> CompositionStepper::read_gradie
   const TablePoint& point = jets->table.points[0];
   ForceGradient gradient{density, {}, {}, point.weight * jets->table.measure};
   for (const TablePoint::Entry& e : point[JetSlot::phi_xx]) {
-    const Site v = vertices[static_cast<std::size_t>(e.vertex)];
+    const Site v = vertices[e.vertex];
     if (v.time != 0 || v.node != 0) return std::nullopt;
     if (v.space <= 0) continue;  // differences alone, the same on both sides
-    gradient.weights.resize(std::max(gradient.weights.size(), static_cast<std::size_t>(v.space)), 0.0);
-    gradient.weights[static_cast<std::size_t>(v.space - 1)] += e.weight / (k * k);
+    gradient.weights.resize(std::max(gradient.weights.size(), delf::at(v.space)), 0.0);
+    gradient.weights[v.space - 1] += e.weight / (k * k);
   }
   gradient.sums = gradient.weights;
   for (std::size_t j = gradient.sums.size(); j-- > 1;) gradient.sums[j - 1] += gradient.sums[j];
@@ -46,8 +47,8 @@ void CompositionStepper::add_gradient(std::int64_t n, const SubStep& step, const
     const std::ptrdiff_t begin = layout_.at(first);
     for (int a = 0; a < d_; ++a) {
       const auto row = static_cast<std::ptrdiff_t>(a) * static_cast<std::ptrdiff_t>(size_) + begin;
-      now_[static_cast<std::size_t>(a)] = from + row;
-      for (int part = 0; part < 3; ++part) out_[static_cast<std::size_t>(part * d_ + a)] = squares_.row(part) + row;
+      now_[a] = from + row;
+      for (int part = 0; part < 3; ++part) out_[part * d_ + a] = squares_.row(part) + row;
       with_reach(Q, [&]<int R>(std::integral_constant<int, R>) {
         sum_pairs<R>(packs, gradient_.sums.data(), differences + row, second[a]);
       });

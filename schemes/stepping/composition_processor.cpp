@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/composition_stepper.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 
@@ -37,14 +38,14 @@ void CompositionStepper::prepare_processor() {
     undo_.push_back(sub_step_of(-p.kicks[i], drift, time));
     time += drift;
   }
-  observed_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
-  observed_differences_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
+  observed_ = RowBuffer(delf::at(d_) * size_, 2);
+  observed_differences_ = RowBuffer(delf::at(d_) * size_, 2);
 }
 
 /// The momenta below an older row are those above it, less its kick.
 void CompositionStepper::observe(int back, std::vector<double>& fields, std::vector<double>* rates) const {
   require(back);
-  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  const std::size_t doubles = delf::at(d_) * size_;
   double *const y = observed_.row(0), *const u = observed_.row(1);
   const FlushDenormals guard;
   std::copy_n(back == 0 ? newest_row() : node(n_ - back, 0), doubles, y);
@@ -60,8 +61,8 @@ void CompositionStepper::observe(int back, std::vector<double>& fields, std::vec
     sub_step(n_ - back, less, y, observed_differences_.row(0), y, observed_differences_.row(1), u);
   }
   undo_processor(n_ - back, rates != nullptr);
-  const auto d = static_cast<std::size_t>(d_);
-  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
+  const std::size_t d = d_;
+  std::vector<double> site(layout_.sites());
   for (const auto& [from, to] : {std::pair{y, &fields}, {u, rates}}) {
     if (!to) continue;
     to->resize(site.size() * d);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/pair_strips.hpp"
 #include "schemes/stepping/saved_state.hpp"
@@ -63,21 +64,21 @@ CompositionStepper::CompositionStepper(const LatticeSystem& system, const StepOp
       layout_(closed(system.lattice()), std::max(1, reach_)),
       ends_(closed(system.lattice()), 1),
       size_(layout_.doubles()),
-      now_(static_cast<std::size_t>(d_)),
-      out_(static_cast<std::size_t>(3 * d_)),
-      before_(static_cast<std::size_t>(d_), Pack(0.0)) {}
+      now_(delf::at(d_)),
+      out_(delf::at(3 * d_)),
+      before_(delf::at(d_), Pack(0.0)) {}
 
 /// The numbers of the equation at node s, from the elements that read it: all of them, or those above it alone.
 CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_below, bool& fits) const {
   const StencilFamily& family = family_;
   const Cell cell{system_.time_step(), system_.lattice().space_step(), 0, 0};
-  const auto n = static_cast<std::size_t>(family.size()), d = static_cast<std::size_t>(d_);
+  const std::size_t n = family.size(), d = delf::at(d_);
   const auto part = family.constant_part(cell);
   if (!part) return fits = false, SubStep{};
   const std::vector<double>& J = part->J;
   const SourceTerms& sources = *family.sources();
 
-  SubStep step{std::vector(d * static_cast<std::size_t>(reach_), 0.0), std::vector(d, 0.0), 0,
+  SubStep step{std::vector(d * delf::at(reach_), 0.0), std::vector(d, 0.0), 0,
                system_.component(s * d_).at.time * cell.time_step,
                gradient_.density && s == 0 ? (from_below ? 1.0 : 0.5) : 0.0};
   for (const SourceTerms::Group& group : sources.groups)
@@ -87,22 +88,20 @@ CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_b
   std::vector<double> left(step.linear);
   std::map<std::pair<int, int>, double> stray;  // what must cancel
   for (int i = 0; i < family.size(); ++i) {
-    const auto [vertex, component] = family.values()[static_cast<std::size_t>(i)];
+    const auto [vertex, component] = family.values()[i];
     if (component / d_ != s || (!from_below && family.site(i).time != 0)) continue;
-    const auto a = static_cast<std::size_t>(component % d_);
+    const std::size_t a = component % d_;
     for (int c = 0; c < sources.outputs(); ++c)
       step.nonlinear[a] += cell.time_step * cell.space_step * sources.weight(c, i);
     for (int j = 0; j < family.size(); ++j) {
-      const double entry = J[static_cast<std::size_t>(i) * n + static_cast<std::size_t>(j)];
+      const double entry = J[delf::at(i) * n + delf::at(j)];
       if (entry == 0) continue;
-      const int other = family.values()[static_cast<std::size_t>(j)].component;
+      const int other = family.values()[j].component;
       const int rows = (family.site(j).time - family.site(i).time) * S_ + other / d_ - s;
       const int shift = family.site(j).space - family.site(i).space;
       sum[a] += entry, size[a] += std::abs(entry);
       if (rows == 0 && shift != 0 && other % d_ == component % d_)
-        (shift > 0 ? step.linear
-                   : left)[a * static_cast<std::size_t>(reach_) + static_cast<std::size_t>(std::abs(shift) - 1)] +=
-            entry;
+        (shift > 0 ? step.linear : left)[a * delf::at(reach_) + delf::at(std::abs(shift) - 1)] += entry;
       else if (rows == 1 && shift == 0 && other % d_ == component % d_) above[a] += entry;
       else if (!(rows <= 0 && rows >= -1 && shift == 0 && other % d_ == component % d_))
         stray[{rows * 64 + shift, static_cast<int>(a) * system_.components() + other}] += entry;
@@ -116,7 +115,7 @@ CompositionStepper::SubStep CompositionStepper::read_sub_step(int s, bool from_b
   for (std::size_t m = 0; m < left.size(); ++m) fits = fits && std::abs(left[m] - step.linear[m]) <= 1e-12 * largest;
   for (const auto& [where, entry] : stray) fits = fits && std::abs(entry) <= 1e-12 * largest;
   if (fits) step.stride = -1 / above[0];
-  const auto reach = static_cast<std::size_t>(reach_);
+  const std::size_t reach = reach_;
   for (std::size_t a = 0; a < d; ++a)
     for (std::size_t j = reach - 1; j-- > 0;) step.linear[a * reach + j] += step.linear[a * reach + j + 1];
   return step;
@@ -154,16 +153,16 @@ bool CompositionStepper::assemble() {
     step->stride *= scale_;
   }
   gradient_.kick *= system_.time_step() * system_.lattice().space_step() / scale_;
-  if (gradient_.density) squares_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 3);
+  if (gradient_.density) squares_ = RowBuffer(delf::at(d_) * size_, 3);
   if (!options_.processor.empty()) prepare_processor();
-  newest_ = RowBuffer(static_cast<std::size_t>(d_) * size_);
-  differences_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
-  velocity_ = RowBuffer(static_cast<std::size_t>(d_) * size_);
-  slabs_ = RowBuffer(static_cast<std::size_t>(d_) * size_, slabs_held * S_);
-  saved_ = RowBuffer(static_cast<std::size_t>(d_) * size_, 2);
+  newest_ = RowBuffer(delf::at(d_) * size_);
+  differences_ = RowBuffer(delf::at(d_) * size_, 2);
+  velocity_ = RowBuffer(delf::at(d_) * size_);
+  slabs_ = RowBuffer(delf::at(d_) * size_, slabs_held * S_);
+  saved_ = RowBuffer(delf::at(d_) * size_, 2);
   if (system_.families()[0]->is_placed()) {
-    std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
-    for (int i = 0; i < layout_.sites(); ++i) site[static_cast<std::size_t>(i)] = system_.lattice().position(i);
+    std::vector<double> site(layout_.sites());
+    for (int i = 0; i < layout_.sites(); ++i) site[i] = system_.lattice().position(i);
     positions_ = RowBuffer(layout_, 1);
     layout_.scatter(site, positions_.row(0));
   }
@@ -194,7 +193,7 @@ void CompositionStepper::find_mirrors() {
         differences_at_walls_.push_back(
             {slot, layout_.slot(wall == 0 ? 1 : last), layout_.slot(wall == 0 ? 0 : last - 1)});
     for (const int slot : layout_.slots_of(wall)) {
-      if (lattice.is_fixed(wall)) held_.push_back({slot, std::vector<double>(static_cast<std::size_t>(d_))});
+      if (lattice.is_fixed(wall)) held_.push_back({slot, std::vector<double>(d_)});
       else natural_.push_back(slot);
     }
   }
@@ -204,7 +203,7 @@ void CompositionStepper::mirror_differences(double* D) const {
 }
 /// A fixed wall keeps its value to the bit, whatever force there is.
 void CompositionStepper::hold_walls(double* y, double* D, double* velocity, int a) const {
-  for (const Held& held : held_) y[held.slot] = held.value[static_cast<std::size_t>(a)], velocity[held.slot] = 0;
+  for (const Held& held : held_) y[held.slot] = held.value[a], velocity[held.slot] = 0;
   for (const AtWall& d : differences_at_walls_) D[d.slot] = y[d.above] - y[d.below];
 }
 
@@ -229,7 +228,7 @@ double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const d
   for (int first = 0; first < layout_.packs(); first += strip) {
     const int packs = std::min(strip, layout_.packs() - first);
     const std::ptrdiff_t begin = layout_.at(first);
-    for (int a = 0; a < d_; ++a) now_[static_cast<std::size_t>(a)] = from + row(a) + begin;
+    for (int a = 0; a < d_; ++a) now_[a] = from + row(a) + begin;
     if (has_sources && !has_gradient)
       family_.evaluate_sources(0,
                                {packs * lanes, now_.data(), static_cast<double>(n) * system_.time_step() + step.time,
@@ -238,20 +237,18 @@ double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const d
     for (int a = 0; a < d_; ++a) {
       const auto at = row(a) + begin;
       const PairStrip rows{packs,
-                       step.linear.data() + static_cast<std::ptrdiff_t>(a) * reach_,
-                       step.nonlinear[static_cast<std::size_t>(a)],
-                       step.stride,
-                       differences + at,
-                       from + at,
-                       has_gradient  ? squares_.row(2) + at
-                       : has_sources ? slopes[a]
-                                     : nullptr,
-                       velocity + at,
-                       to + at,
-                       next_differences + at};
-      with_reach(reach_, [&]<int R>(std::integral_constant<int, R>) {
-        step_strip<R>(rows, before_[static_cast<std::size_t>(a)], largest);
-      });
+                           step.linear.data() + static_cast<std::ptrdiff_t>(a) * reach_,
+                           step.nonlinear[a],
+                           step.stride,
+                           differences + at,
+                           from + at,
+                           has_gradient  ? squares_.row(2) + at
+                           : has_sources ? slopes[a]
+                                         : nullptr,
+                           velocity + at,
+                           to + at,
+                           next_differences + at};
+      with_reach(reach_, [&]<int R>(std::integral_constant<int, R>) { step_strip<R>(rows, before_[a], largest); });
     }
   }
   const std::ptrdiff_t last = layout_.at(layout_.packs() - 1);
@@ -268,8 +265,8 @@ double CompositionStepper::sub_step(std::int64_t n, const SubStep& step, const d
 
 void CompositionStepper::find_differences(const double* row, double* differences) const {
   for (int a = 0; a < d_; ++a) {
-    const double* const y = row + static_cast<std::size_t>(a) * size_;
-    double* const D = differences + static_cast<std::size_t>(a) * size_;
+    const double* const y = row + delf::at(a) * size_;
+    double* const D = differences + delf::at(a) * size_;
     for (int v = 0; v < layout_.packs(); ++v)
       (Pack::load(y + layout_.at(v + 1)) - Pack::load(y + layout_.at(v))).store(D + layout_.at(v));
     layout_.fill_halo(D);
@@ -279,34 +276,31 @@ void CompositionStepper::find_differences(const double* row, double* differences
 
 /// The sub-steps from row n on; in place if no one looks. Returns the largest |y| of the new row.
 double CompositionStepper::advance(const SubStep& first, bool looked_at) {
-  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  const std::size_t doubles = delf::at(d_) * size_;
   double* const newest = newest_row();
   if (looked_at) std::copy_n(newest, doubles, node(n_, 0));
   double largest = 0;
   for (int s = 0; s < S_; ++s, at_ = 1 - at_) {
     const double* const from = looked_at ? node(n_, s) : newest;
     double* const to = looked_at && s + 1 < S_ ? node(n_, s + 1) : newest;
-    largest = sub_step(n_, s == 0 ? first : steps_[static_cast<std::size_t>(s)], from, differences_.row(at_), to,
-                       differences_.row(1 - at_), velocity_.row(0));
+    largest = sub_step(n_, s == 0 ? first : steps_[s], from, differences_.row(at_), to, differences_.row(1 - at_),
+                       velocity_.row(0));
   }
   return largest;
 }
 
 /// The fields of a section, by lanes.
-void CompositionStepper::set(RowBuffer& rows, const std::vector<double>& section, double turn) {
-  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
+void CompositionStepper::set(RowBuffer& rows, const std::vector<double>& section, double monodromy) {
+  std::vector<double> site(layout_.sites());
   for (int a = 0; a < d_; ++a) {
-    for (std::size_t i = 0; i < site.size(); ++i)
-      site[i] = section[i * static_cast<std::size_t>(system_.components()) + static_cast<std::size_t>(a)];
+    for (std::size_t i = 0; i < site.size(); ++i) site[i] = section[i * delf::at(system_.components()) + delf::at(a)];
     if (std::ranges::any_of(site, [](double x) { return overflowed(std::abs(x)); }))
       throw NotFinite("the rows of the start are not finite");
-    layout_.scatter(site, rows.row(0) + static_cast<std::size_t>(a) * size_, turn);
+    layout_.scatter(site, rows.row(0) + delf::at(a) * size_, monodromy);
   }
   if (&rows != &newest_) return;
   for (Held& held : held_)
-    for (int a = 0; a < d_; ++a)
-      held.value[static_cast<std::size_t>(a)] =
-          rows.row(0)[static_cast<std::size_t>(a) * size_ + static_cast<std::size_t>(held.slot)];
+    for (int a = 0; a < d_; ++a) held.value[a] = rows.row(0)[delf::at(a) * size_ + delf::at(held.slot)];
 }
 
 void CompositionStepper::start(const std::vector<std::vector<double>>& rows) {
@@ -314,11 +308,11 @@ void CompositionStepper::start(const std::vector<std::vector<double>>& rows) {
     throw BadInput("initial.start",
                    "the rows between the sub-steps of a composition follow from row 0 and its momenta alone; use "
                    "initial.start = legendre and a state that knows its velocity");
-  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  const std::size_t doubles = delf::at(d_) * size_;
   n_ = static_cast<std::int64_t>(rows.size()) - 1;
-  set(newest_, rows[rows.size() - 2], options_.turn);
+  set(newest_, rows[rows.size() - 2], options_.monodromy);
   std::copy_n(newest_row(), doubles, node(n_ - 1, 0));
-  set(newest_, rows.back(), options_.turn);
+  set(newest_, rows.back(), options_.monodromy);
   // u = (y₁ − y₀)/stride
   for (std::size_t at = 0; at < doubles; ++at)
     velocity_.row(0)[at] = (newest_row()[at] - node(n_ - 1, 0)[at]) / steps_[0].stride;
@@ -328,13 +322,12 @@ void CompositionStepper::start(const std::vector<std::vector<double>>& rows) {
 }
 
 void CompositionStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
-  set(newest_, row0, options_.turn);
+  set(newest_, row0, options_.monodromy);
   set(velocity_, momenta, 0);
   // A natural wall has half a cell, and half of its momentum; steps take the equation of a whole one.
   for (const int slot : natural_)
-    for (int a = 0; a < d_; ++a)
-      velocity_.row(0)[static_cast<std::size_t>(a) * size_ + static_cast<std::size_t>(slot)] *= 2;
-  for (std::size_t at = 0; at < static_cast<std::size_t>(d_) * size_; ++at) velocity_.row(0)[at] /= scale_;
+    for (int a = 0; a < d_; ++a) velocity_.row(0)[delf::at(a) * size_ + delf::at(slot)] *= 2;
+  for (std::size_t at = 0; at < delf::at(d_) * size_; ++at) velocity_.row(0)[at] /= scale_;
   n_ = 0;
   known_ = 0;
   const FlushDenormals guard;
@@ -361,7 +354,7 @@ void CompositionStepper::step(bool looked_at) {
 }
 
 void CompositionStepper::save() {
-  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  const std::size_t doubles = delf::at(d_) * size_;
   std::copy_n(newest_row(), doubles, saved_.row(0));
   std::copy_n(velocity_.row(0), doubles, saved_.row(1));
   saved_row_ = n_;
@@ -369,7 +362,7 @@ void CompositionStepper::save() {
 
 /// Goes back to the saved row, and from there to the last good one: its bits are the same.
 void CompositionStepper::fail() {
-  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  const std::size_t doubles = delf::at(d_) * size_;
   std::vector<double> bad(newest_row(), newest_row() + doubles);
   const std::int64_t last = n_;
   std::copy_n(saved_.row(0), doubles, newest_row());
@@ -383,8 +376,7 @@ void CompositionStepper::fail() {
   int site = 0;
   const auto fine = [&](int i) {
     for (int a = 0; a < d_; ++a)
-      if (overflowed(std::abs(bad[static_cast<std::size_t>(a) * size_ + static_cast<std::size_t>(layout_.slot(i))])))
-        return false;
+      if (overflowed(std::abs(bad[delf::at(a) * size_ + delf::at(layout_.slot(i))]))) return false;
     return true;
   };
   while (site + 1 < layout_.sites() && fine(site)) ++site;
@@ -401,19 +393,18 @@ void CompositionStepper::require(int slabs) const {
 
 /// Components first_component … + d − 1 of a section, from a row of nodes.
 void CompositionStepper::copy_components(const double* rows, int first_component, std::vector<double>& section) const {
-  std::vector<double> site(static_cast<std::size_t>(layout_.sites()));
+  std::vector<double> site(layout_.sites());
   for (int a = 0; a < d_; ++a) {
-    layout_.gather(rows + static_cast<std::size_t>(a) * size_, site);
+    layout_.gather(rows + delf::at(a) * size_, site);
     for (std::size_t i = 0; i < site.size(); ++i)
-      section[i * static_cast<std::size_t>(system_.components()) + static_cast<std::size_t>(first_component + a)] =
-          site[i];
+      section[i * delf::at(system_.components()) + delf::at(first_component + a)] = site[i];
   }
 }
 
 /// Nodes as they were found together with the row; before there are any, the row itself.
 std::vector<double> CompositionStepper::row(int back) const {
   require(back);
-  std::vector<double> section(static_cast<std::size_t>(layout_.sites() * system_.components()));
+  std::vector<double> section(layout_.sites() * system_.components());
   const double* const fields = back == 0 ? newest_row() : node(n_ - back, 0);
   copy_components(fields, 0, section);
   for (int s = 1; s < S_; ++s) copy_components(back < known_ ? node(n_ - back - 1, s) : fields, s * d_, section);
@@ -424,17 +415,17 @@ Window CompositionStepper::window(int rows) const {
   require(rows - 1);
   std::vector<std::vector<double>> sections;
   for (std::int64_t r = n_ - rows + 1; r <= n_; ++r) {
-    sections.emplace_back(static_cast<std::size_t>(layout_.sites() * system_.components()));
+    sections.emplace_back(delf::at(layout_.sites() * system_.components()));
     for (int s = 0; s < S_; ++s) copy_components(r == n_ ? newest_row() : node(r, s), s * d_, sections.back());
   }
-  return system_.window(n_ - rows + 1, std::move(sections), options_.turn);
+  return system_.window(n_ - rows + 1, std::move(sections), options_.monodromy);
 }
 
 /// E/K = (y_s − y_{s−1})/stride_{s−1} + w_s − (y_{s+1} − y_s)/stride_s over the nodes of the newest slab.
 double CompositionStepper::residual() const {
   const int first = known_ >= 2 ? 0 : 1;
   if (known_ == 0) return std::numeric_limits<double>::quiet_NaN();
-  const std::size_t doubles = static_cast<std::size_t>(d_) * size_;
+  const std::size_t doubles = delf::at(d_) * size_;
   if (!scratch_.rows() && scratch_rows() > 0) scratch_ = RowBuffer(doubles, scratch_rows());
   // The next step that is checked writes over these.
   const auto room = [&](int r) {
@@ -447,13 +438,12 @@ double CompositionStepper::residual() const {
     const double *const here = node(n_ - 1, s), *const next = s + 1 < S_ ? node(n_ - 1, s + 1) : newest_row();
     std::fill_n(w, doubles, 0.0);
     find_differences(here, differences);
-    sub_step(n_ - 1, steps_[static_cast<std::size_t>(s)], here, differences, to, differences_.row(1 - at_), w);
-    const double below = steps_[static_cast<std::size_t>(s > 0 ? s - 1 : S_ - 1)].stride,
-                 above = steps_[static_cast<std::size_t>(s)].stride;
+    sub_step(n_ - 1, steps_[s], here, differences, to, differences_.row(1 - at_), w);
+    const double below = steps_[s > 0 ? s - 1 : S_ - 1].stride, above = steps_[s].stride;
     for (int a = 0; a < d_; ++a)
       for (int v = 0; v < layout_.packs(); ++v)
         for (int l = 0; l < lanes; ++l) {
-          const std::size_t at = static_cast<std::size_t>(a) * size_ + static_cast<std::size_t>(layout_.at(v) + l);
+          const std::size_t at = delf::at(a) * size_ + delf::at(layout_.at(v) + l);
           const double from_below = (here[at] - before[at]) / below, to_above = (next[at] - here[at]) / above;
           worst = larger_or_nan(std::abs(from_below + w[at] - to_above), worst);
           size = larger_or_nan(std::abs(from_below) + std::abs(w[at]) + std::abs(to_above), size);
@@ -464,7 +454,7 @@ double CompositionStepper::residual() const {
 
 void CompositionStepper::visit(SavedState& state) {
   const auto visit_rows = [&](std::string_view name, RowBuffer& rows) {
-    for (int r = 0; r < rows.rows(); ++r) state.numbers(name, rows.row(r), static_cast<std::size_t>(d_) * size_);
+    for (int r = 0; r < rows.rows(); ++r) state.numbers(name, rows.row(r), delf::at(d_) * size_);
   };
   visit_rows("y", newest_), visit_rows("velocity", velocity_), visit_rows("differences", differences_);
   visit_rows("slabs", slabs_), visit_rows("saved", saved_);
@@ -474,14 +464,13 @@ void CompositionStepper::visit(SavedState& state) {
 
 StepReport CompositionStepper::report(bool residual) const {
   StepReport report{.iterates = false, .matrix_free = true, .solver = "explicit sub-steps, row by row"};
-  report.behind.assign(static_cast<std::size_t>(S_ * d_), 1);
+  report.behind.assign(S_ * d_, 1);
   std::fill_n(report.behind.begin(), d_, 0);
   if (!options_.processor.empty()) report.solver += "; rows of a kernel, processed where they are recorded";
   const std::size_t work = saved_.bytes() + squares_.bytes() + observed_.bytes() + observed_differences_.bytes() +
                            scratch_.bytes() + positions_.bytes() + layout_.bytes() + ends_.bytes();
   report.bytes = newest_.bytes() + velocity_.bytes() + differences_.bytes() + slabs_.bytes() + work;
-  if (residual && !scratch_.rows())
-    report.bytes_to_come = RowBuffer::bytes_of(static_cast<std::size_t>(d_) * size_, scratch_rows());
+  if (residual && !scratch_.rows()) report.bytes_to_come = RowBuffer::bytes_of(delf::at(d_) * size_, scratch_rows());
   report.memory = fmt::format(
       "rows of the field {} B, differences {} B, momenta {} B, rows between sub-steps {} B, work space {} B",
       newest_.bytes(), differences_.bytes(), velocity_.bytes(), slabs_.bytes(), work + report.bytes_to_come);

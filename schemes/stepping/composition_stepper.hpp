@@ -80,12 +80,12 @@ class CompositionStepper final : public StepMethod {
   double advance(const SubStep& first, bool looked_at);
   /// A row of y has a halo of one pack.
   void fill_ends(double* row) const {
-    ends_.fill_halo(row + static_cast<std::ptrdiff_t>(layout_.halo() - 1) * lanes, options_.turn);
+    ends_.fill_halo(row + static_cast<std::ptrdiff_t>(layout_.halo() - 1) * lanes, options_.monodromy);
   }
   double* node(std::int64_t row, int s) { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
   const double* node(std::int64_t row, int s) const { return slabs_.row(static_cast<int>(row % slabs_held) * S_ + s); }
   void copy_components(const double* rows, int first_component, std::vector<double>& section) const;
-  void set(RowBuffer& rows, const std::vector<double>& section, double turn);
+  void set(RowBuffer& rows, const std::vector<double>& section, double monodromy);
   void save();
   [[noreturn]] void fail();
   /// The number of rows to work out the residual in, which those of a slab no longer held do not give.

@@ -15,6 +15,7 @@
 #include "jets/simd/exact_sum.hpp"
 #include "jets/simd/pack_gather.hpp"
 #include "jets/simd/scratch_rows.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/momenta.hpp"
@@ -24,7 +25,6 @@ namespace {
 
 constexpr int rows_held = 5, strip = 256;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 double* numbers(std::vector<Pack>& packs) { return reinterpret_cast<double*>(packs.data()); }
 const double* numbers(const std::vector<Pack>& packs) { return reinterpret_cast<const double*>(packs.data()); }
 
@@ -43,8 +43,8 @@ struct KickStepper::Parts {
         sites(N),
         padded((N + lanes - 1) / lanes * lanes),
         entries(at(S + 1)),
-        constant(at(S + 1), std::vector<double>(at(d * padded), 0.0)),
-        mass(at(S), std::vector<double>(at(d * padded), 0.0)),
+        constant(at(S + 1), std::vector<double>(d * padded, 0.0)),
+        mass(at(S), std::vector<double>(d * padded, 0.0)),
         sources(at(S + 1)) {}
 
   int place(int site, int a) const { return a * padded + site; }
@@ -55,7 +55,7 @@ struct KickStepper::Parts {
     bool data;
   };
   Value value(const LatticeSystem& system, const StencilFamily& family, int anchor, int i) const {
-    const int component = family.values()[at(i)].component, site = family.column(anchor, i);
+    const int component = family.values()[i].component, site = family.column(anchor, i);
     return {family.site(i).time * nodes + component / fields, place(site, component % fields),
             system.is_held(site, component)};
   }
@@ -81,16 +81,16 @@ bool KickStepper::Parts::add(const LatticeSystem& system, const StencilFamily& f
   for (std::size_t i = 0; i < n; ++i) {
     const Value& v = values[i];
     if (v.data) continue;
-    constant[at(v.node)][at(v.place)] += others->r0[i] / longer;
+    constant[v.node][v.place] += others->r0[i] / longer;
     for (std::size_t m = 0; m < n; ++m) {
       const double J = part->J[i * n + m];
       const Value& u = values[m];
       if (J == 0) continue;
       if (u.node == v.node) {
         if (const double K = others->J[i * n + m] / longer; std::abs(K) > tiny * std::abs(J))
-          entries[at(v.node)][{v.place, u.place}] += K;
+          entries[v.node][{v.place, u.place}] += K;
       } else if (u.place != v.place || std::abs(u.node - v.node) != 1) return false;
-      else if (u.node > v.node) mass[at(v.node)][at(v.place)] -= J;
+      else if (u.node > v.node) mass[v.node][v.place] -= J;
     }
   }
   return true;
@@ -103,30 +103,30 @@ bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilF
   if (terms == nullptr) return false;
   const double hk = system.time_step() * system.lattice().space_step();
   for (int g = 0; g < static_cast<int>(terms->groups.size()); ++g) {
-    const SourceTerms::Group& group = terms->groups[at(g)];
+    const SourceTerms::Group& group = terms->groups[g];
     // the inputs are the fields of one site at one node, as they are
     std::vector<Value> inputs;
     for (const auto& input : group.inputs) {
       if (input.size() != 1 || input[0].weight != 1) return false;
       const auto i = std::ranges::find_if(family.values(), [&](const VertexValue& value) {
-        const Site& v = family.pattern().vertices[at(value.vertex)];
+        const Site& v = family.pattern().vertices[value.vertex];
         return v.time == input[0].vertex.time && v.space == input[0].vertex.space &&
                value.component == input[0].component;
       });
-      inputs.push_back(values[static_cast<std::size_t>(i - family.values().begin())]);
+      inputs.push_back(values[i - family.values().begin()]);
     }
     for (int c = 0; c < terms->outputs_per_group; ++c)
       for (int i = 0; i < family.size(); ++i) {
         const double weight = terms->weight(g * terms->outputs_per_group + c, i);
         if (weight == 0) continue;
-        const Value& v = values[at(i)];
+        const Value& v = values[i];
         // N′ of component c kicks the same one, there
-        if (v.node != inputs[at(c)].node || v.place != inputs[at(c)].place) return false;
+        if (v.node != inputs[c].node || v.place != inputs[c].place) return false;
         if (v.data) continue;
         if (family.is_placed() &&
-            group.time != family.site(i).time + system.component(family.values()[at(i)].component).at.time)
+            group.time != family.site(i).time + system.component(family.values()[i].component).at.time)
           return false;
-        std::vector<Source>& list = sources[at(v.node)];
+        std::vector<Source>& list = sources[v.node];
         const auto [found, fresh] = known.try_emplace({v.node, g}, list.size());
         if (fresh) list.push_back({&family, g, Packs(at(fields * padded / lanes), Pack(0.0))});
         numbers(list[found->second].weights)[v.place] += hk * weight * family.own_number(group.own, anchor);
@@ -139,11 +139,11 @@ bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilF
 KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const {
   Kick kick;
   std::map<std::pair<int, int>, double> K;
-  kick.constant.assign(at(fields * padded / lanes), Pack(0.0));
+  kick.constant.assign(fields * padded / lanes, Pack(0.0));
   for (const int node : of) {
-    for (const auto& [place, value] : entries[at(node)]) K[place] += value;
-    for (int n = 0; n < fields * padded; ++n) numbers(kick.constant)[n] += constant[at(node)][at(n)];
-    for (const Source& source : sources[at(node)]) {
+    for (const auto& [place, value] : entries[node]) K[place] += value;
+    for (int n = 0; n < fields * padded; ++n) numbers(kick.constant)[n] += constant[node][n];
+    for (const Source& source : sources[node]) {
       // The functions of a family are those of its density, whatever the group.
       const auto same = std::ranges::find(kick.sources, source.family, &Source::family);
       if (same == kick.sources.end()) kick.sources.push_back(source);
@@ -162,7 +162,7 @@ KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const 
           kick.column.insert(kick.column.end(), at(lanes),
                              pack);  // rows with fewer entries read a value and take nothing of it
         }
-        kick.column[at(e * lanes + lane)] = next->first.second;
+        kick.column[e * lanes + lane] = next->first.second;
         numbers(kick.value)[e * lanes + lane] = next->second;
       }
   }
@@ -202,10 +202,10 @@ std::unique_ptr<StepMethod> KickStepper::make(const LatticeSystem& system, const
   for (const auto& family : system.families()) {
     if (!family->is_variational()) return nullptr;
     std::map<std::pair<int, int>, std::size_t> known;
-    std::vector<Parts::Value> values(at(family->size()));
+    std::vector<Parts::Value> values(family->size());
     for (int anchor = 0; anchor < system.anchors(*family); ++anchor) {
       if (!system.has_stencil(*family, 0, anchor)) continue;
-      for (int i = 0; i < family->size(); ++i) values[at(i)] = parts.value(system, *family, anchor, i);
+      for (int i = 0; i < family->size(); ++i) values[i] = parts.value(system, *family, anchor, i);
       if (!parts.add(system, *family, anchor, values) || !parts.add_sources(system, *family, anchor, values, known))
         return nullptr;
     }
@@ -213,14 +213,14 @@ std::unique_ptr<StepMethod> KickStepper::make(const LatticeSystem& system, const
   for (const auto& mass : parts.mass)
     for (int i = 0; i < N; ++i)
       for (int a = 0; a < d; ++a)
-        if (!system.is_held(i, a) && !(std::abs(mass[at(parts.place(i, a))]) > 0)) return nullptr;
+        if (!system.is_held(i, a) && !(std::abs(mass[parts.place(i, a)]) > 0)) return nullptr;
   if (options.steps_vary && !parts.is_symmetric()) return nullptr;
   return std::unique_ptr<StepMethod>(new KickStepper(system, options, std::move(parts)));
 }
 
 KickStepper::KickStepper(const LatticeSystem& system, const StepOptions& options, Parts parts)
     : system_(system),
-      turn_(options.turn),
+      monodromy_(options.monodromy),
       fields_(parts.fields),
       nodes_(parts.nodes),
       padded_(parts.padded),
@@ -233,29 +233,29 @@ KickStepper::KickStepper(const LatticeSystem& system, const StepOptions& options
   for (int node = 0; node < nodes_; ++node) {
     inverse_.emplace_back(packs, Pack(0.0));
     for (int place = 0; place < fields_ * padded_; ++place)
-      if (const double M = parts.mass[at(node)][at(place)]; M != 0) numbers(inverse_.back())[place] = 1 / M;
+      if (const double M = parts.mass[node][place]; M != 0) numbers(inverse_.back())[place] = 1 / M;
   }
   if (std::ranges::any_of(system.families(), [](const auto& family) { return family->is_placed(); })) {
-    x_.assign(at(padded_ / lanes), Pack(0.0));
+    x_.assign(padded_ / lanes, Pack(0.0));
     for (int i = 0; i < padded_; ++i) numbers(x_)[i] = system.lattice().position(std::min(i, parts.sites - 1));
   }
-  ring_.assign(at(rows_held * nodes_), {Packs(packs, Pack(0.0)), Packs(packs, Pack(0.0))});
+  ring_.assign(rows_held * nodes_, {Packs(packs, Pack(0.0)), Packs(packs, Pack(0.0))});
   std::iota(slots_.begin(), slots_.end(), 0);
   momentum_.assign(packs, Pack(0.0));
-  inputs_.resize(at(fields_));
+  inputs_.resize(fields_);
 }
 
 /// Rows that are no longer there are those next to them that are.
 std::size_t KickStepper::index(std::int64_t row, int node) const {
   const auto back = std::clamp<std::int64_t>(newest_ - row, 0, std::max(held_ - 1, 0));
-  return at(slots_[static_cast<std::size_t>(back)] * nodes_ + node);
+  return at(slots_[back] * nodes_ + node);
 }
 
 /// P ← P + κ (K y + c + w N′(y)),   y′ = y + δ M⁻¹ P, strip by strip, with κ and δ as they are given.
 void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double of_drift, double t, Node& next) {
   const Node& here = node(newest_, n);
   const double *const from = numbers(here.y), *const from_low = numbers(here.low),
-                      *const constant = numbers(kick.constant), *const drift = numbers(inverse_[at(n)]),
+                      *const constant = numbers(kick.constant), *const drift = numbers(inverse_[n]),
                       *const value = numbers(kick.value), *const x = x_.empty() ? nullptr : numbers(x_);
   double *const P = numbers(momentum_), *const to = numbers(next.y), *const to_low = numbers(next.low);
   const ScratchRows slope(fields_, strip);
@@ -266,12 +266,12 @@ void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double
       const int begin = a * padded_ + first;
       for (int i = begin; i < begin + count; i += lanes) {
         Pack sum = Pack::load(constant + i);
-        const int end = kick.first[at(i / lanes + 1)];
-        for (int e = kick.first[at(i / lanes)]; e < end; ++e)
+        const int end = kick.first[i / lanes + 1];
+        for (int e = kick.first[i / lanes]; e < end; ++e)
           sum += Pack::load(value + e * lanes) * gather(from, column + e * lanes);
         (Pack::load(P + i) + of_kick * sum).store(P + i);
       }
-      inputs_[at(a)] = from + begin;
+      inputs_[a] = from + begin;
     }
     for (const Source& source : kick.sources) {
       source.family->evaluate_sources(source.group, {count, inputs_.data(), t, x ? x + first : nullptr}, slope.data());
@@ -306,8 +306,8 @@ void KickStepper::take_slab(const Kick& first, double share_below) {
   for (int n = 0; n < nodes_; ++n) {
     const double kick = n == 0 ? share_below * below + (1 - share_below) * above : above;
     const double t = times.time(newest_) + system_.component(n * fields_).at.time * times.step(newest_);
-    Node& next = n + 1 < nodes_ ? node(newest_, n + 1) : ring_[at(slot * nodes_)];
-    kick_and_drift(n == 0 ? first : kicks_[at(n)], n, kick, above, t, next);
+    Node& next = n + 1 < nodes_ ? node(newest_, n + 1) : ring_[slot * nodes_];
+    kick_and_drift(n == 0 ? first : kicks_[n], n, kick, above, t, next);
   }
   if (overflowed(max_or_nan(largest_)))
     throw NotFinite(
@@ -320,12 +320,12 @@ void KickStepper::take_slab(const Kick& first, double share_below) {
 
 std::vector<double> KickStepper::row_of(std::int64_t row, int behind, bool low) const {
   const int C = system_.components(), N = system_.lattice().sites();
-  std::vector<double> values(at(N * C));
+  std::vector<double> values(N * C);
   for (int n = 0; n < nodes_; ++n) {
     const Node& from = node(std::max<std::int64_t>(0, n == 0 ? row : row - behind), n);
     for (int a = 0; a < fields_; ++a) {
       const double* const field = numbers(low ? from.low : from.y) + a * padded_;
-      for (int i = 0; i < N; ++i) values[at(i * C + n * fields_ + a)] = field[i];
+      for (int i = 0; i < N; ++i) values[i * C + n * fields_ + a] = field[i];
     }
   }
   return values;
@@ -376,7 +376,7 @@ Window KickStepper::window(int rows) const {
     newest_rows.push_back(row_of(r, 0, false));
     low_rows.push_back(row_of(r, 0, true));
   }
-  Window window = system_.window(first, std::move(newest_rows), turn_);
+  Window window = system_.window(first, std::move(newest_rows), monodromy_);
   window.low = std::move(low_rows);
   return window;
 }

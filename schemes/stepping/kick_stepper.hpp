@@ -73,7 +73,7 @@ class KickStepper final : public StepMethod {
   std::vector<double> row_of(std::int64_t row, int behind, bool low) const;
 
   const LatticeSystem& system_;
-  double turn_;
+  double monodromy_;
   int fields_, nodes_, padded_;        ///< nodes of a slab but the last; sites to whole packs
   std::vector<int> behind_;            ///< rows that the newest of a component is below the newest row
   Kick alone_;                         ///< of row 0, which has no slab below it

@@ -33,7 +33,7 @@ std::string MeshWatch::crossing_at(const SectionRing& ring, std::int64_t row) co
       double size = 0;
       for (const auto& [value, weight] : stage->moving_cell()->width) {
         const Site site = stage->site(value);
-        const int component = stage->values()[static_cast<std::size_t>(value)].component;
+        const int component = stage->values()[value].component;
         size += weight * ring.row(row - top + site.time)[(i + site.space) * system_.components() + component];
       }
       if (!(size > 0))

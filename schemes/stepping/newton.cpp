@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/solvers/newton.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
 #include "schemes/stepping/slab_solver.hpp"
@@ -36,8 +37,7 @@ class SlabProblem {
   SlabProblem(const LatticeSystem& system, Assembly::Parts parts, std::int64_t J, MakeRows make)
       : h_(system.times()->step(J - 1)),
         J_(J),
-        ring_(parts.past + parts.future + 1,
-              static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(system.components())),
+        ring_(parts.past + parts.future + 1, delf::at(system.lattice().sites()) * delf::at(system.components())),
         equations_(system, std::move(parts)),
         make_(std::move(make)) {
     for (int n = 0; n < equations_.size(); ++n) places_.push_back(equations_.place(equations_.unknown(n)));
@@ -48,7 +48,7 @@ class SlabProblem {
   void list_unknowns(const LatticeSystem& system, const SlabPast& past) {
     known_ = past.known, momenta_ = past.momenta;
     for (int n = 0; n < equations_.size(); ++n) {
-      places_[static_cast<std::size_t>(n)] = n;
+      places_[n] = n;
       asked_.push_back(system.component(equations_.unknown(n).component).role != Role::multiplier);
     }
   }
@@ -66,7 +66,7 @@ class SlabProblem {
     make_(s_, y, ring_);
     if (known_.empty() || momenta_) equations_.residual(ring_, J_, E_, nullptr, momenta_);
     else equations_.residual_from(known_, ring_, J_, E_);
-    E_.resize(static_cast<std::size_t>(equations_.size()));
+    E_.resize(equations_.size());
     return E_;
   }
   /// y + by; a fixed wall keeps its value.
@@ -120,7 +120,8 @@ struct EveryJacobian {
     const std::vector<double>& values = problem.jacobian(y);
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t n = 0; n < values.size(); ++n)
-      if (values[n] != 0) entries.emplace_back(equations.places()[n].equation, equations.places()[n].unknown, values[n]);
+      if (values[n] != 0)
+        entries.emplace_back(equations.places()[n].equation, equations.places()[n].unknown, values[n]);
     Matrix J(equations.size(), equations.size());
     J.setFromTriplets(entries.begin(), entries.end());
     if (!factor(lu, J)) return false;
@@ -158,8 +159,8 @@ struct FirstJacobian : EveryJacobian {
 template <class Equations>
 Root tame_root(Equations equations, double absolute_tolerance, int max_iterations, double share) {
   NewtonProgress at;
-  const Stop stop = newton(equations, at, Overflows{}, Converged{.absolute = absolute_tolerance}, Rounding{}, Stalls{share},
-                           OutOfIterations{max_iterations});
+  const Stop stop = newton(equations, at, Overflows{}, Converged{.absolute = absolute_tolerance}, Rounding{},
+                           Stalls{share}, OutOfIterations{max_iterations});
   return {has_root(stop), at.iteration, std::move(equations.y), equations.sign};
 }
 
@@ -185,7 +186,7 @@ Root at_beginning(SlabProblem& problem, Vector predicted, double absolute_tolera
 /// away. Stops where the determinant changes sign, because there two roots meet. Where the root does not begin at its
 /// prediction (`from_root`) the first one is found alone, with a step of next to nothing.
 Root follow(SlabProblem& problem, const std::function<Vector(double)>& predict, double absolute_tolerance,
-              int max_iterations, bool from_root = false) {
+            int max_iterations, bool from_root = false) {
   constexpr double first = 1. / 16, largest_stride = 1. / 8, least_stride = next_to_nothing, share = 1. / 8;
   double s = 0, stride = first;
   Root at;
@@ -254,10 +255,10 @@ NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, cons
   const Vector newest = as_vector(past.rows.back());
   const Vector increment = newest - as_vector(past.rows[past.rows.size() - 2]);
   // A step of s·h has the rows before the newest as far away as the same velocities put them.
-  SlabProblem problem(system, Assembly::slab(plan, parity_of(plan, J), rows, 0, past.turn), J,
+  SlabProblem problem(system, Assembly::slab(plan, parity_of(plan, J), rows, 0, past.monodromy), J,
                       [&](double s, const Vector& y, SectionRing& ring) {
                         for (int r = 0; r < rows; ++r) {
-                          const auto& row = past.rows[static_cast<std::size_t>(r)];
+                          const auto& row = past.rows[r];
                           double* const to = ring.row(past.first_row + r);
                           for (std::size_t i = 0; i < row.size(); ++i)
                             to[i] = past.rows.back()[i] - s * (past.rows.back()[i] - row[i]);
@@ -267,7 +268,7 @@ NewtonResult solve_slab(const LatticeSystem& system, const SolvePlan& plan, cons
   const auto predict = [&](double s) { return problem.moved(newest, s * increment); };
   const double absolute = tolerance * std::max(largest(newest), largest(predict(1)));
   const Root found = followed ? follow(problem, predict, absolute, max_iterations)
-                                : at_once(problem, predict(1), absolute, max_iterations);
+                              : at_once(problem, predict(1), absolute, max_iterations);
   return as_result(found, found.iterations);
 }
 
@@ -300,10 +301,10 @@ class SlabPath {
   void find_way(const LatticeSystem& system) {
     const RowTimes& times = *system.times();
     const bool traces = std::ranges::count(system.all_components(), Role::trace, &Component::role) > 0;
-    last_.assign(static_cast<std::size_t>(components_), past_.J - 1);
+    last_.assign(components_, past_.J - 1);
     is_field_.resize(last_.size());
-    for (int c = 0; c < components_; ++c) is_field_[static_cast<std::size_t>(c)] = system.component(c).role == Role::field;
-    for (const Node& unknown : unknowns_) last_[static_cast<std::size_t>(unknown.component)] = past_.J + unknown.site.time - 1;
+    for (int c = 0; c < components_; ++c) is_field_[c] = system.component(c).role == Role::field;
+    for (const Node& unknown : unknowns_) last_[unknown.component] = past_.J + unknown.site.time - 1;
     for (std::size_t n = 0; n < unknowns_.size(); ++n) {
       const Node& unknown = unknowns_[n];
       const Component& c = system.component(unknown.component);
@@ -314,7 +315,7 @@ class SlabPath {
         continue;
       }
       const int field = system.field_component(c.field), site = unknown.site.space;
-      const std::int64_t last = last_[static_cast<std::size_t>(field)];
+      const std::int64_t last = last_[field];
       base = value(last, site, field);
       if (last < 1) continue;
       const double before = value(last - 1, site, field), stride = times.step(last) / times.step(last - 1);
@@ -326,7 +327,9 @@ class SlabPath {
       else if (!traces && past_.slabs > 0) way = stride * (value(row - 1, site, unknown.component) - before);
     }
   }
-  double value(std::int64_t row, int site, int component) const { return past_.rows.row(row)[site * components_ + component]; }
+  double value(std::int64_t row, int site, int component) const {
+    return past_.rows.row(row)[site * components_ + component];
+  }
 
   /// Stencils that reach further than one row see the rows before as far away as the same velocities put them.
   void make_rows(double s, const Vector& y, SectionRing& ring) {
@@ -364,7 +367,8 @@ NewtonResult follow_slab(const LatticeSystem& system, const SlabPast& past, doub
   return as_result(followed, followed.iterations);
 }
 
-bool turns_back(const LatticeSystem& system, const SlabPast& past, const std::vector<double>& unknowns, double tolerance) {
+bool turns_back(const LatticeSystem& system, const SlabPast& past, const std::vector<double>& unknowns,
+                double tolerance) {
   SlabPath path(system, past);
   const double absolute = tolerance * path.size();
   const Root first = at_beginning(path.problem(), path.predict(next_to_nothing), absolute, enough_iterations);
@@ -380,7 +384,7 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
   const Vector y0 = as_vector(row0.rows.back()), phi_t = as_vector(velocity);
   const double h = system.time_step();
   // Row −1 moves with row 1: its values are the same unknowns.
-  Assembly::Parts parts = Assembly::slab(plan, parity_of(plan, 1), 2, 0, row0.turn);
+  Assembly::Parts parts = Assembly::slab(plan, parity_of(plan, 1), 2, 0, row0.monodromy);
   for (const Node& unknown : std::vector<Node>(parts.unknowns))
     parts.unknowns.push_back({unknown.site - Site{2, 0}, unknown.component});
   parts.copies = 2;

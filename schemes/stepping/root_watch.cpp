@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
@@ -23,9 +25,9 @@ void raise(double& largest, double by) { largest = std::max(largest, std::abs(by
 
 }  // namespace
 
-RootWatch::RootWatch(const LatticeSystem& system) : system_(system), fields_(static_cast<std::size_t>(system.fields())) {
+RootWatch::RootWatch(const LatticeSystem& system) : system_(system), fields_(delf::at(system.fields())) {
   for (const Component& c : system.all_components()) {
-    field_.push_back(static_cast<std::size_t>(c.field));
+    field_.push_back(delf::at(c.field));
     moves_.push_back(c.role == Role::field || c.position);
   }
 }
@@ -51,7 +53,7 @@ Stop RootWatch::judge(const SectionRing& ring, std::int64_t J, std::int64_t solv
       if (rows(list, J, solved) < most) continue;
       const double* y[most_rows + 1];  // rows n+1, n, …
       for (int m = 0; m <= most; ++m) y[m] = ring.row(J + list.time - m);
-      for (const int at : list.places) visit(fields_[field_[static_cast<std::size_t>(at % components)]], y, at);
+      for (const int at : list.places) visit(fields_[field_[at % components]], y, at);
     }
   };
   std::ranges::fill(fields_, Field{});
@@ -67,14 +69,14 @@ Stop RootWatch::judge(const SectionRing& ring, std::int64_t J, std::int64_t solv
     for (int m = 0; m <= most; ++m) difference[m] = y[m][at];
     raise(f.size, difference[1]);
     for (int p = 1; p <= most; ++p) {
-      const auto order = static_cast<std::size_t>(p);
+      const std::size_t order = p;
       if (p > 1) raise(f.differ[order], difference[1]);
       if (p > 1 && p < most) raise(f.differ[order], difference[2]);
       for (int m = 0; m <= most - p; ++m) difference[m] -= difference[m + 1];
       raise(f.leaves[order], difference[0]);
     }
   });
-  const std::size_t last = std::max<std::size_t>(2, static_cast<std::size_t>(most) - 1);
+  const std::size_t last = std::max<std::size_t>(2, delf::at(most) - 1);
   Stop stop = Stop::converged;
   for (const Field& f : fields_) {
     std::size_t p = 2;
@@ -92,7 +94,7 @@ bool RootWatch::leaps(const SectionRing& ring, std::int64_t row) const {
   const double stride = times.step(row - 1) / times.step(row - 2);
   const double *const now = ring.row(row), *const before = ring.row(row - 1), *const first = ring.row(row - 2);
   double way = 0, aside = 0;
-  const std::size_t size = moves_.size() * static_cast<std::size_t>(system_.lattice().sites());
+  const std::size_t size = moves_.size() * delf::at(system_.lattice().sites());
   for (std::size_t at = 0; at < size; ++at) {
     if (moves_[at % moves_.size()] == 0) continue;
     const double line = stride * (before[at] - first[at]);

@@ -30,7 +30,7 @@ class SavedState {
       (*this)(name, size);
       if (restores()) {
         if (size > most_items()) throw misfit(name);
-        item.resize(static_cast<std::size_t>(size));
+        item.resize(size);
       }
       using Item = typename T::value_type;
       if constexpr (std::is_trivially_copyable_v<Item> && requires { item.data(); })

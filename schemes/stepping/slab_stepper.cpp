@@ -13,6 +13,7 @@
 #include "jets/fibre.hpp"
 #include "jets/simd/exact_sum.hpp"
 #include "jets/simd/pack_gather.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/first_slab.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
@@ -33,18 +34,18 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
     : system_(system), plan_(plan), options_(options), components_(system.components()), root_(system) {
   SlabExtent extent = slab_extent(system, plan);
   future_ = extent.above;
-  lag_ = extent.field_lag;
+  delay_ = extent.field_lag;
   back_ = std::move(extent.behind);
-  points_ = std::clamp(options.seed_order, 1, most_points);
+  points_ = std::clamp(options.predictor_order, 1, most_points);
   past_ = std::max(plan.history, std::max(points_, RootWatch::most_rows) + extent.below);
   // Traces are the state of a row: of first order in time, a scheme goes on from one.
-  by_values_ =
-      plan.history <= 1 && lag_ == 0 && std::ranges::count(system.all_components(), Role::trace, &Component::role) > 0;
+  by_values_ = plan.history <= 1 && delay_ == 0 &&
+               std::ranges::count(system.all_components(), Role::trace, &Component::role) > 0;
   starting_rows_ = by_values_ ? 1 : std::max(plan.history, 1) + future_;
-  const std::size_t row = static_cast<std::size_t>(system.lattice().sites()) * static_cast<std::size_t>(components_);
+  const std::size_t row = delf::at(system.lattice().sites()) * delf::at(components_);
   ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row, true);
   for (int p = 0; p < plan.table.parities; ++p) {
-    parities_.push_back(parity_of(Assembly(system, Assembly::slab(plan, p, past_, future_, options.turn))));
+    parities_.push_back(parity_of(Assembly(system, Assembly::slab(plan, p, past_, future_, options.monodromy))));
     const bool follows = parities_.back().equations.keep_low(system);
     parities_.back().momentum_follows = follows && plan.table.parities == 1;
     parities_.back().has_constant = factor_constant(parities_.back());
@@ -54,7 +55,7 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
   predicted_.resize(row);
   for (int points : {points_, least_points, 1})
     if (predictors_.empty() || points < predictors_.back()) predictors_.push_back(points);
-  // Made now, so that memory that is short is told at the start.
+  // Made now, so that memory that is short is reported at the start.
   for (std::vector<double>* numbers : {&E_, &known_E_, &change_}) numbers->reserve(unknowns() + 1);
   if (parities_[0].momentum_follows)
     for (std::vector<double>* numbers : {&carried_, &carried_low_, &gain_}) numbers->reserve(unknowns() + 1);
@@ -63,7 +64,7 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
 
 std::size_t SlabStepper::unknowns() const {
   std::size_t most = 0;
-  for (const Parity& p : parities_) most = std::max(most, static_cast<std::size_t>(p.equations.size()));
+  for (const Parity& p : parities_) most = std::max(most, delf::at(p.equations.size()));
   return most;
 }
 
@@ -106,7 +107,7 @@ bool SlabStepper::factor_constant(Parity& p) {
 std::vector<SlabStepper::Level> SlabStepper::list_levels(const Parity& p, int parity) const {
   constexpr int most_levels = 64;
   const Assembly& all = p.equations;
-  const auto n = static_cast<std::size_t>(all.size());
+  const std::size_t n = all.size();
   if (!plan_.nonlinear_in_slab || plan_.blocks != plan_.unknowns || !all.matched() || all.unknowns() != all.size())
     return {};
   // Each unknown is one level above those that its equation contains.
@@ -119,8 +120,8 @@ std::vector<SlabStepper::Level> SlabStepper::list_levels(const Parity& p, int pa
     for (std::size_t place = 0; place < present.size(); ++place) {
       const auto [equation, unknown] = all.places()[place];
       if (present[place] == 0 || equation == unknown) continue;
-      const int least = level[static_cast<std::size_t>(unknown)] + 1;
-      if (int& own = level[static_cast<std::size_t>(equation)]; own < least) own = least, changed = true;
+      const int least = level[unknown] + 1;
+      if (int& own = level[equation]; own < least) own = least, changed = true;
     }
   }
   std::vector<Level> levels;
@@ -131,7 +132,7 @@ std::vector<SlabStepper::Level> SlabStepper::list_levels(const Parity& p, int pa
                           .parity = parity,
                           .past = past_,
                           .future = future_,
-                          .turn = options_.turn};
+                          .monodromy = options_.monodromy};
     for (std::size_t u = 0; u < n; ++u)
       if (level[u] == l)
         parts.equations.push_back(all.equation(static_cast<int>(u))),
@@ -202,14 +203,14 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
 void SlabStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
   for (const Component& c : system_.all_components())
     if (c.role != Role::field || starting_rows_ != 2) return StepMethod::start_centred(row0, velocity);
-  const Window first = system_.window(0, {row0}, options_.turn);
+  const Window first = system_.window(0, {row0}, options_.monodromy);
   const NewtonResult result =
       solve_centred_start(system_, plan_, first, velocity, false, options_.tolerance, options_.max_iterations);
   start({row0, result.row});
 }
 
 void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
-  if (plan_.history > 2 || lag_ != 0)
+  if (plan_.history > 2 || delay_ != 0)
     throw BadInput("initial.start", "initial.start = legendre: this scheme is not one slab's map; use exact");
   start({row0});
   solve_slab_of_start(&momenta);
@@ -220,7 +221,7 @@ void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vec
 
 /// Whether slab 0 finds anything besides row 0 itself.
 bool SlabStepper::solve_slab_of_start(const std::vector<double>* momenta) {
-  Assembly::Parts parts = first_slab(system_, Assembly::slab(plan_, 0, past_, future_, options_.turn), momenta);
+  Assembly::Parts parts = first_slab(system_, Assembly::slab(plan_, 0, past_, future_, options_.monodromy), momenta);
   if (parts.equations.empty()) return false;
   Parity first = parity_of(Assembly(system_, std::move(parts)));
   // newton() begins with the row before, which here is row 0 itself
@@ -272,13 +273,13 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
     const double* past = rows.beside(newest_row, -1);
     for (std::size_t at = 0; at < size; ++at) predicted_[at] = weight * past[at];
     for (int m = 2; m <= points; ++m) {
-      weight = uniform ? weight * -static_cast<double>(points - m + 1) / m
-                       : weight_of_past(J + unknowns.time, m, points);
+      weight =
+          uniform ? weight * -static_cast<double>(points - m + 1) / m : weight_of_past(J + unknowns.time, m, points);
       past = rows.beside(newest_row, -m);
       for (std::size_t at = 0; at < size; ++at) predicted_[at] += weight * past[at];
     }
     double* const row = ring_->row(J + unknowns.time);
-    for (const int place : unknowns.places) row[place] = predicted_[static_cast<std::size_t>(place)];
+    for (const int place : unknowns.places) row[place] = predicted_[place];
   }
 }
 
@@ -303,7 +304,7 @@ void SlabStepper::fail(std::int64_t J, const std::string& why, std::string remed
     remedy = fmt::format("{}; {}", in_words_under_constraint(*ghost), without_ghost_under_constraint);
   if (mesh_ && J > 0)
     remedy = fmt::format("in the row before, {}; reduce lattice.time_step or mesh.alpha, or raise lattice.sites",
-                         mesh_->narrowest_cell(ring_->row(J - 1 - lag_)));
+                         mesh_->narrowest_cell(ring_->row(J - 1 - delay_)));
   throw NoConvergence(fmt::format("step {}, t = {:.6g}: the equations of the slab were not solved: {}; {}", J,
                                   system_.times()->time(J), why, remedy));
 }
@@ -349,7 +350,8 @@ struct SlabStepper::Iteration {
   void apply(const std::vector<double>&, NewtonProgress& at) {
     own.take_change(p.unknowns, J, at);
     const double ratio = at.ratio();
-    at.left = estimates && at.iteration > 1 && ratio < 0.5 ? 2 * ratio / (1 - ratio) * at.correction : NewtonProgress::unknown;
+    at.left = estimates && at.iteration > 1 && ratio < 0.5 ? 2 * ratio / (1 - ratio) * at.correction
+                                                           : NewtonProgress::unknown;
   }
 };
 /// The constant part of the Jacobian. What finish() corrects once more need not have arrived: a tenth of what is wanted is
@@ -387,12 +389,14 @@ struct SlabStepper::WithJacobian : Iteration {
     Iteration::apply(change, at);
     p.last_iterations = at.iteration;
     if (fresh) p.fresh_iterations = at.iteration;
-    refactor = always || at.correction > 0.1 * at.before || (at.iteration == 1 && !fresh && at.correction > 1e-3 * at.size);
+    refactor =
+        always || at.correction > 0.1 * at.before || (at.iteration == 1 && !fresh && at.correction > 1e-3 * at.size);
     if (!always) return;
     // With a fresh matrix what is left is C correction², C as seen within the last eight slabs.
     p.unseen = at.iteration > 1 ? 0 : p.unseen + 1;
     if (at.iteration > 1) p.curvature = std::max(at.correction / (at.before * at.before), 0.5 * p.curvature);
-    at.left = estimates && p.curvature > 0 && p.unseen < 8 ? 4 * p.curvature * at.correction * at.correction : NewtonProgress::unknown;
+    at.left = estimates && p.curvature > 0 && p.unseen < 8 ? 4 * p.curvature * at.correction * at.correction
+                                                           : NewtonProgress::unknown;
   }
 };
 /// A last correction with the matrix that is there, and what the slab adds to the known part of the next, from one evaluation:
@@ -424,9 +428,9 @@ Stop SlabStepper::iterate(Parity& p, std::int64_t J) {
   const auto linear = [&](const NewtonProgress&) {
     return !plan_.nonlinear_in_slab && p.momentum_follows ? Stop::converged : Stop::no;
   };
-  const Stop stop = delf::newton(equations, at_, Overflows{}, linear, Converged{options_.tolerance},
-                                 LittleLeft{options_.tolerance}, Rounding{}, Stalls{0.25},
-                                 OutOfIterations{options_.max_iterations});
+  const Stop stop =
+      delf::newton(equations, at_, Overflows{}, linear, Converged{options_.tolerance}, LittleLeft{options_.tolerance},
+                   Rounding{}, Stalls{0.25}, OutOfIterations{options_.max_iterations});
   iterations_ += at_.iteration;
   return finish(p, J, stop);
 }
@@ -496,11 +500,11 @@ void SlabStepper::carry(const Parity& p, std::int64_t J) {
 /// Judges the root that Newton's method has gone to from a polynomial through so many slabs; 0: by the constant part.
 Stop SlabStepper::watch(const Parity& p, std::int64_t J, int points, const std::vector<double>* momenta,
                         std::string& crossed) {
-  if (const std::string tangled = mesh_ && J > 0 ? mesh_->crossing_at(*ring_, J - lag_) : ""; !tangled.empty()) {
+  if (const std::string tangled = mesh_ && J > 0 ? mesh_->crossing_at(*ring_, J - delay_) : ""; !tangled.empty()) {
     if (crossed.empty()) crossed = tangled;
     return Stop::tangled;
   }
-  if (mesh_ && points > 0 && points < points_ && J >= 2 && root_.leaps(*ring_, J - lag_)) return Stop::leaps;
+  if (mesh_ && points > 0 && points < points_ && J >= 2 && root_.leaps(*ring_, J - delay_)) return Stop::leaps;
   if (!plan_.nonlinear_in_slab || !p.levels.empty()) return Stop::converged;
   const Stop stop = root_.judge(at_, *ring_, J, known_, p.watched);
   // No row tells where a first step goes.
@@ -516,30 +520,31 @@ std::vector<double> SlabStepper::values_of(const Parity& p, std::int64_t J) cons
 }
 SlabPast SlabStepper::past_of(std::int64_t J, const std::vector<double>* momenta) const {
   const Assembly::Parts whole =
-      Assembly::slab(plan_, static_cast<int>(J % plan_.table.parities), past_, future_, options_.turn);
+      Assembly::slab(plan_, static_cast<int>(J % plan_.table.parities), past_, future_, options_.monodromy);
   if (J > 0) return {*ring_, J, known_, whole, known_E_};
   return {*ring_, J, known_, first_slab(system_, whole, momenta), known_E_, momenta};
 }
 
 /// The root that a small step leads to, where Newton's method has found another. One that was only doubtful is
-/// taken where that cannot be told, because not even a small step begins.
+/// taken where that is not known, because not even a small step begins.
 void SlabStepper::follow(Parity& p, std::int64_t J, const std::vector<double>* momenta, Stop why,
                          const std::vector<double>& doubtful) {
   predict(p, J, 1);
   find_known(p, J, momenta);
-  const NewtonResult followed =
-      follow_slab(system_, past_of(J, momenta), options_.tolerance, options_.max_iterations);
+  const NewtonResult followed = follow_slab(system_, past_of(J, momenta), options_.tolerance, options_.max_iterations);
   iterations_ += followed.iterations;
   const bool is_doubtful = !followed.converged && followed.reached == 0 && !doubtful.empty();
   if (!followed.converged && !is_doubtful) {
     const bool begins = followed.reached > 0 && options_.max_iterations >= enough_iterations;
-    fail(J, begins ? fmt::format("{}; the one that a small step leads to ends at {:.2g} of this step", in_words(why),
-                                 followed.reached)
-                   : fmt::format("{}, and none that a small step leads to", in_words(why)),
-         begins ? fmt::format("reduce lattice.time_step below {:.2g}", followed.reached * system_.times()->step(J - 1)) : "");
+    fail(J,
+         begins ? fmt::format("{}; the one that a small step leads to ends at {:.2g} of this step", in_words(why),
+                              followed.reached)
+                : fmt::format("{}, and none that a small step leads to", in_words(why)),
+         begins ? fmt::format("reduce lattice.time_step below {:.2g}", followed.reached * system_.times()->step(J - 1))
+                : "");
   }
   for (int n = 0; n < p.equations.size(); ++n)
-    p.equations.value(*ring_, J, n) = (is_doubtful ? doubtful : followed.row)[static_cast<std::size_t>(n)];
+    p.equations.value(*ring_, J, n) = (is_doubtful ? doubtful : followed.row)[n];
   if (const Stop stop = newton(p, J, 0, momenta); !has_root(stop)) fail(J, in_words(stop));
   if (!is_doubtful) continued_ = Continued::far;
 }
@@ -580,12 +585,12 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
   if (!crossed.empty())
     throw MeshCrossing(
         fmt::format("step {}, t = {:.6g}: {}; in the row before, {}; reduce lattice.time_step or mesh.alpha", J,
-                    system_.times()->time(J), crossed, mesh_->narrowest_cell(ring_->row(J - 1 - lag_))));
+                    system_.times()->time(J), crossed, mesh_->narrowest_cell(ring_->row(J - 1 - delay_))));
   carry(p, J);
   if (momenta) p.factored = Matrix::none;
   if (options_.fibre == Fibre::circle) check_increments(J);
   ++known_;
-  largest_[1] = std::exchange(largest_[0], largest_of(ring_->row(J - lag_)));
+  largest_[1] = std::exchange(largest_[0], largest_of(ring_->row(J - delay_)));
 }
 
 /// On S¹ the values of an element follow each other, from its lower vertex by the nodes inside to its upper one: none may
@@ -597,7 +602,7 @@ void SlabStepper::check_increments(std::int64_t J) const {
     if (!(std::abs(next - lower[c]) <= largest_wrapped_difference))
       throw NotFinite(
           fmt::format("step {}, t = {:.6g}: on the fibre S1 an increment within an element is above 0.9 pi, "
-                      "where it cannot be told from its complement; reduce lattice.time_step, or use "
+                      "where it cannot be distinguished from its complement; reduce lattice.time_step, or use "
                       "theory.fibre = R",
                       J, system_.times()->time(J)));
   }
@@ -609,21 +614,20 @@ void SlabStepper::step(bool /*looked_at*/) {
 }
 
 std::vector<double> SlabStepper::row(int back) const {
-  std::vector<double> result(static_cast<std::size_t>(system_.lattice().sites() * components_));
+  std::vector<double> result(system_.lattice().sites() * components_);
   for (int c = 0; c < components_; ++c) {
-    const double* values = ring_->row(newest() - back - back_[static_cast<std::size_t>(c)]);
-    for (std::size_t at = static_cast<std::size_t>(c); at < result.size(); at += static_cast<std::size_t>(components_))
-      result[at] = values[at];
+    const double* values = ring_->row(newest() - back - back_[c]);
+    for (std::size_t at = delf::at(c); at < result.size(); at += delf::at(components_)) result[at] = values[at];
   }
   return result;
 }
 
 Window SlabStepper::window(int rows) const {
-  const std::size_t size = static_cast<std::size_t>(system_.lattice().sites() * components_);
+  const std::size_t size = delf::at(system_.lattice().sites() * components_);
   std::vector<std::vector<double>> newest_rows;
   for (std::int64_t r = newest() - rows + 1; r <= newest(); ++r)
     newest_rows.emplace_back(ring_->row(r), ring_->row(r) + size);
-  Window window = system_.window(newest() - rows + 1, std::move(newest_rows), options_.turn);
+  Window window = system_.window(newest() - rows + 1, std::move(newest_rows), options_.monodromy);
   for (std::int64_t r = newest() - rows + 1; r <= newest(); ++r)
     window.low.emplace_back(ring_->low(r), ring_->low(r) + size);
   return window;
@@ -640,8 +644,8 @@ double SlabStepper::residual() const {
   double worst = 0, size = 0;
   for (int n = 0; n < p.equations.size(); ++n) {
     if (system_.component(p.equations.equation(n).component).role == Role::multiplier) continue;
-    worst = larger_or_nan(std::abs(residual_[static_cast<std::size_t>(n)]), worst);
-    size = larger_or_nan(absolute_[static_cast<std::size_t>(n)], size);
+    worst = larger_or_nan(std::abs(residual_[n]), worst);
+    size = larger_or_nan(absolute_[n], size);
   }
   // Terms may cancel within a stencil, as those of a body that turns back do: then what the row before would leave says how
   // large they are.
@@ -654,9 +658,9 @@ double SlabStepper::residual() const {
     }
     p.equations.residual(*ring_, J_, residual_, &absolute_);
     for (int n = 0; n < p.equations.size(); ++n) {
-      p.equations.value(*ring_, J_, n) = values[static_cast<std::size_t>(n)];
+      p.equations.value(*ring_, J_, n) = values[n];
       if (system_.component(p.equations.equation(n).component).role != Role::multiplier)
-        size = std::max(size, absolute_[static_cast<std::size_t>(n)]);
+        size = std::max(size, absolute_[n]);
     }
   }
   return size == 0 ? 0 : worst / size;
@@ -700,7 +704,7 @@ std::size_t SlabStepper::matrix_bytes() const {
 }
 std::size_t SlabStepper::work_bytes() const {
   std::size_t total = 0;
-  const std::vector<double>* const all[] = {&E_,        &known_E_, &gain_,     &change_,      &predicted_,
+  const std::vector<double>* const all[] = {&E_,        &known_E_,  &gain_,    &change_,     &predicted_,
                                             &residual_, &absolute_, &carried_, &carried_low_};
   for (const std::vector<double>* numbers : all) total += numbers->capacity() * sizeof(double);
   for (const Parity& p : parities_)

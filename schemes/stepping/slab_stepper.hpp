@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "lattice/index.hpp"
 #include "lattice/plan/solve_plan.hpp"
 #include "schemes/solvers/newton.hpp"
 #include "schemes/stepping/mesh_watch.hpp"
@@ -32,7 +33,9 @@ class SlabStepper final : public StepMethod {
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool looked_at) override;
 
-  StepState state() const override { return {newest(), plan_.nonlinear_in_slab && !by_levels() ? iterations_ : 0, continued_}; }
+  StepState state() const override {
+    return {newest(), plan_.nonlinear_in_slab && !by_levels() ? iterations_ : 0, continued_};
+  }
   std::vector<double> row(int back) const override;
   Window window(int rows) const override;
   double residual() const override;
@@ -67,8 +70,8 @@ class SlabStepper final : public StepMethod {
     bool has_values = false;                        ///< the solver has had the values of a matrix, and keeps them
     Matrix factored = Matrix::none;                 ///< what the solver holds
     int last_iterations = 0, fresh_iterations = 0;  ///< of the last slab, and of the last one with a new Jacobian
-    double curvature = 0;  ///< the last correction over the square of that before, with a fresh Jacobian each time
-    int unseen = 0;        ///< iterations since it was seen
+    double curvature = 0;    ///< the last correction over the square of that before, with a fresh Jacobian each time
+    int unseen = 0;          ///< iterations since it was seen
     double contraction = 0;  ///< of corrections with the constant part, as seen last; 0: not yet
     bool momentum_follows = false;  ///< the known part of the next slab is this one's and what the slab adds to it
   };
@@ -76,9 +79,9 @@ class SlabStepper final : public StepMethod {
   struct WithConstant;
   struct WithJacobian;
   struct Finish;
-  std::int64_t newest() const { return J_ - lag_; }
-  Parity& parity(std::int64_t J) { return parities_[static_cast<std::size_t>(J) % parities_.size()]; }
-  const Parity& parity(std::int64_t J) const { return parities_[static_cast<std::size_t>(J) % parities_.size()]; }
+  std::int64_t newest() const { return J_ - delay_; }
+  Parity& parity(std::int64_t J) { return parities_[at(J) % parities_.size()]; }
+  const Parity& parity(std::int64_t J) const { return parities_[at(J) % parities_.size()]; }
   std::vector<Unknowns> list_unknowns(const Assembly&) const;
   Parity parity_of(Assembly) const;
   bool factor_constant(Parity&);
@@ -113,13 +116,13 @@ class SlabStepper final : public StepMethod {
   const LatticeSystem& system_;
   const SolvePlan& plan_;
   StepOptions options_;
-  int components_, past_ = 0, future_ = 0, lag_ = 0, starting_rows_ = 0;
-  std::optional<MeshWatch> mesh_;            ///< where it moves
+  int components_, past_ = 0, future_ = 0, delay_ = 0, starting_rows_ = 0;
+  std::optional<MeshWatch> mesh_;  ///< where it moves
   RootWatch root_;
-  bool by_values_ = false;                   ///< runs begin with the values of row 0 alone
-  int points_;                               ///< slabs that a predictor goes through, if there are as many
-  std::vector<int> predictors_;              ///< that, and what is tried after it
-  std::vector<int> back_;  ///< of each component: rows that its newest value lies behind the newest field
+  bool by_values_ = false;       ///< runs begin with the values of row 0 alone
+  int points_;                   ///< slabs that a predictor goes through, if there are as many
+  std::vector<int> predictors_;  ///< that, and what is tried after it
+  std::vector<int> back_;        ///< of each component: rows that its newest value lies behind the newest field
   std::vector<Parity> parities_;
   std::unique_ptr<SectionRing> ring_;
   std::int64_t J_ = -1;      ///< newest slab

@@ -18,11 +18,11 @@ class SavedState;
 
 struct StepOptions {
   double tolerance = 1e-14;  ///< of the last change, relative to the largest |y| of the last three rows
-  int seed_order = 8;        ///< rows that the seed of an implicit step is extrapolated from
+  int predictor_order = 8;   ///< rows that the seed of an implicit step is extrapolated from
   int max_iterations = 50;
   Fibre fibre = Fibre::real;
-  double turn = 0;  ///< φ(x + L) − φ(x)
-  int threads = 1;  ///< that explicit steps are shared by; the bits are the same for any number
+  double monodromy = 0;  ///< φ(x + L) − φ(x)
+  int threads = 1;       ///< that explicit steps are shared by; the bits are the same for any number
   Processor processor =
       {};  ///< rows are those of a kernel: it gives the first, and is undone on copies that are observed
   bool steps_vary = false;  ///< steps have lengths of their own (LatticeSystem::times): slab by slab alone

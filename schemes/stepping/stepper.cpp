@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/composition_stepper.hpp"
 #include "schemes/stepping/kick_stepper.hpp"
 #include "schemes/stepping/rows/row_stepper.hpp"
@@ -43,8 +44,8 @@ std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan&
 Stepper::Stepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
     : method_(choose(system, plan, options)),
       report_(method_->report(false)),
-      components_(static_cast<std::size_t>(system.components())),
-      row_size_(static_cast<std::size_t>(system.lattice().sites() * system.components())),
+      components_(at(system.components())),
+      row_size_(at(system.lattice().sites() * system.components())),
       processed_(!options.processor.empty()) {}
 
 void Stepper::start(const std::vector<std::vector<double>>& rows) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 
 namespace delf {
@@ -30,7 +31,7 @@ void await_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
 
 }  // namespace
 
-ThreadTeam::ThreadTeam(int threads) : begun_(static_cast<std::size_t>(threads)) {
+ThreadTeam::ThreadTeam(int threads) : begun_(at(threads)) {
   for (int which = 1; which < threads; ++which) workers_.emplace_back([this, which] { work(which); });
 }
 
@@ -68,7 +69,7 @@ void ThreadTeam::do_parts(int first, std::uint32_t round) {
 
 /// One thread alone can begin a part in a round, and none in a round that is over: all its parts have been begun then.
 bool ThreadTeam::begin(int part, std::uint32_t round) {
-  std::atomic<std::uint32_t>& begun = begun_[static_cast<std::size_t>(part)];
+  std::atomic<std::uint32_t>& begun = begun_[part];
   std::uint32_t last = begun.load(std::memory_order_relaxed);
   return last == round - 1 && begun.compare_exchange_strong(last, round, std::memory_order_acq_rel);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
 #include "schemes/system/assembly.hpp"
 #include "schemes/system/equation_terms.hpp"
@@ -91,7 +92,7 @@ void require_determined(const Evolution& evolution) {
   if (!goes_by_rows(system, plan) || evolution.stepper().layout()) return;
   const SlabExtent extent = slab_extent(system, plan);
   const int past = std::max(plan.history, extent.below + 1);
-  const std::size_t row = static_cast<std::size_t>(system.lattice().sites() * system.components());
+  const std::size_t row = at(system.lattice().sites() * system.components());
   std::mt19937 random(5489);
   std::uniform_real_distribution<double> value(-1, 1);
   for (int p = 0; p < plan.table.parities; ++p) {

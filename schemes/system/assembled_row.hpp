@@ -17,7 +17,7 @@ class AssembledRow {
  public:
   explicit AssembledRow(const LatticeSystem& system) : system_(&system) {}
 
-  /// E of every site and component of a row, [i·C + c], whether it is an equation there or not. The turn of all windows is
+  /// E of every site and component of a row, [i·C + c], whether it is an equation there or not. The monodromy of all windows is
   /// that of the first.
   void equations(const Window&, std::int64_t row, std::vector<LatticeSystem::Value>& values);
 

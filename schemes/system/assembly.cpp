@@ -10,11 +10,10 @@
 
 #include "jets/simd/exact_sum.hpp"
 #include "jets/simd/pack_gather.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Numbers of nodes, looked up by their place: −1 where there is none.
 class NodeNumbers {
@@ -88,12 +87,12 @@ class Assembly::Columns {
   }
   /// Value i of a pack of stencils from the s-th on.
   [[gnu::always_inline]] Pack operator()(const Batch& b, int i, int s) const {
-    const double* const column = (*this)(b.rows[at(i)], b.family->values()[at(i)].component);
+    const double* const column = (*this)(b.rows[i], b.family->values()[i].component);
     return of(column, b, b.read(i, s));
   }
   [[gnu::always_inline]] static Pack of(const double* column, const Batch& b, int read) {
     const int* const place = b.place.data() + read;
-    if (b.side_by_side[at(read / lanes)] != 0) return load_unaligned(column + *place);
+    if (b.side_by_side[read / lanes] != 0) return load_unaligned(column + *place);
     return b.stencils == 1 ? Pack(column[*place]) : delf::gather(column, place);
   }
 
@@ -108,13 +107,13 @@ class Assembly::Columns {
 SectionRing::SectionRing(const Window& window, std::int64_t first, std::int64_t last)
     : SectionRing(static_cast<int>(last - first + 1), window.rows.front().size(), window.has_low()) {
   for (std::int64_t r = first; r <= last; ++r) {
-    const auto n = static_cast<std::size_t>(std::clamp(r, window.first_row, window.last_row()) - window.first_row);
+    const std::size_t n = std::clamp(r, window.first_row, window.last_row()) - window.first_row;
     std::ranges::copy(window.rows[n], row(r));
     if (has_low_) std::ranges::copy(window.low[n], low(r));
   }
 }
 
-Assembly::Parts Assembly::slab(const SolvePlan& plan, int parity, int past, int future, double turn) {
+Assembly::Parts Assembly::slab(const SolvePlan& plan, int parity, int past, int future, double monodromy) {
   Slab slab = plan.slab(parity);
   for (auto* nodes : {&slab.unknowns, &slab.equations})
     for (Node& node : *nodes) node.site.time -= parity;
@@ -124,13 +123,13 @@ Assembly::Parts Assembly::slab(const SolvePlan& plan, int parity, int past, int 
           .parity = parity,
           .past = past,
           .future = future,
-          .turn = turn};
+          .monodromy = monodromy};
 }
 
-Assembly::Parts Assembly::across(const LatticeSystem& system, int parity, double turn) {
+Assembly::Parts Assembly::across(const LatticeSystem& system, int parity, double monodromy) {
   std::vector<Anchor> anchors;
   for (int f = 0; f < static_cast<int>(system.families().size()); ++f) {
-    const StencilFamily& family = *system.families()[at(f)];
+    const StencilFamily& family = *system.families()[f];
     const auto [low, high] = std::ranges::minmax(family.pattern().vertices, {}, &Site::time);
     for (int row = -high.time; row + low.time < 0; ++row)
       for (int i = 0; i < system.anchors(family); ++i)
@@ -140,7 +139,7 @@ Assembly::Parts Assembly::across(const LatticeSystem& system, int parity, double
           .parity = parity,
           .past = system.height(),
           .future = system.height(),
-          .turn = turn,
+          .monodromy = monodromy,
           .stencils = std::move(anchors)};
 }
 
@@ -171,7 +170,7 @@ void Assembly::list_stencils(const LatticeSystem& system) {
   for (const Anchor& anchor : anchors) {
     const auto [number, site] = anchor;
     if (batches_.empty() || batches_.back().number != number || batches_.back().row != site.time) {
-      const StencilFamily& family = *system.families()[at(number)];
+      const StencilFamily& family = *system.families()[number];
       batches_.push_back({.family = &family,
                           .number = number,
                           .size = family.size(),
@@ -189,10 +188,10 @@ void Assembly::list_stencils(const LatticeSystem& system) {
   for (Batch& b : batches_) {
     b.stencils = static_cast<int>(b.sites.size());
     b.padded = (b.stencils + lanes - 1) / lanes * lanes;
-    b.sites.resize(at(b.padded), b.sites.back());
-    b.x.resize(at(b.padded / lanes));
+    b.sites.resize(b.padded, b.sites.back());
+    b.x.resize(b.padded / lanes);
     for (int s = 0; s < b.padded; ++s)  // listed stencils have places of their own
-      b.x[at(s / lanes)].v[s % lanes] = b.family->listed() ? 0 : lattice.position(b.sites[at(s)]);
+      b.x[s / lanes].v[s % lanes] = b.family->listed() ? 0 : lattice.position(b.sites[s]);
   }
 }
 
@@ -207,31 +206,31 @@ void Assembly::list_reads(const LatticeSystem& system) {
     largest = std::max(largest, b.size);
     const std::size_t reads = at(b.size) * at(b.padded);
     b.place.resize(reads), b.side_by_side.resize(reads / at(lanes)), b.equation.resize(reads), unknown[n].resize(reads);
-    if (parts_.turn != 0) b.gained.resize(reads);
+    if (parts_.monodromy != 0) b.gained.resize(reads);
     for (int i = 0; i < b.size; ++i) {
       const Site vertex = b.family->site(i);
-      const int c = b.family->values()[at(i)].component, row = b.rows[at(i)];
-      const double turn = system.turn_of(c, parts_.turn);
+      const int c = b.family->values()[i].component, row = b.rows[i];
+      const double monodromy = system.monodromy_of(c, parts_.monodromy);
       bool is_equation = false, is_unknown = false;
       for (int s = 0; s < b.padded; ++s) {
-        const int x = b.family->column(b.sites[at(s)], i), home = lattice.home(x);
+        const int x = b.family->column(b.sites[s], i), home = lattice.home(x);
         const std::size_t read = at(b.read(i, s));
         const int equation = s < b.stencils && b.family->is_varied(i) ? equation_at(row, home, c) : -1;
         b.place[read] = place(Site{row, home, vertex.node});
         b.equation[read] = equation < 0 ? size() : equation;
         unknown[n][read] = unknown_at(row, home, c);
-        if (parts_.turn != 0) b.gained[read] = turn * ((x - home) / lattice.sites());
+        if (parts_.monodromy != 0) b.gained[read] = monodromy * ((x - home) / lattice.sites());
         is_equation = is_equation || equation >= 0;
         is_unknown = is_unknown || unknown[n][read] >= 0;
       }
       for (int s = 0; s < b.padded; s += lanes) {
         const auto first = b.place.begin() + b.read(i, s);
-        b.side_by_side[at(b.read(i, s) / lanes)] =
+        b.side_by_side[b.read(i, s) / lanes] =
             std::adjacent_find(first, first + lanes, [](int p, int q) { return q != p + 1; }) == first + lanes;
       }
       if (is_equation) b.equations.push_back(i), b.evaluated.push_back(i);
       if (is_unknown) b.unknowns.push_back(i);
-      b.rows[at(i)] = std::clamp(row, -parts_.past, parts_.future);
+      b.rows[i] = std::clamp(row, -parts_.past, parts_.future);
     }
   }
   list_places(unknown);
@@ -239,12 +238,12 @@ void Assembly::list_reads(const LatticeSystem& system) {
     const std::size_t numbers = std::max(b.equations.size() * b.unknowns.size(), at(b.size));
     out_.reserve(std::max(numbers, at(largest_strip / lanes)));
   }
-  y_.reserve(at(largest * most_together / lanes));
+  y_.reserve(largest * most_together / lanes);
   if (components_ == 1) return;
   const auto [low, high] = Columns::rows(batches_, Columns::Of::all);
   int sites = 0;
   for (const Batch& b : batches_) sites = std::max(sites, std::ranges::max(b.place) + 1);
-  columns_.reserve(at((high - low + 1) * sites * components_));
+  columns_.reserve((high - low + 1) * sites * components_);
 }
 
 /// The entries of the Jacobian, each once, and which of them each stencil gives a share of.
@@ -261,7 +260,7 @@ void Assembly::list_places(const std::vector<std::vector<int>>& unknown) {
     for (const int i : b.equations)
       for (const int m : b.unknowns)
         for (int s = 0; s < b.padded; ++s, ++entry) {
-          const Place place{b.equation[at(b.read(i, s))], unknown[n][at(b.read(m, s))]};
+          const Place place{b.equation[b.read(i, s)], unknown[n][b.read(m, s)]};
           if (place.equation < size() && place.unknown >= 0) shares.push_back({place, entry});
         }
   }
@@ -286,9 +285,9 @@ void Assembly::take_constant_parts() {
     for (std::size_t e = 0; e < b.evaluated.size(); ++e) {
       const int i = b.evaluated[e];
       if (i >= b.size) break;  // such families are not asked for their constant parts
-      b.at_zero.push_back(part->r0[at(i)]);
+      b.at_zero.push_back(part->r0[i]);
       for (int m = 0; m < b.size; ++m)
-        if (const double value = part->J[at(i * b.size + m)]; value != 0)
+        if (const double value = part->J[i * b.size + m]; value != 0)
           b.terms.push_back({static_cast<int>(e), m, value});
     }
     add_constant(b, part->J, fixed_);
@@ -345,12 +344,12 @@ void Assembly::strips(const Batch& b, const Columns& columns, std::int64_t J, in
   for (int first = 0; first < b.padded; first += most) {
     const int count = std::min(most, b.padded - first);
     const int values = b.size * count / lanes;
-    y_.resize(at(low ? 2 * values : values)), out_.resize(at(numbers * count / lanes));
+    y_.resize(low ? 2 * values : values), out_.resize(numbers * count / lanes);
     Pack *y = y_.data(), *rest = y + values;
     for (int i = 0; i < b.size; ++i) {
-      const int c = b.family->values()[at(i)].component;
-      const double* const column = columns(b.rows[at(i)], c);
-      const double* const low_parts = low ? columns.low(b.rows[at(i)], c) : nullptr;
+      const int c = b.family->values()[i].component;
+      const double* const column = columns(b.rows[i], c);
+      const double* const low_parts = low ? columns.low(b.rows[i], c) : nullptr;
       for (int s = first; s < first + count; s += lanes, ++y) {
         Pack read = Columns::of(column, b, b.read(i, s));
         if (low) *rest = Columns::of(low_parts, b, b.read(i, s));
@@ -393,10 +392,10 @@ void Assembly::add_residual(const Batch& b, const Columns& columns, std::int64_t
     const int packs = strip.count / lanes;
     if (by_matrix) {
       if (low) take_differences(b, packs);
-      for (int e = 0; e < equations; ++e) std::fill_n(r + e * packs, packs, Pack(b.at_zero[at(e)]));
+      for (int e = 0; e < equations; ++e) std::fill_n(r + e * packs, packs, Pack(b.at_zero[e]));
       for (const auto& [e, m, value] : b.terms) {
         if (e >= equations) break;
-        for (int p = 0; p < packs; ++p) r[e * packs + p] += Pack(value) * y_[at(m * packs + p)];
+        for (int p = 0; p < packs; ++p) r[e * packs + p] += Pack(value) * y_[m * packs + p];
       }
     } else {
       b.family->residual(strip, evaluated, numbers_of(r));
@@ -421,7 +420,7 @@ void Assembly::begin(std::int64_t J, const std::vector<double>* momenta, std::ve
   E.assign(at(size()) + 1, 0.0);
   if (!momenta) return;
   for (int n = 0; n < size(); ++n)
-    if (J + equation(n).site.time == 0) E[at(n)] = (*momenta)[at(place(equation(n)))];
+    if (J + equation(n).site.time == 0) E[n] = (*momenta)[place(equation(n))];
 }
 
 void Assembly::residual(SectionView section, std::int64_t J, std::vector<double>& E, std::vector<double>* absolute,
@@ -432,7 +431,7 @@ void Assembly::residual(SectionView section, std::int64_t J, std::vector<double>
   for (const Batch& b : batches_)
     if (!below_start(b, J, momenta != nullptr))
       add_residual(b, columns, J, E.data(), absolute ? absolute->data() : nullptr);
-  E.resize(at(size()));
+  E.resize(size());
   if (absolute) absolute->resize(E.size());
 }
 
@@ -481,11 +480,11 @@ bool Assembly::list_gains(const LatticeSystem& system) {
     return std::tuple{site, c.field, c.at.space};
   };
   const auto site_of = [&](const Batch& b, int i, int s) {
-    return system.lattice().home(b.family->column(b.sites[at(s)], i));
+    return system.lattice().home(b.family->column(b.sites[s], i));
   };
   // Residuals of the rows alone add up to momenta where a family leaves nodes out of its sums.
   const auto leaves_out = [&](const StencilFamily& family, int i) {
-    return !family.sums().empty() && system.component(family.values()[at(i)].component).at.time != 0 &&
+    return !family.sums().empty() && system.component(family.values()[i].component).at.time != 0 &&
            std::ranges::none_of(family.sums(), [i](const auto& sum) { return std::ranges::count(sum, i) > 0; });
   };
   bool with_nodes = true;
@@ -501,16 +500,16 @@ bool Assembly::list_gains(const LatticeSystem& system) {
       continue;
     }
     for (int s = 0; s < b.stencils; ++s) {
-      std::vector<int> equations(at(b.size), size());
+      std::vector<int> equations(b.size, size());
       for (int i = 0; i < b.size; ++i) {
-        const int n = equations[at(i)] = b.equation[at(b.read(i, s))];
+        const int n = equations[i] = b.equation[b.read(i, s)];
         if (n == size()) continue;
         // Families without low parts gain nothing.
         if (!b.family->reads_low()) return false;
         const auto column = column_of(site_of(b, i, s), equation(n).component);
         if (!column || equation_of.try_emplace(*column, n).first->second != n) return false;
       }
-      above.emplace(std::tuple{b.number, b.row + 1, b.sites[at(s)]}, std::move(equations));
+      above.emplace(std::tuple{b.number, b.row + 1, b.sites[s]}, std::move(equations));
     }
   }
   if (equation_of.empty()) return false;
@@ -519,17 +518,17 @@ bool Assembly::list_gains(const LatticeSystem& system) {
   for (Batch& b : batches_) {
     if (b.unknowns.empty()) continue;
     const std::size_t padded = at(b.padded);
-    std::vector<std::vector<int>> to(at(b.size), std::vector<int>(padded, size()));
+    std::vector<std::vector<int>> to(b.size, std::vector<int>(padded, size()));
     for (int s = 0; s < b.stencils; ++s) {
-      const auto upper = above.find({b.number, b.row, b.sites[at(s)]});
+      const auto upper = above.find({b.number, b.row, b.sites[s]});
       if (upper != above.end()) ++met;
       for (int i = 0; i < b.size; ++i) {
-        const int component = b.family->values()[at(i)].component;
-        if (upper != above.end()) to[at(i)][at(s)] = upper->second[at(i)];
+        const int component = b.family->values()[i].component;
+        if (upper != above.end()) to[i][s] = upper->second[i];
         const auto column = column_of(site_of(b, i, s), component);
-        if (!column || b.equation[at(b.read(i, s))] == size()) continue;
+        if (!column || b.equation[b.read(i, s)] == size()) continue;
         if (!with_nodes && system.component(component).at.time != 0) continue;
-        if (const auto found = equation_of.find(*column); found != equation_of.end()) to[at(i)][at(s)] = found->second;
+        if (const auto found = equation_of.find(*column); found != equation_of.end()) to[i][s] = found->second;
       }
     }
     const auto add = [&](int e, const std::vector<int>& equations) {
@@ -538,15 +537,15 @@ bool Assembly::list_gains(const LatticeSystem& system) {
       if (found == std::ssize(b.evaluated)) b.evaluated.push_back(e);
       b.gains.push_back({static_cast<int>(found), equations});
     };
-    std::vector<char> added(at(b.size), false);
+    std::vector<char> added(b.size, false);
     for (std::size_t n = 0; n < b.family->sums().size(); ++n) {
       const std::vector<int>& values = b.family->sums()[n];
-      if (values.empty() || std::ranges::any_of(values, [&](int i) { return to[at(i)] != to[at(values[0])]; })) continue;
-      for (const int i : values) added[at(i)] = true;
-      if (!b.family->sums_vanish()) add(b.size + static_cast<int>(n), to[at(values[0])]);
+      if (values.empty() || std::ranges::any_of(values, [&](int i) { return to[i] != to[values[0]]; })) continue;
+      for (const int i : values) added[i] = true;
+      if (!b.family->sums_vanish()) add(b.size + static_cast<int>(n), to[values[0]]);
     }
     for (int i = 0; i < b.size; ++i)
-      if (!added[at(i)]) add(i, to[at(i)]);
+      if (!added[i]) add(i, to[i]);
   }
   return met == above.size();
 }
@@ -575,7 +574,7 @@ void Assembly::add_constant(const Batch& b, const Numbers& J, Numbers& values) c
   const int* entry = b.entry.data();
   for (const int i : b.equations)
     for (const int m : b.unknowns)
-      for (int s = 0; s < b.padded; ++s) values[at(*entry++)] += J[at(i * b.size + m)];
+      for (int s = 0; s < b.padded; ++s) values[*entry++] += J[i * b.size + m];
 }
 
 /// Adds the constant parts of a batch whose stencils each have their own.
@@ -583,12 +582,12 @@ bool Assembly::add_own_constants(const Batch& b, Numbers& values) const {
   const std::size_t pairs = b.equations.size() * b.unknowns.size();
   for (int s = 0; s < b.stencils; ++s) {
     Cell of = cell(b, 0, 0);
-    of.stencil = b.sites[at(s)];
+    of.stencil = b.sites[s];
     const auto part = b.family->constant_part(of);
     if (!part) return false;
     for (std::size_t n = 0; n < pairs; ++n)
-      values[at(b.entry[n * at(b.padded) + at(s)])] += part->J[at(b.equations[n / b.unknowns.size()] * b.size +
-                                                                  b.unknowns[n % b.unknowns.size()])];
+      values[b.entry[n * at(b.padded) + at(s)]] +=
+          part->J[at(b.equations[n / b.unknowns.size()] * b.size + b.unknowns[n % b.unknowns.size()])];
   }
   return true;
 }
@@ -607,8 +606,8 @@ bool Assembly::constant_jacobian(std::vector<double>& values) const {
     add_constant(b, part->J, values);
   }
   values.resize(places_.size());
-  std::vector<char> has(at(size()), false);
-  for (std::size_t p = 0; p < values.size(); ++p) has[at(places_[p].equation)] |= values[p] != 0;
+  std::vector<char> has(size(), false);
+  for (std::size_t p = 0; p < values.size(); ++p) has[places_[p].equation] |= values[p] != 0;
   return std::ranges::all_of(has, [](char any) { return any != 0; });
 }
 
@@ -629,7 +628,7 @@ void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V,
   for (std::size_t v = 0; v < V.size(); ++v) of_V.emplace_back(*this, V[v].V, J, Columns::Of::all, room[v]);
   std::vector<int> all;
   for (const Batch& b : batches_) {
-    all.resize(at(b.size));
+    all.resize(b.size);
     std::iota(all.begin(), all.end(), 0);
     const int pairs = static_cast<int>(b.equations.size()) * b.size;
     strips(b, columns, J, pairs, false, [&](const StencilBatch& strip, int first, Pack* derivatives) {
@@ -656,7 +655,7 @@ void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V,
           }
     });
   }
-  for (Variation& v : V) v.E.resize(at(size())), v.absolute.resize(at(size()));
+  for (Variation& v : V) v.E.resize(size()), v.absolute.resize(size());
   values.resize(places_.size());
 }
 
@@ -665,7 +664,7 @@ void Assembly::each(bool jacobian, SectionView section, std::int64_t J, const Vi
   Numbers y, derivatives;
   const Columns columns(*this, section, J, Columns::Of::all);
   for (const Batch& b : batches_) {
-    all.resize(at(b.size)), places.resize(at(b.size)), y.resize(at(b.size));
+    all.resize(b.size), places.resize(b.size), y.resize(b.size);
     std::iota(all.begin(), all.end(), 0);
     derivatives.resize(jacobian ? at(b.size * b.size) : at(b.size));
     const int numbers = static_cast<int>(derivatives.size());
@@ -674,12 +673,12 @@ void Assembly::each(bool jacobian, SectionView section, std::int64_t J, const Vi
       else b.family->residual(strip, all, numbers_of(out));
       for (int s = 0; s < std::min(strip.count, b.stencils - first); ++s) {
         for (int i = 0; i < b.size; ++i) {
-          places[at(i)] = b.place[at(b.read(i, first + s))] * components_ + b.family->values()[at(i)].component;
-          y[at(i)] = strip.y[i * strip.count + s];
+          places[i] = b.place[b.read(i, first + s)] * components_ + b.family->values()[i].component;
+          y[i] = strip.y[i * strip.count + s];
         }
         for (std::size_t n = 0; n < derivatives.size(); ++n)
           derivatives[n] = numbers_of(out)[n * at(strip.count) + at(s)];
-        visit({*b.family, {b.number, {b.row, b.sites[at(first + s)]}}, b.rows, places, y, derivatives});
+        visit({*b.family, {b.number, {b.row, b.sites[first + s]}}, b.rows, places, y, derivatives});
       }
     });
   }
@@ -703,13 +702,13 @@ std::vector<char> Assembly::present() const {
     for (int r = 0; r < depth; ++r)
       for (int n = 0; n < row_size; ++n) ring.row(r)[n] = 4.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 2.0;
     jacobian(ring, depth, values);
-    std::vector<double> largest(at(size()), 0.0);
+    std::vector<double> largest(size(), 0.0);
     for (std::size_t p = 0; p < values.size(); ++p) {
-      double& size = largest[at(places_[p].equation)];
+      double& size = largest[places_[p].equation];
       size = std::max(size, std::abs(values[p]));
     }
     for (std::size_t p = 0; p < values.size(); ++p)
-      if (!(std::abs(values[p]) <= 1e-13 * largest[at(places_[p].equation)])) found[p] = true;
+      if (!(std::abs(values[p]) <= 1e-13 * largest[places_[p].equation])) found[p] = true;
   }
   return found;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "jets/simd/pack.hpp"
+#include "lattice/index.hpp"
 #include "lattice/plan/solve_plan.hpp"
 #include "schemes/families/stencil_family.hpp"
 #include "schemes/system/lattice_system.hpp"
@@ -39,7 +40,7 @@ class SectionView {
   const double* low_of(const double* row) const { return low_ + (row - values_); }
 
  private:
-  const double* at(int i) const { return values_ + static_cast<std::size_t>(i) * row_size_; }
+  const double* at(int i) const { return values_ + delf::at(i) * row_size_; }
 
   const double* values_;
   int depth_;
@@ -52,18 +53,17 @@ class SectionRing {
       : depth_(depth),
         row_size_(row_size),
         has_low_(has_low),
-        values_(static_cast<std::size_t>(depth) * row_size * (has_low ? 2 : 1), 0.0) {}
+        values_(delf::at(depth) * row_size * (has_low ? 2 : 1), 0.0) {}
   /// Rows `first` to `last` of a window.
   SectionRing(const Window&, std::int64_t first, std::int64_t last);
 
   double* row(std::int64_t r) { return values_.data() + (view().row(r) - values_.data()); }
   const double* row(std::int64_t r) const { return view().row(r); }
   /// The low parts of a row, where there are any: a rounded value and what rounding took from it are one number.
-  double* low(std::int64_t r) { return row(r) + static_cast<std::size_t>(depth_) * row_size_; }
-  const double* low(std::int64_t r) const { return row(r) + static_cast<std::size_t>(depth_) * row_size_; }
+  double* low(std::int64_t r) { return row(r) + delf::at(depth_) * row_size_; }
+  const double* low(std::int64_t r) const { return row(r) + delf::at(depth_) * row_size_; }
   SectionView view() const {
-    return {values_.data(), depth_, row_size_,
-            has_low_ ? values_.data() + static_cast<std::size_t>(depth_) * row_size_ : nullptr};
+    return {values_.data(), depth_, row_size_, has_low_ ? values_.data() + delf::at(depth_) * row_size_ : nullptr};
   }
   operator SectionView() const { return view(); }
   std::size_t bytes() const { return values_.size() * sizeof(double); }
@@ -98,22 +98,22 @@ class Assembly {
     int parity = 0;        ///< of row J: brick walls
     /// Rows J − past … J + future are there; stencils that reach further do not depend on what they read there.
     int past = 0, future = 0;
-    double turn = 0;                                   ///< φ(x + L) − φ(x)
+    double monodromy = 0;                              ///< φ(x + L) − φ(x)
     std::optional<std::vector<Anchor>> stencils = {};  ///< those that touch an equation, if not given
     std::function<int(Site)> place = {};               ///< in a row of the section; the number in space, if not given
   };
   Assembly(const LatticeSystem&, Parts);
   /// The equations and the unknowns of a plan's slabs of one parity.
-  static Parts slab(const SolvePlan&, int parity, int past, int future, double turn);
+  static Parts slab(const SolvePlan&, int parity, int past, int future, double monodromy);
   /// No equations: the stencils that reach across the cut below row J.
-  static Parts across(const LatticeSystem&, int parity, double turn);
+  static Parts across(const LatticeSystem&, int parity, double monodromy);
 
   int size() const { return static_cast<int>(parts_.equations.size()); }
   int unknowns() const { return static_cast<int>(parts_.unknowns.size()) / parts_.copies; }
   bool matched() const { return parts_.matched; }
   /// site.time counts from J.
-  const Node& unknown(int n) const { return parts_.unknowns[static_cast<std::size_t>(n)]; }
-  const Node& equation(int n) const { return parts_.equations[static_cast<std::size_t>(n)]; }
+  const Node& unknown(int n) const { return parts_.unknowns[n]; }
+  const Node& equation(int n) const { return parts_.equations[n]; }
   /// The place of a node in its row.
   int place(const Node& node) const { return place(node.site) * components_ + node.component; }
   double& value(SectionRing& ring, std::int64_t J, int n) const {
@@ -213,7 +213,7 @@ class Assembly {
     std::vector<int> equations = {}, unknowns = {};  ///< values that are one, of some stencil
     /// The numbers in places() of (equations[e], unknowns[u]) of stencil s, at (e·U + u)·padded + s, or one beyond.
     std::vector<int> entry = {};
-    bool linear = false;  ///< r = r(0) + J y with the same J everywhere
+    bool linear = false;          ///< r = r(0) + J y with the same J everywhere
     bool by_differences = false;  ///< J acts on differences within columns, and on the first value of each
     std::vector<Term> terms = {};
     Numbers at_zero = {};  ///< of evaluated[e]
@@ -260,8 +260,8 @@ class Assembly {
   Parts parts_;
   std::vector<Batch> batches_;
   std::vector<Place> places_;
-  Numbers fixed_;          ///< the values of places() that linear batches give
-  bool keeps_low_ = false;  ///< sections have low parts
+  Numbers fixed_;            ///< the values of places() that linear batches give
+  bool keeps_low_ = false;   ///< sections have low parts
   mutable Packs y_, out_;    ///< of a strip
   mutable Numbers columns_;  ///< room for Columns
 };

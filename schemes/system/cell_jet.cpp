@@ -4,19 +4,21 @@
 #include <algorithm>
 #include <limits>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
-CellJets::CellJets(const BatchDensity& density, const Lattice& lattice, double time_step, double turn)
+CellJets::CellJets(const BatchDensity& density, const Lattice& lattice, double time_step, double monodromy)
     : lattice_(lattice),
       components_(density.components()),
       time_step_(time_step),
-      turn_(turn),
+      monodromy_(monodromy),
       second_order_(density.slots() > 3),
-      jet_(static_cast<std::size_t>(density.variables())) {}
+      jet_(delf::at(density.variables())) {}
 
 double CellJets::value(std::span<const double> row, int site, int component) const {
   const int home = lattice_.home(site), turns = (site - home) / lattice_.sites();
-  return row[static_cast<std::size_t>(home * components_ + component)] + turns * turn_;
+  return row[home * components_ + component] + turns * monodromy_;
 }
 
 double CellJets::second_difference(std::span<const double> row, int site, int component) const {
@@ -30,7 +32,7 @@ const double* CellJets::at(int cell, std::span<const double> below, std::span<co
   const double h = time_step_, k = lattice_.space_step();
   const int d = components_, next = lattice_.space() == Space::point ? cell : cell + 1;
   for (int a = 0; a < d; ++a) {
-    const auto slot = [&](int s) -> double& { return jet_[static_cast<std::size_t>(s * d + a)]; };
+    const auto slot = [&](int s) -> double& { return jet_[s * d + a]; };
     const double y_0 = value(below, cell, a), y_1 = value(below, next, a);
     const double z_0 = value(above, cell, a), z_1 = value(above, next, a);
     slot(0) = 0.25 * (y_0 + y_1 + z_0 + z_1);

@@ -21,8 +21,8 @@ namespace delf {
 /// do not know it.
 class CellJets {
  public:
-  /// `turn` is φ(x + L) − φ(x) on a circle. A density has 3 or 6 slots.
-  CellJets(const BatchDensity&, const Lattice&, double time_step, double turn);
+  /// `monodromy` is φ(x + L) − φ(x) on a circle. A density has 3 or 6 slots.
+  CellJets(const BatchDensity&, const Lattice&, double time_step, double monodromy);
 
   /// slot s of component a is [s·d + a]. Valid until the next call.
   const double* at(int cell, std::span<const double> below, std::span<const double> above);
@@ -33,7 +33,7 @@ class CellJets {
 
   Lattice lattice_;
   int components_;
-  double time_step_, turn_;
+  double time_step_, monodromy_;
   bool second_order_;
   std::vector<double> jet_;
 };

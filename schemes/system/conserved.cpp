@@ -24,7 +24,7 @@ void generator(const LatticeSystem& system, const StencilFamily& family, const L
   xi.assign(values.size(), 0.0);
   for (std::size_t n = 0; n < values.size(); ++n) {
     const Component& here = system.component(values[n].component);
-    const auto a = static_cast<std::size_t>(here.field);
+    const std::size_t a = here.field;
     if (!(is_value_of_field(here) || here.momentum) || a >= d) continue;
     // ξ_a = Σ_b A_ab y_b + b_a; of a momentum −Σ_b A_ba p_b, so that p·(q − q′) stays as it is
     const auto coefficient = [&](std::size_t b) {
@@ -44,25 +44,25 @@ void generator(const LatticeSystem& system, const StencilFamily& family, const L
       if (found == values.end())
         throw BadInput("verify.generator", "a stencil does not read field " + std::to_string(b + 1) + " where " +
                                                here.name + " is and the generator needs it; leave it out");
-      xi[n] += coefficient(b) * y[static_cast<std::size_t>(found - values.begin())];
+      xi[n] += coefficient(b) * y[found - values.begin()];
     }
   }
 }
 
 double noether_charge(const LatticeSystem& system, const Window& window, std::int64_t cut,
                       const LinearSymmetry& symmetry, double* absolute) {
-  const Assembly stencils(system, Assembly::across(system, static_cast<int>(cut & 1), window.turn));
+  const Assembly stencils(system, Assembly::across(system, static_cast<int>(cut & 1), window.monodromy));
   double sum = 0, size = 0;
   std::vector<double> xi;
-  stencils.each_residual(
-      SectionRing(window, cut - system.height(), cut + system.height()), cut, [&](const Assembly::Local& at) {
-        generator(system, at.family, symmetry, at.y, xi);
-        for (int n = 0; n < at.family.size(); ++n) {
-          if (at.anchor.site.time + at.family.site(n).time < 0) continue;
-          const double term = at.derivatives[static_cast<std::size_t>(n)] * xi[static_cast<std::size_t>(n)];
-          sum += term, size += std::abs(term);
-        }
-      });
+  stencils.each_residual(SectionRing(window, cut - system.height(), cut + system.height()), cut,
+                         [&](const Assembly::Local& at) {
+                           generator(system, at.family, symmetry, at.y, xi);
+                           for (int n = 0; n < at.family.size(); ++n) {
+                             if (at.anchor.site.time + at.family.site(n).time < 0) continue;
+                             const double term = at.derivatives[n] * xi[n];
+                             sum += term, size += std::abs(term);
+                           }
+                         });
   if (absolute) *absolute = size;
   return sum;
 }

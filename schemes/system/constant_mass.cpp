@@ -9,7 +9,7 @@ std::optional<Eigen::MatrixXd> constant_mass(const BatchDensity& density) {
   for (int a = 0; a < d; ++a)
     for (int b = 0; b < d; ++b) {
       if (!density.is_constant(d + a, d + b)) return std::nullopt;
-      mass(a, b) = density.constant_hessian()[static_cast<std::size_t>((d + a) * density.variables() + d + b)];
+      mass(a, b) = density.constant_hessian()[(d + a) * density.variables() + d + b];
     }
   return mass;
 }

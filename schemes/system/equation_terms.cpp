@@ -25,11 +25,11 @@ LinearEquation linear_equation(const LatticeSystem& system, Site site, int a) {
     const int size = touch.family->size();
     const auto part = touch.family->constant_part({system.time_step(), system.lattice().space_step(), 0, 0});
     if (!part) throw NoConvergence("the constant part of the equations is not finite");
-    result.constant += part->r0[static_cast<std::size_t>(touch.index)];
+    result.constant += part->r0[touch.index];
     for (int m = 0; m < size; ++m) {
       const Site offset = touch.anchor + touch.family->site(m);
-      const std::tuple key{offset.time, offset.space, touch.family->values()[static_cast<std::size_t>(m)].component};
-      const double entry = part->J[static_cast<std::size_t>(touch.index * size + m)];
+      const std::tuple key{offset.time, offset.space, touch.family->values()[m].component};
+      const double entry = part->J[touch.index * size + m];
       result.A[key] += entry;
       scale[key] += std::abs(entry);
     }
@@ -59,8 +59,8 @@ void add_linear_terms(const std::map<std::tuple<int, int, int>, std::pair<double
                       EquationTerms& equation) {
   using Pair = std::pair<double, double>;
   const auto plus = [](Pair& p, Pair q, double sign) { p.first += sign * q.first, p.second += sign * q.second; };
-  std::map<std::tuple<int, int>, Pair> B;             // (s, b): coefficient of y_n
-  std::map<std::tuple<int, int, int>, Pair> C, D;     // (u, s, b): of v_{n−u};  (0, s, b): of w
+  std::map<std::tuple<int, int>, Pair> B;          // (s, b): coefficient of y_n
+  std::map<std::tuple<int, int, int>, Pair> C, D;  // (u, s, b): of v_{n−u};  (0, s, b): of w
   double scale = 0;
   for (const auto& [key, value] : A) {
     const auto& [m, s, b] = key;
@@ -101,13 +101,13 @@ void add_output_terms(const LatticeSystem& system, int site, int a, EquationTerm
     const SourceTerms& sources = *family.sources();
     const double hk = system.time_step() * system.lattice().space_step();
     for (int i = 0; i < family.size(); ++i) {
-      if (family.values()[static_cast<std::size_t>(i)].component != a) continue;
+      if (family.values()[i].component != a) continue;
       const Site anchor = Site{} - family.site(i);
       if (!has_column(system.lattice(), family.pattern(), site + anchor.space)) continue;
       for (int c = 0; c < sources.outputs(); ++c)
         if (const double w = hk * sources.weight(c, i); w != 0)
-          equation.terms.push_back({Source::output, 1 - equation.shift + anchor.time, 0, static_cast<int>(f), c,
-                                    anchor.space, w, 0});
+          equation.terms.push_back(
+              {Source::output, 1 - equation.shift + anchor.time, 0, static_cast<int>(f), c, anchor.space, w, 0});
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include "jets/tables/density_on_table.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -22,8 +23,8 @@ void require_jet_slots(const LatticeSystem& system) {
           seen[jets->density.get()][s] = seen[jets->density.get()][s] || !point.slots[s].empty();
   for (const auto& [density, slots] : seen)
     for (int v = 0; v < density->variables(); ++v) {
-      const auto s = static_cast<std::size_t>(v / density->components());
-      if (s == static_cast<std::size_t>(JetSlot::phi_x)) continue;  // on a point it is 0; wider stencils have it
+      const std::size_t s = v / density->components();
+      if (s == at(JetSlot::phi_x)) continue;  // on a point it is 0; wider stencils have it
       if (density->depends_on(v) && !slots[s])
         throw BadInput("theory.name",
                        fmt::format("the density has {}, and the stencils of this scheme have no jet with it: the term "

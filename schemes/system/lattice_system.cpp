@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "lattice/stencil.hpp"
 #include "schemes/system/assembled_row.hpp"
 #include "schemes/system/assembly.hpp"
@@ -19,8 +20,7 @@ namespace delf {
 namespace {
 
 Cell cell_at(const Lattice& lattice, const StencilFamily& family, std::int64_t row, int i, double time_step) {
-  if (family.listed())
-    return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, 0, i};
+  if (family.listed()) return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, 0, i};
   const int home = lattice.home(i);
   return {time_step, lattice.space_step(), static_cast<double>(row) * time_step, lattice.position(home)};
 }
@@ -42,18 +42,17 @@ std::vector<Component> fields(int d) {
 }
 
 double Window::operator()(std::int64_t row, int i, int a) const {
-  const auto& values = rows[static_cast<std::size_t>(std::clamp(row, first_row, last_row()) - first_row)];
-  if (!lattice->is_circle()) return values[static_cast<std::size_t>(i * components + a)];
+  const auto& values = rows[delf::at(std::clamp(row, first_row, last_row()) - first_row)];
+  if (!lattice->is_circle()) return values[i * components + a];
   const int home = lattice->wrapped(i);
-  const double value = values[static_cast<std::size_t>(home * components + a)];
-  return value + (i - home) / lattice->sites() * (turns.empty() ? turn : turns[static_cast<std::size_t>(a)]);
+  const double value = values[home * components + a];
+  return value + (i - home) / lattice->sites() * (monodromies.empty() ? monodromy : monodromies[a]);
 }
 
 double Window::low_part(std::int64_t row, int i, int a) const {
   if (!has_low()) return 0;
   const int home = lattice->is_circle() ? lattice->wrapped(i) : i;
-  return low[static_cast<std::size_t>(std::clamp(row, first_row, last_row()) - first_row)]
-            [static_cast<std::size_t>(home * components + a)];
+  return low[delf::at(std::clamp(row, first_row, last_row()) - first_row)][delf::at(home * components + a)];
 }
 
 LatticeSystem::LatticeSystem(const Lattice& lattice, std::vector<std::shared_ptr<const StencilFamily>> families,
@@ -106,9 +105,9 @@ int LatticeSystem::field_component(int a) const {
 
 bool LatticeSystem::moves() const { return std::ranges::any_of(names_, &Component::position); }
 
-double LatticeSystem::turn_of(int component, double turn) const {
+double LatticeSystem::monodromy_of(int component, double monodromy) const {
   const Role role = this->component(component).role;
-  return role == Role::multiplier || role == Role::slaved ? 0.0 : turn;
+  return role == Role::multiplier || role == Role::slaved ? 0.0 : monodromy;
 }
 
 std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice, Site site, int component) const {
@@ -116,7 +115,7 @@ std::vector<LatticeSystem::Touch> LatticeSystem::touching(const Lattice& lattice
   for (std::size_t f = 0; f < families_.size(); ++f) {
     const StencilFamily& family = *families_[f];
     for (int i = 0; i < family.size(); ++i) {
-      if (family.values()[static_cast<std::size_t>(i)].component != component || !family.is_varied(i)) continue;
+      if (family.values()[i].component != component || !family.is_varied(i)) continue;
       if (const ListedStencils* const listed = family.listed()) {
         for (const auto& [stencil, place] : listed->touching(site.space))
           if (place == family.site(i).space)
@@ -168,7 +167,7 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
     std::map<const StencilFamily*, std::optional<ConstantPart>> constant_parts;
     for (const Touch& touch : touching(lattice, site, component)) {
       const int size = touch.family->size();
-      std::vector<double> y(static_cast<std::size_t>(size)), J(y.size());
+      std::vector<double> y(size), J(y.size());
       // Anchors of the bulk are all alike: the place matters to a placed density only, and there any place will do.
       const int anchor = touch.family->listed() ? touch.anchor.space : site.space + touch.anchor.space;
       const Cell cell = cell_at(lattice, *touch.family, site.time + touch.anchor.time, anchor, time_step_);
@@ -178,23 +177,22 @@ std::optional<std::vector<Coefficient>> LatticeSystem::linearised(const Lattice&
       const auto key = [&](int m) {
         const Site vertex = touch.family->site(m);
         return std::tuple{Site{touch.anchor.time + vertex.time, touch.family->column(anchor, m) - site.space},
-                          touch.family->values()[static_cast<std::size_t>(m)].component};
+                          touch.family->values()[m].component};
       };
       const auto [part, first] = constant_parts.try_emplace(touch.family);
       if (first || touch.family->listed()) part->second = touch.family->constant_part(cell);
       if (part->second)
-        for (int m = 0; m < size; ++m)
-          samples[key(m)].constant += part->second->J[static_cast<std::size_t>(touch.index * size + m)];
+        for (int m = 0; m < size; ++m) samples[key(m)].constant += part->second->J[touch.index * size + m];
       for (int s = 0; s < 3; ++s) {
         for (int m = 0; m < size; ++m) {
           auto [where, fresh] = field.try_emplace(key(m));
           if (fresh) where->second = {number(), number(), number()};
-          y[static_cast<std::size_t>(m)] = where->second[static_cast<std::size_t>(s)];
+          y[m] = where->second[s];
         }
         touch.family->jacobian_row(touch.index, cell, y, J);
-        for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[static_cast<std::size_t>(m)]);
+        for (int m = 0; m < size; ++m) samples[key(m)].here.add(s, J[m]);
         if (widened != 1) touch.family->jacobian_row(touch.index, wide, y, J);
-        for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[static_cast<std::size_t>(m)]);
+        for (int m = 0; m < size; ++m) samples[key(m)].wide.add(s, J[m]);
       }
     }
     std::vector<Coefficient> result;
@@ -243,9 +241,9 @@ SystemPattern LatticeSystem::pattern() const {
   return pattern;
 }
 
-Window LatticeSystem::window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const {
-  Window window{&lattice_, components(), turn, first_row, std::move(rows)};
-  for (int c = 0; c < components(); ++c) window.turns.push_back(turn_of(c, turn));
+Window LatticeSystem::window(std::int64_t first_row, std::vector<std::vector<double>> rows, double monodromy) const {
+  Window window{&lattice_, components(), monodromy, first_row, std::move(rows)};
+  for (int c = 0; c < components(); ++c) window.monodromies.push_back(monodromy_of(c, monodromy));
   return window;
 }
 
@@ -267,7 +265,7 @@ void LatticeSystem::jacobian(const Window& window, std::int64_t row, int site, i
                             .parity = static_cast<int>(row & 1),
                             .past = height_,
                             .future = height_,
-                            .turn = window.turn});
+                            .monodromy = window.monodromy});
   assembly.set_time_step(time_step);
   std::vector<double> values;
   assembly.jacobian(SectionRing(window, row - height_, row + height_), row, values);

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "jets/tables/stencil_table.hpp"
-#include "lattice/plan/incidence.hpp"
 #include "lattice/lattice.hpp"
 #include "lattice/matrix_entry.hpp"
+#include "lattice/plan/incidence.hpp"
 #include "schemes/families/stencil_family.hpp"
 #include "schemes/system/row_times.hpp"
 
@@ -45,10 +45,10 @@ std::vector<Component> fields(int d);
 struct Window {
   const Lattice* lattice;
   int components = 1;
-  double turn = 0;             ///< φ(x + L) − φ(x)
+  double monodromy = 0;        ///< φ(x + L) − φ(x)
   std::int64_t first_row = 0;  ///< index of rows[0]
   std::vector<std::vector<double>> rows;
-  std::vector<double> turns = {};  ///< of each component, where they differ: multipliers are periodic
+  std::vector<double> monodromies = {};  ///< of each component, where they differ: multipliers are periodic
   /// The low parts, which rounding has taken from the rows: their values are rows + low. Empty: none is known.
   std::vector<std::vector<double>> low = {};
 
@@ -86,7 +86,7 @@ class LatticeSystem {
 
   const Lattice& lattice() const { return lattice_; }
   int components() const { return static_cast<int>(names_.size()); }
-  const Component& component(int a) const { return names_[static_cast<std::size_t>(a)]; }
+  const Component& component(int a) const { return names_[a]; }
   const std::vector<Component>& all_components() const { return names_; }
   /// Components that are fields at the vertices.
   int fields() const;
@@ -94,17 +94,15 @@ class LatticeSystem {
   int field_component(int a) const;
   /// The sites move: a component is their position.
   bool moves() const;
-  /// y(x + L) − y(x) of a component, where the fields gain `turn`.
-  double turn_of(int component, double turn) const;
+  /// y(x + L) − y(x) of a component, where the fields gain `monodromy`.
+  double monodromy_of(int component, double monodromy) const;
   /// The component keeps its value in this column: a fixed wall, where a node inside the cell lies on the wall or not.
-  bool is_held(int column, int component) const {
-    return lattice_.is_fixed(column) && names_[static_cast<std::size_t>(component)].at.space == 0;
-  }
+  bool is_held(int column, int component) const { return lattice_.is_fixed(column) && names_[component].at.space == 0; }
   double time_step() const { return time_step_; }
   /// The times of rows: uniform, unless a run gives its steps lengths of their own. Copies of a system share them.
   const std::shared_ptr<RowTimes>& times() const { return times_; }
   void share_times(const LatticeSystem& other) { times_ = other.times_; }
-  int width() const { return width_; }  ///< the largest space offset between two sites of one equation
+  int width() const { return width_; }    ///< the largest space offset between two sites of one equation
   int height() const { return height_; }  ///< the same in time
   Placement placement() const { return placement_; }
   std::span<const std::shared_ptr<const StencilFamily>> families() const { return families_; }
@@ -128,8 +126,8 @@ class LatticeSystem {
   /// The pattern that the plan is made of.
   SystemPattern pattern() const;
 
-  /// Rows of all components, to be checked: `turn` is φ(x + L) − φ(x).
-  Window window(std::int64_t first_row, std::vector<std::vector<double>> rows, double turn) const;
+  /// Rows of all components, to be checked: `monodromy` is φ(x + L) − φ(x).
+  Window window(std::int64_t first_row, std::vector<std::vector<double>> rows, double monodromy) const;
 
   /// True if a family has a stencil at (row, site), whose row matters by its parity.
   bool has_stencil(const StencilFamily&, std::int64_t row, int site) const;

@@ -8,6 +8,7 @@
 
 #include "jets/simd/scratch_rows.hpp"
 #include "jets/tables/density_on_table.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/mesh_constraint.hpp"
 #include "schemes/solvers/newton.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
@@ -17,13 +18,11 @@ namespace {
 
 constexpr int most_iterations = 50;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The value whose equation a family keeps among the fields of a row alone: a multiplier, or what is slaved.
 std::optional<int> equation_in_row(const StencilFamily& family, const LatticeSystem& system) {
   std::optional<int> equation;
   for (int i = 0; i < family.size(); ++i) {
-    const Component& c = system.component(family.values()[at(i)].component);
+    const Component& c = system.component(family.values()[i].component);
     if (family.site(i).time != 0 || c.at.time != 0 || c.momentum) return std::nullopt;
     const bool keeps = c.role == Role::multiplier || c.role == Role::slaved;
     if (c.role != Role::field && !c.position && c.role != Role::multiplier) return std::nullopt;
@@ -118,13 +117,13 @@ void LegendreTransform::add_part(const StencilFamily& family, const LatticeSyste
   const int d = density->components();
   std::vector<Site> vertices;
   for (const Site& v : table.pattern.vertices)
-    if (v.time == 0 && table.nodes[at(v.node)].time == 0) vertices.push_back(v);
+    if (v.time == 0 && table.nodes[v.node].time == 0) vertices.push_back(v);
   Part part{.density = density.get(), .points = table.lower_side, .values = static_cast<int>(vertices.size()) * d};
   part.own.resize(table.lower_side.size());
   // A broken element has nodes of its own at τ = 0, which the lower side does not read.
   std::vector<bool> moves(vertices.size(), false);
   for (const TablePoint& point : table.lower_side)
-    for (const auto& [vertex, weight] : point[JetSlot::phi]) moves[at(vertex)] = true;
+    for (const auto& [vertex, weight] : point[JetSlot::phi]) moves[vertex] = true;
   for (int cell = 0; cell < system.anchors(family); ++cell) {
     if (!system.has_stencil(family, row, cell)) continue;
     for (std::size_t q = 0; q < part.own.size(); ++q) {
@@ -139,11 +138,11 @@ void LegendreTransform::add_part(const StencilFamily& family, const LatticeSyste
         const int x = family.listed() ? family.listed()->site(cell, v.space) : cell + v.space;
         const int c = v.node * d + a, home = lattice.home(x), place = home * system.components() + c;
         part.y.push_back(window(row, x, c));
-        if (moves[n] && !system.is_held(home, c) && number[at(place)] < 0) {
-          number[at(place)] = static_cast<int>(places_.size());
+        if (moves[n] && !system.is_held(home, c) && number[place] < 0) {
+          number[place] = static_cast<int>(places_.size());
           places_.push_back(place);
         }
-        part.unknown.push_back(number[at(place)]);
+        part.unknown.push_back(number[place]);
       }
   }
   if (!part.y.empty()) parts_.push_back(std::move(part));
@@ -153,18 +152,18 @@ void LegendreTransform::add_part(const StencilFamily& family, const LatticeSyste
 void LegendreTransform::bind(const StencilFamily& family, int equation, const LatticeSystem& system,
                              const Window& window, std::int64_t row) {
   const int C = system.components();
-  const auto component = [&](int m) { return family.values()[at(m)].component; };
+  const auto component = [&](int m) { return family.values()[m].component; };
   bonds_.slaved = system.component(component(equation)).role == Role::slaved;
-  std::vector<double> y(at(family.size())), J(y.size());
+  std::vector<double> y(family.size()), J(y.size());
   for (int i = 0; i < system.lattice().sites(); ++i) {
     if (!system.has_stencil(family, row, i)) continue;
     const auto place = [&](int m) { return i + family.site(m).space; };
-    for (int m = 0; m < family.size(); ++m) y[at(m)] = window(row, place(m), component(m));
+    for (int m = 0; m < family.size(); ++m) y[m] = window(row, place(m), component(m));
     family.jacobian_row(equation, {system.time_step(), k_, t_, system.lattice().position(i)}, y, J);
     for (int m = 0; m < family.size(); ++m)
-      if (system.component(component(m)).role != Role::multiplier && J[at(m)] != 0)
-        bonds_.entries.push_back({place(equation) * C + component(equation),
-                                  system.lattice().home(place(m)) * C + component(m), J[at(m)]});
+      if (system.component(component(m)).role != Role::multiplier && J[m] != 0)
+        bonds_.entries.push_back(
+            {place(equation) * C + component(equation), system.lattice().home(place(m)) * C + component(m), J[m]});
   }
 }
 
@@ -198,13 +197,13 @@ void LegendreTransform::each_point(const Part& part, double k, double t, const V
       const int from = std::min(cell, cells - 1);  // the last pack is filled up
       for (int a = 0; a < d; ++a) {
         for (const auto& [b, weight] : point[JetSlot::phi]) {
-          jet[a][cell] += weight * part.y[at(from * values + b * d + a)];
-          if (const int n = part.unknown[at(from * values + b * d + a)]; n >= 0) jet[d + a][cell] += weight * v[n];
+          jet[a][cell] += weight * part.y[from * values + b * d + a];
+          if (const int n = part.unknown[from * values + b * d + a]; n >= 0) jet[d + a][cell] += weight * v[n];
         }
         for (const auto& [b, weight] : point[JetSlot::phi_x])
-          jet[2 * d + a][cell] += weight / k * part.y[at(from * values + b * d + a)];
+          jet[2 * d + a][cell] += weight / k * part.y[from * values + b * d + a];
       }
-      jet[m][cell] = part.own[q].x[at(from)];
+      jet[m][cell] = part.own[q].x[from];
     }
     const JetBatch jets{padded, jet.data(), t, jet[m]};
     part.density->gradient(jets, g.data(), g[m]);
@@ -218,26 +217,27 @@ LegendreTransform::Vector LegendreTransform::momenta(const Vector& v, Sparse* ma
   for (const Part& part : parts_) {
     const BatchDensity& density = *part.density;
     const int d = density.components(), m = density.variables();
-    const auto unknown = [&](int cell, int vertex, int a) { return part.unknown[at(cell * part.values + vertex * d + a)]; };
-    each_point(part, k_, t_, v, [&](const TablePoint& point, const std::vector<double>& weights, const JetBatch& jets,
-                                    double* const* g, const double*) {
-      const ScratchRows H(mass ? m * m : 0, jets.count);
-      if (mass) density.hessian(jets, H.data());
-      for (int cell = 0; cell < part.cells(); ++cell) {
-        const double weight = k_ * weights[at(cell)];
-        for (const auto& [b, left] : point[JetSlot::phi])
-          for (int a = 0; a < d; ++a) {
-            const int row = unknown(cell, b, a);
-            if (row < 0) continue;
-            p[row] += weight * left * g[d + a][cell];
-            if (!mass) continue;
-            for (const auto& [c, right] : point[JetSlot::phi])
-              for (int e = 0; e < d; ++e)
-                if (const int column = unknown(cell, c, e); column >= 0 && !density.is_zero(d + a, d + e))
-                  entries.emplace_back(row, column, weight * left * right * H[(d + a) * m + d + e][cell]);
-          }
-      }
-    });
+    const auto unknown = [&](int cell, int vertex, int a) { return part.unknown[cell * part.values + vertex * d + a]; };
+    each_point(part, k_, t_, v,
+               [&](const TablePoint& point, const std::vector<double>& weights, const JetBatch& jets, double* const* g,
+                   const double*) {
+                 const ScratchRows H(mass ? m * m : 0, jets.count);
+                 if (mass) density.hessian(jets, H.data());
+                 for (int cell = 0; cell < part.cells(); ++cell) {
+                   const double weight = k_ * weights[cell];
+                   for (const auto& [b, left] : point[JetSlot::phi])
+                     for (int a = 0; a < d; ++a) {
+                       const int row = unknown(cell, b, a);
+                       if (row < 0) continue;
+                       p[row] += weight * left * g[d + a][cell];
+                       if (!mass) continue;
+                       for (const auto& [c, right] : point[JetSlot::phi])
+                         for (int e = 0; e < d; ++e)
+                           if (const int column = unknown(cell, c, e); column >= 0 && !density.is_zero(d + a, d + e))
+                             entries.emplace_back(row, column, weight * left * right * H[(d + a) * m + d + e][cell]);
+                     }
+                 }
+               });
   }
   if (mass) {
     mass->resize(v.size(), v.size());
@@ -300,12 +300,12 @@ bool LegendreTransform::is_linear() const {
 
 LegendreTransform::Vector LegendreTransform::on_unknowns(std::span<const double> row) const {
   Vector own(static_cast<Eigen::Index>(places_.size()));
-  for (Eigen::Index i = 0; i < own.size(); ++i) own[i] = row[at(places_[static_cast<std::size_t>(i)])];
+  for (Eigen::Index i = 0; i < own.size(); ++i) own[i] = row[places_[i]];
   return own;
 }
 std::vector<double> LegendreTransform::on_row(const Vector& own) const {
   std::vector<double> row(size_, 0.0);
-  for (Eigen::Index i = 0; i < own.size(); ++i) row[at(places_[static_cast<std::size_t>(i)])] = own[i];
+  for (Eigen::Index i = 0; i < own.size(); ++i) row[places_[i]] = own[i];
   return row;
 }
 
@@ -330,14 +330,15 @@ EnergyMomentum LegendreTransform::energy(std::span<const double> given) const {
   EnergyMomentum sum{p.dot(v), 0};
   for (const Part& part : parts_) {
     const int d = part.density->components();
-    each_point(part, k_, t_, v, [&](const TablePoint&, const std::vector<double>& weights, const JetBatch& jets,
-                                    double* const* g, const double* l) {
-      for (int cell = 0; cell < part.cells(); ++cell) {
-        const double weight = k_ * weights[at(cell)];
-        sum.energy -= weight * l[cell];
-        for (int a = 0; a < d; ++a) sum.momentum -= weight * jets.slots[2 * d + a][cell] * g[d + a][cell];
-      }
-    });
+    each_point(part, k_, t_, v,
+               [&](const TablePoint&, const std::vector<double>& weights, const JetBatch& jets, double* const* g,
+                   const double* l) {
+                 for (int cell = 0; cell < part.cells(); ++cell) {
+                   const double weight = k_ * weights[cell];
+                   sum.energy -= weight * l[cell];
+                   for (int a = 0; a < d; ++a) sum.momentum -= weight * jets.slots[2 * d + a][cell] * g[d + a][cell];
+                 }
+               });
   }
   return sum;
 }

@@ -11,6 +11,7 @@
 #include "jets/simd/scratch_rows.hpp"
 #include "jets/tables/cell_points.hpp"
 #include "jets/tables/space_table.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/system/legendre.hpp"
 #include "schemes/system/stress_energy.hpp"
@@ -26,7 +27,7 @@ MeshEnergy::MeshEnergy(std::shared_ptr<const BatchDensity> density, const MeshSp
 }
 
 double MeshEnergy::of_cells(std::span<const double> values, double t) const {
-  const auto d = static_cast<std::size_t>(density_->components());
+  const std::size_t d = density_->components();
   constexpr int most = 64;  // cells at once
   const ScratchRows x(1, most), L(1, most);
   std::fill_n(x[0], most, 0.0);  // cells have places of their own
@@ -36,12 +37,10 @@ double MeshEnergy::of_cells(std::span<const double> values, double t) const {
     for (int first = 0; first < cells; first += most) {
       const int own = std::min(most, cells - first), count = (own + lanes - 1) / lanes * lanes;
       std::array<int, most> numbers{};
-      for (int s = 0; s < count; ++s) numbers[static_cast<std::size_t>(s)] = first + std::min(s, own - 1);
+      for (int s = 0; s < count; ++s) numbers[s] = first + std::min(s, own - 1);
       const ScratchRows y(family->size(), count);
       for (int i = 0; i < family->size(); ++i)
-        for (int s = 0; s < count; ++s)
-          y[i][s] = values[static_cast<std::size_t>(family->column(numbers[static_cast<std::size_t>(s)], i)) * d +
-                           static_cast<std::size_t>(i) % d];
+        for (int s = 0; s < count; ++s) y[i][s] = values[at(family->column(numbers[s], i)) * d + at(i) % d];
       family->lagrangian(StencilBatch{{1, 1, t, 0}, count, x[0], y[0], nullptr, numbers.data()}, L[0]);
       sum += std::accumulate(L[0], L[0] + own, 0.0);
     }
@@ -59,17 +58,17 @@ double MeshEnergy::operator()(std::span<const double> values, std::span<const do
     const int own = std::min(most, sites - first), count = (own + lanes - 1) / lanes * lanes;
     for (int s = 0; s < count; ++s) {
       const int i = first + std::min(s, own - 1);  // the last one fills whole packs
-      x[0][s] = places_[static_cast<std::size_t>(i)];
+      x[0][s] = places_[i];
       for (int a = 0; a < d; ++a) {
-        jet[a][s] = values[static_cast<std::size_t>(i * d + a)];
-        jet[d + a][s] = rates[static_cast<std::size_t>(i * d + a)];
+        jet[a][s] = values[i * d + a];
+        jet[d + a][s] = rates[i * d + a];
       }
     }
     density_->gradient({count, jet.data(), t, x[0]}, slope.data(), l[0]);
     for (int s = 0; s < own; ++s) {
       double energy = -l[0][s];
       for (int a = 0; a < d; ++a) energy += jet[d + a][s] * slope[d + a][s];
-      sum += masses_[static_cast<std::size_t>(first + s)] * energy;
+      sum += masses_[first + s] * energy;
     }
   }
   // ℓ(0, 0, 0) is in the gradients too, where it is no energy.

@@ -26,7 +26,7 @@ std::vector<double> half_equations(const LatticeSystem& system, const Window& wi
                                    std::vector<double>* absolute) {
   const Lattice& lattice = system.lattice();
   const int C = system.components(), N = lattice.sites();
-  std::vector<double> p(static_cast<std::size_t>(N * C), 0.0);
+  std::vector<double> p(N * C, 0.0);
   constexpr std::size_t most = 64;  // stencils at once
   const ScratchRows x(1, most);
   if (absolute) absolute->assign(p.size(), 0.0);
@@ -44,7 +44,7 @@ std::vector<double> half_equations(const LatticeSystem& system, const Window& wi
     }
     const std::int64_t anchor = row - (side == Side::below ? top : low.time);
     const auto& values = family->values();
-    const auto size = static_cast<std::size_t>(family->size());
+    const std::size_t size = family->size();
     std::vector<int> anchors;
     for (int i = 0; i < system.anchors(*family); ++i)
       if (system.has_stencil(*family, anchor, i)) anchors.push_back(i);
@@ -75,8 +75,7 @@ std::vector<double> half_equations(const LatticeSystem& system, const Window& wi
         if (anchor + family->site(static_cast<int>(m)).time != row || !family->is_varied(static_cast<int>(m))) continue;
         for (std::size_t s = 0; s < own; ++s) {
           const double here = r[0][m * count + s];
-          const auto n = static_cast<std::size_t>(lattice.home(family->column(numbers[s], static_cast<int>(m))) * C +
-                                                  values[m].component);
+          const std::size_t n = lattice.home(family->column(numbers[s], static_cast<int>(m))) * C + values[m].component;
           p[n] += side == Side::below ? here : -here;
           if (absolute) (*absolute)[n] += std::abs(here);
         }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr std::size_t remembered = 64;
 
 const RowTimes::Row& RowTimes::at(std::int64_t row) const {
   const auto last = static_cast<std::int64_t>(rows_.size()) - 1;
-  return rows_[static_cast<std::size_t>(std::clamp<std::int64_t>(row - first_, 0, last))];
+  return rows_[delf::at(std::clamp<std::int64_t>(row - first_, 0, last))];
 }
 
 double RowTimes::own_time(std::int64_t row) const {

@@ -8,7 +8,7 @@ namespace delf {
 SlabExtent slab_extent(const LatticeSystem& system, const SolvePlan& plan) {
   SlabExtent extent;
   extent.history = plan.history;
-  extent.behind.assign(static_cast<std::size_t>(system.components()), 0);
+  extent.behind.assign(system.components(), 0);
   for (int parity = 0; parity < plan.table.parities; ++parity) {
     const Slab slab = plan.slab(parity);
     for (const Node& unknown : slab.unknowns) {
@@ -17,7 +17,7 @@ SlabExtent slab_extent(const LatticeSystem& system, const SolvePlan& plan) {
       extent.above = std::max(extent.above, offset);
       if (system.component(unknown.component).role == Role::field)
         extent.field_lag = std::max(extent.field_lag, -offset);
-      int& behind = extent.behind[static_cast<std::size_t>(unknown.component)];
+      int& behind = extent.behind[unknown.component];
       behind = std::max(behind, -offset);
     }
     for (const Node& equation : slab.equations) {
@@ -26,7 +26,7 @@ SlabExtent slab_extent(const LatticeSystem& system, const SolvePlan& plan) {
     }
   }
   for (int c = 0; c < system.components(); ++c) {
-    int& behind = extent.behind[static_cast<std::size_t>(c)];
+    int& behind = extent.behind[c];
     behind = system.component(c).role == Role::field ? 0 : std::max(0, behind - extent.field_lag);
   }
   return extent;

@@ -21,7 +21,7 @@ void require_time_derivative(const LatticeSystem& system) {
     if (const DensityOnTable* jets = family->made_of()) fields.add(*jets->density);
   fields.spread();
   for (int a = 0; a < d; ++a) {
-    if (!fields.present[static_cast<std::size_t>(a)] || fields.moving[static_cast<std::size_t>(a)]) continue;
+    if (!fields.present[a] || fields.moving[a]) continue;
     const std::string name = d == 1 ? "phi" : "phi" + std::to_string(a + 1);
     throw BadInput("theory.name", "the density has no kinetic term for " + name +
                                       ": no row determines the next; add one, "

@@ -14,8 +14,7 @@ std::vector<int> angles_of(const std::string& name, const FieldTheory& theory, c
   const std::vector<std::string> named = given ? parts_of(*given) : std::vector<std::string>();
   std::vector<int> angles;
   for (int field = 0; field < theory.components(); ++field)
-    if (all || std::ranges::count(named, theory.fields()[static_cast<std::size_t>(field)].name) > 0)
-      angles.push_back(field);
+    if (all || std::ranges::count(named, theory.fields()[field].name) > 0) angles.push_back(field);
   return angles;
 }
 

@@ -96,7 +96,7 @@ bool has_period(const BatchDensity& density, int field, double period) {
   constexpr int count = 4 * lanes;
   constexpr double rounding = 1e-9;
   struct alignas(64) Numbers : std::array<double, count> {};
-  const auto variables = static_cast<std::size_t>(density.variables());
+  const std::size_t variables = density.variables();
   Numbers place{};
   const auto gradient = [&](double more) {
     std::vector<Numbers> jets(variables), g(variables);
@@ -107,7 +107,7 @@ bool has_period(const BatchDensity& density, int field, double period) {
         jets[a][i] = std::sin(1.0 + 2.3 * static_cast<double>(a) + 3.7 * static_cast<double>(i));
       slots.push_back(jets[a].data()), to.push_back(g[a].data());
     }
-    for (double& phi : jets[static_cast<std::size_t>(field)]) phi += more;
+    for (double& phi : jets[field]) phi += more;
     density.gradient({count, slots.data(), 0, place.data()}, to.data());
     return g;
   };

@@ -66,7 +66,7 @@ Cell random_cell(const LatticeSystem& system, Random& random) {
 /// Values of order one suit most densities. Where one is not defined there, smaller ones do (a root), or values around
 /// 1, 1.25, … of its components (a logarithm, a centre of attraction).
 StencilJet random_jet(const LatticeSystem& system, const StencilFamily& family, Random& random) {
-  StencilJet at{random_cell(system, random), std::vector<double>(static_cast<std::size_t>(family.size()))};
+  StencilJet at{random_cell(system, random), std::vector<double>(family.size())};
   for (double amplitude = 2; amplitude > 1e-8; amplitude /= 10)
     for (const double centre : {0.0, 1.0}) {
       for (std::size_t i = 0; i < at.y.size(); ++i)
@@ -118,7 +118,7 @@ double largest_absolute(std::span<const double> values) {
 /// y + s e_j
 std::vector<double> moved(const std::vector<double>& y, int j, double s) {
   std::vector<double> to = y;
-  to[static_cast<std::size_t>(j)] += s;
+  to[j] += s;
   return to;
 }
 
@@ -128,7 +128,7 @@ void compare_gradient(const StencilFamily& family, const StencilJet& at, Worst& 
   const double largest = largest_absolute(r);
   for (int i = 0; i < family.size(); ++i) {
     const auto L = [&](double s) { return *family.lagrangian(at.cell, moved(at.y, i, s)); };
-    worst.compare(r[static_cast<std::size_t>(i)], slope(L, good * largest), largest, i, i);
+    worst.compare(r[i], slope(L, good * largest), largest, i, i);
   }
 }
 
@@ -143,9 +143,9 @@ void compare_jacobian(const StencilFamily& family, const StencilJet& at, Worst& 
       const auto r = [&](double s) {
         const auto [where, fresh] = residuals.try_emplace(s);
         if (fresh) where->second = residual(family, at.cell, moved(at.y, j, s));
-        return where->second[static_cast<std::size_t>(i)];
+        return where->second[i];
       };
-      worst.compare(J[static_cast<std::size_t>(i * family.size() + j)], slope(r, good * largest), largest, i, j);
+      worst.compare(J[i * family.size() + j], slope(r, good * largest), largest, i, j);
     }
   }
 }
@@ -153,7 +153,7 @@ void compare_jacobian(const StencilFamily& family, const StencilJet& at, Worst& 
 /// "value 3 (vertex {1, 0}, component phi2)"
 std::string name_of(const LatticeSystem& system, const StencilFamily& family, int i) {
   const Site site = family.site(i);
-  const int component = family.values()[static_cast<std::size_t>(i)].component;
+  const int component = family.values()[i].component;
   return fmt::format("value {} (vertex {{{}, {}}}, component {})", i, site.time, site.space,
                      system.component(component).name);
 }

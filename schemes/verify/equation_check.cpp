@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 
+#include "lattice/index.hpp"
 #include "schemes/system/assembly.hpp"
 #include "schemes/verify/drawn_region.hpp"
 
@@ -53,20 +54,22 @@ EquationCheck::Sort EquationCheck::sort_of(int site, int component) const {
 std::vector<double> EquationCheck::sizes_at(const Window& window, std::int64_t row, int site,
                                             const std::vector<int>& components, const Size& size) const {
   const int reach = system_->height();
-  Assembly::Parts parts{
-      .equations = {}, .parity = static_cast<int>(row & 1), .past = reach, .future = reach, .turn = window.turn};
+  Assembly::Parts parts{.equations = {},
+                        .parity = static_cast<int>(row & 1),
+                        .past = reach,
+                        .future = reach,
+                        .monodromy = window.monodromy};
   for (const int c : components) parts.equations.push_back({{0, site}, c});
   const Assembly assembly(*system_, parts);
   std::vector<double> sizes(components.size(), 0.0);
   assembly.each_jacobian(SectionRing(window, row - reach, row + reach), row, [&](const Assembly::Local& at) {
     for (int i = 0; i < at.family.size(); ++i) {
       const Site read = at.anchor.site + at.family.site(i);
-      const auto c = std::ranges::find(components, at.family.values()[static_cast<std::size_t>(i)].component);
+      const auto c = std::ranges::find(components, at.family.values()[i].component);
       if (read.time != 0 || system_->lattice().home(read.space) != site || c == components.end()) continue;
       for (std::size_t m = 0; m < at.y.size(); ++m)
-        sizes[static_cast<std::size_t>(c - components.begin())] +=
-            std::abs(at.derivatives[static_cast<std::size_t>(i) * at.y.size() + m]) *
-            size(at.family.values()[m].component, at.y[m]);
+        sizes[c - components.begin()] +=
+            std::abs(at.derivatives[delf::at(i) * at.y.size() + m]) * size(at.family.values()[m].component, at.y[m]);
     }
   });
   return sizes;
@@ -74,24 +77,23 @@ std::vector<double> EquationCheck::sizes_at(const Window& window, std::int64_t r
 
 double EquationCheck::error_at(const Window& window, std::int64_t row, int site, int component,
                                const ValueError& error) const {
-  std::vector<double> largest(static_cast<std::size_t>(system_->components()), 0.0);
+  std::vector<double> largest(system_->components(), 0.0);
   for (std::int64_t j = row - reach_; j <= row + reach_; ++j)
     for (int i = 0; i < system_->lattice().sites(); ++i)
       for (std::size_t c = 0; c < largest.size(); ++c)
         largest[c] = std::max(largest[c], std::abs(window(j, i, static_cast<int>(c))));
   for (double& of_component : largest) of_component = error.of(of_component);
-  return sizes_at(window, row, site, {component}, [&](int c, double) { return largest[static_cast<std::size_t>(c)]; })
-      .front();
+  return sizes_at(window, row, site, {component}, [&](int c, double) { return largest[c]; }).front();
 }
 
 /// The largest field or node at each site, of the rows that the equations read.
 void EquationCheck::find_sizes(const Window& window, std::int64_t row) {
-  sizes_.assign(static_cast<std::size_t>(system_->lattice().sites()), 0.0);
+  sizes_.assign(system_->lattice().sites(), 0.0);
   for (std::int64_t j = row - reach_; j <= row + reach_; ++j)
     for (int i = 0; i < system_->lattice().sites(); ++i)
       for (int c = 0; c < system_->components(); ++c)
         if (system_->component(c).role != Role::multiplier) {
-          double& size = sizes_[static_cast<std::size_t>(i)];
+          double& size = sizes_[i];
           size = std::max(size, std::abs(window(j, i, c)));
         }
 }
@@ -100,15 +102,13 @@ void EquationCheck::find_sizes(const Window& window, std::int64_t row) {
 int EquationCheck::largest_site(int component) const {
   int site = -1;
   for (int i = 0; i < system_->lattice().sites(); ++i)
-    if (solved_[static_cast<std::size_t>(i * system_->components() + component)] &&
-        (site < 0 || sizes_[static_cast<std::size_t>(i)] > sizes_[static_cast<std::size_t>(site)]))
-      site = i;
+    if (solved_[i * system_->components() + component] && (site < 0 || sizes_[i] > sizes_[site])) site = i;
   return site;
 }
 
 void EquationCheck::at(const Window& window, std::int64_t row) {
   row_.equations(window, row, values_);
-  const auto C = static_cast<std::size_t>(system_->components());
+  const std::size_t C = system_->components();
   find_sizes(window, row);
   std::array<double, 3> scale{};
   std::map<int, std::vector<int>> largest;  // components by site: a stencil is differentiated once for all of them

@@ -9,6 +9,7 @@
 
 #include "jets/one_jet.hpp"
 #include "jets/tables/density_on_table.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
@@ -40,7 +41,7 @@ std::span<const double> largest(std::span<const double> fields, std::size_t d) {
 std::vector<double> momenta_of(const BatchDensity& density, std::span<const double> q, const Cell& cell) {
   const int d = density.components();
   std::vector<double> jet(q.begin(), q.end());
-  jet.resize(static_cast<std::size_t>(density.variables()), 0.0);
+  jet.resize(density.variables(), 0.0);
   const std::vector<double> g = gradient_at(density, jet, cell.t, cell.x);
   const auto by_rates = g.begin() + static_cast<int>(JetSlot::phi_t) * d;
   return {by_rates, by_rates + d};
@@ -54,10 +55,9 @@ std::vector<Check> check_fluxes(const LatticeSystem& system, std::span<const dou
     const DensityOnTable* jets = family->made_of();
     if (!jets || !joins_traces(system, *family)) continue;
     const Cell cell{system.time_step(), system.lattice().space_step(), 0, system.lattice().position(0)};
-    const std::span<const double> q = largest(fields, static_cast<std::size_t>(jets->density->components()));
-    std::vector<double> y, r(static_cast<std::size_t>(family->size()));
-    for (const VertexValue& value : family->values())
-      y.push_back(q[static_cast<std::size_t>(system.component(value.component).field)]);
+    const std::span<const double> q = largest(fields, delf::at(jets->density->components()));
+    std::vector<double> y, r(delf::at(family->size()));
+    for (const VertexValue& value : family->values()) y.push_back(q[system.component(value.component).field]);
     family->residual(cell, y, r);
     std::vector<double> p = momenta_of(*jets->density, q, cell);
     for (double& x : p) x *= cell.space_step;  // a site's share of space
@@ -67,7 +67,7 @@ std::vector<Check> check_fluxes(const LatticeSystem& system, std::span<const dou
     check.normaliser = scale, check.count = family->size(), check.samples = family->size();
     for (std::size_t n = 0; n < r.size(); ++n) {
       const Component& c = system.component(family->values()[n].component);
-      const double of_density = p[static_cast<std::size_t>(c.field)];
+      const double of_density = p[c.field];
       double off = std::min(std::abs(r[n] - of_density), std::abs(r[n] + of_density));
       if (c.role == Role::field) off = std::abs(r[n]);
       off /= scale;

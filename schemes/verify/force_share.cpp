@@ -13,6 +13,7 @@
 #include <set>
 #include <utility>
 
+#include "lattice/index.hpp"
 #include "schemes/verify/drawn_region.hpp"
 
 namespace delf {
@@ -43,10 +44,10 @@ ForceShare::ForceShare(const LatticeSystem& system, std::int64_t rows, const Pre
       row_(system),
       stride_(std::clamp<std::int64_t>(rows / 64, 1, 8)),
       precision_(precision),
-      stretches_(static_cast<std::size_t>(std::clamp<std::int64_t>(rows / stride_, 1, most_stretches))),
+      stretches_(delf::at(std::clamp<std::int64_t>(rows / stride_, 1, most_stretches))),
       rows_(rows),
-      averages_(partitions * static_cast<std::size_t>(2 * system.components())),
-      at_(static_cast<std::size_t>(system.lattice().sites() * system.components())) {
+      averages_(partitions * delf::at(2 * system.components())),
+      at_(delf::at(system.lattice().sites() * system.components())) {
   for (std::size_t n = 0; n < averages_.size(); ++n) {
     const Partition parts = partition(n % partitions, stretches_);
     averages_[n].ES.assign(parts.of_rows * parts.of_sites, 0), averages_[n].SS = averages_[n].ES;
@@ -68,7 +69,7 @@ bool ForceShare::find_whether_rows_have_forces() {
   std::vector<double> row(at_.size());
   for (double& y : row) y = std::uniform_real_distribution<double>(0.5, 1.5)(random);
   const std::int64_t reach = std::max(1, system_->height());
-  const std::vector<std::vector<double>> still(static_cast<std::size_t>(2 * reach + 1), row);
+  const std::vector<std::vector<double>> still(2 * reach + 1, row);
   system_->equations(system_->window(0, still, 0), reach, forces_);
   for (std::size_t n = 0; n < forces_.size(); ++n)
     if (has_force(n) && !(std::abs(forces_[n].sum) <= 1e-10 * forces_[n].absolute)) return true;
@@ -82,7 +83,7 @@ bool ForceShare::has_force(std::size_t n) const {
 
 /// F of a row. A node between rows has the value that its field has below it.
 void ForceShare::find_forces(const Window& window, std::int64_t row) {
-  std::vector<double> here = window.rows[static_cast<std::size_t>(row - window.first_row)];
+  std::vector<double> here = window.rows[row - window.first_row];
   const int C = system_->components();
   for (int c = 0; c < C; ++c) {
     const Component& node = system_->component(c);
@@ -92,20 +93,19 @@ void ForceShare::find_forces(const Window& window, std::int64_t row) {
       if (below.field != node.field || below.at.time != 0 || below.at.space != node.at.space ||
           (below.role != Role::field && below.role != Role::inner))
         continue;
-      for (std::size_t i = 0; i < here.size(); i += static_cast<std::size_t>(C))
-        here[i + static_cast<std::size_t>(c)] = here[i + static_cast<std::size_t>(b)];
+      for (std::size_t i = 0; i < here.size(); i += delf::at(C)) here[i + delf::at(c)] = here[i + delf::at(b)];
     }
   }
   const auto reach = static_cast<std::int64_t>(std::max(1, system_->height()));
   Window still = window;
   still.first_row = row - reach;
-  still.rows.assign(static_cast<std::size_t>(2 * reach + 1), here), still.low.clear();
+  still.rows.assign(2 * reach + 1, here), still.low.clear();
   row_.equations(still, row, forces_);
   forces_of_ = row;
 }
 
 void ForceShare::at(const Window& window, std::int64_t row, const EquationCheck& equations) {
-  const std::vector<double>& here = window.rows[static_cast<std::size_t>(row - window.first_row)];
+  const std::vector<double>& here = window.rows[row - window.first_row];
   const bool evaluated = seen_++ % stride_ == 0;
   if (evaluated) find_forces(window, row);
   errors_.assign(at_.size(), std::numeric_limits<double>::quiet_NaN());
@@ -170,7 +170,7 @@ void ForceShare::add_to_averages(const Window& window, std::int64_t row, const E
   while (earlier_.size() > 1 && earlier_[1].row < row - 2 * reach) earlier_.pop_front();
   if (!(earlier_.front().row < row - 2 * reach)) return;
   const std::vector<double>& force = earlier_.front().F;
-  const auto C = static_cast<std::size_t>(system_->components());
+  const std::size_t C = system_->components();
   // The stretch of the row, and its weight there: sin² falls to 0 at both ends.
   std::array<std::pair<std::size_t, double>, partitions> stretch;
   for (std::size_t which = 0; which < partitions; ++which) {
@@ -182,8 +182,7 @@ void ForceShare::add_to_averages(const Window& window, std::int64_t row, const E
   const double least = relative_bound_ * equations.scale();
   // A coefficient such as 2 − h²m² that was rounded is off by the same in all rows: E ~ ε |y|/h², a quarter of the terms.
   passed_over_ = std::max(passed_over_, std::max(precision_.asked, epsilon / 4) * equations.scale());
-  const auto &below = window.rows[static_cast<std::size_t>(row - 1 - window.first_row)],
-             &above = window.rows[static_cast<std::size_t>(row + 1 - window.first_row)];
+  const auto &below = window.rows[row - 1 - window.first_row], &above = window.rows[row + 1 - window.first_row];
   for (std::size_t n = 0; n < at_.size(); ++n) {
     if (std::isnan(equations.newest()[n]) || !has_force(n) || !(std::abs(force[n]) > least)) continue;
     const double E = equations.sums()[n].sum;
@@ -192,7 +191,7 @@ void ForceShare::add_to_averages(const Window& window, std::int64_t row, const E
       for (std::size_t which = 0; which < partitions; ++which) {
         const std::size_t groups = partition(which, stretches_).of_sites, group = n * groups / at_.size();
         const auto& [at, weight] = stretch[which];
-        Average& average = averages_[partitions * (2 * (n % C) + static_cast<std::size_t>(signal)) + which];
+        Average& average = averages_[partitions * (2 * (n % C) + delf::at(signal)) + which];
         average.ES[at * groups + group] += weight * E * S, average.SS[at * groups + group] += weight * S * S;
       }
     }
@@ -237,7 +236,7 @@ std::optional<Check> ForceShare::average() const {
 
 /// The worst equation of a row.
 void ForceShare::suspect(const Window& window, std::int64_t row, const EquationCheck& equations) {
-  const auto C = static_cast<std::size_t>(system_->components());
+  const std::size_t C = system_->components();
   Suspect worst{.row = row};
   for (std::size_t n = 0; n < at_.size(); ++n)
     if (!std::isnan(equations.newest()[n]) && has_force(n))
@@ -257,7 +256,7 @@ void ForceShare::suspect(const Window& window, std::int64_t row, const EquationC
 }
 
 std::string ForceShare::where(std::size_t n, std::int64_t row) const {
-  const auto C = static_cast<std::size_t>(system_->components());
+  const std::size_t C = system_->components();
   return in_words(*system_, Node{{0, static_cast<int>(n / C)}, static_cast<int>(n % C)}, row);
 }
 
@@ -289,12 +288,12 @@ std::optional<ForceShare::Judged> ForceShare::check() const {
 }
 
 SiteSeverity ForceShare::severity(std::size_t n) const {
-  const auto C = static_cast<std::size_t>(system_->components());
+  const std::size_t C = system_->components();
   const int site = static_cast<int>(n / C), c = static_cast<int>(n % C);
   double value = at_[n].value;
   for (const int side : {-1, 1})
     if (const int beside = system_->lattice().home(site + side); beside >= 0 && beside < system_->lattice().sites())
-      value = std::max(value, at_[static_cast<std::size_t>(beside) * C + n % C].value);
+      value = std::max(value, at_[delf::at(beside) * C + n % C].value);
   return {.site = site,
           .field = system_->component(c).name,
           .row = at_[n].row,
@@ -314,7 +313,7 @@ std::vector<Measured> ForceShare::measured() const {
   double force = 0;
   for (const Largest& largest : at_) force = std::max(force, largest.force);
   if (force == 0) return {};
-  const auto worst = static_cast<std::size_t>(std::ranges::max_element(at_, {}, &Largest::error) - at_.begin());
+  const std::size_t worst = std::ranges::max_element(at_, {}, &Largest::error) - at_.begin();
   std::vector<Measured> result{{.name = "equations: |E| beside the largest force",
                                 .region = where(worst, at_[worst].row),
                                 .value = at_[worst].error / force,

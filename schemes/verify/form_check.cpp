@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/system/assembly.hpp"
 
 namespace delf {
@@ -32,7 +33,7 @@ std::string slaved_names(const LatticeSystem& system) {
 std::vector<Balance> symplectic_form(const LatticeSystem& system, const Window& y, const std::vector<Window>& V,
                                      std::int64_t cut) {
   const int reach = system.height();
-  const Assembly stencils(system, Assembly::across(system, static_cast<int>(cut & 1), y.turn));
+  const Assembly stencils(system, Assembly::across(system, static_cast<int>(cut & 1), y.monodromy));
   std::vector<SectionRing> variations;
   for (const Window& v : V) variations.emplace_back(v, cut - reach, cut + reach);
   std::vector<Balance> balances(V.size() / 2);
@@ -43,8 +44,8 @@ std::vector<Balance> symplectic_form(const LatticeSystem& system, const Window& 
       Assembly::gather(at, variations[2 * p + 1], cut, w);
       for (int n = 0; n < at.family.size(); ++n)
         if (at.anchor.site.time + at.family.site(n).time >= 0 &&
-            system.component(at.family.values()[static_cast<std::size_t>(n)].component).role != Role::slaved)
-          add_form(balances[p], static_cast<std::size_t>(n), at.derivatives, v, w);
+            system.component(at.family.values()[n].component).role != Role::slaved)
+          add_form(balances[p], delf::at(n), at.derivatives, v, w);
     }
   });
   return balances;
@@ -56,7 +57,7 @@ FormCheck::FormCheck(const LatticeSystem& system, const SolvePlan& plan, int row
       variational_(is_variational(system)),
       slaved_(slaved_names(system)),
       constrained_(std::ranges::any_of(system.families(), [&](const auto& f) { return has_multiplier(system, *f); })),
-      tangent_(std::make_unique<Tangent>(system, plan, rows, options_.turn)),
+      tangent_(std::make_unique<Tangent>(system, plan, rows, options_.monodromy)),
       solved_(Tangent::solved_rows(system, plan, rows)),
       forms_(options_.regions.size()),
       drawn_(options_.regions.size(), false) {
@@ -97,7 +98,7 @@ void FormCheck::at(const Window& y, std::mt19937_64& random) {
     const auto region = drawer.draw(request, random);
     if (!region) continue;
     drawn_[n] = true;
-    const RegionSystem system(system_, *region, y.first_row, options_.turn);
+    const RegionSystem system(system_, *region, y.first_row, options_.monodromy);
     const auto values = system.restricted(y);
     if (variational_) look_at_stencils(system, values, random);
     if (!evolved.empty() && slaved_.empty()) {
@@ -114,7 +115,7 @@ void FormCheck::at(const Window& y, std::mt19937_64& random) {
       continue;
     }
     measure(request, system, values, pairs);
-    const RegionSystem known(system_, *region, y.first_row, options_.turn, SlavedValues::known);
+    const RegionSystem known(system_, *region, y.first_row, options_.monodromy, SlavedValues::known);
     pairs = pairs_of(known.first_variations(values, count, random));
     look(request, known, values, pairs, true);
   }
@@ -123,7 +124,7 @@ void FormCheck::at(const Window& y, std::mt19937_64& random) {
 
 void FormCheck::measure(const RegionRequest& request, const RegionSystem& system, const RegionSystem::Values& y,
                         const std::vector<RegionSystem::Pair>& pairs) {
-  Check& beyond = beyond_[static_cast<std::size_t>(&request - options_.regions.data())];
+  Check& beyond = beyond_[&request - options_.regions.data()];
   const std::string where = in_words(system.region(), system.origin(), system.stencils());
   for (const Balance& left :
        slaved_.empty() ? system.form_without_multipliers(y, pairs) : system.form_formula(y, pairs))
@@ -136,7 +137,7 @@ void FormCheck::look(const RegionRequest& request, const RegionSystem& system, c
     if (const auto node = system.coupling_node(y)) pairs[0].V[*node] += 1e-2;
   const std::string where = fmt::format("{}, {} V and W", in_words(system.region(), system.origin(), system.stencils()),
                                         local ? "local" : "evolved");
-  Check& check = forms_[static_cast<std::size_t>(&request - options_.regions.data())];
+  Check& check = forms_[&request - options_.regions.data()];
   const auto balances = system.form_formula(y, pairs);
   stencils_ += system.stencils();
   std::size_t worst = 0;
@@ -184,7 +185,7 @@ std::string FormCheck::why(const RegionSystem& system, const RegionSystem::Value
     const auto left = system.linearised(y, *variation);
     const auto worst = std::ranges::max_element(left, {}, &Balance::relative);
     if (worst == left.end() || worst->relative() <= 1e-10) continue;
-    const Node node = system.node(system.equations()[static_cast<std::size_t>(worst - left.begin())]);
+    const Node node = system.node(system.equations()[worst - left.begin()]);
     return fmt::format(
         "{} is no first variation: at {} the linearised field equation is missed by {:.1e} of its terms. The "
         "variation was changed there or at a site next to it, or it was evolved by other equations.",

@@ -27,7 +27,7 @@ class FormCheck {
     std::vector<RegionRequest> regions;
     int pairs = 2;  ///< of V and W, of either sort, for each region
     double tolerance = 1e-13;
-    double turn = 0;               ///< φ(x + L) − φ(x)
+    double monodromy = 0;          ///< φ(x + L) − φ(x)
     bool break_variation = false;  ///< plants a fault: V is wrong at the site of ∂U that int U feels most
   };
   static constexpr std::size_t most_local = 1500;

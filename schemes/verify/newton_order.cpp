@@ -28,7 +28,7 @@ class SolvedSlab {
       : system_(system),
         J_(solution.last_row() - extent.above),
         parity_(static_cast<int>(((J_ % plan.table.parities) + plan.table.parities) % plan.table.parities)),
-        equations_(system, Assembly::slab(plan, parity_, extent.past(), extent.above, solution.turn)),
+        equations_(system, Assembly::slab(plan, parity_, extent.past(), extent.above, solution.monodromy)),
         ring_(solution, J_ - extent.past(), J_ + extent.above),
         solver_(solver_of(equations_)) {
     for (int n = 0; n < size(); ++n) solution_.push_back(equations_.value(ring_, J_, n));
@@ -46,8 +46,7 @@ class SolvedSlab {
   double scale(bool multipliers) const {
     double largest = 0;
     for (int n = 0; n < size(); ++n)
-      if (is_multiplier(n) == multipliers)
-        largest = std::max(largest, std::abs(solution_[static_cast<std::size_t>(n)]));
+      if (is_multiplier(n) == multipliers) largest = std::max(largest, std::abs(solution_[n]));
     return largest > 0 ? largest : 1;
   }
   /// max |a − b| of the fields; infinite if it is not a number.
@@ -55,7 +54,7 @@ class SolvedSlab {
     double largest = 0;
     for (int n = 0; n < size(); ++n) {
       if (is_multiplier(n)) continue;
-      const double by = std::abs(a[static_cast<std::size_t>(n)] - b[static_cast<std::size_t>(n)]);
+      const double by = std::abs(a[n] - b[n]);
       largest = std::isfinite(by) ? std::max(largest, by) : std::numeric_limits<double>::infinity();
     }
     return largest;
@@ -63,7 +62,7 @@ class SolvedSlab {
 
   /// y − (∂E/∂y)⁻¹ E(y); nothing if the Jacobian is singular.
   std::optional<std::vector<double>> newton_step(std::vector<double> y) {
-    for (int n = 0; n < size(); ++n) equations_.value(ring_, J_, n) = y[static_cast<std::size_t>(n)];
+    for (int n = 0; n < size(); ++n) equations_.value(ring_, J_, n) = y[n];
     equations_.jacobian(ring_, J_, entries_);
     if (!solver_.factor(entries_)) return std::nullopt;
     equations_.residual(ring_, J_, E_);
@@ -87,7 +86,7 @@ std::vector<double> perturbed(const SolvedSlab& slab, double amplitude, std::mt1
   std::vector<double> y = slab.solution();
   for (int n = 0; n < slab.size(); ++n) {
     const double random = 2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0;
-    y[static_cast<std::size_t>(n)] += amplitude * (slab.is_multiplier(n) ? multiplier : field) * random;
+    y[n] += amplitude * (slab.is_multiplier(n) ? multiplier : field) * random;
   }
   return y;
 }

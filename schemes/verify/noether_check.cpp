@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "lattice/index.hpp"
 #include "schemes/system/conserved.hpp"
 #include "schemes/verify/drawn_region.hpp"
 
@@ -64,7 +65,7 @@ Check NoetherCheck::invariance(const LinearSymmetry& symmetry, std::mt19937_64& 
   std::vector<double> y, r, xi;
   for (const auto& family : system_.families())
     for (int n = 0; n < jets; ++n) {
-      y.resize(static_cast<std::size_t>(family->size()));
+      y.resize(family->size());
       r.resize(y.size());
       const int site = static_cast<int>(random() % static_cast<std::uint64_t>(system_.lattice().sites()));
       const Cell cell{system_.time_step(), system_.lattice().space_step(), 0, system_.lattice().position(site)};
@@ -108,10 +109,10 @@ Balance NoetherCheck::change_at(Site site, int component, const LinearSymmetry& 
   Balance balance;
   for (const auto& family : system_.families())
     for (int m = 0; m < family->size(); ++m) {
-      if (family->values()[static_cast<std::size_t>(m)].component != component) continue;
+      if (family->values()[m].component != component) continue;
       const Site vertex = family->site(m), anchor{site.time - vertex.time, lattice.home(site.space - vertex.space), 0};
       if (!system_.has_stencil(*family, anchor.time, anchor.space)) continue;
-      const auto n = static_cast<std::size_t>(family->size()), at = static_cast<std::size_t>(m);
+      const std::size_t n = family->size(), at = delf::at(m);
       std::vector<double> y(n), r(n), J(n * n), xi(n), moved(n);
       for (std::size_t i = 0; i < n; ++i) {
         const Site v = family->site(static_cast<int>(i));
@@ -151,7 +152,7 @@ void NoetherCheck::at(const Window& rows, const RegionDrawer& drawer, const std:
                       std::mt19937_64& random) {
   for (const RegionRequest& request : regions)
     if (const auto region = drawer.draw(request, random)) {
-      const RegionSystem here(system_, *region, rows.first_row, rows.turn);
+      const RegionSystem here(system_, *region, rows.first_row, rows.monodromy);
       at(here, here.restricted(rows));
     }
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "jets/forms.hpp"
+#include "lattice/index.hpp"
 #include "schemes/system/conserved.hpp"
 
 namespace delf {
@@ -29,7 +30,7 @@ bool has_multiplier(const LatticeSystem& system, const StencilFamily& family) {
   });
 }
 
-RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int64_t origin, double turn,
+RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int64_t origin, double monodromy,
                            SlavedValues slaved)
     : system_(system),
       region_(std::move(region)),
@@ -41,18 +42,18 @@ RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int6
   for (const Site site : region_.boundary()) kind_[region_.place(site)] = boundary;
   solved_.assign(nodes(), false);
   held_.assign(nodes(), false);
-  const auto C = static_cast<std::size_t>(components_);
+  const std::size_t C = components_;
   Assembly::Parts parts{.equations = {},
                         .parity = static_cast<int>(origin & 1),
-                        .turn = turn,
+                        .monodromy = monodromy,
                         .stencils = std::vector<Assembly::Anchor>(),
                         .place = [region = region_](Site site) { return static_cast<int>(region.place(site)); }};
   region_.visit_stencils([&](int f, Site anchor, std::span<const std::size_t> places) {
     const Lattice& lattice = system_.lattice();
     parts.stencils->push_back({f, {anchor.time, lattice.home(anchor.space)}});
-    for (const VertexValue& value : system_.families()[static_cast<std::size_t>(f)]->values()) {
-      const std::size_t place = places[static_cast<std::size_t>(value.vertex)];
-      const std::size_t node = place * C + static_cast<std::size_t>(value.component);
+    for (const VertexValue& value : system_.families()[f]->values()) {
+      const std::size_t place = places[value.vertex];
+      const std::size_t node = place * C + delf::at(value.component);
       held_[node] = system_.is_held(region_.sites()[place].space, value.component) ||
                     (slaved == SlavedValues::known && system_.component(value.component).role == Role::slaved);
       solved_[node] = kind_[place] == inside && !held_[node];
@@ -64,7 +65,7 @@ RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int6
 }
 
 Node RegionSystem::node(std::size_t n) const {
-  const auto C = static_cast<std::size_t>(components_);
+  const std::size_t C = components_;
   return {region_.sites()[n / C], static_cast<int>(n % C)};
 }
 
@@ -122,7 +123,7 @@ std::vector<RegionSystem::Values> RegionSystem::first_variations(const Values& y
         entries.emplace_back(row[read[m]], column[read[i]], entry);
       }
   });
-  std::vector<Values> variations(static_cast<std::size_t>(count), Values(nodes(), 0.0));
+  std::vector<Values> variations(count, Values(nodes(), 0.0));
   std::normal_distribution<double> normal;
   // Values that no equation reads are free.
   for (Values& V : variations)
@@ -157,7 +158,7 @@ std::optional<std::size_t> RegionSystem::coupling_node(const Values& y) const {
   });
   const auto most = std::ranges::max_element(felt);
   if (most == felt.end() || *most == 0) return std::nullopt;
-  return static_cast<std::size_t>(most - felt.begin());
+  return delf::at(most - felt.begin());
 }
 
 template <class Wanted>
@@ -245,7 +246,7 @@ std::optional<RegionSystem::OneWay> RegionSystem::least_mutual(const Values& y) 
 
 std::vector<double> RegionSystem::boundary_terms(const Values& y, const Pair& pair) const {
   std::vector<double> terms(region_.sites().size(), 0.0), v, w;
-  const auto C = static_cast<std::size_t>(components_);
+  const std::size_t C = components_;
   each_jacobian(y, true, [&](const Assembly::Local& at, Reads read, std::span<const double> J) {
     gather(at, pair.V, v);
     gather(at, pair.W, w);
@@ -260,7 +261,7 @@ Balance RegionSystem::noether(const Values& y, const LinearSymmetry& symmetry, b
   Balance balance;
   std::vector<double> xi;
   // A fixed wall has no equation: what flows into it is not zero where the symmetry moves it, and counts as at ∂U.
-  const auto flows = [&](int node) { return at_boundary(node) || held_[static_cast<std::size_t>(node)]; };
+  const auto flows = [&](int node) { return at_boundary(node) || held_[node]; };
   assembly_->each_residual(row(y), origin_, [&](const Assembly::Local& at) {
     if (!up_to_divergence && std::ranges::none_of(at.places, flows)) return;
     generator(system_, at.family, symmetry, at.y, xi);

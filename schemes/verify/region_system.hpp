@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "jets/symmetry.hpp"
+#include "lattice/index.hpp"
 #include "lattice/plan/solve_plan.hpp"
 #include "lattice/region.hpp"
 #include "schemes/system/assembly.hpp"
@@ -31,13 +32,13 @@ class RegionSystem {
  public:
   using Values = std::vector<double>;
 
-  /// Rows of U count from `origin`, which is even: brick walls keep their parity. `turn` is φ(x + L) − φ(x).
-  RegionSystem(const LatticeSystem&, Region, std::int64_t origin = 0, double turn = 0,
+  /// Rows of U count from `origin`, which is even: brick walls keep their parity. `monodromy` is φ(x + L) − φ(x).
+  RegionSystem(const LatticeSystem&, Region, std::int64_t origin = 0, double monodromy = 0,
                SlavedValues = SlavedValues::solved);
 
   const Region& region() const { return region_; }
   std::int64_t origin() const { return origin_; }
-  std::size_t nodes() const { return region_.sites().size() * static_cast<std::size_t>(components_); }
+  std::size_t nodes() const { return region_.sites().size() * at(components_); }
   std::int64_t stencils() const { return assembly_->stencils(); }
   /// The node of that number; rows count from the origin.
   Node node(std::size_t n) const;
@@ -110,9 +111,9 @@ class RegionSystem {
   void each_jacobian(const Values& y, bool at_boundary, const Visit& visit) const;
   template <class Wanted>
   std::vector<Balance> form_sums(const Values& y, std::span<const Pair> pairs, const Wanted& wanted) const;
-  bool at_boundary(int node) const { return kind_[static_cast<std::size_t>(node / components_)] == boundary; }
-  bool is_solved(int node) const { return solved_[static_cast<std::size_t>(node)]; }
-  bool is_held(int node) const { return held_[static_cast<std::size_t>(node)]; }
+  bool at_boundary(int node) const { return kind_[node / components_] == boundary; }
+  bool is_solved(int node) const { return solved_[node]; }
+  bool is_held(int node) const { return held_[node]; }
   /// Values of a section or a variation as its one row.
   static SectionView row(const Values& values) { return {values.data(), 1, values.size()}; }
   void gather(const Assembly::Local&, const Values& from, std::vector<double>& to) const;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lattice/index.hpp"
 #include "schemes/system/stress_energy.hpp"
 #include "schemes/theories/field_theory.hpp"
 
@@ -55,7 +56,7 @@ void BalanceLaw::add(std::int64_t row, const std::vector<Current>& cells) {
 void BalanceLaw::add_vertices(std::int64_t row, const std::vector<Current>& above) {
   const double per_h = 0.5 / time_step_, per_k = 0.5 / lattice_.space_step();
   for (int i = first_vertex(); i < end_vertex(); ++i) {
-    const auto left = static_cast<std::size_t>(left_cell(i)), right = static_cast<std::size_t>(i);
+    const std::size_t left = left_cell(i), right = at(i);
     const Current &a = below_[left], &b = below_[right], &c = above[left], &d = above[right];
     // [mean_i e(j+½) − mean_i e(j−½)]/h + [mean_j f(i+½) − mean_j f(i−½)]/k + mean s
     const double defect = per_h * (c.density + d.density - a.density - b.density) +
@@ -75,7 +76,7 @@ BalanceLaw::Sums BalanceLaw::sums(const std::vector<Current>& cells) const {
   Sums s;
   for (int i = first_vertex(); i < end_vertex(); ++i)
     for (const int cell : {left_cell(i), i}) {
-      const Current& c = cells[static_cast<std::size_t>(cell)];
+      const Current& c = cells[cell];
       s.density += 0.5 * k * c.density;
       s.absolute += 0.5 * k * std::abs(c.density);
       s.source += 0.5 * k * c.source;
@@ -92,19 +93,19 @@ void BalanceLaw::add_total(std::int64_t row, const Sums& above) {
   total_.add(std::abs(defect), above.absolute + std::abs(passed_), row, 0);
 }
 
-StressBalance::StressBalance(const FieldTheory& theory, const Lattice& lattice, double time_step, double turn)
+StressBalance::StressBalance(const FieldTheory& theory, const Lattice& lattice, double time_step, double monodromy)
     : theory_(theory),
       lattice_(lattice),
       time_step_(time_step),
-      jets_(theory.density(), lattice, time_step, turn),
+      jets_(theory.density(), lattice, time_step, monodromy),
       energy_(lattice, time_step),
       momentum_(lattice, time_step) {
-  const auto cells = static_cast<std::size_t>(lattice.cells());
+  const std::size_t cells = lattice.cells();
   energy_cells_.resize(cells), momentum_cells_.resize(cells);
 }
 
 void StressBalance::add(std::int64_t row, std::span<const double> fields) {
-  if (fields.size() != static_cast<std::size_t>(theory_.components()) * static_cast<std::size_t>(lattice_.sites()))
+  if (fields.size() != at(theory_.components()) * at(lattice_.sites()))
     throw std::logic_error("a balance of energy over a row of another size");
   if (!row_.empty()) {
     if (row != newest_ + 1) throw std::logic_error("a balance of energy over rows that are not consecutive");
@@ -119,8 +120,8 @@ void StressBalance::add_cells(std::int64_t row, std::span<const double> above) {
   for (int i = 0; i < lattice_.cells(); ++i) {
     const StressEnergy s = stress_energy(theory_.density(), jets_.at(i, row_, above), t,
                                          lattice_.position(i) + 0.5 * lattice_.space_step());
-    energy_cells_[static_cast<std::size_t>(i)] = {s.energy, s.energy_flux, s.by_t};
-    momentum_cells_[static_cast<std::size_t>(i)] = {s.momentum, s.momentum_flux, -s.by_x};
+    energy_cells_[i] = {s.energy, s.energy_flux, s.by_t};
+    momentum_cells_[i] = {s.momentum, s.momentum_flux, -s.by_x};
   }
   energy_.add(row, energy_cells_);
   if (lattice_.space() != Space::point) momentum_.add(row, momentum_cells_);

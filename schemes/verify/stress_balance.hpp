@@ -66,8 +66,8 @@ class BalanceLaw {
 /// the laws. Of densities of second order, the totals on a circle. Rows are read as they come: no more than two are kept.
 class StressBalance {
  public:
-  /// `turn` is φ(x + L) − φ(x) on a circle. Keeps a reference to the theory.
-  StressBalance(const FieldTheory& theory, const Lattice& lattice, double time_step, double turn);
+  /// `monodromy` is φ(x + L) − φ(x) on a circle. Keeps a reference to the theory.
+  StressBalance(const FieldTheory& theory, const Lattice& lattice, double time_step, double monodromy);
 
   /// The fields of a row, [i·d + a]. Rows are consecutive; throws std::logic_error for one that is not.
   void add(std::int64_t row, std::span<const double> fields);

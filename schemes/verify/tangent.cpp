@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 #include "schemes/system/slab_extent.hpp"
 
@@ -18,17 +19,16 @@ NoConvergence singular(std::int64_t row) {
 }
 
 /// b − A x, and Σ|terms| of each equation.
-std::vector<double> remainder(const Assembly& equations, const std::vector<double>& A,
-                              const std::vector<double>& b, const std::vector<double>& x,
-                              std::vector<double>& absolute) {
+std::vector<double> remainder(const Assembly& equations, const std::vector<double>& A, const std::vector<double>& b,
+                              const std::vector<double>& x, std::vector<double>& absolute) {
   std::vector<double> left = b;
   absolute.assign(b.size(), 0.0);
   for (std::size_t n = 0; n < b.size(); ++n) absolute[n] = std::abs(b[n]);
   for (std::size_t n = 0; n < A.size(); ++n) {
     const auto [equation, unknown] = equations.places()[n];
-    const double term = A[n] * x[static_cast<std::size_t>(unknown)];
-    left[static_cast<std::size_t>(equation)] -= term;
-    absolute[static_cast<std::size_t>(equation)] += std::abs(term);
+    const double term = A[n] * x[unknown];
+    left[equation] -= term;
+    absolute[equation] += std::abs(term);
   }
   return left;
 }
@@ -53,13 +53,13 @@ Range Tangent::solved_rows(const LatticeSystem& system, const SolvePlan& plan, i
   return {extent.past() + extent.equation_lead, rows - 1 - extent.above - extent.equation_lag};
 }
 
-Tangent::Tangent(const LatticeSystem& system, const SolvePlan& plan, int rows, double turn)
+Tangent::Tangent(const LatticeSystem& system, const SolvePlan& plan, int rows, double monodromy)
     : system_(system), rows_(rows) {
   const SlabExtent extent = slab_extent(system, plan);
   data_ = extent.past();
   above_ = extent.above;
   for (int p = 0; p < plan.table.parities; ++p) {
-    Assembly equations(system, Assembly::slab(plan, p, data_, above_, turn));
+    Assembly equations(system, Assembly::slab(plan, p, data_, above_, monodromy));
     BlockSolver solver = solver_of(equations);
     parities_.push_back(std::make_unique<Parity>(Parity{std::move(equations), std::move(solver)}));
   }
@@ -67,13 +67,13 @@ Tangent::Tangent(const LatticeSystem& system, const SolvePlan& plan, int rows, d
 
 std::vector<Window> Tangent::evolve(const Window& y, int count, std::mt19937_64& random) {
   const int N = system_.lattice().sites(), C = system_.components();
-  const std::size_t size = static_cast<std::size_t>(N * C);
+  const std::size_t size = at(N * C);
   SectionRing section(rows_, size);
   for (std::size_t r = 0; r < y.rows.size(); ++r)
     std::ranges::copy(y.rows[r], section.row(y.first_row + static_cast<std::int64_t>(r)));
 
   std::normal_distribution<double> normal;
-  std::vector<SectionRing> V(static_cast<std::size_t>(count), SectionRing(rows_, size));
+  std::vector<SectionRing> V(count, SectionRing(rows_, size));
   for (SectionRing& v : V)
     for (int r = 0; r < rows_; ++r)
       for (int i = 0; i < N; ++i)
@@ -83,7 +83,7 @@ std::vector<Window> Tangent::evolve(const Window& y, int count, std::mt19937_64&
   for (const SectionRing& v : V) left_side.push_back({v});
   std::vector<double> values, x, more, size_of_terms;
   for (std::int64_t J = y.first_row + data_; J <= y.last_row() - above_; ++J) {
-    Parity& p = *parities_[static_cast<std::size_t>(J) % parities_.size()];
+    Parity& p = *parities_[at(J) % parities_.size()];
     for (SectionRing& v : V)
       for (int n = 0; n < p.equations.size(); ++n) p.equations.value(v, J, n) = 0;
     p.equations.linearised(section, J, left_side, values);
@@ -103,7 +103,7 @@ std::vector<Window> Tangent::evolve(const Window& y, int count, std::mt19937_64&
         throw singular(J);
       for (std::size_t n = 0; n < left.size(); ++n)
         if (!(std::abs(left[n]) <= 1e-10 * size_of_terms[n])) throw singular(J);
-      for (int n = 0; n < p.equations.size(); ++n) p.equations.value(V[v], J, n) = -x[static_cast<std::size_t>(n)];
+      for (int n = 0; n < p.equations.size(); ++n) p.equations.value(V[v], J, n) = -x[n];
     }
   }
   std::vector<Window> windows;

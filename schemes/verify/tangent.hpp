@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "lattice/region.hpp"
 #include "lattice/plan/solve_plan.hpp"
+#include "lattice/region.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
@@ -16,7 +16,7 @@ namespace delf {
 class Tangent {
  public:
   /// Prepares windows of `rows` rows.
-  Tangent(const LatticeSystem&, const SolvePlan&, int rows, double turn);
+  Tangent(const LatticeSystem&, const SolvePlan&, int rows, double monodromy);
 
   ~Tangent();
 

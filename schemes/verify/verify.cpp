@@ -26,8 +26,9 @@ std::vector<Check> verify(const LatticeSystem& system, const SolvePlan& plan, co
   const auto add = [&](const std::vector<Check>& more) { checks.insert(checks.end(), more.begin(), more.end()); };
 
   std::mt19937_64 random(options.seed);
-  FormCheck forms(system, plan, given,
-                  {.regions = regions, .pairs = options.variations, .tolerance = options.tolerance, .turn = rows.turn});
+  FormCheck forms(
+      system, plan, given,
+      {.regions = regions, .pairs = options.variations, .tolerance = options.tolerance, .monodromy = rows.monodromy});
   forms.at(rows, random);
   add(forms.checks());
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "lattice/index.hpp"
 #include "schemes/families/stencil_family.hpp"
 
 namespace delf {
@@ -18,7 +19,7 @@ class WrongSign final : public StencilFamily {
   WrongSign(std::shared_ptr<const StencilFamily> right, int value)
       : StencilFamily(right->pattern(), right->values(), right->is_variational()),
         right_(std::move(right)),
-        value_(static_cast<std::size_t>(value)) {
+        value_(at(value)) {
     placed_ = right_->is_placed();
   }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/theories/complex_klein_gordon.hpp"
 #include "schemes/theories/coupled_sine_gordon.hpp"
 #include "schemes/theories/mechanics/kepler.hpp"
@@ -27,7 +28,7 @@ struct Rows {
   std::vector<double*> rows;
   std::vector<const double*> constant;
 
-  Rows(std::size_t n, int count) : memory(n, std::vector<Pack>(static_cast<std::size_t>(count / lanes), Pack(0.0))) {
+  Rows(std::size_t n, int count) : memory(n, std::vector<Pack>(count / lanes, Pack(0.0))) {
     for (auto& row : memory) {
       rows.push_back(reinterpret_cast<double*>(row.data()));
       constant.push_back(rows.back());
@@ -49,14 +50,14 @@ struct Comparison {
 template <class D>
 void check_density(const D& density, double low = -1.5, double high = 1.5) {
   constexpr int d = components_of<D>(), slots = slots_of<D>(), m = slots * d;
-  constexpr auto size = static_cast<std::size_t>(m);
+  constexpr std::size_t size = m;
   constexpr int count = 3 * lanes;
   const BatchOf<D> batches(density);
   REQUIRE((batches.components() == d && batches.slots() == slots && batches.variables() == m));
   CHECK(batches.is_placed() == is_placed<D>());
   Random random(31);
   Rows jets(size, count), x(1, count), l(1, count), g(size, count), H(size * size, count), slope(d, count),
-      curvature(static_cast<std::size_t>(d * d), count), place(2, count), by_gradient(1, count);
+      curvature(delf::at(d * d), count), place(2, count), by_gradient(1, count);
   for (double* row : jets.rows)
     for (int i = 0; i < count; ++i) row[i] = random(low, high);
   for (int i = 0; i < count; ++i) x.rows[0][i] = random(-2, 2);
@@ -75,7 +76,7 @@ void check_density(const D& density, double low = -1.5, double high = 1.5) {
     JetFor<Outer, D> j;
     for (int s = 0; s < slots; ++s)
       for (int a = 0; a < d; ++a)
-        jet_slot(j, s, a) = phi_alone && s > 0 ? Outer(Inner(0.0)) : number(jets.at(static_cast<std::size_t>(s * d + a), i), s * d + a);
+        jet_slot(j, s, a) = phi_alone && s > 0 ? Outer(Inner(0.0)) : number(jets.at(delf::at(s * d + a), i), s * d + a);
     if constexpr (is_placed<D>()) j.t = number(0.7, m), j.x = number(x.at(0, i), m + 1);
     return Outer(density(j));
   };
@@ -87,10 +88,9 @@ void check_density(const D& density, double low = -1.5, double high = 1.5) {
       first(g.at(a, i), r.d[a].value);
       for (std::size_t b = 0; b < size; ++b) second(H.at(a * size + b, i), r.d[a].d[b]);
     }
-    for (std::size_t a = 0; a < static_cast<std::size_t>(d); ++a) {
+    for (std::size_t a = 0; a < delf::at(d); ++a) {
       of_slope(slope.at(a, i), still.d[a].value);
-      for (std::size_t b = 0; b < static_cast<std::size_t>(d); ++b)
-        of_curvature(curvature.at(a * static_cast<std::size_t>(d) + b, i), still.d[a].d[b]);
+      for (std::size_t b = 0; b < delf::at(d); ++b) of_curvature(curvature.at(a * delf::at(d) + b, i), still.d[a].d[b]);
     }
     of_place(place.at(0, i), r.d[size].value), of_place(place.at(1, i), r.d[size + 1].value);
     // Entries that are proved constant, or zero, are what they are at each jet.
@@ -104,10 +104,9 @@ void check_density(const D& density, double low = -1.5, double high = 1.5) {
     }
     // The gradient of what is linear is its constant Hessian and its value at zero.
     if (batches.nonlinearity() == Nonlinearity::all) continue;
-    for (std::size_t a = batches.nonlinearity() == Nonlinearity::values ? static_cast<std::size_t>(d) : 0; a < size; ++a) {
+    for (std::size_t a = batches.nonlinearity() == Nonlinearity::values ? delf::at(d) : 0; a < size; ++a) {
       double linear = batches.constant_gradient()[a];
-      for (std::size_t b = 0; b < size; ++b)
-        linear += batches.constant_hessian()[a * size + b] * jets.at(b, i);
+      for (std::size_t b = 0; b < size; ++b) linear += batches.constant_hessian()[a * size + b] * jets.at(b, i);
       CHECK(std::abs(linear - r.d[a].value) < 1e-13);
     }
   }
@@ -130,7 +129,9 @@ struct Second {
   }
 };
 struct Forced {
-  auto operator()(const auto& j) const { return 0.5 * (j.phi_t * j.phi_t) + 2.0 * j.phi - 0.7 * j.phi_x + j.phi * j.phi_t; }
+  auto operator()(const auto& j) const {
+    return 0.5 * (j.phi_t * j.phi_t) + 2.0 * j.phi - 0.7 * j.phi_x + j.phi * j.phi_t;
+  }
 };
 /// No number at φ = 0, nor its constant Hessian there.
 struct OnlyAway {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/jets/catalogue.hpp"
 #include "tests/jets/random.hpp"
@@ -29,7 +30,7 @@ Defects against_differences(const L& lagrangian, double range) {
   Defects worst;
   constexpr double e = 1e-3;
   for (int n = 0; n < 5; ++n) {
-    auto y = random.array<static_cast<std::size_t>(L::size)>(-range, range);
+    auto y = random.array<at(L::size)>(-range, range);
     const auto gradient = lagrangian.gradient(y, cell);
     const auto hessian = lagrangian.hessian(y, cell);
     double g = 0, H = 0;
@@ -62,7 +63,7 @@ double against_print(Map map, const D& density, Printed printed) {
   Random random(10);
   double worst = 0;
   for (int n = 0; n < 200; ++n) {
-    const auto y = random.array<static_cast<std::size_t>(lagrangian.size)>(-3, 3);
+    const auto y = random.array<at(lagrangian.size)>(-3, 3);
     worst = std::max(worst, std::abs(lagrangian(y, cell) - h * k * printed(y)));
   }
   return worst;

@@ -65,7 +65,7 @@ TEST_CASE("the sum of the Cartan forms is dL, on every stencil for every theory"
   for_each_theory([&](const auto& theory) {
     for_each_map([&](auto map) {
       const auto lagrangian = discrete_lagrangian(map, theory);
-      constexpr auto size = static_cast<std::size_t>(decltype(lagrangian)::size);
+      constexpr std::size_t size = decltype(lagrangian)::size;
       const auto y = random.array<size>(-2, 2), V = random.array<size>(-1, 1);
       const auto gradient = lagrangian.gradient(y, cell);
       double sum = 0, absolute = 0;
@@ -90,7 +90,7 @@ TEST_CASE("the multisymplectic forms of a discrete Lagrangian sum to zero on eve
   for_each_theory([&](const auto& theory) {
     for_each_map([&](auto map) {
       const auto lagrangian = discrete_lagrangian(map, theory);
-      constexpr auto size = static_cast<std::size_t>(decltype(lagrangian)::size);
+      constexpr std::size_t size = decltype(lagrangian)::size;
       const auto hessian = lagrangian.hessian(random.template array<size>(-2, 2), cell);
       CHECK(sum_of_forms(lagrangian.n, hessian, random.template array<size>(-1, 1),
                          random.template array<size>(-1, 1)) < 1e-14);
@@ -140,7 +140,7 @@ TEST_CASE(
   for_each_map([&](auto map) {
     const auto wave = discrete_lagrangian(map, Wave{});
     const auto sine_gordon = discrete_lagrangian(map, SineGordon{});
-    constexpr auto size = static_cast<std::size_t>(decltype(wave)::size);
+    constexpr std::size_t size = decltype(wave)::size;
     const auto y = random.array<size>(-2, 2);
     std::array<double, size> generator;
     generator.fill(1);
@@ -164,7 +164,7 @@ TEST_CASE("with two components the forms sum over those of their vertex alone, a
   const auto y = random.array<8>(-1, 1), V = random.array<8>(-1, 1), W = random.array<8>(-1, 1);
   const auto gradient = lagrangian.gradient(y, cell);
   for (int l = 0; l < 4; ++l) {
-    const auto i = static_cast<std::size_t>(2 * l);
+    const std::size_t i = 2 * l;
     CHECK(std::abs(cartan_form(l, 2, gradient, V) - (gradient[i] * V[i] + gradient[i + 1] * V[i + 1])) < 1e-15);
   }
   CHECK(sum_of_forms(4, lagrangian.hessian(y, cell), V, W) < 1e-14);

@@ -59,7 +59,7 @@ TEST_CASE("its gradient and Hessian are those of finite differences, for any den
       constexpr double step = 1e-5;
       for (int a = 0; a < 6; ++a) {
         std::vector<double> up = jet, down = jet;
-        up[static_cast<std::size_t>(a)] += step, down[static_cast<std::size_t>(a)] -= step;
+        up[a] += step, down[a] -= step;
         const At above(moving, up), below(moving, down);
         CHECK(here.g[a][0] == Approx((above.l[0][0] - below.l[0][0]) / (2 * step)).margin(1e-8));
         for (int b = 0; b < 6; ++b) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "lattice/index.hpp"
 #include "schemes/state.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
@@ -35,7 +36,7 @@ std::string message_of(const Problem& p) {
 }
 
 Row newest(const Simulation& simulation, const Lattice& lattice, int back = 0) {
-  Row row(static_cast<std::size_t>(lattice.sites()));
+  Row row(at(lattice.sites()));
   simulation.copy_row(back, row);
   return row;
 }
@@ -47,12 +48,12 @@ std::unique_ptr<State> state(const std::string& name, const Lattice& lattice, do
   return make_state(request, lattice);
 }
 Row values(const State& s, double t, const Lattice& lattice) {
-  Row row(static_cast<std::size_t>(lattice.sites()));
+  Row row(at(lattice.sites()));
   s.values(t, lattice, row);
   return row;
 }
 Row velocities(const State& s, const Lattice& lattice) {
-  Row row(static_cast<std::size_t>(lattice.sites()));
+  Row row(at(lattice.sites()));
   s.velocities(0, lattice, row);
   return row;
 }
@@ -144,7 +145,7 @@ TEST_CASE("a blow-up names step, time and site, and leaves the last good rows") 
   Problem p = problem("triangle", lattice, 1.2);
   Simulation simulation(p);
   Row row(64);
-  for (int i = 0; i < 64; ++i) row[static_cast<std::size_t>(i)] = 0.1 * std::sin(2 * pi * i / 64);
+  for (int i = 0; i < 64; ++i) row[i] = 0.1 * std::sin(2 * pi * i / 64);
   row[20] += 1e-6;
   simulation.start({row, row});
   std::string message;

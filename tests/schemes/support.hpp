@@ -12,13 +12,14 @@
 
 #include "jets/batch_of.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/damped_leapfrog.hpp"
 #include "schemes/families/guo.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/vu_quoc_li.hpp"
+#include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/simulation.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tests/jets/random.hpp"
 #include "tests/row_distance.hpp"
@@ -29,7 +30,7 @@ namespace delf::testing {
 using Families = std::vector<std::shared_ptr<const StencilFamily>>;
 
 inline Row random_row(Random& random, int sites, double amplitude) {
-  Row row(static_cast<std::size_t>(sites));
+  Row row(delf::at(sites));
   for (double& y : row) y = random(-amplitude, amplitude);
   return row;
 }
@@ -94,10 +95,11 @@ inline Evolution evolution_of(const Problem& p, const std::string& scheme, const
 }
 
 /// The rows that a stepper holds, its newest last.
-inline Window window_of(const Evolution& evolution, double turn = 0) {
+inline Window window_of(const Evolution& evolution, double monodromy = 0) {
   const Stepper& stepper = evolution.stepper();
   const int held = std::min<int>(stepper.starting_rows() + 1, static_cast<int>(stepper.newest()) + 1);
-  Window window{&evolution.system().lattice(), evolution.system().components(), turn, stepper.newest() - held + 1, {}};
+  Window window{
+      &evolution.system().lattice(), evolution.system().components(), monodromy, stepper.newest() - held + 1, {}};
   for (int back = held - 1; back >= 0; --back) window.rows.push_back(stepper.row(back));
   return window;
 }
@@ -107,7 +109,7 @@ inline LatticeSystem::Value equation_at(const LatticeSystem& system, const Windo
                                         int component = 0) {
   std::vector<LatticeSystem::Value> values;
   system.equations(window, row, values);
-  return values[static_cast<std::size_t>(site * system.components() + component)];
+  return values[site * system.components() + component];
 }
 
 /// max |E| over the sites, of the equations that determine the last row of the window; relative to the largest
@@ -127,7 +129,7 @@ inline double equation_defect(const Evolution& evolution, const Window& window) 
       const std::int64_t row = window.last_row() - plan.shift(i, a, static_cast<int>(window.last_row() & 1));
       const auto [at, fresh] = equations.try_emplace(row);
       if (fresh) system.equations(window, row, at->second);
-      const double E = std::abs(at->second[static_cast<std::size_t>(i * C + a)].sum);
+      const double E = std::abs(at->second[i * C + a].sum);
       if (!(E <= defect)) defect = E;  // a NaN too
       if (i != 0 && i != system.lattice().sites() / 2 && i != system.lattice().sites() - 1) continue;
       entries.clear();

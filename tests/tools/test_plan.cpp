@@ -2,6 +2,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/stepper.hpp"
 #include "tests/catch.hpp"
@@ -112,7 +113,7 @@ TEST_CASE("the steps that are said to be shared are those of one loop, which wri
     problem.time_step = 0.1;
     Simulation simulation(problem);
     const std::vector<double> vacuum(20 * simulation.components().size());
-    simulation.start(std::vector(static_cast<std::size_t>(simulation.starting_rows()), vacuum));
+    simulation.start(std::vector(at(simulation.starting_rows()), vacuum));
     simulation.step(false);
     simulation.step(false);  // the first keeps the rows of the start
     const Stepper& stepper = simulation.evolution().stepper();

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "schemes/stepping/evolution.hpp"
 #include "schemes/families/lagrangian_family.hpp"
+#include "schemes/stepping/evolution.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/families/random_stencil.hpp"
 #include "tests/verification/patch.hpp"
@@ -47,7 +47,7 @@ class Planted final : public StencilFamily {
 };
 
 std::vector<std::vector<double>> random_rows(Random& random, int rows, int sites, double amplitude) {
-  std::vector<std::vector<double>> result(static_cast<std::size_t>(rows));
+  std::vector<std::vector<double>> result(rows);
   for (auto& row : result)
     for (int i = 0; i < sites; ++i) row.push_back(random(-amplitude, amplitude));
   return result;
@@ -132,13 +132,13 @@ TEST_CASE("the field equations of a random stencil are the differences of its su
     // all stencils that can touch the site, which is in row 2: anchored in rows 0, 1, 2
     const auto action = [&](double shift) {
       Window shifted = window;
-      shifted.rows[2][static_cast<std::size_t>(site)] += shift;
+      shifted.rows[2][site] += shift;
       double sum = 0;
-      std::vector<double> y(static_cast<std::size_t>(family->size()));
+      std::vector<double> y(family->size());
       for (int j = 0; j < 3; ++j)
         for (int i = 0; i < N; ++i) {
           for (int v = 0; v < family->size(); ++v)
-            y[static_cast<std::size_t>(v)] = shifted(j + family->site(v).time, i + family->site(v).space, 0);
+            y[v] = shifted(j + family->site(v).time, i + family->site(v).space, 0);
           sum += *family->lagrangian({h, k, 0, 0}, y);
         }
       return sum;
@@ -149,10 +149,10 @@ TEST_CASE("the field equations of a random stencil are the differences of its su
         (8 * (action(step) - action(-step)) - (action(2 * step) - action(-2 * step))) / (12 * step);
     std::vector<LatticeSystem::Value> values;
     system.equations(window, 2, values);
-    const auto E = values[static_cast<std::size_t>(site)];
+    const auto E = values[site];
     CAPTURE(seed, E.sum, difference);
     CHECK(std::abs(E.sum - difference) / E.absolute < 1e-12);
-    const auto other = values[static_cast<std::size_t>((site + 1) % N)];
+    const auto other = values[(site + 1) % N];
     CHECK(std::abs(other.sum - difference) / other.absolute > 1e-6);  // of the neighbour, it is not
   }
 }

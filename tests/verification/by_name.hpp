@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "schemes/system/conserved.hpp"
+#include "lattice/index.hpp"
 #include "schemes/scheme.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
+#include "schemes/system/conserved.hpp"
 
 namespace delf::testing {
 
@@ -69,11 +70,11 @@ class ByName {
     if (problem.lattice.is_circle()) problem.winding = state->winding();
     return state;
   }
-  std::size_t fields() const { return static_cast<std::size_t>(problem_.lattice.sites() * state_->components()); }
+  std::size_t fields() const { return at(problem_.lattice.sites() * state_->components()); }
   /// With a zero for every multiplier.
   std::vector<double> all_components(const std::vector<double>& y) const {
-    const auto all = simulation_.components().size(), d = static_cast<std::size_t>(state_->components());
-    std::vector<double> row(all * static_cast<std::size_t>(problem_.lattice.sites()));
+    const auto all = simulation_.components().size(), d = at(state_->components());
+    std::vector<double> row(all * at(problem_.lattice.sites()));
     for (std::size_t n = 0; n < y.size(); ++n) row[n / d * all + n % d] = y[n];
     return row;
   }

@@ -12,6 +12,7 @@
 #include "jets/tables/line_basis.hpp"
 #include "jets/tables/line_rule.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -44,7 +45,7 @@ double distance(const std::string& theory, double h, const Elements& a, const El
 std::array<double, 2> gauss_step(int R, double h, std::array<double, 2> y) {
   const LineRule rule = gauss_rule(R), fine = gauss_rule(12);
   const LagrangeBasis psi(rule.points);
-  const auto n = static_cast<std::size_t>(R);
+  const std::size_t n = R;
   std::vector<Numbers> a(n, Numbers(n, 0.0));  // a_ij = ∫₀^{c_i} ψ_j
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < fine.points.size(); ++k) {
@@ -249,7 +250,7 @@ TEST_CASE("the form formula holds for either continuity, and a residual of the f
       const int rows = FormCheck::rows_wanted(system, simulation.evolution().plan(), regions);
       std::mt19937_64 random(3);
       std::uniform_real_distribution<double> uniform(-1, 1);
-      std::vector<Numbers> values(static_cast<std::size_t>(rows));
+      std::vector<Numbers> values(rows);
       for (Numbers& row : values)
         for (int c = 0; c < system.components(); ++c) row.push_back(uniform(random));
       for (const bool fault : {false, true}) {
@@ -272,7 +273,7 @@ TEST_CASE("a symmetry of the fields acts on the multipliers that are momenta by 
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (std::size_t f = 1; f < system.families().size(); ++f) {
     const StencilFamily& family = *system.families()[f];
-    Numbers y(static_cast<std::size_t>(family.size())), r(y.size()), xi;
+    Numbers y(delf::at(family.size())), r(y.size()), xi;
     for (double& value : y) value = uniform(random);
     family.residual({0.1, 1, 0, 0}, y, r);
     generator(system, family, shear, y, xi);

@@ -16,6 +16,7 @@
 #include "jets/tables/table_product.hpp"
 #include "jets/tables/time_element.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/sine_gordon.hpp"
@@ -91,7 +92,7 @@ double order_in_time(const Scheme& s, const Lattice& lattice, int n) {
 void gauss_step(int R, double h, double k, Row& q, Row& v) {
   const LineRule rule = gauss_rule(R);
   const LagrangeBasis basis(rule.points);
-  const std::size_t N = q.size(), n = static_cast<std::size_t>(R);
+  const std::size_t N = q.size(), n = at(R);
   const auto force = [&](const Row& y, std::size_t i) {
     return (y[(i + 1) % N] - 2 * y[i] + y[(i + N - 1) % N]) / (k * k) - std::sin(y[i]);
   };
@@ -229,12 +230,11 @@ TEST_CASE("elements joined by multipliers are those that share their ends, and t
       CHECK(distance(one.to(12).fields(), other.to(12).fields()) < 1e-12);
       const std::vector<double> p = one.simulation().momenta(), q = other.simulation().momenta();
       const std::size_t C = one.simulation().components().size(), D = other.simulation().components().size();
-      std::vector<double> multipliers(
-          static_cast<std::size_t>(lattice.sites() * other.simulation().count(Role::multiplier)));
+      std::vector<double> multipliers(at(lattice.sites() * other.simulation().count(Role::multiplier)));
       other.simulation().copy_row(0, multipliers, Role::multiplier);
-      const std::size_t M = multipliers.size() / static_cast<std::size_t>(lattice.sites());
+      const std::size_t M = multipliers.size() / at(lattice.sites());
       double most = 0, of_lambda = 0;
-      for (std::size_t i = 0; i < static_cast<std::size_t>(lattice.sites()); ++i) {
+      for (std::size_t i = 0; i < at(lattice.sites()); ++i) {
         if (lattice.is_fixed(static_cast<int>(i))) continue;
         most = std::max(most, std::abs(p[i * C] - q[i * D]));
         of_lambda = std::max(of_lambda, std::abs(multipliers[i * M + M / 2] + p[i * C]));  // μ_n = −p_n
@@ -361,8 +361,7 @@ double worst_form(const Problem& p, bool fault) {
   const int rows = FormCheck::rows_wanted(system, simulation.evolution().plan(), regions);
   std::mt19937_64 random(3);
   std::vector<std::vector<double>> values;
-  for (int r = 0; r < rows; ++r)
-    values.push_back(random_values(random, static_cast<std::size_t>(system.components() * p.lattice.sites())));
+  for (int r = 0; r < rows; ++r) values.push_back(random_values(random, at(system.components() * p.lattice.sites())));
   FormCheck check(system, simulation.evolution().plan(), rows,
                   {.regions = regions, .pairs = 1, .break_variation = fault});
   check.at(system.window(0, values, 0), random);

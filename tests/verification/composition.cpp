@@ -5,6 +5,7 @@
 
 #include "jets/tables/pair_element.hpp"
 #include "jets/tables/splitting.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/theories/phi4.hpp"
 #include "schemes/theories/sine_gordon.hpp"
@@ -23,11 +24,12 @@ Row breather(int order, int space_order, int sites, int steps, double* error = n
   p.method = "composition", p.parameters["scheme.order"] = order, p.parameters["lattice.space_order"] = space_order;
   p.lattice = Lattice::circle(sites, 80), p.time_step = until / steps;
   StateRequest request;
-  request.name = "breather", request.theory = p.theory, request.values["initial.frequency"] = 0.5, request.values["initial.speed"] = 0.3;
+  request.name = "breather", request.theory = p.theory, request.values["initial.frequency"] = 0.5,
+  request.values["initial.speed"] = 0.3;
   const auto state = make_state(request, p.lattice);
   Simulation simulation(p);
   const auto C = simulation.components().size();
-  std::vector<double> row(static_cast<std::size_t>(sites) * C), rate(row.size());
+  std::vector<double> row(at(sites) * C), rate(row.size());
   const Row phi = values(*state, 0, p.lattice), phi_t = velocities(*state, 0, p.lattice);
   for (std::size_t i = 0; i < phi.size(); ++i) row[i * C] = phi[i], rate[i * C] = phi_t[i];
   simulation.start_legendre(row, rate);
@@ -44,9 +46,7 @@ double breather_error(int order, int space_order, int sites, int steps) {
 
 constexpr double k = 0.6, h = 0.3;
 
-FamilyList pairs(int order, int p) {
-  return {jet_family(pair_element(splitting_of_order(order), p), SineGordon{})};
-}
+FamilyList pairs(int order, int p) { return {jet_family(pair_element(splitting_of_order(order), p), SineGordon{})}; }
 
 }  // namespace
 
@@ -65,8 +65,7 @@ TEST_CASE("time is of the order of the composition, on a nonlinear problem") {
 
 TEST_CASE("space is of twice the order of the widest pair, on a nonlinear problem") {
   for (int p = 1; p <= 6; ++p) {  // beyond, errors are lost in rounding
-    const double found =
-        testing::order(breather_error(8, 2 * p, 640, 200), breather_error(8, 2 * p, 800, 200), 1.25);
+    const double found = testing::order(breather_error(8, 2 * p, 640, 200), breather_error(8, 2 * p, 800, 200), 1.25);
     CAPTURE(p, found);
     // The higher the order, the later it is reached.
     CHECK(found > 2 * p - 0.05 - 0.2 * p);

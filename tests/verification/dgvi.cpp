@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/verify/flux_check.hpp"
@@ -56,7 +57,7 @@ class Body {
   Body(const Problem& p, const Numbers& q, const Numbers& jump = {}) : simulation_(p), d_(q.size()) {
     Numbers row;
     for (const Component& c : simulation_.components()) {
-      const auto a = static_cast<std::size_t>(c.field);
+      const std::size_t a = c.field;
       const double off = c.role == Role::trace && !jump.empty() ? (c.name.ends_with('-') ? -0.5 : 0.5) * jump[a] : 0;
       row.push_back(c.role == Role::multiplier ? 0 : q[a] + off);
     }
@@ -131,7 +132,7 @@ std::array<double, 4> characteristic(const Problem& p) {
 /// A start of predators and prey with random rows around 1, as many as a check of forms wants.
 std::vector<Numbers> rows_around_one(const LatticeSystem& system, int rows, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(0.8, 1.2);
-  std::vector<Numbers> values(static_cast<std::size_t>(rows));
+  std::vector<Numbers> values(rows);
   for (Numbers& row : values)
     for (int c = 0; c < system.components(); ++c) row.push_back(uniform(random));
   return values;
@@ -359,7 +360,7 @@ TEST_CASE("the form of jumps is preserved from row to row") {
     REQUIRE(jump != system.families().end());
     const auto form = [&](std::int64_t row) {
       const StencilFamily& J = **jump;
-      const auto n = static_cast<std::size_t>(J.size());
+      const std::size_t n = J.size();
       Numbers y, second(n * n);
       for (const VertexValue& value : J.values()) y.push_back(rows(row, 0, value.component));
       J.jacobian({0.1, 1, 0, 0}, y, second);

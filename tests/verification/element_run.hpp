@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "tests/row_distance.hpp"
@@ -34,12 +35,12 @@ class ElementRun {
 
   /// The fields at the vertices of the newest row.
   std::vector<double> fields() const {
-    std::vector<double> y(static_cast<std::size_t>(problem_.lattice.sites() * state_->components()));
+    std::vector<double> y(problem_.lattice.sites() * state_->components());
     simulation_.copy_row(0, y);
     return y;
   }
   std::vector<double> exact() const {
-    std::vector<double> y(static_cast<std::size_t>(problem_.lattice.sites() * state_->components()));
+    std::vector<double> y(problem_.lattice.sites() * state_->components());
     state_->values(static_cast<double>(simulation_.newest()) * problem_.time_step, problem_.lattice, y);
     return y;
   }
@@ -55,15 +56,13 @@ class ElementRun {
   /// Row 0 of all components, each where its node lies.
   std::vector<double> section(void (State::*of)(double, const Lattice&, std::span<double>) const) const {
     const auto& components = simulation_.components();
-    const std::size_t C = components.size(), N = static_cast<std::size_t>(problem_.lattice.sites()),
-                      d = static_cast<std::size_t>(state_->components());
+    const std::size_t C = components.size(), N = delf::at(problem_.lattice.sites()), d = delf::at(state_->components());
     std::vector<double> row(N * C), fields(N * d);
     for (std::size_t c = 0; c < C; ++c) {
       if (components[c].role == Role::multiplier) continue;
       const Lattice at = problem_.lattice.shifted(components[c].at.space * problem_.lattice.space_step());
       (state_.get()->*of)(components[c].at.time * problem_.time_step, at, fields);
-      for (std::size_t i = 0; i < N; ++i)
-        row[i * C + c] = fields[i * d + static_cast<std::size_t>(components[c].field)];
+      for (std::size_t i = 0; i < N; ++i) row[i * C + c] = fields[i * d + delf::at(components[c].field)];
     }
     return row;
   }

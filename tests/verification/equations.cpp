@@ -28,7 +28,7 @@ Patch stepped(const std::string& theory, const SchemeName& scheme) {
   for (int j = 0; j <= last; ++j) {
     while (simulation.newest() < std::max(j, 1)) simulation.step();
     const Row row = newest(simulation, lattice, j == 0 ? 1 : 0);
-    for (int i = 0; i < N; ++i) patch.y[patch.U().place({j, i})] = row[static_cast<std::size_t>(i)];
+    for (int i = 0; i < N; ++i) patch.y[patch.U().place({j, i})] = row[i];
   }
   return patch;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "tests/row_distance.hpp"
@@ -41,17 +42,17 @@ inline Problem problem_for(const SchemeName& scheme, const std::string& theory, 
 }
 
 inline Row values(const State& state, double t, const Lattice& lattice) {
-  Row row(static_cast<std::size_t>(lattice.sites()));
+  Row row(at(lattice.sites()));
   state.values(t, lattice, row);
   return row;
 }
 inline Row velocities(const State& state, double t, const Lattice& lattice) {
-  Row row(static_cast<std::size_t>(lattice.sites()));
+  Row row(at(lattice.sites()));
   state.velocities(t, lattice, row);
   return row;
 }
 inline Row newest(const Simulation& simulation, const Lattice& lattice, int back = 0) {
-  Row row(static_cast<std::size_t>(lattice.sites()));
+  Row row(at(lattice.sites()));
   simulation.copy_row(back, row);
   return row;
 }

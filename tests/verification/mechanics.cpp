@@ -132,8 +132,7 @@ double distance(const Body& b, const std::string& stencil, Map map) {
     s = map(b, s, b.step);
     run.to(n);
     const std::vector<double> y = run.newest();
-    for (int a = 0; a < dimension(b); ++a)
-      most = std::max(most, std::abs(y[static_cast<std::size_t>(a)] - s.q[static_cast<std::size_t>(a)]));
+    for (int a = 0; a < dimension(b); ++a) most = std::max(most, std::abs(y[a] - s.q[a]));
   }
   return most;
 }
@@ -153,15 +152,14 @@ LongRun long_run(const Body& b, const std::string& stencil) {
     const auto now = run.to(n).simulation().monitors();
     double* tenth = n <= a_million / 10 ? &result.first : n > a_million - a_million / 10 ? &result.last : nullptr;
     if (tenth) *tenth = std::max(*tenth, std::abs(now.energy - start.energy));
-    if (is_kepler(b))
-      result.spin = std::max(result.spin, std::abs(now.conserved.at(0) / start.conserved.at(0) - 1));
+    if (is_kepler(b)) result.spin = std::max(result.spin, std::abs(now.conserved.at(0) / start.conserved.at(0) - 1));
   }
   return result;
 }
 
 LongRun long_run_by_hand(const Body& b, Map map, long steps) {
   const ByName run = body(b, "midpoint", b.step);
-  std::vector<double> velocity(static_cast<std::size_t>(dimension(b)));
+  std::vector<double> velocity(dimension(b));
   run.state().velocities(0, Lattice::point(), velocity);
   Phase s{plane(run.exact_row(0)), plane(velocity)};
   const auto spin = [&] { return s.q[0] * s.p[1] - s.q[1] * s.p[0]; };
@@ -205,7 +203,7 @@ TEST_CASE("the check can fail: explicit Euler follows them to first order only")
   for (const Body& b : {pendulum, kepler}) {
     const auto error = [&](int steps) {
       const ByName run = body(b, "vertex", 3.0 / steps);
-      std::vector<double> velocity(static_cast<std::size_t>(dimension(b)));
+      std::vector<double> velocity(dimension(b));
       run.state().velocities(0, Lattice::point(), velocity);
       Phase s{plane(run.exact_row(0)), plane(velocity)};
       for (int n = 0; n < steps; ++n) s = explicit_euler(b, s, 3.0 / steps);

@@ -12,6 +12,7 @@
 #include "jets/tables/line_rule.hpp"
 #include "jets/tables/time_tableau.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/mechanics/solar_system.hpp"
@@ -55,7 +56,7 @@ Problem heavy(double h, const Elements& e) {
 std::array<double, 2> lobatto_step(int s, double h, std::array<double, 2> y) {
   const LineRule rule = lobatto_rule(s), fine = gauss_rule(12);
   const LagrangeBasis psi(rule.points);
-  const auto n = static_cast<std::size_t>(s);
+  const std::size_t n = s;
   std::vector<Numbers> a(n, Numbers(n, 0.0)), b = a;
   // a_ij = ∫₀^{c_i} ψ_j of IIIA, and b_j (1 − a_ji/b_i) of IIIB
   for (std::size_t i = 0; i < n; ++i)
@@ -205,7 +206,7 @@ TEST_CASE("B-splines of degree p are of order 2p with Gauss's rule on every span
   CHECK(refusal(p).starts_with("scheme.degree"));
 }
 
-TEST_CASE("elements step a rotor on S1 as on the line, and refuse increments that cannot be told apart") {
+TEST_CASE("elements step a rotor on S1 as on the line, and refuse increments that cannot be distinguished") {
   for (const char* tableau : {"midpoint", "gauss3", "lobatto3"}) {
     Problem line = problem_of("pendulum", 0.25, tableau), circle = line;
     circle.circle_valued = true;
@@ -324,8 +325,8 @@ TEST_CASE("symmetric elements return to their start when the momenta are turned,
     for (double& x : turned) x = -x;
     const Numbers q = body.q();
     for (const Component& c : body.simulation().components()) {
-      row.push_back(c.role == Role::multiplier ? 0 : q[static_cast<std::size_t>(c.field)]);
-      momenta.push_back(c.role == Role::field ? turned[static_cast<std::size_t>(c.field)] : 0);
+      row.push_back(c.role == Role::multiplier ? 0 : q[c.field]);
+      momenta.push_back(c.role == Role::field ? turned[c.field] : 0);
     }
     Simulation back(p);
     back.start_momenta(row, momenta);

@@ -11,13 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "lattice/region_shapes.hpp"
 #include "schemes/families/damped_leapfrog.hpp"
 #include "schemes/families/guo.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/vu_quoc_li.hpp"
-#include "schemes/theories/field_theory.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "schemes/verify/region_system.hpp"
 #include "tests/verification/experiment.hpp"
@@ -98,7 +99,7 @@ struct Patch {
 class ByHand {
  public:
   ByHand(const Lattice& lattice, Family family, double h, const std::vector<Site>& U, const std::vector<double>& y)
-      : family_(std::move(family)), n_(static_cast<std::size_t>(family_->size())) {
+      : family_(std::move(family)), n_(at(family_->size())) {
     for (const Site site : std::set<Site>(U.begin(), U.end())) place_.emplace(site, place_.size());
     const Cell cell{h, lattice.space_step(), 0, 0};
     const int N = lattice.sites(), first = place_.begin()->first.time, last = place_.rbegin()->first.time;

@@ -8,6 +8,7 @@
 #include "jets/tables/pair_element.hpp"
 #include "jets/tables/splitting.hpp"
 #include "jets/tables/suited_pairs.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/pair_parts.hpp"
@@ -47,7 +48,7 @@ struct Kernel {
           if (processed) options.processor = parts.processor;
           return Evolution(p.lattice, parts.families, p.time_step, options, parts.components);
         }()),
-        C(static_cast<std::size_t>(evolution.system().components())) {}
+        C(delf::at(evolution.system().components())) {}
 
   void start(const Row& phi, const Row& rate) {
     Row row(phi.size() * C, 0.0), momenta(row);
@@ -185,7 +186,7 @@ struct BetweenWalls {
         }()),
         simulation(problem),
         C(simulation.components().size()) {
-    const auto sites = static_cast<std::size_t>(lattice.sites());
+    const std::size_t sites = lattice.sites();
     Row row(sites * C), rate(sites * C);
     for (std::size_t i = 0; i < sites; ++i)
       for (std::size_t c = 0; c < C; ++c) {
@@ -198,7 +199,7 @@ struct BetweenWalls {
     while (simulation.newest() < 60) simulation.step();
   }
   Row fields() const {
-    Row phi(static_cast<std::size_t>(problem.lattice.sites()));
+    Row phi(delf::at(problem.lattice.sites()));
     simulation.observe(0, phi);
     return phi;
   }
@@ -259,7 +260,7 @@ TEST_CASE("a kernel returns over its own rows, and its rows solve the generated 
       p.theory = theory, p.lattice = Lattice::circle(60, 24), p.time_step = 0.2;
       p.parameters["theory.position"] = 12, p.parameters["theory.width"] = 0.3;  // far from the seam
       Kernel scheme(p, false);
-      const auto d = static_cast<std::size_t>(scheme.evolution.system().fields());
+      const std::size_t d = scheme.evolution.system().fields();
       Row row(60 * scheme.C, 0.0), momenta(row);
       for (std::size_t i = 0; i < 60; ++i)
         for (std::size_t a = 0; a < d; ++a) {

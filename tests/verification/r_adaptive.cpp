@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "lattice/index.hpp"
 #include "lattice/lattice.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/r_adaptive.hpp"
@@ -103,13 +104,12 @@ class PrintedWall final : public StencilFamily {
   using StencilFamily::residual;
   void residual(const StencilBatch& batch, std::span<const int> equations, double* r) const override {
     of_.residual(batch, equations, r);
-    for (std::size_t n = 0; n < equations.size() * static_cast<std::size_t>(batch.count); ++n) r[n] *= 0.5;
+    for (std::size_t n = 0; n < equations.size() * delf::at(batch.count); ++n) r[n] *= 0.5;
   }
   void jacobian(const StencilBatch& batch, std::span<const int> equations, std::span<const int> unknowns,
                 double* J) const override {
     of_.jacobian(batch, equations, unknowns, J);
-    for (std::size_t n = 0; n < equations.size() * unknowns.size() * static_cast<std::size_t>(batch.count); ++n)
-      J[n] *= 0.5;
+    for (std::size_t n = 0; n < equations.size() * unknowns.size() * delf::at(batch.count); ++n) J[n] *= 0.5;
   }
 
  private:

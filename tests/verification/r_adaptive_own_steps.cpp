@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/system/momenta.hpp"
@@ -143,7 +144,7 @@ TEST_CASE("a run back takes the steps that the rows chose again, and a plain cho
 TEST_CASE("steps of their own are for schemes that start from momenta, and for no others") {
   Problem p = own_steps("multiplier", "trapezoid", 0.1);
   Simulation simulation(p);
-  const std::vector<double> row(static_cast<std::size_t>(17) * 3, 0.0);
+  const std::vector<double> row(at(17) * 3, 0.0);
   CHECK_THROWS_AS(simulation.start({row, row}), BadInput);
   CHECK_THROWS_AS(simulation.start_centred(row, row), BadInput);
   p.method = "multisymplectic", p.parameters = {};

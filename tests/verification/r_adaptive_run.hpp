@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/moving_start.hpp"
 
 /// Runs of sine-Gordon on meshes that move, between walls.
@@ -57,8 +58,8 @@ inline Simulation started(const Problem& p, const StartField& field) {
 inline Row values(const Simulation& simulation, int sites, bool positions) {
   const bool slaved = simulation.count(Role::slaved) > 0;
   const Role role = positions && slaved ? Role::slaved : Role::field;
-  const auto count = static_cast<std::size_t>(simulation.count(role));
-  Row all(static_cast<std::size_t>(sites) * count), out;
+  const std::size_t count = simulation.count(role);
+  Row all(delf::at(sites) * count), out;
   simulation.copy_row(0, all, role);
   for (std::size_t at = positions && !slaved ? 1 : 0; at < all.size(); at += count) out.push_back(all[at]);
   return out;

@@ -54,17 +54,18 @@ struct Method {
   double error_of_method;  ///< of the exact solution of the equations at 10,000 steps, or what scheme.tolerance leaves
 };
 std::vector<Method> elements() {
-  return {{"cgvi", keys({{"scheme.tableau", "gauss2"}}), 3.79e-7},
-          {"cgvi", keys({{"scheme.tableau", "gauss4"}}), 0},
-          {"cgvi", keys({{"scheme.tableau", "gauss6"}}), 0},
-          {"cgvi", keys({{"scheme.tableau", "lobatto3"}}), 4.29e-7},
-          {"cgvi", keys({{"scheme.tableau", "lobatto5"}}), 0},
-          {"cgvi", keys({{"scheme.continuity", "multipliers"}}, {{"scheme.functions", 4}, {"scheme.points", 3}}), 2.5e-11},
-          {"cgvi",
-           keys({{"scheme.basis", "lagrange-gauss"}, {"scheme.continuity", "multipliers"}},
-                {{"scheme.functions", 5}, {"scheme.points", 4}}),
-           5e-11},
-          {"radau-iia", keys({}, {{"scheme.stages", 5}}), 0}};
+  return {
+      {"cgvi", keys({{"scheme.tableau", "gauss2"}}), 3.79e-7},
+      {"cgvi", keys({{"scheme.tableau", "gauss4"}}), 0},
+      {"cgvi", keys({{"scheme.tableau", "gauss6"}}), 0},
+      {"cgvi", keys({{"scheme.tableau", "lobatto3"}}), 4.29e-7},
+      {"cgvi", keys({{"scheme.tableau", "lobatto5"}}), 0},
+      {"cgvi", keys({{"scheme.continuity", "multipliers"}}, {{"scheme.functions", 4}, {"scheme.points", 3}}), 2.5e-11},
+      {"cgvi",
+       keys({{"scheme.basis", "lagrange-gauss"}, {"scheme.continuity", "multipliers"}},
+            {{"scheme.functions", 5}, {"scheme.points", 4}}),
+       5e-11},
+      {"radau-iia", keys({}, {{"scheme.stages", 5}}), 0}};
 }
 
 std::string label(const Method& m) {
@@ -96,8 +97,7 @@ TEST_CASE("rounding in short steps of discontinuous elements does not grow with 
   Simulation simulation(p);
   const std::vector<double> q{1, 0, 0, 1};
   std::vector<double> row, end(4);
-  for (const Component& c : simulation.components())
-    row.push_back(c.role == Role::multiplier ? 0 : q[static_cast<std::size_t>(c.field)]);
+  for (const Component& c : simulation.components()) row.push_back(c.role == Role::multiplier ? 0 : q[c.field]);
   simulation.start({row});
   while (simulation.newest() < n) simulation.step();
   simulation.copy_row(0, end);

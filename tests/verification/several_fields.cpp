@@ -34,7 +34,9 @@ ByName charged(const char* state, const std::string& stencil, int N, From from) 
   p.time_step = 0.5 * p.lattice.space_step();
   StateRequest request;
   request.name = state;
-  if (request.name == "charged-packet") request.values["initial.amplitude"] = 1, request.values["initial.width"] = 2, request.values["initial.wavenumber"] = 2;
+  if (request.name == "charged-packet")
+    request.values["initial.amplitude"] = 1, request.values["initial.width"] = 2,
+    request.values["initial.wavenumber"] = 2;
   return {p, request, from};
 }
 
@@ -90,13 +92,13 @@ TEST_CASE("the check can fail: a wave of another coupling is not approached") {
     const auto wave = make_state(request, p.lattice);
     Simulation simulation(p);
     const auto row = [&](int n) {
-      std::vector<double> y(static_cast<std::size_t>(2 * N));
+      std::vector<double> y(2 * N);
       wave->values(n * p.time_step, p.lattice, y);
       return y;
     };
     simulation.start({row(0), row(1)});
     while (simulation.newest() < N) simulation.step();
-    std::vector<double> y(static_cast<std::size_t>(2 * N));
+    std::vector<double> y(2 * N);
     simulation.copy_row(0, y);
     const std::vector<double> exact = row(N);
     double most = 0;
@@ -117,7 +119,8 @@ Charge charge_over_2000_steps(const char* state, const char* stencil) {
   Charge charge{run.simulation().monitors().conserved.at(0), 0, 0};
   const std::vector<double> y0 = run.newest();
   for (int n = 10; n <= 2000; n += 10) {
-    charge.drift = std::max(charge.drift, std::abs(run.to(n).simulation().monitors().conserved.at(0) / charge.first - 1));
+    charge.drift =
+        std::max(charge.drift, std::abs(run.to(n).simulation().monitors().conserved.at(0) / charge.first - 1));
     const std::vector<double> y = run.newest();
     for (std::size_t i = 0; i < y.size(); ++i)
       charge.moved = std::max(charge.moved, std::abs(std::abs(y[i]) - std::abs(y0[i])));

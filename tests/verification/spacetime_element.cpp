@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "jets/tables/rectangle_jet.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/r_adaptive.hpp"
@@ -44,13 +45,14 @@ Result run_elements(int cells, const std::string& quadrature, int degree_time, i
   p.parameters["scheme.degree_time"] = degree_time, p.parameters["scheme.degree_space"] = degree_space;
   p.lattice = Lattice::circle(cells, length), p.time_step = until / (2 * cells);
   StateRequest request;
-  request.name = "kink-train", request.theory = p.theory, request.values["initial.epsilon"] = 0.1, request.values["initial.speed"] = 0.3;
+  request.name = "kink-train", request.theory = p.theory, request.values["initial.epsilon"] = 0.1,
+  request.values["initial.speed"] = 0.3;
   request.values["initial.position"] = 0;
   const auto state = make_state(request, p.lattice);
   p.winding = state->winding();
   Simulation simulation(p);
 
-  const auto N = static_cast<std::size_t>(cells);
+  const std::size_t N = cells;
   const auto& components = simulation.components();
   const std::size_t C = components.size();
   const auto lattice_of = [&](const Component& c) { return p.lattice.shifted(c.at.space * p.lattice.space_step()); };
@@ -76,7 +78,7 @@ Result run_elements(int cells, const std::string& quadrature, int degree_time, i
   Result result;
   result.row = newest(simulation, p.lattice);
   result.all = result.vertices = distance(result.row, values(*state, until, p.lattice));
-  const auto inner = static_cast<std::size_t>(simulation.count(Role::inner));
+  const std::size_t inner = simulation.count(Role::inner);
   std::vector<double> between(N * inner);
   simulation.copy_row(0, between, Role::inner);
   std::size_t n = 0;
@@ -98,15 +100,26 @@ struct Reference {
   double vertices, all;
   std::array<double, 4> first;
 };
-const std::vector<Reference> references{
-    {"lobatto", 8, 4.351679355059e-04, 6.739385750310e-04,
-     {2.067595969834, 3.163565504091, 4.254493439768, 5.130652628272}},
-    {"lobatto", 16, 3.089083722463e-05, 3.313516513170e-05,
-     {2.067340791714, 2.599047063473, 3.163726239764, 3.726987030914}},
-    {"gauss", 8, 4.341271494033e-04, 6.723338674464e-04,
-     {2.067595801300, 3.163569728300, 4.254494480554, 5.130649587698}},
-    {"gauss", 16, 3.073906260420e-05, 3.289008619145e-05,
-     {2.067340838701, 2.599046911698, 3.163726167805, 3.726987282751}}};
+const std::vector<Reference> references{{"lobatto",
+                                         8,
+                                         4.351679355059e-04,
+                                         6.739385750310e-04,
+                                         {2.067595969834, 3.163565504091, 4.254493439768, 5.130652628272}},
+                                        {"lobatto",
+                                         16,
+                                         3.089083722463e-05,
+                                         3.313516513170e-05,
+                                         {2.067340791714, 2.599047063473, 3.163726239764, 3.726987030914}},
+                                        {"gauss",
+                                         8,
+                                         4.341271494033e-04,
+                                         6.723338674464e-04,
+                                         {2.067595801300, 3.163569728300, 4.254494480554, 5.130649587698}},
+                                        {"gauss",
+                                         16,
+                                         3.073906260420e-05,
+                                         3.289008619145e-05,
+                                         {2.067340838701, 2.599046911698, 3.163726167805, 3.726987282751}}};
 
 double worst_difference(const Result& result, const Reference& reference) {
   double worst = 0;
@@ -121,8 +134,7 @@ constexpr double round_off = 1e-13, k = 0.6, h = 0.3;
 const std::vector<std::array<int, 2>> degrees{{2, 2}, {1, 2}, {2, 3}};
 
 FamilyList element_families(int degree_time, int degree_space, TimeQuadrature quadrature) {
-  return {jet_family(spacetime_element(degree_time, degree_space, quadrature),
-                                                      SineGordon{})};
+  return {jet_family(spacetime_element(degree_time, degree_space, quadrature), SineGordon{})};
 }
 FamilyList wave_map_families() {
   return {jet_family(stencil_table(rectangle.table), WaveMap{}),
@@ -245,10 +257,8 @@ TEST_CASE("elements satisfy the multisymplectic form formula on a slab of the ci
       const Patch patch = filled(random, Patch(lattice, families, h, middle));
       CAPTURE(degree_time, degree_space, patch.U().sites().size(), patch.on.equations().size());
       // all nodes but those at the times 0 and 2
-      CHECK(patch.on.equations().size() ==
-            static_cast<std::size_t>(lattice.sites() * degree_space * (2 * degree_time - 1)));
-      CHECK(patch.U().sites().size() ==
-            static_cast<std::size_t>(lattice.sites() * degree_space * (2 * degree_time + 1)));
+      CHECK(patch.on.equations().size() == at(lattice.sites() * degree_space * (2 * degree_time - 1)));
+      CHECK(patch.U().sites().size() == at(lattice.sites() * degree_space * (2 * degree_time + 1)));
       CHECK(form_defect(random, patch) < round_off);
       CHECK(broken_defect(random, patch) > 1e-6);
     }

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/verification/experiment.hpp"
 
@@ -28,7 +29,8 @@ struct Course {
 Course from_noise(Problem p, double mass, double amplitude) {
   p.parameters["theory.mass"] = mass;
   StateRequest request;
-  request.name = "noise", request.theory = p.theory, request.values["theory.mass"] = mass, request.values["initial.amplitude"] = amplitude;
+  request.name = "noise", request.theory = p.theory, request.values["theory.mass"] = mass,
+  request.values["initial.amplitude"] = amplitude;
   request.seed = 7;
   const Row y0 = values(*make_state(request, p.lattice), 0, p.lattice), at_rest(y0.size(), 0.0);
   Simulation simulation(p);
@@ -52,7 +54,7 @@ Zigzag zigzag(const SchemeName& scheme, int N, double courant) {
   const double a = 1e-3;
   const Lattice lattice = Lattice::circle(N, 40);
   Simulation simulation(problem_for(scheme, "sine-gordon", lattice, courant));
-  Row y(static_cast<std::size_t>(N));
+  Row y(at(N));
   const auto Z = [&](std::int64_t j) {
     double sum = 0;
     for (std::size_t i = 0; i < y.size(); ++i) sum += i % 2 ? -y[i] : y[i];

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "tests/row_distance.hpp"
@@ -47,12 +48,12 @@ inline std::unique_ptr<State> state_of(const std::string& theory, const std::str
   return make_state(request, Lattice::point());
 }
 inline Numbers at(const State& state, double t) {
-  Numbers q(static_cast<std::size_t>(state.components()));
+  Numbers q(delf::at(state.components()));
   state.values(t, Lattice::point(), q);
   return q;
 }
 inline Numbers rate_at(const State& state, double t) {
-  Numbers v(static_cast<std::size_t>(state.components()));
+  Numbers v(delf::at(state.components()));
   state.velocities(t, Lattice::point(), v);
   return v;
 }
@@ -66,8 +67,8 @@ class Body {
     Numbers row, rate;
     for (const Component& c : simulation_.components()) {
       const bool has_value = c.role != Role::multiplier;
-      row.push_back(has_value ? q[static_cast<std::size_t>(c.field)] : 0);
-      rate.push_back(has_value ? v[static_cast<std::size_t>(c.field)] : 0);
+      row.push_back(has_value ? q[c.field] : 0);
+      rate.push_back(has_value ? v[c.field] : 0);
     }
     simulation_.start_legendre(row, rate);
   }

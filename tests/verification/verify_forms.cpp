@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -29,7 +30,7 @@ std::vector<RegionRequest> every_kind() {
 /// equations at any section.
 Window random_window(const LatticeSystem& system, const std::string& theory, int rows, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
-  std::vector<std::vector<double>> values(static_cast<std::size_t>(rows));
+  std::vector<std::vector<double>> values(rows);
   for (auto& row : values)
     for (int i = 0; i < system.lattice().sites(); ++i)
       for (int c = 0; c < system.components(); ++c) {
@@ -93,8 +94,8 @@ Result through_collision(const std::string& stencil, const std::string& method, 
   StateRequest request;
   request.name = "mps-collision", request.theory = "sine-gordon";
   const auto state = make_state(request, p.lattice);
-  std::vector<std::vector<double>> start(2, std::vector<double>(static_cast<std::size_t>(sites)));
-  for (int j = 0; j < 2; ++j) state->values(j * p.time_step, p.lattice, start[static_cast<std::size_t>(j)]);
+  std::vector<std::vector<double>> start(2, std::vector<double>(sites));
+  for (int j = 0; j < 2; ++j) state->values(j * p.time_step, p.lattice, start[j]);
   simulation.start(start);
   const LatticeSystem& system = simulation.evolution().system();
   const SolvePlan& plan = simulation.evolution().plan();
@@ -109,7 +110,7 @@ Result through_collision(const std::string& stencil, const std::string& method, 
     const std::int64_t top = (first + (last - first) * m / (moments - 1)) / 2 * 2 + rows - 1;
     while (window.last_row() < top) {
       simulation.step();
-      window.rows.emplace_back(static_cast<std::size_t>(sites));
+      window.rows.emplace_back(at(sites));
       simulation.copy_row(0, window.rows.back());
       if (static_cast<int>(window.rows.size()) > rows) window.rows.erase(window.rows.begin()), ++window.first_row;
     }

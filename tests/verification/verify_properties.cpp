@@ -18,6 +18,7 @@
 #include "jets/tables/rectangle_jet.hpp"
 #include "jets/tables/spacetime_element.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/vertex_constraint.hpp"
@@ -72,7 +73,7 @@ class RandomResidual final : public StencilFamily {
   RandomResidual(int seed, bool says_variational)
       : StencilFamily(RandomStencil(static_cast<std::uint64_t>(seed)).pattern(),
                       RandomStencil(static_cast<std::uint64_t>(seed)).values(), says_variational),
-        n_(static_cast<std::size_t>(pattern_.size())) {
+        n_(delf::at(pattern_.size())) {
     Random random(static_cast<std::uint64_t>(5000 + seed));
     for (std::size_t n = 0; n < n_ * n_; ++n) linear_.push_back(random(-1, 1));
     for (std::size_t n = 0; n < n_; ++n) cubic_.push_back(random(-0.3, 0.3));
@@ -118,7 +119,7 @@ std::optional<Patch> draw(RegionKind kind, const Lattice& lattice, const FamilyL
 Window random_window(const LatticeSystem& system, int rows, std::mt19937_64& random) {
   std::vector<std::vector<double>> values;
   for (int r = 0; r < rows; ++r)
-    values.push_back(random_values(random, static_cast<std::size_t>(system.lattice().sites() * system.components())));
+    values.push_back(random_values(random, delf::at(system.lattice().sites() * system.components())));
   return system.window(0, std::move(values), 0);
 }
 
@@ -146,7 +147,7 @@ TEST_CASE(
     for (const RegionKind kind : region_kinds()) {
       const auto patch = draw(kind, lattice_of(seed), {random_lagrangian(seed)}, random);
       if (!patch || patch->on.equations().empty()) continue;
-      ++drawn[static_cast<std::size_t>(kind)];
+      ++drawn[delf::at(kind)];
       const auto pair = patch->variations(random);
       CAPTURE(seed, to_string(kind), patch->y.size());
       form(patch->form_formula(pair).relative());
@@ -240,7 +241,7 @@ TEST_CASE("verify: a wrong sign of any one residual is found on regions of every
         FamilyList families = schemes[s];
         families[f] = std::make_shared<WrongSign>(families[f], wrong);
         // A node in the middle of an element has one residual, which is its equation: with either sign it is the same.
-        const NodePosition at = nodes.nodes[static_cast<std::size_t>(families[f]->site(wrong).node)];
+        const NodePosition at = nodes.nodes[families[f]->site(wrong).node];
         const bool equivalent = s == 0 && at.time > 0 && at.space > 0;
         for (const RegionKind kind : region_kinds()) {
           const auto patch = draw(kind, lattice, families, random);
@@ -343,8 +344,7 @@ TEST_CASE("verify: comparators fail on every region of two rows, unless their th
         const bool passes = theory == std::string("klein-gordon") && scheme.method != "damped";
         std::mt19937_64 random(static_cast<std::uint64_t>(seed));
         for (const RegionKind kind : region_kinds()) {
-          const auto patch =
-              draw(kind, lattice_without_natural_walls(seed), {make_family(theory, scheme)}, random);
+          const auto patch = draw(kind, lattice_without_natural_walls(seed), {make_family(theory, scheme)}, random);
           if (!patch || !has_two_rows(*patch)) continue;
           const double value = patch->form_formula(patch->variations(random)).relative();
           CAPTURE(theory, scheme.method, seed, to_string(kind), value);
@@ -455,7 +455,7 @@ double derivative_error(const Problem& problem, double factor, int& rows_compare
   rows_compared = 0;
   for (int r = on.first; r <= on.last; ++r, ++rows_compared)
     for (std::size_t n = 0; n < y.front().size(); ++n) {
-      const auto row = static_cast<std::size_t>(r);
+      const std::size_t row = r;
       error = std::max(error, std::abs(factor * V[row][n] - (above[row][n] - below[row][n]) / (2 * epsilon)));
       size = std::max(size, std::abs(V[row][n]));
     }
@@ -541,7 +541,7 @@ TEST_CASE("verify: regions of every kind are regular and look as their names say
         CHECK((kind == RegionKind::wall && lattice.is_circle()));
         continue;
       }
-      ++drawn[static_cast<std::size_t>(kind)];
+      ++drawn[delf::at(kind)];
       const Region U = region_around(lattice, rectangles(), centres);
       std::set<int> columns;
       for (const Site site : U.sites()) columns.insert(site.space);

@@ -13,6 +13,7 @@
 
 #include "jets/tables/rectangle_jet.hpp"
 #include "jets/tables/triangle_jet.hpp"
+#include "lattice/index.hpp"
 #include "schemes/scheme.hpp"
 #include "schemes/theories/sine_gordon.hpp"
 #include "tests/catch.hpp"
@@ -181,8 +182,8 @@ TEST_CASE("the order between all pairs of walls stays two up to 2561 sites", "[s
 
 TEST_CASE("between natural walls tables are of second order with the terms of the walls, and of first without") {
   // (5.9) as printed, φ_t on the left edge alone
-  const StencilTable printed = stencil_table(JetTable<4, 1>{
-      shapes::rectangle, 1, {{{1, {.25, .25, .25, .25}, {-1, 1, 0, 0}, {-.5, -.5, .5, .5}}}}});
+  const StencilTable printed = stencil_table(
+      JetTable<4, 1>{shapes::rectangle, 1, {{{1, {.25, .25, .25, .25}, {-1, 1, 0, 0}, {-.5, -.5, .5, .5}}}}});
   const auto order_of = [](const StencilTable& table, bool with_terms) {
     const auto error = [&](int cells) {
       const Lattice lattice = Lattice::interval(cells + 1, 30, natural, natural);
@@ -250,7 +251,7 @@ double element_error_at(const Solution& solution, int cells) {
   request.name = solution.name, request.theory = solution.theory, request.values["initial.wavenumber"] = 2;
   const auto state = make_state(request, p.lattice);
   Simulation simulation(p);
-  const auto sites = static_cast<std::size_t>(p.lattice.sites()), C = simulation.components().size();
+  const std::size_t sites = p.lattice.sites(), C = simulation.components().size();
   std::vector<double> row(sites * C), velocity(sites * C), at_node(sites);
   for (std::size_t c = 0; c < C; ++c) {
     const Lattice shifted = p.lattice.shifted(simulation.components()[c].at.space * p.lattice.space_step());

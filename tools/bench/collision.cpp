@@ -13,7 +13,7 @@ std::vector<std::vector<double>> Collision::rows() const {
   request.theory = "sine-gordon";
   request.values["initial.epsilon"] = 1e-6;
   const auto state = make_state(request, lattice());
-  std::vector<std::vector<double>> both(2, std::vector<double>(static_cast<std::size_t>(sites)));
+  std::vector<std::vector<double>> both(2, std::vector<double>(sites));
   state->values(0, lattice(), both[0]);
   state->values(time_step(), lattice(), both[1]);
   return both;

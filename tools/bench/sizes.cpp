@@ -43,9 +43,8 @@ double fixed_cost(const std::string& scheme, double tolerance, int repeats) {
     const int sites = scheme == "hexagon" ? 64 * m : 64 * m - 1;
     Problem problem = at_255.problem();
     problem.lattice = Lattice::circle(sites, sites * at_255.space_step());
-    std::vector<double> row(static_cast<std::size_t>(sites));
-    for (int i = 0; i < sites; ++i)
-      row[static_cast<std::size_t>(i)] = std::cos(2 * std::numbers::pi * m * i / sites);
+    std::vector<double> row(sites);
+    for (int i = 0; i < sites; ++i) row[i] = std::cos(2 * std::numbers::pi * m * i / sites);
     const Side side = side_of(std::make_shared<Simulation>(problem), std::vector{row, row});
     const double least = alone(side, 16 * repeats, steps).least;
     n += sites, t += least;

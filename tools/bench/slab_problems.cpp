@@ -61,13 +61,11 @@ TwoRows rows_of(const StateRequest& request, const Lattice& lattice, double time
   const auto state = make_state(request, lattice);
   TwoRows rows(2);
   for (int r = 0; r < 2; ++r) {
-    std::vector<double> fields(static_cast<std::size_t>(lattice.sites() * components));
+    std::vector<double> fields(lattice.sites() * components);
     state->values(r * time_step, lattice, fields);
-    rows[static_cast<std::size_t>(r)].assign(static_cast<std::size_t>(lattice.sites() * in_row), 0.0);
+    rows[r].assign(lattice.sites() * in_row, 0.0);
     for (int i = 0; i < lattice.sites(); ++i)
-      for (int a = 0; a < components; ++a)
-        rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(i * in_row + a)] =
-            fields[static_cast<std::size_t>(i * components + a)];
+      for (int a = 0; a < components; ++a) rows[r][i * in_row + a] = fields[i * components + a];
   }
   return rows;
 }

@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "lattice/index.hpp"
+
 namespace delf::bench {
 
 namespace {
 
 /// Code points, each a column on a terminal.
 std::size_t columns_of(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
+  return at(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
 }  // namespace

@@ -4,20 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "tools/files/row_names.hpp"
 
 namespace delf {
 
 PlacedRow placed_row(const Simulation& simulation, int back) {
-  const auto sites = static_cast<std::size_t>(simulation.evolution().system().lattice().sites());
-  const auto width = static_cast<std::size_t>(simulation.count(Role::field));
+  const std::size_t sites = simulation.evolution().system().lattice().sites();
+  const std::size_t width = simulation.count(Role::field);
   PlacedRow row;
   row.fields.resize(sites * width);
   simulation.observe(back, row.fields);
   const RowNames names(simulation);
   if (!names.mesh) return row;
-  const auto of_role = static_cast<std::size_t>(simulation.count(names.mesh->role));
+  const std::size_t of_role = simulation.count(names.mesh->role);
   std::vector<double> all(sites * of_role);
   simulation.copy_row(back, all, names.mesh->role);
   for (std::size_t i = 0; i < sites; ++i) row.positions.push_back(all[i * of_role + names.mesh->index]);
@@ -30,7 +31,7 @@ PlacedRow placed_row(const Simulation& simulation, int back) {
 }
 
 FieldError field_error(const PlacedRow& row, const State& exact, double t) {
-  const auto d = static_cast<std::size_t>(exact.components());
+  const std::size_t d = exact.components();
   std::vector<FieldPoint> there(d);
   FieldError error{0, 0};
   double before = 0;
@@ -55,7 +56,7 @@ std::vector<double> linearly_at(const PlacedRow& row, const std::vector<double>&
   std::vector<double> values;
   for (const double x : places) {
     const auto above = std::ranges::upper_bound(row.positions, x) - row.positions.begin();
-    const auto right = std::clamp<std::size_t>(static_cast<std::size_t>(above), 1, n - 1), left = right - 1;
+    const auto right = std::clamp<std::size_t>(at(above), 1, n - 1), left = right - 1;
     const double part = (x - row.positions[left]) / (row.positions[right] - row.positions[left]);
     for (std::size_t a = 0; a < d; ++a)
       values.push_back((1 - part) * row.fields[left * d + a] + part * row.fields[right * d + a]);

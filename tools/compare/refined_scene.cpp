@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/seconds_since.hpp"
@@ -30,7 +31,7 @@ std::vector<double> at_sites_of(const Scene& scene, const std::vector<double>& r
   const Lattice& lattice = scene.problem.lattice;
   if (lattice.space() == Space::point) return refined_row;
   // the finer lattice has factor · N sites round a circle, and factor · (N − 1) + 1 between walls
-  const auto sites = static_cast<std::size_t>(lattice.sites()), step = static_cast<std::size_t>(factor);
+  const std::size_t sites = lattice.sites(), step = at(factor);
   const std::size_t fields = refined_row.size() / (lattice.is_circle() ? step * sites : step * (sites - 1) + 1);
   std::vector<double> row;
   for (std::size_t i = 0; i < sites; ++i)
@@ -45,7 +46,7 @@ QuietEnd run_quietly(const Scene& scene) {
   Measures measures(scene, initial.winding(), simulation);
   initial.start(simulation);
   QuietEnd end;
-  end.row.resize(static_cast<std::size_t>(scene.problem.lattice.sites() * simulation.count(Role::field)));
+  end.row.resize(scene.problem.lattice.sites() * simulation.count(Role::field));
   std::vector<double> other(end.row.size());
   const bool two = simulation.starting_rows() > 1;
   std::optional<double> energy_initial;
@@ -62,8 +63,7 @@ QuietEnd run_quietly(const Scene& scene) {
     const double energy = simulation.monitors().energy;
     if (!energy_initial) energy_initial = energy;
     if (two) simulation.observe(back == 0 ? 1 : 0, other);
-    measures.see({simulation.time(row), end.row,
-                  two ? std::span<const double>(other) : std::span<const double>(),
+    measures.see({simulation.time(row), end.row, two ? std::span<const double>(other) : std::span<const double>(),
                   (energy - *energy_initial) / std::abs(*energy_initial)});
   };
   const auto recorded = [&](std::int64_t row) {

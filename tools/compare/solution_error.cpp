@@ -8,16 +8,17 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "lattice/index.hpp"
 #include "schemes/state.hpp"
 
 namespace delf {
 
 namespace {
 
-// The site i of a field that gains `turn` around a circle.
-double continued(const Lattice& lattice, std::span<const double> row, int d, int a, double turn, int i) {
+// The site i of a field that gains `monodromy` around a circle.
+double continued(const Lattice& lattice, std::span<const double> row, int d, int a, double monodromy, int i) {
   const int home = lattice.wrapped(i), times = (i - home) / lattice.sites();
-  return row[static_cast<std::size_t>(home * d + a)] + turn * times;
+  return row[home * d + a] + monodromy * times;
 }
 
 }  // namespace
@@ -40,18 +41,18 @@ ComparedSolution ComparedSolution::exact(const Scene& scene, double until) {
   return solution;
 }
 
-ComparedSolution ComparedSolution::reference(const Lattice& fine, int d, double turn, std::vector<double> row) {
+ComparedSolution ComparedSolution::reference(const Lattice& fine, int d, double monodromy, std::vector<double> row) {
   ComparedSolution solution;
   solution.components_ = d;
   solution.fine_ = fine;
-  solution.turn_ = turn;
+  solution.monodromy_ = monodromy;
   solution.row_ = std::move(row);
   return solution;
 }
 
 std::vector<double> ComparedSolution::at(const Lattice& lattice, double t) const {
   const int N = lattice.sites(), d = components_;
-  std::vector<double> out(static_cast<std::size_t>(N * d));
+  std::vector<double> out(N * d);
   if (scene_) {
     make_state(scene_->initial, lattice)->values(t, lattice, out);
     return out;
@@ -70,16 +71,15 @@ std::vector<double> ComparedSolution::at(const Lattice& lattice, double t) const
         double weight = 1;
         for (int n = 0; n < used; ++n)
           if (n != m) weight *= (place - (first + n)) / (m - n);
-        sum += weight * continued(*fine_, row_, d, a, turn_, first + m);
+        sum += weight * continued(*fine_, row_, d, a, monodromy_, first + m);
       }
-      out[static_cast<std::size_t>(i * d + a)] =
-          on_site ? continued(*fine_, row_, d, a, turn_, static_cast<int>(nearest)) : sum;
+      out[i * d + a] = on_site ? continued(*fine_, row_, d, a, monodromy_, static_cast<int>(nearest)) : sum;
     }
   }
   return out;
 }
 
-double gradient_centre(const Lattice& lattice, std::span<const double> field, int components, double turn) {
+double gradient_centre(const Lattice& lattice, std::span<const double> field, int components, double monodromy) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   if (lattice.space() == Space::point) return unknown;
   const int N = lattice.sites();
@@ -87,8 +87,8 @@ double gradient_centre(const Lattice& lattice, std::span<const double> field, in
   std::complex<double> around = 0;
   for (int i = lattice.is_circle() ? 0 : 1; i < (lattice.is_circle() ? N : N - 1); ++i) {
     // φ_x at site i, from both sides
-    const double slope =
-        continued(lattice, field, components, 0, turn, i + 1) - continued(lattice, field, components, 0, turn, i - 1);
+    const double slope = continued(lattice, field, components, 0, monodromy, i + 1) -
+                         continued(lattice, field, components, 0, monodromy, i - 1);
     const double weight = slope * slope;
     total += weight, moment += weight * lattice.position(i);
     around += weight * std::polar(1.0, 2 * std::numbers::pi * lattice.position(i) / lattice.length());

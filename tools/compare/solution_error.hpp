@@ -14,8 +14,8 @@ class ComparedSolution {
  public:
   /// The exact solution; throws std::logic_error unless has_exact().
   static ComparedSolution exact(const Scene&, double until);
-  /// `row` of d fields at the time `until` on a fine lattice, whose fields gain `turn` around a circle.
-  static ComparedSolution reference(const Lattice& fine, int d, double turn, std::vector<double> row);
+  /// `row` of d fields at the time `until` on a fine lattice, whose fields gain `monodromy` around a circle.
+  static ComparedSolution reference(const Lattice& fine, int d, double monodromy, std::vector<double> row);
 
   bool is_exact() const { return scene_ != nullptr; }
   int components() const { return components_; }
@@ -26,7 +26,7 @@ class ComparedSolution {
   const Scene* scene_ = nullptr;
   int components_ = 1;
   std::optional<Lattice> fine_;
-  double turn_ = 0;
+  double monodromy_ = 0;
   std::vector<double> row_;
 };
 
@@ -35,7 +35,7 @@ bool has_exact(const Scene&, double until);
 
 /// The centre of the first field's φ_x²; around a circle, the angle of its first Fourier coefficient. Not a number
 /// where there is no centre: φ_x² is constant, or zero.
-double gradient_centre(const Lattice&, std::span<const double> field, int components, double turn);
+double gradient_centre(const Lattice&, std::span<const double> field, int components, double monodromy);
 /// a − b, the shorter way around a circle.
 double separation(const Lattice&, double a, double b);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "lattice/index.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/mesh_frequency.hpp"
@@ -67,7 +68,7 @@ ExitCode plan(const ComplexScene& c) {
              : std::ranges::count(space.fixed, 1) > 0 ? ", fixed"
                                                       : ", natural");
   fmt::print("             {}\n", c.topology_in_words());
-  const std::size_t values = 8 * static_cast<std::size_t>(space.sites()) * c.fields.size();
+  const std::size_t values = 8 * at(space.sites()) * c.fields.size();
   const auto say_memory = [](std::size_t bytes, std::size_t rows) {
     fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes, rows,
                bytes - rows);

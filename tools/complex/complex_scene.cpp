@@ -15,6 +15,7 @@
 
 #include "jets/expressions/evaluate.hpp"
 #include "jets/expressions/parse.hpp"
+#include "lattice/index.hpp"
 #include "lattice/space/mesh_topology.hpp"
 #include "schemes/complex/circle_fibre.hpp"
 #include "schemes/methods/method_registry.hpp"
@@ -34,12 +35,12 @@ constexpr std::string_view reversible = "reversible";  // of lattice.time_steps:
 
 /// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
 const std::set<std::string, std::less<>> read_keys{
-    "theory.name",        "theory.fibre",      "lattice.space",         "lattice.mesh",       "lattice.merge",
-    "lattice.time",       "lattice.courant",   "lattice.time_step",     "lattice.time_steps", "lattice.step_control",
-    "boundary.mesh",      "scheme.tolerance",  "scheme.max_iterations", "initial.state",      "run.until",
-    "run.steps",          "run.seed",          "output.every",          "output.checkpoint",  "output.fields",
-    "output.figures",     "output.format",     "output.titles",         "verify.variations",  "verify.moments",
-    "verify.tolerance",   "verify.fault",      "verify.generator",      "verify.force",       "scheme.method",
+    "theory.name",        "theory.fibre",      "lattice.space",         "lattice.mesh",        "lattice.merge",
+    "lattice.time",       "lattice.courant",   "lattice.time_step",     "lattice.time_steps",  "lattice.step_control",
+    "boundary.mesh",      "scheme.tolerance",  "scheme.max_iterations", "initial.state",       "run.until",
+    "run.steps",          "run.seed",          "output.every",          "output.checkpoint",   "output.fields",
+    "output.figures",     "output.format",     "output.titles",         "verify.variations",   "verify.moments",
+    "verify.tolerance",   "verify.fault",      "verify.generator",      "verify.force",        "scheme.method",
     "convergence.levels", "convergence.order", "convergence.agreement", "stability.agreement", "stability.steps",
     "stability.fault"};
 
@@ -177,13 +178,11 @@ class DerivativesAlong {
     const int root = expressions::parse(graph, text, {{{"t", 0}, {"x", 1}, {"y", 2}, {"z", 3}}, numbers}, key);
     for (int v = 0; v < 4; ++v) {
       const int first = graph.differentiate(root, v);
-      of_[static_cast<std::size_t>(v)] = {expressions::Evaluation(graph, first),
-                                          expressions::Evaluation(graph, graph.differentiate(first, v))};
+      of_[v] = {expressions::Evaluation(graph, first), expressions::Evaluation(graph, graph.differentiate(first, v))};
     }
   }
   double operator()(int variable, int order, double t, const Mesh::Point& p) const {
-    return of_[static_cast<std::size_t>(variable)][static_cast<std::size_t>(order - 1)].operator()<double>(
-        [&](int v) { return v == 0 ? t : p[static_cast<std::size_t>(v - 1)]; });
+    return of_[variable][order - 1].operator()<double>([&](int v) { return v == 0 ? t : p[v - 1]; });
   }
 
  private:
@@ -245,9 +244,9 @@ void require_solution(const ComplexScene& c, const ParameterValues& parameters) 
       }
       return all;
     };
-    points.push_back({fmt::format("t = {:.6g}, ({:.6g})", t,
-                                  fmt::join(std::span(p).first(static_cast<std::size_t>(mesh.coordinates())), ", ")),
-                      std::move(sums), floor});
+    points.push_back(
+        {fmt::format("t = {:.6g}, ({:.6g})", t, fmt::join(std::span(p).first(at(mesh.coordinates())), ", ")),
+         std::move(sums), floor});
   }
   std::vector<std::string> names;
   for (const auto& field : c.fields) names.push_back(field.name);
@@ -290,8 +289,8 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
                   c.stencils != nullptr);
     const bool by_method = c.has_method();
     if (by_method && !method.on_meshes)
-      throw settings.error("scheme.method", "needs a regular lattice; leave it out on a mesh, or use " +
-                                                names_of_methods_on_meshes());
+      throw settings.error("scheme.method",
+                           "needs a regular lattice; leave it out on a mesh, or use " + names_of_methods_on_meshes());
     double edge = 1;  // of the mesh as it is given
     if (!c.stencils) {
       edge = shortest_edge(std::get<Mesh>(mesh));
@@ -334,8 +333,9 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
 
     p.step_control = read_step_control(settings, values);
     if (p.step_control && !method.row_density)
-      throw settings.error("lattice.time_steps",
-                           "reversible steps are of the usual method on a mesh; leave scheme.method out, or give a list");
+      throw settings.error(
+          "lattice.time_steps",
+          "reversible steps are of the usual method on a mesh; leave scheme.method out, or give a list");
     if (p.step_control && c.time == MeshTime::cells)
       throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
     if (p.step_control && c.theory->constraint())

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "schemes/complex/stencil_list.hpp"
 #include "schemes/complex/tiling.hpp"
@@ -36,8 +37,8 @@ struct ComplexScene {
   std::filesystem::path mesh_file;              ///< empty: generated
   Tiling tiling;                                ///< of stencils of a file
   MeshTime time = MeshTime::rows;
-  std::vector<double> time_steps;      ///< of rows, over and over; empty: all scene.problem.time_step
-  double courant = 0;                  ///< of cells: h_K over the shortest edge of the cell
+  std::vector<double> time_steps;  ///< of rows, over and over; empty: all scene.problem.time_step
+  double courant = 0;              ///< of cells: h_K over the shortest edge of the cell
 
   struct Field {
     std::string name;
@@ -46,8 +47,7 @@ struct ComplexScene {
   std::vector<Field> fields;
 
   double time_step(std::int64_t step) const {
-    return time_steps.empty() ? scene.problem.time_step
-                              : time_steps[static_cast<std::size_t>(step) % time_steps.size()];
+    return time_steps.empty() ? scene.problem.time_step : time_steps[at(step) % time_steps.size()];
   }
   /// A method that is not the usual one.
   bool has_method() const;

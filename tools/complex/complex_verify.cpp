@@ -148,7 +148,7 @@ class MeshVerification {
   void require_same_places(const FieldsReader& file, const std::string& name) const {
     const auto places = file.coordinates();
     const std::vector<double> own = scene_.places();
-    const auto n = static_cast<std::size_t>(scene_.coordinates());
+    const std::size_t n = scene_.coordinates();
     if (!places || places->size() != own.size()) return;  // of other programs: nothing to compare
     double longest = 0;
     for (const double x : own) longest = std::max(longest, std::abs(x));

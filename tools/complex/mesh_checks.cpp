@@ -62,7 +62,7 @@ void MeshChecks::look_at(const ComplexSystem& system, std::vector<double> y, con
   const Touching touching(complex);
   if (fault_ == "field") {
     const std::vector<int> one = draw_centres(complex, touching, 1, random_);
-    y[static_cast<std::size_t>(one.front() * system.components())] += 1e-3;
+    y[one.front() * system.components()] += 1e-3;
   }
   look_at_equations(system, y, where);
   stencils_ += complex.stencils();
@@ -91,7 +91,7 @@ void MeshChecks::look_at(const ComplexSystem& system, std::vector<double> y, con
 // Relative to the largest terms of the window: a vacuum has no scale of its own.
 void MeshChecks::look_at_equations(const ComplexSystem& system, std::span<const double> y, const std::string& where) {
   std::vector<Balance> E = system.residual(y);
-  const auto d = static_cast<std::size_t>(system.components());
+  const std::size_t d = system.components();
   // The terms are differences of rows, which the last digits of the values change: |E| ≤ ε Σ |∂E/∂y y| is none.
   const std::vector<double> sizes = system.sizes(y);
   const double rounding = ValueError().of(*std::ranges::max_element(sizes));

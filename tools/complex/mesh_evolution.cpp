@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "lattice/index.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/circle_fibre.hpp"
 #include "schemes/complex/complex_noether.hpp"
@@ -114,7 +115,7 @@ class AllSites final : public MeshEvolution {
   }
   /// λ of the row before, where the action has A_i ½(h_below + h_above) λ_i G(y_i): its stencils have λ_i G(y_i) alone.
   std::span<const double> multipliers() {
-    multipliers_.resize(static_cast<std::size_t>(c_.sites()));
+    multipliers_.resize(c_.sites());
     simulation_.copy_row(0, multipliers_, Role::multiplier);
     const std::int64_t row = newest() - 1;
     const double above = steps().step(row), below = row > 0 ? steps().step(row - 1) : above;
@@ -178,9 +179,9 @@ class OwnSteps final : public MeshEvolution {
 void start(const ComplexScene& c, Simulation& simulation) {
   const std::vector<double> values = c.values(), rates = c.rates();
   std::vector<double> row, velocity;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(c.sites()); ++i)
+  for (std::size_t i = 0; i < delf::at(c.sites()); ++i)
     for (const Component& component : simulation.components()) {
-      const std::size_t at = i * c.fields.size() + static_cast<std::size_t>(component.field);
+      const std::size_t at = i * c.fields.size() + delf::at(component.field);
       row.push_back(component.role == Role::multiplier ? 0 : values[at]);
       velocity.push_back(component.role == Role::field ? rates[at] : 0);
     }

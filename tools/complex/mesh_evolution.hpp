@@ -47,7 +47,7 @@ class MeshEvolution {
   virtual std::optional<double> first_lengths() const { return {}; }
   /// Of the given values and rates, where that is not the energy of row 0 by definition; else not a number.
   virtual double energy_of_start() const { return Outcome::unknown; }
-  /// To the next row; row() is for one that is looked at.
+  /// To the next row; row() is for one that is checked.
   virtual void step(bool looked_at = true) = 0;
   /// Of Newton's method in the last step; 0 if it is one solve.
   virtual int iterations() const { return 0; }

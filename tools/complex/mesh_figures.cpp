@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_files.hpp"
@@ -90,8 +91,8 @@ std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, 
   for (std::size_t f = 0; f < count; ++f) {
     std::string table;
     const auto corner = [&](std::int32_t p) {
-      const Mesh::Point& at = mesh.points[static_cast<std::size_t>(p)];
-      const double v = value_at(c, film.frames()[f], static_cast<std::size_t>(p));
+      const Mesh::Point& at = mesh.points[p];
+      const double v = value_at(c, film.frames()[f], delf::at(p));
       table += flat ? fmt::format("{} {} {}\n", at[0], at[1], v) : fmt::format("{} {} {} {}\n", at[0], at[1], at[2], v);
     };
     for (int cell = 0; cell < mesh.cells(); ++cell) {
@@ -122,11 +123,10 @@ std::string spacetime(const ComplexScene& c, std::span<const double> values, std
     if (around.size() < 3) continue;
     int level = -1;
     if (values.empty())
-      for (const int s : around) level = std::max(level, levels[static_cast<std::size_t>(s)]);
+      for (const int s : around) level = std::max(level, levels[s]);
     const auto corner = [&](int s) {
-      const auto& at = list.sites[static_cast<std::size_t>(s)].position;
-      table += fmt::format("{} {} {}\n", at[1], at[0],
-                           values.empty() ? level : values[static_cast<std::size_t>(s) * c.fields.size()]);
+      const auto& at = list.sites[s].position;
+      table += fmt::format("{} {} {}\n", at[1], at[0], values.empty() ? level : values[delf::at(s) * c.fields.size()]);
     };
     if (values.empty()) shown.push_back(level);
     if (around.size() <= 4) add_facet(table, around, corner);
@@ -163,10 +163,9 @@ std::string updates(const ComplexScene& c, const fs::path& scratch) {
   std::string table;
   std::int64_t lines = 0;
   for (int cell = 0; cell < mesh.cells(); ++cell) {
-    const double h = steps[static_cast<std::size_t>(cell)];
+    const double h = steps[cell];
     const auto ends = mesh.cell(cell);
-    const double a = mesh.points[static_cast<std::size_t>(ends[0])][0],
-                 b = mesh.points[static_cast<std::size_t>(ends[1])][0];
+    const double a = mesh.points[ends[0]][0], b = mesh.points[ends[1]][0];
     for (std::int64_t n = 0; static_cast<double>(n) * h <= until && lines < most_lines; ++n, ++lines)
       table += fmt::format("{} {} {} 0\n", a, static_cast<double>(n) * h, b - a);
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <ranges>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "tools/files/text_file.hpp"
 
@@ -29,7 +30,7 @@ MeshFiles::MeshFiles(const ComplexScene& scene, const std::filesystem::path& fol
                      bool node_times, const WrittenPart& kept)
     : scene_(scene), folder_(folder), corners_(0) {
   const auto corners_of = [&](int c) -> std::span<const std::int32_t> {
-    return scene.stencils ? std::span<const std::int32_t>(scene.stencils->stencils[static_cast<std::size_t>(c)].sites)
+    return scene.stencils ? std::span<const std::int32_t>(scene.stencils->stencils[c].sites)
                           : scene.space->mesh.cell(c);
   };
   for (int c = 0; c < scene.cells(); ++c) corners_ = std::max(corners_, static_cast<int>(corners_of(c).size()));
@@ -37,7 +38,7 @@ MeshFiles::MeshFiles(const ComplexScene& scene, const std::filesystem::path& fol
   for (int c = 0; c < scene.cells(); ++c) {
     const auto corners = corners_of(c);
     cells.insert(cells.end(), corners.begin(), corners.end());
-    cells.resize(static_cast<std::size_t>(c + 1) * static_cast<std::size_t>(corners_), -1);
+    cells.resize(at(c + 1) * at(corners_), -1);
   }
   file_ =
       std::make_unique<FieldsFile>(folder / "fields.h5", scene.places(), frames, resolved_text(scene), 0,
@@ -49,7 +50,7 @@ void MeshFiles::append(double time, std::span<const double> values, std::span<co
   RecordedRow row;
   row[Role::field].assign(values.begin(), values.end());
   row[Role::multiplier].assign(multipliers.begin(), multipliers.end());
-  if (scene_.theory->constraint()) row[Role::multiplier].resize(static_cast<std::size_t>(scene_.sites()), 0.0);
+  if (scene_.theory->constraint()) row[Role::multiplier].resize(scene_.sites(), 0.0);
   file_->append(time, row, {}, node_times);
   times_.push_back(time);
 }
@@ -92,7 +93,7 @@ std::string MeshFiles::xdmf() const {
     };
     for (int c = 0; c < cells; ++c)
       if (scene_.space) add(scene_.space->mesh.cell(c));
-      else add(scene_.stencils->outline(scene_.stencils->stencils[static_cast<std::size_t>(c)]));
+      else add(scene_.stencils->outline(scene_.stencils->stencils[c]));
     topology = fmt::format(
         "<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\"><DataItem Dimensions=\"{}\" NumberType=\"Int\" "
         "Format=\"XML\">\n{}</DataItem></Topology>",
@@ -113,7 +114,7 @@ std::string MeshFiles::xdmf() const {
           "<DataItem Dimensions=\"3 3\" Format=\"XML\">{} 0 {} 1 1 1 1 {} 1</DataItem>"
           "<DataItem Dimensions=\"{} {} {}\" Precision=\"8\" "
           "Format=\"HDF\">fields.h5:/field</DataItem></DataItem></Attribute>\n",
-          scene_.fields[static_cast<std::size_t>(a)].name, n, f, a, n, times_.size(), n, d);
+          scene_.fields[a].name, n, f, a, n, times_.size(), n, d);
     text += "</Grid>\n";
   }
   return text + "</Grid></Domain></Xdmf>\n";

@@ -5,6 +5,7 @@
 
 #include <unordered_map>
 
+#include "lattice/index.hpp"
 #include "lattice/space/coincident_points.hpp"
 #include "lattice/space/mesh_overlap.hpp"
 #include "tools/complex/text_lines.hpp"
@@ -172,7 +173,7 @@ class Gmsh {
     Mesh kept{.dimension = 0, .points = {}, .vertices = {}};
     for (const int d : dimensions_) kept.dimension = std::max(kept.dimension, d);
     for (int c = 0; c < mesh_.cells(); ++c) {
-      const auto i = static_cast<std::size_t>(c);
+      const std::size_t i = c;
       if (dimensions_[i] != kept.dimension || kept.dimension == 0) continue;
       kept.add_cell(mesh_.cell(c));
       kept.cell_lines.push_back(mesh_.cell_lines[i]);
@@ -213,7 +214,7 @@ void refuse_coincident(const Mesh& mesh) {
 void refuse_overlaps(const Mesh& mesh) {
   const auto found = overlapping_cells(mesh);
   if (!found) return;
-  const auto c = static_cast<std::size_t>(found->first), other = static_cast<std::size_t>(found->second);
+  const std::size_t c = found->first, other = at(found->second);
   throw MeshError(
       c < mesh.cell_lines.size() ? mesh.cell_lines[c] : 0,
       fmt::format("cell {} overlaps {}: a part of space would count twice; move their points, or remove one",

@@ -16,7 +16,7 @@ PlaceFormula::PlaceFormula(std::string_view text, const std::vector<std::pair<st
 }
 
 double PlaceFormula::evaluated(const expressions::Evaluation& formula, double t, const Mesh::Point& p) {
-  return formula.operator()<double>([&](int v) { return v == 0 ? t : p[static_cast<std::size_t>(v - 1)]; });
+  return formula.operator()<double>([&](int v) { return v == 0 ? t : p[v - 1]; });
 }
 
 }  // namespace delf

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lattice/index.hpp"
 #include "schemes/complex/spacetime_complex.hpp"
 #include "tools/report/interrupt.hpp"
 
@@ -37,7 +38,7 @@ StaticField::StaticField(const ComplexScene& scene)
   fields_ = y_.size();
   y_.resize(system_.nodes(), 0.0);
   for (std::size_t n = 0; n < fields_; ++n) {
-    const auto site = static_cast<int>(n / static_cast<std::size_t>(system_.components()));
+    const auto site = static_cast<int>(n / at(system_.components()));
     if (const auto& f = scene.fields[n % d]; complex.is_unknown(site) && f.exact) {
       const auto& [t, x, y, z] = complex.position(site);
       y_[n] = f.value ? (*f.value)(t, {x, y, z}) : 0.0;

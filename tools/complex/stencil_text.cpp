@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "lattice/index.hpp"
 #include "lattice/nearest_name.hpp"
 #include "tools/complex/text_lines.hpp"
 
@@ -93,7 +94,7 @@ std::string stencil_text(const StencilList& list) {
   const int coordinates = list.coordinates();
   for (const StencilList::Site& s : list.sites)
     text += fmt::format("{} {}{}\n", site_word, fmt::join(s.position.begin(), s.position.begin() + coordinates, " "),
-                        s.role == SiteRole::free ? "" : fmt::format(" {}", roles[static_cast<std::size_t>(s.role)]));
+                        s.role == SiteRole::free ? "" : fmt::format(" {}", roles[at(s.role)]));
   for (const StencilList::Entry& e : list.stencils)
     text += fmt::format("{} {} {}{}\n", stencil_word, e.shape, fmt::join(e.sites, " "),
                         e.share ? fmt::format(" {} {}", share_word, *e.share) : "");

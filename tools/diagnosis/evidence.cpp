@@ -4,17 +4,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 void FailedEquations::add(std::int64_t row, const std::vector<double>& relative, int components, double tolerance) {
-  of_site_.resize(relative.size() / static_cast<std::size_t>(components));
+  of_site_.resize(relative.size() / at(components));
   bool any = false;
   for (std::size_t n = 0; n < relative.size(); ++n) {
     if (std::isnan(relative[n])) continue;
     ++tried_;
     if (relative[n] > worst_) worst_ = relative[n], worst_row_ = row;
     if (relative[n] <= tolerance) continue;
-    ++failed_, ++of_site_[n / static_cast<std::size_t>(components)];
+    ++failed_, ++of_site_[n / at(components)];
     any = true;
   }
   ++rows_tried_;

@@ -35,7 +35,7 @@ class FailedEquations {
 struct Evidence {
   Problem problem;              ///< what the scene states of them
   const LatticeSystem& system;  ///< the equations that were tried; fields at the vertices and nothing else
-  double turn = 0;              ///< what the field gains around the circle
+  double monodromy = 0;         ///< what the field gains around the circle
   double tolerance = 1e-13;     ///< of equations, relative to their terms
   std::int64_t rows = 0;
   std::function<std::vector<double>(std::int64_t)> row;  ///< row j: [i·C + c]

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "tools/diagnosis/findings.hpp"
 
@@ -21,13 +22,13 @@ bool gives(const Problem& p, const Evidence& e, double tolerance) {
   try {
     Simulation simulation(p);
     const auto& components = simulation.components();
-    const auto d = static_cast<std::size_t>(simulation.count(Role::field)), C = components.size();
+    const std::size_t d = simulation.count(Role::field), C = components.size();
     const std::vector<double> first = e.row(0);
-    if (simulation.starting_rows() != 1 || d != static_cast<std::size_t>(e.system.components())) return false;
+    if (simulation.starting_rows() != 1 || d != delf::at(e.system.components())) return false;
     std::vector<double> row(first.size() / d * C);
     for (std::size_t at = 0; at < row.size(); ++at)
       if (const Component& c = components[at % C]; c.role != Role::multiplier)
-        row[at] = first[at / C * d + static_cast<std::size_t>(c.field)];
+        row[at] = first[at / C * d + delf::at(c.field)];
     simulation.start({row});
     std::vector<double> found(first.size());
     for (std::int64_t j = 1; j < std::min(e.rows, most_frames + 1); ++j) {

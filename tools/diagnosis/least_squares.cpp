@@ -24,7 +24,7 @@ LeastSquares least_squares(const Eigen::VectorXd& given, const std::vector<Eigen
     // Columns of length one: theirs differ by powers of h and k.
     const auto m = static_cast<Eigen::Index>(used.size());
     Eigen::MatrixXd X(target.size(), m);
-    for (Eigen::Index n = 0; n < m; ++n) X.col(n) = columns[used[static_cast<std::size_t>(n)]].normalized();
+    for (Eigen::Index n = 0; n < m; ++n) X.col(n) = columns[used[n]].normalized();
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(X);
     const Eigen::VectorXd solution = qr.solve(target);
     rest = target - X * solution;
@@ -32,7 +32,7 @@ LeastSquares least_squares(const Eigen::VectorXd& given, const std::vector<Eigen
     const Eigen::MatrixXd inverse = (X.transpose() * X).inverse();
     const double variance = rest.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(target.size() - m, 1));
     for (Eigen::Index n = 0; n < m; ++n) {
-      const std::size_t at = used[static_cast<std::size_t>(n)];
+      const std::size_t at = used[n];
       fit.coefficients[at] = solution[n] / columns[at].norm();
       fit.errors[at] = std::sqrt(std::abs(variance * inverse(n, n))) / columns[at].norm();
     }

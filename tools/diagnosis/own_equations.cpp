@@ -25,22 +25,22 @@ double largest_of(const std::vector<std::vector<double>>& rows) {
 }
 
 double worst_equation(const LatticeSystem& system, const std::vector<std::vector<double>>& rows, std::int64_t first_row,
-                      std::int64_t row, double turn, int first, int last) {
+                      std::int64_t row, double monodromy, int first, int last) {
   std::vector<LatticeSystem::Value> values;
-  system.equations(system.window(first_row, rows, turn), row, values);
+  system.equations(system.window(first_row, rows, monodromy), row, values);
   double worst = 0;
   for (int i = first; i <= last; ++i)
     for (int c = 0; c < system.components(); ++c)
       if (!system.is_held(i, c)) {
-        const double E = std::abs(values[static_cast<std::size_t>(i * system.components() + c)].sum);
+        const double E = std::abs(values[i * system.components() + c].sum);
         if (!(E <= worst)) worst = E;
       }
   return worst == 0 ? 0 : worst / scale_of_terms(system, largest_of(rows));
 }
 
 double worst_equation(const LatticeSystem& system, const std::vector<std::vector<double>>& rows, std::int64_t first_row,
-                      std::int64_t row, double turn) {
-  return worst_equation(system, rows, first_row, row, turn, 0, system.lattice().sites() - 1);
+                      std::int64_t row, double monodromy) {
+  return worst_equation(system, rows, first_row, row, monodromy, 0, system.lattice().sites() - 1);
 }
 
 }  // namespace delf

@@ -17,9 +17,9 @@ double largest_of(const std::vector<std::vector<double>>& rows);
 /// The largest |E| of row `row`, relative to scale_of_terms of these rows, at the sites first … last; fixed walls have no equation.
 /// rows[n] is row first_row + n.
 double worst_equation(const LatticeSystem&, const std::vector<std::vector<double>>& rows, std::int64_t first_row,
-                      std::int64_t row, double turn, int first, int last);
+                      std::int64_t row, double monodromy, int first, int last);
 /// The largest residual of any site.
 double worst_equation(const LatticeSystem&, const std::vector<std::vector<double>>& rows, std::int64_t first_row,
-                      std::int64_t row, double turn);
+                      std::int64_t row, double monodromy);
 
 }  // namespace delf

@@ -30,7 +30,7 @@ Sample::Sample(const Evidence& evidence) : evidence_(evidence), fields_(evidence
   moments_.erase(std::ranges::unique(moments_).begin(), moments_.end());
 
   const std::vector<double>&row = this->row(moments_[moments_.size() / 2]), &later = this->row(evidence.rows - 1);
-  const auto d = static_cast<std::size_t>(fields_);
+  const std::size_t d = fields_;
   double largest = 0, change = 0;
   std::size_t steepest = 0;
   for (std::size_t n = 0; n < row.size(); ++n) {
@@ -85,7 +85,7 @@ std::vector<double> Sample::values(std::int64_t row, Stride stride, int shift) c
   for (int n = 0; n < count_ / stride.sites; ++n)
     for (int c = 0; c < fields_; ++c) {
       const int i = std::min(first_ + shift + n * stride.sites, sites - 1);  // beyond it only where none is asked
-      values.push_back(all[static_cast<std::size_t>(i * fields_ + c)]);
+      values.push_back(all[i * fields_ + c]);
     }
   return values;
 }
@@ -120,13 +120,13 @@ Eigen::VectorXd Sample::evaluated(const LatticeSystem& system, Stride stride, in
     std::vector<std::vector<double>> rows;
     for (std::int64_t r = -reach; r <= reach; ++r) {
       rows.push_back(values(j + r * stride.rows, stride, shift));
-      rows.back().resize(static_cast<std::size_t>(sites * fields_));
+      rows.back().resize(sites * fields_);
     }
     largest = std::max(largest, largest_of(rows));
     const std::int64_t row = j / stride.rows;
     system.equations(system.window(row - reach, std::move(rows), 0), row, found);
     for (int i = edge; i < sites - edge; ++i)
-      for (int c = 0; c < fields_; ++c) all.push_back(found[static_cast<std::size_t>(i * fields_ + c)].sum);
+      for (int c = 0; c < fields_; ++c) all.push_back(found[i * fields_ + c].sum);
   }
   const double hk = system.time_step() * system.lattice().space_step();
   return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size())) / hk;
@@ -178,8 +178,8 @@ std::optional<Sample::Split> Sample::split(const Problem& p, int later) const {
     const auto above = values(j + 1, {}, 0), below = values(j - 1, {}, 0);
     for (int i = edge; i < own->lattice().sites() - edge; ++i)
       for (int c = 0; c < fields_; ++c) {
-        const auto n = static_cast<std::size_t>(i * fields_ + c);
-        all.push_back(-H[static_cast<std::size_t>((fields_ + c) * m + fields_ + c)] * (above[n] - below[n]) / (2 * h));
+        const std::size_t n = i * fields_ + c;
+        all.push_back(-H[(fields_ + c) * m + fields_ + c] * (above[n] - below[n]) / (2 * h));
       }
   }
   result.velocity = Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));

@@ -14,6 +14,6 @@ void unwrap_along(std::vector<double>& row, int components);
 /// Moves a row, all sites alike, by the multiple of 2π that brings each component at the first site next to `first`.
 void unwrap_to(std::span<const double> first, std::vector<double>& row);
 /// The gain of an unwrapped row around the circle: a multiple of 2π.
-double turn_of_row(const std::vector<double>& row, int components);
+double monodromy_of_row(const std::vector<double>& row, int components);
 
 }  // namespace delf

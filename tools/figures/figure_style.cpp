@@ -45,7 +45,7 @@ std::string fitted_label(int number, const std::string& text, double y, double s
   constexpr double least = 8, between_lines = 0.0215;
   const auto columns = static_cast<double>(columns_of(text));
   const double fitted = std::clamp(letters / std::max(1.0, columns), std::min(least, size), size);
-  const auto room = static_cast<std::size_t>(letters / fitted + 1e-9);  // all columns, where the size is fitted to them
+  const std::size_t room = letters / fitted + 1e-9;  // all columns, where the size is fitted to them
   std::vector<std::string> lines{""};
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
@@ -73,9 +73,7 @@ ColourScale colour_scale(std::span<const double> values) {
     if (std::isfinite(v)) sorted.push_back(v);
   if (sorted.empty()) return {-1, 1, true};
   std::sort(sorted.begin(), sorted.end());
-  const auto quantile = [&](double q) {
-    return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1))];
-  };
+  const auto quantile = [&](double q) { return sorted[q * static_cast<double>(sorted.size() - 1)]; };
   double least = sorted.front(), most = sorted.back();
   const double low = quantile(0.005), high = quantile(0.995);
   if (most - least > 3 * (high - low) && high > low) least = low, most = high;

@@ -59,7 +59,7 @@ std::vector<double> drawn_frame(const FigureSource& source, int frame, std::size
   std::vector<double> there;
   for (const double x : space) {
     const auto after = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x) - nodes.begin();
-    const auto b = static_cast<std::size_t>(after), a = b - 1;
+    const std::size_t b = after, a = b - 1;
     const double part = std::clamp((x - nodes[a]) / (nodes[b] - nodes[a]), 0.0, 1.0);
     there.push_back(values[a] + part * (values[b] - values[a]));
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
@@ -25,9 +26,9 @@ void drop_every_second(std::vector<double>& all, std::size_t width) {
 
 Film::Film(const Lattice& lattice, std::size_t components)
     : capacity_(lattice.sites() == 1 ? 10 * most : most),
-      site_stride_(std::max<std::size_t>(1, (static_cast<std::size_t>(lattice.sites()) + most - 1) / most)),
+      site_stride_(std::max<std::size_t>(1, (delf::at(lattice.sites()) + most - 1) / most)),
       components_(components) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(lattice.sites()); i += site_stride_)
+  for (std::size_t i = 0; i < delf::at(lattice.sites()); i += site_stride_)
     space_.push_back(lattice.position(static_cast<int>(i)));
   newest_.resize(space_.size() * components_);
   newest_rates_.resize(newest_.size());
@@ -81,13 +82,13 @@ int Film::even_frames() const {
 }
 
 double Film::alias() const {
-  constexpr double little = 1e-4;  // a hundredth of what the field varies by is not seen
+  constexpr double little = 1e-4;         // a hundredth of what the field varies by is not seen
   const bool is_map = space_.size() > 1;  // of the first component; of a point all coordinates are drawn
   const std::size_t step = is_map ? components_ : 1, width = newest_.size();
   double missed = 0, changed = 0, size = 0;
   for (int f = 1; f < even_frames(); ++f) {
     const auto now = frame(f), last = frame(f - 1);
-    const double *const rates = &rates_[static_cast<std::size_t>(f) * width], *const last_rates = rates - width;
+    const double *const rates = &rates_[delf::at(f) * width], *const last_rates = rates - width;
     const double half = 0.5 * (time(f) - time(f - 1));
     double sum = 0, squares = 0;
     for (std::size_t i = 0; i < width; i += step) {
@@ -102,7 +103,7 @@ double Film::alias() const {
 }
 
 std::span<const double> Film::frame(int index) const {
-  return std::span(values_).subspan(static_cast<std::size_t>(index) * newest_.size(), newest_.size());
+  return std::span(values_).subspan(delf::at(index) * newest_.size(), newest_.size());
 }
 
 }  // namespace delf

@@ -25,7 +25,7 @@ class Film {
   void visit(SavedState&);
 
   int frames() const noexcept { return static_cast<int>(times_.size()); }
-  double time(int frame) const { return times_[static_cast<std::size_t>(frame)]; }
+  double time(int frame) const { return times_[frame]; }
   std::span<const double> frame(int index) const;  ///< site by site
   std::size_t components() const noexcept { return components_; }
   const std::vector<double>& space() const noexcept { return space_; }

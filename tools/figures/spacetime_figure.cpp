@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/files/text_file.hpp"
 
@@ -49,8 +50,7 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
     map.insert(map.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(space.size()));
   }
   // an angle that has drifted by many multiples of 2π is shown by its distance from the vacua
-  const auto tame =
-      std::span(map).first(space.size() * static_cast<std::size_t>(std::min(frames, tame_frames(source))));
+  const auto tame = std::span(map).first(space.size() * at(std::min(frames, tame_frames(source))));
   const auto [least, most] = std::ranges::minmax(tame);
   const bool drifts = source.angle && most - least > 8;
   const std::string name = drawn_name(source, 0);
@@ -64,8 +64,7 @@ std::string spacetime_figure(const FigureSource& source, const std::filesystem::
   const ColourScale scale = colour_scale(tame);
   const double t0 = film.time(0), t1 = film.time(frames - 1), dt = (t1 - t0) / (frames - 1);
   return gnuplot_colours(scale) +
-         figure_title(fmt::format("{}: {} over space and time", source.scene, shown),
-                      subtitle(source)) +
+         figure_title(fmt::format("{}: {} over space and time", source.scene, shown), subtitle(source)) +
          fmt::format(
              "set lmargin at screen 0.105\nset rmargin at screen 0.855\n"
              "set bmargin at screen 0.12\nset tmargin at screen top\n"

@@ -50,7 +50,7 @@ std::string exact_curve(const FigureSource& source, double t, std::size_t compon
   if (!source.exact || t > source.exact->exact_until()) return {};
   constexpr int points = 600;
   const double unit = source.angle ? 2 * std::numbers::pi : 1;
-  std::vector<FieldPoint> here(static_cast<std::size_t>(source.exact->components()));
+  std::vector<FieldPoint> here(source.exact->components());
   std::string table;
   for (int n = 0; n <= points; ++n) {
     const double x = source.lattice.length() * n / points;
@@ -123,7 +123,7 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
                              : "",
                         bottom ? "space x" : "");
     body += fmt::format("set label 1 't = {:.4g}' at graph 0,1 left offset 0,0.7 textcolor rgb '#333333'\n",
-                        source.film.time(frames[static_cast<std::size_t>(p)]));
+                        source.film.time(frames[p]));
     if (p == 0)
       body += key_of_curves(
           components.size(), [&](std::size_t c) { return source.names.drawn()[components[c]]; }, curves);

@@ -73,7 +73,7 @@ CheckpointReader::CheckpointReader(const fs::path& path) : file_(std::fopen(path
   std::vector<char> block(1 << 20);
   const std::uint64_t all = size - magic.size() - sizeof(Sum);
   for (left_ = all; left_ > 0;) {
-    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(left_, block.size()));
+    const std::size_t count = std::min<std::uint64_t>(left_, block.size());
     if (std::fread(block.data(), count, 1, file_.get()) != 1) break;
     found.process_bytes(block.data(), count);
     left_ -= count;

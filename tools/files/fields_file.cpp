@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <limits>
 
+#include "lattice/index.hpp"
 #include "tools/files/mark_closed.hpp"
 #include "tools/files/open_to_read.hpp"
 #include "tools/report/failure.hpp"
@@ -94,13 +95,13 @@ bool append_block(hid_t dataset, hsize_t old, const std::vector<hsize_t>& block,
 FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double> space, std::int64_t expected_frames,
                        const std::string& scene, int winding, const RowNames& names, const MeshOfFile& mesh,
                        const WrittenPart& kept)
-    : path_(path), sites_(space.size() / static_cast<std::size_t>(mesh.coordinates)), names_(names) {
+    : path_(path), sites_(space.size() / at(mesh.coordinates)), names_(names) {
   constexpr std::size_t block = 1 << 17;  // doubles: 1 MiB
   std::size_t columns = 0;
   for (const Role role : all_roles) columns = std::max(columns, names.of[role].size());
   for (const auto& dataset : names.datasets) columns = std::max(columns, dataset.components.size());
   frames_per_block_ = std::clamp<std::size_t>(block / (sites_ * columns), 1, 1024);
-  frames_per_block_ = std::min(frames_per_block_, static_cast<std::size_t>(std::max<std::int64_t>(1, expected_frames)));
+  frames_per_block_ = std::min(frames_per_block_, at(std::max<std::int64_t>(1, expected_frames)));
   quiet_hdf5();
   const std::filesystem::path made = kept.size > 0 ? std::filesystem::path(path.string() + ".part") : path;
   written_to_ = made;

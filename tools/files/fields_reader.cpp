@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "lattice/text_parts.hpp"
 #include "tools/files/open_to_read.hpp"
 #include "tools/files/read_apart.hpp"
@@ -95,7 +96,7 @@ void FieldsReader::open(const std::filesystem::path& path) {
     if (!was_written(dataset, true))
       throw bad_file(fmt::format("/{} is {} x {} x {}, and not all of that was ever written; write it whole",
                                  to_string(role), (*extent)[0], (*extent)[1], (*extent)[2]));
-    parts_[static_cast<std::size_t>(role)] = {
+    parts_[at(role)] = {
         std::move(dataset),
         {static_cast<int>((*extent)[0]), static_cast<int>((*extent)[1]), static_cast<int>((*extent)[2])}};
   }
@@ -112,7 +113,7 @@ std::optional<double> FieldsReader::time(int frame) const {
 
 std::vector<double> FieldsReader::values(Role role, int frame) const {
   const auto& [dataset, shape] = part(role);
-  std::vector<double> values(static_cast<std::size_t>(shape.sites) * static_cast<std::size_t>(shape.components));
+  std::vector<double> values(at(shape.sites) * at(shape.components));
   const std::array<hsize_t, 3> offset{static_cast<hsize_t>(frame), 0, 0},
       count{1, static_cast<hsize_t>(shape.sites), static_cast<hsize_t>(shape.components)};
   if (!frame_was_written(dataset, offset[0]))
@@ -130,8 +131,8 @@ std::vector<double> FieldsReader::row(int frame) const {
   const std::vector<double> row = values(Role::field, frame);
   for (std::size_t i = 0; i < row.size(); ++i)
     if (!std::isfinite(row[i]))
-      throw bad_file(fmt::format("frame {} is not finite at site {}; take an earlier frame", frame,
-                                 i / static_cast<std::size_t>(components())));
+      throw bad_file(
+          fmt::format("frame {} is not finite at site {}; take an earlier frame", frame, i / at(components())));
   return row;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/system/lattice_system.hpp"
 #include "tools/files/hdf5_handle.hpp"
 #include "tools/files/rows_file.hpp"
@@ -51,7 +52,7 @@ class FieldsReader final : public RowsFile {
   };
   void open(const std::filesystem::path&);
   void read_all() const;
-  const Part& part(Role role) const { return parts_[static_cast<std::size_t>(role)]; }
+  const Part& part(Role role) const { return parts_[at(role)]; }
 
   Hdf5Handle file_, time_, momentum_;
   std::array<Part, all_roles.size()> parts_;  ///< by role; held open, so that HDF5 keeps the block that a frame is in

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "lattice/text_parts.hpp"
 #include "tools/files/plain_rows.hpp"
 
@@ -33,7 +34,7 @@ PlainArray npy_of(const std::string& all) {
   };
   // "\x93NUMPY", version, length of the header, header, data
   if (all.size() < 12 || all.compare(0, 6, "\x93NUMPY") != 0) throw refuse("is no .npy file");
-  const auto byte = [&](std::size_t n) { return static_cast<std::size_t>(static_cast<unsigned char>(all[n])); };
+  const auto byte = [&](std::size_t n) { return delf::at(static_cast<unsigned char>(all[n])); };
   const bool long_header = byte(6) > 1;
   const std::size_t begin = long_header ? 12 : 10;
   const std::size_t length =
@@ -114,10 +115,9 @@ std::optional<std::string> inflated(const std::string& packed, std::size_t size)
 std::map<std::string, std::string> files_of(const std::string& all) {
   const auto refuse = [](const char* why) { return bad_file(std::string(why) + "; write it by numpy.savez"); };
   const auto number = [&](std::size_t at, int bytes) {
-    if (at + static_cast<std::size_t>(bytes) > all.size()) throw refuse("is cut short");
+    if (at + delf::at(bytes) > all.size()) throw refuse("is cut short");
     std::size_t value = 0;
-    for (int n = bytes; n-- > 0;)
-      value = value << 8 | static_cast<unsigned char>(all[at + static_cast<std::size_t>(n)]);
+    for (int n = bytes; n-- > 0;) value = value << 8 | static_cast<unsigned char>(all[at + delf::at(n)]);
     return value;
   };
   // The directory is named by the record at the end: "PK\5\6", …, entries (10), …, offset (16).

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "lattice/read_number.hpp"
 #include "tools/files/hdf5_handle.hpp"
 #include "tools/files/read_apart.hpp"
@@ -56,7 +57,7 @@ bool is_momentum(std::string_view name) {
 
 PlainRows::PlainRows(PlainArray array, int sites, int components)
     : sites_(sites), components_(components), array_(std::move(array)) {
-  const auto wanted = static_cast<std::size_t>(sites) * static_cast<std::size_t>(components);
+  const auto wanted = delf::at(sites) * delf::at(components);
   std::vector<std::size_t>& shape = array_.shape;
   if (shape.size() == 3) shape = {shape[0], shape[1] * shape[2]};
   if (shape.size() == 1)
@@ -71,12 +72,12 @@ PlainRows::PlainRows(PlainArray array, int sites, int components)
 }
 
 std::optional<double> PlainRows::time(int frame) const {
-  if (array_.times.size() != static_cast<std::size_t>(frames_)) return std::nullopt;
-  return array_.times[static_cast<std::size_t>(frame)];
+  if (array_.times.size() != delf::at(frames_)) return std::nullopt;
+  return array_.times[frame];
 }
 
 std::vector<double> PlainRows::frame_of(const std::vector<double>& values, int frame) const {
-  const auto j = static_cast<std::size_t>(frame), width = array_.shape[1];
+  const std::size_t j = frame, width = array_.shape[1];
   std::vector<double> row;
   for (std::size_t n = 0; n < (columns_ ? array_.shape[0] : width); ++n)
     row.push_back(values[columns_ ? n * width + j : j * width + n]);
@@ -136,7 +137,7 @@ PlainArray read_table(const std::filesystem::path& path, std::size_t row_size) {
     array.values = std::move(fields);
     --columns;
   }
-  if (const auto momenta = static_cast<std::size_t>(std::ranges::count(of_momenta, true));
+  if (const std::size_t momenta = std::ranges::count(of_momenta, true);
       momenta == row_size && columns == 2 * row_size && of_momenta.size() == columns) {
     std::vector<double> fields;
     for (std::size_t n = 0; n < array.values.size(); ++n)
@@ -199,7 +200,7 @@ std::filesystem::path file_of_rows(const std::filesystem::path& path) {
 
 std::unique_ptr<RowsFile> open_plain_rows(const std::filesystem::path& path, int sites, int components) {
   const std::string text = path.string(), ending = path.extension().string();
-  const auto wanted = static_cast<std::size_t>(sites) * static_cast<std::size_t>(components);
+  const auto wanted = delf::at(sites) * delf::at(components);
   if (const std::size_t colon = text.rfind(":/"); colon != std::string::npos && !std::filesystem::exists(path)) {
     const std::string file = text.substr(0, colon), name = text.substr(colon + 1);
     return std::make_unique<PlainRows>(

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 
 namespace delf {
@@ -14,8 +15,8 @@ namespace delf {
 template <class T>
 struct ByRole {
   std::array<T, all_roles.size()> values{};
-  T& operator[](Role role) { return values[static_cast<std::size_t>(role)]; }
-  const T& operator[](Role role) const { return values[static_cast<std::size_t>(role)]; }
+  T& operator[](Role role) { return values[at(role)]; }
+  const T& operator[](Role role) const { return values[at(role)]; }
 };
 
 /// The names of the columns of recorded rows, and of the series.
@@ -24,8 +25,8 @@ struct RowNames {
   explicit RowNames(const Simulation&);
 
   ByRole<std::vector<std::string>> of{{{std::vector<std::string>{"phi"}}}};  ///< names of the components
-  std::vector<std::string> further;                ///< columns of series.csv after the residual
-  std::vector<Simulation::DatasetInfo> datasets;   ///< what fields.h5 has beside the components
+  std::vector<std::string> further;               ///< columns of series.csv after the residual
+  std::vector<Simulation::DatasetInfo> datasets;  ///< what fields.h5 has beside the components
   struct Mesh {
     Role role;
     std::size_t index;

@@ -98,8 +98,7 @@ RowsTable::RowsTable(const std::filesystem::path& path) {
 }
 
 std::optional<double> RowsTable::time(int frame) const {
-  return frame < static_cast<int>(times_.size()) ? std::optional(times_[static_cast<std::size_t>(frame)])
-                                                 : std::nullopt;
+  return frame < static_cast<int>(times_.size()) ? std::optional(times_[frame]) : std::nullopt;
 }
 
 std::vector<double> RowsTable::row(int frame) const {

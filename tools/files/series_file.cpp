@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "lattice/index.hpp"
 #include "tools/report/failure.hpp"
 
 namespace delf {
@@ -22,7 +23,7 @@ void require_part(const std::filesystem::path& path, const WrittenPart& kept) {
   Checksum sum;
   for (std::uint64_t left = kept.size; left > 0 && in;) {
     in.read(block.data(), static_cast<std::streamsize>(std::min<std::uint64_t>(left, block.size())));
-    sum.add(std::string_view(block).substr(0, static_cast<std::size_t>(in.gcount())));
+    sum.add(std::string_view(block).substr(0, at(in.gcount())));
     left -= static_cast<std::uint64_t>(in.gcount());
   }
   if (sum != kept.sum)

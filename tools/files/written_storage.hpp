@@ -19,7 +19,7 @@ inline bool was_written(hid_t dataset, bool growing = false) {
   if (size == 0) return false;               // a damaged type
   double least = static_cast<double>(size);  // HDF5 counts the values as an integer, which may overflow
   for (int axis = growing && H5Pget_layout(properties) == H5D_CHUNKED ? 1 : 0; axis < rank; ++axis)
-    least *= static_cast<double>(extents[static_cast<std::size_t>(axis)]);
+    least *= static_cast<double>(extents[axis]);
   const int filters = H5Pget_nfilters(properties);
   for (int n = 0; n < filters; ++n) {
     unsigned flags = 0;

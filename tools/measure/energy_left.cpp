@@ -30,7 +30,7 @@ class EnergyLeft final : public Measurement {
   double value() const override {
     if (below_.empty() || field_.lattice.space() == Space::point) return unknown;
     const double h = field_.time_step, k = field_.lattice.space_step();
-    CellJets jets(field_.theory->density(), field_.lattice, h, field_.turn);
+    CellJets jets(field_.theory->density(), field_.lattice, h, field_.monodromy);
     double energy = 0;
     for (int i = 0; i < field_.lattice.cells(); ++i) {
       const double begin = field_.lattice.position(i), share = std::clamp(x_ - begin, 0.0, k);

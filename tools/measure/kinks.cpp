@@ -85,7 +85,7 @@ class OneKink : public Measurement {
     kinks_ = kinks.size();
     const int count = static_cast<int>(kinks.size()), index = number_ > 0 ? number_ - 1 : count + number_;
     if (index < 0 || index >= count) return;
-    double x = kinks[static_cast<std::size_t>(index)].x;
+    double x = kinks[index].x;
     if (field_.lattice.is_circle() && !places_.empty())  // round the circle without a jump
       x = places_.back() + std::remainder(x - places_.back(), field_.lattice.length());
     times_.push_back(row.time);

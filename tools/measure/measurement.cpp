@@ -7,13 +7,14 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "tools/measure/entries.hpp"
 
 namespace delf {
 
 double MeasuredField::at(std::span<const double> row, int i) const {
   const int home = lattice.home(i), times = lattice.is_circle() ? (i - home) / lattice.sites() : 0;
-  return row[static_cast<std::size_t>(home * fields)] + turn * times;
+  return row[home * fields] + monodromy * times;
 }
 
 double MeasuredField::at(std::span<const double> row, double x) const {

@@ -17,9 +17,9 @@ class SavedState;
 struct MeasuredField {
   Lattice lattice;
   double time_step;
-  double turn;  ///< φ(x + L) − φ(x) on a circle
-  bool angle;   ///< values 2π apart are the same
-  int fields;   ///< in a row [i·fields + a]; the first is measured
+  double monodromy;  ///< φ(x + L) − φ(x) on a circle
+  bool angle;        ///< values 2π apart are the same
+  int fields;        ///< in a row [i·fields + a]; the first is measured
   std::shared_ptr<const FieldTheory> theory;
 
   /// φ at site i, beyond the seam of a circle too.

@@ -9,10 +9,10 @@
 
 #include "jets/expressions/expression.hpp"
 #include "lattice/text_parts.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/theories/angles.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "schemes/turn.hpp"
 #include "tools/measure/measure_names.hpp"
 
 namespace delf {
@@ -182,9 +182,12 @@ Measures::Measures(const Scene& scene, int winding, const Simulation& simulation
   const auto& components = simulation.components();
   std::shared_ptr<const FieldTheory> theory = make_theory(find_theory(p.theory), p.parameters);
   const bool angle = p.circle_valued || std::ranges::count(angles_of(p.theory, *theory, p.parameters), 0) > 0;
-  const MeasuredField field{
-      p.lattice, p.time_step, 2 * std::numbers::pi * winding + gain_of(p.parameters),
-      angle,     simulation.count(Role::field),                                       std::move(theory)};
+  const MeasuredField field{p.lattice,
+                            p.time_step,
+                            2 * std::numbers::pi * winding + gain_of(p.parameters),
+                            angle,
+                            simulation.count(Role::field),
+                            std::move(theory)};
   for (const std::string& name : names) {
     Expression expression{name, key_of_measure(name), {}, constants_of(scene), {}};
     expression.sites_move = std::ranges::any_of(components, &Component::position);

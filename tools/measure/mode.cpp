@@ -34,7 +34,7 @@ class Mode : public Measurement {
     double sum = 0, sine = 0, norm = 0;
     if (lattice.is_circle()) {
       for (int i = 0; i < lattice.sites(); ++i) {
-        const double phi = field_.at(row, i) - field_.turn * i / lattice.sites();
+        const double phi = field_.at(row, i) - field_.monodromy * i / lattice.sites();
         const double angle = 2 * std::numbers::pi * n_ * i / lattice.sites();
         sum += phi * std::cos(angle), sine += phi * std::sin(angle);
       }

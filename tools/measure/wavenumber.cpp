@@ -18,7 +18,7 @@ class Wavenumber final : public Measurement {
     if (lattice.space() == Space::point) return;
     std::vector<double> values;
     for (int i = 0; i < lattice.cells(); ++i)
-      values.push_back(field_.at(row.row, i) - field_.turn * i / lattice.cells());
+      values.push_back(field_.at(row.row, i) - field_.monodromy * i / lattice.cells());
     value_ = 2 * std::numbers::pi * spectrum_peak(values, lattice.is_circle()) / lattice.length();
   }
   double value() const override { return value_; }

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "schemes/turn.hpp"
+#include "schemes/monodromy.hpp"
 #include "tools/outcome/findings_json.hpp"
 #include "tools/outcome/outcome.hpp"
 

@@ -29,10 +29,10 @@ template <class Lines>
 class TwoRows : public Peer {
  public:
   explicit TwoRows(const WaveEquation& equation)
-      : lines_(equation), turn_(equation.turn), phi_(lines_.circle.size()), phi_t_(lines_.circle.size()) {}
+      : lines_(equation), monodromy_(equation.monodromy), phi_(lines_.circle.size()), phi_t_(lines_.circle.size()) {}
 
   void start(std::span<const double> phi, std::span<const double> phi_t) override {
-    lines_.circle.scatter(phi, phi_.data(), turn_);
+    lines_.circle.scatter(phi, phi_.data(), monodromy_);
     lines_.circle.scatter(phi_t, phi_t_.data(), 0);
   }
   void copy(std::span<double> phi, std::span<double> phi_t) const override {
@@ -42,7 +42,7 @@ class TwoRows : public Peer {
 
  protected:
   Lines lines_;
-  double turn_;
+  double monodromy_;
   Row phi_, phi_t_;
 };
 
@@ -185,11 +185,11 @@ class Fehlberg final : public Peer {
   static constexpr std::size_t forces = 13;
 
   explicit Fehlberg(const WaveEquation& equation)
-      : lines_(equation), turn_(equation.turn), state_(2 * lines_.circle.size()) {
+      : lines_(equation), monodromy_(equation.monodromy), state_(2 * lines_.circle.size()) {
     stepper_.adjust_size(state_);
   }
   void start(std::span<const double> phi, std::span<const double> phi_t) override {
-    lines_.circle.scatter(phi, state_.data(), turn_);
+    lines_.circle.scatter(phi, state_.data(), monodromy_);
     lines_.circle.scatter(phi_t, state_.data() + lines_.circle.size(), 0);
   }
   void advance(double h, std::int64_t steps) override {
@@ -208,7 +208,7 @@ class Fehlberg final : public Peer {
 
  private:
   Lines lines_;
-  double turn_;
+  double monodromy_;
   Row state_;
   odeint::runge_kutta_fehlberg78<Row, double, Row, double, PackAlgebra, odeint::default_operations> stepper_;
 };

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "lattice/index.hpp"
 #include "tools/peers/flush_to_zero.hpp"
 #include "tools/peers/force.hpp"
 #include "tools/peers/row.hpp"
@@ -80,7 +81,7 @@ class SplitStep final : public Peer {
  public:
   SplitStep(const WaveEquation& equation, const Splitting& splitting)
       : splitting_(splitting),
-        sites_(static_cast<std::size_t>(equation.sites)),
+        sites_(at(equation.sites)),
         ramp_(whole_packs(sites_)),
         values_(whole_packs(sites_)),
         kappa_(whole_packs(sites_ / 2 + 1)),
@@ -91,8 +92,8 @@ class SplitStep final : public Peer {
         forward_(fftw_plan_dft_r2c_1d(equation.sites, values_.data(), complex(spectrum_), FFTW_MEASURE)),
         backward_(fftw_plan_dft_c2r_1d(equation.sites, complex(spectrum_), values_.data(), FFTW_MEASURE)) {
     for (std::size_t i = 0; i < sites_; ++i)
-      ramp_[i] = equation.turn * static_cast<double>(i) / static_cast<double>(sites_);
-    turns_ = equation.turn != 0;
+      ramp_[i] = equation.monodromy * static_cast<double>(i) / static_cast<double>(sites_);
+    turns_ = equation.monodromy != 0;
     for (std::size_t j = 0; j <= sites_ / 2; ++j) {
       kappa_[j] = std::hypot(2 * std::numbers::pi / equation.length * static_cast<double>(j),
                              Force::mass_in_flow ? equation.mass : 0.0);
@@ -153,7 +154,7 @@ class SplitStep final : public Peer {
   void plan_flows() {
     const auto index = [&](double weight) {
       const auto found = std::find(lengths_.begin(), lengths_.end(), weight);
-      if (found != lengths_.end()) return static_cast<std::size_t>(found - lengths_.begin());
+      if (found != lengths_.end()) return at(found - lengths_.begin());
       lengths_.push_back(weight);
       return lengths_.size() - 1;
     };
@@ -321,7 +322,7 @@ PeerInfo info() {
 std::unique_ptr<Peer> make_split_step(const WaveEquation& equation, const Splitting& splitting, MassIn mass) {
   using enum WaveEquation::Potential;
   equation.check(1);
-  if (mass == MassIn::flow && (equation.potential == phi4 || equation.turn != 0))
+  if (mass == MassIn::flow && (equation.potential == phi4 || equation.monodromy != 0))
     throw std::invalid_argument("a mass in the flow needs its vacuum at 0 and a field that does not wind");
   switch (equation.potential) {
     case quadratic:

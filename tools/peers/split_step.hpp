@@ -11,7 +11,7 @@ namespace delf::peers {
 /// The flow in which the curvature of the potential at φ = 0 acts.
 enum class MassIn {
   kick,  ///< flow φ_tt = φ_xx, kick −V′(φ)
-  flow  ///< flow φ_tt = φ_xx − m²φ, kick m²φ − V′(φ): sine-Gordon without turn; of Klein–Gordon no kick is left
+  flow  ///< flow φ_tt = φ_xx − m²φ, kick m²φ − V′(φ): sine-Gordon without monodromy; of Klein–Gordon no kick is left
 };
 
 /// Fourier split-step: a splitting whose flow is exact, mode by mode. The wave equation and Klein–Gordon are one flow a

@@ -5,7 +5,7 @@
 
 namespace delf::peers {
 
-/// φ_tt = φ_xx − V′(φ) on a circle of length L; φ(x + L) = φ(x) + turn.
+/// φ_tt = φ_xx − V′(φ) on a circle of length L; φ(x + L) = φ(x) + monodromy.
 struct WaveEquation {
   enum class Potential {
     none,         ///< V = 0
@@ -15,16 +15,16 @@ struct WaveEquation {
   };
   Potential potential = Potential::none;
   double mass = 1, lambda = 1;
-  double length = 1, turn = 0;
+  double length = 1, monodromy = 0;
   int sites = 0;
 
-  /// Throws std::invalid_argument for a length that is not positive, fewer than `least_sites`, or a turn under which
+  /// Throws std::invalid_argument for a length that is not positive, fewer than `least_sites`, or a monodromy under which
   /// V′ does not return: any but 0 for a polynomial, any but whole turns 2πn for sine-Gordon.
   void check(int least_sites) const;
 };
 
 /// The equation that scenes name as a theory: wave, klein-gordon, sine-gordon, phi4; nothing for another.
 std::optional<WaveEquation> wave_equation(std::string_view theory, double mass, double lambda, double length,
-                                          double turn, int sites);
+                                          double monodromy, int sites);
 
 }  // namespace delf::peers

@@ -17,14 +17,15 @@
 #include <type_traits>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "tools/commands.hpp"
 #include "tools/complex/complex_commands.hpp"
-#include "tools/rows/engine.hpp"
 #include "tools/report/failure.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/progress.hpp"
+#include "tools/rows/engine.hpp"
 #include "tools/run/run_in_memory.hpp"
 #include "tools/scene/made_settings.hpp"
 #include "tools/scene/scene.hpp"
@@ -85,8 +86,8 @@ Settings settings_of(const std::string& file, const Keys& given) {
 const Parameter& known_key(const Settings& settings, const std::string& name) {
   if (const Parameter* key = settings.key(name)) return *key;
   const std::string meant = nearest_key(name, settings.all_keys());
-  throw BadInput(name, name + ": unknown key" + (meant.empty() ? "; `delf help run` lists all keys"
-                                                               : "; did you mean " + meant + "?"));
+  throw BadInput(name, name + ": unknown key" +
+                           (meant.empty() ? "; `delf help run` lists all keys" : "; did you mean " + meant + "?"));
 }
 
 std::optional<std::string> value_of(const Settings& settings, const std::string& name) {
@@ -96,18 +97,24 @@ std::optional<std::string> value_of(const Settings& settings, const std::string&
 
 const char* name_of(KeyType type) {
   switch (type) {
-    case KeyType::real: return "real";
-    case KeyType::integer: return "integer";
-    case KeyType::toggle: return "toggle";
-    case KeyType::choice: return "choice";
-    case KeyType::text: return "text";
+    case KeyType::real:
+      return "real";
+    case KeyType::integer:
+      return "integer";
+    case KeyType::toggle:
+      return "toggle";
+    case KeyType::choice:
+      return "choice";
+    case KeyType::text:
+      return "text";
   }
   return "";
 }
 
 py::dict dict_of(const Parameter& key) {
   py::dict d;
-  d["name"] = key.key, d["type"] = name_of(type_of(key)), d["default"] = fallback_of(key), d["otherwise"] = key.otherwise;
+  d["name"] = key.key, d["type"] = name_of(type_of(key)), d["default"] = fallback_of(key),
+  d["otherwise"] = key.otherwise;
   d["meaning"] = key.help, d["unit"] = key.unit, d["choices"] = key.choices;
   return d;
 }
@@ -145,9 +152,7 @@ class Kept {
  public:
   using Row = std::shared_ptr<const std::vector<double>>;
 
-  void begin(const RowNames& names, std::uint64_t records_before) {
-    names_ = names, records_before_ = records_before;
-  }
+  void begin(const RowNames& names, std::uint64_t records_before) { names_ = names, records_before_ = records_before; }
   /// Of the run that this one goes on from: so many of its records are in front of these.
   std::uint64_t records_before() const { return records_before_; }
   void see(const Record& r, const RecordedRow& row, const RecordedDatasets& datasets) {
@@ -167,8 +172,7 @@ class Kept {
 
   py::list series_names() const {
     py::list names;
-    for (const char* name :
-         {"step", "time", "energy", "energy_error", "momentum", "charge", "iterations", "residual"})
+    for (const char* name : {"step", "time", "energy", "energy_error", "momentum", "charge", "iterations", "residual"})
       names.append(name);
     for (const std::string& name : names_.further) names.append(name);
     return names;
@@ -353,7 +357,7 @@ class HandEvolution {
     if (back < 0 || back >= std::max(2, simulation_->starting_rows()))
       throw BadInput("", "row: back = " + std::to_string(back) + " is not held; give 0 to " +
                              std::to_string(std::max(2, simulation_->starting_rows()) - 1));
-    RowMemory& known = rows_[static_cast<std::size_t>(back)];
+    RowMemory& known = rows_[back];
     if (!known.values || known.moves != moves_) {
       RowMemory next{unviewed(), 0};
       double* const values = static_cast<double*>(const_cast<void*>(next.values->data()));
@@ -363,7 +367,7 @@ class HandEvolution {
         if (constexpr py::ssize_t many = 1 << 16; !lock || next.values->size() > many) others_may_go_on.emplace();
         if (!lock) lock.lock();
         next.moves = moves_;
-        simulation_->observe(back, {values, static_cast<std::size_t>(next.values->size())});
+        simulation_->observe(back, {values, at(next.values->size())});
         lock.unlock();
       }
       std::swap(known, next);
@@ -373,7 +377,9 @@ class HandEvolution {
     return {values.dtype(), {values.shape(), values.shape() + values.ndim()}, {}, values.data(), values};
   }
 
-  std::int64_t newest() { return started_ ? ask([](Simulation& s) { return s.newest(); }) : -1; }
+  std::int64_t newest() {
+    return started_ ? ask([](Simulation& s) { return s.newest(); }) : -1;
+  }
   double time() {
     require_start();
     return ask([](Simulation& s) { return s.time(s.newest()); });
@@ -382,7 +388,9 @@ class HandEvolution {
     require_start();
     return ask([](Simulation& s) { return s.residual(); });
   }
-  int iterations() { return ask([](Simulation& s) { return s.iterations(); }); }
+  int iterations() {
+    return ask([](Simulation& s) { return s.iterations(); });
+  }
   py::dict monitors() {
     require_start();
     const auto m = ask([](Simulation& s) { return s.monitors(); });
@@ -446,11 +454,11 @@ class HandEvolution {
   }
   // The entries of multipliers are not read; other components must be given.
   std::vector<double> complete(const Array& row) const {
-    const std::size_t n = static_cast<std::size_t>(sites()), all = simulation_->components().size();
-    const auto given = static_cast<std::size_t>(row.size());
+    const std::size_t n = at(sites()), all = simulation_->components().size();
+    const std::size_t given = row.size();
     if (given == n * all) return {row.data(), row.data() + given};
-    const std::size_t d = static_cast<std::size_t>(fields());
-    const bool rest_is_multipliers = d + static_cast<std::size_t>(simulation_->count(Role::multiplier)) == all;
+    const std::size_t d = at(fields());
+    const bool rest_is_multipliers = d + at(simulation_->count(Role::multiplier)) == all;
     if (given != n * d || !rest_is_multipliers)
       throw BadInput("", "a row has " + std::to_string(given) + " values, and " + std::to_string(n) + " sites with " +
                              std::to_string(rest_is_multipliers ? d : all) + " values each are needed");
@@ -482,7 +490,8 @@ PYBIND11_MODULE(_delf, m) {
   m.doc() = "The engine of delf; use the package delf.";
   py::register_exception_translator(translate);
   m.attr("version") = DELF_VERSION;
-  m.def("keys", [] { return list_of(keys()); }, "Every key that `delf help run` lists, as dictionaries.");
+  m.def(
+      "keys", [] { return list_of(keys()); }, "Every key that `delf help run` lists, as dictionaries.");
   m.def("scenes", [] {
     py::list all;
     for (const ShippedScene& s : shipped_scenes()) all.append(py::make_tuple(s.name, s.file.string(), s.title));
@@ -493,10 +502,13 @@ PYBIND11_MODULE(_delf, m) {
   py::class_<Settings>(m, "Settings", "A scene as text: a file or a shipped name, and keys over it.")
       .def(py::init(&settings_of), py::arg("file"), py::arg("given"))
       .def("value", &value_of, py::arg("key"), "The text in force, or None.")
-      .def("check", [](const Settings& s) {
-        if (is_on_mesh(s)) return read_complex_scene(s).scene.warnings;
-        return read_scene(s).warnings;
-      }, "Reads all values. Raises BadInput; returns warnings.")
+      .def(
+          "check",
+          [](const Settings& s) {
+            if (is_on_mesh(s)) return read_complex_scene(s).scene.warnings;
+            return read_scene(s).warnings;
+          },
+          "Reads all values. Raises BadInput; returns warnings.")
       .def("keys", [](const Settings& s) { return list_of(s.all_keys()); })
       .def("place", &Settings::place, py::arg("key"))
       .def_property_readonly("on_mesh", [](const Settings& s) { return is_on_mesh(s); })

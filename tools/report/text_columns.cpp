@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 namespace {
@@ -45,7 +47,7 @@ std::string table_row(const std::vector<TextColumn>& columns, const std::vector<
 }  // namespace
 
 std::size_t columns_of(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return !continues(c); }));
+  return delf::at(std::ranges::count_if(text, [](char c) { return !continues(c); }));
 }
 
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {

@@ -7,7 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "schemes/turn.hpp"
+#include "lattice/index.hpp"
+#include "schemes/monodromy.hpp"
 
 namespace delf {
 
@@ -16,7 +17,7 @@ namespace {
 using FieldPoints = std::vector<FieldPoint>;
 
 FieldPoints values_at(const State& state, double t, double x) {
-  FieldPoints values(static_cast<std::size_t>(state.components()));
+  FieldPoints values(delf::at(state.components()));
   state.at(t, x, values);
   return values;
 }
@@ -28,8 +29,8 @@ void take(EndChange& worst, double change, const char* words) {
 /// A state on a circle at one time. A pulse may have its seam anywhere.
 class CircleAt {
  public:
-  CircleAt(const State& state, double length, double turn, double t)
-      : state_(state), length_(length), turn_(turn), t_(t) {
+  CircleAt(const State& state, double length, double monodromy, double t)
+      : state_(state), length_(length), monodromy_(monodromy), t_(t) {
     for (int i = 0; i <= points; ++i) row_.push_back(at(i));
   }
 
@@ -54,16 +55,16 @@ class CircleAt {
 
  private:
   static constexpr int points = 2048;
-  /// `cells` from the origin; around the circle the fields have gained `turn`.
+  /// `cells` from the origin; around the circle the fields have gained `monodromy`.
   FieldPoints at(double cells) const {
     const bool around = cells >= points;
     FieldPoints values = values_at(state_, t_, around ? 0 : length_ * cells / points);
-    for (FieldPoint& value : values) value.phi += around ? turn_ : 0;
+    for (FieldPoint& value : values) value.phi += around ? monodromy_ : 0;
     return values;
   }
 
   const State& state_;
-  double length_, turn_, t_;
+  double length_, monodromy_, t_;
   std::vector<FieldPoints> row_;
 };
 
@@ -75,7 +76,7 @@ AtTheEnds at_the_ends(const Scene& scene, const State& state) {
   if (lattice.space() == Space::point) return worst;
   const int times = state.exact() ? 64 : 0, between_searches = 8;
   const double L = lattice.length(), end = scene.end(), acts = std::min(end, L),
-               turn = 2 * std::numbers::pi * state.winding() + gain_of(scene.problem.parameters);
+               monodromy = 2 * std::numbers::pi * state.winding() + gain_of(scene.problem.parameters);
   const FieldPoints left = values_at(state, 0, 0), right = values_at(state, 0, L);
   for (int n = 0; n <= times; ++n) {
     const double t = n == 0 ? 0 : end * n / times;
@@ -90,14 +91,14 @@ AtTheEnds at_the_ends(const Scene& scene, const State& state) {
     };
     for (std::size_t a = 0; a < here.size(); ++a) {
       if (lattice.is_circle()) {
-        take(worst.value, std::abs(there[a].phi - here[a].phi - turn), "jumps where the circle closes");
+        take(worst.value, std::abs(there[a].phi - here[a].phi - monodromy), "jumps where the circle closes");
         continue;
       }
       at_wall(lattice.left(), here[a], left[a], "moves at the left wall, which is fixed");
       at_wall(lattice.right(), there[a], right[a], "moves at the right wall, which is fixed");
     }
     if (!lattice.is_circle() || n % between_searches != 0) continue;
-    const CircleAt circle(state, L, turn, t);
+    const CircleAt circle(state, L, monodromy, t);
     for (std::size_t a = 0; a < here.size(); ++a) {
       const auto value = [](const FieldPoint& l, const FieldPoint& r, double apart) {
         return std::abs(r.phi - l.phi - apart * (l.phi_x + r.phi_x) / 2);

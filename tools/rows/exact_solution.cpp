@@ -100,7 +100,7 @@ void require_solution(const Scene& scene, const State& exact) {
 }
 
 std::string without_value(const Scene& scene, const State& exact) {
-  std::vector<FieldPoint> values(static_cast<std::size_t>(exact.components()));
+  std::vector<FieldPoint> values(exact.components());
   for (const PointOfTime& at : random_points(scene)) {
     exact.at(at.t, at.x, values);
     for (std::size_t a = 0; a < values.size(); ++a)

@@ -7,9 +7,10 @@
 #include <numbers>
 #include <numeric>
 
+#include "lattice/index.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "schemes/turn.hpp"
 #include "tools/diagnosis/unwrap.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/files/plain_rows.hpp"
@@ -30,7 +31,7 @@ struct RowSeam {
   double gain;         ///< φ(L) − φ(0), with the last step once more
 
   RowSeam(const std::vector<double>& row, int components, int field) {
-    const auto d = static_cast<std::size_t>(components), a = static_cast<std::size_t>(field);
+    const std::size_t d = components, a = delf::at(field);
     const std::size_t N = row.size() / d;
     const auto y = [&](std::size_t i) { return row[i * d + a]; };
     step = y(0) - y(N - 1);
@@ -125,7 +126,7 @@ int InitialRows::winding_of_file() const {
   const int d = file_->components();
   if (scene_.problem.circle_valued) {
     unwrap_along(row, d);
-    return static_cast<int>(std::lround(turn_of_row(row, d) / (2 * std::numbers::pi)));
+    return static_cast<int>(std::lround(monodromy_of_row(row, d) / (2 * std::numbers::pi)));
   }
   constexpr double longer = 1.25;
   const RowSeam seam(row, d, 0);
@@ -149,7 +150,7 @@ void InitialRows::require_closed() const {
   }
   for (int a = 0; a < d; ++a) {
     const RowSeam seam(row, d, a);
-    const double jump = std::abs(seam.step + turn());
+    const double jump = std::abs(seam.step + monodromy());
     const double rounding = 1e-12 * std::max(std::abs(seam.least), std::abs(seam.most));
     if (!(jump > 2 * seam.largest + std::max(largest_part * range, rounding))) continue;
     const double turns = seam.gain / (2 * std::numbers::pi);
@@ -159,7 +160,7 @@ void InitialRows::require_closed() const {
                    fmt::format("{}{} {} gains some {:.6g} around the circle, and with boundary.winding = {} it should "
                                "gain {:.6g}: it jumps at the seam by {:.3g}; use {}, or lattice.space = interval",
                                field, scene_.initial_file.extension() == ".csv" ? "row" : "frame", scene_.initial_frame,
-                               seam.gain, winding_, turn(), jump,
+                               seam.gain, winding_, monodromy(), jump,
                                winds ? fmt::format("boundary.winding = {:.0f}", std::round(turns))
                                      : fmt::format("boundary.gain = {:.6g} without boundary.winding", seam.gain)));
   }
@@ -177,7 +178,7 @@ std::vector<std::size_t> InitialRows::columns(const Simulation& simulation) cons
   bool misplaced = false;
   std::vector<std::size_t> by_name;
   for (std::size_t a = 0; a < wanted.size(); ++a) {
-    const auto at = static_cast<std::size_t>(std::ranges::find(names, wanted[a]) - names.begin());
+    const std::size_t at = std::ranges::find(names, wanted[a]) - names.begin();
     misplaced = misplaced || (at < names.size() && at != a);
     by_name.push_back(at);
   }
@@ -200,11 +201,11 @@ std::vector<double> InitialRows::in_order(const Simulation& simulation, const st
 void InitialRows::require_positions(const Simulation& simulation) const {
   const Lattice& lattice = scene_.problem.lattice;
   if (lattice.space() != Space::interval) return;
-  const auto d = static_cast<std::size_t>(simulation.count(Role::field));
+  const std::size_t d = simulation.count(Role::field);
   const std::vector<double> row = file_row(simulation, 0);
   for (const Component& c : simulation.components()) {
     if (c.role != Role::field || !c.position) continue;
-    const auto a = static_cast<std::size_t>(c.field);
+    const std::size_t a = c.field;
     const double first = row[a], last = row[row.size() - d + a], length = lattice.length();
     if (std::abs(first) <= 1e-9 * length && std::abs(last - length) <= 1e-9 * length) continue;
     throw scene_.settings.error(

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/rows/initial_rows.hpp"
@@ -51,8 +52,7 @@ std::vector<double> rate_of(const std::vector<std::vector<double>>& rows, double
     double weight = 1.0 / j;
     for (int m = 1; m < n; ++m)
       if (m != j) weight *= static_cast<double>(m) / (m - j);
-    for (std::size_t i = 0; i < rate.size(); ++i)
-      rate[i] += weight * (rows[static_cast<std::size_t>(j)][i] - rows[0][i]) / step;
+    for (std::size_t i = 0; i < rate.size(); ++i) rate[i] += weight * (rows[j][i] - rows[0][i]) / step;
   }
   return rate;
 }
@@ -68,7 +68,7 @@ void InitialRows::start_by_rates(Simulation& simulation) const {
       throw BadInput("initial.time_step",
                      "initial.time_step: a file has no values at the nodes between the sites, which "
                      "this scheme starts from; choose another state");
-  const auto fields = static_cast<std::size_t>(simulation.count(Role::field));
+  const std::size_t fields = simulation.count(Role::field);
   std::vector<std::vector<double>> rows;
   bool even = true;
   for (int j = 0; j < rows_of_rate && even && scene_.initial_frame + j < file_->frames(); ++j) {
@@ -87,10 +87,10 @@ void InitialRows::start_by_rates(Simulation& simulation) const {
     std::vector<std::vector<double>> first;
     for (int j = 0; j < own.starting_rows(); ++j) first.push_back(section(own, j));
     own.start(first);
-    rows.resize(static_cast<std::size_t>(own.starting_rows()));
+    rows.resize(own.starting_rows());
     while (rows.size() < rows_of_rate) {
       own.step();
-      std::vector<double>& row = rows.emplace_back(static_cast<std::size_t>(scene_.problem.lattice.sites()) * fields);
+      std::vector<double>& row = rows.emplace_back(at(scene_.problem.lattice.sites()) * fields);
       own.copy_row(0, row);
     }
   }
@@ -100,7 +100,7 @@ void InitialRows::start_by_rates(Simulation& simulation) const {
   for (std::size_t n = 0; n < velocity.size(); ++n) {
     const Component& c = components[n % components.size()];
     if (c.role == Role::field || c.role == Role::inner)
-      velocity[n] = rates[n / components.size() * fields + static_cast<std::size_t>(c.field)];
+      velocity[n] = rates[n / components.size() * fields + at(c.field)];
   }
   if (rule() == StartRule::legendre) simulation.start_legendre(row0, velocity);
   else simulation.start_centred(row0, velocity);

@@ -9,10 +9,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "lattice/index.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/moving_start.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/turn.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/rows/exact_solution.hpp"
 
@@ -46,7 +47,7 @@ int InitialRows::winding() const {
   return scene_.initial.winding.value_or(state_->winding());
 }
 
-double InitialRows::turn() const {
+double InitialRows::monodromy() const {
   return scene_.problem.lattice.is_circle() ? 2 * std::numbers::pi * winding() + gain_of(scene_.problem.parameters) : 0;
 }
 
@@ -59,18 +60,17 @@ std::vector<double> InitialRows::slopes(bool left) const {
   const int wall = left ? 0 : lattice.sites() - 1;
   std::vector<double> slopes;
   if (state_) {
-    std::vector<FieldPoint> fields(static_cast<std::size_t>(state_->components()));
+    std::vector<FieldPoint> fields(state_->components());
     state_->at(0, lattice.position(wall), fields);
     for (const FieldPoint& field : fields) slopes.push_back(field.phi_x);
     return slopes;
   }
   const std::vector<double> row = row0();
-  const auto d = static_cast<std::size_t>(file_->components());
+  const std::size_t d = file_->components();
   constexpr std::array weights{-11., 18., -9., 2.};
   for (std::size_t a = 0; a < d; ++a) {
     double sum = 0;
-    for (int j = 0; j < 4 && j < lattice.sites(); ++j)
-      sum += weights[static_cast<std::size_t>(j)] * row[static_cast<std::size_t>(left ? j : wall - j) * d + a];
+    for (int j = 0; j < 4 && j < lattice.sites(); ++j) sum += weights[j] * row[at(left ? j : wall - j) * d + a];
     slopes.push_back((left ? sum : -sum) / (6 * lattice.space_step()));
   }
   return slopes;
@@ -124,7 +124,7 @@ std::vector<double> InitialRows::row0() const {
 }
 
 std::vector<double> InitialRows::values(Writer write, double time, const Lattice& lattice) const {
-  std::vector<double> out(static_cast<std::size_t>(lattice.sites()) * static_cast<std::size_t>(state_->components()));
+  std::vector<double> out(at(lattice.sites()) * at(state_->components()));
   (state_.get()->*write)(time, lattice, out);
   return out;
 }
@@ -142,8 +142,8 @@ std::vector<double> InitialRows::slaved_in_file(const Simulation& simulation, in
 
 std::vector<double> InitialRows::section(const Simulation& simulation, Writer write, int row, bool with_times) const {
   const auto& components = simulation.components();
-  const auto d = components.size(), fields = static_cast<std::size_t>(simulation.count(Role::field));
-  const auto sites = static_cast<std::size_t>(scene_.problem.lattice.sites());
+  const auto d = components.size(), fields = at(simulation.count(Role::field));
+  const std::size_t sites = scene_.problem.lattice.sites();
   const double h = scene_.problem.time_step, k = scene_.problem.lattice.space_step();
   std::vector<double> out(sites * d), at_node;
   const std::vector<double> slaved = slaved_in_file(simulation, row);
@@ -161,7 +161,7 @@ std::vector<double> InitialRows::section(const Simulation& simulation, Writer wr
       ++which_slaved;
       continue;
     }
-    const auto a = static_cast<std::size_t>(components[c].field);
+    const std::size_t a = components[c].field;
     if (at_node.empty() || components[c].at.time != node.time || components[c].at.space != node.space) {
       node = components[c].at;
       if (file_) at_node = file_row(simulation, row);
@@ -181,13 +181,13 @@ std::vector<double> InitialRows::section(const Simulation& simulation, int row) 
 void InitialRows::start_momenta(Simulation& simulation) const {
   const auto& components = simulation.components();
   const std::vector<double> of_fields = in_order(simulation, *file_->momenta(scene_.initial_frame));
-  const auto d = components.size(), fields = static_cast<std::size_t>(simulation.count(Role::field));
+  const auto d = components.size(), fields = at(simulation.count(Role::field));
   const std::vector<double> row0 = section(simulation, 0);
   std::vector<double> momenta(row0.size(), 0.0);
   for (std::size_t c = 0; c < d; ++c)
     if (components[c].role == Role::field)
       for (std::size_t i = 0; i * d < momenta.size(); ++i)
-        momenta[i * d + c] = of_fields[i * fields + static_cast<std::size_t>(components[c].field)];
+        momenta[i * d + c] = of_fields[i * fields + at(components[c].field)];
   simulation.start_momenta(row0, momenta);
 }
 
@@ -248,15 +248,15 @@ void InitialRows::start(Simulation& simulation) const {
           step && !(std::abs(*step - h) <= 1e-9 * h + 1e-15 * std::abs(*file_->time(scene_.initial_frame + j))))
         throw BadInput(
             "initial.frame",
-            fmt::format("frames {} and {} of the file are {:.12g} apart, and the time step is {:.10g}; use "
-                        "lattice.time_step = {:.12g}, {}or record with output.every = 1, or start from values "
-                        "and rates by initial.time_step = {:.12g}",
-                        scene_.initial_frame + j - 1, scene_.initial_frame + j, *step, h, *step,
-                        find_method(scene_.problem.method).row_density &&
-                                !find_method(scene_.problem.method).reads_stencil
-                            ? "lattice.time_steps = reversible if the field chose the steps of the file, "
-                            : "",
-                        *step));
+            fmt::format(
+                "frames {} and {} of the file are {:.12g} apart, and the time step is {:.10g}; use "
+                "lattice.time_step = {:.12g}, {}or record with output.every = 1, or start from values "
+                "and rates by initial.time_step = {:.12g}",
+                scene_.initial_frame + j - 1, scene_.initial_frame + j, *step, h, *step,
+                find_method(scene_.problem.method).row_density && !find_method(scene_.problem.method).reads_stencil
+                    ? "lattice.time_steps = reversible if the field chose the steps of the file, "
+                    : "",
+                *step));
     simulation.start(rows);
   } catch (const BadInput& bad) {
     throw scene_.settings.located(bad);

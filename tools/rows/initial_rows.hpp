@@ -21,7 +21,7 @@ class InitialRows {
   /// Gives a problem the slopes that its clamped walls keep: those of row 0, where no key says them.
   void keep_slopes(Problem&) const;
   /// The gain of the fields around a circle: 2π·winding + gain.
-  double turn() const;
+  double monodromy() const;
   StartRule rule() const;
   std::string description() const;
   /// Throws BadScene if these rows have other fields than the simulation.

@@ -4,15 +4,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 NearbyRows::NearbyRows(const std::filesystem::path& path, const LatticeSystem& system, const std::vector<int>& behind,
-                       double time_step, double turn, int held, std::optional<EquationCheck> equations)
+                       double time_step, double monodromy, int held, std::optional<EquationCheck> equations)
     : system_(system),
       name_(path.filename().string()),
       section_(path, system, behind, time_step, "--nearby"),
-      held_(system.window(0, {}, turn)),
-      most_(static_cast<std::size_t>(held)),
+      held_(system.window(0, {}, monodromy)),
+      most_(at(held)),
       equations_(std::move(equations)) {}
 
 void NearbyRows::take(std::int64_t j) {

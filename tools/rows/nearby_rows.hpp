@@ -16,7 +16,7 @@ class NearbyRows {
  public:
   /// Holds `held` rows at once. `equations`: if its equations are to be checked.
   NearbyRows(const std::filesystem::path&, const LatticeSystem&, const std::vector<int>& behind, double time_step,
-             double turn, int held, std::optional<EquationCheck> equations);
+             double monodromy, int held, std::optional<EquationCheck> equations);
 
   int rows() const { return section_.rows(); }
   /// Reads row j, which comes after row j − 1.

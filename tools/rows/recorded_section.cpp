@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "lattice/index.hpp"
 #include "tools/files/plain_rows.hpp"
 #include "tools/scene/recorded_scene.hpp"
 
@@ -49,13 +50,13 @@ RecordedSection::RecordedSection(const std::filesystem::path& path, const Lattic
   std::array<int, all_roles.size()> count{};
   for (std::size_t c = 0; c < back.size(); ++c) {
     const Role role = system.all_components()[c].role;
-    columns_.push_back({role, count[static_cast<std::size_t>(role)]++, back[c]});
+    columns_.push_back({role, count[at(role)]++, back[c]});
   }
   if (const int here = file_->sites(), there = system.lattice().sites(); here != there)
     throw wrong(fmt::format("has {}, and the lattice has {}; use lattice.sites = {}, or another file",
                             counted(here, "site"), there, here));
   for (const Role role : all_roles)
-    if (count[static_cast<std::size_t>(role)] > 0) check_shape(system, role);
+    if (count[at(role)] > 0) check_shape(system, role);
   if (system.times()->uniform()) check_times(time_step);
   else system.times()->set(own_times());
   check_space(system);
@@ -163,7 +164,7 @@ void RecordedSection::check_finite(const std::vector<double>& values, Role role,
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
       throw wrong(fmt::format("/{} is not finite in frame {} at site {}; leave out the frames from there on",
-                              to_string(role), frame, i / static_cast<std::size_t>(shape(role).components)));
+                              to_string(role), frame, i / at(shape(role).components)));
 }
 
 void RecordedSection::read(Role role, int back, std::int64_t j, std::vector<double>& row) const {
@@ -176,17 +177,16 @@ void RecordedSection::read(Role role, int back, std::int64_t j, std::vector<doub
     throw wrong(bad.what());
   }
   check_finite(values, role, frame);
-  const std::size_t in_file = static_cast<std::size_t>(shape(role).components), all = columns_.size();
+  const std::size_t in_file = at(shape(role).components), all = columns_.size();
   for (std::size_t c = 0; c < all; ++c)
     if (const Column& column = columns_[c]; column.role == role && column.back == back)
-      for (std::size_t i = 0; i * all < row.size(); ++i)
-        row[i * all + c] = values[i * in_file + static_cast<std::size_t>(column.index)];
+      for (std::size_t i = 0; i * all < row.size(); ++i) row[i * all + c] = values[i * in_file + at(column.index)];
 }
 
 std::vector<double> RecordedSection::row(std::int64_t j) const {
   if (j < 0 || j >= rows())
     throw wrong(fmt::format("row {} is needed, and the file has {}; record more", j, counted(rows(), "frame")));
-  std::vector<double> row(static_cast<std::size_t>(file_->sites()) * columns_.size());
+  std::vector<double> row(at(file_->sites()) * columns_.size());
   std::set<std::pair<Role, int>> reads;  // each frame of a dataset is read once
   for (const Column& column : columns_) reads.emplace(column.role, column.back);
   for (const auto& [role, back] : reads) read(role, back, j, row);

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "lattice/index.hpp"
 #include "schemes/methods/energies.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/angles.hpp"
-#include "schemes/turn.hpp"
 #include "tools/compare/estimate_error.hpp"
 #include "tools/figures/figures.hpp"
 #include "tools/files/state_in_memory.hpp"
@@ -52,12 +53,12 @@ std::string drawn(const Scene& scene, const InitialRows& initial, const FieldThe
   const auto density = scene.problem.parameters.maybe<std::string>("theory.density");
   const std::string theory = density && !density->empty() ? "ℓ = " + shortened(*density, 70) : scene.problem.theory;
   const std::vector<int> angles = angles_of(scene.problem.theory, fields, scene.problem.parameters);
-  const bool angle = scene.problem.circle_valued || angles.size() == static_cast<std::size_t>(fields.components());
-  return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice,
-                       initial.winding(), *recorder.film(), recorder.energy_errors(), scene.times, names,
-                       energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact(),
-                       outcome.maxima_over, gain_of(scene.problem.parameters)},
-                      folder);
+  const bool angle = scene.problem.circle_valued || angles.size() == at(fields.components());
+  return draw_figures(
+      {scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, initial.winding(),
+       *recorder.film(), recorder.energy_errors(), scene.times, names, energy_in_words(scene.problem),
+       std::move(section), scene.figure_form, initial.exact(), outcome.maxima_over, gain_of(scene.problem.parameters)},
+      folder);
 }
 
 // The limit of the step, where the first rows tell.
@@ -168,7 +169,8 @@ RunInMemory run_in_memory(const Scene& given, const std::string& state, const Se
   if (!state.empty()) {
     head.visit(earlier.emplace(state));
     (*earlier)("written", kept);
-    if (scene.until) scene.steps = std::max(scene.steps, head.row + 1);  // their number is a guess where the field chooses
+    if (scene.until)
+      scene.steps = std::max(scene.steps, head.row + 1);  // their number is a guess where the field chooses
     if (head.row >= scene.steps)
       throw BadInput("run.steps", fmt::format("resume: the run is at row {}, and run.steps = {}; raise run.until or "
                                               "run.steps, as steps={}",
@@ -186,9 +188,12 @@ RunInMemory run_in_memory(const Scene& given, const std::string& state, const Se
     Checkpoints checkpoints(result.state);
     begun.step(scene, recorder, checkpoints, failures);
     const Subject subject = subject_of(scene.problem);
-    result = {begun.outcome.status, summary_json(subject, scene, begun.outcome), report(subject, scene, begun.outcome),
+    result = {begun.outcome.status,
+              summary_json(subject, scene, begun.outcome),
+              report(subject, scene, begun.outcome),
               resolved_text(scene, begun.outcome.start, begun.outcome.state),
-              begun.stepping->section() ? begun.stepping->section()->table() : "", std::move(result.state),
+              begun.stepping->section() ? begun.stepping->section()->table() : "",
+              std::move(result.state),
               failures.first()};
     return ExitCode::done;
   });

@@ -13,6 +13,7 @@
 
 #include "jets/tables/line_basis.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "lattice/read_number.hpp"
 #include "lattice/text_parts.hpp"
 #include "schemes/stepping/saved_state.hpp"
@@ -50,7 +51,7 @@ SectionRequest::Term term_of(const std::string& text, std::size_t coordinates) {
 
 SectionRequest::SectionRequest(const std::string& text, int coordinates) : surface{} {
   std::vector<Term> terms;
-  for (const std::string& part : parts_of(text)) terms.push_back(term_of(part, static_cast<std::size_t>(coordinates)));
+  for (const std::string& part : parts_of(text)) terms.push_back(term_of(part, delf::at(coordinates)));
   const auto is_surface = [](const Term& term) { return term.relation == '='; };
   if (std::ranges::count_if(terms, is_surface) != 1)
     throw BadInput("output.section",
@@ -64,10 +65,10 @@ SectionRequest::SectionRequest(const std::string& text, int coordinates) : surfa
 Section::Section(const std::string& text, int coordinates, double time_step, const std::vector<int>& angles)
     : title_(text),
       request_(text, coordinates),
-      coordinates_(static_cast<std::size_t>(coordinates)),
+      coordinates_(delf::at(coordinates)),
       time_step_(time_step),
       is_angle_(2 * coordinates_, 0) {
-  for (const int field : angles) is_angle_[static_cast<std::size_t>(field)] = 1;
+  for (const int field : angles) is_angle_[field] = 1;
 }
 
 void Section::see(std::vector<double> point) {

@@ -49,11 +49,11 @@ WatchedRows watched_rows(const Scene& scene, const Simulation& simulation) {
   struct Watched {
     std::int64_t rows, apart;
   };
-  const auto [rows, apart] = !stepper.iterates()  ? Watched{64, 256}
-                             : by_rows            ? Watched{64, 64}
-                             : point              ? Watched{64, 32}
-                             : moves              ? Watched{2, 256}
-                                                  : Watched{8, 128};
+  const auto [rows, apart] = !stepper.iterates() ? Watched{64, 256}
+                             : by_rows           ? Watched{64, 64}
+                             : point             ? Watched{64, 32}
+                             : moves             ? Watched{2, 256}
+                                                 : Watched{8, 128};
   const auto sums = static_cast<std::int64_t>(1 + 2 * simulation.conserved_names().size());  // each costs twice as much
   const std::int64_t values = static_cast<std::int64_t>(scene.problem.lattice.sites()) *
                               static_cast<std::int64_t>(simulation.components().size());
@@ -101,7 +101,7 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
       own_energy_(own),
       warnings_(scene, initial, simulation),
       measures_(scene, initial.winding(), simulation) {
-  const auto sites = static_cast<std::size_t>(scene.problem.lattice.sites());
+  const std::size_t sites = scene.problem.lattice.sites();
   for (const Role role : all_roles) row_[role].resize(sites * names.of[role].size());
   if (!scene.section.empty() && scene.problem.lattice.space() == Space::point) {
     try {
@@ -143,7 +143,7 @@ void Stepping::make_first_rows() {
 
 /// (q, p) of the row `back` rows before the newest: the momenta that the method records, or those of its equations.
 std::vector<double> Stepping::phase_point(int back) const {
-  const auto d = static_cast<std::size_t>(simulation_.count(Role::field));
+  const std::size_t d = simulation_.count(Role::field);
   std::vector<double> point(d), p;
   simulation_.copy_row(back, point);
   for (std::size_t which = 0; which < names_.datasets.size() && p.empty(); ++which)
@@ -221,7 +221,7 @@ void Stepping::record(std::int64_t row) {
   std::vector<double> of_method;
   const bool has_monitors = started() && !starts_again_;
   if (!has_monitors) {
-    const auto sites = static_cast<std::size_t>(scene_.problem.lattice.sites());
+    const std::size_t sites = scene_.problem.lattice.sites();
     row_[Role::field] = initial_.row0();
     record.energy = record.energy_error = record.momentum = record.charge = Outcome::unknown;
     record.further.assign(names_.further.size(), Outcome::unknown);
@@ -252,8 +252,9 @@ void Stepping::record(std::int64_t row) {
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
   outcome_.charge_final = record.charge;
-  recorder_->append(record, row_, datasets_,
-                    has_monitors && recorder_->film() ? rates(static_cast<int>(newest() - row)) : std::vector<double>());
+  recorder_->append(
+      record, row_, datasets_,
+      has_monitors && recorder_->film() ? rates(static_cast<int>(newest() - row)) : std::vector<double>());
   ++outcome_.records;
 }
 
@@ -277,9 +278,10 @@ void Stepping::require_energy(double energy) const {
                                  : std::string();
   if (!started() && std::isnan(energy) && reason.empty()) return;
   const std::int64_t row = simulation_.newest();
-  throw NotFinite(fmt::format("step {}, t = {:.6g}: the energy is not finite{}; reduce lattice.time_step, or begin "
-                              "where the density has values all along",
-                              row, simulation_.time(row), reason.empty() ? "" : ": " + reason));
+  throw NotFinite(
+      fmt::format("step {}, t = {:.6g}: the energy is not finite{}; reduce lattice.time_step, or begin "
+                  "where the density has values all along",
+                  row, simulation_.time(row), reason.empty() ? "" : ": " + reason));
 }
 
 /// Near a vacuum all terms are rounding, and their sum has no scale.
@@ -287,7 +289,7 @@ bool Stepping::varies() const {
   constexpr double little = 1e-8;
   std::vector<double> row(row_[Role::field].size()), before(row);
   simulation_.copy_row(0, row), simulation_.copy_row(1, before);
-  const auto d = static_cast<std::size_t>(simulation_.count(Role::field));
+  const std::size_t d = simulation_.count(Role::field);
   double largest = 0, change = 0;
   for (std::size_t n = 0; n < row.size(); ++n) {
     largest = std::max(largest, std::abs(row[n]));
@@ -364,7 +366,8 @@ void Stepping::warn_of_alias() {
   const Film* film = recorder_->film();
   if (!film || !film->is_aliased()) return;
   // The excess of pulses is in proportion to the time between frames.
-  const double apart = static_cast<double>(scene_.every * film->stride()), wanted = apart * Film::aliased / film->alias();
+  const double apart = static_cast<double>(scene_.every * film->stride()),
+               wanted = apart * Film::aliased / film->alias();
   const auto every = std::max<std::int64_t>(1, std::llround(std::floor(wanted)));
   constexpr std::int64_t most_frames = 600;
   const bool fits = every < scene_.every && outcome_.steps / every <= most_frames;

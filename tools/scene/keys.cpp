@@ -110,7 +110,7 @@ std::string nearest_key(std::string_view unknown, std::span<const Parameter> kno
   for (const Parameter& key : known) lasts.emplace_back(last(key.key));
   const auto close = nearest(last(unknown), lasts);
   const auto at = close ? std::find(lasts.begin(), lasts.end(), *close) : lasts.end();
-  return at == lasts.end() ? std::string() : full[static_cast<std::size_t>(at - lasts.begin())];
+  return at == lasts.end() ? std::string() : full[at - lasts.begin()];
 }
 
 }  // namespace delf

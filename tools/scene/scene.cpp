@@ -12,12 +12,12 @@
 #include "jets/expressions/stencil_text.hpp"
 #include "jets/tables/named_tables.hpp"
 #include "lattice/text_parts.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/step_method.hpp"
 #include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
-#include "schemes/turn.hpp"
 #include "tools/scene/brick_rows.hpp"
 #include "tools/scene/file_beside.hpp"
 #include "tools/scene/key_warning.hpp"
@@ -93,7 +93,7 @@ Problem read_problem(const Settings& settings, const Values& values) {
   p.stencil = stencil_name(values.choice("lattice.stencil"), p.lattice.space() == Space::point);
   p.method = values.choice("scheme.method");
   p.tolerance = std::max(values.real("scheme.tolerance"), smallest_tolerance);
-  p.seed_order = static_cast<int>(values.integer("scheme.seed_order"));
+  p.predictor_order = static_cast<int>(values.integer("scheme.seed_order"));
   p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
   p.threads = static_cast<int>(values.integer("run.threads"));
   const bool by_courant = values.given("lattice.courant");
@@ -245,7 +245,8 @@ Scene read_scene(Settings given) {
   Settings& settings = scene.settings;
   scene.name = settings.file().stem().string();
   const Values values(settings);
-  for (const Parameter& key : settings.all_keys()) values.check(key);  // in the order of the table, whatever reads them below
+  for (const Parameter& key : settings.all_keys())
+    values.check(key);  // in the order of the table, whatever reads them below
   if (const Setting* space = settings.find("lattice.space"); space && space->value == "complex")
     throw settings.error(
         "lattice.space",

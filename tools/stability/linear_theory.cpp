@@ -8,11 +8,11 @@
 #include <limits>
 #include <numbers>
 
+#include "schemes/monodromy.hpp"
 #include "schemes/stability/dispersion.hpp"
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/stability/stable_set.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/turn.hpp"
 
 namespace delf {
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/mesh_frequency.hpp"
@@ -42,12 +43,12 @@ bool stays(const ComplexScene& c, const NamedScheme& scheme, double h) {
   Simulation simulation(problem);
   std::mt19937_64 random(c.scene.initial.seed);
   std::normal_distribution<double> normal;
-  std::vector<double> row, rates(simulation.components().size() * static_cast<std::size_t>(c.sites()), 0.0);
+  std::vector<double> row, rates(simulation.components().size() * at(c.sites()), 0.0);
   for (int i = 0; i < c.sites(); ++i) {
     std::vector<double> fields(c.fields.size());
-    for (double& phi : fields) phi = c.space->fixed[static_cast<std::size_t>(i)] ? 0 : noise * normal(random);
+    for (double& phi : fields) phi = c.space->fixed[i] ? 0 : noise * normal(random);
     for (const Component& component : simulation.components())
-      row.push_back(component.role == Role::multiplier ? 0 : fields[static_cast<std::size_t>(component.field)]);
+      row.push_back(component.role == Role::multiplier ? 0 : fields[component.field]);
   }
   std::vector<double> fields(c.space->fields_of_row());
   try {
@@ -148,8 +149,8 @@ ExitCode mesh_stability(const ComplexScene& c, const std::filesystem::path& fold
     return ExitCode::interrupted;
   }
   const auto failed = std::ranges::count(findings, false, &MeshFinding::agrees);
-  fmt::print("\n{} of {} limits agree\n{}: stability.json\n", findings.size() - static_cast<std::size_t>(failed),
-             findings.size(), folder.string());
+  fmt::print("\n{} of {} limits agree\n{}: stability.json\n", findings.size() - at(failed), findings.size(),
+             folder.string());
   return failed == 0 ? ExitCode::done : ExitCode::check_failed;
 }
 

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "tools/report/interrupt.hpp"
 
 namespace delf {
@@ -31,9 +32,9 @@ double largest_field(const Simulation& simulation, std::vector<double>& row) {
 
 std::vector<std::vector<double>> random_rows(const Simulation& simulation, int sites, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
-  std::vector<std::vector<double>> rows(static_cast<std::size_t>(simulation.starting_rows()));
+  std::vector<std::vector<double>> rows(simulation.starting_rows());
   for (auto& row : rows) {
-    row.resize(static_cast<std::size_t>(sites) * simulation.components().size());
+    row.resize(delf::at(sites) * simulation.components().size());
     for (double& y : row) y = noise * (std::ldexp(static_cast<double>(generator() >> 11), -52) - 1);
   }
   return rows;
@@ -254,7 +255,7 @@ ObservedGrowth observe_growth(const Problem& problem, int steps, std::uint64_t s
   try {
     Simulation simulation(problem);
     start_from_noise(simulation, problem, seed);
-    std::vector<double> row(static_cast<std::size_t>(problem.lattice.sites() * simulation.count(Role::field)));
+    std::vector<double> row(problem.lattice.sites() * simulation.count(Role::field));
     const int stride = std::max(1, steps / 256);
     double second = 0, fourth = 0;
     for (int n = 1; n <= steps; ++n) {

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stability/symbol.hpp"
 #include "schemes/state.hpp"
@@ -68,7 +69,7 @@ void start(Simulation& s, const Problem& p, bool phase_space, const Pair& state)
   std::vector<double> row, other;
   for (const Component& c : s.components()) {
     const bool field = c.role == Role::field, multiplier = c.role == Role::multiplier;
-    row.push_back(multiplier ? 0 : state[phase_space ? static_cast<std::size_t>(c.field) : 0]);
+    row.push_back(multiplier ? 0 : state[phase_space ? at(c.field) : 0]);
     other.push_back(field ? state[1] : 0);
   }
   if (phase_space) s.start({row});
@@ -77,7 +78,7 @@ void start(Simulation& s, const Problem& p, bool phase_space, const Pair& state)
 }
 
 double newest(const Simulation& s) {
-  std::vector<double> values(static_cast<std::size_t>(s.count(Role::field)));
+  std::vector<double> values(s.count(Role::field));
   s.copy_row(0, values);
   return values[0];
 }

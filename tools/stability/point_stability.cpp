@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "jets/tables/named_tables.hpp"
+#include "lattice/index.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/interrupt.hpp"
@@ -153,12 +154,12 @@ ExitCode point_stability(const Scene& scene, const std::filesystem::path& folder
   else if (count_left_out > 0) fmt::print("\nleft out: {} schemes that are not of mechanics\n", count_left_out);
   if (Interrupt::asked()) {
     fmt::print("\nnot finished (interrupted): {} of {} schemes\n{}: stability.json methods.md\n",
-               findings.size() + static_cast<std::size_t>(count_left_out), request.schemes.size(), folder.string());
+               findings.size() + at(count_left_out), request.schemes.size(), folder.string());
     return ExitCode::interrupted;
   }
   const auto failed = std::ranges::count(findings, false, &PointFinding::agrees);
-  fmt::print("\n{} of {} limits agree\n{}: stability.json methods.md\n",
-             findings.size() - static_cast<std::size_t>(failed), findings.size(), folder.string());
+  fmt::print("\n{} of {} limits agree\n{}: stability.json methods.md\n", findings.size() - at(failed), findings.size(),
+             folder.string());
   return failed == 0 ? ExitCode::done : ExitCode::check_failed;
 }
 

@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "lattice/error.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/turn.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/report/interrupt.hpp"

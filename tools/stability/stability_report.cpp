@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "tools/report/in_words.hpp"
 #include "tools/report/text_columns.hpp"
 #include "tools/stability/stability_findings.hpp"
@@ -125,7 +126,7 @@ std::string stress_table(const StabilityFindings& f) {
       rows.back().front() = c.stress_case.name;
     }
     const auto at = std::ranges::find(schemes, c.stress_case.scheme) - schemes.begin();
-    rows.back()[static_cast<std::size_t>(at) + 1] = cell(c.result);
+    rows.back()[delf::at(at) + 1] = cell(c.result);
   }
   std::string text = "\n";
   for (const std::string& line : wrapped(key, widest_line - 2)) text += "  " + line + "\n";

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "schemes/declared.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
@@ -64,8 +65,8 @@ class Watched {
         initial_(initial),
         simulation_(simulation),
         result_(result),
-        fields_(static_cast<std::size_t>(simulation.count(Role::field))) {
-    row_.resize(static_cast<std::size_t>(scene.problem.lattice.sites()) * fields_);
+        fields_(at(simulation.count(Role::field))) {
+    row_.resize(at(scene.problem.lattice.sites()) * fields_);
   }
 
   void start() {

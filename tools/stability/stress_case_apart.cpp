@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "lattice/index.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/seconds_since.hpp"
 #include "tools/stability/stress_case.hpp"
@@ -43,7 +44,7 @@ void send(int pipe, char mark, const StressResult& r) {
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t n = write(pipe, text.data() + at, text.size() - at);
     if (n <= 0) return;
-    at += static_cast<std::size_t>(n);
+    at += delf::at(n);
   }
 }
 
@@ -113,7 +114,7 @@ StressResult run_stress_case_apart(const StressCase& stress_case, double budget)
       if (n == 0 || (n < 0 && errno != EINTR)) break;
       if (n > 0) {
         if (received.mark == 0) started = elapsed();
-        received.text.append(bytes, static_cast<std::size_t>(n));
+        received.text.append(bytes, delf::at(n));
         received.take(elapsed());
       }
     }

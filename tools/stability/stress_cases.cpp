@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include "schemes/turn.hpp"
+
+#include "schemes/monodromy.hpp"
 
 namespace delf {
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "lattice/index.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/files/folder_lock.hpp"
 #include "tools/files/text_file.hpp"
@@ -80,10 +81,10 @@ void require_rows(const fs::path& scene, const SweepOutcome& outcome) {
         "again",
         failed, all));
   const auto refused = count(of_input);
-  if (static_cast<std::size_t>(refused) == all)
+  if (at(refused) == all)
     throw BadScene(
         fmt::format("{}: none of its runs could begin: the table above has what is wrong with each", scene.string()));
-  if (static_cast<std::size_t>(refused) + done == all)
+  if (at(refused) + done == all)
     throw BadScene(fmt::format("{}: {} of {} runs could not begin: the table above has what is wrong with each",
                                scene.string(), refused, all));
   throw NumericalFailure(

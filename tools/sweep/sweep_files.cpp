@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "tools/files/csv_cell.hpp"
 #include "tools/outcome/findings_json.hpp"
 #include "tools/report/in_words.hpp"
@@ -37,9 +38,7 @@ std::string warnings_in_words(const std::vector<SweepRow>& rows) {
 
 }  // namespace
 
-std::size_t SweepOutcome::done() const {
-  return static_cast<std::size_t>(std::ranges::count(rows, "done", &SweepRow::status));
-}
+std::size_t SweepOutcome::done() const { return at(std::ranges::count(rows, "done", &SweepRow::status)); }
 
 std::string usual_number(const std::vector<SweepRow>& rows) {
   const auto there = [&](const std::string& name) {

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "schemes/methods/kernel_alone.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/mirrored_in_time.hpp"
-#include "schemes/turn.hpp"
 #include "schemes/verify/reversal/time_reversal.hpp"
 #include "schemes/verify/stress_balance.hpp"
 #include "tools/compare/refined_scene.hpp"

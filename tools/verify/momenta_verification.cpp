@@ -10,10 +10,11 @@
 #include <numbers>
 #include <optional>
 
+#include "lattice/index.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/turn.hpp"
 #include "schemes/verify/phase_space_check.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
 #include "tools/diagnosis/fields_system.hpp"
@@ -33,8 +34,7 @@ namespace delf {
 namespace {
 
 RecordedSection opened(const std::string& file, const LatticeSystem& system, const Scene& scene, const char* option) {
-  return {file, system, std::vector<int>(static_cast<std::size_t>(system.components()), 0), scene.problem.time_step,
-          option};
+  return {file, system, std::vector<int>(system.components(), 0), scene.problem.time_step, option};
 }
 
 /// (q, p) of a frame with p = ∂L/∂φ_t, where it is known what the file means by momenta.
@@ -137,8 +137,9 @@ void verify_momenta(const Scene& scene, const VerifyRequest& request, const std:
 
   const auto row = [&](std::int64_t j) { return rows.section().row(j); };
   const double of_steps = std::max(request.tolerance, 10 * scene.problem.tolerance);
-  const double turn = 2 * std::numbers::pi * rows.section().winding().value_or(0) + gain_of(scene.problem.parameters);
-  const Evidence evidence{plain, *system, turn, of_steps, rows.section().rows(), row, {}, [&](std::int64_t j) {
+  const double monodromy =
+      2 * std::numbers::pi * rows.section().winding().value_or(0) + gain_of(scene.problem.parameters);
+  const Evidence evidence{plain, *system, monodromy, of_steps, rows.section().rows(), row, {}, [&](std::int64_t j) {
                             return *rows.section().momenta(j);
                           }};
   const std::vector<double> masses = masses_of(plain);

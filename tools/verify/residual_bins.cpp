@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 ResidualBins::ResidualBins(const Lattice& lattice, double time_step, std::int64_t first_row, std::int64_t rows)
@@ -14,7 +16,7 @@ ResidualBins::ResidualBins(const Lattice& lattice, double time_step, std::int64_
       rows_(rows),
       row_bins_(std::min(rows, most)),
       site_bins_(static_cast<int>(std::min<std::int64_t>(lattice.sites(), most))),
-      largest_(static_cast<std::size_t>(row_bins_ * site_bins_), std::numeric_limits<double>::quiet_NaN()) {}
+      largest_(delf::at(row_bins_ * site_bins_), std::numeric_limits<double>::quiet_NaN()) {}
 
 void ResidualBins::add(std::int64_t row, const std::vector<double>& residuals, int components) {
   const std::int64_t at = std::min(row_bins_ - 1, (row - first_) * row_bins_ / rows_);

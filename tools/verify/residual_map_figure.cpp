@@ -70,7 +70,7 @@ std::string figure_of(const ResidualMap& given, const char* title, const char* l
   for (double& v : map.log10)
     if (!std::isnan(v)) v = std::clamp(v, std::log10(drawn_zero), 3.0);  // the logarithms of 0 and of infinity
   const auto less = [](double a, double b) { return std::isnan(b) ? false : std::isnan(a) || a < b; };
-  const auto worst = static_cast<std::size_t>(std::ranges::max_element(map.log10, less) - map.log10.begin());
+  const std::size_t worst = std::ranges::max_element(map.log10, less) - map.log10.begin();
   if (std::isnan(map.log10[worst])) return {};
   write_text_file(scratch / "residuals",
                   {reinterpret_cast<const char*>(map.log10.data()), map.log10.size() * sizeof(double)});

@@ -12,11 +12,12 @@
 #include <span>
 
 #include "jets/expressions/expression.hpp"
+#include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/stepping/energy.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/turn.hpp"
 #include "schemes/verify/derivatives.hpp"
 #include "schemes/verify/flux_check.hpp"
 #include "schemes/verify/newton_order.hpp"
@@ -81,7 +82,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
       request_(request),
       initial_(fields && scene.from_file() ? std::nullopt : std::make_optional<InitialRows>(scene)),
       winding_(initial_ ? initial_->winding() : scene.initial.winding.value_or(0)),
-      turn_(2 * std::numbers::pi * winding_ + gain_of(scene.problem.parameters)),
+      monodromy_(2 * std::numbers::pi * winding_ + gain_of(scene.problem.parameters)),
       simulation_(build(scene, winding_)),
       faulty_(request.fault == "sign" ? with_wrong_sign(simulation_.evolution().system()) : nullptr),
       system_(faulty_ ? *faulty_ : simulation_.evolution().system()),
@@ -117,7 +118,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
   if (request.wants("equations")) equations_.emplace(system_, plan_, of_steps, simulation_.starting_rows(), coarse);
   if (request.wants("forms") && (!fields || request.chosen))
     forms_.emplace(system_, plan_, moment_rows_,
-                   FormCheck::Options{request.regions, request.variations, request.tolerance, turn_,
+                   FormCheck::Options{request.regions, request.variations, request.tolerance, monodromy_,
                                       request.fault == "variation"});
   if (const auto all = symmetries(); request.wants("noether")) {
     if (!all.empty()) noether_.emplace(system_, all, of_steps, request.force, seed());
@@ -143,14 +144,14 @@ void Verification::open_files(const std::string& fields, const std::vector<std::
           fmt::format("command line: --fields {}: was made with boundary.winding = {}, and the scene has {}; "
                       "use --boundary.winding={}, or leave out its attribute winding",
                       fields, *winding, *here, *winding));
-    turn_ = 2 * std::numbers::pi * *winding + gain_of(scene_.problem.parameters);
+    monodromy_ = 2 * std::numbers::pi * *winding + gain_of(scene_.problem.parameters);
   }
   if (request_.unwrap) {
     if (!nearby.empty())
       throw scene_.settings.error("verify.unwrap", "unwraps the rows of --fields alone; leave --nearby out");
     std::vector<double> row = fields_->row(0);
     unwrap_along(row, system_.components());
-    if (system_.lattice().is_circle()) turn_ = turn_of_row(row, system_.components());
+    if (system_.lattice().is_circle()) monodromy_ = monodromy_of_row(row, system_.components());
   }
   if (nearby.size() % 2 != 0)
     throw BadScene(
@@ -170,9 +171,10 @@ void Verification::require_every_row(const std::string& fields) const {
   if (!scene_.problem.step_control || !density || !fields_->scene().empty()) return;
   const std::vector<double> row = fields_->row(0), at_rest(row.size());
   const double longest = scene_.problem.time_step, apart = system_.times()->step(0);
-  const double chosen = longest / density({simulation_.theory(), system_, system_.window(0, {row}, turn_), 0, longest},
-                                          at_rest, *scene_.problem.step_control)
-                                      .density;
+  const double chosen =
+      longest / density({simulation_.theory(), system_, system_.window(0, {row}, monodromy_), 0, longest}, at_rest,
+                        *scene_.problem.step_control)
+                    .density;
   const auto steps = std::lround(apart / chosen);
   if (steps < 2) return;
   throw BadScene(
@@ -244,7 +246,7 @@ void Verification::choose_moments() {
     if (system_.moves()) leave_out("balance of energy and momentum: the sites move");
     else if (scene_.problem.step_control) leave_out("balance of energy and momentum: steps have lengths of their own");
     else {
-      balance_.emplace(theory, system_.lattice(), scene_.problem.time_step, turn_);
+      balance_.emplace(theory, system_.lattice(), scene_.problem.time_step, monodromy_);
       balance_rows_ = std::clamp<std::int64_t>(most_updates / 4 / system_.lattice().sites(), 3, rows_);
     }
   }
@@ -282,8 +284,8 @@ void Verification::open_nearby(const std::string& fields, const std::vector<std:
     for (std::size_t n = 0; n <= nearby_.size(); ++n)
       if (std::error_code unreadable; fs::equivalent(file, n == 0 ? fields : nearby[n - 1], unreadable))
         throw BadScene(fmt::format("command line: --nearby {}: is given twice; give solutions that differ", file));
-    nearby_.push_back(
-        std::make_unique<NearbyRows>(file, system_, behind, scene_.problem.time_step, turn_, held_rows_, equations_));
+    nearby_.push_back(std::make_unique<NearbyRows>(file, system_, behind, scene_.problem.time_step, monodromy_,
+                                                   held_rows_, equations_));
     if (nearby_.back()->rows() != fields_->rows())
       throw BadScene(
           fmt::format("command line: --nearby {}: has {} rows, and the file of --fields has {}; give as many", file,
@@ -293,7 +295,7 @@ void Verification::open_nearby(const std::string& fields, const std::vector<std:
 
 Window Verification::window(std::int64_t first, std::int64_t last) const {
   const auto begin = held_.rows.begin() + (first - held_.first_row);
-  return system_.window(first, {begin, begin + (last - first + 1)}, turn_);
+  return system_.window(first, {begin, begin + (last - first + 1)}, monodromy_);
 }
 
 Verdict Verification::run() {
@@ -324,7 +326,7 @@ void Verification::pass_over_rows() {
   std::unique_ptr<SectionSource> source;
   if (fields_) source = std::make_unique<RowsOfFile>(*fields_, rows_);
   else source = std::make_unique<ComputedRows>(simulation_, rows_);
-  held_ = system_.window(0, {}, turn_);
+  held_ = system_.window(0, {}, monodromy_);
   Progress progress(rows_);
   while (auto row = source->next()) {
     take(std::move(*row));
@@ -344,8 +346,7 @@ void Verification::take(std::vector<double> row) {
   if (request_.fault == "field" && j == rows_ / 2) {
     double most = 0;
     for (const double value : row) most = std::max(most, std::abs(value));
-    row[row.size() / static_cast<std::size_t>(2 * system_.components()) *
-        static_cast<std::size_t>(system_.components())] += 0.01 * (most > 0 ? most : 1);
+    row[row.size() / at(2 * system_.components()) * at(system_.components())] += 0.01 * (most > 0 ? most : 1);
   }
   if (first_rows_.size() < 2) first_rows_.push_back(row);
   if (fields_) look_at_walls(j, row);
@@ -408,7 +409,7 @@ void Verification::look_at_walls(std::int64_t j, const std::vector<double>& row)
     for (int c = 0; c < system_.components(); ++c) {
       if (!system_.is_held(i, c)) continue;
       if (!walls_) walls_ = Check{.name = "fixed walls", .region = {}, .tolerance = request_.tolerance};
-      const auto n = static_cast<std::size_t>(i * system_.components() + c);
+      const std::size_t n = i * system_.components() + c;
       const double change = std::abs(row[n] - first_rows_[1][n]);
       ++walls_->samples, ++walls_->count;
       if (largest == 0 || !worse(change / largest, walls_->value)) continue;
@@ -436,9 +437,9 @@ void Verification::diagnose_rows() {
   const auto row = [&](std::int64_t j) {
     std::vector<double> values = fields_->row(j);
     if (request_.unwrap) {
-      const auto C = static_cast<std::size_t>(system_.components());
+      const std::size_t C = system_.components();
       unwrap_along(values, system_.components());
-      unwrap_to(std::span(first_values_).subspan(static_cast<std::size_t>(j) * C, C), values);
+      unwrap_to(std::span(first_values_).subspan(at(j) * C, C), values);
     }
     return values;
   };
@@ -446,7 +447,7 @@ void Verification::diagnose_rows() {
   problem.winding = winding_;
   Evidence evidence{problem,
                     system_,
-                    turn_,
+                    monodromy_,
                     hidden ? share_->relative_bound() : equations_->tolerance(),
                     rows_,
                     row,
@@ -471,7 +472,7 @@ void Verification::look_at_nearby(const Window& rows) {
   for (const RegionRequest& request : request_.regions) {
     const auto region = drawer_->draw(request, random_);
     if (!region) continue;
-    const RegionSystem here(system_, *region, rows.first_row, turn_);
+    const RegionSystem here(system_, *region, rows.first_row, monodromy_);
     std::vector<RegionSystem::Pair> pairs;
     for (std::size_t n = 0; n + 1 < others.size(); n += 2)
       pairs.push_back({here.restricted(others[n]), here.restricted(others[n + 1])});
@@ -485,10 +486,10 @@ void Verification::collect_severity() {
   verdict_.measured = share_->measured();
   verdict_.severest = share_->sites();
   ResidualMap& map = verdict_.severity = severity_->map();
-  const std::size_t columns = map.space.size(), N = static_cast<std::size_t>(system_.lattice().sites());
+  const std::size_t columns = map.space.size(), N = at(system_.lattice().sites());
   std::vector<double> scale(columns, 0.0);
   for (const SiteSeverity& site : verdict_.severest) {
-    double& of_column = scale[static_cast<std::size_t>(site.site) * columns / N];
+    double& of_column = scale[at(site.site) * columns / N];
     of_column = std::max({of_column, site.force, site.rounding});
   }
   for (std::size_t n = 0; n < map.log10.size(); ++n) map.log10[n] -= std::log10(scale[n % columns]);

@@ -72,7 +72,7 @@ class Verification {
   const VerifyRequest& request_;
   const std::optional<InitialRows> initial_;  ///< none where the rows of --fields are all there is
   int winding_;
-  double turn_;
+  double monodromy_;
   Simulation simulation_;
   std::unique_ptr<LatticeSystem> faulty_;  ///< if a sign is to be wrong
   const LatticeSystem& system_;

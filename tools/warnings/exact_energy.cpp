@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 
@@ -25,13 +26,13 @@ std::optional<double> exact_energy(const State& state, const BatchDensity& densi
   const double cell = lattice.length() / cells;
 
   const ScratchRows jet(m + 1, lanes), g(m + 1, lanes);
-  std::vector<FieldPoint> at(static_cast<std::size_t>(d));
+  std::vector<FieldPoint> at(d);
   double energy = 0, weight_of[lanes];
   int filled = 0;
   const auto add = [&](double x, double weight) {
     state.at(t, x, at);
     for (int a = 0; a < d; ++a) {
-      const FieldPoint& p = at[static_cast<std::size_t>(a)];
+      const FieldPoint& p = at[a];
       jet[a][filled] = p.phi, jet[d + a][filled] = p.phi_t, jet[2 * d + a][filled] = p.phi_x;
     }
     for (int a = 3 * d; a < m; ++a) jet[a][filled] = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "tools/rows/engine.hpp"
@@ -83,7 +84,7 @@ std::optional<StepError> step_error(const Scene& scene, const InitialRows& initi
   Simulation fine = build(half, of_half.winding());
   initial.start(own), of_half.start(fine);
 
-  const std::size_t d = static_cast<std::size_t>(own.count(Role::field));
+  const std::size_t d = at(own.count(Role::field));
   std::vector<double> row(last_row.size()), of_fine(row);
   Spread spread(d);
   spread.add(initial.row0()), spread.add(last_row);
@@ -91,7 +92,8 @@ std::optional<StepError> step_error(const Scene& scene, const InitialRows& initi
   for (std::int64_t n = std::max<std::int64_t>(1, own.newest()); n <= last; ++n) {
     while (own.newest() < n) own.step();
     while (fine.newest() < 2 * n) fine.step();
-    own.observe(static_cast<int>(own.newest() - n), row), fine.observe(static_cast<int>(fine.newest() - 2 * n), of_fine);
+    own.observe(static_cast<int>(own.newest() - n), row),
+        fine.observe(static_cast<int>(fine.newest() - 2 * n), of_fine);
     spread.add(row);
     for (std::size_t i = 0; i < row.size(); ++i) largest = std::max(largest, std::abs(row[i] - of_fine[i]));
   }

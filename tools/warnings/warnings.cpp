@@ -10,6 +10,7 @@
 #include <set>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/smooth_state.hpp"
 #include "schemes/stability/linear_stability.hpp"
@@ -42,7 +43,7 @@ struct Range {
 
 // The largest range of a component, of so many rows of the solution until `end`.
 double range_of(const State& state, const Lattice& lattice, double end) {
-  const auto d = static_cast<std::size_t>(state.components()), N = static_cast<std::size_t>(lattice.sites());
+  const std::size_t d = state.components(), N = delf::at(lattice.sites());
   const int times = std::clamp(2048 / lattice.sites(), 2, 64);
   std::vector<double> row(N * d);
   std::vector<Range> ranges(d);
@@ -81,15 +82,15 @@ int Warnings::nodes_in_cell() const {
   for (const Component& component : simulation_.components()) places.insert(component.at.space);
   return static_cast<int>(places.size());
 }
-double Warnings::turn() const { return initial_.turn(); }
+double Warnings::monodromy() const { return initial_.monodromy(); }
 double Warnings::centre(std::span<const double> fields) const {
-  return gradient_centre(scene_.problem.lattice, fields, simulation_.count(Role::field), turn());
+  return gradient_centre(scene_.problem.lattice, fields, simulation_.count(Role::field), monodromy());
 }
 double Warnings::exact_centre(double time) const {
   const State& state = *initial_.exact();
-  std::vector<double> row(static_cast<std::size_t>(scene_.problem.lattice.sites() * state.components()));
+  std::vector<double> row(scene_.problem.lattice.sites() * state.components());
   state.values(time, scene_.problem.lattice, row);
-  return gradient_centre(scene_.problem.lattice, row, state.components(), turn());
+  return gradient_centre(scene_.problem.lattice, row, state.components(), monodromy());
 }
 
 void Warnings::see(double time, std::span<const double> fields, std::span<const double> monitors) {
@@ -115,7 +116,7 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
   for (Found& found :
        std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row), energy(outcome),
                           energy_off_band(energy_errors, "reduce lattice.time_step, or run less far"), error(outcome),
-                           ends(outcome), without_solution(), pinned(outcome, last_row), phase(outcome, last_row)})
+                          ends(outcome), without_solution(), pinned(outcome, last_row), phase(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
   std::ranges::move(grown(), std::back_inserter(all));
   std::ranges::move(continued(outcome), std::back_inserter(all));
@@ -144,7 +145,7 @@ Found Warnings::spurious_mode(std::span<const double> last_row) const {
   double largest = 0, range = 0;
   for (int c = 0; c < d; ++c) {
     const auto y = [&](int i) {
-      return last_row[static_cast<std::size_t>(lattice.wrapped(i) * d + c)] + (i < 0 ? -turn() : i >= N ? turn() : 0);
+      return last_row[lattice.wrapped(i) * d + c] + (i < 0 ? -monodromy() : i >= N ? monodromy() : 0);
     };
     double sum = 0;
     Range values;
@@ -218,10 +219,11 @@ Found Warnings::phase(const Outcome& outcome, std::span<const double> last_row) 
   if (outcome.status != "done" || !outcome.continued.empty()) return {};
   const auto found = step_error(scene_, initial_, simulation_, outcome.steps, last_row);
   if (!found || (found->error <= thirty_percent && found->at_end <= 1.2 * thirty_percent)) return {};
-  return fmt::format("half the step moves the field by {:.2g} of its range until t = {:.4g}{}: its phase is off; reduce "
-                     "lattice.time_step",
-                     found->error, found->time,
-                     found->at_end > found->error ? fmt::format(", and so by {:.2g} in the end", found->at_end) : "");
+  return fmt::format(
+      "half the step moves the field by {:.2g} of its range until t = {:.4g}{}: its phase is off; reduce "
+      "lattice.time_step",
+      found->error, found->time,
+      found->at_end > found->error ? fmt::format(", and so by {:.2g} in the end", found->at_end) : "");
 }
 
 /// A monitor that passes a limit of 1; and one that ends a hundred times above all that it is in the first tenth of the run.
@@ -248,14 +250,12 @@ std::vector<std::string> Warnings::grown() const {
 std::vector<std::string> Warnings::continued(const Outcome& outcome) const {
   std::vector<std::string> all;
   for (const auto& [why, steps] : outcome.continued)
-    all.push_back(
-        fmt::format("{} of {} steps took Newton's method, which is {} times as dear: {}; {}", steps,
-                    outcome.steps_taken,
-                    why == Continued::stiff || why == Continued::far ? "a thousand" : "a hundred to a thousand",
-                    in_words(why),
-                    why == Continued::out_of_iterations
-                        ? fmt::format("raise scheme.max_iterations, which is {}", scene_.problem.max_iterations)
-                        : "reduce lattice.time_step"));
+    all.push_back(fmt::format(
+        "{} of {} steps took Newton's method, which is {} times as dear: {}; {}", steps, outcome.steps_taken,
+        why == Continued::stiff || why == Continued::far ? "a thousand" : "a hundred to a thousand", in_words(why),
+        why == Continued::out_of_iterations
+            ? fmt::format("raise scheme.max_iterations, which is {}", scene_.problem.max_iterations)
+            : "reduce lattice.time_step"));
   return all;
 }
 

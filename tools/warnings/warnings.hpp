@@ -44,7 +44,7 @@ class Warnings {
 
   std::string finer() const;
   int nodes_in_cell() const;
-  double turn() const;
+  double monodromy() const;
   double centre(std::span<const double> fields) const;
   double exact_centre(double time) const;
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "tools/compare/placed_row.hpp"
 #include "tools/rows/initial_rows.hpp"
 #include "tools/workprecision/resolution_search.hpp"
@@ -58,8 +59,8 @@ TriedRun run_once(const Scene& scene, const std::vector<WorkPrecisionEntry>& ent
   const std::int64_t every = std::max<std::int64_t>(1, r.steps / records);
   for (std::int64_t row = started->newest() + every; row < r.steps - 1; row += every)
     if (!step_to(row)) return tried;
-  const auto d = static_cast<std::size_t>(solution.components());
-  std::vector<double> before(static_cast<std::size_t>(r.sites) * d), last(before.size());
+  const std::size_t d = solution.components();
+  std::vector<double> before(at(r.sites) * d), last(before.size());
   if (started->newest() < r.steps - 1 && !step_to(r.steps - 1)) return tried;
   started->copy(before);
   if (!step_to(r.steps)) return tried;
@@ -82,9 +83,11 @@ TriedRun run_once(const Scene& scene, const std::vector<WorkPrecisionEntry>& ent
   run.error_linf = error.linf, run.error_l2 = error.l2;
   if (!solution.is_exact() || scene.from_file()) return tried;
   // the same of the exact field, at the same sites and times
-  const double turn = InitialRows(scene).turn();
+  const double monodromy = InitialRows(scene).monodromy();
   const int fields = solution.components();
-  const auto centre = [&](const std::vector<double>& field) { return gradient_centre(lattice, field, fields, turn); };
+  const auto centre = [&](const std::vector<double>& field) {
+    return gradient_centre(lattice, field, fields, monodromy);
+  };
   const double off = separation(lattice, centre(last), centre(there));
   const double off_before = separation(lattice, centre(before), centre(solution.at(lattice, until - r.time_step)));
   run.position_error = std::abs(off);

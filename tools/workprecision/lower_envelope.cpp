@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 std::vector<std::size_t> lower_envelope(const std::vector<WorkPrecisionRun>& runs, std::span<const std::size_t> among) {
@@ -84,7 +86,7 @@ double order_of(const std::vector<WorkPrecisionRun>& runs, std::span<const std::
 void compare(WorkPrecisionOutcome& outcome, const std::vector<double>& accuracies) {
   std::vector<WorkPrecisionRun>& runs = outcome.runs;
   outcome.lines.clear(), outcome.costs.clear();
-  std::vector<std::size_t> sides[2];  // of the engine, of the peers
+  std::vector<std::size_t> sides[2];              // of the engine, of the peers
   std::vector<std::size_t> plain[2], special[2];  // without and with tuned schemes and processed peers
   std::vector<std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -93,14 +95,14 @@ void compare(WorkPrecisionOutcome& outcome, const std::vector<double>& accuracie
     sides[side].push_back(i);
     (runs[i].tuned || runs[i].processed ? special : plain)[side].push_back(i);
     const auto line = std::ranges::find(outcome.lines, runs[i].scheme, &WorkPrecisionLine::scheme);
-    const auto at = static_cast<std::size_t>(line - outcome.lines.begin());
+    const std::size_t at = line - outcome.lines.begin();
     if (line == outcome.lines.end()) {
       outcome.lines.push_back({runs[i].scheme, runs[i].peer, runs[i].own, {}});
       members.emplace_back();
     }
     members[at].push_back(i);
   }
-  outcome.unsteady = static_cast<std::size_t>(std::ranges::count_if(
+  outcome.unsteady = delf::at(std::ranges::count_if(
       runs, [](const WorkPrecisionRun& r) { return r.repeats > 1 && r.seconds_max > 3 * r.seconds_min; }));
   for (std::size_t l = 0; l < members.size(); ++l) {
     outcome.lines[l].front = lower_envelope(runs, members[l]);

@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "lattice/error.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/state.hpp"
-#include "schemes/turn.hpp"
 #include "tools/peers/body_peers.hpp"
 #include "tools/peers/peer.hpp"
 
@@ -31,7 +31,7 @@ std::optional<WaveEquation> equation_of(const Scene& scene) {
       peers::wave_equation(p.theory, parameter("theory.mass"), parameter("theory.lambda"), p.lattice.length(), 0, 0);
   if (!equation) return equation;
   const auto state = make_state(scene.initial, p.lattice);
-  equation->turn = 2 * std::numbers::pi * scene.initial.winding.value_or(state->winding()) + gain_of(p.parameters);
+  equation->monodromy = 2 * std::numbers::pi * scene.initial.winding.value_or(state->winding()) + gain_of(p.parameters);
   return equation;
 }
 
@@ -76,7 +76,7 @@ class PeerEntry : public StartedEntry {
       : h_(h), most_in_a_call_(most_in_a_call) {
     const auto state = make_state(scene.initial, lattice);
     for (std::vector<double>* row : {&phi_, &phi_t_, &first_, &first_t_})
-      row->resize(static_cast<std::size_t>(lattice.sites() * state->components()));
+      row->resize(lattice.sites() * state->components());
     state->values(0, lattice, first_);
     state->velocities(0, lattice, first_t_);
   }
@@ -119,13 +119,13 @@ class FieldEntry final : public PeerEntry {
     const double k = equation_.length / N;
     const auto phi = [&](int i) {
       const int home = ((i % N) + N) % N;
-      return phi_[static_cast<std::size_t>(home)] + equation_.turn * ((i - home) / N);
+      return phi_[home] + equation_.monodromy * ((i - home) / N);
     };
     double sum = 0;
     for (int i = 0; i < N; ++i) {
       double slope = 0;
       for (int m = 1; m <= 4; ++m) slope += weights[m - 1] * (phi(i + m) - phi(i - m)) / k;
-      const double phi_t = phi_t_[static_cast<std::size_t>(i)];
+      const double phi_t = phi_t_[i];
       sum += 0.5 * (phi_t * phi_t + slope * slope) + potential(equation_, phi(i));
     }
     return k * sum;

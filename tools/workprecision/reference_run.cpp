@@ -29,7 +29,7 @@ std::optional<std::vector<double>> last_row(const WorkPrecisionEntry& scheme, co
     const auto started = scheme.start({sites, steps, until / static_cast<double>(steps)});
     started->advance(steps - started->newest(), limit);
     if (started->newest() != steps) return std::nullopt;
-    std::vector<double> row(static_cast<std::size_t>(sites * d));
+    std::vector<double> row(sites * d);
     started->copy(row);
     return row;
   } catch (const Error&) {
@@ -41,7 +41,7 @@ std::optional<Reference> refined(const WorkPrecisionEntry& scheme, const Scene& 
                                  const WorkPrecisionRequest& request, double courant, Clock::time_point until,
                                  const RunLimit& limit) {
   const bool point = scene.problem.lattice.space() == Space::point;
-  const double turn = InitialRows(scene).turn();
+  const double monodromy = InitialRows(scene).monodromy();
   const int d = make_state(scene.initial, scene.problem.lattice)->components();
   const int ends = scene.problem.lattice.is_circle() ? 0 : 1;
   const int finest = request.sites.empty() ? scene.problem.lattice.sites() : std::ranges::max(request.sites);
@@ -54,7 +54,7 @@ std::optional<Reference> refined(const WorkPrecisionEntry& scheme, const Scene& 
     cost = seconds_since(begin);
     if (!row) break;
     const Lattice fine = lattice_of(scene, sites);
-    ComparedSolution solution = ComparedSolution::reference(fine, d, turn, *row);
+    ComparedSolution solution = ComparedSolution::reference(fine, d, monodromy, *row);
     if (before) {
       const Lattice coarse = lattice_of(scene, point ? 1 : sites / 2 + ends);
       const double changed = field_error(*before, solution.at(coarse, request.until), 1).linf;

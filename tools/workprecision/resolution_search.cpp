@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/seconds_since.hpp"
 
@@ -104,7 +105,7 @@ void ResolutionSearch::run(Clock::time_point until, const std::function<void()>&
   until_ = until;
   most_of_one_ = chosen() ? share_of_one * seconds : std::numeric_limits<double>::infinity();
   if (const auto own = std::ranges::find(entries_, true, &WorkPrecisionEntry::own); chosen() && own != entries_.end())
-    run_own(static_cast<std::size_t>(own - entries_.begin()), -seconds_since(until) * own_share, at);
+    run_own(delf::at(own - entries_.begin()), -seconds_since(until) * own_share, at);
   for (std::size_t c = 0; c < entries_.size(); ++c) seed(c);
   run_cheapest(until, at);
   out_of_time_ = out_of_time_ || !queue_.empty();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "lattice/index.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/solitons/train_profile.hpp"
 #include "schemes/states/state_registry.hpp"
@@ -60,7 +61,7 @@ class MpsCollision final : public State {
       const bool mirrored = std::int64_t{4} * i >= std::int64_t{3} * N && lattice.position(0) == 0;
       if (mirrored) point = soliton(t, lattice.position(N - i), -1);
       else at(t, lattice.position(i), {&point, 1});
-      out[static_cast<std::size_t>(i)] = point.*part;
+      out[i] = point.*part;
     }
   }
 

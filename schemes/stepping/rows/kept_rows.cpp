@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 KeptRows::KeptRows(const LatticeSystem& system, const RowLayout& layout, const RowEquations& equations, RowTable& table,
@@ -21,15 +23,14 @@ void KeptRows::start(const std::vector<std::vector<double>>& rows) {
   leave_place();
   started_ = n_ = static_cast<std::int64_t>(rows.size()) - 1;
   known_ = std::min(static_cast<int>(rows.size()), history_);
-  for (int back = 1; back <= known_; ++back) set(back, rows[rows.size() - static_cast<std::size_t>(back)]);
+  for (int back = 1; back <= known_; ++back) set(back, rows[rows.size() - at(back)]);
   for (int back = 1; back < known_; ++back) find_increment(back);
 }
 
 void KeptRows::set(int back, const std::vector<double>& values) {
-  std::vector<double> one(static_cast<std::size_t>(layout_.sites()));
+  std::vector<double> one(layout_.sites());
   for (int a = 0; a < d_; ++a) {
-    for (std::size_t i = 0; i < one.size(); ++i)
-      one[i] = values[i * static_cast<std::size_t>(d_) + static_cast<std::size_t>(a)];
+    for (std::size_t i = 0; i < one.size(); ++i) one[i] = values[i * at(d_) + at(a)];
     layout_.scatter(one, table_[equations_.y().row(back, a)], monodromy_);
   }
 }
@@ -57,12 +58,10 @@ void KeptRows::advance() {
 }
 
 std::vector<double> KeptRows::values(int back) const {
-  std::vector<double> values(static_cast<std::size_t>(layout_.sites() * d_)),
-      one(static_cast<std::size_t>(layout_.sites()));
+  std::vector<double> values(layout_.sites() * d_), one(at(layout_.sites()));
   for (int a = 0; a < d_; ++a) {
     layout_.gather(table_[equations_.y().row(back, a)], one);
-    for (std::size_t i = 0; i < one.size(); ++i)
-      values[i * static_cast<std::size_t>(d_) + static_cast<std::size_t>(a)] = one[i];
+    for (std::size_t i = 0; i < one.size(); ++i) values[i * at(d_) + at(a)] = one[i];
   }
   return values;
 }

@@ -10,13 +10,12 @@
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 
 namespace delf {
 namespace {
 
 constexpr std::size_t most_values = 32;  // that a group of source terms reads, or gives
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -106,7 +105,7 @@ void RowEquations::build_solvers() {
     }
     for (int i = 0; i < layout_.sites(); ++i)
       for (int a = 0; a < d_; ++a)
-        if (!special.contains({i, a})) add(i, a, equations_.bulk[at(a)].shift, equations_.unknowns[at(a)]);
+        if (!special.contains({i, a})) add(i, a, equations_.bulk[a].shift, equations_.unknowns[a]);
     solver_[parity] = factor(lattice, layout_, d_, entries);
   }
 }
@@ -136,20 +135,20 @@ void RowEquations::build_rows(RowTable& table, int source_rows) {
       for (const auto& special : equations_.exceptional) scan(special.equation);
       if (oldest > newest) oldest = newest = 0;
       row.oldest = oldest, row.newest = newest;
-      row.reads_unknown = newest + terms.groups[at(row.group)].latest_time() >= 1;
+      row.reads_unknown = newest + terms.groups[row.group].latest_time() >= 1;
       find_packs(row, in_bulk || row.reads_unknown);
-      row.is_local = !row.reads_unknown && oldest == newest && row.lowest == 0 && row.highest == 0 && !bricks &&
-                     !has_walls();
+      row.is_local =
+          !row.reads_unknown && oldest == newest && row.lowest == 0 && row.highest == 0 && !bricks && !has_walls();
       const int held = std::max(newest - oldest + 1, row.reads_unknown ? source_rows * row.stride + 1 : 1);
       row.ring = table.add(layout_, row.is_local ? 0 : held);
       if (row.reads_unknown) row.correction = table.add(layout_, 1).first;
       row.outputs = terms.outputs_per_group;
-      if (std::max(terms.groups[at(row.group)].inputs.size(), at(row.outputs)) > most_values)
+      if (std::max(terms.groups[row.group].inputs.size(), at(row.outputs)) > most_values)
         throw NoConvergence("source terms of so many values go slab by slab");
       iterates_ = iterates_ || row.reads_unknown;
       sources_.push_back(row);
 
-      inputs_.push_back(make_inputs(terms.groups[at(row.group)], sources_.back()));
+      inputs_.push_back(make_inputs(terms.groups[row.group], sources_.back()));
     }
   }
 }
@@ -170,9 +169,13 @@ void RowEquations::find_packs(SourceRow& row, bool everywhere) const {
 /// Quadrature values as sums of rows. Rows before the newest that is read are taken from it and the increments,
 /// y_{j−1} = y_j − v_j, so that they may have been written over.
 RowEquations::Inputs RowEquations::make_inputs(const SourceTerms::Group& group, SourceRow& row) {
-  Inputs inputs{.family = system_.families()[at(row.family)].get(), .values = {}, .single_rows = {}, .unknown = {},
+  Inputs inputs{.family = system_.families()[row.family].get(),
+                .values = {},
+                .single_rows = {},
+                .unknown = {},
                 .outputs = row.outputs,
-                .time = group.time, .space = group.space};
+                .time = group.time,
+                .space = group.space};
   int newest = std::numeric_limits<int>::min();
   for (const auto& value : group.inputs)
     for (const SourceTerms::Part& part : value) {
@@ -220,7 +223,7 @@ double RowEquations::weight_of(const SourceRow& row) const {
 const SourceRow& RowEquations::source_of(const Term& t) const {
   const auto found = std::ranges::find_if(sources_, [&](const SourceRow& row) {
     return row.family == t.family &&
-           row.group * system_.families()[at(t.family)]->sources()->outputs_per_group + row.component == t.output;
+           row.group * system_.families()[t.family]->sources()->outputs_per_group + row.component == t.output;
   });
   return *found;
 }
@@ -252,7 +255,7 @@ int RowEquations::measured_count() const { return d_ + static_cast<int>(sources_
 
 bool RowEquations::brick_exists(const Term& t, int equation_shift, int parity) const {
   if (t.source != Source::output) return true;
-  const bool bricks = system_.families()[at(t.family)]->pattern().placement == Placement::brick_wall;
+  const bool bricks = system_.families()[t.family]->pattern().placement == Placement::brick_wall;
   return !bricks || (parity + t.age - 1 + equation_shift + t.shift) % 2 == 0;
 }
 
@@ -275,7 +278,7 @@ void RowEquations::build_sums() {
   for (const SourceRow& row : sources_)
     measured_ = std::max({measured_, row.ring.row(std::max(1, row.ring.held)), row.correction + 1});
   for (int a = 0; a < d_; ++a) {
-    const EquationTerms& equation = equations_.bulk[at(a)];
+    const EquationTerms& equation = equations_.bulk[a];
     for (int parity = 0; parity < (bricks_ ? 2 : 1); ++parity) {
       const double sign = parity == 0 ? 1 : -1;
       const double constant = equation.constant + sign * equation.constant_alternating;
@@ -304,9 +307,9 @@ void RowEquations::build_sums() {
     }
   }
   for (const SourceRow& row : sources_) {
-    predictions_.emplace_back(static_cast<std::size_t>(most_rows_ + 1));
+    predictions_.emplace_back(at(most_rows_ + 1));
     for (int p = 0; p <= most_rows_ && row.reads_unknown; ++p) {
-      RowSum& sum = predictions_.back()[static_cast<std::size_t>(p)];
+      RowSum& sum = predictions_.back()[p];
       for (int j = 1; j <= p; ++j) sum.add(row.ring.row(j * row.stride), 0, prediction_weight(p, j));
     }
   }
@@ -316,7 +319,7 @@ void RowEquations::right_side(const RowTable& table, std::int64_t n, int a, Solv
                               double* w) const {
   if (!bricks_) return sum_of(a, 0, solving).evaluate(table.data(), layout_.at(from), layout_.at(to), lanes, w);
   // Packs of even and odd sites take turns; site + row of the equation tells which sum is theirs.
-  const int row_parity = static_cast<int>((n + 1 - equations_.bulk[at(a)].shift) & 1);
+  const int row_parity = static_cast<int>((n + 1 - equations_.bulk[a].shift) & 1);
   for (int half = 0; half < 2; ++half)
     sum_of(a, ((from + half) & 1) ^ row_parity, solving)
         .evaluate(table.data(), layout_.at(from + half), layout_.at(to), 2 * lanes, w);
@@ -332,8 +335,8 @@ void RowEquations::right_sides(const RowTable& table, std::int64_t n, Solving so
 }
 
 /// E at one site, by its own terms: the part of it that is the right side, or, if `solving` is null, all of it at row n + 1.
-double RowEquations::value_at(const SiteEquation& special, const RowTable& table, std::int64_t n, const Solving* solving,
-                              double* absolute) const {
+double RowEquations::value_at(const SiteEquation& special, const RowTable& table, std::int64_t n,
+                              const Solving* solving, double* absolute) const {
   const int own = layout_.slot(special.site), a = special.component;
   const bool corrects = solving && *solving == Solving::correction;
   if (special.fixed)  // v_{n+1} = v_n + w = 0
@@ -365,22 +368,23 @@ template <class Visit>
                                                                 Visit visit) const {
   constexpr int most_packs = 64;
   from = std::max(from, source.first_pack), to = std::min(to, source.last_pack);
-  const Inputs& inputs = inputs_[static_cast<std::size_t>(&source - sources_.data())];
+  const Inputs& inputs = inputs_[&source - sources_.data()];
   const int count = static_cast<int>(inputs.values.size());
   const bool bricks = source.stride == 2, placed = positions_.rows() > 0;
   const ScratchRows scratch(inputs.formed + placed, most_packs * lanes);
   std::array<const double*, most_values> slots;
   // Bricks stand where row + site is even: at every second pack.
   const int stride = bricks ? 2 : 1;
-  for (int first = bricks ? from + static_cast<int>((from + anchors) & 1) : from; first < to; first += most_packs * stride) {
+  for (int first = bricks ? from + static_cast<int>((from + anchors) & 1) : from; first < to;
+       first += most_packs * stride) {
     const int packs = std::min(most_packs, (to - first + stride - 1) / stride);
     const std::ptrdiff_t begin = layout_.at(first), end = layout_.at(first + (packs - 1) * stride) + lanes;
     int next = 0;
     for (int j = 0; j < count; ++j)
-      if (const RowSum::OneRow& one = inputs.single_rows[at(j)]; one.row >= 0) {
+      if (const RowSum::OneRow& one = inputs.single_rows[j]; one.row >= 0) {
         slots[at(j)] = rows[one.row] + begin + one.by;
       } else {
-        inputs.values[at(j)].evaluate_dense(rows, begin, end, stride * lanes, scratch[next]);
+        inputs.values[j].evaluate_dense(rows, begin, end, stride * lanes, scratch[next]);
         slots[at(j)] = scratch[next++];
       }
     JetBatch batch{packs * lanes, slots.data(), 0, nullptr};
@@ -398,24 +402,24 @@ template <class Visit>
 
 void RowEquations::evaluate(const RowTable& table, std::int64_t n, const SourceRow& source, int back, int from, int to,
                             double* const* out) const {
-  const Inputs& inputs = inputs_[static_cast<std::size_t>(&source - sources_.data())];
+  const Inputs& inputs = inputs_[&source - sources_.data()];
   const bool bricks = source.stride == 2;
   // The rows of the anchors `back` rows before: further back in the rings of y and v.
   for_each_batch(table.data() + back * d_, n + source.newest - back, source, from, to,
                  [&](const JetBatch& batch, std::ptrdiff_t begin, int packs) {
                    std::array<double*, most_values> results;
                    const ScratchRows every_second(bricks ? inputs.outputs : 0, batch.count);
-                   for (int c = 0; c < inputs.outputs; ++c) results[at(c)] = bricks ? every_second[c] : out[c] + begin;
+                   for (int c = 0; c < inputs.outputs; ++c) results[c] = bricks ? every_second[c] : out[c] + begin;
                    inputs.family->evaluate_sources(source.group, batch, results.data());
                    for (int c = 0; c < inputs.outputs && bricks; ++c)
                      for (int p = 0; p < packs; ++p)
-                       Pack::load(results[at(c)] + p * lanes).store(out[c] + begin + 2 * p * lanes);
+                       Pack::load(results[c] + p * lanes).store(out[c] + begin + 2 * p * lanes);
                  });
 }
 
 /// max Σ_j W_j |∂g_c/∂m_j| over a batch, if it is more than slopes[c].
 void RowEquations::add_slopes(const SourceRow& source, const JetBatch& batch, double* slopes) const {
-  const Inputs& inputs = inputs_[static_cast<std::size_t>(&source - sources_.data())];
+  const Inputs& inputs = inputs_[&source - sources_.data()];
   const int count = static_cast<int>(inputs.values.size());
   const ScratchRows derivatives(inputs.outputs * count, batch.count);
   inputs.family->differentiate_sources(source.group, batch, derivatives.data());
@@ -424,7 +428,7 @@ void RowEquations::add_slopes(const SourceRow& source, const JetBatch& batch, do
     for (int i = 0; i < batch.count; i += lanes) {
       Pack sum(0.0);
       for (int j = 0; j < count; ++j)
-        if (inputs.unknown[at(j)] != 0) sum += inputs.unknown[at(j)] * abs(Pack::load(derivatives[c * count + j] + i));
+        if (inputs.unknown[j] != 0) sum += inputs.unknown[j] * abs(Pack::load(derivatives[c * count + j] + i));
       most = max_or_nan(sum, most);
     }
     slopes[c] = max_or_nan(most);
@@ -444,8 +448,7 @@ std::vector<double> RowEquations::slopes_within(double size, std::int64_t n) con
     const int count = static_cast<int>(inputs.values.size());
     const ScratchRows values(count, all), x(1, all);
     for (int i = 0; i < all; ++i) {
-      for (int j = 0; j < count; ++j)
-        values[j][i] = size * (i < alike ? 2.0 * i / (alike - 2) - 1 : random());
+      for (int j = 0; j < count; ++j) values[j][i] = size * (i < alike ? 2.0 * i / (alike - 2) - 1 : random());
       x[0][i] = system_.lattice().position(static_cast<int>(static_cast<std::int64_t>(i) * layout_.sites() / all));
     }
     const double t = (static_cast<double>(n + source.newest) + inputs.time) * system_.time_step();
@@ -455,7 +458,7 @@ std::vector<double> RowEquations::slopes_within(double size, std::int64_t n) con
       std::array<double, most_values> found{};
       add_slopes(source, {lanes, slots.data(), t, x[0] + i}, found.data());
       for (int c = 0; c < source.outputs; ++c)
-        if (std::isfinite(found[at(c)])) slopes[s + at(c)] = std::max(slopes[s + at(c)], found[at(c)]);
+        if (std::isfinite(found[c])) slopes[s + at(c)] = std::max(slopes[s + at(c)], found[c]);
     }
   }
   return slopes;
@@ -475,10 +478,12 @@ std::vector<double> RowEquations::slopes_at(const RowTable& table, std::int64_t 
       RowTable rows = table;
       for (int a = 0; a < d_; ++a) {
         const double *const next = table[y_.row(0, a)], *const now = table[y_.row(1, a)],
-                     *const last = table[y_.row(2, a)];
-        double *const y = way[a] - layout_.at(from + source.left), *const v = way[d_ + a] - layout_.at(from + source.left);
+                            *const last = table[y_.row(2, a)];
+        double *const y = way[a] - layout_.at(from + source.left), *const v =
+                                                                       way[d_ + a] - layout_.at(from + source.left);
         for (std::ptrdiff_t i = layout_.at(from + source.left); i < layout_.at(to + source.right); i += lanes) {
-          const Pack before = Pack::load(now + i) - Pack::load(last + i), after = Pack::load(next + i) - Pack::load(now + i);
+          const Pack before = Pack::load(now + i) - Pack::load(last + i),
+                     after = Pack::load(next + i) - Pack::load(now + i);
           const Pack moved = s * before + (s * s) * (after - before);
           moved.store(v + i);
           (Pack::load(now + i) + moved).store(y + i);
@@ -510,27 +515,27 @@ double RowEquations::residual(RowTable table, std::int64_t n) {
     if (sources_[s].component != 0 || !(sources_[s].is_local || sources_[s].reads_unknown)) continue;
     double* const* const out = &table[measured_ + d_ + static_cast<int>(s)];
     evaluate(table, n, sources_[s], 0, 0, layout_.packs(), out);
-    for (int c = 0; c < sources_[s].outputs; ++c)
-      layout_.fill_halo(out[c]);
+    for (int c = 0; c < sources_[s].outputs; ++c) layout_.fill_halo(out[c]);
   }
   double largest = 0, scale = 0;
   for (int a = 0; a < d_; ++a) {
     // Sites near walls have their own sums, in the place of the bulk's.
-    double *const E = measured_rows_.row(measured_count() - 2 * d_ + a), *const size = measured_rows_.row(measured_count() - d_ + a);
+    double *const E = measured_rows_.row(measured_count() - 2 * d_ + a), *const size = measured_rows_.row(
+                                                                             measured_count() - d_ + a);
     const auto store = [&](std::ptrdiff_t place, Pack sum, Pack absolute) {
       sum.store(E + place), absolute.store(size + place);
     };
-    const int row_parity = static_cast<int>((n + 1 - equations_.bulk[at(a)].shift) & 1);
+    const int row_parity = static_cast<int>((n + 1 - equations_.bulk[a].shift) & 1);
     for (int half = 0; half < (bricks_ ? 2 : 1); ++half)
       all_[index_of(a, (half & 1) ^ row_parity)].measure(table.data(), layout_.at(half), layout_.at(layout_.packs()),
-                                                      (bricks_ ? 2 : 1) * lanes, store);
+                                                         (bricks_ ? 2 : 1) * lanes, store);
     for (const SiteEquation& special : equations_.exceptional) {
       if (special.component != a) continue;
       double absolute = 0;
       const double value = value_at(special, table, n, nullptr, &absolute);
       for (int slot : layout_.slots_of(special.site)) E[slot] = value, size[slot] = absolute;
     }
-    for (std::size_t i = static_cast<std::size_t>(layout_.at(0)); i < static_cast<std::size_t>(layout_.at(layout_.packs())); ++i) {
+    for (std::size_t i = at(layout_.at(0)); i < at(layout_.at(layout_.packs())); ++i) {
       largest = larger_or_nan(std::abs(E[i]), largest);
       scale = larger_or_nan(size[i], scale);
     }

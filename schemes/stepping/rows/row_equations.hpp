@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/solvers/linear_solver.hpp"
 #include "schemes/solvers/row_sum.hpp"
 #include "schemes/stepping/rows/row_operations.hpp"
@@ -26,10 +27,10 @@ class RowTable {
   /// The oldest row becomes number 0; or number 0 the oldest.
   void advance(const Ring& ring);
   void go_back(const Ring& ring);
-  double*& operator[](int row) { return rows_[static_cast<std::size_t>(row)]; }
-  double* operator[](int row) const { return rows_[static_cast<std::size_t>(row)]; }
+  double*& operator[](int row) { return rows_[row]; }
+  double* operator[](int row) const { return rows_[row]; }
   const double* const* data() const { return rows_.data(); }
-  void reserve(int rows) { rows_.resize(std::max(rows_.size(), static_cast<std::size_t>(rows))); }
+  void reserve(int rows) { rows_.resize(std::max(rows_.size(), at(rows))); }
 
  private:
   std::vector<double*> rows_;
@@ -38,18 +39,18 @@ class RowTable {
 
 /// One source term of a family, g_c of a group, along whole rows: hk weight · g adds to the equations.
 struct SourceRow {
-  int family, group, component;  ///< component: which of the group's outputs
-  RowTable::Ring ring;           ///< number 0 is that of the newest anchors, `newest` rows after row n
-  int newest = 0, oldest = 0;    ///< anchors' rows that equations read, from n
-  int lowest = 0, highest = 0;   ///< shifts at which equations read it
-  bool reads_unknown = false;    ///< number 0 depends on row n + 1
-  bool is_local = false;         ///< is needed at its own site, in this step alone: no row of it is kept
-  int outputs = 1;               ///< of its group; of these, this is number `component`
-  int left = 0, right = 0;       ///< shifts at which it reads rows itself
-  bool reads_back = false;       ///< it reads rows before n too
+  int family, group, component;       ///< component: which of the group's outputs
+  RowTable::Ring ring;                ///< number 0 is that of the newest anchors, `newest` rows after row n
+  int newest = 0, oldest = 0;         ///< anchors' rows that equations read, from n
+  int lowest = 0, highest = 0;        ///< shifts at which equations read it
+  bool reads_unknown = false;         ///< number 0 depends on row n + 1
+  bool is_local = false;              ///< is needed at its own site, in this step alone: no row of it is kept
+  int outputs = 1;                    ///< of its group; of these, this is number `component`
+  int left = 0, right = 0;            ///< shifts at which it reads rows itself
+  bool reads_back = false;            ///< it reads rows before n too
   int first_pack = 0, last_pack = 0;  ///< equations read it in these packs: all, or those near a wall
-  int stride = 1;                ///< of bricks, those of the row before stand elsewhere: 2
-  int correction = -1;           ///< row of δ, by which the last evaluation has changed it
+  int stride = 1;                     ///< of bricks, those of the row before stand elsewhere: 2
+  int correction = -1;                ///< row of δ, by which the last evaluation has changed it
 };
 
 /// The field equations of one slab for whole rows. With y_{n+1} = y_n + v_n + w,
@@ -64,10 +65,10 @@ class RowEquations {
   /// rows, if steps extrapolate them.
   RowEquations(const LatticeSystem&, const SolvePlan&, const RowLayout&, RowTable&, int history, int source_rows);
 
-  const RowTable::Ring &y() const { return y_; }
-  const RowTable::Ring &v() const { return v_; }
+  const RowTable::Ring& y() const { return y_; }
+  const RowTable::Ring& v() const { return v_; }
   const std::vector<SourceRow>& sources() const { return sources_; }
-  bool iterates() const { return iterates_; }  ///< some source term depends on row n + 1
+  bool iterates() const { return iterates_; }                                ///< some source term depends on row n + 1
   bool reads_increments_beside() const { return reads_increments_beside_; }  ///< at shifts: v needs halos
   /// The solver of the step from row n: on brick walls those from even and from odd rows may differ.
   const LinearSolver& solver(std::int64_t n) const { return solver_[1] ? *solver_[n & 1] : *solver_[0]; }
@@ -81,7 +82,7 @@ class RowEquations {
   const RowSum* right_side(int a, Solving solving) const { return bricks_ ? nullptr : &sum_of(a, 0, solving); }
   /// The prediction of number 0 of a source row's ring.
   const RowSum& prediction(const SourceRow& row, int predicted_from) const {
-    return predictions_[static_cast<std::size_t>(&row - sources_.data())][static_cast<std::size_t>(predicted_from)];
+    return predictions_[&row - sources_.data()][predicted_from];
   }
   /// The sum of its weights' sizes in the equation of the step.
   double weight_of(const SourceRow&) const;
@@ -129,7 +130,7 @@ class RowEquations {
   int measured_count() const;
   bool brick_exists(const Term&, int equation_shift, int parity) const;
   void add_sources(RowSum&, const Term&, double coefficient, Solving) const;
-  std::size_t index_of(int a, int parity) const { return static_cast<std::size_t>(bricks_ ? 2 * a + parity : a); }
+  std::size_t index_of(int a, int parity) const { return at(bricks_ ? 2 * a + parity : a); }
   const RowSum& sum_of(int a, int parity, Solving solving) const {
     return (solving == Solving::correction ? correction_ : known_)[index_of(a, parity)];
   }
@@ -146,11 +147,11 @@ class RowEquations {
   bool iterates_ = false, reads_increments_beside_ = false;
   int measured_ = 0;  ///< in the table: w, and source terms at row n + 1, as residual() finds them
   std::vector<SourceRow> sources_;
-  std::vector<Inputs> inputs_;  ///< of each source row that is the first of its group
-  int most_rows_;  ///< that predictions are made from
+  std::vector<Inputs> inputs_;                    ///< of each source row that is the first of its group
+  int most_rows_;                                 ///< that predictions are made from
   std::vector<RowSum> known_, correction_, all_;  ///< of each component and parity
   std::vector<std::vector<RowSum>> predictions_;  ///< [source row][rows that they are made from]
-  std::unique_ptr<LinearSolver> solver_[2];  ///< the second only if bricks of odd rows differ
+  std::unique_ptr<LinearSolver> solver_[2];       ///< the second only if bricks of odd rows differ
   RowBuffer positions_, measured_rows_;
 };
 

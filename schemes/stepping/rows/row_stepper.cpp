@@ -31,10 +31,10 @@ constexpr int most_components = 32;
 double explicit_pass(RowOperations& rows) {
   return rows.pass(Solving::step, nullptr, [](RowOperations& part) {
     for (const Strip& strip : part.strips()) {
-      part.evaluate(strip);                  // g = ∂ℓ/∂φ at the quadrature values of the rows up to n
-      part.right_side(strip);                // r = −(linear part of the known rows) − r(0) − Σ hk weight · g
+      part.evaluate(strip);                    // g = ∂ℓ/∂φ at the quadrature values of the rows up to n
+      part.right_side(strip);                  // r = −(linear part of the known rows) − r(0) − Σ hk weight · g
       while (const Strip next = part.solve())  // A₊ w = r
-        part.update(next);                   // v_{n+1} = v_n + w,   y_{n+1} = y_n + v_{n+1}
+        part.update(next);                     // v_{n+1} = v_n + w,   y_{n+1} = y_n + v_{n+1}
     }
   });
 }
@@ -43,9 +43,9 @@ double explicit_pass(RowOperations& rows) {
 double predicted_pass(RowOperations& rows, int order, std::vector<double>& corrections) {
   return rows.pass(Solving::step, &corrections, [order](RowOperations& part) {
     for (const Strip& strip : part.strips()) {
-      part.evaluate(strip);                      // g of source terms that row n + 1 does not enter
+      part.evaluate(strip);                       // g of source terms that row n + 1 does not enter
       if (order > 0) part.predict(order, strip);  // g ≈ Σ_j (−1)^{j+1} C(p, j) g_{n+1−j}
-      part.right_side(strip);                    // r = −(linear part of the known rows) − r(0) − Σ hk weight · g
+      part.right_side(strip);  // r = −(linear part of the known rows) − r(0) − Σ hk weight · g
       while (const Strip next = part.solve()) {  // A₊ w = r
         part.update(next);                       // v_{n+1} = v_n + w,   y_{n+1} = y_n + v_{n+1}
         part.compare(next);                      // δ = g′ − g,   g ← g′ = ∂ℓ/∂φ at row n + 1
@@ -98,10 +98,10 @@ struct RowStepper::Impl {
         options(o),
         d(s.components()),
         history(std::max(p.forward + p.backward, 2)),
-        most_rows(Predictor::rows_for(o.seed_order, s.lattice().sites())),
+        most_rows(Predictor::rows_for(o.predictor_order, s.lattice().sites())),
         layout(s.lattice(), std::max(1, s.width()), s.placement() == Placement::brick_wall ? 2 : 1),
         equations(s, p, layout, table, history, most_rows),
-        kept(s, layout, equations, table, history, o.turn),
+        kept(s, layout, equations, table, history, o.monodromy),
         predictor(equations, layout, most_rows),
         rows(s, equations, layout, table, kept, o, history) {
     if (d > most_components) throw NoConvergence("rows of so many components go slab by slab");
@@ -180,8 +180,8 @@ struct RowStepper::Impl {
   void solve_by_newton() {
     const Window past = kept.window(history);
     if (continued != Continued::stiff) {
-      const NewtonResult direct = solve_slab(system, plan, past, options.tolerance,
-                                             std::min(options.max_iterations, enough_iterations), false);
+      const NewtonResult direct =
+          solve_slab(system, plan, past, options.tolerance, std::min(options.max_iterations, enough_iterations), false);
       iterations += direct.iterations;
       if (direct.converged && has_no_other_root_near(direct.row)) return;
       if (is_stiff(largest)) continued = Continued::stiff;
@@ -266,7 +266,8 @@ struct RowStepper::Impl {
 
   /// A step whose row nobody asks for is in place, as long as there is a row to go back to.
   void step(bool looked_at) {
-    const bool may_be_in_place = !looked_at && rows.can_go_in_place() && (kept.in_place() || (kept.known() >= 2 && n() > kept.start_row())) &&
+    const bool may_be_in_place = !looked_at && rows.can_go_in_place() &&
+                                 (kept.in_place() || (kept.known() >= 2 && n() > kept.start_row())) &&
                                  !(equations.iterates() && source_rows_there == 0) && !is_stiff(largest);
     if (!may_be_in_place) step_beside();
     else if (!step_in_place()) step_again(n() + 1);
@@ -286,7 +287,8 @@ struct RowStepper::Impl {
     for (std::size_t s = 0; s < equations.sources().size(); ++s) {
       const SourceRow& source = equations.sources()[s];
       if (source.is_local) continue;
-      for (int back = 1; source.component == 0 && back <= source.newest - source.oldest; ++back) rows.evaluate_rows(s, back);
+      for (int back = 1; source.component == 0 && back <= source.newest - source.oldest; ++back)
+        rows.evaluate_rows(s, back);
       if (source.reads_unknown) past_sources = std::min(past_sources, source.newest - source.oldest);
     }
     count_sources();
@@ -349,10 +351,11 @@ void RowStepper::start_centred(const std::vector<double>& row0, const std::vecto
   if (s.history != 2)
     throw BadInput("initial.start", "initial.start = centred makes one more row, and this stencil needs " +
                                         std::to_string(s.history) + " starting rows; choose initial.start = exact");
-  const Window first{&s.system.lattice(), s.d, s.options.turn, 0, {row0}};
+  const Window first{&s.system.lattice(), s.d, s.options.monodromy, 0, {row0}};
   const auto solved = [&](bool followed) {
     return solve_centred_start(s.system, s.plan, first, velocity, followed, s.options.tolerance,
-                               s.options.max_iterations).row;
+                               s.options.max_iterations)
+        .row;
   };
   const std::vector<double> row1 = solved(false);
   start({row0, s.may_have_other_roots_from(row0, velocity, row1) ? solved(true) : row1});

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
@@ -16,17 +18,15 @@ constexpr std::size_t most_outputs = 32;
 
 using Pointers = std::array<double*, most_outputs>;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 }  // namespace
 
-RowStrips::RowStrips(const LatticeSystem& system, const RowEquations& equations, const RowLayout& layout, RowTable& table,
-                     const KeptRows& kept, const StepOptions& options, int history)
+RowStrips::RowStrips(const LatticeSystem& system, const RowEquations& equations, const RowLayout& layout,
+                     RowTable& table, const KeptRows& kept, const StepOptions& options, int history)
     : equations_(equations),
       layout_(layout),
       kept_(kept),
       d_(system.components()),
-      monodromy_(options.turn),
+      monodromy_(options.monodromy),
       table_(&table),
       from_(0),
       to_(layout.packs()),
@@ -46,7 +46,8 @@ RowStrips::RowStrips(const LatticeSystem& system, const RowEquations& equations,
   const bool takes_whole_rows =
       solver_ == Solver::whole_rows || (solver_ == Solver::sweeps && sweeps_[0]->takes_whole_rows());
   const bool is_long = !takes_whole_rows && layout.packs() > packs_beyond_cache;
-  const int packs = takes_whole_rows ? to_ : std::min(to_, (warm_up > 0 ? 2 * long_strip : longest_strip_) + 2 * delay_);
+  const int packs =
+      takes_whole_rows ? to_ : std::min(to_, (warm_up > 0 ? 2 * long_strip : longest_strip_) + 2 * delay_);
   if (!sums_are_updates_ || is_long) memory_ = RowBuffer(at(packs) * lanes, d_);
   can_go_in_place_ = is_long && history == 2 && equations.reads_newest_alone() && options.fibre == Fibre::real &&
                      (warm_up == 0 || warm_up > equations.reach());
@@ -97,10 +98,10 @@ void RowStrips::choose_solver() {
 /// Recurrences by strips begin with the right sides of the last packs.
 void RowStrips::lay_out_strips(int warm_up) {
   // Short passes over rows that come from memory wait for it.
-  const int length = solver_ == Solver::whole_rows           ? to_ - from_
-                     : warm_up > 0                           ? long_strip
+  const int length = solver_ == Solver::whole_rows          ? to_ - from_
+                     : warm_up > 0                          ? long_strip
                      : layout_.packs() > packs_beyond_cache ? medium_strip
-                                                             : short_strip;
+                                                            : short_strip;
   if (warm_up > 0) strips_.push_back({to_ - warm_up, to_});
   for (int begin = from_, end; begin < to_; begin = end) {
     end = warm_up > 0 && to_ - begin < 2 * length ? to_ : std::min(to_, begin + length);
@@ -121,7 +122,7 @@ double RowStrips::pass(Solving solving, std::vector<double>* corrections,
   } else {
     largest_ = 0.0;
     team_->run(team_->size(), [&](int p) {
-      RowStrips& part = *parts_[at(p)];
+      RowStrips& part = *parts_[p];
       part.own_ = *table_;
       part.pass(solving, nullptr, along);
     });
@@ -169,7 +170,7 @@ void RowStrips::find_corrections() {
 }
 
 void RowStrips::move_window(int first) {
-  for (int a = 0; a < memory_.rows(); ++a) w_[at(a)] = memory_.row(a) - layout_.at(first);
+  for (int a = 0; a < memory_.rows(); ++a) w_[a] = memory_.row(a) - layout_.at(first);
 }
 
 /// A group of source terms, into number 0 of their rings, or `back` rows before.
@@ -177,7 +178,7 @@ void RowStrips::evaluate_group(std::size_t first, int from, int to, int back) co
   const RowTable& rows = *table_;
   const SourceRow& source = equations_.sources()[first];
   Pointers out;
-  for (int c = 0; c < source.outputs; ++c) out[at(c)] = rows[equations_.sources()[first + at(c)].ring.row(back)];
+  for (int c = 0; c < source.outputs; ++c) out[c] = rows[equations_.sources()[first + at(c)].ring.row(back)];
   equations_.evaluate(rows, kept_.newest(), source, back, from, to, out.data());
 }
 
@@ -204,8 +205,7 @@ void RowStrips::evaluate(Strip packs) {
     const SourceRow& source = equations_.sources()[s];
     if (!source.is_local) continue;
     (*table_)[source.ring.row(0)] = (*local_)[static_cast<int>(s)] - layout_.at(packs.first);
-    if (source.component + 1 == source.outputs)
-      evaluate_group(s + 1 - at(source.outputs), packs.first, packs.last, 0);
+    if (source.component + 1 == source.outputs) evaluate_group(s + 1 - at(source.outputs), packs.first, packs.last, 0);
   }
 }
 
@@ -222,8 +222,8 @@ void RowStrips::predict(int order, Strip packs) {
   for (const SourceRow& source : equations_.sources())
     if (source.reads_unknown)
       equations_.prediction(source, order)
-          .evaluate(table_->data(), layout_.at(first_brick(source, from)), layout_.at(predicted_), source.stride * lanes,
-                    (*table_)[source.ring.row(0)]);
+          .evaluate(table_->data(), layout_.at(first_brick(source, from)), layout_.at(predicted_),
+                    source.stride * lanes, (*table_)[source.ring.row(0)]);
 }
 
 void RowStrips::right_side(Strip packs) {
@@ -241,7 +241,7 @@ void RowStrips::right_side(Strip packs) {
   // Right sides that are not used yet move to the beginning of the window.
   if (packs.first > from_ && static_cast<std::ptrdiff_t>(to_ - from_) * lanes > memory_.stride()) {
     for (int a = 0; a < d_; ++a)
-      std::memmove(memory_.row(a), w_[at(a)] + layout_.at(updated_),
+      std::memmove(memory_.row(a), w_[a] + layout_.at(updated_),
                    at(static_cast<int>(layout_.at(packs.first) - layout_.at(updated_))) * sizeof(double));
     move_window(updated_);
   }
@@ -306,12 +306,12 @@ void RowStrips::update(Strip packs) {
   for (int a = 0; a < d_; ++a) {
     if (solver_ == Solver::sweeps) {
       RowUpdate update = updating(a);
-      sweeps_[at(a)]->backward(w_[at(a)], update);
+      sweeps_[a]->backward(w_[a], update);
       largest_ = update.largest;
     } else if (updates_from_sums()) {
       largest_ = update_by(*equations_.right_side(a, solving_), *table_, updating(a), begin, end);
     } else {
-      largest_ = update_by(w_[at(a)], updating(a), begin, end);
+      largest_ = update_by(w_[a], updating(a), begin, end);
     }
   }
   updated_ = std::max(updated_, packs.last);
@@ -362,14 +362,14 @@ void RowStrips::compare_packs(int from, int to) {
     for (int begin = from; begin < to; begin += short_strip) {
       const int end = std::min(to, begin + short_strip);
       Pointers out;
-      for (int c = 0; c < source.outputs; ++c) out[at(c)] = scratch[c] - layout_.at(begin);
+      for (int c = 0; c < source.outputs; ++c) out[c] = scratch[c] - layout_.at(begin);
       equations_.evaluate(rows, kept_.newest(), source, 0, begin, end, out.data());
       const int own = first_brick(source, begin);
       for (int c = 0; c < source.outputs; ++c) {
         const std::size_t s = first + at(c);
-        const Pack most = take_over(out[at(c)], rows[sources[s].ring.row(0)],
-                                    keeps_corrections_ ? rows[sources[s].correction] : nullptr, layout_.at(own),
-                                    layout_.at(end), source.stride * lanes);
+        const Pack most =
+            take_over(out[c], rows[sources[s].ring.row(0)], keeps_corrections_ ? rows[sources[s].correction] : nullptr,
+                      layout_.at(own), layout_.at(end), source.stride * lanes);
         (*corrections_)[s] = larger_or_nan(max_or_nan(most), (*corrections_)[s]);
       }
     }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 namespace {
 
@@ -13,11 +15,12 @@ constexpr double round_off = std::numeric_limits<double>::epsilon();
 /// The change of y by a change of 1 in a source term, [source][component]: exact on a circle, where one impulse shows
 /// it. In the middle of an interval it is near enough: the tolerance is tested by it, and the change itself is what
 /// ends an iteration.
-std::vector<std::vector<double>> gains_of(int d, const RowEquations& equations, const RowLayout& layout, RowTable& table) {
+std::vector<std::vector<double>> gains_of(int d, const RowEquations& equations, const RowLayout& layout,
+                                          RowTable& table) {
   constexpr std::int64_t first_step = -1;
   std::vector<std::vector<double>> gains;
   for (const SourceRow& source : equations.sources()) {
-    std::vector<double>& gain = gains.emplace_back(static_cast<std::size_t>(d), 0.0);
+    std::vector<double>& gain = gains.emplace_back(at(d), 0.0);
     if (!source.reads_unknown) continue;
     double* const delta = table[source.correction];
     // Two sites in the middle: a source term at a wall, or between bricks, is read by no equation.
@@ -32,7 +35,7 @@ std::vector<std::vector<double>> gains_of(int d, const RowEquations& equations, 
       for (int a = 0; a < d; ++a) w.push_back(memory.row(a));
       equations.right_sides(table, first_step, Solving::correction, 0, layout.packs(), w.data());
       equations.solver(first_step).solve(w.data());
-      std::vector<double> sites(static_cast<std::size_t>(layout.sites()));
+      std::vector<double> sites(layout.sites());
       for (std::size_t a = 0; a < gain.size(); ++a) {
         layout.gather(w[a], sites);
         double sum = 0;
@@ -54,7 +57,8 @@ StepTolerance::StepTolerance(const LatticeSystem& system, const RowEquations& eq
       d_(system.components()),
       tolerance_(options.tolerance),
       contraction_(equations, gains_of(d_, equations, layout, table)) {
-  for (const std::vector<double>& of_source : contraction_.gains()) gains_.push_back(*std::ranges::max_element(of_source));
+  for (const std::vector<double>& of_source : contraction_.gains())
+    gains_.push_back(*std::ranges::max_element(of_source));
 }
 
 double StepTolerance::effect_of(const std::vector<double>& changes) const {

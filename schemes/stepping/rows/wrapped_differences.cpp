@@ -31,7 +31,7 @@ int first_too_large(const RowLayout& layout, const double* from, const double* t
 void check_wrapped_differences(const LatticeSystem& system, const RowLayout& layout,
                                const std::vector<const double*>& rows, std::int64_t newest) {
   const int d = system.components();
-  const auto row = [&](std::int64_t which, int a) { return rows[static_cast<std::size_t>((newest - which) * d + a)]; };
+  const auto row = [&](std::int64_t which, int a) { return rows[(newest - which) * d + a]; };
   for (const auto& family : system.families()) {
     const auto& vertices = family->pattern().vertices;
     const int top = std::ranges::max(vertices, {}, &Site::time).time;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/lattice_system.hpp"
@@ -25,8 +26,7 @@ using Values = std::vector<LatticeSystem::Value>;
 
 Rows random_rows(const LatticeSystem& system, int count, double amplitude, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
-  Rows rows(static_cast<std::size_t>(count),
-            Row(static_cast<std::size_t>(system.lattice().sites() * system.components())));
+  Rows rows(delf::at(count), Row(delf::at(system.lattice().sites() * system.components())));
   for (Row& row : rows)
     for (double& y : row) y = amplitude * (2.0 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1.0);
   return rows;
@@ -44,7 +44,7 @@ Values equations_in_the_middle(const LatticeSystem& system, std::int64_t first_r
 bool agree(const LatticeSystem& system, const Values& one, const Values& other, double sign) {
   double scale = 0, difference = 0;
   for (std::size_t n = 0; n < one.size(); ++n) {
-    const auto C = static_cast<std::size_t>(system.components());
+    const std::size_t C = system.components();
     if (system.component(static_cast<int>(n % C)).role == Role::multiplier) continue;
     if (system.lattice().is_fixed(static_cast<int>(n / C))) continue;
     scale = std::max({scale, one[n].absolute, other[n].absolute});
@@ -136,8 +136,8 @@ class Motion {
       }
       return ends;
     }
-    const auto size = static_cast<std::size_t>(simulation.evolution().system().lattice().sites()) *
-                      static_cast<std::size_t>(simulation.count(Role::field));
+    const auto size =
+        delf::at(simulation.evolution().system().lattice().sites()) * delf::at(simulation.count(Role::field));
     Ends ends{Row(size), Row(size), simulation.step_density()};
     simulation.copy_row(1, ends.first);
     simulation.copy_row(0, ends.second);
@@ -177,7 +177,7 @@ class Motion {
 
  private:
   static std::pair<int, int> place(const LatticeSystem& system, std::size_t n) {
-    const auto C = static_cast<std::size_t>(system.components());
+    const std::size_t C = system.components();
     return {static_cast<int>(n / C), static_cast<int>(n % C)};
   }
   static bool is_held(const LatticeSystem& system, std::size_t n) {
@@ -201,7 +201,7 @@ class Motion {
         const Component& below = system.component(other);
         const bool same = below.field == c.field && below.at.time == 0 && below.at.space == c.at.space;
         if (same && (below.role == Role::field || below.role == Role::inner))
-          row[n] = row[n - static_cast<std::size_t>(component) + static_cast<std::size_t>(other)];
+          row[n] = row[n - delf::at(component) + delf::at(other)];
       }
     }
     return row;

@@ -24,7 +24,7 @@ using Point = std::array<double, n>;
 
 template <class T>
 T value(const Evaluation& evaluation, const Point& at) {
-  return evaluation.operator()<T>([&](int v) { return T(at[static_cast<std::size_t>(v)]); });
+  return evaluation.operator()<T>([&](int v) { return T(at[v]); });
 }
 double off(double a, double b) { return std::abs(a - b) / (1 + std::abs(a) + std::abs(b)); }
 
@@ -41,7 +41,7 @@ TEST_CASE("symbolic derivatives of ten thousand random expressions are those of 
     Point at;
     for (double& x : at) x = random(-1, 1);
     const Number by_duals = Evaluation(graph, root).operator()<Number>([&](int v) {
-      return Number::variable(Dual<double, n>::variable(at[static_cast<std::size_t>(v)], v), v);
+      return Number::variable(Dual<double, n>::variable(at[v], v), v);
     });
     const int a = random.pick(0, n - 1), b = random.pick(0, n - 1);
     const int slope = graph.differentiate(root, a);
@@ -71,7 +71,7 @@ TEST_CASE("symbolic derivatives of random expressions are those of differences")
     const Evaluation f(graph, root), slope(graph, graph.differentiate(root, a));
     const auto shifted = [&](double by) {
       Point there = at;
-      there[static_cast<std::size_t>(a)] += by;
+      there[a] += by;
       return value<double>(f, there);
     };
     // f′ = (8 (f₁ − f₋₁) − (f₂ − f₋₂))/12ε + O(ε⁴)

@@ -11,6 +11,7 @@
 #include "jets/expressions/evaluate.hpp"
 #include "jets/expressions/parse.hpp"
 #include "jets/tables/named_tables.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "tests/catch.hpp"
 #include "tests/jets/expressions/random_expression.hpp"
@@ -58,9 +59,7 @@ struct Discrete {
   }
   double operator()(const std::vector<double>& y) const {
     Graph graph;
-    return Evaluation(graph, parse(graph, text, names, "test")).operator()<double>([&](int v) {
-      return y[static_cast<std::size_t>(v)];
-    });
+    return Evaluation(graph, parse(graph, text, names, "test")).operator()<double>([&](int v) { return y[v]; });
   }
 };
 
@@ -118,7 +117,7 @@ TEST_CASE("printed expressions, read again, have the same values, and so have th
     const int root = parse(other, again, names, "test");
     std::vector<double> at(20);
     for (double& x : at) x = random(-1, 1);
-    const auto variable = [&](int v) { return at[static_cast<std::size_t>(v)]; };
+    const auto variable = [&](int v) { return at[v]; };
     double expected = 0, size = 1;
     for (const int node : sum) {
       const double term = Evaluation(graph, node).operator()<double>(variable);
@@ -153,14 +152,14 @@ TEST_CASE("printed discrete equations are the sums of residuals on every stencil
         if (brick && (vertices[l].time + vertices[l].space - static_cast<int>(parity)) % 2 != 0) continue;
         std::vector<double> on_stencil, r(vertices.size());
         for (const Site& v : vertices)
-          on_stencil.push_back(y[static_cast<std::size_t>(
-              printed.variable_of.at({v.time - vertices[l].time, v.space - vertices[l].space}))]);
+          on_stencil.push_back(
+              y[delf::at(printed.variable_of.at({v.time - vertices[l].time, v.space - vertices[l].space}))]);
         family.residual(Cell{h, k, 0, 0}, on_stencil, r);
         expected -= r[l] / (h * k);
       }
       INFO(equations[parity]);
       CHECK(printed(y) == Approx(expected).epsilon(1e-12));
-      y[static_cast<std::size_t>(printed.variable_of.at({0, 0}))] += 1e-3;
+      y[printed.variable_of.at({0, 0})] += 1e-3;
       CHECK(printed(y) != Approx(expected).epsilon(1e-8));
     }
   }

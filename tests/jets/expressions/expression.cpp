@@ -9,6 +9,7 @@
 
 #include "jets/batch_of.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/theories/complex_klein_gordon.hpp"
 #include "schemes/theories/coupled_sine_gordon.hpp"
 #include "schemes/theories/mechanics/kepler.hpp"
@@ -28,8 +29,7 @@ struct Rows {
   std::vector<double*> rows;
   std::vector<const double*> constant;
 
-  Rows(int n, int count)
-      : memory(static_cast<std::size_t>(n), std::vector<Pack>(static_cast<std::size_t>(count / lanes), Pack(0.0))) {
+  Rows(int n, int count) : memory(at(n), std::vector<Pack>(count / lanes, Pack(0.0))) {
     for (auto& row : memory) {
       rows.push_back(reinterpret_cast<double*>(row.data()));
       constant.push_back(rows.back());
@@ -71,8 +71,7 @@ void check_same(const BatchDensity& text, const BatchDensity& compiled, double l
       CHECK(text.is_constant(a, b) == compiled.is_constant(a, b));
       CHECK(text.is_zero(a, b) == compiled.is_zero(a, b));
     }
-    CHECK(text.constant_gradient()[static_cast<std::size_t>(a)] ==
-          Approx(compiled.constant_gradient()[static_cast<std::size_t>(a)]).margin(tolerance));
+    CHECK(text.constant_gradient()[a] == Approx(compiled.constant_gradient()[a]).margin(tolerance));
   }
   for (std::size_t i = 0; i < compiled.constant_hessian().size(); ++i)
     CHECK(text.constant_hessian()[i] == Approx(compiled.constant_hessian()[i]).epsilon(tolerance));
@@ -171,18 +170,15 @@ TEST_CASE("derivatives of random expressions agree with automatic differentiatio
   const double e = 1e-5;
   for (int a = 0; a < m; ++a) {
     const auto shift = [&](double by) {
-      for (int i = 0; i < lanes; ++i) jets.rows[static_cast<std::size_t>(a)][i] += by;
+      for (int i = 0; i < lanes; ++i) jets.rows[a][i] += by;
     };
     shift(e), l->value(batch, up.rows[0]), l->gradient(batch, g_up.rows.data());
     shift(-2 * e), l->value(batch, down.rows[0]), l->gradient(batch, g_down.rows.data());
     shift(e);
     for (int i = 0; i < lanes; ++i) {
-      CHECK(g.rows[static_cast<std::size_t>(a)][i] == Approx((up.rows[0][i] - down.rows[0][i]) / (2 * e)).margin(1e-8));
+      CHECK(g.rows[a][i] == Approx((up.rows[0][i] - down.rows[0][i]) / (2 * e)).margin(1e-8));
       for (int b = 0; b < m; ++b)
-        CHECK(
-            H.rows[static_cast<std::size_t>(a * m + b)][i] ==
-            Approx((g_up.rows[static_cast<std::size_t>(b)][i] - g_down.rows[static_cast<std::size_t>(b)][i]) / (2 * e))
-                .margin(1e-7));
+        CHECK(H.rows[a * m + b][i] == Approx((g_up.rows[b][i] - g_down.rows[b][i]) / (2 * e)).margin(1e-7));
     }
   }
 }
@@ -193,7 +189,7 @@ TEST_CASE("random sums and products have the derivatives that differences have")
   const std::vector<std::string> functions{"sin", "cos", "cosm1", "tanh", "atan", "exp"};
   const auto make = [&](const auto& self, int depth) -> std::string {
     const auto sub = [&] { return self(self, depth - 1); };
-    if (depth == 0) return leaves[static_cast<std::size_t>(random.pick(0, 11))];
+    if (depth == 0) return leaves[random.pick(0, 11)];
     switch (random.pick(0, 7)) {
       case 0:
         return "(" + sub() + " + " + sub() + ")";
@@ -208,7 +204,7 @@ TEST_CASE("random sums and products have the derivatives that differences have")
       case 5:
         return "sin(" + sub() + ")^3";
       default:
-        return functions[static_cast<std::size_t>(random.pick(0, 5))] + "(0.3*" + sub() + ")";
+        return functions[random.pick(0, 5)] + "(0.3*" + sub() + ")";
     }
   };
   for (int n = 0; n < 60; ++n) {
@@ -226,24 +222,21 @@ TEST_CASE("random sums and products have the derivatives that differences have")
     bool gradients = true, hessians = true, structure = true;
     for (int a = 0; a < m; ++a) {
       const auto shift = [&](double by) {
-        for (int i = 0; i < lanes; ++i) jets.rows[static_cast<std::size_t>(a)][i] += by;
+        for (int i = 0; i < lanes; ++i) jets.rows[a][i] += by;
       };
       shift(e), l->value(batch, up.rows[0]), l->gradient(batch, g_up.rows.data());
       shift(-2 * e), l->value(batch, down.rows[0]), l->gradient(batch, g_down.rows.data());
       shift(e);
       for (int i = 0; i < lanes; ++i) {
         const double slope = (up.rows[0][i] - down.rows[0][i]) / (2 * e);
-        gradients =
-            gradients && std::abs(g.rows[static_cast<std::size_t>(a)][i] - slope) < 1e-6 * (1 + std::abs(slope));
+        gradients = gradients && std::abs(g.rows[a][i] - slope) < 1e-6 * (1 + std::abs(slope));
         structure = structure && (l->depends_on(a) || std::abs(slope) < 1e-7);
         for (int b = 0; b < m; ++b) {
-          const double second =
-              (g_up.rows[static_cast<std::size_t>(b)][i] - g_down.rows[static_cast<std::size_t>(b)][i]) / (2 * e);
-          const double h = H.rows[static_cast<std::size_t>(a * m + b)][i];
+          const double second = (g_up.rows[b][i] - g_down.rows[b][i]) / (2 * e);
+          const double h = H.rows[a * m + b][i];
           hessians = hessians && std::abs(h - second) < 1e-6 * (1 + std::abs(second));
           structure = structure && (!l->is_zero(a, b) || h == 0) &&
-                      (!l->is_constant(a, b) ||
-                       std::abs(h - l->constant_hessian()[static_cast<std::size_t>(a * m + b)]) < 1e-12);
+                      (!l->is_constant(a, b) || std::abs(h - l->constant_hessian()[a * m + b]) < 1e-12);
         }
       }
     }

@@ -13,9 +13,7 @@ inline std::string random_expression(Random& random, int depth,
                                                                                "0.5", "c", "phi", "phi_t", "0", "1"}) {
   static const std::vector<std::string> functions{"sin", "cos", "cosm1", "tanh", "atan", "exp", "sinh", "cosh", "tan"};
   const auto sub = [&] { return random_expression(random, depth - 1, leaves); };
-  const auto pick = [&](const auto& list) {
-    return list[static_cast<std::size_t>(random.pick(0, static_cast<int>(list.size()) - 1))];
-  };
+  const auto pick = [&](const auto& list) { return list[random.pick(0, static_cast<int>(list.size()) - 1)]; };
   if (depth == 0) return pick(leaves);
   switch (random.pick(0, 11)) {
     case 0:

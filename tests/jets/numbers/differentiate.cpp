@@ -18,7 +18,7 @@ constexpr int sizes[] = {1, 7, 8, 9, 17};  // less than a chunk, one exactly, on
 constexpr double never_written = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> random_point(Random& random, int n) {
-  std::vector<double> y(static_cast<std::size_t>(n));
+  std::vector<double> y(n);
   for (double& v : y) v = random(0.3, 1.2);
   return y;
 }
@@ -166,8 +166,7 @@ TEST_CASE("the Hessian is symmetric to the last bit") {
     const std::vector<double> H = hessian_of(mixed, random_point(random, n));
     bool symmetric = true;
     for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        symmetric = symmetric && H[static_cast<std::size_t>(i * n + j)] == H[static_cast<std::size_t>(j * n + i)];
+      for (int j = 0; j < n; ++j) symmetric = symmetric && H[i * n + j] == H[j * n + i];
     CHECK(symmetric);
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "jets/numbers/dual.hpp"
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/jets/random.hpp"
 
@@ -31,7 +32,7 @@ double worst_error(std::vector<double> points) {
   for (std::size_t i = 0; i < points.size(); i += lanes) {
     const Pack s = sin(pack_of(&points[i])), c = cos(pack_of(&points[i]));
     for (int l = 0; l < lanes; ++l) {
-      const long double x = points[i + static_cast<std::size_t>(l)];
+      const long double x = points[i + at(l)];
       const long double error = std::max(std::abs(std::sin(x) - s[l]), std::abs(std::cos(x) - c[l]));
       if (!(error <= worst)) worst = error;  // a NaN too
     }
@@ -65,7 +66,7 @@ double worst_relative_error(std::vector<double> points, Function f, Exact g) {
   for (std::size_t i = 0; i < points.size(); i += lanes) {
     const Pack y = f(pack_of(&points[i]));
     for (int l = 0; l < lanes; ++l) {
-      const long double exact = g(static_cast<long double>(points[i + static_cast<std::size_t>(l)]));
+      const long double exact = g(static_cast<long double>(points[i + at(l)]));
       const long double error = exact == 0 ? std::abs(y[l]) : std::abs(y[l] - exact) / std::abs(exact);
       if (!(error <= worst)) worst = error;
     }
@@ -266,7 +267,8 @@ TEST_CASE("cos x - 1 is as good as its size where x is small, and cos x - 1 itse
     const long double half = std::sin(0.5L * x), exact = -2 * half * half;
     worst = std::max(worst, std::abs(cosm1(Pack(x))[n % lanes] - exact));
     // What leaves out where n is odd: cos r - 1 of the reduced argument.
-    without_its_sign = std::max(without_its_sign, std::abs(std::abs(std::cos(static_cast<long double>(x))) - 1 - exact));
+    without_its_sign =
+        std::max(without_its_sign, std::abs(std::abs(std::cos(static_cast<long double>(x))) - 1 - exact));
   }
   CHECK(worst < 6e-16L);
   CHECK(without_its_sign > 1.9L);

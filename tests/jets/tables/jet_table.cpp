@@ -66,7 +66,7 @@ double quadrature_error(Map, double e) {
     double u = 0, ut = 0, ux = 0;
     for (int l = 0; l < map.vertices; ++l) {
       const double y = phi(e * map.shape.vertex(l).time, e * map.shape.vertex(l).space);
-      const auto at = static_cast<std::size_t>(l);
+      const std::size_t at = l;
       u += p.phi[at] * y, ut += p.phi_t[at] * y / e, ux += p.phi_x[at] * y / e;
     }
     sum += p.weight * density(u, ut, ux);
@@ -90,7 +90,7 @@ TEST_CASE("every jet map finds value, velocity and slope of affine fields") {
       double u = 0, ut = 0, ux = 0;
       for (int l = 0; l < map.vertices; ++l) {
         const double y = affine(map.shape.vertex(l).time, map.shape.vertex(l).space);
-        const auto at = static_cast<std::size_t>(l);
+        const std::size_t at = l;
         u += p.phi[at] * y, ut += p.phi_t[at] * y / h, ux += p.phi_x[at] * y / k;
       }
       CHECK(std::abs(u - affine(time_offset(map.shape, p), space_offset(map.shape, p))) < 1e-14);

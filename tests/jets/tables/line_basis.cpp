@@ -7,6 +7,7 @@
 #include "jets/tables/line_rule.hpp"
 #include "jets/tables/time_element.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 
 using namespace delf;
@@ -65,13 +66,13 @@ TEST_CASE("a time element is exact on affine motions, shared or broken, and no p
         const StencilTable broken = time_element(basis, rule.make(S), Continuity::multipliers);
         CHECK(is_consistent(broken));
         CHECK(broken.pattern.size() == S + 1);
-        CHECK(broken.nodes.size() == static_cast<std::size_t>(S + 1));
+        CHECK(broken.nodes.size() == at(S + 1));
         for (const TablePoint& point : broken.points)
           for (const auto& entry : point[JetSlot::phi]) CHECK(entry.vertex > 0);
         if (!basis.has_end_nodes()) continue;
         const StencilTable shared = time_element(basis, rule.make(S), Continuity::shared);
         CHECK(is_consistent(shared));
         CHECK(shared.pattern.size() == S);
-        CHECK(shared.nodes.size() == static_cast<std::size_t>(S - 1));
+        CHECK(shared.nodes.size() == at(S - 1));
       }
 }

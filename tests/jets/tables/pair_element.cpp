@@ -14,7 +14,7 @@ namespace {
 double second_derivative(int p, int degree) {
   const auto weights = pair_weights(p);
   double sum = 0;
-  for (int m = 1; m <= p; ++m) sum += weights[static_cast<std::size_t>(m - 1)] * 2 * std::pow(m, degree) / (m * m);
+  for (int m = 1; m <= p; ++m) sum += weights[m - 1] * 2 * std::pow(m, degree) / (m * m);
   return sum;
 }
 /// One step of the pendulum q″ = −sin q by kicks and drifts.
@@ -93,7 +93,7 @@ TEST_CASE(
   double kick = 0;
   for (const TablePoint& p : element.points)
     for (const auto& [vertex, weight] : p[JetSlot::phi]) {
-      const Site v = element.pattern.vertices[static_cast<std::size_t>(vertex)];
+      const Site v = element.pattern.vertices[vertex];
       if (v.time == 0 && v.node == 2) kick += p.weight * weight;
     }
   CHECK(std::abs(kick - splitting.kicks[2]) < 1e-14);
@@ -102,8 +102,8 @@ TEST_CASE(
     const auto found = [&](JetSlot slot) {
       double sum = 0;
       for (const auto& [vertex, weight] : p[slot]) {
-        const Site v = element.pattern.vertices[static_cast<std::size_t>(vertex)];
-        sum += weight * (2 + 3 * (v.time + element.nodes[static_cast<std::size_t>(v.node)].time) + 5 * v.space);
+        const Site v = element.pattern.vertices[vertex];
+        sum += weight * (2 + 3 * (v.time + element.nodes[v.node].time) + 5 * v.space);
       }
       return sum;
     };

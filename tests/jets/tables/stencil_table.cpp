@@ -9,6 +9,7 @@
 #include "jets/tables/pair_element.hpp"
 #include "jets/tables/spacetime_element.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/scheme.hpp"
 #include "tests/catch.hpp"
 #include "tests/jets/catalogue.hpp"
@@ -47,19 +48,19 @@ StencilTable second_order() {
 TEST_CASE("a built-in table becomes one whose sparse slots have its weights, at the places of its points") {
   for_each_map([](auto map) {
     const StencilTable table = stencil_table(map.table);
-    REQUIRE(table.points.size() == static_cast<std::size_t>(map.table.points));
+    REQUIRE(table.points.size() == at(map.table.points));
     CHECK(table.measure == map.table.measure);
     CHECK(table.pattern.size() == map.table.vertices);
     for (int q = 0; q < map.table.points; ++q) {
       const auto& from = map.table.point(q);
-      const TablePoint& to = table.points[static_cast<std::size_t>(q)];
+      const TablePoint& to = table.points[q];
       CHECK(to.weight == from.weight);
       CHECK(to.time == time_offset(map.table.shape, from));
       CHECK(to.space == space_offset(map.table.shape, from));
       const auto same = [&](JetSlot slot, const auto& weights) {
         auto entry = to[slot].begin();
         for (int l = 0; l < map.table.vertices; ++l)
-          if (const double w = weights[static_cast<std::size_t>(l)]; w != 0) {
+          if (const double w = weights[l]; w != 0) {
             REQUIRE(entry != to[slot].end());
             CHECK((entry->vertex == l && entry->weight == w));
             ++entry;

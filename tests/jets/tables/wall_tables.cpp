@@ -9,6 +9,7 @@
 #include "jets/tables/rectangle_jet.hpp"
 #include "jets/tables/triangle_jet.hpp"
 #include "jets/tables/tuple_jets.hpp"
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 
 using namespace delf;
@@ -16,8 +17,8 @@ using namespace delf;
 namespace {
 
 /// (5.9) as printed: φ_t on the left edge alone.
-const StencilTable printed_rectangle = stencil_table(JetTable<4, 1>{
-    shapes::rectangle, 1, {{{1, {.25, .25, .25, .25}, {-1, 1, 0, 0}, {-.5, -.5, .5, .5}}}}});
+const StencilTable printed_rectangle = stencil_table(
+    JetTable<4, 1>{shapes::rectangle, 1, {{{1, {.25, .25, .25, .25}, {-1, 1, 0, 0}, {-.5, -.5, .5, .5}}}}});
 
 /// Shares of a cell that the potential and the kinetic term have in a column of a table's cells.
 struct Shares {
@@ -28,10 +29,9 @@ Shares shares(const StencilTable& table, int column) {
   for (const TablePoint& p : table.points) {
     // ½φ_t² at φ_t = 1: what the column's values of the next row contribute to it
     for (const auto& e : p[JetSlot::phi])
-      if (table.pattern.vertices[static_cast<std::size_t>(e.vertex)].space == column)
-        sum.potential += p.weight * e.weight;
+      if (table.pattern.vertices[e.vertex].space == column) sum.potential += p.weight * e.weight;
     for (const auto& e : p[JetSlot::phi_t]) {
-      const Site v = table.pattern.vertices[static_cast<std::size_t>(e.vertex)];
+      const Site v = table.pattern.vertices[e.vertex];
       if (v.space == column && v.time == 1) sum.kinetic += p.weight * e.weight;
     }
   }
@@ -49,11 +49,11 @@ TEST_CASE("with its terms at natural walls a wall has half a cell's kinetic and 
     CHECK(terms[0].pattern.placement == Placement::left_wall);
     CHECK(terms[1].pattern.placement == Placement::right_wall);
     for (const int wall : {0, 1}) {
-      const Shares inside = shares(table, wall), term = shares(terms[static_cast<std::size_t>(wall)], 0);
+      const Shares inside = shares(table, wall), term = shares(terms[at(wall)], 0);
       CHECK(inside.kinetic != Approx(0.5));  // the check can fail
       CHECK(inside.kinetic + term.kinetic == Approx(0.5));
       CHECK(inside.potential + term.potential == Approx(0.5));
-      for (const TablePoint& p : terms[static_cast<std::size_t>(wall)].points) CHECK(p[JetSlot::phi_x].empty());
+      for (const TablePoint& p : terms[at(wall)].points) CHECK(p[JetSlot::phi_x].empty());
     }
   }
 }

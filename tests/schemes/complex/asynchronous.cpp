@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/complex/asynchronous.hpp"
-#include "schemes/complex/complex_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "jets/expressions/expression.hpp"
 #include "schemes/complex/complex_form.hpp"
+#include "schemes/complex/complex_solver.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/complex/mesh_rows.hpp"
 
@@ -45,7 +45,7 @@ TEST_CASE("asynchronous steps are a complex with the same order, and the form fo
   std::vector<double> y = window.values;
   const Complex& complex = window.system.complex();
   for (int s = 0; s < complex.sites(); ++s)
-    if (complex.is_unknown(s)) y[static_cast<std::size_t>(s)] = 0;
+    if (complex.is_unknown(s)) y[s] = 0;
   solver.solve(y);
   double distance = 0;
   for (std::size_t n = 0; n < y.size(); ++n) distance = std::max(distance, std::abs(y[n] - window.values[n]));

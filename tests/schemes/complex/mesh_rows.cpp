@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/methods/mesh_rows.hpp"
 #include "schemes/system/conserved.hpp"
@@ -34,8 +35,7 @@ MeshRows::MeshRows(const CellSpace& space, double time_step, std::shared_ptr<con
       energy_(space.density, space) {}
 
 void MeshRows::start(std::span<const double> values, std::span<const double> rates, std::optional<double> time_step) {
-  const auto C = static_cast<std::size_t>(evolution_.system().components()),
-             d = static_cast<std::size_t>(space_.fields());
+  const std::size_t C = evolution_.system().components(), d = at(space_.fields());
   std::vector<double> row0(space_.mesh.points.size() * C, 0.0), momenta(row0);
   const ScratchRows jet(space_.density->variables(), lanes), slope(space_.density->variables(), lanes), x(1, lanes);
   for (std::size_t i = 0; i < space_.mesh.points.size(); ++i) {
@@ -60,8 +60,7 @@ void MeshRows::step(std::optional<double> time_step) {
 }
 
 void MeshRows::read() {
-  const auto C = static_cast<std::size_t>(evolution_.system().components()),
-             d = static_cast<std::size_t>(space_.fields());
+  const std::size_t C = evolution_.system().components(), d = at(space_.fields());
   for (const int back : {0, 1}) {
     std::vector<double>& to = back == 0 ? row_ : before_;
     to.clear();

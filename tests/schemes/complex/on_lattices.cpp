@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "tests/schemes/complex/lattice_complex.hpp"
-
 #include "jets/tables/named_tables.hpp"
 #include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/lattice_complex.hpp"
 #include "tests/schemes/complex/lattice_values.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -50,7 +49,7 @@ TEST_CASE("a regular lattice given as a complex has the same plan, rows and form
         evolution.stepper().step();
         const Row row = evolution.stepper().row(0);
         for (std::size_t i = 0; i < row.size(); ++i)
-          CHECK(std::abs(y[static_cast<std::size_t>(whole.site(j, static_cast<int>(i)))] - row[i]) < 1e-13);
+          CHECK(std::abs(y[whole.site(j, static_cast<int>(i))] - row[i]) < 1e-13);
       }
 
       std::mt19937_64 seed(1);

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 
 namespace {
@@ -18,20 +19,18 @@ using Vector = SitewiseLU::Vector;
 /// equations and of unknowns are shuffled.
 struct Saddle {
   explicit Saddle(int n, double slope = 1) : A(3 * n * n, 3 * n * n) {
-    std::vector<int> row(static_cast<std::size_t>(3 * n * n)), column;
+    std::vector<int> row(3 * n * n), column;
     for (std::size_t u = 0; u < row.size(); ++u) row[u] = static_cast<int>(u);
     column = row;
     std::mt19937 seed(4);
     std::ranges::shuffle(row, seed), std::ranges::shuffle(column, seed);
     of_equations.resize(row.size()), of_unknowns.resize(row.size());
     std::vector<Eigen::Triplet<double>> entries;
-    const auto add = [&](int i, int m, double value) {
-      entries.emplace_back(row[static_cast<std::size_t>(i)], column[static_cast<std::size_t>(m)], value);
-    };
+    const auto add = [&](int i, int m, double value) { entries.emplace_back(row[i], column[m], value); };
     for (int s = 0; s < n * n; ++s) {
       for (int a = 0; a < 3; ++a) {
-        of_equations[static_cast<std::size_t>(row[static_cast<std::size_t>(3 * s + a)])] = s;
-        of_unknowns[static_cast<std::size_t>(column[static_cast<std::size_t>(3 * s + a)])] = s;
+        of_equations[at(row[3 * s + a])] = s;
+        of_unknowns[at(column[3 * s + a])] = s;
       }
       for (int a = 0; a < 2; ++a) {
         add(3 * s + a, 3 * s + a, 4);

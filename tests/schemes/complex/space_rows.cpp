@@ -314,8 +314,7 @@ TEST_CASE("cells with steps of their own read t and x when they act: of order 2 
     std::vector<double> steps;
     for (int c = 0; c < space.mesh.cells(); ++c) {
       const auto cell = space.mesh.cell(c);
-      steps.push_back(courant * std::abs(space.mesh.points[static_cast<std::size_t>(cell[1])][0] -
-                                         space.mesh.points[static_cast<std::size_t>(cell[0])][0]));
+      steps.push_back(courant * std::abs(space.mesh.points[cell[1]][0] - space.mesh.points[cell[0]][0]));
     }
     AsynchronousEvolution evolution(space, steps);
     const std::vector<double> start = at_points(space.mesh, manufactured_solution, 0);

@@ -6,11 +6,12 @@
 #include <random>
 
 #include "jets/tables/named_tables.hpp"
+#include "lattice/index.hpp"
 #include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_solver.hpp"
-#include "tests/schemes/complex/lattice_complex.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/lattice_complex.hpp"
 #include "tests/schemes/complex/lattice_values.hpp"
 #include "tests/schemes/complex/stencil_lists.hpp"
 #include "tests/schemes/support.hpp"
@@ -76,8 +77,7 @@ TEST_CASE("a lattice written as a list of stencils has the lattice's plan and ro
         evolution.stepper().step();
         const Row row = evolution.stepper().row(0);
         for (int i = 0; i < N; ++i)
-          CHECK(std::abs(y[static_cast<std::size_t>(whole.site(j, i))] - row[static_cast<std::size_t>(i)]) <
-                1e-13 * std::max(1.0, std::abs(row[static_cast<std::size_t>(i)])));
+          CHECK(std::abs(y[whole.site(j, i)] - row[i]) < 1e-13 * std::max(1.0, std::abs(row[i])));
       }
     }
 }
@@ -97,9 +97,7 @@ TEST_CASE("second derivatives on sites that lie anywhere are exact on quadratic 
       for (const TablePoint& p : placed_points(named.table, sites)) {
         std::array<double, 3> jet{};
         for (const int s : {3, 4, 5})
-          for (const auto& e : p.slots[static_cast<std::size_t>(s)])
-            jet[static_cast<std::size_t>(s - 3)] += e.weight * field(sites[static_cast<std::size_t>(e.vertex)][0],
-                                                                     sites[static_cast<std::size_t>(e.vertex)][1]);
+          for (const auto& e : p.slots[at(s)]) jet[s - 3] += e.weight * field(sites[e.vertex][0], sites[e.vertex][1]);
         all.push_back(jet);
       }
       return all;
@@ -131,12 +129,12 @@ TEST_CASE("a beam on six-tuples of unequal spacing converges with order 2, and n
     REQUIRE(fault_of(list) == "none");
     StencilList solved = list;
     for (std::size_t s = 0; taken_for_equal && s < solved.sites.size(); ++s)
-      solved.sites[s].position[1] = turn * static_cast<double>(s % static_cast<std::size_t>(n)) / n;
+      solved.sites[s].position[1] = turn * static_cast<double>(s % at(n)) / n;
     const ComplexSystem system = spacetime_complex(solved, density);
     std::vector<double> y, exact;
     for (const auto& s : list.sites) exact.push_back(std::cos(s.position[1] - s.position[0]));
     y = exact;
-    for (std::size_t s = static_cast<std::size_t>(2 * n); s < y.size(); ++s) y[s] = 0;
+    for (std::size_t s = at(2 * n); s < y.size(); ++s) y[s] = 0;
     ComplexSolver(system).solve(y);
     double most = 0;
     for (std::size_t s = 0; s < y.size(); ++s) most = std::max(most, std::abs(y[s] - exact[s]));
@@ -149,13 +147,14 @@ TEST_CASE("a beam on six-tuples of unequal spacing converges with order 2, and n
   }
 }
 
-TEST_CASE("second-order densities on bent nine-tuples keep the form formula, and stencils without a derivative are named") {
+TEST_CASE(
+    "second-order densities on bent nine-tuples keep the form formula, and stencils without a derivative are named") {
   const auto density = TheoryOf<SecondInTime>(SecondInTime{}).shared_density();
   StencilList list = bent_rows(13, 8);
   list.stencils.clear();
   for (int j = 0; j < 8; ++j)
     for (int i = 0; i < 13; ++i) {
-      SiteRole& role = list.sites[static_cast<std::size_t>(13 * j + i)].role;
+      SiteRole& role = list.sites[13 * j + i].role;
       role = i < 2 || i > 10 || j < 2 ? SiteRole::given
              : j < 4                  ? SiteRole::initial
              : j < 6                  ? SiteRole::free
@@ -215,7 +214,7 @@ TEST_CASE("mixed shapes with jets from their coordinates are exact on affine fie
     for (const auto& s : list.sites) exact.push_back(0.3 + 0.7 * s.position[0] - 0.4 * s.position[1]);
     y = exact;
     for (int s = 0; s < system.complex().sites(); ++s)
-      if (system.complex().is_unknown(s)) y[static_cast<std::size_t>(s)] = 0;
+      if (system.complex().is_unknown(s)) y[s] = 0;
     const ComplexSolver solver(system);
     solver.solve(y);
     for (std::size_t n = 0; n < y.size(); ++n) CHECK(y[n] == Approx(exact[n]).margin(1e-11));
@@ -251,10 +250,10 @@ TEST_CASE("motion, sites and gradients of a list are those of rows over a mesh")
   StencilList list;
   for (int s = 0; s < complex.sites(); ++s) list.sites.push_back({complex.position(s), complex.role(s)});
   for (int j = 0; j < 4; ++j) {
-    const auto u = static_cast<std::size_t>(j);
+    const std::size_t u = j;
     const double share = 0.5 * ((j < 3 ? times[u + 1] : times[u]) - (j > 0 ? times[u - 1] : times[u]));
     for (int i = 0; i < n; ++i) {
-      const double mass = space.masses[static_cast<std::size_t>(i)];
+      const double mass = space.masses[i];
       list.stencils.push_back({"site", {j * n + i}, share * mass});
       if (j > 0) list.stencils.push_back({"motion", {(j - 1) * n + i, j * n + i}, mass});
     }

@@ -62,8 +62,8 @@ TEST_CASE("natural walls, straight or bent, and a complex that ends in steps at 
     if (list.sites[s].role == SiteRole::given && s >= 9)
       list.sites[s].role = s < 18 ? SiteRole::initial : SiteRole::free;
   for (int j = 0; j < 9; ++j) {
-    list.sites[static_cast<std::size_t>(9 * j)].position[1] += 0.02 * j * j / 9;
-    list.sites[static_cast<std::size_t>(9 * j + 8)].position[1] -= 0.01 * j;
+    list.sites[9 * j].position[1] += 0.02 * j * j / 9;
+    list.sites[9 * j + 8].position[1] -= 0.01 * j;
   }
   REQUIRE_FALSE(find_fault(list));
   CHECK_FALSE(tiling_of(list).fault);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/families/stencil_family.hpp"
 #include "tests/jets/random.hpp"
 
@@ -14,7 +15,7 @@ namespace delf::testing {
 class FamilyBatch {
  public:
   FamilyBatch(const StencilFamily& of, const Cell& cell, int count, Random& random, double amplitude = 1)
-      : family(of), size_(static_cast<std::size_t>(of.size())), cell_(cell), count_(count) {
+      : family(of), size_(delf::at(of.size())), cell_(cell), count_(count) {
     x_.resize(packs(1)), y_.resize(packs(size_));
     for (int s = 0; s < count; ++s) {
       number(x_, 0, s) = random(-3, 3);
@@ -46,8 +47,10 @@ class FamilyBatch {
     return rows(size_, [&](double* r) { family.residual(batch(), r); });
   }
   /// ∂rᵉ/∂yᵘ: [e · unknowns + u][s]
-  std::vector<std::vector<double>> jacobians(const std::vector<int>& equations, const std::vector<int>& unknowns) const {
-    return rows(equations.size() * unknowns.size(), [&](double* J) { family.jacobian(batch(), equations, unknowns, J); });
+  std::vector<std::vector<double>> jacobians(const std::vector<int>& equations,
+                                             const std::vector<int>& unknowns) const {
+    return rows(equations.size() * unknowns.size(),
+                [&](double* J) { family.jacobian(batch(), equations, unknowns, J); });
   }
 
   /// The largest |r − r0 − J y − hk Σ_c weight(c, ·) g_c| over the stencils, relative to the largest |r|; g of source
@@ -68,9 +71,9 @@ class FamilyBatch {
         double sum = part->r0[i];
         for (std::size_t j = 0; j < size_; ++j) sum += part->J[i * size_ + j] * values[j];
         for (std::size_t c = 0; c < sources.size(); ++c)
-          sum += factor * cell_.time_step * cell_.space_step *
-                 terms->weight(static_cast<int>(c), static_cast<int>(i)) * sources[c][static_cast<std::size_t>(s)];
-        const double exact = r[i][static_cast<std::size_t>(s)];
+          sum += factor * cell_.time_step * cell_.space_step * terms->weight(static_cast<int>(c), static_cast<int>(i)) *
+                 sources[c][s];
+        const double exact = r[i][s];
         if (!(std::abs(sum - exact) <= worst)) worst = std::abs(sum - exact);
         largest = std::max(largest, std::abs(exact));
       }
@@ -85,21 +88,22 @@ class FamilyBatch {
     std::iota(all.begin(), all.end(), 0);
     const auto J = jacobians(all, all);
     std::vector<std::vector<double>> sum;
-    for (double entry : part->J) sum.emplace_back(static_cast<std::size_t>(count_), entry);
+    for (double entry : part->J) sum.emplace_back(delf::at(count_), entry);
     if (const SourceTerms* const terms = family.sources())
       for (std::size_t g = 0; g < terms->groups.size(); ++g) {
         const std::vector<Pack> inputs = quadrature_values(static_cast<int>(g));
-        const std::size_t n = terms->groups[g].inputs.size(), outputs = static_cast<std::size_t>(terms->outputs_per_group);
+        const std::size_t n = terms->groups[g].inputs.size(), outputs = delf::at(terms->outputs_per_group);
         const auto slopes = rows(outputs * n, [&](double* out) {
-          with_pointers(inputs, n, out, outputs * n, [&](const JetBatch& at, double* const* d) {
-            family.differentiate_sources(static_cast<int>(g), at, d);
-          }, terms->groups[g]);
+          with_pointers(
+              inputs, n, out, outputs * n,
+              [&](const JetBatch& at, double* const* d) { family.differentiate_sources(static_cast<int>(g), at, d); },
+              terms->groups[g]);
         });
         for (std::size_t c = 0; c < outputs; ++c)
           for (std::size_t j = 0; j < n; ++j)
             for (const SourceTerms::Part& part_of : terms->groups[g].inputs[j])
               for (std::size_t i = 0; i < size_; ++i)
-                for (std::size_t s = 0; s < static_cast<std::size_t>(count_); ++s)
+                for (std::size_t s = 0; s < delf::at(count_); ++s)
                   sum[i * size_ + value_of(part_of)][s] +=
                       cell_.time_step * cell_.space_step *
                       terms->weight(static_cast<int>(g * outputs + c), static_cast<int>(i)) * slopes[c * n + j][s] *
@@ -117,13 +121,13 @@ class FamilyBatch {
   const StencilFamily& family;
 
  private:
-  std::size_t packs(std::size_t rows_of) const { return rows_of * static_cast<std::size_t>(count_ / lanes); }
+  std::size_t packs(std::size_t rows_of) const { return rows_of * delf::at(count_ / lanes); }
   static const double* data(const std::vector<Pack>& memory) { return reinterpret_cast<const double*>(memory.data()); }
   double& number(std::vector<Pack>& memory, std::size_t row, int s) const {
-    return reinterpret_cast<double*>(memory.data())[row * static_cast<std::size_t>(count_) + static_cast<std::size_t>(s)];
+    return reinterpret_cast<double*>(memory.data())[row * delf::at(count_) + delf::at(s)];
   }
   double number(const std::vector<Pack>& memory, std::size_t row, int s) const {
-    return data(memory)[row * static_cast<std::size_t>(count_) + static_cast<std::size_t>(s)];
+    return data(memory)[row * delf::at(count_) + delf::at(s)];
   }
   std::size_t value_of(const SourceTerms::Part& part) const {
     for (std::size_t i = 0; i < size_; ++i)
@@ -132,7 +136,7 @@ class FamilyBatch {
   }
   /// m = Σ weight · y(vertex), for each input of a group.
   std::vector<Pack> quadrature_values(int group) const {
-    const auto& inputs = family.sources()->groups[static_cast<std::size_t>(group)].inputs;
+    const auto& inputs = family.sources()->groups[group].inputs;
     std::vector<Pack> m(packs(inputs.size()), Pack(0.0));
     for (std::size_t j = 0; j < inputs.size(); ++j)
       for (const SourceTerms::Part& part : inputs[j])
@@ -143,21 +147,21 @@ class FamilyBatch {
                      const SourceTerms::Group& group) const {
     std::vector<const double*> in;
     std::vector<double*> to;
-    for (std::size_t j = 0; j < n; ++j) in.push_back(data(inputs) + j * static_cast<std::size_t>(count_));
-    for (std::size_t c = 0; c < outputs; ++c) to.push_back(out + c * static_cast<std::size_t>(count_));
+    for (std::size_t j = 0; j < n; ++j) in.push_back(data(inputs) + j * delf::at(count_));
+    for (std::size_t c = 0; c < outputs; ++c) to.push_back(out + c * delf::at(count_));
     std::vector<Pack> x = x_;
     for (Pack& position : x) position = position + Pack(group.space * cell_.space_step);
     call(JetBatch{count_, in.data(), cell_.t + group.time * cell_.time_step, data(x)}, to.data());
   }
   std::vector<std::vector<double>> source_rows(int group) const {
     const SourceTerms& terms = *family.sources();
-    const SourceTerms::Group& of = terms.groups[static_cast<std::size_t>(group)];
+    const SourceTerms::Group& of = terms.groups[group];
     const std::vector<Pack> inputs = quadrature_values(group);
-    const auto outputs = static_cast<std::size_t>(terms.outputs_per_group);
+    const std::size_t outputs = terms.outputs_per_group;
     return rows(outputs, [&](double* out) {
-      with_pointers(inputs, of.inputs.size(), out, outputs, [&](const JetBatch& at, double* const* g) {
-        family.evaluate_sources(group, at, g);
-      }, of);
+      with_pointers(
+          inputs, of.inputs.size(), out, outputs,
+          [&](const JetBatch& at, double* const* g) { family.evaluate_sources(group, at, g); }, of);
     });
   }
 

@@ -30,7 +30,7 @@ struct Defects {
 template <class Map, class D>
 Defects against_duals(Map map, const D& density, int count) {
   const auto exact = discrete_lagrangian(map, density);
-  constexpr auto n = static_cast<std::size_t>(decltype(exact)::size);
+  constexpr std::size_t n = decltype(exact)::size;
   const auto family = jet_family(stencil_table(map.table), density);
   Random random(61);
   const FamilyBatch stencils(*family, cell, count, random);
@@ -45,7 +45,7 @@ Defects against_duals(Map map, const D& density, int count) {
     size = std::max(size, std::abs(b));
   };
   for (int s = 0; s < count; ++s) {
-    const auto at = static_cast<std::size_t>(s);
+    const std::size_t at = s;
     std::array<double, n> y;
     std::ranges::copy(stencils.y(s), y.begin());
     const auto gradient = exact.gradient(y, stencils.cell(s));
@@ -131,7 +131,7 @@ StencilTable second_order_table() {
 Defects against_differences(const StencilFamily& family, int count, double e = 1e-3) {
   Random random(64);
   const FamilyBatch stencils(family, cell, lanes, random, 0.5);
-  const auto n = static_cast<std::size_t>(family.size());
+  const std::size_t n = family.size();
   Defects worst, largest;
   for (int s = 0; s < count; ++s) {
     std::vector<double> y = stencils.y(s), r(n), J(n * n), moved(n);
@@ -196,13 +196,13 @@ TEST_CASE("some equations and unknowns have the entries of the whole Jacobian") 
       CAPTURE(theory, named.name);
       const FamilyBatch stencils(*family, cell, 2 * lanes, random);
       const int n = family->size();
-      std::vector<int> all(static_cast<std::size_t>(n));
+      std::vector<int> all(n);
       std::iota(all.begin(), all.end(), 0);
       const std::vector<int> equations{n - 1, 0}, unknowns{n / 2, n - 1, 0};
       const auto whole = stencils.jacobians(all, all), some = stencils.jacobians(equations, unknowns);
       for (std::size_t e = 0; e < equations.size(); ++e)
         for (std::size_t u = 0; u < unknowns.size(); ++u)
-          CHECK(some[e * unknowns.size() + u] == whole[static_cast<std::size_t>(equations[e] * n + unknowns[u])]);
+          CHECK(some[e * unknowns.size() + u] == whole[equations[e] * n + unknowns[u]]);
     }
 }
 
@@ -223,8 +223,9 @@ TEST_CASE("the residual is its constant part and its source terms, for every the
 }
 
 TEST_CASE("so it is for elements, and for the sub-steps of a composition") {
-  for (const StencilTable& table : {spacetime_element(2, 2, TimeQuadrature::gauss), spacetime_element(1, 3, TimeQuadrature::lobatto),
-                                    pair_element(splitting_of_order(4), 2)})
+  for (const StencilTable& table :
+       {spacetime_element(2, 2, TimeQuadrature::gauss), spacetime_element(1, 3, TimeQuadrature::lobatto),
+        pair_element(splitting_of_order(4), 2)})
     for (const char* theory : {"sine-gordon", "sine-gordon-impurity", "phi4", "complex-klein-gordon"}) {
       const auto family = theory_named(problem_of(theory))->on_table(table);
       CAPTURE(theory, table.points.size());
@@ -303,9 +304,8 @@ TEST_CASE("a beam is stepped: its equation is φ_tt + φ_xxxx + φ³ = 0") {
   double worst = 0;
   const Row last = stepper.row(0);
   for (int i = 0; i < N; ++i)
-    worst = std::max(worst, std::abs(last[static_cast<std::size_t>(i)] -
-                                     1e-6 * std::cos(omega * static_cast<double>(stepper.newest()) * step) *
-                                         std::cos(kappa * i * dx)));
+    worst = std::max(worst, std::abs(last[i] - 1e-6 * std::cos(omega * static_cast<double>(stepper.newest()) * step) *
+                                                   std::cos(kappa * i * dx)));
   CHECK(worst < 1e-12);
 }
 

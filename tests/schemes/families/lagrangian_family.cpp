@@ -27,7 +27,7 @@ struct Defects {
 template <class L>
 Defects against_differences(const LagrangianFamily<L>& family, Random& random) {
   constexpr double e = 0.25;
-  const auto n = static_cast<std::size_t>(family.size());
+  const std::size_t n = family.size();
   std::vector<double> y(n), r(n), J(n * n), moved(n);
   for (double& v : y) v = random(-1, 1);
   family.residual(cell, y, r);
@@ -126,7 +126,7 @@ TEST_CASE("a family of a stencil Lagrangian has its pattern and its values") {
   CHECK(family.values() == stencil.values());
   CHECK(family.is_variational());
   CHECK(family.sources() == nullptr);
-  std::vector<double> y(static_cast<std::size_t>(family.size()), 0.5);
+  std::vector<double> y(family.size(), 0.5);
   CHECK(family.lagrangian(cell, y) == stencil(std::span<const double>(y), cell));
 }
 

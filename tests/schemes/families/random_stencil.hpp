@@ -52,7 +52,7 @@ struct RandomStencil {
       for (std::size_t j = i; j < y.size(); ++j) sum += quadratic[pair++] * (y[i] * y[j]);
     for (const Monomial& m : monomials) {
       T product(m.coefficient);
-      for (const int i : m.factors) product *= y[static_cast<std::size_t>(i)];
+      for (const int i : m.factors) product *= y[i];
       sum += product;
     }
     return (cell.time_step * cell.space_step) * sum;
@@ -64,9 +64,8 @@ struct RandomStencil {
     std::vector<Site> offsets;
     for (int time = 0; time <= 2; ++time)
       for (int space = -1; space <= 1; ++space) offsets.push_back({time, space});
-    for (int i = 8; i > 0; --i)
-      std::swap(offsets[static_cast<std::size_t>(i)], offsets[static_cast<std::size_t>(random.pick(0, i))]);
-    offsets.resize(static_cast<std::size_t>(random.pick(3, 9)));
+    for (int i = 8; i > 0; --i) std::swap(offsets[i], offsets[random.pick(0, i)]);
+    offsets.resize(random.pick(3, 9));
     return offsets;
   }
   bool on_two_rows() const {

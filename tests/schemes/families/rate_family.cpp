@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/families/equidistribution.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/families/family_batch.hpp"
@@ -26,7 +27,7 @@ struct Defects {
 Defects defects_of(const Equidistribution& L, double factor = 1) {
   const RateFamily<Equidistribution> family(L);
   const LagrangianFamily<Equidistribution> of(L);
-  const auto n = static_cast<std::size_t>(family.size()), m = n / 2;
+  const std::size_t n = family.size(), m = n / 2;
   Random random(3);
   std::vector<double> y(n), r(n), J(n * n), slope(m), above(n), below(n);
   for (double& v : y) v = random(-1, 1);
@@ -78,15 +79,15 @@ TEST_CASE("a rate's batches take any equations and unknowns", "[rate]") {
   const auto one = batch.rows(1, [&](double* out) { family.residual(batch.batch(), std::vector<int>{4}, out); });
   const auto J = batch.jacobians(equations, unknowns);
   for (int s = 0; s < batch.count(); ++s) {
-    const auto at = static_cast<std::size_t>(s), n = static_cast<std::size_t>(family.size());
+    const std::size_t at = s, n = delf::at(family.size());
     std::vector<double> all(n), every(n * n);
     family.residual(cell, batch.y(s), all), family.jacobian(cell, batch.y(s), every);
     CHECK(one[0][at] == Approx(all[4]));
     for (std::size_t e = 0; e < equations.size(); ++e) {
-      const auto equation = static_cast<std::size_t>(equations[e]);
+      const std::size_t equation = equations[e];
       CHECK(r[e][at] == Approx(all[equation]));
       for (std::size_t u = 0; u < unknowns.size(); ++u)
-        CHECK(J[e * unknowns.size() + u][at] == Approx(every[equation * n + static_cast<std::size_t>(unknowns[u])]));
+        CHECK(J[e * unknowns.size() + u][at] == Approx(every[equation * n + delf::at(unknowns[u])]));
     }
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/families/residual_family.hpp"
 
+#include "lattice/index.hpp"
 #include "schemes/families/damped_leapfrog.hpp"
 #include "schemes/families/guo.hpp"
 #include "schemes/families/vu_quoc_li.hpp"
@@ -31,7 +32,8 @@ struct Pair {
   static constexpr int components = 2;
   auto operator()(const auto& j) const {
     const auto r = j.phi[0] * j.phi[0] + j.phi[1] * j.phi[1];
-    return 0.5 * (j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1] - j.phi_x[0] * j.phi_x[0] - j.phi_x[1] * j.phi_x[1]) -
+    return 0.5 *
+               (j.phi_t[0] * j.phi_t[0] + j.phi_t[1] * j.phi_t[1] - j.phi_x[0] * j.phi_x[0] - j.phi_x[1] * j.phi_x[1]) -
            0.25 * (r * r) - j.phi[0] * j.phi[1];
   }
   /// (u² − v²)/(a − b) for u = a² + c², v = b² + c² is (u + v)(a + b).
@@ -50,12 +52,12 @@ struct NoQuotient {
 double by_hand(const DirectResidual& stencil, int d, int a, const std::vector<double>& y, const auto& quotient) {
   double E = 0;
   for (int l = 0; l < stencil.pattern.size(); ++l) {
-    const auto at = static_cast<std::size_t>(l);
-    E += (stencil.by_xx[at] / (k * k) - stencil.by_tt[at] / (h * h)) * y[static_cast<std::size_t>(l * d + a)];
-    if (!stencil.by_t.empty()) E += stencil.by_t[at] / h * y[static_cast<std::size_t>(l * d + a)];
+    const std::size_t at = l;
+    E += (stencil.by_xx[at] / (k * k) - stencil.by_tt[at] / (h * h)) * y[l * d + a];
+    if (!stencil.by_t.empty()) E += stencil.by_t[at] / h * y[l * d + a];
   }
   for (const auto& q : stencil.quotients) {
-    const auto values = [&](int l) { return std::span(y).subspan(static_cast<std::size_t>(l * d), static_cast<std::size_t>(d)); };
+    const auto values = [&](int l) { return std::span(y).subspan(delf::at(l * d), delf::at(d)); };
     E += q.weight * quotient(values(q.above), values(q.below));
   }
   return h * k * E;
@@ -76,14 +78,13 @@ double shared_defect(const D& density, double of_below) {
   REQUIRE(terms.groups.size() == 1);
   // Q of the stencil that is centred at site i of row r.
   const auto sources = [&](int r, int i) {
-    std::vector<Pack> in(static_cast<std::size_t>(2 * d)), out(static_cast<std::size_t>(d));
+    std::vector<Pack> in(2 * d), out(delf::at(d));
     std::vector<const double*> from;
     std::vector<double*> to;
     for (std::size_t j = 0; j < in.size(); ++j) {
       double m = 0;
       for (const auto& part : terms.groups[0].inputs[j])
-        m += part.weight * y[static_cast<std::size_t>(r + part.vertex.time)]
-                            [static_cast<std::size_t>(ring.wrapped(i + part.vertex.space) * d + part.component)];
+        m += part.weight * y[r + part.vertex.time][delf::at(ring.wrapped(i + part.vertex.space) * d + part.component)];
       in[j] = Pack(m);
       from.push_back(reinterpret_cast<double*>(&in[j]));
     }
@@ -97,21 +98,18 @@ double shared_defect(const D& density, double of_below) {
   double worst = 0;
   const int size = family.size();
   for (int i = 0; i < N; ++i) {
-    std::vector<double> values, r(static_cast<std::size_t>(size));
+    std::vector<double> values, r(delf::at(size));
     for (const Site& v : stencil.pattern.vertices)
-      for (int a = 0; a < d; ++a)
-        values.push_back(y[static_cast<std::size_t>(2 + v.time)][static_cast<std::size_t>(ring.wrapped(i + v.space) * d + a)]);
+      for (int a = 0; a < d; ++a) values.push_back(y[2 + v.time][ring.wrapped(i + v.space) * d + a]);
     family.residual(cell, values, r);
     const auto here = sources(2, i), below = sources(1, i);
     for (int a = 0; a < d; ++a) {
       const int row = stencil.centre * d + a;
-      double sum = part->r0[static_cast<std::size_t>(row)];
-      for (int l = 0; l < size; ++l)
-        sum += part->J[static_cast<std::size_t>(row * size + l)] * values[static_cast<std::size_t>(l)];
+      double sum = part->r0[row];
+      for (int l = 0; l < size; ++l) sum += part->J[row * size + l] * values[l];
       for (int c = 0; c < d; ++c)
-        sum += h * k * (terms.weight(c, 4 * d + a) * here[static_cast<std::size_t>(c)] +
-                        of_below * terms.weight(c, 7 * d + a) * below[static_cast<std::size_t>(c)]);
-      worst = std::max(worst, std::abs(sum - r[static_cast<std::size_t>(row)]));
+        sum += h * k * (terms.weight(c, 4 * d + a) * here[c] + of_below * terms.weight(c, 7 * d + a) * below[c]);
+      worst = std::max(worst, std::abs(sum - r[row]));
     }
   }
   return worst;
@@ -133,7 +131,7 @@ TEST_CASE("comparators are their printed equations times hk, at the centre alone
     for (int s = 0; s < stencils.count(); ++s)
       for (int i = 0; i < family.size(); ++i) {
         const double expected = i == stencil.centre ? by_hand(stencil, 1, 0, stencils.y(s), quotient) : 0;
-        CHECK(std::abs(r[static_cast<std::size_t>(i)][static_cast<std::size_t>(s)] - expected) < 1e-14);
+        CHECK(std::abs(r[i][s] - expected) < 1e-14);
       }
   }
 }
@@ -170,7 +168,7 @@ TEST_CASE("the Jacobian is the derivative of the residual, with two components t
   Random random(10);
   for (const DirectResidual& stencil : {vu_quoc_li(), guo(), damped_leapfrog()}) {
     const ResidualFamily family = family_for(stencil, Pair{});
-    const auto n = static_cast<std::size_t>(family.size());
+    const std::size_t n = family.size();
     std::vector<double> y(n), J(n * n), r(n);
     for (double& value : y) value = random(-1, 1);
     family.jacobian(cell, y, J);
@@ -191,8 +189,8 @@ TEST_CASE("the Jacobian is the derivative of the residual, with two components t
 
 TEST_CASE("two components whose comparators couple them are stepped, and a density without a quotient is refused") {
   for (const DirectResidual& stencil : {vu_quoc_li(), guo()}) {
-    Evolution evolution(Lattice::circle(32, 32 * k), {std::make_shared<ResidualFamily>(family_for(stencil, Pair{}))}, h / 2,
-                        {}, fields(2));
+    Evolution evolution(Lattice::circle(32, 32 * k), {std::make_shared<ResidualFamily>(family_for(stencil, Pair{}))},
+                        h / 2, {}, fields(2));
     Stepper& stepper = evolution.stepper();
     Random random(11);
     stepper.start(random_rows(random, stepper.starting_rows(), 64, 0.5));
@@ -215,7 +213,7 @@ TEST_CASE("comparators of a linear theory are their constant part, and are solve
     REQUIRE(part);
     CHECK(part->is_all);
     CHECK_FALSE(sine.constant_part(cell)->is_all);
-    const std::size_t size = static_cast<std::size_t>(family.size());
+    const std::size_t size = delf::at(family.size());
     std::vector<double> r(size);
     const Row y = random_row(random, family.size(), 2);
     family.residual(cell, y, r);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -46,7 +47,7 @@ struct History {
 History run(const Problem& p, int steps = 200) {
   Simulation s(p);
   if (s.components().size() > 1) {
-    Row zero(static_cast<std::size_t>(p.lattice.sites()) * s.components().size(), 0.0), row = zero;
+    Row zero(at(p.lattice.sites()) * s.components().size(), 0.0), row = zero;
     const Row first = row_at(p.lattice, 0);
     for (std::size_t i = 0; i < first.size(); ++i) row[i * s.components().size()] = first[i];
     s.start_legendre(row, zero);

@@ -12,6 +12,7 @@
 #include "jets/tables/pair_element.hpp"
 #include "jets/tables/splitting.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/space_rows.hpp"
 #include "schemes/families/mesh_families.hpp"
@@ -46,7 +47,7 @@ struct OnMesh {
     MeshSpace made{std::move(mesh), {}};
     made.fixed.assign(made.mesh.points.size(), 0);
     if (fixed)
-      for (const auto p : boundary_points(made.mesh)) made.fixed[static_cast<std::size_t>(p)] = 1;
+      for (const auto p : boundary_points(made.mesh)) made.fixed[p] = 1;
     space = std::make_shared<const MeshSpace>(std::move(made));
     problem.theory = std::move(theory);
     problem.method = method;
@@ -72,7 +73,7 @@ struct OnMesh {
     Values row, velocity;
     for (std::size_t i = 0; i < space->mesh.points.size(); ++i)
       for (const Component& c : simulation->components()) {
-        const std::size_t at = i * static_cast<std::size_t>(d) + static_cast<std::size_t>(c.field);
+        const std::size_t at = i * delf::at(d) + delf::at(c.field);
         row.push_back(c.role == Role::multiplier ? 0 : field[at]);
         velocity.push_back(c.role == Role::field ? rate[at] : 0);
       }
@@ -80,8 +81,8 @@ struct OnMesh {
     return simulation;
   }
   static Values fields(const Simulation& simulation) {
-    Values row(static_cast<std::size_t>(simulation.evolution().system().lattice().sites()) *
-               static_cast<std::size_t>(simulation.theory().components()));
+    Values row(delf::at(simulation.evolution().system().lattice().sites()) *
+               delf::at(simulation.theory().components()));
     simulation.copy_row(0, row);
     return row;
   }
@@ -213,7 +214,7 @@ TEST_CASE("on a sphere variational methods keep the charge of a complex field, a
       double sum = 0;
       const int C = system.components();
       for (int i = 0; i < system.lattice().sites(); ++i) {
-        const auto at = static_cast<std::size_t>(i * C);
+        const std::size_t at = i * C;
         sum += p[at] * rows(stepper.newest() - back, i, 1) - p[at + 1] * rows(stepper.newest() - back, i, 0);
       }
       return sum;
@@ -296,7 +297,7 @@ TEST_CASE("the nodes between two rows are those below the newest row, whether ro
     const Values start(simulation.components().size(), 1.0), rates(start.size(), 2.0);
     simulation.start_legendre(start, rates);
     for (int n = 0; n < 20; ++n) simulation.step(looked_at || n == 19);
-    Values newest(1), before(1), nodes(static_cast<std::size_t>(simulation.count(Role::inner)));
+    Values newest(1), before(1), nodes(delf::at(simulation.count(Role::inner)));
     simulation.copy_row(0, newest), simulation.copy_row(1, before), simulation.copy_row(0, nodes, Role::inner);
     REQUIRE_FALSE(nodes.empty());
     const double step = newest[0] - before[0];
@@ -315,7 +316,7 @@ TEST_CASE("rows of steps in turn on a mesh are those of the steps by themselves,
   const CellSpace space(on.space->mesh, expression("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)"), false);
   MeshRows rows(space, 0.03);
   rows.start(on.pulse(1, false), on.pulse(1, true));
-  while (rows.newest() < 60) rows.step(on.problem.time_steps[static_cast<std::size_t>(rows.newest()) % 3]);
+  while (rows.newest() < 60) rows.step(on.problem.time_steps[delf::at(rows.newest()) % 3]);
   CHECK(distance(OnMesh::fields(*simulation), rows.row()) < 1e-13);
   on.problem.time_steps = {};
   CHECK(distance(OnMesh::fields(*simulation), on.at_one(60)) > 1e-3);

@@ -52,7 +52,9 @@ struct Solving {
     layout.scatter(scaled, right());
     std::fill_n(work(), layout.doubles(), std::numeric_limits<double>::quiet_NaN());
   }
-  void give(int from, int to) { std::copy(right() + layout.at(from), right() + layout.at(to), work() + layout.at(from)); }
+  void give(int from, int to) {
+    std::copy(right() + layout.at(from), right() + layout.at(to), work() + layout.at(from));
+  }
 
   void solve(const LinearSolver& solver) {
     prepare(solver);
@@ -71,7 +73,7 @@ struct Solving {
     RowSum sum;
     sum.add(0, 0, 1);
     const double* const table[]{right()};
-    std::vector<int> seen(static_cast<std::size_t>(layout.packs()));
+    std::vector<int> seen(layout.packs());
     solution.assign(layout.doubles(), std::numeric_limits<double>::quiet_NaN());
     RowBuffer zeros(layout.doubles()), made(layout.doubles(), 2);
     RowUpdate update{zeros.row(0), zeros.row(0), made.row(0), made.row(1), 0.0, 1.0, 0.0};
@@ -88,7 +90,7 @@ struct Solving {
         const PackRange ready = sweeps->ready();
         if (ready.first >= ready.last) break;
         sweeps->backward(work(), update);
-        for (int v = ready.first; v < ready.last; ++v) ++seen[static_cast<std::size_t>(v)];
+        for (int v = ready.first; v < ready.last; ++v) ++seen[v];
         std::copy(made.row(1) + layout.at(ready.first), made.row(1) + layout.at(ready.last),
                   solution.data() + layout.at(ready.first));
       }
@@ -203,8 +205,8 @@ TEST_CASE("components with matrices of their own are swept each by its own, with
       CHECK(solver->right_side_scale(0) != solver->right_side_scale(1));
       for (int a = 0; a < 2; ++a) {
         CHECK(solving.sweep(*solver, 64, false, a));
-        CHECK(solving.off(pair[static_cast<std::size_t>(a)]) < 5e-14);
-        CHECK(solving.off(pair[static_cast<std::size_t>(1 - a)]) > 0.01);
+        CHECK(solving.off(pair[a]) < 5e-14);
+        CHECK(solving.off(pair[1 - a]) > 0.01);
       }
     }
 }
@@ -233,7 +235,7 @@ TEST_CASE("the comparison with Eigen can fail: another matrix, another right sid
       const CirculantSolver solver(solving.layout, A.centre, A.side);
       solving.sweep(solver, 1024);
       CHECK(solving.off(with_root(q * (1 + 1e-7))) > 1e-9);
-      solving.r[static_cast<std::size_t>(N / 2)] += 1e-8;
+      solving.r[N / 2] += 1e-8;
       CHECK(solving.off(A) > 1e-10);
     }
 }

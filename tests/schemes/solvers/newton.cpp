@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 
 using namespace delf;
@@ -56,7 +57,7 @@ TEST_CASE("Newton's method squares the error, and ends where the first criterion
   CHECK(newton(equation, at, Overflows{}, Converged{}, Rounding{}, OutOfIterations{20}) == Stop::converged);
   CHECK(equation.y == Approx(std::sqrt(2)).epsilon(epsilon));
   CHECK(at.iteration <= 6);
-  CHECK(equation.corrections.size() == static_cast<std::size_t>(at.iteration));
+  CHECK(equation.corrections.size() == delf::at(at.iteration));
   CHECK(at.correction == equation.corrections.back());
   CHECK(at.before == equation.corrections[equation.corrections.size() - 2]);
   CHECK(at.travelled >= std::sqrt(2) - 1);
@@ -91,9 +92,9 @@ TEST_CASE("each criterion ends what it is for, and lets go on what it is not for
   CHECK(Converged{.relative = 0, .absolute = 1e-9}(after(1, 0, 1e-9)) == Stop::converged);
 
   CHECK(Rounding{}(after(3, 1e-14, 5e-15)) == Stop::rounding);
-  CHECK(Rounding{}(after(3, 1e-13, 1e-14)) == Stop::no);   // still shrinks
-  CHECK(Rounding{}(after(3, 1e-10, 9e-11)) == Stop::no);   // does not, but is more than rounding
-  CHECK(Rounding{}(after(1, 0, 1e-14)) == Stop::no);       // the first one is compared with nothing
+  CHECK(Rounding{}(after(3, 1e-13, 1e-14)) == Stop::no);  // still shrinks
+  CHECK(Rounding{}(after(3, 1e-10, 9e-11)) == Stop::no);  // does not, but is more than rounding
+  CHECK(Rounding{}(after(1, 0, 1e-14)) == Stop::no);      // the first one is compared with nothing
   CHECK(Rounding{.most = 1e-10}(after(3, 1e-10, 9e-11)) == Stop::rounding);
 
   CHECK(Stalls{0.25}(after(3, 1e-3, 5e-4)) == Stop::stalls);

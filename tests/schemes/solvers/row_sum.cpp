@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/solvers/row_sum.hpp"
 
+#include "lattice/index.hpp"
 #include "schemes/solvers/row_layout.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
@@ -61,7 +62,7 @@ struct Sums {
   }
   double at(int row, int i) const {
     const int N = layout.sites();
-    return values[static_cast<std::size_t>(row)][static_cast<std::size_t>((i % N + N) % N)];
+    return values[row][(i % N + N) % N];
   }
   struct Expected {
     double sum, absolute;
@@ -129,7 +130,7 @@ TEST_CASE("dense sums stand one after the other") {
     const int packs = sums.layout.packs();
     for (int stride : {1, 2})
       for (int first : {0, packs / 2}) {
-        std::vector<Pack> out(static_cast<std::size_t>(packs + 1), Pack(777.0));
+        std::vector<Pack> out(packs + 1, Pack(777.0));
         double* const numbers = reinterpret_cast<double*>(out.data());
         sum.evaluate_dense(sums.bases.data(), sums.layout.at(first), sums.layout.at(packs), stride * lanes, numbers);
         int next = 0;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/verify/wrong_sign.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
@@ -42,7 +43,7 @@ std::vector<NamedScheme> schemes_of(int sites, double mass) {
 
 /// A value that has an equation: comparators have it at the centre alone.
 int read_value(const StencilFamily& family) {
-  const std::size_t n = static_cast<std::size_t>(family.size());
+  const std::size_t n = at(family.size());
   std::vector<double> y(n, 0.1), r(n);
   family.residual({0.31, 0.9, 0, 0}, y, r);
   return static_cast<int>(std::ranges::max_element(r, {}, [](double x) { return std::abs(x); }) - r.begin());
@@ -57,8 +58,7 @@ double plane_wave_defect(const Symbol& symbol, const LatticeSystem& system, Comp
     for (int i = 0; i < N; ++i)
       for (int c = 0; c < C; ++c) {
         const int sort = symbol.brick() ? (row + i) & 1 : 0;
-        rows.back().push_back(
-            std::real(std::pow(z, row) * std::polar(1.0, theta * i) * v[static_cast<std::size_t>(sort * C + c)]));
+        rows.back().push_back(std::real(std::pow(z, row) * std::polar(1.0, theta * i) * v[sort * C + c]));
       }
   }
   const Window window = system.window(-3, rows, 0);
@@ -67,8 +67,7 @@ double plane_wave_defect(const Symbol& symbol, const LatticeSystem& system, Comp
   for (int a = 0; a < symbol.size(); ++a) {
     const int site = N / 2 / 2 * 2 + a / C;
     Complex sum = 0;
-    for (int b = 0; b < symbol.size(); ++b)
-      sum += P[static_cast<std::size_t>(a * symbol.size() + b)] * v[static_cast<std::size_t>(b)];
+    for (int b = 0; b < symbol.size(); ++b) sum += P[a * symbol.size() + b] * v[b];
     const auto E = equation_at(system, window, 0, site, a % C);
     worst = std::max(worst, std::abs(E.sum - std::real(sum * std::polar(1.0, theta * site))));
     scale = std::max(scale, E.absolute);
@@ -95,14 +94,14 @@ Values eigenvalues_of_steps(const Problem& p, int strides) {
   for (int unit = 0; unit < 2 * N; ++unit) {
     Simulation simulation(p);
     REQUIRE(simulation.starting_rows() == 2);
-    std::vector<Row> rows(2, Row(static_cast<std::size_t>(N), 0.0));
-    rows[static_cast<std::size_t>(unit / N)][static_cast<std::size_t>(unit % N)] = 1;
+    std::vector<Row> rows(2, Row(at(N), 0.0));
+    rows[unit / N][unit % N] = 1;
     simulation.start(rows);
     for (int n = 0; n < strides; ++n) simulation.step();
     for (int back = 0; back < 2; ++back) {
-      Row row(static_cast<std::size_t>(N));
+      Row row(at(N));
       simulation.copy_row(back, row);
-      for (int i = 0; i < N; ++i) step((1 - back) * N + i, unit) = row[static_cast<std::size_t>(i)];
+      for (int i = 0; i < N; ++i) step((1 - back) * N + i, unit) = row[i];
     }
   }
   const auto values = step.eigenvalues().eval();
@@ -145,7 +144,7 @@ TEST_CASE("the check can fail: the symbol of equations with a wrong sign is not 
     families[0] = std::make_shared<WrongSign>(families[0], read_value(*families[0]));
     const LatticeSystem wrong(system.lattice(), families, system.time_step(), system.all_components());
     const Symbol symbol(wrong);
-    const Values v(static_cast<std::size_t>(symbol.size()), Complex(0.7, 0.2));
+    const Values v(at(symbol.size()), Complex(0.7, 0.2));
     CHECK(plane_wave_defect(symbol, system, {0.9, 0.4}, std::numbers::pi / 3, v) > 1e-3);
   }
 }

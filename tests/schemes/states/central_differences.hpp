@@ -19,7 +19,7 @@ inline double larger(double worst, double error) {
 
 // max |velocities() − φ_t by differences of values()| over the lattice; sign = −1 plants an error.
 inline double velocity_defect(const State& state, const Lattice& lattice, double t, double dt, double sign = 1) {
-  std::vector<double> difference(static_cast<std::size_t>(lattice.sites() * state.components()));
+  std::vector<double> difference(lattice.sites() * state.components());
   for (int m = 1; m <= 4; ++m) {
     const auto later = values(state, t + m * dt, lattice), earlier = values(state, t - m * dt, lattice);
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] += first[m] * (later[i] - earlier[i]) / dt;

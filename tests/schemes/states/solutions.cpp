@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tests/schemes/states/central_differences.hpp"
 #include "tests/schemes/states/state_requests.hpp"
 
@@ -37,15 +38,15 @@ double defect(const State& state, const StateRequest& r, const Lattice& lattice,
   const auto& now = rows[4];
   const auto at = [&](int i) {
     const int around = i < 0 ? -1 : i >= lattice.sites() ? 1 : 0;
-    return now[static_cast<std::size_t>(i - around * lattice.sites())] + 2 * pi * state.winding() * around;
+    return now[i - around * lattice.sites()] + 2 * pi * state.winding() * around;
   };
   double worst = 0;
   const int margin = lattice.is_circle() ? 0 : 4;
   for (int i = margin; i < lattice.sites() - margin; ++i) {
-    const auto s = static_cast<std::size_t>(i);
+    const std::size_t s = i;
     double tt = second[0] * now[s], xx = second[0] * now[s];
     for (int m = 1; m <= 4; ++m) {
-      const auto d = static_cast<std::size_t>(m);
+      const std::size_t d = m;
       tt += second[d] * (rows[4 + d][s] + rows[4 - d][s]);
       xx += second[d] * (at(i + m) + at(i - m));
     }
@@ -149,17 +150,17 @@ double defect_of_several(const State& state, const StateRequest& r, const Lattic
   for (int j = -4; j <= 4; ++j) rows.push_back(values(state, t + j * dt, lattice));
   const auto at = [&](int i, int a) {
     const int around = i < 0 ? -1 : i >= N ? 1 : 0;
-    return rows[4][static_cast<std::size_t>((i - around * N) * d + a)] + 2 * pi * state.winding() * around;
+    return rows[4][(i - around * N) * d + a] + 2 * pi * state.winding() * around;
   };
   double worst = 0;
   const int margin = lattice.space() == Space::interval ? 4 : 0;
   for (int i = margin; i < N - margin; ++i) {
     Row u, u_t, u_x, box;
     for (int a = 0; a < d; ++a) {
-      const auto s = static_cast<std::size_t>(i * d + a);
+      const std::size_t s = i * d + a;
       double t1 = 0, x1 = 0, t2 = second[0] * rows[4][s], x2 = t2;
       for (int m = 1; m <= 4; ++m) {
-        const auto e = static_cast<std::size_t>(m);
+        const std::size_t e = m;
         t1 += first[e] * (rows[4 + e][s] - rows[4 - e][s]), t2 += second[e] * (rows[4 + e][s] + rows[4 - e][s]);
         if (!point) x1 += first[e] * (at(i + m, a) - at(i - m, a)), x2 += second[e] * (at(i + m, a) + at(i - m, a));
       }
@@ -304,7 +305,7 @@ double point_defect(const State& state, double FieldPoint::*derivative, const La
   const bool in_time = derivative == &FieldPoint::phi_t;
   const double d = 0.004, L = lattice.length();
   double worst = 0;
-  std::vector<FieldPoint> here(static_cast<std::size_t>(state.components())), later(here), earlier(here);
+  std::vector<FieldPoint> here(state.components()), later(here), earlier(here);
   for (int n = 0; n < 23; ++n) {
     const double x = L * (0.0211 + 0.0417 * n);
     state.at(t, x, here);
@@ -335,13 +336,13 @@ TEST_CASE("every state gives phi, phi_t and phi_x at any point, and the same at 
       CHECK(point_defect(*state, &FieldPoint::phi_x, c.lattice, t) < 1e-9);
       if (space) CHECK(point_defect(*state, &FieldPoint::phi_x, c.lattice, t, -1) > 1e-3);
 
-      std::vector<FieldPoint> here(static_cast<std::size_t>(state->components())), around(here);
+      std::vector<FieldPoint> here(state->components()), around(here);
       const auto y = values(*state, t, c.lattice), v = velocities(*state, t, c.lattice);
       for (int i = 0; i < c.lattice.sites(); i += 7) {
         state->at(t, c.lattice.position(i), here);
         state->at(t, c.lattice.position(i) + c.lattice.length(), around);
         for (std::size_t a = 0; a < here.size(); ++a) {
-          const std::size_t s = static_cast<std::size_t>(i) * here.size() + a;
+          const std::size_t s = delf::at(i) * here.size() + a;
           CHECK(std::abs(here[a].phi - y[s]) < 1e-14);
           CHECK(std::abs(here[a].phi_t - v[s]) < 1e-14);
           if (c.lattice.is_circle()) CHECK(std::abs(around[a].phi - here[a].phi - 2 * pi * state->winding()) < 1e-11);

@@ -20,12 +20,12 @@ inline StateRequest request(const std::string& name, const std::string& theory =
 }
 
 inline std::vector<double> values(const State& state, double t, const Lattice& lattice) {
-  std::vector<double> y(static_cast<std::size_t>(lattice.sites() * state.components()));
+  std::vector<double> y(lattice.sites() * state.components());
   state.values(t, lattice, y);
   return y;
 }
 inline std::vector<double> velocities(const State& state, double t, const Lattice& lattice) {
-  std::vector<double> y(static_cast<std::size_t>(lattice.sites() * state.components()));
+  std::vector<double> y(lattice.sites() * state.components());
   state.velocities(t, lattice, y);
   return y;
 }

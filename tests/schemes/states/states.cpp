@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tests/schemes/states/central_differences.hpp"
 #include "tests/schemes/states/state_requests.hpp"
 
@@ -232,8 +233,7 @@ TEST_CASE("two pulses come together from about the separation asked for", "[stat
   const double gamma = 1 / std::sqrt(1 - 0.81);
   for (const int i : {0, 1700, 2000, 2100, 2290, 3999}) {
     const double x = i * 60.0 / 4000 - 30;
-    CHECK(std::abs(y[static_cast<std::size_t>(i)] -
-                   4 * std::atan(0.9 * std::sinh(gamma * x) / std::cosh(gamma * 0.9 * -5))) < 1e-13);
+    CHECK(std::abs(y[i] - 4 * std::atan(0.9 * std::sinh(gamma * x) / std::cosh(gamma * 0.9 * -5))) < 1e-13);
   }
   // φ = ±π near x = ±4.5: two rising pulses
   CHECK(std::abs(y[1700] - (-pi)) < 0.5);
@@ -283,7 +283,7 @@ TEST_CASE("the paper's collision: K, c and the profile to all digits", "[states]
                                             {5.5, 4.586135019064001477060776},  {9, 6.27654240353655850180485}};
   const auto y = values(*state, 0, at(400));
   for (const auto& [x, phi] : profile) {
-    const auto i = static_cast<std::size_t>(std::lround(10 * x));
+    const std::size_t i = std::lround(10 * x);
     CHECK(std::abs(y[i] - phi) < 2e-14);
     CHECK(std::abs(y[400 - i] - phi) < 2e-14);  // its mirror image
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lattice/index.hpp"
 #include "schemes/state.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
@@ -32,8 +33,8 @@ struct Run {
         }()),
         simulation(problem),
         C(simulation.components().size()) {
-    const auto size = static_cast<std::size_t>(sites);
-    const std::size_t d = static_cast<std::size_t>(simulation.count(Role::field));
+    const std::size_t size = sites;
+    const std::size_t d = at(simulation.count(Role::field));
     std::vector<double> row(size * C), rate(size * C);
     for (std::size_t i = 0; i < size; ++i)
       for (std::size_t a = 0; a < d; ++a) {
@@ -44,7 +45,7 @@ struct Run {
     simulation.start_legendre(row, rate);
   }
   std::vector<double> fields(int back = 0) const {
-    std::vector<double> row(static_cast<std::size_t>(problem.lattice.sites() * simulation.count(Role::field)));
+    std::vector<double> row(problem.lattice.sites() * simulation.count(Role::field));
     simulation.copy_row(back, row);
     return row;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/stepping/energy.hpp"
 
+#include "lattice/index.hpp"
 #include "schemes/theories/complex_klein_gordon.hpp"
 #include "schemes/theories/phi4.hpp"
 #include "schemes/theories/sine_gordon.hpp"
@@ -31,7 +32,7 @@ EnergyMomentum footnote_4(const Problem& p, const Row& y0, const Row& y1) {
   };
   EnergyMomentum sums;
   for (int i = 0; i < cells; ++i) {
-    const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>((i + 1) % N);
+    const std::size_t a = i, b = at((i + 1) % N);
     const double phi_t = (y1[a] - y0[a] + y1[b] - y0[b]) / (2 * h), phi_x = (y0[b] - y0[a] + y1[b] - y1[a]) / (2 * k);
     const double mean = (y0[a] + y0[b] + y1[a] + y1[b]) / 4;
     sums.energy += k * ((phi_t * phi_t + phi_x * phi_x) / 2 + potential(mean, p.lattice.position(i) + k / 2));
@@ -116,22 +117,20 @@ double difference_of_ways(const D& density, int N, double moved = 0) {
     y0.push_back(random_row(random, N, 2)), y1.push_back(y0.back());
     const Row v = random_row(random, N, 0.1);
     for (std::size_t i = 0; i < v.size(); ++i) y1.back()[i] += v[i];
-    layout.scatter(y0.back(), rows.row(a)), layout.scatter(y1.back(), rows.row(d + a)), layout.scatter(v, rows.row(2 * d + a));
+    layout.scatter(y0.back(), rows.row(a)), layout.scatter(y1.back(), rows.row(d + a)),
+        layout.scatter(v, rows.row(2 * d + a));
   }
   Row x;
   for (int i = 0; i < N; ++i) x.push_back(ring.position(i)), marks.row(0)[layout.slot(i)] = 1;
   layout.scatter(x, marks.row(1));
   const BatchOf<D> batches(density);
-  const EnergyMomentum found =
-      energy_momentum(batches, {&layout, values.data(), marks.row(1), t, h, k}, marks.row(0));
+  const EnergyMomentum found = energy_momentum(batches, {&layout, values.data(), marks.row(1), t, h, k}, marks.row(0));
   EnergyMomentum exact;
   for (int i = 0; i < N; ++i) {
     using Number = Dual<double, 3 * d>;
     JetFor<Number, D> j;
     for (int a = 0; a < d; ++a) {
-      const auto y = [&](const std::vector<Row>& row, int site) {
-        return row[static_cast<std::size_t>(a)][static_cast<std::size_t>(site % N)];
-      };
+      const auto y = [&](const std::vector<Row>& row, int site) { return row[a][site % N]; };
       const double a00 = y(y0, i), a01 = y(y0, i + 1), a10 = y(y1, i), a11 = y(y1, i + 1);
       component(j.phi, a) = Number::variable((a00 + a01 + a10 + a11) / 4, a);
       component(j.phi_t, a) = Number::variable((a10 - a00 + a11 - a01) / (2 * h), d + a);
@@ -141,8 +140,8 @@ double difference_of_ways(const D& density, int N, double moved = 0) {
     const Number l = density(j);
     exact.energy -= k * l.value;
     for (int a = 0; a < d; ++a) {
-      exact.energy += k * component(j.phi_t, a).value * l.d[static_cast<std::size_t>(d + a)];
-      exact.momentum -= k * component(j.phi_x, a).value * l.d[static_cast<std::size_t>(d + a)];
+      exact.energy += k * component(j.phi_t, a).value * l.d[d + a];
+      exact.momentum -= k * component(j.phi_x, a).value * l.d[d + a];
     }
   }
   return (std::abs(found.energy - exact.energy) + std::abs(found.momentum - exact.momentum)) /
@@ -152,8 +151,8 @@ double difference_of_ways(const D& density, int N, double moved = 0) {
 /// φ_t enters in more than a square, and with φ_x and φ.
 struct Mixed {
   auto operator()(const auto& j) const {
-    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + 0.1 * (j.phi_t * j.phi_x) + 0.2 * (j.phi * j.phi_t * j.phi_t) +
-           0.3 * (j.phi * j.phi_x);
+    return 0.5 * (j.phi_t * j.phi_t - j.phi_x * j.phi_x) + 0.1 * (j.phi_t * j.phi_x) +
+           0.2 * (j.phi * j.phi_t * j.phi_t) + 0.3 * (j.phi * j.phi_x);
   }
 };
 
@@ -174,7 +173,7 @@ TEST_CASE("energy and momentum of any density are those of its derivatives, cell
 // Without a mass matrix there are no velocities to be found: H = p·v − L does not depend on them.
 TEST_CASE("the energy of elements for a density linear in velocities is H of the fields") {
   const int N = 30;
-  const auto count = static_cast<std::size_t>(N);
+  const std::size_t count = N;
   Problem p;
   p.theory = "text", p.lattice = Lattice::circle(N, 15), p.time_step = 0.1;
   p.parameters["theory.fields"] = std::string("a, b");

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -43,7 +44,7 @@ struct Uniform {
 
 /// A step of sine-Gordon from two uniform rows, h = 5k; nothing where the engine refuses.
 std::optional<double> stepped(Evolution& evolution, const Uniform& u) {
-  const std::size_t N = static_cast<std::size_t>(evolution.system().lattice().sites());
+  const std::size_t N = at(evolution.system().lattice().sites());
   Stepper& stepper = evolution.stepper();
   stepper.start({Row(N, u.before), Row(N, u.now)});
   try {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -109,7 +110,7 @@ void start(Simulation& simulation, const Numbers& q, const Numbers& v) {
   simulation.start_legendre(row, rate);
 }
 Numbers newest(const Simulation& simulation) {
-  Row row(static_cast<std::size_t>(simulation.count(Role::field)));
+  Row row(delf::at(simulation.count(Role::field)));
   simulation.copy_row(0, row);
   return Eigen::Map<const Numbers>(row.data(), static_cast<Eigen::Index>(row.size()));
 }
@@ -196,7 +197,8 @@ namespace {
 std::vector<Numbers> predators_and_prey(double h, double until) {
   Problem p = on_a_point("lotka-volterra", "dgvi", h);
   p.parameters["theory.gauge"] = std::string("full"), p.parameters["scheme.functions"] = 1;
-  p.parameters["scheme.basis"] = std::string("lagrange-gauss"), p.parameters["scheme.quadrature"] = std::string("gauss");
+  p.parameters["scheme.basis"] = std::string("lagrange-gauss"),
+  p.parameters["scheme.quadrature"] = std::string("gauss");
   p.parameters["scheme.points"] = 1, p.parameters["scheme.flux"] = std::string("gauss2");
   Simulation simulation(p);
   Row row;
@@ -225,7 +227,8 @@ TEST_CASE("the first step is watched where multipliers join the steps, though th
   for (const double h : {1.5, 2.0, 2.5, 3.0, 4.0}) {
     Count count;
     for (int n = 0; n < 12; ++n)
-      add(count, {"pendulum", h, pendulum, numbers({random(2.4, 3.0)}), numbers({random(-0.5, 0.5)}), 1, "multipliers"});
+      add(count,
+          {"pendulum", h, pendulum, numbers({random(2.4, 3.0)}), numbers({random(-0.5, 0.5)}), 1, "multipliers"});
     CAPTURE(h, count.solved, count.refused);
     CHECK(count.other_root == 0);
     CHECK(count.no_path == 0);

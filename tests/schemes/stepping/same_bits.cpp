@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <numbers>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -42,7 +43,7 @@ Trace run(const std::string& theory, const std::string& scheme, const Asked& ask
   start.back()[3] += off;
   simulation.start(start);
   Trace trace;
-  Row row(static_cast<std::size_t>(N * d));
+  Row row(at(N * d));
   for (int n = 0; n < 150; ++n) {
     simulation.step();
     if (asked.residual) CHECK(simulation.residual() < 1e-8);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "lattice/index.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
@@ -32,7 +33,7 @@ class Memory final : public SavedState {
 // A wave, by whichever start the scheme knows.
 void start(Simulation& simulation, const Problem& p) {
   const auto C = simulation.components().size();
-  std::vector<double> row(static_cast<std::size_t>(p.lattice.sites()) * C), velocity(row);
+  std::vector<double> row(delf::at(p.lattice.sites()) * C), velocity(row);
   for (std::size_t i = 0; i < row.size(); ++i) {
     const double x = 2 * std::numbers::pi * static_cast<double>(i / C) / p.lattice.sites();
     row[i] = 2 * std::sin(x), velocity[i] = std::cos(x) + 0.3;
@@ -56,8 +57,8 @@ struct End {
 };
 End end_of(Simulation& simulation, int steps, const Problem& p) {
   for (int n = 0; n < steps; ++n) simulation.step(n + 1 == steps);
-  End end{std::vector<double>(static_cast<std::size_t>(p.lattice.sites() * simulation.count(Role::field))),
-          simulation.residual(), simulation.iterations()};
+  End end{std::vector<double>(p.lattice.sites() * simulation.count(Role::field)), simulation.residual(),
+          simulation.iterations()};
   simulation.copy_row(0, end.row);
   return end;
 }

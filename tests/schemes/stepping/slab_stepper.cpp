@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "jets/tables/spacetime_element.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
 #include "schemes/theories/klein_gordon.hpp"
 #include "schemes/theories/sine_gordon.hpp"
@@ -72,7 +73,7 @@ void start_wave(Evolution& evolution) {
   const LatticeSystem& system = evolution.system();
   const double k = system.lattice().space_step(), h = system.time_step();
   const double w = 2 * std::numbers::pi / system.lattice().length();
-  std::vector<Row> rows(static_cast<std::size_t>(evolution.stepper().starting_rows()));
+  std::vector<Row> rows(evolution.stepper().starting_rows());
   for (std::size_t j = 0; j < rows.size(); ++j)
     for (int i = 0; i < system.lattice().sites(); ++i)
       for (const Component& c : system.all_components()) {
@@ -116,7 +117,7 @@ const std::pair<int, int> degrees[]{{2, 2}, {1, 2}, {3, 1}, {2, 3}};
 
 /// Of stencils taken lanes at a time, from those taken one by one.
 double pack_defect(const StencilFamily& family, Random& random) {
-  const std::size_t n = static_cast<std::size_t>(family.size());
+  const std::size_t n = at(family.size());
   std::vector<Pack> y(n), r(n);
   Pack x;
   for (int l = 0; l < lanes; ++l) {
@@ -153,7 +154,7 @@ TEST_CASE("the constant part of an element's Jacobian is the Jacobian where the 
     const StencilTable element = spacetime_element(time, space, TimeQuadrature::gauss);
     const auto bent = jet_family(element, SineGordon{1.3});
     const auto quadratic = jet_family(element, KleinGordon{1.3});
-    const std::size_t n = static_cast<std::size_t>(bent->size());
+    const std::size_t n = at(bent->size());
     std::vector<double> J(n * n);
     const auto difference = [&](const StencilFamily& family, double phi) {
       family.jacobian(cell, std::vector<double>(n, phi), J);
@@ -249,12 +250,12 @@ struct Chain {
 
   Chain(const std::vector<int>& sizes, bool circle, bool zero_diagonal, Random& random) {
     for (int site = 0; site < static_cast<int>(sizes.size()); ++site)
-      for (int i = 0; i < sizes[static_cast<std::size_t>(site)]; ++i) sites.push_back(site);
+      for (int i = 0; i < sizes[site]; ++i) sites.push_back(site);
     const int n = static_cast<int>(sites.size()), last = static_cast<int>(sizes.size()) - 1;
     matrix = Eigen::MatrixXd::Zero(n, n);
     for (int r = 0; r < n; ++r)
       for (int c = 0; c < n; ++c) {
-        const auto site = [&](int m) { return sites[static_cast<std::size_t>(m)]; };
+        const auto site = [&](int m) { return sites[m]; };
         const int apart = std::abs(site(r) - site(c));
         if (apart > 1 && !(circle && apart == last)) continue;
         matrix(r, c) = apart == 0 ? random(-1, 1) : random(-0.4, 0.4);
@@ -270,7 +271,7 @@ struct Chain {
 };
 
 double solve_defect(const Chain& chain, BlockSolver& solver, Random& random) {
-  std::vector<double> b(static_cast<std::size_t>(chain.matrix.rows())), x;
+  std::vector<double> b(chain.matrix.rows()), x;
   for (double& value : b) value = random(-1, 1);
   REQUIRE(solver.factor(chain.values));
   solver.solve(b, x);
@@ -288,7 +289,7 @@ TEST_CASE("bands are solved, round a circle or not, with odd groups or not") {
       for (const bool circle : {true, false})
         for (const bool odd : {false, true}) {
           CAPTURE(group, count, circle, odd);
-          std::vector<int> sizes(static_cast<std::size_t>(count), group);
+          std::vector<int> sizes(count, group);
           if (odd && group > 1) sizes.front() = 1, sizes.back() = group - 1;
           const Chain chain(sizes, circle, false, random);
           BlockSolver solver = chain.solver();
@@ -307,8 +308,7 @@ TEST_CASE("rows are exchanged where a pivot is zero, and a matrix that is no ban
   Chain off(std::vector<int>(63, 2), true, false, random);
   for (std::size_t p = 0; p < off.places.size(); ++p) {
     const auto [r, c] = off.places[p];
-    if (off.sites[static_cast<std::size_t>(r)] == off.sites[static_cast<std::size_t>(c)])
-      off.values[p] = off.matrix(r, c) = 0;
+    if (off.sites[r] == off.sites[c]) off.values[p] = off.matrix(r, c) = 0;
   }
   BlockSolver other = off.solver();
   CHECK(solve_defect(off, other, random) < 1e-9);
@@ -322,7 +322,7 @@ TEST_CASE("rows are exchanged where a pivot is zero, and a matrix that is no ban
 TEST_CASE("a singular matrix is reported by every kind of block") {
   Random random(74);
   for (const int count : {4, 40}) {
-    Chain chain(std::vector<int>(static_cast<std::size_t>(count), 2), true, false, random);
+    Chain chain(std::vector<int>(count, 2), true, false, random);
     for (std::size_t p = 0; p < chain.places.size(); ++p)
       if (chain.places[p].first == 3) chain.values[p] = 0;
     BlockSolver solver = chain.solver();

@@ -7,6 +7,7 @@
 #include "jets/tables/hexagon_jet.hpp"
 #include "jets/tables/rectangle_jet.hpp"
 #include "jets/tables/triangle_jet.hpp"
+#include "lattice/index.hpp"
 #include "schemes/scheme.hpp"
 #include "schemes/stepping/newton.hpp"
 #include "schemes/theories/klein_gordon.hpp"
@@ -299,8 +300,7 @@ TEST_CASE("sine-Gordon runs back to where it began") {
 }
 
 TEST_CASE("running back can fail: with a damping it does not reach where it began") {
-  Evolution evolution(Lattice::circle(64, 64 * k), {damped(0.1, false)},
-                      h);
+  Evolution evolution(Lattice::circle(64, 64 * k), {damped(0.1, false)}, h);
   CHECK(there_and_back(evolution, 50) > 1e-3);
 }
 
@@ -323,7 +323,7 @@ TEST_CASE("a turn around the circle is kept: a field that winds is the one that 
   // of the wave equation: y_i + 2πi/N
   const int N = 37;
   StepOptions winding;
-  winding.turn = 2 * std::numbers::pi;
+  winding.monodromy = 2 * std::numbers::pi;
   for (const std::string& scheme :
        {std::string("triangle"), std::string("rectangle-symmetric"), std::string("vu-quoc-li")}) {
     Evolution flat = evolution_of(problem_of("wave"), scheme, Lattice::circle(N, N * k), h);
@@ -332,13 +332,13 @@ TEST_CASE("a turn around the circle is kept: a field that winds is the one that 
     std::vector<Row> start = random_rows(random, 2, N, 1);
     flat.stepper().start(start);
     for (Row& row : start)
-      for (int i = 0; i < N; ++i) row[static_cast<std::size_t>(i)] += winding.turn * i / N;
+      for (int i = 0; i < N; ++i) row[i] += winding.monodromy * i / N;
     turned.stepper().start(start);
     for (int n = 0; n < 40; ++n) flat.stepper().step(), turned.stepper().step();
     Row back = turned.stepper().row(0);
-    for (int i = 0; i < N; ++i) back[static_cast<std::size_t>(i)] -= winding.turn * i / N;
+    for (int i = 0; i < N; ++i) back[i] -= winding.monodromy * i / N;
     CHECK(distance(back, flat.stepper().row(0)) < 1e-12);
-    CHECK(equation_defect(turned, window_of(turned, winding.turn)) < 2e-15);
+    CHECK(equation_defect(turned, window_of(turned, winding.monodromy)) < 2e-15);
     CHECK(equation_defect(turned, window_of(turned)) > 1e-3);  // without the turn the seam shows
   }
 }
@@ -346,13 +346,12 @@ TEST_CASE("a turn around the circle is kept: a field that winds is the one that 
 TEST_CASE("the order of the seed changes the number of iterations, not the solution") {
   const auto run = [](int order) {
     StepOptions options;
-    options.seed_order = order;
+    options.predictor_order = order;
     Evolution evolution = evolution_of(problem_of("sine-gordon"), "rectangle", Lattice::circle(64, 64 * k), h, options);
     Stepper& stepper = evolution.stepper();
     std::vector<Row> start(2);
     for (int i = 0; i < 64; ++i)
-      for (int j : {0, 1})
-        start[static_cast<std::size_t>(j)].push_back(std::sin(2 * std::numbers::pi * i / 64 - 0.04 * j));
+      for (int j : {0, 1}) start[j].push_back(std::sin(2 * std::numbers::pi * i / 64 - 0.04 * j));
     stepper.start(start);
     int iterations = 0;
     for (int n = 0; n < 100; ++n) stepper.step(), iterations += stepper.iterations();
@@ -401,7 +400,7 @@ TEST_CASE("a step before a start is refused, and a start from rows of another si
       if (p.method == "multisymplectic") simulation.start_centred(row, at_rest);
       else simulation.start_legendre(row, at_rest);
     };
-    const std::size_t values = static_cast<std::size_t>(p.lattice.sites()) * simulation.components().size();
+    const std::size_t values = at(p.lattice.sites()) * simulation.components().size();
     for (const std::size_t wrong : {values - 1, values + 1}) CHECK_THROWS_AS(start(wrong), BadInput);
     CHECK_THROWS_AS(simulation.step(), std::logic_error);
     start(values);

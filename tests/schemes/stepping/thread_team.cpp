@@ -19,16 +19,15 @@ TEST_CASE("a team does every part once, the first in the calling thread, and ret
     CHECK(team.size() == threads);
     for (int parts = 1; parts <= threads; ++parts) {
       CAPTURE(threads, parts);
-      std::vector<int> times(static_cast<std::size_t>(threads), 0);
+      std::vector<int> times(threads, 0);
       std::thread::id of_first;
       bool right = true;
       for (int round = 1; round <= 300; ++round) {
         team.run(parts, [&](int part) {
-          ++times[static_cast<std::size_t>(part)];
+          ++times[part];
           if (part == 0) of_first = std::this_thread::get_id();
         });
-        for (int part = 0; part < threads; ++part)
-          right = right && times[static_cast<std::size_t>(part)] == (part < parts ? round : 0);
+        for (int part = 0; part < threads; ++part) right = right && times[part] == (part < parts ? round : 0);
       }
       CHECK(right);
       CHECK(of_first == std::this_thread::get_id());
@@ -43,7 +42,7 @@ TEST_CASE("parts work at the same time, and see what was written before the roun
     int written = round;
     std::array<int, 3> seen{};
     team.run(3, [&](int part) {
-      seen[static_cast<std::size_t>(part)] = written;
+      seen[part] = written;
       ++begun;
       while (begun < 3) std::this_thread::yield();  // would hang if one part waited for another
     });
@@ -83,7 +82,7 @@ TEST_CASE("parts of other threads treat denormal numbers as the calling thread d
   ThreadTeam team(3);
   std::array<double, 3> halves{};
   volatile double small = std::numeric_limits<double>::min();
-  team.run(3, [&](int part) { halves[static_cast<std::size_t>(part)] = small / 2; });
+  team.run(3, [&](int part) { halves[part] = small / 2; });
   CHECK(halves[1] == halves[0]);
   CHECK(halves[2] == halves[0]);
 }
@@ -92,6 +91,6 @@ TEST_CASE("the count of parts can fail: a team of one does not do two") {
   // what the first case would see if parts were left out
   std::vector<int> times(2, 0);
   ThreadTeam team(2);
-  team.run(1, [&](int part) { ++times[static_cast<std::size_t>(part)]; });
+  team.run(1, [&](int part) { ++times[part]; });
   CHECK(times == std::vector<int>{1, 0});
 }

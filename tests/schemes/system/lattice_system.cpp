@@ -285,7 +285,7 @@ TEST_CASE("the Jacobian of the equations is that of finite differences, across t
       Row by_entries(N), by_difference(N);
       for (const auto& e : entries) {
         CHECK(e.row == i);
-        by_entries[static_cast<std::size_t>(e.column)] += e.value;
+        by_entries[e.column] += e.value;
       }
       for (std::size_t s = 0; s < N; ++s) {
         constexpr double e = 1e-4;

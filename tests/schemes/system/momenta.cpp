@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -28,7 +29,7 @@ std::unique_ptr<State> state(const Problem& p, const std::string& name, double s
   return make_state(request, p.lattice);
 }
 Row values(const State& s, double t, const Lattice& lattice) {
-  Row row(static_cast<std::size_t>(lattice.sites() * s.components()));
+  Row row(delf::at(lattice.sites() * s.components()));
   s.values(t, lattice, row);
   return row;
 }
@@ -45,7 +46,7 @@ Row of_field(const Simulation& simulation, int back) {
   const Row p = simulation.momenta(back);
   Row result;
   for (int i = 0; i < system.lattice().sites(); ++i)
-    if (!system.is_held(i, 0)) result.push_back(p[static_cast<std::size_t>(i * system.components())]);
+    if (!system.is_held(i, 0)) result.push_back(p[i * system.components()]);
   return result;
 }
 
@@ -115,7 +116,7 @@ TEST_CASE("on a solution the momenta are the same from below and from above, and
         simulation.step();
         CHECK(relative_distance(below, of_field(simulation, 1)) < 1e-11);
       }
-      Row velocities(static_cast<std::size_t>(lattice.sites()));
+      Row velocities(delf::at(lattice.sites()));
       kink->velocities(static_cast<double>(simulation.newest()) * h, lattice, velocities);
       for (double& v : velocities) v *= k;
       if (!lattice.is_circle()) velocities.erase(velocities.begin()), velocities.pop_back();
@@ -165,7 +166,7 @@ TEST_CASE("momenta of compositions and of elements: those of the start, and hand
     double sum = 0, expected = 0;
     for (int i = 0; i < lattice.sites(); ++i)
       for (std::size_t c = 0; c < C; ++c) {
-        const auto at = static_cast<std::size_t>(i) * C + c;
+        const auto at = delf::at(i) * C + c;
         if (method == std::string("composition") && c == 0)
           CHECK(std::abs(first[at] - lattice.space_step() * velocity[at]) < 1e-13);
         if (simulation.components()[c].at.time == 0) sum += first[at];

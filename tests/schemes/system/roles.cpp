@@ -109,7 +109,7 @@ TEST_CASE("fields are numbered wherever they stand, and their values gain the tu
   const Window window = system.window(0, {std::vector<double>(24, 1.0)}, 2.5);
   const double gained[]{0, 2.5, 2.5, 2.5, 2.5, 0};
   for (int c = 0; c < 6; ++c) {
-    CHECK(system.turn_of(c, 2.5) == gained[c]);
+    CHECK(system.monodromy_of(c, 2.5) == gained[c]);
     CHECK(window(0, 4, c) == 1 + gained[c]);
     CHECK(window(0, -5, c) == 1 - 2 * gained[c]);
   }

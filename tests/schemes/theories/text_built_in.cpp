@@ -35,9 +35,11 @@ std::vector<Pair> second_order(bool point) {
     std::string parameters;
     for (const auto& [name, key] : text.parameters)
       for (const Parameter& p : find_theory(text.theory).parameters)
-        if (p.key == key) parameters += (parameters.empty() ? "" : ", ") + name + " = " + std::to_string(std::get<double>(p.fallback));
+        if (p.key == key)
+          parameters += (parameters.empty() ? "" : ", ") + name + " = " + std::to_string(std::get<double>(p.fallback));
     pairs.push_back({text.theory, text.density, text.fields, parameters, text.constraint, text.symmetry,
-                     1 + static_cast<int>(std::ranges::count(text.fields, ',')), text.theory == "henon-heiles" ? 0.3 : 1});
+                     1 + static_cast<int>(std::ranges::count(text.fields, ',')),
+                     text.theory == "henon-heiles" ? 0.3 : 1});
   }
   return pairs;
 }
@@ -73,11 +75,11 @@ Problem problem(const Pair& pair, const std::string& stencil, bool as_text, bool
 /// Two rows of a smooth motion; of unit length where there is a constraint.
 std::vector<std::vector<double>> start(const Problem& p, const Pair& pair) {
   const int d = pair.components, C = d + (pair.constraint.empty() ? 0 : 1), N = p.lattice.sites();
-  std::vector<std::vector<double>> rows(2, std::vector<double>(static_cast<std::size_t>(N * C)));
+  std::vector<std::vector<double>> rows(2, std::vector<double>(N * C));
   for (int r = 0; r < 2; ++r)
     for (int i = 0; i < N; ++i) {
       const double angle = 2 * std::numbers::pi * i / N, t = r * p.time_step;
-      double* const y = &rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(i * C)];
+      double* const y = &rows[r][i * C];
       double length = 0;
       for (int a = 0; a < d; ++a) {
         y[a] = (a == 0 ? 0.9 : 0.1) + 0.3 * std::sin(angle + a) + 0.2 * t * std::cos(angle + 2 * a) + (a == 1 ? t : 0);
@@ -102,7 +104,7 @@ Result result(const Problem& p, const Pair& pair, int steps) {
   simulation.start(start(p, pair));
   simulation.steps(steps);
   simulation.step();
-  std::vector<double> row(static_cast<std::size_t>(p.lattice.sites() * pair.components));
+  std::vector<double> row(p.lattice.sites() * pair.components);
   simulation.copy_row(0, row);
   const auto monitors = simulation.monitors();
   return {simulation.solve_summary(), row, monitors.conserved, monitors.energy};
@@ -184,8 +186,7 @@ double difference(const TheoryText& text, const std::string& planted = "") {
   auto written = text_of(text.theory, values);
   REQUIRE(written);
   REQUIRE(written->components() == compiled->density().components());
-  if (!planted.empty())
-    written = expression(written->text() + planted, written->names());
+  if (!planted.empty()) written = expression(written->text() + planted, written->names());
   const std::vector<double> a = at_random_jets(*written), b = at_random_jets(compiled->density());
   double largest = 0;
   for (const double y : b) largest = std::max(largest, std::abs(y));

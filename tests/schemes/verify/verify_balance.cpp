@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "schemes/theories/field_theory.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
+#include "schemes/theories/field_theory.hpp"
 #include "schemes/verify/stress_balance.hpp"
 #include "tests/catch.hpp"
 
@@ -75,7 +75,7 @@ std::vector<Measured> balances(Run run, bool with_source = true) {
   const auto state = make_state(run.request, p.lattice);
   if (p.lattice.is_circle()) p.winding = state->winding();
   Simulation simulation(p);
-  std::vector<double> row(static_cast<std::size_t>(p.lattice.sites() * state->components())), rate(row.size());
+  std::vector<double> row(p.lattice.sites() * state->components()), rate(row.size());
   state->values(0, p.lattice, row), state->velocities(0, p.lattice, rate);
   simulation.start_centred(row, rate);
 
@@ -125,7 +125,8 @@ TEST_CASE("the balance laws of a breather hold to second order on a circle, loca
 TEST_CASE("the balance laws hold to second order between walls, through which energy and momentum flow") {
   vanish_to_second_order(orders(breather(Lattice::interval(801, 40, fixed, natural))));
   Run half = run_of("sine-gordon", "breather", Lattice::interval(401, 20, natural, fixed), 6);
-  half.request.values["initial.position"] = 0, half.request.values["initial.frequency"] = 0.6;  // even about the wall, where it beats
+  half.request.values["initial.position"] = 0,
+  half.request.values["initial.frequency"] = 0.6;  // even about the wall, where it beats
   vanish_to_second_order(orders(half));
 }
 
@@ -149,7 +150,7 @@ TEST_CASE("several fields and a constraint: the balance laws of the wave map hol
   // Its second row is known, and no centred start is.
   const auto of = [&](Run r) {
     Simulation simulation(r.problem);
-    const auto N = static_cast<std::size_t>(r.problem.lattice.sites());
+    const std::size_t N = r.problem.lattice.sites();
     std::vector<double> u(3 * N);
     std::vector<std::vector<double>> rows(2, std::vector<double>(4 * N));
     for (std::size_t n = 0; n < 2; ++n) {
@@ -212,15 +213,15 @@ TEST_CASE("in mechanics the balance of energy is of second order, and there is n
 
 TEST_CASE("the defect at a vertex is the one written by hand, and it is found where it is") {
   const int N = 6;
-  const double h = 0.1, k = 0.5, turn = 2 * std::numbers::pi;
+  const double h = 0.1, k = 0.5, monodromy = 2 * std::numbers::pi;
   const Lattice lattice = Lattice::circle(N, N * k);
   Problem p;
   p.lattice = lattice, p.time_step = h, p.winding = 1;
   const Simulation simulation(p);
-  StressBalance balance(simulation.theory(), lattice, h, turn);
+  StressBalance balance(simulation.theory(), lattice, h, monodromy);
   const auto y = [&](int j, int i) {
     const int home = lattice.wrapped(i);
-    return std::sin(3.7 * j * j + 1.3 * home * home) + turn * home / N + turn * ((i - home) / N);
+    return std::sin(3.7 * j * j + 1.3 * home * home) + monodromy * home / N + monodromy * ((i - home) / N);
   };
   for (int j = 0; j < 4; ++j) {
     std::vector<double> row;

@@ -9,6 +9,7 @@
 
 #include "jets/tables/rectangle_jet.hpp"
 #include "jets/tables/spacetime_element.hpp"
+#include "lattice/index.hpp"
 #include "schemes/families/r_adaptive.hpp"
 #include "schemes/scheme.hpp"
 #include "schemes/theories/klein_gordon.hpp"
@@ -35,7 +36,7 @@ class WrongEntry final : public StencilFamily {
   WrongEntry(Family right, int row, int column, double factor)
       : StencilFamily(right->pattern(), right->values(), right->is_variational()),
         right_(std::move(right)),
-        entry_(static_cast<std::size_t>(row * size() + column)),
+        entry_(at(row * size() + column)),
         factor_(factor) {
     placed_ = right_->is_placed();
   }

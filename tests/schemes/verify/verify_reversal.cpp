@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/state.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -29,7 +30,7 @@ Rows start_rows(Problem& p, const std::string& name) {
   if (name == "breather" || name == "kink") request.values["initial.speed"] = 0.3;
   const auto state = make_state(request, p.lattice);
   if (p.lattice.is_circle()) p.winding = state->winding();
-  const auto d = static_cast<std::size_t>(state->components()), N = static_cast<std::size_t>(p.lattice.sites());
+  const std::size_t d = state->components(), N = at(p.lattice.sites());
   const std::size_t C = Simulation(p).components().size();
   Rows rows(2, std::vector<double>(C * N));
   std::vector<double> y(d * N);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tools/bench/by_hand/mechanics_by_hand.hpp"
 #include "tools/bench/by_hand/spacetime_by_hand.hpp"
@@ -16,12 +17,11 @@ template <class Packed>
 double difference(Simulation& engine, Packed& packed, const TwoRows& rows, int steps, int component, int fields) {
   engine.start(rows), packed.start(rows);
   for (int n = 0; n < steps; ++n) engine.step(), packed.step();
-  std::vector<double> row(rows[0].size() / static_cast<std::size_t>(fields + 1) * static_cast<std::size_t>(fields));
+  std::vector<double> row(rows[0].size() / at(fields + 1) * at(fields));
   engine.copy_row(0, row);
   double worst = 0;
-  for (std::size_t i = 0; i * static_cast<std::size_t>(fields) < row.size(); ++i)
-    worst = std::max(worst, std::abs(row[i * static_cast<std::size_t>(fields) + static_cast<std::size_t>(component)] -
-                                     packed.newest(component)[i]));
+  for (std::size_t i = 0; i * at(fields) < row.size(); ++i)
+    worst = std::max(worst, std::abs(row[i * at(fields) + at(component)] - packed.newest(component)[i]));
   return worst;
 }
 
@@ -105,8 +105,8 @@ TEST_CASE("spacetime elements by hand and the engine step the same equations") {
   engine.copy_row(0, vertices);
   double worst = 0, of_wrong = 0;
   for (int i = 0; i < 40; ++i) {
-    worst = std::max(worst, std::abs(vertices[static_cast<std::size_t>(i)] - loop.newest(2 * i)));
-    of_wrong = std::max(of_wrong, std::abs(vertices[static_cast<std::size_t>(i)] - wrong.newest(2 * i)));
+    worst = std::max(worst, std::abs(vertices[i] - loop.newest(2 * i)));
+    of_wrong = std::max(of_wrong, std::abs(vertices[i] - wrong.newest(2 * i)));
   }
   CHECK(worst < 1e-10);
   CHECK(of_wrong > 1e-3);

@@ -18,7 +18,7 @@ std::vector<double> engine_row(const Collision& collision) {
   delf::Simulation simulation(collision.problem());
   simulation.start(collision.rows());
   for (int n = 0; n < steps; ++n) simulation.step();
-  std::vector<double> row(static_cast<std::size_t>(collision.sites));
+  std::vector<double> row(collision.sites);
   simulation.copy_row(0, row);
   return row;
 }

@@ -20,7 +20,7 @@ nlohmann::json summary(const Folder& folder) { return nlohmann::json::parse(read
 /// As a file has them.
 std::string bent_cells(int sites, int rows, const std::string& fault = "") {
   StencilList list = bent_rows(sites, rows);
-  const auto middle = static_cast<std::size_t>(2 * sites + 3);
+  const std::size_t middle = 2 * sites + 3;
   if (fault == "flipped") std::swap(list.stencils[3].sites[1], list.stencils[3].sites[3]);
   if (fault == "doubled") list.stencils.push_back(list.stencils[4]);
   if (fault == "moved") list.sites[middle].position[1] += 0.01;

@@ -109,7 +109,7 @@ TEST_CASE("a mesh with a seam runs as one without, and plan and report tell its 
     for (int i = 0; i <= 4; ++i)
       for (int j = 0; j <= 2; ++j) {
         text += "point " + std::to_string(i) + " " + std::to_string(j) + "\n";
-        number[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = count++;
+        number[i][j] = count++;
       }
     right = number;
     for (std::size_t j = 0; twice && j <= 2; ++j) {

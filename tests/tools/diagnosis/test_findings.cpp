@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "lattice/plan/solve_plan.hpp"
 #include "schemes/verify/equation_check.hpp"
 #include "tests/catch.hpp"
@@ -29,7 +30,7 @@ constexpr double L = 40, k = L / N, h = k / 2, circle = 2 * std::numbers::pi;
 struct Written {
   Rows rows;
   Problem problem;
-  double turn = 0;
+  double monodromy = 0;
   Rows momenta = {};
 };
 
@@ -53,13 +54,12 @@ std::vector<Finding> findings(const Written& w, double tolerance = 1e-13) {
   FailedEquations failed;
   for (std::int64_t j = check.reach(); j <= last - check.reach(); ++j) {
     const auto first = w.rows.begin() + (j - check.reach());
-    check.at(system->window(j - check.reach(), {first, first + 2 * check.reach() + 1}, w.turn), j);
+    check.at(system->window(j - check.reach(), {first, first + 2 * check.reach() + 1}, w.monodromy), j);
     failed.add(j, check.newest(), system->components(), tolerance);
   }
-  return diagnose({w.problem, *system, w.turn, tolerance, last + 1,
-                   [&](std::int64_t j) { return w.rows[static_cast<std::size_t>(j)]; }, failed,
-                   w.momenta.empty() ? std::function<Row(std::int64_t)>{}
-                                     : [&](std::int64_t j) { return w.momenta[static_cast<std::size_t>(j)]; }})
+  return diagnose(
+             {w.problem, *system, w.monodromy, tolerance, last + 1, [&](std::int64_t j) { return w.rows[j]; }, failed,
+              w.momenta.empty() ? std::function<Row(std::int64_t)>{} : [&](std::int64_t j) { return w.momenta[j]; }})
       .findings;
 }
 
@@ -83,11 +83,11 @@ Row row_of(const Field& field, double t, int sites = N, double step = k) {
   return row;
 }
 
-// D²y where y gains `turn` around the circle.
-Row second_difference(const Row& y, double turn = 0) {
+// D²y where y gains `monodromy` around the circle.
+Row second_difference(const Row& y, double monodromy = 0) {
   const auto n = static_cast<int>(y.size());
   Row D(y.size());
-  const auto at = [&](int i) { return i < 0 ? y[n - 1] - turn : i == n ? y[0] + turn : y[i]; };
+  const auto at = [&](int i) { return i < 0 ? y[n - 1] - monodromy : i == n ? y[0] + monodromy : y[i]; };
   for (int i = 0; i < n; ++i) D[i] = (at(i - 1) - 2 * y[i] + at(i + 1)) / (k * k);
   return D;
 }
@@ -105,9 +105,9 @@ Rows stepped(Rows rows, const Force& force, double step = h, int count = frames)
   }
   return rows;
 }
-Force sine_gordon(double of_space = 1, double of_sine = 1, double turn = 0) {
+Force sine_gordon(double of_space = 1, double of_sine = 1, double monodromy = 0) {
   return [=](const Row& y, const Row&) {
-    Row F = second_difference(y, turn);
+    Row F = second_difference(y, monodromy);
     for (std::size_t i = 0; i < y.size(); ++i) F[i] = of_space * F[i] - of_sine * std::sin(y[i]);
     return F;
   };
@@ -128,7 +128,9 @@ Rows engine_rows(Problem p, const Rows& first, int count = frames) {
   return rows;
 }
 
-Written with(Rows rows, Problem p = scene(), double turn = 0) { return {std::move(rows), std::move(p), turn}; }
+Written with(Rows rows, Problem p = scene(), double monodromy = 0) {
+  return {std::move(rows), std::move(p), monodromy};
+}
 
 Rows changed(Rows rows, const std::function<void(Rows&)>& change) {
   change(rows);
@@ -544,7 +546,7 @@ TEST_CASE("a diagnosis knows the usual programs for fields") {
   });
   // ½D²(y₊ + y₋) with D² of order 4, by fixed points
   const auto wide = [](const Row& y, int i) {
-    const auto at = [&](int n) { return y[static_cast<std::size_t>((n + N) % N)]; };
+    const auto at = [&](int n) { return y[(n + N) % N]; };
     return (-at(i - 2) + 16 * at(i - 1) - 30 * at(i) + 16 * at(i + 1) - at(i + 2)) / (12 * k * k);
   };
   Rows implicit = start();
@@ -554,9 +556,7 @@ TEST_CASE("a diagnosis knows the usual programs for fields") {
     for (int n = 0; n < 120; ++n) {
       const Row last = next;
       for (int i = 0; i < N; ++i)
-        next[static_cast<std::size_t>(i)] =
-            2 * y[static_cast<std::size_t>(i)] - before[static_cast<std::size_t>(i)] +
-            h * h * (0.5 * (wide(last, i) + wide(before, i)) - std::sin(y[static_cast<std::size_t>(i)]));
+        next[i] = 2 * y[i] - before[i] + h * h * (0.5 * (wide(last, i) + wide(before, i)) - std::sin(y[i]));
     }
     implicit.push_back(next);
   }
@@ -575,13 +575,13 @@ TEST_CASE("a diagnosis knows the usual programs for fields") {
                                                      : (i < 0    ? 1
                                                         : i == N ? N - 2
                                                                  : i);
-        return phi[static_cast<std::size_t>(inside)];
+        return phi[inside];
       };
       Row F;
       for (int i = 0; i < N; ++i) F.push_back((at(i - 1) - 2 * at(i) + at(i + 1)) / (k * k) - std::sin(at(i)));
       for (int i = 0; i < N; ++i) {
         if (ends == Ends::fixed && (i == 0 || i == N - 1)) continue;
-        const auto n = static_cast<std::size_t>(i);
+        const std::size_t n = i;
         pi[n] += h * F[n], phi[n] += h * pi[n];
       }
     }
@@ -629,11 +629,11 @@ TEST_CASE("a diagnosis names elements whose rows hold neither masses of sites no
   // Row 0, the same in all nodes and traces, and what follows; from rest where the scheme takes momenta.
   const auto elements = [](const Problem& p, const Row& first, int count) {
     Simulation s(p);
-    const std::size_t C = s.components().size(), d = static_cast<std::size_t>(s.count(Role::field));
+    const std::size_t C = s.components().size(), d = delf::at(s.count(Role::field));
     Row all(first.size() / d * C), written(first.size());
     for (std::size_t at = 0; at < all.size(); ++at)
       if (const Component& c = s.components()[at % C]; c.role != Role::multiplier)
-        all[at] = first[at / C * d + static_cast<std::size_t>(c.field)];
+        all[at] = first[at / C * d + delf::at(c.field)];
     if (p.method == "dgvi") s.start({all});
     else s.start_legendre(all, Row(all.size(), 0.0));
     Rows rows{first};

@@ -120,7 +120,7 @@ TEST_CASE("frames farther apart than the motion lasts are aliased, whatever thei
   CHECK_FALSE(film_of(200, 1).is_aliased());
   CHECK_FALSE(film_of(12, 1).is_aliased());  // three frames in a period are left
   CHECK(film_of(9, 1).is_aliased());
-  CHECK(film_of(4.01, 1).is_aliased());      // nearly at rest
+  CHECK(film_of(4.01, 1).is_aliased());  // nearly at rest
   CHECK_FALSE(film_of(4.01, 1e-3).is_aliased());
 }
 
@@ -130,7 +130,8 @@ TEST_CASE("a map that shows what is not there says so, in its title and in the r
   // the two collide every 25.29
   const auto [every, aliased] = GENERATE(table<std::string, bool>({{"13", false}, {"640", true}}));
   const Ran ran = delf_program(
-      folder, "run collision --run.until=400 --output.fields=off --output.format=svg --out out --output.every=" + every);
+      folder,
+      "run collision --run.until=400 --output.fields=off --output.format=svg --out out --output.every=" + every);
   INFO(ran.out);
   REQUIRE(ran.code == 0);
   CHECK(contains(ran.out, "what moves in them may be an alias; set output.every = ") == aliased);
@@ -171,7 +172,7 @@ TEST_CASE("a long subtitle is smaller, or on several lines, and never cut") {
   }
 }
 
-TEST_CASE("curves that cannot be told apart are said to, and a spike does not flatten the axis") {
+TEST_CASE("curves that cannot be distinguished are said to, and a spike does not flatten the axis") {
   std::vector<std::vector<double>> curves(3, std::vector<double>(1000));
   for (std::size_t i = 0; i < 1000; ++i) {
     const double x = 0.01 * static_cast<double>(i);

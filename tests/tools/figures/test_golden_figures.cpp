@@ -26,7 +26,7 @@ std::string coarse(const Folder& folder, const std::string& png) {
   for (const std::string& line : lines(read(folder / "grey"))) {
     double x = 0, y = 0, grey = 0;
     if (line.empty() || line[0] == '#' || !(std::istringstream(line) >> x >> y >> grey)) continue;
-    const auto block = static_cast<std::size_t>(columns * static_cast<int>((1199 - y) / 60) + static_cast<int>(x / 60));
+    const std::size_t block = columns * static_cast<int>((1199 - y) / 60) + static_cast<int>(x / 60);
     REQUIRE(block < dark.size());
     dark[block] += 255 - grey, count[block] += 1;
   }

@@ -25,7 +25,7 @@ std::vector<hsize_t> shape(const std::filesystem::path& file, const char* name) 
   const Hdf5Handle dataset(H5Dopen2(h5, name, H5P_DEFAULT), H5Dclose);
   if (!dataset) return {};
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-  std::vector<hsize_t> extent(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
+  std::vector<hsize_t> extent(H5Sget_simple_extent_ndims(space));
   H5Sget_simple_extent_dims(space, extent.data(), nullptr);
   return extent;
 }

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-MeasuredField field_on(const Lattice& lattice, bool angle, double turn = 0) {
-  return {lattice, 0.1, turn, angle, 1, nullptr};
+MeasuredField field_on(const Lattice& lattice, bool angle, double monodromy = 0) {
+  return {lattice, 0.1, monodromy, angle, 1, nullptr};
 }
 
 nlohmann::json measures_of(const Folder& folder, const std::string& scene, const std::string& more = "") {
@@ -325,9 +325,9 @@ TEST_CASE("measures at a place see all steps: records beyond Nyquist's frequency
 
 TEST_CASE("a run in parts has the measures of the whole, to the bit") {
   const Folder folder;
-  const std::string scene = folder.write(
-      "kink.ini", kink_scene("omega = frequency(20)\npassed = crossings(18, pi)\nhigh = maximum(18)\n"
-                             "when = maximum_time(18)\nlast = value(18)\n"));
+  const std::string scene =
+      folder.write("kink.ini", kink_scene("omega = frequency(20)\npassed = crossings(18, pi)\nhigh = maximum(18)\n"
+                                          "when = maximum_time(18)\nlast = value(18)\n"));
   const auto whole = measures_of(folder, scene, "--output.every=7");
   measures_of(folder, scene, "--output.every=7 --run.until=4");
   const Ran ran = delf_program(folder, "resume out --run.until=10");

@@ -26,7 +26,7 @@ std::pair<double, double> errors(const Motion& motion, const BodyPeerInfo& info,
   delf::StateRequest request;
   request.name = motion.state, request.theory = motion.theory;
   const auto state = make_state(request, Lattice::point());
-  const auto d = static_cast<std::size_t>(state->components());
+  const std::size_t d = state->components();
   Numbers q(d), v(d), exact(d), end(d), rate(d);
   state->values(0, Lattice::point(), q), state->velocities(0, Lattice::point(), v);
   state->values(motion.until, Lattice::point(), exact);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tools/peers/peer.hpp"
 #include "tools/peers/split_step.hpp"
@@ -27,7 +28,7 @@ namespace {
 class Reference {
  public:
   Reference(const WaveEquation& e, int order_space, double force_factor = 1)
-      : e_(e), factor_(force_factor), n_(static_cast<std::size_t>(e.sites)), d_(n_) {
+      : e_(e), factor_(force_factor), n_(at(e.sites)), d_(n_) {
     const double pi = std::numbers::pi, k = e.length / e.sites;
     for (std::size_t j = 0; j < n_; ++j)
       for (int m = 0; m < e.sites; ++m) {
@@ -39,7 +40,7 @@ class Reference {
 
   Values acceleration(const Values& phi) const {
     Values u(n_), a(n_);
-    for (std::size_t i = 0; i < n_; ++i) u[i] = phi[i] - e_.turn * static_cast<double>(i) / e_.sites;
+    for (std::size_t i = 0; i < n_; ++i) u[i] = phi[i] - e_.monodromy * static_cast<double>(i) / e_.sites;
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j) a[i] += d_[(i + n_ - j) % n_] * u[j];
       a[i] += factor_ * force(phi[i]);
@@ -125,7 +126,7 @@ Rows waves(const WaveEquation& e, double rough) {
   Rows rows;
   for (int i = 0; i < e.sites; ++i) {
     const double s = static_cast<double>(i) / e.sites, angle = 2 * std::numbers::pi * s;
-    rows.phi.push_back(0.4 + e.turn * s + 0.9 * std::cos(angle) + rough * std::cos(4 * angle + 1));
+    rows.phi.push_back(0.4 + e.monodromy * s + 0.9 * std::cos(angle) + rough * std::cos(4 * angle + 1));
     rows.phi_t.push_back(0.5 * std::sin(angle) - 0.2);
   }
   return rows;
@@ -141,7 +142,7 @@ double difference(const Rows& a, const Rows& b) {
 }
 
 Rows now(const Peer& peer, int sites) {
-  Rows rows{Values(static_cast<std::size_t>(sites)), Values(static_cast<std::size_t>(sites))};
+  Rows rows{Values(at(sites)), Values(at(sites))};
   peer.copy(rows.phi, rows.phi_t);
   return rows;
 }
@@ -189,8 +190,8 @@ bool is_order(double measured, int order) { return std::abs(measured - order) < 
 
 // Masses large enough for the field to bend much within the period of its shortest wave: errors follow their power of h
 // long before they are lost in rounding.
-WaveEquation equation(Potential potential, int sites = 17, double turn = 0) {
-  return {.potential = potential, .mass = 3, .lambda = 2, .length = 7, .turn = turn, .sites = sites};
+WaveEquation equation(Potential potential, int sites = 17, double monodromy = 0) {
+  return {.potential = potential, .mass = 3, .lambda = 2, .length = 7, .monodromy = monodromy, .sites = sites};
 }
 
 int least_steps(const PeerInfo& info, const WaveEquation& e) {
@@ -235,18 +236,18 @@ TEST_CASE("peers have the order in time that they state, for every potential, an
 }
 
 TEST_CASE("peers run fields that wind, and even numbers of sites") {
-  for (const double turn : {0.0, 2 * std::numbers::pi, -4 * std::numbers::pi}) {
-    const WaveEquation e = equation(Potential::sine_gordon, 18, turn);
+  for (const double monodromy : {0.0, 2 * std::numbers::pi, -4 * std::numbers::pi}) {
+    const WaveEquation e = equation(Potential::sine_gordon, 18, monodromy);
     WaveEquation unturned = e;
-    unturned.turn = 0;
+    unturned.monodromy = 0;
     for (const PeerInfo& info : peers()) {
-      if (has_mass_in_flow(info) && turn != 0) continue;
-      CAPTURE(info.name, turn);
+      if (has_mass_in_flow(info) && monodromy != 0) continue;
+      CAPTURE(info.name, monodromy);
       const auto peer = info.make(e);
       const Convergence c = convergence(*peer, e, solution(e, info.order_space), info.order_time, least_steps(info, e));
       CAPTURE(c.coarse, c.fine, c.order);
       CHECK(is_order(c.order, info.order_time));
-      if (turn == 0) continue;
+      if (monodromy == 0) continue;
       Rows wrong = waves(e, rough);
       Reference(unturned, info.order_space).advance(wrong.phi, wrong.phi_t, duration, 24);
       CHECK(difference(stepped(*peer, e, c.fine), wrong) > 1e-2);
@@ -273,8 +274,8 @@ TEST_CASE("peers have the order in space that they state, and another order is d
       const Rows rows = stepped(*peer, e, info.order_time == 2 ? 40000 : info.order_time == 4 ? 2000 : 500, 0);
       Rows sampled;
       for (int i = 0; i < fine; i += fine / sites) {
-        sampled.phi.push_back(truth.phi[static_cast<std::size_t>(i)]);
-        sampled.phi_t.push_back(truth.phi_t[static_cast<std::size_t>(i)]);
+        sampled.phi.push_back(truth.phi[i]);
+        sampled.phi_t.push_back(truth.phi_t[i]);
       }
       return difference(rows, sampled);
     };

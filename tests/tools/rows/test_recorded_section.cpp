@@ -58,22 +58,22 @@ struct Layout {
 
 delf::RowNames names_of(const Layout& layout) {
   delf::RowNames names;
-  names.of[delf::Role::field].assign(static_cast<std::size_t>(layout.fields), "phi");
-  names.of[delf::Role::inner].assign(static_cast<std::size_t>(layout.inner), "inner");
-  names.of[delf::Role::multiplier].assign(static_cast<std::size_t>(layout.multipliers), "lambda");
+  names.of[delf::Role::field].assign(layout.fields, "phi");
+  names.of[delf::Role::inner].assign(layout.inner, "inner");
+  names.of[delf::Role::multiplier].assign(layout.multipliers, "lambda");
   return names;
 }
 
 std::filesystem::path write(const Folder& folder, const Layout& layout, double (*change)(int, int) = nullptr) {
   const auto path = folder / "rows.h5";
-  const std::vector<double> space(static_cast<std::size_t>(layout.sites));
+  const std::vector<double> space(layout.sites);
   delf::FieldsFile file(path, space, layout.frames, "", 0, names_of(layout));
   for (int j = 0; j < layout.frames; ++j) {
     auto field = marks(j, layout.sites, 0, layout.fields);
-    for (int i = 0; change && i < layout.sites; ++i) field[static_cast<std::size_t>(i)] += change(j, i);
+    for (int i = 0; change && i < layout.sites; ++i) field[i] += change(j, i);
     const auto inner = marks(j, layout.sites, layout.fields, layout.inner);
     const auto multiplier = marks(j, layout.sites, layout.fields + layout.inner, layout.multipliers);
-    const double time = layout.times.empty() ? 7 + j * layout.step : layout.times[static_cast<std::size_t>(j)];
+    const double time = layout.times.empty() ? 7 + j * layout.step : layout.times[j];
     file.append(time, {{field, inner, multiplier}});
   }
   file.close();
@@ -92,7 +92,7 @@ std::filesystem::path write_raw(const Folder& folder,
     const delf::Hdf5Handle dataset(
         H5Dcreate2(file, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
     REQUIRE(dataset);
-    const std::vector<double> zeros(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    const std::vector<double> zeros(H5Sget_simple_extent_npoints(space));
     if (values) REQUIRE(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()) >= 0);
   }
   return path;
@@ -139,7 +139,7 @@ TEST_CASE("recorded multipliers go to the rows that they belong to") {
     const auto values = later.row(row);
     REQUIRE(values.size() == 12);
     for (int i = 0; i < 4; ++i) {
-      const auto at = static_cast<std::size_t>(3 * i);
+      const std::size_t at = 3 * i;
       CHECK(values[at] == mark(row, i, 0));
       CHECK(values[at + 1] == mark(row, i, 1));
       CHECK(values[at + 2] == (row < 3 ? mark(row + 1, i, 2) : 0));  // there is no frame 4
@@ -156,7 +156,7 @@ TEST_CASE("recorded inner nodes may belong to several rows") {
   const RecordedSection section(path, system_of(elements), {0, 1, 0, 2}, h, "--fields");
   const auto values = section.row(1);
   for (int i = 0; i < 4; ++i) {
-    const auto at = static_cast<std::size_t>(4 * i);
+    const std::size_t at = 4 * i;
     CHECK(values[at] == mark(1, i, 0));
     CHECK(values[at + 1] == mark(2, i, 1));
     CHECK(values[at + 2] == mark(1, i, 2));
@@ -237,7 +237,7 @@ double largest_residual(const RecordedSection& section, const delf::LatticeSyste
     const auto window = system.window(j - 1, {section.row(j - 1), section.row(j), section.row(j + 1)}, 0);
     system.equations(window, j, values);
     for (std::size_t n = 0; n < values.size(); ++n) {
-      const auto components = static_cast<std::size_t>(system.components());
+      const std::size_t components = system.components();
       const int site = static_cast<int>(n / components), component = static_cast<int>(n % components);
       if (system.component(component).role != delf::Role::field || system.lattice().is_fixed(site)) continue;
       worst = std::max(worst, std::abs(values[n].sum));

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/files/fields_reader.hpp"
@@ -154,8 +155,8 @@ TEST_CASE("an interrupted run writes all so far, and ends with exit code 130") {
   const auto stencil = GENERATE(as<std::string>(), "rectangle-symmetric", "triangle-vertex");
   const Ran ran =
       shell(folder, "'" + program_path() +
-                    "' run collision --run.until=1e7 --output.every=5000 --output.figures=off --out cut "
-                    "--lattice.stencil=" +
+                        "' run collision --run.until=1e7 --output.every=5000 --output.figures=off --out cut "
+                        "--lattice.stencil=" +
                         stencil + " & p=$!; while [ ! -s cut/fields.h5 ]; do sleep 0.05; done; sleep 0.3; kill -" +
                         signal + " $p; wait $p");
   INFO(ran.err);
@@ -166,7 +167,7 @@ TEST_CASE("an interrupted run writes all so far, and ends with exit code 130") {
   CHECK(json["steps"] > 0);
   const FieldsReader fields(folder / "cut/fields.h5");
   CHECK(*fields.time(fields.frames() - 1) == json["time"]);
-  CHECK(lines(read(folder / "cut/series.csv")).size() == static_cast<std::size_t>(fields.frames()) + 1);
+  CHECK(lines(read(folder / "cut/series.csv")).size() == at(fields.frames()) + 1);
 }
 
 TEST_CASE("an interrupted estimate ends with exit code 130, and the run is there") {
@@ -174,8 +175,8 @@ TEST_CASE("an interrupted estimate ends with exit code 130, and the run is there
   // The run takes a third of a second, its estimate some twenty times as long; a slower one is interrupted itself.
   const Ran ran =
       shell(folder, "'" + program_path() +
-                    "' run kink --run.until=6000 --output.estimate=on --output.figures=off --output.fields=off "
-                    "--out cut & p=$!; sleep 0.8; kill -INT $p; wait $p");
+                        "' run kink --run.until=6000 --output.estimate=on --output.figures=off --output.fields=off "
+                        "--out cut & p=$!; sleep 0.8; kill -INT $p; wait $p");
   INFO(ran.err << ran.out);
   CHECK(ran.code == 130);
   CHECK(contains(ran.out, "none: interrupted"));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/solvers/row_layout.hpp"
 #include "schemes/stepping/bytes_in_words.hpp"
@@ -46,8 +47,8 @@ Problem problem(const std::string& theory, const std::string& stencil, int sites
 }
 
 std::vector<std::vector<double>> two_rows(int sites) {
-  std::vector<double> row(static_cast<std::size_t>(sites));
-  for (int i = 0; i < sites; ++i) row[static_cast<std::size_t>(i)] = std::sin(2 * std::numbers::pi * i / sites);
+  std::vector<double> row(sites);
+  for (int i = 0; i < sites; ++i) row[i] = std::sin(2 * std::numbers::pi * i / sites);
   return {row, row};
 }
 
@@ -125,9 +126,9 @@ TEST_CASE("an explicit step on a circle has no arrays but its rows, and those in
       // A row is N sites filled up to whole packs, and a pack beyond either end, in whole cache lines; three rows of y and
       // of v each.
       const int packs = (sites + lanes - 1) / lanes;
-      const std::size_t row = sizeof(double) * static_cast<std::size_t>(((packs + 2) * lanes + 7) / 8 * 8);
+      const std::size_t row = sizeof(double) * delf::at(((packs + 2) * lanes + 7) / 8 * 8);
       // What does not grow with N: for each slot that repeats a site, where it is, which it repeats, and turns.
-      const std::size_t index = 3 * sizeof(int) * static_cast<std::size_t>(2 * lanes + packs * lanes - sites);
+      const std::size_t index = 3 * sizeof(int) * delf::at(2 * lanes + packs * lanes - sites);
       CHECK(simulation.bytes() == 6 * row + index);
       // residual() works in rows for the left side, its rounding, the newest values and, if there are any, source terms.
       const std::size_t measured = (theory == std::string("wave") ? 3 : 4) * row;

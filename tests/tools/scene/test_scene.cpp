@@ -27,7 +27,7 @@ TEST_CASE("a scene gives its keys, and the table of keys what it leaves out") {
   CHECK(scene.problem.lattice.sites() == 64);
   CHECK(scene.problem.time_step == 0.5 * 20 / 64);
   CHECK(scene.problem.tolerance == 1e-14);
-  CHECK(scene.problem.seed_order == 8);
+  CHECK(scene.problem.predictor_order == 8);
   CHECK_FALSE(scene.problem.circle_valued);
   CHECK(scene.initial.name == "breather");
   CHECK_FALSE(scene.initial.values.has("initial.position"));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/refused.hpp"
@@ -29,13 +30,12 @@ nlohmann::json summary(const Folder& folder, const std::string& arguments) {
 ///
 class EulerianCamassaHolm {
  public:
-  EulerianCamassaHolm(double (*u)(double), int particles) : state_(modes + static_cast<std::size_t>(particles)) {
+  EulerianCamassaHolm(double (*u)(double), int particles) : state_(modes + delf::at(particles)) {
     std::vector<double> values;
     for (int i = 0; i < points; ++i) values.push_back(u(x(i)));
     const auto coefficients = transform(values);
     std::ranges::copy(coefficients, state_.begin());
-    for (int i = 0; i < particles; ++i)
-      state_[modes + static_cast<std::size_t>(i)] = 2 * std::numbers::pi * i / particles;
+    for (int i = 0; i < particles; ++i) state_[modes + delf::at(i)] = 2 * std::numbers::pi * i / particles;
   }
 
   void step(double h) {
@@ -55,7 +55,7 @@ class EulerianCamassaHolm {
   static State transform(const std::vector<double>& values) {
     State c(modes);
     for (std::size_t q = 0; q < modes; ++q)
-      for (int i = 0; i < points; ++i) c[q] += values[static_cast<std::size_t>(i)] * std::conj(wave(q, x(i))) / 64.0;
+      for (int i = 0; i < points; ++i) c[q] += values[i] * std::conj(wave(q, x(i))) / 64.0;
     return c;
   }
   static double at(const State& c, double place, int derivative) {

@@ -39,7 +39,7 @@ bool says(const Json& json, const std::string& words) {
 template <class Change>
 void copy(const std::filesystem::path& from, const std::filesystem::path& to, const Change& change) {
   const delf::FieldsReader rows(from);
-  const std::vector<double> space(static_cast<std::size_t>(rows.sites()));
+  const std::vector<double> space(rows.sites());
   delf::FieldsFile file(to, space, rows.frames(), "", 0);
   for (int j = 0; j < rows.frames(); ++j) {
     auto values = rows.row(j);
@@ -100,7 +100,7 @@ TEST_CASE("a tail that is wrong by less than the tolerance is seen beside the fo
   CHECK(verified(folder, "--fields run/fields.h5" + wide, 0)["severity"].empty());
   copy(folder / "run/fields.h5", folder / "tail.h5", [](int j, std::vector<double>& row) {
     if (j > 15)
-      for (int i = 0; i < 2; ++i) row[static_cast<std::size_t>(i)] *= 1.0002;
+      for (int i = 0; i < 2; ++i) row[i] *= 1.0002;
   });
   const Json wrong = verified(folder, "--fields tail.h5" + wide, 0);
   REQUIRE(!wrong["severity"].empty());

@@ -95,11 +95,11 @@ std::string without_seconds(const std::string& json) {
 // A copy of recorded rows in which one value is another.
 void edit(const std::filesystem::path& from, const std::filesystem::path& to, int row, int site, double by) {
   const delf::FieldsReader rows(from);
-  const std::vector<double> space(static_cast<std::size_t>(rows.sites()));
+  const std::vector<double> space(rows.sites());
   delf::FieldsFile file(to, space, rows.frames(), "", rows.winding().value_or(0));
   for (int j = 0; j < rows.frames(); ++j) {
     auto values = rows.row(j);
-    if (j == row) values[static_cast<std::size_t>(site)] += by;
+    if (j == row) values[site] += by;
     file.append(*rows.time(j), {values, {}, {}});
   }
   file.close();
@@ -447,8 +447,8 @@ TEST_CASE("an interrupted verification writes what it has found, and ends with e
   const Folder folder;
   const auto signal = GENERATE(as<std::string>(), "INT", "TERM");
   const Ran ran = shell(folder, "'" + program_path() +
-                                "' verify collision --run.until=1e7 --output.figures=off --out cut & p=$!; "
-                                "while [ ! -d cut ]; do sleep 0.05; done; sleep 0.3; kill -" +
+                                    "' verify collision --run.until=1e7 --output.figures=off --out cut & p=$!; "
+                                    "while [ ! -d cut ]; do sleep 0.05; done; sleep 0.3; kill -" +
                                     signal + " $p; wait $p");
   INFO(ran.err);
   CHECK(ran.code == 130);

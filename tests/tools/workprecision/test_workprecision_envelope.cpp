@@ -153,12 +153,12 @@ TEST_CASE("names are apart at commas outside parentheses") {
 }
 
 TEST_CASE("a row of a finer lattice is read off between its sites, around the circle and its winding") {
-  constexpr double L = 10, turn = 2 * std::numbers::pi;
-  const auto f = [&](double x) { return turn * x / L + std::sin(2 * std::numbers::pi * x / L); };
+  constexpr double L = 10, monodromy = 2 * std::numbers::pi;
+  const auto f = [&](double x) { return monodromy * x / L + std::sin(2 * std::numbers::pi * x / L); };
   const Lattice fine = Lattice::circle(200, L);
   std::vector<double> row;
   for (int i = 0; i < 200; ++i) row.push_back(f(fine.position(i)));
-  const auto solution = ComparedSolution::reference(fine, 1, turn, row);
+  const auto solution = ComparedSolution::reference(fine, 1, monodromy, row);
   for (const int sites : {7, 50, 64, 333}) {
     const Lattice lattice = Lattice::circle(sites, L);
     std::vector<double> there;
@@ -180,14 +180,14 @@ TEST_CASE("a row of a finer lattice is read off between its sites, around the ci
 
 TEST_CASE("the centre of a kink is found anywhere on the circle, and a flat field has none") {
   const Lattice lattice = Lattice::circle(400, 40);
-  const double turn = 2 * std::numbers::pi;
+  const double monodromy = 2 * std::numbers::pi;
   for (const double x0 : {3.0, 20.0, 37.5, 39.9}) {
     std::vector<double> kink;
     for (int i = 0; i < 400; ++i) {
       const double s = lattice.position(i) - x0, n = std::floor((s + 20) / 40);
-      kink.push_back(4 * std::atan(std::exp(s - 40 * n)) + turn * n);
+      kink.push_back(4 * std::atan(std::exp(s - 40 * n)) + monodromy * n);
     }
-    CHECK(std::abs(separation(lattice, gradient_centre(lattice, kink, 1, turn), x0)) < 1e-6);
+    CHECK(std::abs(separation(lattice, gradient_centre(lattice, kink, 1, monodromy), x0)) < 1e-6);
   }
   CHECK(std::isnan(gradient_centre(lattice, std::vector<double>(400, 1.0), 1, 0)));
   CHECK(std::abs(separation(lattice, 39.5, 0.5) + 1) < 1e-12);

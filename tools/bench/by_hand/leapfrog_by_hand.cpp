@@ -38,7 +38,7 @@ void LeapfrogByHand::step() {
 }
 
 std::vector<double> LeapfrogByHand::row() const {
-  std::vector<double> sites(static_cast<std::size_t>(layout_.sites()));
+  std::vector<double> sites(layout_.sites());
   layout_.gather(rows_.row(0), sites);
   return sites;
 }

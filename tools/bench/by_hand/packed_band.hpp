@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "jets/simd/pack.hpp"
+#include "lattice/index.hpp"
 
 namespace delf::bench {
 
@@ -19,7 +20,7 @@ class PackedBand {
       : n_(n), rows_(at(n * (width / lanes) + 1), Pack(0.0)), inverse_(at(n)), lower_(at(n * half)), pivot_(at(n)) {
     for (int i = 0; i < n; ++i) base_.push_back(i * width - (i + before - half) / lanes * lanes + before);
   }
-  int place(int i, int j) const { return base_[at(i)] + j; }
+  int place(int i, int j) const { return base_[i] + j; }
   int beyond() const { return n_ * width; }  ///< a place that nobody reads
   double* numbers() { return reinterpret_cast<double*>(rows_.data()); }
   void set_zero() { std::ranges::fill(rows_, Pack(0.0)); }
@@ -33,19 +34,19 @@ class PackedBand {
       for (int i = k; i <= last; ++i)
         best = std::max(best, (std::bit_cast<std::uint64_t>(a[place(i, k)]) << 1 >> 1 & ~std::uint64_t{15}) |
                                   static_cast<std::uint64_t>(15 - (i - k)));
-      const int p = pivot_[at(k)] = k + 15 - static_cast<int>(best & 15);
+      const int p = pivot_[k] = k + 15 - static_cast<int>(best & 15);
       const int first = k / lanes * lanes, blocks = (last_column - first) / lanes + 1;
       Pack *const row = rows_.data() + place(k, first) / lanes, *const other = rows_.data() + place(p, first) / lanes;
       const double pivot = a[place(p, k)];
       if (!(std::abs(pivot) > 0 && std::abs(pivot) < 1e300)) return false;
-      inverse_[at(k)] = 1 / pivot;
+      inverse_[k] = 1 / pivot;
       Pack r[most];
       for (int b = 0; b < most; ++b)
         if (b < 2 || b < blocks) r[b] = other[b], other[b] = row[b], row[b] = r[b];
       double* const l = lower_.data() + at(k * half);
       for (int i = k + 1; i <= last; ++i) {
         Pack* const to = rows_.data() + place(i, first) / lanes;
-        const double by = l[i - k - 1] = a[place(i, k)] * inverse_[at(k)];
+        const double by = l[i - k - 1] = a[place(i, k)] * inverse_[k];
         for (int b = 0; b < most; ++b)
           if (b < 2 || b < blocks) to[b] -= by * r[b];
       }
@@ -56,8 +57,8 @@ class PackedBand {
     const double* const a = reinterpret_cast<const double*>(rows_.data());
     for (int k = 0; k < n_; ++k) {
       const double* const l = lower_.data() + at(k * half);
-      const double pivot = x[pivot_[at(k)]];
-      x[pivot_[at(k)]] = x[k], x[k] = pivot;
+      const double pivot = x[pivot_[k]];
+      x[pivot_[k]] = x[k], x[k] = pivot;
       if (k + half < n_)
         for (int i = 0; i < half; ++i) x[k + 1 + i] -= l[i] * pivot;
       else
@@ -70,12 +71,11 @@ class PackedBand {
         for (int j = 2 * half; j > 0; --j) s -= u[j] * x[k + j];  // the newest last
       else
         for (int j = n_ - 1 - k; j > 0; --j) s -= u[j] * x[k + j];
-      x[k] = s * inverse_[at(k)];
+      x[k] = s * inverse_[k];
     }
   }
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   static constexpr int before = (half + lanes - 1) / lanes * lanes;
   static constexpr int width = (lanes + 3 * half + lanes - 1) / lanes * lanes;
   static constexpr int most = (lanes - 1 + 2 * half) / lanes + 1;  ///< packs of a row that a pivot's row changes

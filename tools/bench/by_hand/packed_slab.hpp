@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tools/bench/by_hand/mixed_number.hpp"
 #include "tools/bench/by_hand/packed_band.hpp"
 
@@ -55,7 +56,7 @@ class PackedSlab {
         band_(n_),
         E_(at(n_) + 1),
         known_(E_) {
-    for (int r = 0; r < depth; ++r) ring_[at(r)].assign(at(components * line.sites + lanes), 0.0);
+    for (int r = 0; r < depth; ++r) ring_[r].assign(components * line.sites + lanes, 0.0);
     for (int s = line.first(); s < line.first() + line.nodes(); ++s) numbers_.push_back(components * line.node(s));
     (add_family(lagrangians), ...);
   }
@@ -67,7 +68,7 @@ class PackedSlab {
     for (int r = 0; r < 2; ++r)
       for (int i = 0; i < line_.sites; ++i)
         for (int c = 0; c < components; ++c)
-          row(r)[c * line_.sites + i] = System::multiplier[c] ? 0 : rows[at(r)][at(i * components + c)];
+          row(r)[c * line_.sites + i] = System::multiplier[c] ? 0 : rows[r][i * components + c];
   }
 
   void step() {
@@ -112,7 +113,6 @@ class PackedSlab {
 
  private:
   static constexpr int components = System::components, order = 8, depth = order + 3;
-  static std::size_t at(long i) { return static_cast<std::size_t>(i); }
 
   /// The stencils of one Lagrangian that stand in one row of anchors.
   struct Batch {
@@ -150,16 +150,16 @@ class PackedSlab {
       packs_ = (count + lanes - 1) / lanes;
       for (int p = 0; p < packs_; ++p) {
         const auto site = [&](int i, int l) {
-          return (sites[at(std::min(p * lanes + l, count - 1))] + L::values[at(i)].space + line.sites) % line.sites;
+          return (sites[at(std::min(p * lanes + l, count - 1))] + L::values[i].space + line.sites) % line.sites;
         };
         const auto number = [&](int i, int l) {
           const int node = p * lanes + l < count ? line.node(site(i, l)) : -1;
-          return node < 0 ? -1 : C * node + L::values[at(i)].component;
+          return node < 0 ? -1 : C * node + L::values[i].component;
         };
         for (int i = 0; i < size; ++i) {
           bool follow = true;
           for (int l = 0; l < lanes; ++l) {
-            places_.push_back(L::values[at(i)].component * line.sites + site(i, l));
+            places_.push_back(L::values[i].component * line.sites + site(i, l));
             follow = follow && site(i, l) == site(i, 0) + l;
           }
           follow_.push_back(follow);
@@ -192,7 +192,7 @@ class PackedSlab {
           const double* const row = rows[at(anchor + L::values[i].time + 1)];
           const int* const place = places_.data() + (p * size + i) * lanes;
           Pack x;
-          if (follow_[at(p * size + i)]) std::memcpy(&x, row + *place, sizeof x);
+          if (follow_[p * size + i]) std::memcpy(&x, row + *place, sizeof x);
           else each<lanes>([&](auto l) { x.v[int(l)] = row[place[l]]; });
           y[i] = Number(x);
           if constexpr (E_ >> i & 1) y[i].e[rank(E_, i)] = Pack(1.0);
@@ -219,7 +219,7 @@ class PackedSlab {
         batches_.push_back(std::make_unique<BatchOf<L, anchor>>(lagrangian, line_, band_));
     });
   }
-  double* row(long r) { return ring_[at(r % depth)].data(); }
+  double* row(long r) { return ring_[r % depth].data(); }
 
   /// The polynomial through eight values, or as many as there are.
   void predict() {
@@ -243,7 +243,7 @@ class PackedSlab {
     for (int c = 0; c < components; ++c) {
       double *const y = rows[at(1 + System::unknown[c])] + c * line_.sites + line_.first(), size = 0;
       for (int i = 0; i < line_.nodes(); ++i) {
-        const double by = E_[at(numbers_[at(i)] + c)];
+        const double by = E_[numbers_[i] + c];
         y[i] -= by, size = std::max(size, std::abs(by));
       }
       if (!System::multiplier[c]) most = std::max(most, size);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "jets/simd/pack_math.hpp"
+#include "lattice/index.hpp"
 #include "tools/bench/by_hand/packed_band.hpp"
 
 namespace delf::bench {
@@ -25,14 +26,14 @@ class SpacetimeByHand {
   SpacetimeByHand(int cells, double space_step, double time_step, double tolerance)
       : N_(cells), k_(space_step), h_(time_step), tolerance_(tolerance), band_(4 * cells), E_(at(4 * cells)) {
     for (auto* levels : {&y_, &E_levels_})
-      for (auto& level : *levels) level.assign(at(stride() * 2), 0.0);
-    for (auto& past : past_) past.assign(at(stride() * 4), 0.0);
-    for (auto* one : {&p_, &sine_, &phi_, &force_}) one->assign(at(stride() * 2), 0.0);
+      for (auto& level : *levels) level.assign(stride() * 2, 0.0);
+    for (auto& past : past_) past.assign(stride() * 4, 0.0);
+    for (auto* one : {&p_, &sine_, &phi_, &force_}) one->assign(stride() * 2, 0.0);
     const double root = std::sqrt(3.0) / 6;
     for (int r = 0; r < 2; ++r) {
       const double c = r == 0 ? 0.5 - root : 0.5 + root;
-      value_[at(r)] = {(1 - c) * (1 - 2 * c), 4 * c * (1 - c), c * (2 * c - 1)};
-      slope_[at(r)] = {4 * c - 3, 4 - 8 * c, 4 * c - 1};
+      value_[r] = {(1 - c) * (1 - 2 * c), 4 * c * (1 - c), c * (2 * c - 1)};
+      slope_[r] = {4 * c - 3, 4 - 8 * c, 4 * c - 1};
     }
     factor();
   }
@@ -41,8 +42,8 @@ class SpacetimeByHand {
   void start(const std::vector<double>& phi, const std::vector<double>& phi_t) {
     steps_ = 0;
     for (int i = 0; i < 2 * N_; ++i) {
-      y_[2][at(place(i))] = phi[at(i)];
-      p_[at(place(i))] = mass(i % 2) * phi_t[at(i)];
+      y_[2][place(i)] = phi[i];
+      p_[place(i)] = mass(i % 2) * phi_t[i];
     }
   }
   void step() {
@@ -52,14 +53,14 @@ class SpacetimeByHand {
     for (int iteration = 1;; ++iteration) {
       slopes();
       for (int s = 0; s < 2 * N_; ++s)
-        for (int b = 0; b < 2; ++b) E_[at(2 * node(s) + b)] = E_levels_[at(b)][at(place(s))];
+        for (int b = 0; b < 2; ++b) E_[2 * node(s) + b] = E_levels_[b][place(s)];
       band_.solve(E_.data());
       double change = 0;
       largest = 0;
       for (int s = 0; s < 2 * N_; ++s)
         for (int b = 0; b < 2; ++b) {
-          const double by = E_[at(2 * node(s) + b)];
-          double& y = y_[at(1 + b)][at(place(s))];
+          const double by = E_[2 * node(s) + b];
+          double& y = y_[1 + b][place(s)];
           y -= by, change = std::max(change, std::abs(by)), largest = std::max(largest, std::abs(y));
         }
       if (!(change < 1e3) || iteration > 40) throw std::runtime_error("spacetime by hand: no convergence");
@@ -69,15 +70,14 @@ class SpacetimeByHand {
     }
     slopes();
     p_ = E_levels_[2];
-    std::ranges::copy(y_[1], past_[at(steps_ % order)].begin());
-    std::ranges::copy(y_[2], past_[at(steps_ % order)].begin() + stride() * 2);
+    std::ranges::copy(y_[1], past_[steps_ % order].begin());
+    std::ranges::copy(y_[2], past_[steps_ % order].begin() + stride() * 2);
     ++steps_;
   }
-  double newest(int i) const { return y_[2][at(place(i))]; }
+  double newest(int i) const { return y_[2][place(i)]; }
 
  private:
   static constexpr int order = 8;
-  static std::size_t at(long i) { return static_cast<std::size_t>(i); }
   // Vertices first, then the nodes right of them; each with a ghost before and after, in whole packs.
   int stride() const { return (N_ + 2 + lanes - 1) / lanes * lanes; }
   int place(int i) const { return i % 2 * stride() + 1 + i / 2; }
@@ -90,7 +90,7 @@ class SpacetimeByHand {
   void predict() {
     const int points = static_cast<int>(std::min<long>(order, steps_));
     for (int b = 0; b < 2; ++b) {
-      std::vector<double>& y = y_[at(1 + b)];
+      std::vector<double>& y = y_[1 + b];
       if (points == 0) {
         y = y_[0];
         continue;
@@ -99,8 +99,8 @@ class SpacetimeByHand {
       double weight = -1;
       for (int m = 1; m <= points; ++m) {
         weight *= -static_cast<double>(points - m + 1) / m;
-        const double* const past = past_[at((steps_ - m) % order)].data() + b * stride() * 2;
-        for (int i = 0; i < 2 * stride(); ++i) y[at(i)] += weight * past[i];
+        const double* const past = past_[(steps_ - m) % order].data() + b * stride() * 2;
+        for (int i = 0; i < 2 * stride(); ++i) y[i] += weight * past[i];
       }
     }
   }
@@ -110,10 +110,10 @@ class SpacetimeByHand {
     std::ranges::fill(E_levels_[1], 0.0), std::ranges::fill(E_levels_[2], 0.0);
     const int size = 2 * stride();
     for (int r = 0; r < 2; ++r) {
-      const auto& [v0, v1, v2] = value_[at(r)];
-      const auto& [s0, s1, s2] = slope_[at(r)];
+      const auto& [v0, v1, v2] = value_[r];
+      const auto& [s0, s1, s2] = slope_[r];
       const double *a = y_[0].data(), *b = y_[1].data(), *c = y_[2].data();
-      for (int i = 0; i < size; ++i) phi_[at(i)] = v0 * a[i] + v1 * b[i] + v2 * c[i];
+      for (int i = 0; i < size; ++i) phi_[i] = v0 * a[i] + v1 * b[i] + v2 * c[i];
       close(phi_);
       for (int i = 0; i < size; i += lanes) {
         Pack x;
@@ -123,16 +123,16 @@ class SpacetimeByHand {
       }
       const double *V = phi_.data(), *m = V + stride();
       for (int i = 1; i <= N_; ++i) {
-        force_[at(i)] = (14 * V[i] - 8 * (m[i - 1] + m[i]) + V[i - 1] + V[i + 1]) / (3 * k_) + mass(0) * sine_[at(i)];
-        force_[at(stride() + i)] = (16 * m[i] - 8 * (V[i] + V[i + 1])) / (3 * k_) + mass(1) * sine_[at(stride() + i)];
+        force_[i] = (14 * V[i] - 8 * (m[i - 1] + m[i]) + V[i - 1] + V[i + 1]) / (3 * k_) + mass(0) * sine_[i];
+        force_[stride() + i] = (16 * m[i] - 8 * (V[i] + V[i + 1])) / (3 * k_) + mass(1) * sine_[stride() + i];
       }
       for (int kind = 0; kind < 2; ++kind)
         for (int i = kind * stride(); i < (kind + 1) * stride(); ++i) {
           const double momentum = 0.5 * mass(kind) / h_ * (s0 * a[i] + s1 * b[i] + s2 * c[i]);
-          const double f = 0.5 * h_ * force_[at(i)];
-          E_levels_[0][at(i)] += momentum * s0 - f * v0;
-          E_levels_[1][at(i)] += momentum * s1 - f * v1;
-          E_levels_[2][at(i)] += momentum * s2 - f * v2;
+          const double f = 0.5 * h_ * force_[i];
+          E_levels_[0][i] += momentum * s0 - f * v0;
+          E_levels_[1][i] += momentum * s1 - f * v1;
+          E_levels_[2][i] += momentum * s2 - f * v2;
         }
     }
   }
@@ -146,8 +146,8 @@ class SpacetimeByHand {
           for (int b = 0; b < 2; ++b)
             for (int r = 0; r < 2; ++r)
               band_.numbers()[band_.place(2 * node(s) + a, 2 * node(t) + b)] +=
-                  0.5 * (of_mass * slope_[at(r)][at(a)] * slope_[at(r)][at(1 + b)] / h_ -
-                         h_ * stiffness * value_[at(r)][at(a)] * value_[at(r)][at(1 + b)]);
+                  0.5 *
+                  (of_mass * slope_[r][a] * slope_[r][1 + b] / h_ - h_ * stiffness * value_[r][a] * value_[r][1 + b]);
       };
       add(s, (s % 2 == 0 ? 14 : 16) / (3 * k_), mass(s % 2));
       for (const int side : {-1, 1}) {

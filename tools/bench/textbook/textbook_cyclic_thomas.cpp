@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tools/bench/textbook/textbook_cyclic_thomas.hpp"
 
+#include "lattice/index.hpp"
+
 namespace delf::bench {
 
 CyclicThomas::CyclicThomas(int sites, double a, double b)
-    : sites_(sites), corner_(-b / a), inverse_(static_cast<std::size_t>(sites)), up_(inverse_), z_(inverse_) {
-  const std::size_t last = static_cast<std::size_t>(sites) - 1;
+    : sites_(sites), corner_(-b / a), inverse_(at(sites)), up_(inverse_), z_(inverse_) {
+  const std::size_t last = at(sites) - 1;
   double above = 0;
   for (std::size_t i = 0; i <= last; ++i) {
     const double diagonal = i == 0 ? 2 * a : i == last ? a + b * b / a : a;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include "lattice/index.hpp"
 #include "tools/bench/textbook/textbook.hpp"
 #include "tools/bench/textbook/textbook_rows.hpp"
 
@@ -13,7 +14,7 @@ class TextbookExplicit final : public Textbook {
   TextbookExplicit(int sites, double length, double time_step, double tolerance);
   void start(std::span<const double> row0, std::span<const double> row1) override;
   void step() override;
-  std::span<const double> row() const override { return {newest_.data(), static_cast<std::size_t>(sites_)}; }
+  std::span<const double> row() const override { return {newest_.data(), at(sites_)}; }
 
  private:
   int sites_;

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tools/bench/textbook/textbook_guo.hpp"
 
+#include "lattice/index.hpp"
 #include "tools/bench/textbook/textbook_quotient.hpp"
 
 namespace delf::bench {
 
 TextbookGuo::TextbookGuo(int N, double L, double h, double tolerance)
-    : squared_ratio_(h * N / L * (h * N / L)),
-      squared_step_(h * h),
-      rows_(N),
-      fixed_point_(tolerance),
-      known_(static_cast<std::size_t>(N)) {}
+    : squared_ratio_(h * N / L * (h * N / L)), squared_step_(h * h), rows_(N), fixed_point_(tolerance), known_(at(N)) {}
 
 void TextbookGuo::start(std::span<const double> row0, std::span<const double> row1) {
   rows_.start(row0, row1);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lattice/index.hpp"
+
 namespace delf::bench {
 
 TextbookHexagon::TextbookHexagon(int N, double L, double h, double tolerance)
@@ -13,7 +15,7 @@ TextbookHexagon::TextbookHexagon(int N, double L, double h, double tolerance)
       fixed_point_(tolerance),
       below_(N),
       above_(N),
-      known_(static_cast<std::size_t>(N)),
+      known_(at(N)),
       x_(known_) {}
 
 void TextbookHexagon::start(std::span<const double> row0, std::span<const double> row1) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lattice/index.hpp"
+
 namespace delf::bench {
 
 TextbookRectangle::TextbookRectangle(int sites, WavePart wave, double tolerance)
@@ -13,7 +15,7 @@ TextbookRectangle::TextbookRectangle(int sites, WavePart wave, double tolerance)
       fixed_point_(tolerance),
       below_(sites),
       above_(sites),
-      known_(static_cast<std::size_t>(sites)),
+      known_(at(sites)),
       x_(known_) {}
 
 void TextbookRectangle::start(std::span<const double> row0, std::span<const double> row1) {

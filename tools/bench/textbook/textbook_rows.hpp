@@ -4,12 +4,14 @@
 #include <span>
 #include <vector>
 
+#include "lattice/index.hpp"
+
 namespace delf::bench {
 
 /// A row on a circle with two ghost sites on either side, so that loops need no case for the ends: y[−2] … y[N+1].
 class CircleRow {
  public:
-  explicit CircleRow(int sites) : sites_(sites), data_(static_cast<std::size_t>(sites) + 4) {}
+  explicit CircleRow(int sites) : sites_(sites), data_(at(sites) + 4) {}
   double* data() { return data_.data() + 2; }
   const double* data() const { return data_.data() + 2; }
   void close() {
@@ -40,10 +42,10 @@ class PastRows {
     newest_ = slot(-1);
     if (held_ < 8) ++held_;
   }
-  std::span<const double> newest() const { return {row(0), static_cast<std::size_t>(sites_)}; }
+  std::span<const double> newest() const { return {row(0), at(sites_)}; }
 
  private:
-  std::size_t slot(int back) const { return (newest_ + 9 - static_cast<std::size_t>(back + 9) % 9) % 9; }
+  std::size_t slot(int back) const { return (newest_ + 9 - at(back + 9) % 9) % 9; }
 
   int sites_, held_ = 0;
   std::size_t newest_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tools/bench/textbook/textbook_vu_quoc_li.hpp"
 
+#include "lattice/index.hpp"
 #include "tools/bench/textbook/textbook_quotient.hpp"
 
 namespace delf::bench {
@@ -10,7 +11,7 @@ TextbookVuQuocLi::TextbookVuQuocLi(int N, double L, double h, double tolerance)
       rows_(N),
       matrix_(N, wave_.a0, wave_.a1),
       fixed_point_(tolerance),
-      quotients_(static_cast<std::size_t>(N)),
+      quotients_(at(N)),
       known_(quotients_),
       x_(quotients_) {}
 

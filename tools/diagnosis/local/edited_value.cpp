@@ -29,15 +29,15 @@ std::optional<Finding> find_edited_value(const Evidence& e) {
   const auto residuals = [&] {
     std::vector<double> all;
     for (std::int64_t j = row - reach; j <= row + reach; ++j) {
-      system.equations(system.window(from, rows, e.turn), j, found);
+      system.equations(system.window(from, rows, e.monodromy), j, found);
       for (int i = first; i <= last; ++i)
         for (int c = 0; c < C; ++c)
-          if (!system.is_held(i, c)) all.push_back(found[static_cast<std::size_t>(i * C + c)].sum);
+          if (!system.is_held(i, c)) all.push_back(found[i * C + c].sum);
     }
     return all;
   };
   for (int c = 0; c < C; ++c) {
-    double& y = rows[static_cast<std::size_t>(row - from)][static_cast<std::size_t>((first + last) / 2 * C + c)];
+    double& y = rows[row - from][(first + last) / 2 * C + c];
     const double there = y, size = std::max(1e-6, 1e-6 * std::abs(y));
     for (int n = 0; n < 8; ++n) {
       const auto E = residuals();
@@ -54,7 +54,7 @@ std::optional<Finding> find_edited_value(const Evidence& e) {
     }
     double worst = 0;
     for (std::int64_t j = row - reach; j <= row + reach; ++j)
-      worst = std::max(worst, worst_equation(system, rows, from, j, e.turn));
+      worst = std::max(worst, worst_equation(system, rows, from, j, e.monodromy));
     // Differences leave more than rounding.
     if (worst <= 10 * e.tolerance && y != there)
       return Finding{

@@ -21,7 +21,7 @@ std::optional<Finding> find_fixed_sites(const Evidence& e) {
     const std::vector<double> row = e.row(1 + (e.rows - 2) * n / looks);
     for (const int i : sites)
       for (int c = 0; c < C; ++c)
-        if (const auto at = static_cast<std::size_t>(i * C + c); row[at] != first[at]) return std::nullopt;
+        if (const std::size_t at = i * C + c; row[at] != first[at]) return std::nullopt;
     moves = moves || row != first;
   }
   if (!moves) return std::nullopt;

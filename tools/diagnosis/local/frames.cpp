@@ -26,7 +26,7 @@ double worst_of(const Evidence& e, const Rows& rows) {
   const std::int64_t reach = reach_of(e), count = static_cast<std::int64_t>(rows.size());
   double worst = 0;
   for (std::int64_t j = reach; j < count - reach; ++j)
-    worst = std::max(worst, worst_equation(e.system, rows, 0, j, e.turn));
+    worst = std::max(worst, worst_equation(e.system, rows, 0, j, e.monodromy));
   return worst;
 }
 
@@ -73,7 +73,7 @@ std::optional<Finding> find_exchanged_frames(const Evidence& e) {
         if (!read_by(p, row) && !read_by(q, row)) continue;
         Rows rows;
         for (std::int64_t r = row - reach; r <= row + reach; ++r) rows.push_back(e.row(r == p ? q : r == q ? p : r));
-        worst = std::max(worst, worst_equation(e.system, rows, row - reach, row, e.turn));
+        worst = std::max(worst, worst_equation(e.system, rows, row - reach, row, e.monodromy));
       }
       if (worst < best.worst) best = {p, q, worst};
     }

@@ -86,8 +86,8 @@ std::optional<Finding> find_rounding(const Evidence& e) {
     std::vector<std::vector<double>> rows;
     for (std::int64_t j = row - reach; j <= row + reach; ++j) rows.push_back(e.row(j));
     const double size = largest_of(rows);
-    worst =
-        std::max(worst, worst_equation(e.system, rows, row - reach, row, e.turn) * size / (varying * rounding->unit));
+    worst = std::max(worst,
+                     worst_equation(e.system, rows, row - reach, row, e.monodromy) * size / (varying * rounding->unit));
   }
   if (worst > 1)
     return Finding{

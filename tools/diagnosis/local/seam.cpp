@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lattice/index.hpp"
 #include "tools/diagnosis/fields_system.hpp"
 #include "tools/diagnosis/findings.hpp"
 #include "tools/diagnosis/local/wall_law.hpp"
@@ -47,7 +48,7 @@ bool is_mirror(const Evidence& e, const std::vector<Moment>& moments, int about)
       std::vector<double> with_ghosts;
       for (int i = -w; i < N + w; ++i) {
         const int inside = i < 0 ? -i - 1 + about : i >= N ? 2 * N - 1 - about - i : i;
-        for (int c = 0; c < C; ++c) with_ghosts.push_back(row[static_cast<std::size_t>(inside * C + c)]);
+        for (int c = 0; c < C; ++c) with_ghosts.push_back(row[inside * C + c]);
       }
       rows.push_back(std::move(with_ghosts));
     }
@@ -67,22 +68,22 @@ std::optional<Finding> find_seam(const Evidence& e) {
     if (i >= w && i < N - w) return std::nullopt;
   const auto moments = moments_of(e);
   const auto everywhere = [&](const auto& true_of) { return std::ranges::all_of(moments, true_of); };
-  const auto at = [&](const std::vector<double>& row, int i) { return row[static_cast<std::size_t>(i * C)]; };
+  const auto at = [&](const std::vector<double>& row, int i) { return row[i * C]; };
 
   constexpr double circle = 2 * std::numbers::pi;
   const std::vector<double>& row = moments.front().rows.front();
   const double beyond = 2 * at(row, N - 1) - at(row, N - 2);
   for (const double gain : {beyond - at(row, 0), at(row, N - 1) - at(row, 0)}) {
-    const double turn = circle * std::round(gain / circle);
-    if (turn == e.turn) continue;
+    const double monodromy = circle * std::round(gain / circle);
+    if (monodromy == e.monodromy) continue;
     if (everywhere([&](const Moment& m) {
           const std::int64_t first = m.row - static_cast<std::int64_t>(m.rows.size() / 2);
-          return worst_equation(e.system, m.rows, first, m.row, turn) <= e.tolerance;
+          return worst_equation(e.system, m.rows, first, m.row, monodromy) <= e.tolerance;
         }))
       return Finding{"seam",
                      fmt::format("The equations fail at the seam of the circle alone: the field gains 2π·({:.0f}) "
                                  "around it. Use boundary.winding = {:.0f}.",
-                                 turn / circle, turn / circle)};
+                                 monodromy / circle, monodromy / circle)};
   }
   const double k = lattice.space_step(), same = 1e-12 * largest_of(moments.front().rows);
   if (everywhere([&](const Moment& m) {

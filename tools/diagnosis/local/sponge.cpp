@@ -26,11 +26,11 @@ constexpr Quotient quotients[] = {{"(y₊ − y₋)/2h", 0, 2}, {"(y − y₋)/h
 std::optional<std::vector<double>> friction(const Evidence& e, const std::vector<int>& sites, const Quotient& by) {
   const auto S = sites.size();
   std::vector<Eigen::VectorXd> target(S, Eigen::VectorXd(sampled_rows(e))), step(target);
-  const double largest = look_at_sampled_rows(e, e.turn, [&](std::int64_t n, const auto& rows, const auto& E) {
+  const double largest = look_at_sampled_rows(e, e.monodromy, [&](std::int64_t n, const auto& rows, const auto& E) {
     for (std::size_t s = 0; s < S; ++s) {
-      const auto i = static_cast<std::size_t>(sites[s]);
+      const std::size_t i = sites[s];
       target[s][n] = E[i].sum;
-      step[s][n] = rows[static_cast<std::size_t>(by.to)][i] - rows[static_cast<std::size_t>(by.from)][i];
+      step[s][n] = rows[by.to][i] - rows[by.from][i];
     }
   });
   const double allowed = 4 * e.tolerance * scale_of_terms(e.system, largest), h = e.system.time_step();
@@ -75,7 +75,7 @@ std::optional<Finding> find_sponge(const Evidence& e) {
         "sponge",
         fmt::format("An absorbing layer: at the sites {} there is a friction γ(x) φ_t, φ_t = {}, of {:.4g} at "
                     "most (site {}). Everywhere else the equations hold, and with it there too.",
-                    where, by.words, *most, sites[static_cast<std::size_t>(most - gamma->begin())])};
+                    where, by.words, *most, sites[most - gamma->begin()])};
   }
   return std::nullopt;
 }

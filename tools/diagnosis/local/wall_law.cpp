@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/index.hpp"
 #include "tools/diagnosis/least_squares.hpp"
 #include "tools/diagnosis/own_equations.hpp"
 #include "tools/diagnosis/sampled_rows.hpp"
@@ -28,8 +29,8 @@ std::string wall_law(const Evidence& e, bool left) {
   std::vector<Eigen::VectorXd> columns(2, Eigen::VectorXd(count));
   const double k = system.lattice().space_step(), h = system.time_step();
   const double largest = look_at_sampled_rows(e, 0, [&](std::int64_t n, const auto& rows, const auto& E) {
-    const auto at = [&](std::size_t row, int i) { return rows[row][static_cast<std::size_t>(i)]; };
-    const double ghost = at(1, beyond) - E[static_cast<std::size_t>(end)].sum / slope;
+    const auto at = [&](std::size_t row, int i) { return rows[row][i]; };
+    const double ghost = at(1, beyond) - E[end].sum / slope;
     target[n] = (at(1, inside) - ghost) / (2 * k);
     columns[0][n] = at(1, end), columns[1][n] = (at(2, end) - at(0, end)) / (2 * h);
   });

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lattice/index.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/diagnosis/findings.hpp"
 #include "tools/diagnosis/own_equations.hpp"
@@ -19,7 +20,7 @@ void unwrap_after(const std::vector<double>& before, std::vector<double>& row) {
 }
 
 void unwrap_along(std::vector<double>& row, int components) {
-  const auto C = static_cast<std::size_t>(components);
+  const std::size_t C = components;
   for (std::size_t n = C; n < row.size(); ++n) row[n] -= circle * std::round((row[n] - row[n - C]) / circle);
 }
 
@@ -30,8 +31,8 @@ void unwrap_to(std::span<const double> first, std::vector<double>& row) {
   for (std::size_t n = 0; n < row.size(); ++n) row[n] += by[n % C];
 }
 
-double turn_of_row(const std::vector<double>& row, int components) {
-  const std::size_t last = row.size() - static_cast<std::size_t>(components);
+double monodromy_of_row(const std::vector<double>& row, int components) {
+  const std::size_t last = row.size() - at(components);
   return circle * std::round((row[last] - row[0]) / circle);
 }
 
@@ -56,8 +57,8 @@ std::optional<Finding> find_wrapped(const Evidence& e) {
     }
     if (!jump) continue;  // fails for another reason
     ++jumps;
-    const double turn = system.lattice().is_circle() ? turn_of_row(rows.front(), system.components()) : 0;
-    if (!(worst_equation(system, rows, row - reach, row, turn) <= e.tolerance)) return std::nullopt;
+    const double monodromy = system.lattice().is_circle() ? monodromy_of_row(rows.front(), system.components()) : 0;
+    if (!(worst_equation(system, rows, row - reach, row, monodromy) <= e.tolerance)) return std::nullopt;
   }
   if (jumps == 0) return std::nullopt;
   return Finding{

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/evolution.hpp"
 
 namespace delf {
@@ -17,8 +18,8 @@ std::optional<Acceleration> Acceleration::of(Problem p) {
     const auto is_field = [](const Component& c) { return c.role == Role::field; };
     if (!std::ranges::all_of(system.all_components(), is_field)) return std::nullopt;
     const int C = system.components(), N = system.lattice().sites();
-    a.masses_.resize(static_cast<std::size_t>(N * C));
-    const auto at = [&](int i, int c) -> double& { return a.masses_[static_cast<std::size_t>(i * C + c)]; };
+    a.masses_.resize(N * C);
+    const auto at = [&](int i, int c) -> double& { return a.masses_[i * C + c]; };
     // Sites inside are alike.
     for (const int i : {N / 2, 0, N - 1})
       for (int c = 0; c < C; ++c) {

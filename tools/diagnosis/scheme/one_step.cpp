@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "tools/diagnosis/findings.hpp"
 #include "tools/diagnosis/scheme/momentum_scale.hpp"
@@ -20,12 +21,12 @@ namespace {
 /// middle are compared.
 class Frames {
  public:
-  Frames(const Evidence& e, int most_sites) : e_(e), d_(static_cast<std::size_t>(e.system.components())) {
+  Frames(const Evidence& e, int most_sites) : e_(e), d_(at(e.system.components())) {
     const Lattice& lattice = e.problem.lattice;
     problem_ = e.problem;
     sites_ = lattice.sites();
     if (sites_ <= most_sites) {
-      problem_.winding = static_cast<int>(std::lround(e.turn / (2 * std::numbers::pi)));
+      problem_.winding = static_cast<int>(std::lround(e.monodromy / (2 * std::numbers::pi)));
     } else {
       sites_ = most_sites, margin_ = most_sites * 3 / 8;
       const auto row = e.row(e.rows / 2);
@@ -64,7 +65,7 @@ class Frames {
   /// The largest difference in the middle, or not a number.
   double distance(const std::vector<double>& a, const std::vector<double>& b) const {
     double most = 0;
-    const std::size_t edge = static_cast<std::size_t>(margin_) * d_;
+    const std::size_t edge = at(margin_) * d_;
     for (std::size_t n = edge; n + edge < a.size(); ++n)
       if (const double by = std::abs(a[n] - b[n]); !(by <= most)) most = by;
     return most;
@@ -72,8 +73,8 @@ class Frames {
 
  private:
   std::vector<double> part(const std::vector<double>& row) const {
-    const auto begin = row.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(first_) * d_);
-    return {begin, begin + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(sites_) * d_)};
+    const auto begin = row.begin() + static_cast<std::ptrdiff_t>(at(first_) * d_);
+    return {begin, begin + static_cast<std::ptrdiff_t>(at(sites_) * d_)};
   }
 
   const Evidence& e_;

@@ -11,6 +11,7 @@
 
 #include "jets/tables/named_splittings.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/field_theory.hpp"
@@ -161,11 +162,11 @@ struct ElementStep {
 
   bool operator()(PhasePoint& z) const {
     const auto& components = simulation->components();
-    const std::size_t C = components.size(), d = static_cast<std::size_t>(simulation->count(Role::field));
+    const std::size_t C = components.size(), d = delf::at(simulation->count(Role::field));
     std::vector<double> row(z.q.size() / d * C), p(row.size());
     for (std::size_t at = 0; at < row.size(); ++at) {
       const Component& c = components[at % C];
-      const std::size_t n = at / C * d + static_cast<std::size_t>(c.field);
+      const std::size_t n = at / C * d + delf::at(c.field);
       if (c.role != Role::multiplier) row[at] = z.q[n];  // nodes inside start from the field of their site
       if (c.role == Role::field) p[at] = masses[n] * z.v[n];
     }
@@ -175,7 +176,7 @@ struct ElementStep {
       const std::vector<double> after = simulation->momenta();
       for (std::size_t at = 0; at < row.size(); ++at)
         if (const Component& c = components[at % C]; c.role == Role::field) {
-          const std::size_t n = at / C * d + static_cast<std::size_t>(c.field);
+          const std::size_t n = at / C * d + delf::at(c.field);
           z.v[n] = after[at] / masses[n];
         }
     } catch (const NumericalFailure&) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "lattice/index.hpp"
 #include "schemes/solvers/row_layout.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/stepping/rows/site_slots.hpp"
@@ -52,7 +53,7 @@ TEST_CASE("every site of a brick wall has its slot, and all of its slots are kno
     check_site_slots(layout, N);
 
     RowBuffer row(layout, 1);
-    Row back(static_cast<std::size_t>(N), -1);
+    Row back(at(N), -1);
     layout.scatter(numbered(N), row.row(0));
     layout.gather(row.row(0), back);
     CHECK(back == numbered(N));
@@ -100,16 +101,16 @@ TEST_CASE("a brick wall with a winding too") {
     p.stencil = "hexagon";
     p.time_step = 0.1;
     p.winding = 1;
-    const double turn = 2 * std::numbers::pi;
+    const double monodromy = 2 * std::numbers::pi;
     Simulation simulation(p);
     Random random(4);
     std::vector<Row> rows = random_rows(random, simulation.starting_rows(), N, 0.1);
     for (Row& row : rows)
-      for (int i = 0; i < N; ++i) row[static_cast<std::size_t>(i)] += turn * i / N;
+      for (int i = 0; i < N; ++i) row[i] += monodromy * i / N;
     simulation.start(rows);
     for (int n = 0; n < 5; ++n) simulation.step();
     const Evolution& evolution = simulation.evolution();
-    CHECK(equation_defect(evolution, window_of(evolution, turn)) < 1e-14);
-    CHECK(equation_defect(evolution, window_of(evolution, 1.01 * turn)) > 1e-6);
+    CHECK(equation_defect(evolution, window_of(evolution, monodromy)) < 1e-14);
+    CHECK(equation_defect(evolution, window_of(evolution, 1.01 * monodromy)) > 1e-6);
   }
 }

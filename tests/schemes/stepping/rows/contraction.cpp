@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "schemes/stepping/rows/contraction.hpp"
 
-#include "schemes/stepping/rows/step_tolerance.hpp"
-
 #include <fmt/format.h>
 
 #include <numbers>
 
+#include "lattice/index.hpp"
+#include "schemes/stepping/rows/step_tolerance.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -45,7 +45,7 @@ struct Iterations {
         n(history - 1) {
     Random random(static_cast<std::uint64_t>(seed));
     start = random_rows(random, history, sites, amplitude);
-    for (int back = 1; back <= history; ++back) layout.scatter(start[static_cast<std::size_t>(history - back)], table[y(back)]);
+    for (int back = 1; back <= history; ++back) layout.scatter(start[history - back], table[y(back)]);
     for (int back = 1; back < history; ++back)
       for (std::size_t i = 0; i < layout.doubles(); ++i)
         table[equations.v().row(back)][i] = table[y(back)][i] - table[y(back + 1)][i];
@@ -77,7 +77,7 @@ struct Iterations {
     double* const rows[]{w.row(0)};
     equations.right_side(table, n, 0, Solving::step, 0, layout.packs(), rows[0]);
     equations.solver(0).solve(rows);
-    Row change(static_cast<std::size_t>(sites)), increment(change), value(change);
+    Row change(delf::at(sites)), increment(change), value(change);
     layout.gather(w.row(0), change);
     layout.gather(table[equations.v().row(1)], increment);
     layout.gather(table[y(1)], value);
@@ -94,7 +94,7 @@ struct Iterations {
         double m = 0, weight = 0;
         for (const SourceTerms::Part& part : group.inputs[0])
           if (part.vertex.time == latest) {
-            const auto at = static_cast<std::size_t>(made.system().lattice().wrapped(i + part.vertex.space));
+            const std::size_t at = made.system().lattice().wrapped(i + part.vertex.space);
             m += part.weight * (to[at] - from[at]), weight += part.weight;
           }
         if (weight != 0) worst = std::max(worst, std::abs(m) / weight);
@@ -187,8 +187,8 @@ struct Stepped {
 Stepped stepped(const Scaled& s, const std::string& stencil) {
   Problem p = problem_of("text");
   // Lengths and times in units of 5k
-  p.parameters["theory.density"] =
-      fmt::format("{0:e}*({1:e}*(phi_t^2 - phi_x^2)/2 - (phi^2 - {2:e})^2/(4*{2:e}))", s.density, 25 * s.k * s.k, s.A * s.A);
+  p.parameters["theory.density"] = fmt::format("{0:e}*({1:e}*(phi_t^2 - phi_x^2)/2 - (phi^2 - {2:e})^2/(4*{2:e}))",
+                                               s.density, 25 * s.k * s.k, s.A * s.A);
   constexpr int N = 64;
   Evolution evolution = evolution_of(p, stencil, Lattice::circle(N, N * s.k), s.k / 4);
   Stepper& stepper = evolution.stepper();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "lattice/index.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/stepping/rows/site_slots.hpp"
 
@@ -40,7 +41,7 @@ TEST_CASE("every site has its slot, alone in the arc of a lane, and arcs cover t
       const RowLayout layout(lattice, 2);
       CAPTURE(N);
       CHECK(layout.packs() == (N + lanes - 1) / lanes);
-      CHECK(layout.doubles() == static_cast<std::size_t>((layout.packs() + 4) * lanes));
+      CHECK(layout.doubles() == delf::at((layout.packs() + 4) * lanes));
       check_site_slots(layout, N);
     }
 }
@@ -49,7 +50,7 @@ TEST_CASE("scattered rows are gathered again") {
   for (int N = 2; N <= 70; ++N) {
     const RowLayout layout(Lattice::circle(N, 1), 1);
     RowBuffer row(layout, 1);
-    std::vector<double> back(static_cast<std::size_t>(N), -1);
+    std::vector<double> back(N, -1);
     layout.scatter(numbered(N), row.row(0), 3.5);
     layout.gather(row.row(0), back);
     CHECK(back == numbered(N));
@@ -105,7 +106,9 @@ TEST_CASE("packs beside a row are found from the row alone, and from its last pa
     const auto read = [&](std::ptrdiff_t at) { return Pack::load(bare.row(0) + at); };
     CHECK(same(layout.before_first(bare.row(0)), Pack::load(filled.row(0) + first - lanes)));
     for (auto s = last; s < end; ++s) bare.row(0)[s] = std::nan("");
-    const auto read_with_last = [&](std::ptrdiff_t at) { return at == last ? Pack::load(filled.row(0) + at) : read(at); };
+    const auto read_with_last = [&](std::ptrdiff_t at) {
+      return at == last ? Pack::load(filled.row(0) + at) : read(at);
+    };
     CHECK(same(layout.before_first(read_with_last), Pack::load(filled.row(0) + first - lanes)));
   }
 }

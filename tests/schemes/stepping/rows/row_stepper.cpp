@@ -46,8 +46,8 @@ void check_equations(Evolution evolution, double rows_amplitude, int steps = 3) 
 }  // namespace
 
 TEST_CASE("steps by rows solve the equations at every site, for every theory, scheme and number of sites") {
-  for (const std::string theory : {"sine-gordon", "phi4", "double-sine-gordon", "sine-gordon-impurity", "coupled-sine-gordon",
-                                   "complex-klein-gordon", "klein-gordon", "wave"})
+  for (const std::string theory : {"sine-gordon", "phi4", "double-sine-gordon", "sine-gordon-impurity",
+                                   "coupled-sine-gordon", "complex-klein-gordon", "klein-gordon", "wave"})
     for (const std::string& scheme : schemes_of(theory))
       for (int N : {2, 3, 15, 16, 17, 31, 33, 63, 64, 127, 129, 255, 513}) {
         if (scheme == "hexagon" && (N % 2 != 0 || N == 2)) continue;
@@ -130,10 +130,12 @@ TEST_CASE("a step in place leaves no row before it, and no residual") {
 
 TEST_CASE("steps that overflow go back: the newest row is the last finite one, as by steps beside") {
   for (int N : {64, 5120 * lanes - 6}) {
-    const auto unstable = [&] { return evolution_of(problem_of("phi4"), "triangle-vertex", Lattice::circle(N, N * 0.05), h); };
+    const auto unstable = [&] {
+      return evolution_of(problem_of("phi4"), "triangle-vertex", Lattice::circle(N, N * 0.05), h);
+    };
     Evolution in_place = unstable(), beside = unstable();
     auto start = waves(2, N, 1);
-    for (Row& row : start) row[static_cast<std::size_t>(N / 3)] += 1;
+    for (Row& row : start) row[N / 3] += 1;
     in_place.stepper().start(start), beside.stepper().start(start);
     const auto message = [](const auto& run) {
       try {
@@ -164,7 +166,8 @@ TEST_CASE("threads leave the bits as they are") {
       const auto run = [&](int threads, bool looked_at) {
         StepOptions options;
         options.threads = threads;
-        Evolution evolution = evolution_of(problem_of(theory), "triangle-vertex", Lattice::circle(N, N * k), h, options);
+        Evolution evolution =
+            evolution_of(problem_of(theory), "triangle-vertex", Lattice::circle(N, N * k), h, options);
         evolution.stepper().start(waves(2, N, evolution.system().components()));
         for (int n = 0; n < 6; ++n) evolution.stepper().step(looked_at);
         return evolution.stepper().row(0);

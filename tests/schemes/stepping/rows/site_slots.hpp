@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "schemes/solvers/row_layout.hpp"
 #include "tests/catch.hpp"
 
@@ -12,7 +13,7 @@ namespace delf::testing {
 
 /// 0, 1, … sites − 1.
 inline std::vector<double> numbered(int sites) {
-  std::vector<double> values(static_cast<std::size_t>(sites));
+  std::vector<double> values(sites);
   std::iota(values.begin(), values.end(), 0.0);
   return values;
 }
@@ -30,8 +31,8 @@ inline void check_site_slots(const RowLayout& layout, int N) {
     all.insert(every.begin(), every.end());
   }
   CHECK(right);
-  CHECK(slots.size() == static_cast<std::size_t>(N));
-  CHECK(all.size() == static_cast<std::size_t>(layout.packs() * lanes));
+  CHECK(slots.size() == at(N));
+  CHECK(all.size() == at(layout.packs() * lanes));
 }
 
 }  // namespace delf::testing

@@ -12,6 +12,6 @@ inline constexpr auto gain_key = "boundary.gain";
 inline double gain_of(const ParameterValues& values) { return values.maybe<double>(gain_key).value_or(0); }
 
 /// φ(x + L) − φ(x)
-inline double turn_of(const Problem& p) { return 2 * std::numbers::pi * p.winding + gain_of(p.parameters); }
+inline double monodromy_of(const Problem& p) { return 2 * std::numbers::pi * p.winding + gain_of(p.parameters); }
 
 }  // namespace delf
