@@ -28,7 +28,7 @@ namespace {
 class Reference {
  public:
   Reference(const WaveEquation& e, int order_space, double force_factor = 1)
-      : e_(e), factor_(force_factor), n_(at(e.sites)), d_(n_) {
+      : e_(e), factor_(force_factor), n_(delf::at(e.sites)), d_(n_) {
     const double pi = std::numbers::pi, k = e.length / e.sites;
     for (std::size_t j = 0; j < n_; ++j)
       for (int m = 0; m < e.sites; ++m) {
@@ -142,7 +142,7 @@ double difference(const Rows& a, const Rows& b) {
 }
 
 Rows now(const Peer& peer, int sites) {
-  Rows rows{Values(at(sites)), Values(at(sites))};
+  Rows rows{Values(delf::at(sites)), Values(delf::at(sites))};
   peer.copy(rows.phi, rows.phi_t);
   return rows;
 }

@@ -167,7 +167,7 @@ TEST_CASE("an interrupted run writes all so far, and ends with exit code 130") {
   CHECK(json["steps"] > 0);
   const FieldsReader fields(folder / "cut/fields.h5");
   CHECK(*fields.time(fields.frames() - 1) == json["time"]);
-  CHECK(lines(read(folder / "cut/series.csv")).size() == at(fields.frames()) + 1);
+  CHECK(lines(read(folder / "cut/series.csv")).size() == delf::at(fields.frames()) + 1);
 }
 
 TEST_CASE("an interrupted estimate ends with exit code 130, and the run is there") {

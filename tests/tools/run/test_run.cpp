@@ -36,7 +36,7 @@ TEST_CASE("a run leaves its scene, series, summary and fields, and a report on s
   const auto series = lines(read(folder / "results/small/series.csv"));
   REQUIRE(series.size() == 6);
   CHECK(series[0] == "step,time,energy,energy_error,momentum,charge,iterations,residual");
-  for (int i = 0; i < 5; ++i) CHECK(series[at(i) + 1].starts_with(std::to_string(i < 4 ? 30 * i : 100) + ","));
+  for (int i = 0; i < 5; ++i) CHECK(series[delf::at(i) + 1].starts_with(std::to_string(i < 4 ? 30 * i : 100) + ","));
 
   const FieldsReader fields(folder / "results/small/fields.h5");
   CHECK(fields.frames() == 5);
@@ -109,7 +109,7 @@ TEST_CASE("runs of no step and of one step end where they say") {
     REQUIRE(delf_program(folder, "run small.ini --run.steps=" + std::to_string(steps) + " --out " + out).code == 0);
     CHECK(summary(folder, out)["steps"] == steps);
     CHECK(FieldsReader(folder / (out + "/fields.h5")).frames() == steps + 1);
-    CHECK(lines(read(folder / (out + "/series.csv"))).size() == at(steps) + 2);
+    CHECK(lines(read(folder / (out + "/series.csv"))).size() == delf::at(steps) + 2);
   }
   CHECK(summary(folder, "after-0")["ns_per_site_step"].is_null());
   CHECK(summary(folder, "after-0")["error_linf"] == 0.0);
