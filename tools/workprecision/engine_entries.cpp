@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -60,6 +61,12 @@ class EngineEntry final : public StartedEntry {
   // those of a pass; an explicit step is one, an implicit one as many as it has iterations
   double forces() const override {
     return forces_in_a_pass(simulation_.evolution().system()) * std::max(1, simulation_.iterations());
+  }
+
+  // beside the rows of the engine, those that it starts from
+  std::size_t bytes() const override {
+    const std::size_t row = at(scene_.problem.lattice.sites()) * simulation_.components().size() * sizeof(double);
+    return simulation_.bytes() + 4 * row;
   }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -43,6 +44,8 @@ class StartedEntry {
   virtual double energy() const = 0;
   /// Evaluations of the force at each site in the last step; not a number if that is not known.
   virtual double forces() const = 0;
+  /// The memory that it holds, nearly.
+  virtual std::size_t bytes() const = 0;
 };
 
 /// A scheme of the engine, or another program, that can run the scene at any resolution.
@@ -51,9 +54,9 @@ struct WorkPrecisionEntry {
   bool peer = false;
   bool processed = false;  ///< a peer with a processor of its own
   bool tuned = false;      ///< a scheme of the engine that knows the solution
-  int nodes = 1;  ///< that a cell has in space: how much coarser its lattices may begin
-  int rank = 0;   ///< the more, the sooner it is to be the reference; 0: never
-  bool own = false;  ///< the scheme that the scene itself states
+  int nodes = 1;           ///< that a cell has in space: how much coarser its lattices may begin
+  int rank = 0;            ///< the more, the sooner it is to be the reference; 0: never
+  bool own = false;        ///< the scheme that the scene itself states
   /// Builds and starts it. Throws BadInput or NumericalFailure.
   std::function<std::unique_ptr<StartedEntry>(const Resolution&)> start;
 };

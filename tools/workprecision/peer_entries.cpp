@@ -70,6 +70,8 @@ class PeerEntry : public StartedEntry {
     for (const double v : out)
       if (!std::isfinite(v)) throw NotFinite("the field is no longer finite");
   }
+  // a program holds about as many rows as are held here
+  std::size_t bytes() const override { return 8 * first_.size() * sizeof(double); }
 
  protected:
   PeerEntry(const Scene& scene, const Lattice& lattice, double h, std::int64_t most_in_a_call)

@@ -27,11 +27,12 @@ constexpr double share_of_one = 0.25;  // of the time: the most that one run may
 constexpr double clearly = 0.7;
 constexpr double hopelessly = 0.03;
 constexpr double falling = 0.85;
-constexpr double unstable = 10;  // times the field
+constexpr double unstable = 10;                            // times the field
+constexpr std::size_t most_held = std::size_t{128} << 20;  // bytes of the runs that wait to be timed
 constexpr double unknown = WorkPrecisionRun::unknown;
 constexpr double hardly_better = 1.1;  // rounding at the floor is no progress
 
-double refined(int times) { return std::pow(2.0, 0.5 * times); }
+double refinement(int times) { return std::pow(2.0, 0.5 * times); }
 
 }  // namespace
 
@@ -71,12 +72,12 @@ void ResolutionSearch::seed(std::size_t c) {
 Resolution ResolutionSearch::resolution(const Next& next) const {
   const Lattice& lattice = scene_.problem.lattice;
   Resolution r;
-  double h = scene_.problem.time_step * coarsest / refined(next.time);
+  double h = scene_.problem.time_step * coarsest / refinement(next.time);
   if (lattice.space() == Space::point) r.sites = 1;
   else {
     const double coarse = lattice.cells() / coarsest / entries_[next.entry].nodes;
     // an even number of cells: stencils of brick walls close around a circle then
-    const auto cells = [&](int times) { return 2 * std::max(2L, std::lround(0.5 * coarse * refined(times))); };
+    const auto cells = [&](int times) { return 2 * std::max(2L, std::lround(0.5 * coarse * refinement(times))); };
     const int ends = lattice.is_circle() ? 0 : 1;
     r.sites = next.sites ? next.sites : static_cast<int>(cells(next.space)) + ends;
     if (!next.sites && next.space == scenes_own && entries_[next.entry].own) r.sites = lattice.sites();
@@ -127,7 +128,7 @@ void ResolutionSearch::run_own(std::size_t c, double seconds, const std::functio
   const double cost = tried_.empty() ? 0 : tried_.back().result.seconds;
   const double setup = tried_.empty() ? 0 : tried_.back().result.seconds_setup;
   for (int i = 1; i < scenes_own; ++i)
-    push({c, i, i, 0, 0, cost / refined(2 * (scenes_own - i)), setup / refined(scenes_own - i), unknown});
+    push({c, i, i, 0, 0, cost / refinement(2 * (scenes_own - i)), setup / refinement(scenes_own - i), unknown});
   run_cheapest(until, at);
 }
 
@@ -145,7 +146,7 @@ void ResolutionSearch::run_cheapest(Clock::time_point until, const std::function
 // Tries a finer resolution after a failure at a coarse one: a smaller step, or more sites up to those of the scene.
 void ResolutionSearch::retry(const Next& next, const Resolution& r, double cost) {
   if (next.sites) return;
-  cost = std::max(1.5 * next.cost, refined(1) * cost);
+  cost = std::max(1.5 * next.cost, refinement(1) * cost);
   const bool point = scene_.problem.lattice.space() == Space::point;
   const double least = lattice_of(scene_, r.sites).space_step() / 64;
   if (next.courant == 0 && r.time_step > least)
@@ -181,6 +182,7 @@ void ResolutionSearch::attempt(const Next& next) {
     tried_.push_back(std::move(tried));
     for (TriedRun& run : tried_)
       if (run.entry == next.entry && run.started && !worth(run)) run.started.reset();
+    make_room();
     if (!next.sites) refine(next, tried_.back().result);
   } catch (const BadInput& error) {
     failed(error.what());
@@ -194,6 +196,17 @@ void ResolutionSearch::attempt(const Next& next) {
     failed(fmt::format("out of memory at N = {}", r.sites));
   } catch (const std::length_error&) {
     failed(fmt::format("out of memory at N = {}", r.sites));
+  }
+}
+
+void ResolutionSearch::make_room() {
+  std::size_t held = 0;
+  for (const TriedRun& run : tried_) held += run.started ? run.started->bytes() : 0;
+  while (held > most_held) {
+    const auto largest = std::ranges::max_element(
+        tried_, {}, [](const TriedRun& run) { return run.started ? run.started->bytes() : 0; });
+    held -= largest->started->bytes();
+    largest->started.reset();
   }
 }
 
@@ -221,8 +234,8 @@ void ResolutionSearch::refine(const Next& next, const WorkPrecisionRun& run) {
   if (run.error_linf <= 0.5 * request_.accuracies.back()) return;
   const bool point = scene_.problem.lattice.space() == Space::point, free = next.courant == 0;
   const auto further = [&](int space, int time, double before) {
-    push({next.entry, next.space + space, next.time + time, next.courant, 0, run.seconds * refined(space + time),
-          run.seconds_setup * refined(space), before});
+    push({next.entry, next.space + space, next.time + time, next.courant, 0, run.seconds * refinement(space + time),
+          run.seconds_setup * refinement(space), before});
   };
   if (run.error_linf > unstable * field_scale_) return retry(next, tried_.back().resolution, run.seconds);
   const bool single = (too_coarse(next, run) || !beaten(tried_.back(), clearly));

@@ -41,9 +41,9 @@ std::vector<int> shared_repeats(const std::vector<double>& cost, int repeats, do
   return counts(low);
 }
 
-void time_in_turn(std::vector<TriedRun>& runs, const std::vector<int>& repeats, std::uint64_t seed,
-                  const StepClock& clock, std::chrono::steady_clock::time_point until,
-                  const std::function<void()>& at) {
+void time_in_turn(std::vector<TriedRun>& runs, const std::vector<WorkPrecisionEntry>& entries,
+                  const std::vector<int>& repeats, std::uint64_t seed, const StepClock& clock,
+                  std::chrono::steady_clock::time_point until, const std::function<void()>& at) {
   const RunLimit limit(until);
   std::vector<std::vector<double>> seconds(runs.size());
   std::mt19937_64 random(seed);
@@ -55,8 +55,9 @@ void time_in_turn(std::vector<TriedRun>& runs, const std::vector<int>& repeats, 
     std::ranges::shuffle(order, random);
     for (const std::size_t i : order) {
       if (limit.reached()) break;
-      StartedEntry* started = runs[i].started.get();
-      started->restart();
+      std::shared_ptr<StartedEntry> started = runs[i].started;
+      if (started) started->restart();
+      else started = entries[runs[i].entry].start(runs[i].resolution);
       const double from = clock.now();
       started->advance(runs[i].resolution.steps - started->newest(), limit);
       const double taken = clock.since(from);

@@ -90,9 +90,10 @@ WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequ
 
   std::vector<TriedRun> runs = search.worth_timing();
   std::vector<double> costs;
-  for (const TriedRun& run : runs) costs.push_back(run.result.seconds);
+  for (const TriedRun& run : runs) costs.push_back(run.result.seconds + (run.started ? 0 : run.result.seconds_setup));
   const std::vector<int> repeats = shared_repeats(costs, request.repeats, request.budget - seconds_since(begin));
-  time_in_turn(runs, repeats, request.seed, StepClock(scene.problem.threads), after(begin, request.budget), tell);
+  time_in_turn(runs, schemes, repeats, request.seed, StepClock(scene.problem.threads), after(begin, request.budget),
+               tell);
 
   outcome.fewer_repeats =
       std::ranges::any_of(runs, [&](const TriedRun& run) { return run.result.repeats < request.repeats; });

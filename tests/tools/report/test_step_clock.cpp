@@ -35,6 +35,7 @@ struct Waiting final : StartedEntry {
   void copy(std::span<double>) const override {}
   double energy() const override { return 1; }
   double forces() const override { return 1; }
+  std::size_t bytes() const override { return 0; }
 };
 
 std::vector<TriedRun> waiting_run(std::int64_t steps) {
@@ -59,20 +60,38 @@ TEST_CASE("steps cost what they have of the processor, and where threads share t
 TEST_CASE("rounds count no time in which the machine does something else") {
   const auto late = std::chrono::steady_clock::now() + std::chrono::minutes(5);
   std::vector<TriedRun> runs = waiting_run(2);
-  time_in_turn(runs, {3}, 1, StepClock(1), late, [] {});
+  time_in_turn(runs, {}, {3}, 1, StepClock(1), late, [] {});
   CHECK(runs[0].result.repeats == 3);
   CHECK(runs[0].result.seconds >= 0.2 * waiting);
   CHECK(runs[0].result.seconds < 1.2 * waiting);
   // the clock of the wall counts it
-  time_in_turn(runs, {1}, 1, StepClock(2), late, [] {});
+  time_in_turn(runs, {}, {1}, 1, StepClock(2), late, [] {});
   CHECK(runs[0].result.seconds >= 2 * waiting);
+}
+
+TEST_CASE("a run that is not held is built anew, untimed, whenever it is timed") {
+  const auto late = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+  std::vector<TriedRun> runs = waiting_run(2);
+  runs[0].entry = 0;
+  runs[0].started = nullptr;
+  int built = 0;
+  std::vector<WorkPrecisionEntry> entries(1);
+  entries[0].start = [&](const Resolution&) {
+    ++built, work(2 * waiting);
+    return std::make_unique<Waiting>();
+  };
+  time_in_turn(runs, entries, {3}, 1, StepClock(1), late, [] {});
+  CHECK(built == 3);
+  CHECK(runs[0].result.repeats == 3);
+  CHECK(runs[0].result.seconds < 1.2 * waiting);
+  CHECK_FALSE(runs[0].started);
 }
 
 TEST_CASE("a run ends at its limit, of time that passes or of the processor's") {
   const auto now = [] { return std::chrono::steady_clock::now(); };
   std::vector<TriedRun> runs = waiting_run(1000000);
   const auto begin = now();
-  time_in_turn(runs, {2}, 1, StepClock(1), begin + std::chrono::milliseconds(100), [] {});
+  time_in_turn(runs, {}, {2}, 1, StepClock(1), begin + std::chrono::milliseconds(100), [] {});
   CHECK(runs[0].result.repeats == 0);  // it was not timed to its end
   CHECK(runs[0].started->newest() > 0);
   CHECK(runs[0].started->newest() < 1000);
